@@ -1,0 +1,124 @@
+//! What Section 1 hands on: the records of PROTAP, with their origins.
+
+use std::sync::Arc;
+
+use apt_geometry::{canonical::Matrix, motion::MotionCommand};
+use apt_syntax::TextRange;
+use smol_str::SmolStr;
+
+/// Where something comes from: the statement, and the macro calls and loop turns around it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    /// Internal statement number, from 1: blank and comment lines count, continuation lines do not.
+    pub isn: u32,
+    /// Which statement part, relative to the start of the statement.
+    pub range: TextRange,
+    /// The macro call or loop turn that this statement runs in; `None` at the top level.
+    pub frame: Option<Arc<Frame>>,
+}
+
+/// One level of macro call or loop turn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Macro call or loop.
+    pub kind: FrameKind,
+    /// Macro name; empty for a loop.
+    pub name: SmolStr,
+    /// ISN of the CALL, or of the LOOPST or DO.
+    pub isn: u32,
+    /// Range of the CALL or LOOPST, relative to its statement.
+    pub range: TextRange,
+    /// How many times a backward jump has been taken in this loop or macro body, plus one.
+    pub turn: u32,
+    /// The frame around this one.
+    pub parent: Option<Arc<Frame>>,
+}
+
+/// The kind of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum FrameKind {
+    Macro,
+    Loop,
+    Include,
+}
+
+/// One record for Sections 2 to 4.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The label of the statement, where TRANTO and multiple check surfaces can go on.
+    pub label: Option<SmolStr>,
+    /// What it says.
+    pub kind: RecordKind,
+}
+
+/// What a record says.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordKind {
+    /// A command to Section 2. A trailing feed rate has become a FEDRAT record before it.
+    Motion(Box<MotionCommand>),
+    /// A post-processor statement (class 2000).
+    Postprocessor {
+        /// The word.
+        word: SmolStr,
+        /// Its subclass.
+        code: u16,
+        /// Its parameters in order.
+        arguments: Vec<PostArgument>,
+    },
+    /// PARTNO, PPRINT, INSERT with their text.
+    Text {
+        /// The word.
+        word: SmolStr,
+        /// Its subclass.
+        code: u16,
+        /// The text after the word, verbatim.
+        text: SmolStr,
+    },
+    /// TRACUT/matrix (`Some`) or TRACUT/NOMORE.
+    Transform(Option<Matrix>),
+    /// INDEX/n (`end` false) or INDEX/n,NOMORE.
+    Index {
+        /// The index number.
+        number: i64,
+        /// True for NOMORE.
+        end: bool,
+    },
+    /// COPY.
+    Copy {
+        /// The index number.
+        number: i64,
+        /// What each copy adds.
+        step: CopyStep,
+        /// How many copies.
+        count: u32,
+    },
+    /// TRANTO/label.
+    Transfer(SmolStr),
+    /// FINI.
+    End,
+}
+
+/// What each copy of a COPY statement adds to the one before.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CopyStep {
+    /// SAME.
+    Same,
+    /// TRANSL, XYROT and MODIFY as a matrix.
+    Matrix(Matrix),
+}
+
+/// One parameter of a post-processor statement.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PostArgument {
+    /// A number.
+    Number(f64),
+    /// A word with its code.
+    Word(SmolStr, u16),
+    /// Quoted or free text (CL dialects).
+    Text(SmolStr),
+    /// A canonical form (CLEARP, CLRSRF, TRANS).
+    Geometry(apt_geometry::canonical::Geometry),
+}

@@ -1,0 +1,8 @@
+//! Section 2, the arithmetic element: motion commands to cut vectors, and evidence when it cannot.
+//!
+//! Deterministic and free of global state: [`execute`](section2::execute) is a function of the modal state and one
+//! command. Sources: Galbiati & Trumpy 1970 (routines DDST … ARLM3), Trumpy 1970 (command level), re-derived.
+
+pub mod section2;
+pub mod sequence;
+pub mod verify;

@@ -1,0 +1,72 @@
+//! A computed cut sequence with all that is needed to judge it: the contract between engine and verifier.
+
+use apt_geometry::{
+    Vec3,
+    motion::{DriveSide, Relation},
+};
+use serde::Serialize;
+
+/// Where the tool is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ToolPosition {
+    /// Tool end.
+    pub tip: Vec3,
+    /// Unit tool axis from the tip to the spindle.
+    pub axis: Vec3,
+}
+
+/// A surface in the role it plays for a sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Role {
+    /// The surface, with the name for messages.
+    pub surface: apt_geometry::motion::NamedSurface,
+    /// How the tool stands to it.
+    pub relation: Relation,
+    /// Which side of the natural normal (the normal of the canonical form: outward for closed surfaces, the gradient
+    /// for quadrics) the tool lives on: +1 or −1. For ON the side of the observer.
+    pub side: f64,
+    /// How deep the tool may cut into the surface, ≥ 0.
+    pub inside_tolerance: f64,
+    /// How much stock it may leave, ≥ 0.
+    pub outside_tolerance: f64,
+    /// THICK of this role.
+    pub thickness: f64,
+}
+
+/// What stopped a sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// The check surface as a role; `side` is the side the tool is on at the end.
+    pub role: Role,
+    /// It stopped at the n-th position of this relation.
+    pub occurrence: u32,
+    /// Index of the check surface in the command.
+    pub index: usize,
+}
+
+/// One computed motion: from `start` through `points`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CutSequence {
+    /// Where the tool was.
+    pub start: ToolPosition,
+    /// The positions reached, in order.
+    pub points: Vec<ToolPosition>,
+    /// The cutter in force.
+    pub cutter: apt_geometry::cutter::Cutter,
+    /// The part surface; none where it was ignored (NOPS) or there is none (GOTO).
+    pub part: Option<Role>,
+    /// The drive surface.
+    pub drive: Option<Role>,
+    /// What stopped it; for a GO with three surfaces the third.
+    pub stop: Option<Stop>,
+    /// TLLFT, TLRGT or TLON, for the verifier.
+    pub drive_side: DriveSide,
+    /// True for a start-up motion: only its end is bound to the surfaces.
+    pub start_up: bool,
+    /// Sense of travel along the path at the start: unit vector, zero for start-up motions.
+    pub forward: Vec3,
+    /// Longest cut vector allowed (MAXDP).
+    pub maximum_step: f64,
+    /// The number of cut vectors that no sequence within tolerance can beat, where a bound is known.
+    pub minimum: Option<u32>,
+}
