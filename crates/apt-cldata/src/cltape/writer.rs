@@ -1,0 +1,217 @@
+//! Writes the binary tape.
+
+use smol_str::SmolStr;
+
+use super::{
+    CIRCLE_COUNT, CIRCLE_TYPE, CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR,
+    CLASS_SEQUENCE, CLASS_SURFACE, INTEGER_PARAMETERS, MODE_MULTAX, MODE_UNITS, MOTION_COORDINATE_WORDS,
+    MOTION_FROM, MOTION_GOTO, MOTION_MORE, SURFACE_DRIVE, TEXT_CHARACTERS_PER_WORD, TEXT_CODES, TEXT_WORDS,
+    WORD_BYTES, word,
+};
+use crate::{
+    codes::CodeTable,
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
+};
+
+/// Characters of text that a record holds: columns 7 to 72 of a card.
+const TEXT_LENGTH: usize = TEXT_WORDS * TEXT_CHARACTERS_PER_WORD;
+
+/// Why records cannot be written as a tape.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TapeWriteError {
+    /// A word without an integer code.
+    #[error("statement {isn}: {word} has no code")]
+    NoCode {
+        /// Statement number.
+        isn: u32,
+        /// The word.
+        word: SmolStr,
+    },
+    /// Text that the 66 columns of a card do not hold.
+    #[error("statement {isn}: {length} characters of text, {TEXT_LENGTH} fit")]
+    TextTooLong {
+        /// Statement number.
+        isn: u32,
+        /// Its length with the blank after the word.
+        length: usize,
+    },
+    /// Text with a character that is not ASCII.
+    #[error("statement {isn}: {character:?} is not in the character set")]
+    Character {
+        /// Statement number.
+        isn: u32,
+        /// The character.
+        character: char,
+    },
+    /// More records or words than 32-bit numbers count.
+    #[error("the tape is too long")]
+    TooLong,
+}
+
+/// Writes records as a tape. Codes of words come from the records, and where those have none from `codes`.
+///
+/// # Errors
+/// The first record that the format cannot hold.
+pub fn write_tape(records: &[ClRecord], codes: &CodeTable) -> Result<Vec<u8>, TapeWriteError> {
+    let mut writer = Writer { codes, bytes: Vec::new(), serial: 0, multax: false };
+    let mut statement = None;
+    for record in records {
+        let this = (record.isn, record.source);
+        if record.isn != 0 && statement != Some(this) {
+            let isn = i32::try_from(record.isn).map_err(|_| TapeWriteError::TooLong)?;
+            writer.put(CLASS_SEQUENCE, isn, &[[0; WORD_BYTES], [b' '; WORD_BYTES]])?;
+        }
+        statement = Some(this);
+        writer.record(record)?;
+    }
+    Ok(writer.bytes)
+}
+
+struct Writer<'a> {
+    codes: &'a CodeTable,
+    bytes: Vec<u8>,
+    serial: i32,
+    multax: bool,
+}
+
+impl Writer<'_> {
+    fn put(&mut self, class: i32, subclass: i32, words: &[[u8; WORD_BYTES]]) -> Result<(), TapeWriteError> {
+        self.serial = self.serial.checked_add(1).ok_or(TapeWriteError::TooLong)?;
+        let count = i32::try_from(words.len()).map_err(|_| TapeWriteError::TooLong)?;
+        for header in [self.serial, count, class, subclass] {
+            self.bytes.extend_from_slice(&header.to_le_bytes());
+        }
+        self.bytes.extend(words.iter().flatten());
+        Ok(())
+    }
+
+    fn record(&mut self, record: &ClRecord) -> Result<(), TapeWriteError> {
+        let isn = record.isn;
+        match &record.kind {
+            ClKind::Postprocessor { word, code, arguments } => {
+                let subclass = self.major(isn, word, *code)?;
+                let words = self.words(isn, arguments)?;
+                self.put(CLASS_POSTPROCESSOR, subclass, &words)
+            }
+            ClKind::Text { word, code, text } => {
+                let known = TEXT_CODES.iter().find(|(_, name)| name == word).map(|(code, _)| *code);
+                let subclass = match known {
+                    Some(subclass) => subclass,
+                    None => self.major(isn, word, *code)?,
+                };
+                let words = text_words(isn, text)?;
+                self.put(CLASS_POSTPROCESSOR, subclass, &words)
+            }
+            ClKind::Arc { surface, center, axis, radius } => {
+                let (name, subscript) = name_words(surface);
+                let mut words = vec![
+                    [0; WORD_BYTES],
+                    word::integer(CIRCLE_TYPE),
+                    word::integer(CIRCLE_COUNT),
+                    name,
+                    subscript,
+                ];
+                words.extend(center.iter().chain(axis.iter()).map(|value| word::float(*value)));
+                words.push(word::float(*radius));
+                self.put(CLASS_SURFACE, SURFACE_DRIVE, &words)
+            }
+            ClKind::Motion { from, surface, points } => self.motion(*from, surface, points),
+            ClKind::Control { code: [class, subclass], arguments, .. } => {
+                let (class, subclass) = (i32::from(*class), i32::from(*subclass));
+                let words = if class == CLASS_PARAMETER && INTEGER_PARAMETERS.contains(&subclass) {
+                    arguments.iter().map(integer_parameter).collect()
+                } else {
+                    self.words(isn, arguments)?
+                };
+                self.put(class, subclass, &words)
+            }
+            ClKind::MultipleAxes(on) => {
+                self.multax = *on;
+                self.put(CLASS_MODE, MODE_MULTAX, &[word::integer(u32::from(*on))])
+            }
+            ClKind::Units(units) => {
+                let name = match units {
+                    Units::Inches => "INCHES",
+                    Units::Millimeters => "MM",
+                };
+                let code = self.codes.minor_code(name);
+                let code = code.ok_or_else(|| TapeWriteError::NoCode { isn, word: name.into() })?;
+                self.put(CLASS_MODE, MODE_UNITS, &[word::integer(u32::from(code))])
+            }
+            ClKind::End => self.put(CLASS_END, 0, &[]),
+        }
+    }
+
+    fn major(&self, isn: u32, word: &SmolStr, code: Option<u16>) -> Result<i32, TapeWriteError> {
+        let code = code.or_else(|| self.codes.major_code(word));
+        code.map(i32::from).ok_or_else(|| TapeWriteError::NoCode { isn, word: word.clone() })
+    }
+
+    fn words(&self, isn: u32, arguments: &[ClWord]) -> Result<Vec<[u8; WORD_BYTES]>, TapeWriteError> {
+        let one = |argument: &ClWord| match argument {
+            ClWord::Number(value) => Ok(word::float(*value)),
+            ClWord::Word(text) if text.is_empty() => Ok([0; WORD_BYTES]),
+            ClWord::Word(text) => match self.codes.minor_code(text) {
+                Some(code) => Ok(word::integer(u32::from(code))),
+                None => Err(TapeWriteError::NoCode { isn, word: text.clone() }),
+            },
+        };
+        arguments.iter().map(one).collect()
+    }
+
+    /// A motion in pieces of at most 240 coordinates; the first is a FROM or GOTO, the others continue it.
+    fn motion(&mut self, from: bool, surface: &str, points: &[ClPoint]) -> Result<(), TapeWriteError> {
+        let (name, subscript) = name_words(surface);
+        let per_point = if self.multax { 6 } else { 3 };
+        let mut subclass = if from { MOTION_FROM } else { MOTION_GOTO };
+        for piece in points.chunks(MOTION_COORDINATE_WORDS / per_point) {
+            let mut words = vec![name, subscript];
+            for point in piece {
+                words.extend(point.position.iter().map(|value| word::float(*value)));
+                if self.multax {
+                    words.extend(point.axis.iter().map(|value| word::float(*value)));
+                }
+            }
+            self.put(CLASS_MOTION, subclass, &words)?;
+            subclass = MOTION_MORE;
+        }
+        Ok(())
+    }
+}
+
+fn integer_parameter(argument: &ClWord) -> [u8; WORD_BYTES] {
+    match argument {
+        ClWord::Number(value) if *value >= 0.0 => word::integer(*value as u32),
+        _ => [0; WORD_BYTES],
+    }
+}
+
+/// `C1` or `C(3)` as name and subscript.
+fn name_words(surface: &str) -> ([u8; WORD_BYTES], [u8; WORD_BYTES]) {
+    let (name, subscript) = match surface.split_once('(') {
+        Some((name, rest)) => (name, rest.trim_end_matches(')').trim().parse::<u32>().unwrap_or(0)),
+        None => (surface, 0),
+    };
+    let ascii: String = name.trim().chars().filter(char::is_ascii).collect();
+    (word::name(&ascii), word::integer(subscript))
+}
+
+fn text_words(isn: u32, text: &str) -> Result<Vec<[u8; WORD_BYTES]>, TapeWriteError> {
+    if let Some(character) = text.chars().find(|c| !(' '..='~').contains(c)) {
+        return Err(TapeWriteError::Character { isn, character });
+    }
+    let text = text.trim();
+    let blank = if text.is_empty() { 0 } else { 1 };
+    let length = text.len() + blank;
+    if length > TEXT_LENGTH {
+        return Err(TapeWriteError::TextTooLong { isn, length });
+    }
+    let mut characters = vec![b' '; TEXT_LENGTH];
+    characters[blank..length].copy_from_slice(text.as_bytes());
+    let pack = |piece: &[u8]| {
+        let mut word = [b' '; WORD_BYTES];
+        word[..piece.len()].copy_from_slice(piece);
+        word
+    };
+    Ok(characters.chunks(TEXT_CHARACTERS_PER_WORD).map(pack).collect())
+}

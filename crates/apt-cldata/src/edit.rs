@@ -1,0 +1,523 @@
+//! Section 3: TRACUT, INDEX and COPY over the CL records of Section 2.
+//!
+//! A TRACUT replaces the one before (they do not multiply). A COPY repeats all records between its INDEX and the
+//! INDEX/n,NOMORE or, without one, the COPY itself; the k-th copy carries k steps of the transform. A TRACUT that was
+//! in force when INDEX was met acts on the copies last, a TRACUT given inside the range acts on its records first.
+
+use std::collections::BTreeMap;
+
+use apt_geometry::{Vec3, canonical::Matrix};
+use smol_str::SmolStr;
+
+use crate::record::{ClKind, ClRecord, ClWord};
+
+/// Deepest nesting of INDEX ... COPY.
+pub const MAXIMUM_NESTING: usize = 3;
+/// Most COPY statements that may name one INDEX.
+pub const MAXIMUM_COPIES_PER_INDEX: usize = 3;
+/// Most records that one edit may make, so that a slip in a count ends in a diagnostic and not in a full memory.
+pub const MAXIMUM_RECORDS: usize = 4_000_000;
+/// Relative deviation from a similarity below which a circle is still a circle after a transform.
+const SIMILARITY_FRACTION: f64 = 1e-6;
+/// Subclasses of the edit statements themselves.
+const TRACUT_CODE: u16 = 1038;
+const INDEX_CODE: u16 = 1039;
+const COPY_CODE: u16 = 1040;
+
+/// One step of the stream that Section 2 hands to Section 3.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EditItem {
+    /// A CL record.
+    Record(ClRecord),
+    /// TRACUT/matrix, or TRACUT/NOMORE (`None`).
+    Transform {
+        /// The matrix.
+        matrix: Option<Matrix>,
+        /// Statement number.
+        isn: u32,
+        /// Origin, as in [`ClRecord::source`].
+        source: u32,
+    },
+    /// INDEX/n, or INDEX/n,NOMORE.
+    Index {
+        /// Index number.
+        number: i64,
+        /// True for NOMORE.
+        end: bool,
+        /// Statement number.
+        isn: u32,
+        /// Origin.
+        source: u32,
+    },
+    /// COPY.
+    Copy {
+        /// Index number.
+        number: i64,
+        /// What each copy adds; `None` for SAME.
+        matrix: Option<Matrix>,
+        /// How many copies.
+        count: u32,
+        /// Statement number.
+        isn: u32,
+        /// Origin.
+        source: u32,
+    },
+}
+
+/// A mistake in the edit statements, with its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EditError {
+    /// Statement number.
+    pub isn: u32,
+    /// Origin, as in [`ClRecord::source`].
+    pub source: u32,
+    /// What is wrong.
+    pub kind: EditErrorKind,
+}
+
+// By hand, because `source` is the place in the program here and no underlying error.
+impl std::fmt::Display for EditError {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "statement {}: {}", self.isn, self.kind)
+    }
+}
+
+impl std::error::Error for EditError {}
+
+impl EditError {
+    /// The number of the APT III edit phase message, where there is one.
+    pub fn apt3(&self) -> Option<u16> {
+        self.kind.apt3()
+    }
+}
+
+/// What is wrong with an edit statement.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum EditErrorKind {
+    /// INDEX ... COPY nested too deep; the range is not copied.
+    #[error("INDEX {number} is nested {depth} deep, at most {MAXIMUM_NESTING} are allowed")]
+    NestedTooDeep {
+        /// Index number.
+        number: i64,
+        /// The depth it would have.
+        depth: usize,
+    },
+    /// COPY names an index that no INDEX before it opened.
+    #[error("COPY {number} without INDEX {number} before it")]
+    CopyWithoutIndex {
+        /// Index number.
+        number: i64,
+    },
+    /// INDEX/n,NOMORE without INDEX/n open.
+    #[error("INDEX {number},NOMORE without INDEX {number}")]
+    EndWithoutIndex {
+        /// Index number.
+        number: i64,
+    },
+    /// Ranges overlap without one holding the other.
+    #[error("the range of INDEX {number} overlaps that of INDEX {open}")]
+    Overlap {
+        /// Index number of the statement.
+        number: i64,
+        /// The inner range that is still open.
+        open: i64,
+    },
+    /// INDEX with a number whose range is still open.
+    #[error("INDEX {number} is already open")]
+    IndexReused {
+        /// Index number.
+        number: i64,
+    },
+    /// More COPY statements for one INDEX than allowed.
+    #[error("more than {MAXIMUM_COPIES_PER_INDEX} COPY statements name INDEX {number}")]
+    TooManyCopies {
+        /// Index number.
+        number: i64,
+    },
+    /// COPY with a count of zero: nothing is copied.
+    #[error("COPY {number} with a count of zero")]
+    ZeroCount {
+        /// Index number.
+        number: i64,
+    },
+    /// The copies would exceed the budget of records.
+    #[error("COPY {number} would make more than {limit} records")]
+    TooManyRecords {
+        /// Index number.
+        number: i64,
+        /// The budget.
+        limit: usize,
+    },
+    /// A transform squeezes a tool axis to nothing.
+    #[error("the transformed tool axis has no direction")]
+    AxisVanishes {
+        /// The axis before the transform.
+        axis: [f64; 3],
+    },
+    /// A transform makes a coordinate that is not a finite number.
+    #[error("the transformed position is not finite")]
+    NotFinite {
+        /// The position before the transform.
+        position: [f64; 3],
+    },
+}
+
+impl EditErrorKind {
+    /// The number of the APT III edit phase message, where there is one.
+    pub fn apt3(&self) -> Option<u16> {
+        match self {
+            EditErrorKind::NestedTooDeep { .. } => Some(5),
+            EditErrorKind::CopyWithoutIndex { .. }
+            | EditErrorKind::EndWithoutIndex { .. }
+            | EditErrorKind::Overlap { .. }
+            | EditErrorKind::IndexReused { .. }
+            | EditErrorKind::TooManyCopies { .. } => Some(11),
+            EditErrorKind::AxisVanishes { .. } => Some(37),
+            EditErrorKind::ZeroCount { .. }
+            | EditErrorKind::TooManyRecords { .. }
+            | EditErrorKind::NotFinite { .. } => None,
+        }
+    }
+}
+
+/// Executes the edit statements. The list comes back whole, also with errors: a faulty statement has no effect.
+pub fn edit(items: Vec<EditItem>) -> (Vec<ClRecord>, Vec<EditError>) {
+    let spans = spans(&items);
+    let mut editor = Editor { levels: vec![Level::base()], errors: Vec::new(), made: 0 };
+    for (at, item) in items.into_iter().enumerate() {
+        editor.item(item, spans.get(&at).copied());
+    }
+    editor.finish()
+}
+
+/// What the whole stream says about the edit statement at a place in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Span {
+    /// An INDEX that COPY statements name.
+    Opens,
+    /// A COPY of an open INDEX; the last one closes it.
+    Copies { last: bool, ordinal: usize },
+}
+
+/// Pairs every COPY with the INDEX before it.
+fn spans(items: &[EditItem]) -> BTreeMap<usize, Span> {
+    let mut open: BTreeMap<i64, (usize, Vec<usize>)> = BTreeMap::new();
+    let mut closed: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (at, item) in items.iter().enumerate() {
+        match item {
+            EditItem::Index { number, end: false, .. } => {
+                // The same number again before any COPY: the first range is still open, which `open_index` reports.
+                let reopened = open.get(number).is_some_and(|(_, copies)| copies.is_empty());
+                if !reopened && let Some(range) = open.insert(*number, (at, Vec::new())) {
+                    closed.push(range);
+                }
+            }
+            EditItem::Copy { number, .. } => {
+                if let Some((_, copies)) = open.get_mut(number) {
+                    copies.push(at);
+                }
+            }
+            _ => {}
+        }
+    }
+    closed.extend(open.into_values());
+    let mut spans = BTreeMap::new();
+    for (index, copies) in closed {
+        let Some(last) = copies.last().copied() else { continue };
+        spans.insert(index, Span::Opens);
+        for (ordinal, at) in copies.into_iter().enumerate() {
+            spans.insert(at, Span::Copies { last: at == last, ordinal });
+        }
+    }
+    spans
+}
+
+/// A record in an open range. `outer` says that the TRACUT around the range still has to act on it.
+#[derive(Debug, Clone)]
+struct Held {
+    record: ClRecord,
+    outer: bool,
+}
+
+/// An open INDEX, or the program itself.
+struct Level {
+    /// Index number; none for the program.
+    number: Option<i64>,
+    /// What has been met in it.
+    held: Vec<Held>,
+    /// Where INDEX/n,NOMORE stood, as a length of `held`.
+    end: Option<usize>,
+    /// The TRACUT given inside: none, NOMORE, or a matrix.
+    transform: Option<Option<Matrix>>,
+}
+
+impl Level {
+    fn base() -> Self {
+        Level { number: None, held: Vec::new(), end: None, transform: Some(None) }
+    }
+
+    fn index(number: i64) -> Self {
+        Level { number: Some(number), held: Vec::new(), end: None, transform: None }
+    }
+}
+
+struct Editor {
+    /// The program, then the open ranges from the outermost; never empty.
+    levels: Vec<Level>,
+    errors: Vec<EditError>,
+    made: usize,
+}
+
+impl Editor {
+    fn item(&mut self, item: EditItem, span: Option<Span>) {
+        match item {
+            EditItem::Record(record) => self.push(record),
+            EditItem::Transform { matrix, isn, source } => {
+                self.push(transform_statement(matrix.as_ref(), isn, source));
+                if let Some(level) = self.levels.last_mut() {
+                    level.transform = Some(matrix);
+                }
+            }
+            EditItem::Index { number, end: false, isn, source } => {
+                self.open_index(number, span.is_some(), isn, source);
+                self.push(index_statement(number, isn, source));
+            }
+            EditItem::Index { number, end: true, isn, source } => self.end_index(number, isn, source),
+            EditItem::Copy { number, matrix, count, isn, source } => {
+                self.copy(CopyOrder { number, matrix, count, isn, source }, span);
+            }
+        }
+    }
+
+    fn error(&mut self, isn: u32, source: u32, kind: EditErrorKind) {
+        self.errors.push(EditError { isn, source, kind });
+    }
+
+    /// Appends a record to the innermost range under the TRACUT given inside that range.
+    fn push(&mut self, record: ClRecord) {
+        let Some(level) = self.levels.last_mut() else { return };
+        match level.transform {
+            None => level.held.push(Held { record, outer: true }),
+            Some(None) => level.held.push(Held { record, outer: false }),
+            Some(Some(matrix)) => match transformed(&record, &matrix) {
+                Ok(Some(record)) => level.held.push(Held { record, outer: false }),
+                Ok(None) => {}
+                Err(kind) => self.errors.push(EditError { isn: record.isn, source: record.source, kind }),
+            },
+        }
+    }
+
+    fn open_index(&mut self, number: i64, copied: bool, isn: u32, source: u32) {
+        if self.levels.iter().any(|level| level.number == Some(number)) {
+            return self.error(isn, source, EditErrorKind::IndexReused { number });
+        }
+        if !copied {
+            return;
+        }
+        let depth = self.levels.len();
+        if depth > MAXIMUM_NESTING {
+            return self.error(isn, source, EditErrorKind::NestedTooDeep { number, depth });
+        }
+        self.levels.push(Level::index(number));
+    }
+
+    fn end_index(&mut self, number: i64, isn: u32, source: u32) {
+        let innermost = self.levels.last().and_then(|level| level.number);
+        let open = self.levels.iter().any(|level| level.number == Some(number));
+        match innermost {
+            Some(inner) if inner == number => {
+                if let Some(level) = self.levels.last_mut() {
+                    level.end.get_or_insert(level.held.len());
+                }
+            }
+            Some(inner) if open => self.error(isn, source, EditErrorKind::Overlap { number, open: inner }),
+            _ => self.error(isn, source, EditErrorKind::EndWithoutIndex { number }),
+        }
+        self.push(statement(
+            "INDEX",
+            INDEX_CODE,
+            vec![ClWord::Number(number as f64), ClWord::Word("NOMORE".into())],
+            isn,
+            source,
+        ));
+    }
+
+    fn copy(&mut self, order: CopyOrder, span: Option<Span>) {
+        let CopyOrder { number, isn, source, .. } = order;
+        match (self.levels.last().and_then(|level| level.number), span) {
+            (Some(inner), Some(Span::Copies { last, ordinal })) if inner == number => {
+                if ordinal >= MAXIMUM_COPIES_PER_INDEX {
+                    self.error(isn, source, EditErrorKind::TooManyCopies { number });
+                } else {
+                    self.repeat(&order);
+                }
+                self.push(order.statement());
+                if last {
+                    self.close();
+                }
+                return;
+            }
+            (Some(inner), _) if self.levels.iter().any(|level| level.number == Some(number)) => {
+                self.error(isn, source, EditErrorKind::Overlap { number, open: inner });
+            }
+            // The INDEX was refused and has its own message.
+            (_, Some(_)) => {}
+            (_, None) => self.error(isn, source, EditErrorKind::CopyWithoutIndex { number }),
+        }
+        self.push(order.statement());
+    }
+
+    /// Appends the copies to the innermost range.
+    fn repeat(&mut self, order: &CopyOrder) {
+        let CopyOrder { number, matrix, count, isn, source } = *order;
+        let Some(level) = self.levels.last() else { return };
+        let range = level.end.unwrap_or(level.held.len());
+        let original: Vec<Held> = level.held[..range].to_vec();
+        if count == 0 {
+            return self.error(isn, source, EditErrorKind::ZeroCount { number });
+        }
+        let more = (original.len() + 1).saturating_mul(count as usize);
+        if self.made.saturating_add(more) > MAXIMUM_RECORDS {
+            return self.error(isn, source, EditErrorKind::TooManyRecords { number, limit: MAXIMUM_RECORDS });
+        }
+        self.made += more;
+        let mut power = Matrix::identity();
+        for _ in 0..count {
+            if let Some(step) = &matrix {
+                power = step.multiply(&power);
+            }
+            let mut copies = vec![Held { record: index_statement(number, isn, source), outer: true }];
+            // The INDEX statement itself stands first in the range and is renewed under the number of the COPY.
+            for held in original.iter().skip(1) {
+                match transformed(&held.record, &power) {
+                    Ok(Some(record)) => copies.push(Held { record, outer: held.outer }),
+                    Ok(None) => {}
+                    Err(kind) => {
+                        self.errors.push(EditError {
+                            isn: held.record.isn,
+                            source: held.record.source,
+                            kind,
+                        });
+                    }
+                }
+            }
+            if let Some(level) = self.levels.last_mut() {
+                level.held.append(&mut copies);
+            }
+        }
+    }
+
+    /// Ends the innermost range: its records go to the range around it, under the TRACUT there.
+    fn close(&mut self) {
+        if self.levels.len() < 2 {
+            return;
+        }
+        let Some(inner) = self.levels.pop() else { return };
+        for held in inner.held {
+            if held.outer {
+                self.push(held.record);
+            } else if let Some(level) = self.levels.last_mut() {
+                level.held.push(held);
+            }
+        }
+        if let (Some(level), Some(transform)) = (self.levels.last_mut(), inner.transform) {
+            level.transform = Some(transform);
+        }
+    }
+
+    fn finish(mut self) -> (Vec<ClRecord>, Vec<EditError>) {
+        while self.levels.len() > 1 {
+            self.close();
+        }
+        let records = self.levels.pop().map(|level| level.held).unwrap_or_default();
+        (records.into_iter().map(|held| held.record).collect(), self.errors)
+    }
+}
+
+/// A COPY statement.
+struct CopyOrder {
+    number: i64,
+    matrix: Option<Matrix>,
+    count: u32,
+    isn: u32,
+    source: u32,
+}
+
+impl CopyOrder {
+    fn statement(&self) -> ClRecord {
+        let mut words = vec![ClWord::Number(self.number as f64)];
+        words.push(ClWord::Word(if self.matrix.is_some() { "MODIFY" } else { "SAME" }.into()));
+        words.extend(self.matrix.iter().flat_map(matrix_words));
+        words.push(ClWord::Number(f64::from(self.count)));
+        statement("COPY", COPY_CODE, words, self.isn, self.source)
+    }
+}
+
+fn statement(word: &str, code: u16, arguments: Vec<ClWord>, isn: u32, source: u32) -> ClRecord {
+    ClRecord {
+        isn,
+        source,
+        kind: ClKind::Postprocessor { word: SmolStr::new(word), code: Some(code), arguments },
+    }
+}
+
+fn index_statement(number: i64, isn: u32, source: u32) -> ClRecord {
+    statement("INDEX", INDEX_CODE, vec![ClWord::Number(number as f64)], isn, source)
+}
+
+fn transform_statement(matrix: Option<&Matrix>, isn: u32, source: u32) -> ClRecord {
+    let words = match matrix {
+        Some(matrix) => matrix_words(matrix).collect(),
+        None => vec![ClWord::Word("NOMORE".into())],
+    };
+    statement("TRACUT", TRACUT_CODE, words, isn, source)
+}
+
+fn matrix_words(matrix: &Matrix) -> impl Iterator<Item = ClWord> {
+    // Adding zero takes the sign off a negative zero.
+    matrix.rows.into_iter().flatten().map(|value| ClWord::Number(value + 0.0))
+}
+
+/// The record under a transform; `None` for a circle that is no circle any more (its chord points remain).
+fn transformed(record: &ClRecord, matrix: &Matrix) -> Result<Option<ClRecord>, EditErrorKind> {
+    let kind = match &record.kind {
+        ClKind::Arc { surface, center, axis, radius } => {
+            let Some(scale) = matrix.uniform_scale(SIMILARITY_FRACTION) else { return Ok(None) };
+            ClKind::Arc {
+                surface: surface.clone(),
+                center: transformed_position(center, matrix)?,
+                axis: transformed_axis(axis, matrix)?,
+                radius: radius * scale,
+            }
+        }
+        ClKind::Motion { from, surface, points } => {
+            let mut moved = points.clone();
+            for point in &mut moved {
+                point.position = transformed_position(&point.position, matrix)?;
+                point.axis = transformed_axis(&point.axis, matrix)?;
+            }
+            ClKind::Motion { from: *from, surface: surface.clone(), points: moved }
+        }
+        other => other.clone(),
+    };
+    Ok(Some(ClRecord { isn: record.isn, source: record.source, kind }))
+}
+
+fn transformed_position(position: &Vec3, matrix: &Matrix) -> Result<Vec3, EditErrorKind> {
+    let moved = matrix.apply_point(position);
+    if moved.iter().all(|value| value.is_finite()) {
+        Ok(moved)
+    } else {
+        Err(EditErrorKind::NotFinite { position: (*position).into() })
+    }
+}
+
+fn transformed_axis(axis: &Vec3, matrix: &Matrix) -> Result<Vec3, EditErrorKind> {
+    let turned = matrix.apply_vector(axis);
+    let length = turned.norm();
+    if length > 0.0 && length.is_finite() {
+        Ok(turned / length)
+    } else {
+        Err(EditErrorKind::AxisVanishes { axis: (*axis).into() })
+    }
+}

@@ -1,0 +1,106 @@
+//! The binary tape against a file that the public APT III port wrote.
+
+use apt_cldata::{
+    cltape::{is_tape, read_tape, write_tape},
+    codes::CodeTable,
+    record::{ClKind, ClWord},
+};
+
+fn codes() -> CodeTable {
+    let mut codes = CodeTable::new();
+    for (word, code) in [
+        ("END", 1),
+        ("STOP", 2),
+        ("RAPID", 5),
+        ("LOADTL", 1055),
+        ("SPINDL", 1031),
+        ("FEDRAT", 1009),
+        ("COOLNT", 1030),
+        ("PARTNO", 1045),
+    ] {
+        codes.major(word, code);
+    }
+    for (word, code) in [("LENGTH", 9), ("CLW", 60), ("IPM", 73), ("ON", 71), ("OFF", 72)] {
+        codes.minor(word, code);
+    }
+    codes
+}
+
+const SAMPLE: &[u8] = include_bytes!("data/cltape-01.tap");
+
+#[test]
+fn sample_is_read() {
+    assert!(is_tape(SAMPLE));
+    let contents = read_tape(SAMPLE, &codes()).unwrap();
+    assert_eq!(contents.notes, vec![]);
+    let words: Vec<String> = contents
+        .records
+        .iter()
+        .map(|record| match &record.kind {
+            ClKind::Text { word, text, .. } => format!("{} {word} {text}", record.isn),
+            ClKind::Postprocessor { word, arguments, .. } | ClKind::Control { word, arguments, .. } => {
+                let arguments: Vec<String> = arguments
+                    .iter()
+                    .map(|argument| match argument {
+                        ClWord::Number(number) => number.to_string(),
+                        ClWord::Word(word) => word.to_string(),
+                    })
+                    .collect();
+                format!("{} {word}/{}", record.isn, arguments.join(","))
+            }
+            ClKind::Motion { from, surface, points } => {
+                let start = if *from { "FROM" } else { "GOTO" };
+                let position = points[0].position;
+                format!(
+                    "{} {start} {surface} {:.4} {:.4} {:.4} {}",
+                    record.isn, position.x, position.y, position.z, points[0].axis.z
+                )
+            }
+            ClKind::MultipleAxes(on) => format!("{} MULTAX {on}", record.isn),
+            ClKind::End => format!("{} FINI", record.isn),
+            other => format!("{other:?}"),
+        })
+        .collect();
+    expect_test::expect![[r#"
+        1 PARTNO BINARY SAMPLE 1
+        2 INTOL/0,0,0,0
+        3 OUTTOL/0.01,0.01,0.01,0.01
+        4 CUTTER/10
+        6 FROM SP 0.0000 0.0000 50.0000 1
+        7 LOADTL/1,LENGTH,100
+        8 SPINDL/1200,CLW
+        9 FEDRAT/300,IPM
+        10 COOLNT/ON
+        11 RAPID/
+        12 GOTO  -10.0000 0.0000 5.0000 1
+        15 GOTO C1 20.4783 24.3826 0.0000 1
+        16 GOTO TLAXIS 20.4783 24.3826 10.0000 1
+        17 MULTAX true
+        18 GOTO  0.0000 0.0000 20.0000 0.8
+        19 COOLNT/OFF
+        20 STOP/
+        21 END/
+        22 FINI"#]]
+    .assert_eq(&words.join("\n"));
+}
+
+#[test]
+fn sample_is_written_again_byte_for_byte() {
+    let contents = read_tape(SAMPLE, &codes()).unwrap();
+    let written = write_tape(&contents.records, &codes()).unwrap();
+    // One filling byte stands at the end of the sample.
+    assert_eq!(written, SAMPLE[..SAMPLE.len() - 1]);
+}
+
+#[test]
+fn any_prefix_or_garbage_ends_in_a_result() {
+    for length in 0..SAMPLE.len() {
+        let _ = read_tape(&SAMPLE[..length], &codes());
+    }
+    let mut broken = SAMPLE.to_vec();
+    for at in 0..broken.len() {
+        broken[at] ^= 0xa5;
+        let _ = read_tape(&broken, &codes());
+    }
+    assert!(read_tape(&[0xff; 64], &codes()).is_err());
+}

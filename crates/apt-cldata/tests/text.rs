@@ -1,0 +1,182 @@
+//! CL text: samples, and writing and reading again.
+
+use apt_cldata::{
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
+    text::{ClDialect, ReadErrorKind, TextOptions, detect, read_text, write_text},
+};
+use apt_geometry::Vec3;
+use proptest::prelude::*;
+
+fn positions(records: &[ClRecord]) -> Vec<[f64; 3]> {
+    let points = records.iter().filter_map(|record| match &record.kind {
+        ClKind::Motion { points, .. } => Some(points),
+        _ => None,
+    });
+    points.flatten().map(|point| point.position.into()).collect()
+}
+
+#[test]
+fn generic_milling_sample() {
+    let text = include_str!("data/aptcl-01.cl");
+    assert_eq!(detect(text), Some(ClDialect::Generic));
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    assert_eq!(
+        positions(&records),
+        [
+            [0.0, 0.0, 100.0],
+            [-20.0, 0.0, 5.0],
+            [-20.0, 0.0, -6.0],
+            [40.0, 0.0, -6.0],
+            [40.0, 0.0, -6.0],
+            [48.0, 3.313708498984761, -6.0],
+            [48.0, 3.313708498984761, 100.0],
+        ]
+    );
+    let last = records.last().unwrap();
+    // 24 lines, one of them a continuation; the remark counts.
+    assert_eq!((last.isn, last.source, &last.kind), (23, 23, &ClKind::End));
+}
+
+#[test]
+fn lathe_and_five_axis_samples() {
+    let (records, errors) = read_text(include_str!("data/aptcl-02.cl"));
+    assert_eq!(errors, vec![]);
+    assert!(records.iter().any(|record| matches!(
+        &record.kind,
+        ClKind::Postprocessor { word, arguments, .. } if word == "CYCLE" && arguments.len() == 12
+    )));
+    let (records, errors) = read_text(include_str!("data/aptcl-03.cl"));
+    assert_eq!(errors, vec![]);
+    let axes: Vec<f64> = records
+        .iter()
+        .filter_map(|record| match &record.kind {
+            ClKind::Motion { points, .. } => Some(points[0].axis.norm()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(axes.len(), 6);
+    assert!(axes.iter().all(|length| (length - 1.0).abs() < 1e-12));
+}
+
+#[test]
+fn circles_of_all_simple_forms_become_points_on_the_arc() {
+    let unsegmented = "GOTO/40,20,-3\nCIRCLE/40,45,-3,0,0,1,25\nGOTO/65,45,-3\nGOTO/65,90,-3\n";
+    let inner = "GOTO / 40,20,-3\nCIRCLE / 40,45,-3, 0,0,1, 25\nGOTO / 57.6777,27.3223,-3\n65,45,-3\nGOTO / 65,90,-3\n";
+    let stated = "GOTO/40,20,-3\nMOVARC/40,45,-3,0,0,1,25,ANGLE,90\nGOTO/65,45,-3\nGOTO/65,90,-3\n";
+    for (text, inner_points) in [(unsegmented, 18), (inner, 2), (stated, 18)] {
+        let (records, errors) = read_text(text);
+        assert_eq!(errors, vec![]);
+        assert!(matches!(records[1].kind, ClKind::Arc { radius: 25.0, .. }), "{text}");
+        let ClKind::Motion { points, .. } = &records[2].kind else { panic!("{records:?}") };
+        assert_eq!(points.len(), inner_points);
+        assert!(points.iter().all(|point| {
+            let arm = point.position - Vec3::new(40.0, 45.0, -3.0);
+            (arm.norm() - 25.0).abs() < 1e-4 && arm.x > -1e-9 && arm.y < 1e-9
+        }));
+        assert_eq!(points.last().unwrap().position, Vec3::new(65.0, 45.0, -3.0));
+        assert_eq!(positions(&records[3..]), [[65.0, 90.0, -3.0]]);
+    }
+}
+
+#[test]
+fn mistakes_are_reported_in_place() {
+    let text = "GOTO/1,2\nGODLTA/1\nP=POINT/1,2,3\nUNITS/FURLONG\nGOTO/0,0,0,0,0,2\n)(\nGOFWD/C\nCIRCLE/1,2,3\n1,2,3,4\n";
+    let (_, errors) = read_text(text);
+    let found: Vec<(u32, ReadErrorKind)> = errors.into_iter().map(|error| (error.line, error.kind)).collect();
+    assert_eq!(
+        found,
+        vec![
+            (0, ReadErrorKind::WrongCount { word: "GOTO".into(), count: 2 }),
+            (1, ReadErrorKind::NoPosition),
+            (2, ReadErrorKind::Definition { name: "P".into() }),
+            (3, ReadErrorKind::UnknownUnit { unit: "FURLONG".into() }),
+            (4, ReadErrorKind::AxisLength { length: 2.0 }),
+            (5, ReadErrorKind::Unreadable),
+            (6, ReadErrorKind::NotRead { word: "GOFWD".into() }),
+            (7, ReadErrorKind::WrongCount { word: "CIRCLE".into(), count: 3 }),
+            (8, ReadErrorKind::WrongCount { word: "GOTO".into(), count: 4 }),
+        ]
+    );
+}
+
+#[test]
+fn written_text() {
+    let point =
+        |x: f64, y: f64| ClPoint { position: Vec3::new(x, y, 0.0), axis: Vec3::z(), with_axis: false };
+    let kinds = [
+        ClKind::Text { word: "PARTNO".into(), code: Some(1045), text: " SAMPLE".into() },
+        ClKind::Units(Units::Millimeters),
+        ClKind::Control { word: "CUTTER".into(), code: [6000, 6], arguments: vec![ClWord::Number(10.0)] },
+        ClKind::Motion { from: true, surface: "SP".into(), points: vec![point(-0.0, 1.0 / 3.0)] },
+        ClKind::Postprocessor {
+            word: "FEDRAT".into(),
+            code: Some(1009),
+            arguments: vec![ClWord::Number(20.0), ClWord::Word("IPM".into())],
+        },
+        ClKind::Arc { surface: "C".into(), center: Vec3::zeros(), axis: Vec3::z(), radius: 1.0 },
+        ClKind::Motion { from: false, surface: "C".into(), points: vec![point(1.0, 0.0), point(0.0, 1.0)] },
+        ClKind::MultipleAxes(true),
+        ClKind::End,
+    ];
+    let records: Vec<ClRecord> = kinds.into_iter().map(|kind| ClRecord { isn: 1, source: 0, kind }).collect();
+    expect_test::expect![[r#"
+        PARTNO SAMPLE
+        UNITS/MM
+        CUTTER/10.0
+        FROM/0.0,0.3333333333333333,0.0
+        FEDRAT/20.0,IPM
+        CIRCLE/0.0,0.0,0.0,0.0,0.0,1.0,1.0
+        GOTO/1.0,0.0,0.0
+        GOTO/0.0,1.0,0.0
+        MULTAX/ON
+        FINI
+    "#]]
+    .assert_eq(&write_text(&records, &TextOptions::default()));
+}
+
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -1e3..1e3_f64,
+        -1e-9..1e-9_f64,
+        Just(0.0),
+        (-1_000_000..1_000_000_i32).prop_map(f64::from),
+        any::<f64>().prop_filter("finite", |value| value.is_finite())
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn written_numbers_read_back_bit_for_bit(
+        points in prop::collection::vec(prop::array::uniform3(any_number()), 1..6),
+        arguments in prop::collection::vec(any_number(), 0..9),
+    ) {
+        let mut records: Vec<ClRecord> = points
+            .iter()
+            .map(|at| {
+                let point = ClPoint { position: (*at).into(), axis: Vec3::z(), with_axis: false };
+                ClKind::Motion { from: false, surface: "".into(), points: vec![point] }
+            })
+            .map(|kind| ClRecord { isn: 0, source: 0, kind })
+            .collect();
+        let words: Vec<ClWord> = arguments.into_iter().map(ClWord::Number).collect();
+        let kind = ClKind::Postprocessor { word: "ORIGIN".into(), code: None, arguments: words };
+        records.push(ClRecord { isn: 0, source: 0, kind });
+        let text = write_text(&records, &TextOptions::default());
+        let (read, errors) = read_text(&text);
+        prop_assert_eq!(errors, vec![]);
+        let kinds: Vec<&ClKind> = read.iter().map(|record| &record.kind).collect();
+        let wanted: Vec<&ClKind> = records.iter().map(|record| &record.kind).collect();
+        prop_assert_eq!(kinds, wanted);
+    }
+
+    #[test]
+    fn any_text_is_read_without_panic(text in "[A-Z0-9/,.$+\\-='() \n]{0,200}") {
+        let (records, _) = read_text(&text);
+        let written = write_text(&records, &TextOptions::default());
+        prop_assert!(written.is_ascii());
+        let _ = detect(&text);
+    }
+}
