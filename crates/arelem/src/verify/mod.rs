@@ -1,7 +1,25 @@
 //! The independent proof that a cut sequence keeps its tolerances (arelem reference 6.1). It shares no contact code
 //! with the engine: only `sequence`, canonical forms and the cutter's seven numbers.
+//!
+//! The clearance of the whole tool is measured by tangent planes and supports, the extremes over a cut vector by
+//! convexity ([`span`]); the stop by replaying the path against the check surface ([`stop`]).
 
+mod clearance;
+mod judge;
+mod pencil;
+mod quadric;
+mod quadric_clearance;
+mod span;
+mod stop;
+mod tool;
+
+#[cfg(test)]
+mod tests;
+
+use apt_geometry::canonical::GeometryKind;
 use serde::Serialize;
+
+pub use judge::verify;
 
 /// Extreme signed clearances of one role over the whole of every cut vector, and the band they must lie in.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -10,9 +28,9 @@ pub struct Extent {
     pub min: f64,
     /// Greatest clearance.
     pub max: f64,
-    /// Allowed depth.
+    /// Allowed depth. For ON the wider of INTOL and OUTTOL, which counts on both sides (arelem reference 1.6).
     pub intol: f64,
-    /// Allowed stock.
+    /// Allowed stock. For ON the wider of INTOL and OUTTOL.
     pub outtol: f64,
 }
 
@@ -27,7 +45,7 @@ pub struct Evidence {
     pub check: Option<Extent>,
     /// Everything the sequence promises was proven.
     pub verified: bool,
-    /// Why not, if not: what is broken and where.
+    /// Why not, if not: what is broken and where. Each rule is named once, at its worst place.
     pub violations: Vec<Violation>,
 }
 
@@ -38,7 +56,8 @@ pub struct Violation {
     pub rule: Rule,
     /// Index of the cut vector (0 = from the start to the first point).
     pub vector: usize,
-    /// The measured value (clearance, angle, length …).
+    /// The measured value: a clearance for the bands, the number of the position really reached (0: none) for the stop,
+    /// the sine of an angle for tangency, side and progress, a length for the step.
     pub value: f64,
 }
 
@@ -54,4 +73,46 @@ pub enum Rule {
     Side,
     Progress,
     StepLength,
+}
+
+/// Why a sequence could not be judged. None of these says that it is wrong.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum VerifyError {
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The verifier has no model of this kind of surface.
+    #[error("no model of {kind:?}")]
+    Unsupported {
+        /// The kind of the surface.
+        kind: GeometryKind,
+    },
+    /// The canonical form describes no surface.
+    #[error("{kind:?} without a surface")]
+    Degenerate {
+        /// The kind of the surface.
+        kind: GeometryKind,
+    },
+    /// The seven numbers describe no convex tool.
+    #[error("impossible cutter")]
+    Cutter,
+    /// A position, axis or limit is not finite, or an axis has no length.
+    #[error("a number of the sequence is not finite")]
+    NotFinite,
+    /// There is no distance to a surface at a place of the path.
+    #[error("no distance to a surface on vector {vector}")]
+    NoDistance {
+        /// Index of the cut vector.
+        vector: usize,
+    },
+    /// The sequence has no positions.
+    #[error("a sequence without positions")]
+    Empty,
+}
+
+impl VerifyError {
+    /// The APT III diagnostic with the same meaning: none, APT III had no verifier.
+    pub fn apt3(&self) -> Option<u16> {
+        None
+    }
 }

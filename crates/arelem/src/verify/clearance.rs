@@ -1,0 +1,211 @@
+//! Clearance of the whole tool to a surface in a role, from the canonical form: the signed distance of the tool end to the
+//! boundary of solid ⊕ (−tool) (arelem reference 5.2), positive when separated on the role's side.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{self, Geometry},
+};
+
+use super::{
+    VerifyError,
+    pencil::Pencil,
+    quadric::{Convexity, PrincipalQuadric},
+    quadric_clearance,
+    tool::{Profile, Tool},
+};
+
+/// A surface prepared for the verifier.
+#[derive(Debug, Clone)]
+pub(super) enum Surface {
+    /// Unit normal and distance.
+    Plane(Vec3, f64),
+    /// Centre and radius.
+    Sphere(Vec3, f64),
+    /// Cylinder or cone.
+    Pencil(Pencil),
+    /// Quadric with principal axes.
+    Quadric(Box<PrincipalQuadric>),
+}
+
+/// How the clearance varies along a straight move with a fixed tool axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// Linear.
+    Linear,
+    /// Convex: the tool is outside a convex solid.
+    Convex,
+    /// Concave: the tool is inside a convex hollow.
+    Concave,
+    /// Nothing known beyond Lipschitz 1.
+    Free,
+}
+
+/// A clearance with its unit gradient (the surface normal at the contact, towards the tool) and a bound of its error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reading {
+    pub(super) value: f64,
+    pub(super) normal: Vec3,
+    pub(super) error: f64,
+}
+
+fn unit(v: &Vec3) -> Option<Vec3> {
+    let size = v.norm();
+    (size > 0.0 && size.is_finite()).then(|| v / size)
+}
+
+impl Surface {
+    /// # Errors
+    /// [`VerifyError::Unsupported`] for geometry the verifier has no model of, [`VerifyError::Degenerate`] for a form without a surface.
+    pub(super) fn of(geometry: &Geometry) -> Result<Self, VerifyError> {
+        let degenerate = || VerifyError::Degenerate { kind: geometry.kind() };
+        let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
+        match geometry {
+            Geometry::Line(plane) | Geometry::Plane(plane) => {
+                let normal = unit(&plane.normal).ok_or_else(degenerate)?;
+                let distance = plane.distance / plane.normal.norm();
+                if !distance.is_finite() {
+                    return Err(degenerate());
+                }
+                Ok(Self::Plane(normal, distance))
+            }
+            Geometry::Circle(c) | Geometry::Cylinder(c) => {
+                let axis = unit(&c.axis).ok_or_else(degenerate)?;
+                let radius = c.radius.abs();
+                if !(finite(&c.point) && radius.is_finite() && radius > 0.0) {
+                    return Err(degenerate());
+                }
+                Ok(Self::Pencil(Pencil::new(c.point, axis, 1.0, radius)))
+            }
+            Geometry::Cone(c) => {
+                let axis = unit(&c.axis).ok_or_else(degenerate)?;
+                if !(finite(&c.vertex) && c.cosine > 0.0 && c.cosine < 1.0) {
+                    return Err(degenerate());
+                }
+                Ok(Self::Pencil(Pencil::new(c.vertex, axis, c.cosine, 0.0)))
+            }
+            Geometry::Sphere(s) => {
+                if !(finite(&s.center) && s.radius.is_finite()) {
+                    return Err(degenerate());
+                }
+                Ok(Self::Sphere(s.center, s.radius.abs()))
+            }
+            Geometry::Ellipse(q)
+            | Geometry::Hyperbola(q)
+            | Geometry::GeneralConic(q)
+            | Geometry::LoftConic(q)
+            | Geometry::Quadric(q) => Self::of_quadric(q).ok_or_else(degenerate),
+            other => Err(VerifyError::Unsupported { kind: other.kind() }),
+        }
+    }
+
+    fn of_quadric(quadric: &canonical::Quadric) -> Option<Self> {
+        PrincipalQuadric::of(quadric).map(|q| Self::Quadric(Box::new(q)))
+    }
+
+    /// A length that says how large the surface is, for round-off guards.
+    pub(super) fn size(&self) -> f64 {
+        match self {
+            Self::Plane(_, distance) => distance.abs(),
+            Self::Sphere(center, radius) => center.norm() + radius,
+            Self::Pencil(pencil) => pencil.origin.norm() + pencil.radius,
+            Self::Quadric(_) => 0.0,
+        }
+    }
+
+    /// Signed distance of a point along the natural normal, and that distance's unit gradient.
+    pub(super) fn point_distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+        match self {
+            Self::Plane(normal, distance) => Some((normal.dot(x) - distance, *normal)),
+            Self::Sphere(center, radius) => {
+                let w = x - center;
+                let size = w.norm();
+                Some((size - radius, if size > 0.0 { w / size } else { Vec3::z() }))
+            }
+            Self::Pencil(pencil) => Some(pencil.point_distance(x)),
+            Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal)),
+        }
+    }
+
+    /// How the clearance on a side varies along straight moves.
+    pub(super) fn shape(&self, side: f64) -> Shape {
+        let outside = side > 0.0;
+        match self {
+            Self::Plane(..) => Shape::Linear,
+            Self::Sphere(..) | Self::Pencil(_) => {
+                if outside {
+                    Shape::Convex
+                } else {
+                    Shape::Concave
+                }
+            }
+            Self::Quadric(quadric) => match (quadric.convexity, outside) {
+                (Convexity::Inner, true) | (Convexity::Outer, false) => Shape::Convex,
+                (Convexity::Inner | Convexity::InnerPair, false)
+                | (Convexity::Outer | Convexity::OuterPair, true) => Shape::Concave,
+                _ => Shape::Free,
+            },
+        }
+    }
+}
+
+/// Clearance of a tool to one surface on one side.
+#[derive(Debug, Clone)]
+pub(super) struct Clearance<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) profile: &'a Profile,
+    /// +1 or −1, with regard to the natural normal.
+    pub(super) side: f64,
+    /// Stock added to the surface.
+    pub(super) thickness: f64,
+}
+
+impl Clearance<'_> {
+    pub(super) fn shape(&self) -> Shape {
+        self.surface.shape(self.side)
+    }
+
+    /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real
+    /// points, or a position that is not finite).
+    pub(super) fn at(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
+        let mut reading = self.bare(tip, axis)?;
+        reading.value -= self.thickness;
+        (reading.value.is_finite() && reading.error.is_finite()).then_some(reading)
+    }
+
+    fn bare(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
+        let tool = Tool { profile: self.profile, axis: *axis };
+        if self.profile.is_point() {
+            let (distance, normal) = self.surface.point_distance(tip)?;
+            return Some(Reading { value: self.side * distance, normal: normal * self.side, error: 0.0 });
+        }
+        match self.surface {
+            Surface::Plane(normal, distance) => {
+                let n = normal * self.side;
+                let value = n.dot(tip) - self.side * distance - tool.support(&-n).0;
+                Some(Reading { value, normal: n, error: 0.0 })
+            }
+            Surface::Sphere(center, radius) => Some(self.sphere(tip, &tool, center, *radius)),
+            Surface::Pencil(pencil) => {
+                let found =
+                    if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
+                Some(Reading { value: found.value, normal: found.normal, error: found.error })
+            }
+            Surface::Quadric(quadric) => quadric_clearance::at(quadric, self.side, tip, &tool),
+        }
+    }
+
+    fn sphere(&self, tip: &Vec3, tool: &Tool<'_>, center: &Vec3, radius: f64) -> Reading {
+        let w = center - tip;
+        let outside = self.side > 0.0;
+        let (distance, q) = if outside { tool.signed_distance(&w) } else { tool.farthest(&w) };
+        let from_center = q - w;
+        let size = from_center.norm();
+        let direction = if size > 0.0 { from_center / size } else { tool.axis };
+        if outside {
+            let normal = if distance < 0.0 { -direction } else { direction };
+            Reading { value: distance - radius, normal, error: 0.0 }
+        } else {
+            Reading { value: radius - distance, normal: -direction, error: 0.0 }
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! The rules, one after the other.
+
+use apt_geometry::{
+    Vec3,
+    motion::{DriveSide, Relation},
+};
+
+use crate::sequence::{CutSequence, Role, ToolPosition};
+
+use super::{
+    Evidence, Extent, Rule, VerifyError, Violation,
+    clearance::{Clearance, Surface},
+    span::{Extremes, Span},
+    stop,
+    tool::Profile,
+};
+
+/// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
+const ROUND_OFF: f64 = 1e-9;
+/// Accuracy of the extremes, relative to the band.
+const BAND_SHARE: f64 = 1e-5;
+/// Sine of the angle between part and drive surface below which they give no direction of travel.
+const PARALLEL: f64 = 1e-3;
+/// Sine below which a surface is neither left nor right of the motion.
+const ACROSS: f64 = 1e-3;
+/// Sine of the angle that two normals may differ by at an exact tangency.
+const TANGENT: f64 = 1e-6;
+/// Step of the curvature estimate at a tangency, relative to the size of the geometry.
+const CURVATURE_STEP: f64 = 1e-4;
+
+/// A role made ready for measuring.
+struct Bound<'a> {
+    role: &'a Role,
+    surface: Surface,
+    profile: Profile,
+    on: bool,
+    intol: f64,
+    outtol: f64,
+}
+
+impl<'a> Bound<'a> {
+    fn of(role: &'a Role, profile: &Profile, on: bool) -> Result<Self, VerifyError> {
+        let numbers = [role.side, role.inside_tolerance, role.outside_tolerance, role.thickness];
+        if !numbers.iter().all(|x| x.is_finite()) {
+            return Err(VerifyError::NotFinite);
+        }
+        let wider = role.inside_tolerance.max(role.outside_tolerance);
+        Ok(Self {
+            role,
+            surface: Surface::of(&role.surface.geometry)?,
+            profile: if on { Profile::tool_end() } else { profile.clone() },
+            on,
+            intol: if on { wider } else { role.inside_tolerance },
+            outtol: if on { wider } else { role.outside_tolerance },
+        })
+    }
+
+    fn clearance(&self) -> Clearance<'_> {
+        Clearance {
+            surface: &self.surface,
+            profile: &self.profile,
+            side: if self.role.side < 0.0 { -1.0 } else { 1.0 },
+            thickness: if self.on { 0.0 } else { self.role.thickness },
+        }
+    }
+
+    fn extent(&self, found: &Extremes) -> Extent {
+        Extent { min: found.min, max: found.max, intol: self.intol, outtol: self.outtol }
+    }
+
+    /// The measured clearance that is farthest out of the band, and how far out it is; the error term counts against it.
+    fn excess(&self, found: &Extremes, guard: f64) -> Option<(f64, f64)> {
+        let below = -self.intol - guard - (found.min - found.error);
+        let above = found.max + found.error - self.outtol - guard;
+        if below <= 0.0 && above <= 0.0 {
+            None
+        } else if below > above {
+            Some((found.min, below))
+        } else {
+            Some((found.max, above))
+        }
+    }
+
+    fn normal(&self, place: &ToolPosition) -> Option<Vec3> {
+        self.clearance().at(&place.tip, &place.axis).map(|r| r.normal)
+    }
+
+    fn at_point(&self, place: &ToolPosition, vector: usize) -> Result<Extremes, VerifyError> {
+        let reading =
+            self.clearance().at(&place.tip, &place.axis).ok_or(VerifyError::NoDistance { vector })?;
+        Ok(Extremes { min: reading.value, max: reading.value, error: reading.error })
+    }
+}
+
+/// Collects broken promises: each rule once, at its worst place.
+#[derive(Default)]
+struct Findings {
+    worst: Vec<(Violation, f64)>,
+}
+
+impl Findings {
+    fn add(&mut self, rule: Rule, vector: usize, value: f64, badness: f64) {
+        let violation = Violation { rule, vector, value };
+        match self.worst.iter_mut().find(|(v, _)| v.rule == rule) {
+            Some(known) if known.1 < badness => *known = (violation, badness),
+            Some(_) => {}
+            None => self.worst.push((violation, badness)),
+        }
+    }
+}
+
+struct Judge<'a> {
+    sequence: &'a CutSequence,
+    positions: Vec<ToolPosition>,
+    profile: Profile,
+    size: f64,
+    findings: Findings,
+    cancel: &'a dyn Fn() -> bool,
+}
+
+/// Judges a sequence: bands over the whole of every cut vector, stop condition, side, progress and step length.
+///
+/// Start-up motions are bound at their end only. `cancel` is asked before every cut vector.
+///
+/// # Errors
+/// See [`VerifyError`]; an error means that the sequence could not be judged, not that it is wrong.
+pub fn verify(sequence: &CutSequence, cancel: &dyn Fn() -> bool) -> Result<Evidence, VerifyError> {
+    let profile = match (&sequence.part, &sequence.drive, &sequence.stop) {
+        // Point to point motion needs no cutter.
+        (None, None, None) => Profile::tool_end(),
+        _ => Profile::of(&sequence.cutter)?,
+    };
+    let positions = positions(sequence)?;
+    let mut size = positions.iter().map(|p| p.tip.amax()).fold(profile.widest(), f64::max);
+    let part =
+        sequence.part.as_ref().map(|r| Bound::of(r, &profile, r.relation == Relation::On)).transpose()?;
+    let drive =
+        sequence.drive.as_ref().map(|r| Bound::of(r, &profile, r.relation == Relation::On)).transpose()?;
+    let check = match &sequence.stop {
+        Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role))?),
+        None => None,
+    };
+    for bound in [&part, &drive, &check].into_iter().flatten() {
+        size = size.max(bound.surface.size());
+    }
+    let mut judge = Judge { sequence, positions, profile, size, findings: Findings::default(), cancel };
+    judge.run(part.as_ref(), drive.as_ref(), check.as_ref())
+}
+
+/// Tangent check surfaces stand to the tool as the surface they are tangent to.
+fn stop_is_on(sequence: &CutSequence, role: &Role) -> bool {
+    let other = match role.relation {
+        Relation::On => return true,
+        Relation::To | Relation::Past => return false,
+        Relation::TangentToDrive => &sequence.drive,
+        Relation::TangentToPart => &sequence.part,
+    };
+    other.as_ref().is_some_and(|r| r.relation == Relation::On)
+}
+
+/// All positions with unit axes.
+fn positions(sequence: &CutSequence) -> Result<Vec<ToolPosition>, VerifyError> {
+    if sequence.points.is_empty() {
+        return Err(VerifyError::Empty);
+    }
+    std::iter::once(&sequence.start)
+        .chain(&sequence.points)
+        .map(|p| {
+            let length = p.axis.norm();
+            let usable = p.tip.iter().all(|x| x.is_finite()) && length.is_finite() && length > 0.0;
+            // An axis that is already unit stays as it is, so that equal axes compare equal.
+            let axis = if (length - 1.0).abs() <= 4.0 * f64::EPSILON { p.axis } else { p.axis / length };
+            usable.then_some(ToolPosition { tip: p.tip, axis }).ok_or(VerifyError::NotFinite)
+        })
+        .collect()
+}
+
+impl Judge<'_> {
+    fn guard(&self) -> f64 {
+        ROUND_OFF * self.size
+    }
+
+    fn last_vector(&self) -> usize {
+        self.positions.len().saturating_sub(2)
+    }
+
+    fn run(
+        &mut self,
+        part: Option<&Bound<'_>>,
+        drive: Option<&Bound<'_>>,
+        check: Option<&Bound<'_>>,
+    ) -> Result<Evidence, VerifyError> {
+        let start_up = self.sequence.start_up;
+        let part_extent = part.map(|b| self.band(b, Rule::PartBand, start_up)).transpose()?;
+        let drive_extent = drive.map(|b| self.band(b, Rule::DriveBand, start_up)).transpose()?;
+        let check_extent = check.map(|b| self.band(b, Rule::CheckBand, true)).transpose()?;
+        if let (Some(check), Some(stop)) = (check, &self.sequence.stop) {
+            match stop.role.relation {
+                Relation::TangentToDrive => self.tangency(check, drive, part),
+                Relation::TangentToPart => self.tangency(check, part, drive),
+                _ if start_up => {}
+                _ => self.stop_event(check, stop.occurrence)?,
+            }
+        }
+        if !start_up && (part.is_some() || drive.is_some()) {
+            if let Some(drive) = drive {
+                self.side(drive)?;
+            }
+            self.progress(part, drive)?;
+            self.step_length(part, drive);
+        }
+        let violations: Vec<Violation> =
+            std::mem::take(&mut self.findings.worst).into_iter().map(|(v, _)| v).collect();
+        Ok(Evidence {
+            part: part_extent,
+            drive: drive_extent,
+            check: check_extent,
+            verified: violations.is_empty(),
+            violations,
+        })
+    }
+
+    /// The band of one role: at the last point, or over every vector.
+    fn band(&mut self, bound: &Bound<'_>, rule: Rule, only_end: bool) -> Result<Extent, VerifyError> {
+        let guard = self.guard();
+        if only_end {
+            let vector = self.last_vector();
+            let end = self.positions[vector + 1];
+            let found = bound.at_point(&end, vector)?;
+            if let Some((value, excess)) = bound.excess(&found, guard) {
+                self.findings.add(rule, vector, value, excess);
+            }
+            return Ok(bound.extent(&found));
+        }
+        let clearance = bound.clearance();
+        let tolerance = (BAND_SHARE * (bound.intol + bound.outtol)).max(0.1 * guard);
+        let mut all: Option<Extremes> = None;
+        for (vector, pair) in self.positions.windows(2).enumerate() {
+            if (self.cancel)() {
+                return Err(VerifyError::Cancelled);
+            }
+            let span = Span { clearance: &clearance, from: pair[0], to: pair[1] };
+            let lost = VerifyError::NoDistance { vector };
+            let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
+            if bound.excess(&found, guard).is_some() && found.error > 0.1 * guard {
+                // Let no error term decide that could be made smaller.
+                found = span.extremes(0.1 * guard).ok_or(lost)?;
+            }
+            if let Some((value, excess)) = bound.excess(&found, guard) {
+                self.findings.add(rule, vector, value, excess);
+            }
+            all = Some(all.map_or(found, |a| a.join(found)));
+        }
+        all.map(|a| bound.extent(&a)).ok_or(VerifyError::Empty)
+    }
+
+    fn stop_event(&mut self, check: &Bound<'_>, occurrence: u32) -> Result<(), VerifyError> {
+        let vector = self.last_vector();
+        let profile = if check.on { Profile::tool_end() } else { self.profile.clone() };
+        let verdict =
+            stop::replay(self.sequence, check.role, occurrence, &check.surface, &profile, self.guard())
+                .ok_or(VerifyError::NoDistance { vector })?;
+        if let Err(wrong) = verdict {
+            self.findings.add(Rule::StopEvent, vector, f64::from(wrong.found), 1.0);
+        }
+        Ok(())
+    }
+
+    /// At a tangency the two normals agree up to the angle that the band leaves: √(2τκ) for the sum κ of the curvatures.
+    fn tangency(&mut self, check: &Bound<'_>, mate: Option<&Bound<'_>>, other: Option<&Bound<'_>>) {
+        let vector = self.last_vector();
+        let (before, end) = (self.positions[vector], self.positions[vector + 1]);
+        let Some(mate) = mate else {
+            self.findings.add(Rule::Tangency, vector, 1.0, 1.0);
+            return;
+        };
+        let (Some(n), Some(m)) = (check.normal(&end), mate.normal(&end)) else {
+            self.findings.add(Rule::Tangency, vector, 1.0, 1.0);
+            return;
+        };
+        let angle = n.cross(&m).norm();
+        let across = other.and_then(|o| o.normal(&end)).map(|o| m.cross(&o));
+        let travel = match across {
+            Some(t) if t.norm() > PARALLEL => t / t.norm(),
+            _ => {
+                let d = end.tip - before.tip;
+                if d.norm() > 0.0 { d / d.norm() } else { self.sequence.forward }
+            }
+        };
+        let step = CURVATURE_STEP * self.size;
+        let curvature = |b: &Bound<'_>| {
+            let ahead = b.normal(&ToolPosition { tip: end.tip + travel * step, ..end });
+            let behind = b.normal(&ToolPosition { tip: end.tip - travel * step, ..end });
+            match (ahead, behind) {
+                (Some(x), Some(y)) => (x - y).norm() / (2.0 * step),
+                _ => 0.0,
+            }
+        };
+        let bands = check.intol + check.outtol + mate.intol + mate.outtol;
+        let limit = (2.0 * bands * (curvature(check) + curvature(mate))).sqrt() + TANGENT;
+        if angle > limit {
+            self.findings.add(Rule::Tangency, vector, angle, angle - limit);
+        }
+    }
+
+    /// The tool is left or right of the drive surface, as TLLFT and TLRGT promise.
+    fn side(&mut self, drive: &Bound<'_>) -> Result<(), VerifyError> {
+        let wanted = match self.sequence.drive_side {
+            DriveSide::On => return Ok(()),
+            _ if drive.on => return Ok(()),
+            DriveSide::Left => 1.0,
+            DriveSide::Right => -1.0,
+        };
+        for vector in 0..self.positions.len() - 1 {
+            let (from, to) = (self.positions[vector], self.positions[vector + 1]);
+            let motion = to.tip - from.tip;
+            let length = motion.norm();
+            if length <= self.guard() {
+                continue;
+            }
+            let normal = drive.normal(&from).ok_or(VerifyError::NoDistance { vector })?;
+            let sine = wanted * normal.dot(&from.axis.cross(&motion)) / length;
+            if sine < -ACROSS {
+                self.findings.add(Rule::Side, vector, sine, -sine);
+            }
+        }
+        Ok(())
+    }
+
+    /// Every vector goes forward along the intersection of the offset surfaces.
+    fn progress(&mut self, part: Option<&Bound<'_>>, drive: Option<&Bound<'_>>) -> Result<(), VerifyError> {
+        let mut heading = self.sequence.forward;
+        let single = self.positions.len() == 2;
+        for vector in 0..self.positions.len() - 1 {
+            let (from, to) = (self.positions[vector], self.positions[vector + 1]);
+            let motion = to.tip - from.tip;
+            let length = motion.norm();
+            if length <= self.guard() {
+                if !single {
+                    self.findings.add(Rule::Progress, vector, 0.0, 0.0);
+                }
+                continue;
+            }
+            let direction = motion / length;
+            let mut sine = if heading.norm() > 0.0 { direction.dot(&heading) } else { 1.0 };
+            if let (Some(part), Some(drive)) = (part, drive) {
+                let lost = VerifyError::NoDistance { vector };
+                let n = part.normal(&from).ok_or(lost.clone())?;
+                let m = drive.normal(&from).ok_or(lost)?;
+                let travel = n.cross(&m);
+                if travel.norm() > PARALLEL && heading.norm() > 0.0 {
+                    let along = travel / (travel.norm() * travel.dot(&heading).signum());
+                    sine = direction.dot(&along);
+                }
+            }
+            if sine <= 0.0 {
+                self.findings.add(Rule::Progress, vector, sine, -sine);
+            }
+            heading = direction;
+        }
+        Ok(())
+    }
+
+    /// No vector is longer than MAXDP, which does not count where part and drive surface are both planes (language
+    /// reference 6.8).
+    fn step_length(&mut self, part: Option<&Bound<'_>>, drive: Option<&Bound<'_>>) {
+        let planar = |b: Option<&Bound<'_>>| b.is_none_or(|b| matches!(b.surface, Surface::Plane(..)));
+        let limit = self.sequence.maximum_step;
+        if (planar(part) && planar(drive)) || !limit.is_finite() {
+            return;
+        }
+        for vector in 0..self.positions.len() - 1 {
+            let length = (self.positions[vector + 1].tip - self.positions[vector].tip).norm();
+            if length > limit + self.guard() {
+                self.findings.add(Rule::StepLength, vector, length, length - limit);
+            }
+        }
+    }
+}

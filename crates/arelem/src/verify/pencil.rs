@@ -1,0 +1,235 @@
+//! Cylinders and cones as one-parameter families of tangent planes.
+//!
+//! The tangent planes of a cylinder or cone have the normals `n(φ) = −sin α·T + cos α·E(φ)`, E turning about the axis T
+//! (α = 0 for a cylinder). For a tool outside, every tangent plane gives a lower bound of the clearance and the best
+//! one gives the clearance; for a tool inside every plane gives an upper bound. One angle is all there is to search.
+
+use apt_geometry::Vec3;
+
+use super::tool::{Tool, perpendicular};
+
+/// Directions looked at before the search closes in.
+const SECTORS: usize = 16;
+/// Bisection of one sector to round-off.
+const BISECTIONS: usize = 100;
+/// Arcs looked at by the branch and bound of the hollow case; what is left then goes into the error term.
+const ARC_BUDGET: usize = 600;
+
+/// A cylinder (sine 0) or one nappe of a cone (radius 0).
+#[derive(Debug, Clone)]
+pub(super) struct Pencil {
+    /// A point of the axis; the vertex of a cone.
+    pub(super) origin: Vec3,
+    /// Unit axis, into the solid for a cone.
+    pub(super) axis: Vec3,
+    /// Sine of the half angle.
+    pub(super) sine: f64,
+    /// Cosine of the half angle.
+    pub(super) cosine: f64,
+    /// Radius of a cylinder.
+    pub(super) radius: f64,
+    /// Unit vectors that complete the axis to a frame.
+    frame: [Vec3; 2],
+}
+
+/// A value with the unit normal it belongs to and a bound of its error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    pub(super) value: f64,
+    pub(super) normal: Vec3,
+    pub(super) error: f64,
+}
+
+impl Pencil {
+    pub(super) fn new(origin: Vec3, axis: Vec3, cosine: f64, radius: f64) -> Self {
+        let first = perpendicular(&axis);
+        let frame = [first, axis.cross(&first)];
+        let sine = if radius > 0.0 { 0.0 } else { (1.0 - cosine * cosine).max(0.0).sqrt() };
+        Self { origin, axis, sine, cosine, radius, frame }
+    }
+
+    fn radial(&self, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        self.frame[0] * c + self.frame[1] * s
+    }
+
+    fn normal(&self, phi: f64) -> Vec3 {
+        self.radial(phi) * self.cosine - self.axis * self.sine
+    }
+
+    fn normal_rate(&self, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        (self.frame[1] * c - self.frame[0] * s) * self.cosine
+    }
+
+    /// Signed distance of a point (outside positive) and its unit gradient.
+    pub(super) fn point_distance(&self, x: &Vec3) -> (f64, Vec3) {
+        let w = x - self.origin;
+        let along = w.dot(&self.axis);
+        let radial = w - self.axis * along;
+        let rho = radial.norm();
+        let out = if rho > 1e-14 * w.norm() { radial / rho } else { self.frame[0] };
+        // Behind the planes of the vertex fan the vertex is the nearest point.
+        if self.sine > 0.0 && along * self.cosine + rho * self.sine < 0.0 {
+            let size = w.norm();
+            return (size, if size > 0.0 { w / size } else { -self.axis });
+        }
+        (rho * self.cosine - along * self.sine - self.radius, out * self.cosine - self.axis * self.sine)
+    }
+
+    /// Clearance of a tool outside: the greatest distance that a tangent plane leaves.
+    pub(super) fn outside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
+        let w = tip - self.origin;
+        if self.sine <= 0.0 && tool.axis.cross(&self.axis).norm() <= 1e-14 {
+            let (distance, normal) = self.point_distance(tip);
+            return Found { value: distance - tool.profile.widest(), normal, error: 0.0 };
+        }
+        // The plane at φ and how it changes with φ.
+        let plane = |phi: f64| {
+            let n = self.normal(phi);
+            let (reach, p) = tool.support(&-n);
+            (n.dot(&w) - self.radius - reach, self.normal_rate(phi).dot(&(w + p)))
+        };
+        let mut best = self.search(&plane, &w);
+        if self.sine > 0.0 {
+            let (distance, q) = tool.signed_distance(&-w);
+            let away = w + q;
+            let size = away.norm();
+            if distance > 0.0
+                && size > 0.0
+                && away.dot(&self.axis) <= -self.sine * size
+                && distance > best.value
+            {
+                best = Found { value: distance, normal: away / size, error: 0.0 };
+            }
+        }
+        best
+    }
+
+    /// The greatest value of `plane` (value and derivative): each sector in which it rises first and falls last is
+    /// bisected.
+    fn search(&self, plane: &dyn Fn(f64) -> (f64, f64), w: &Vec3) -> Found {
+        let step = std::f64::consts::TAU / SECTORS as f64;
+        // Start the sectors at the side the tool end is on, where the answer mostly is.
+        let first = w.dot(&self.frame[1]).atan2(w.dot(&self.frame[0])) - 0.5 * step;
+        let samples: Vec<(f64, f64, f64)> = (0..SECTORS)
+            .map(|k| {
+                let phi = first + step * k as f64;
+                let (value, rate) = plane(phi);
+                (phi, value, rate)
+            })
+            .collect();
+        let scale = w.norm() + self.radius;
+        let mut best = Found { value: f64::NEG_INFINITY, normal: self.axis, error: 0.0 };
+        for (k, &(phi, value, rate)) in samples.iter().enumerate() {
+            let (_, _, next_rate) = samples[(k + 1) % SECTORS];
+            self.keep(&mut best, phi, value, 0.0);
+            if rate > 0.0 && next_rate < 0.0 {
+                let (phi, value, width) = crest(plane, [phi, phi + step], [rate, next_rate]);
+                self.keep(&mut best, phi, value, width * scale);
+            }
+        }
+        best
+    }
+
+    fn keep(&self, best: &mut Found, phi: f64, value: f64, error: f64) {
+        if value > best.value {
+            *best = Found { value, normal: self.normal(phi), error };
+        }
+    }
+
+    /// Clearance of a tool inside: the least distance that a tangent plane leaves (also for what sticks out through the
+    /// vertex of a cone, where the vertex itself is farther). Branch and bound: on an arc of planes
+    /// `f(φ) ≤ λ₁f(φ₁) + λ₂f(φ₂) + (λ₁+λ₂−1)·sin α·max T·(p−V)`, because E(φ) = λ₁E₁ + λ₂E₂.
+    pub(super) fn inside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
+        let w = tip - self.origin;
+        if self.sine <= 0.0 && tool.axis.cross(&self.axis).norm() <= 1e-14 {
+            let (distance, normal) = self.point_distance(tip);
+            return Found { value: -distance - tool.profile.widest(), normal: -normal, error: 0.0 };
+        }
+        let plane = |phi: f64| {
+            let n = self.normal(phi);
+            let (reach, p) = tool.support(&n);
+            (n.dot(&w) + reach, self.normal_rate(phi).dot(&(w + p)))
+        };
+        let mut best = self.search(&plane, &w);
+        let ahead = if self.sine > 0.0 {
+            self.sine * (self.axis.dot(&w) + tool.support(&self.axis).0).max(0.0)
+        } else {
+            0.0
+        };
+        let scale = w.norm() + tool.profile.reach() + self.radius;
+        let error = self.prove_crest(&plane, &mut best, ahead, 1e-12 * scale);
+        Found { value: self.radius - best.value, normal: -best.normal, error: best.error + error }
+    }
+
+    /// Raises `best` to the global crest; gives how much above it the planes between the sampled ones could still reach.
+    fn prove_crest(
+        &self,
+        plane: &dyn Fn(f64) -> (f64, f64),
+        best: &mut Found,
+        ahead: f64,
+        slack: f64,
+    ) -> f64 {
+        let step = std::f64::consts::TAU / SECTORS as f64;
+        let mut arcs: Vec<(f64, f64, f64, f64)> = Vec::with_capacity(2 * SECTORS);
+        for k in 0..SECTORS {
+            let phi = step * k as f64;
+            arcs.push((phi, plane(phi).0, step, plane(phi + step).0));
+        }
+        let mut highest = f64::NEG_INFINITY;
+        let mut budget = ARC_BUDGET;
+        while let Some((phi, f1, width, f2)) = arcs.pop() {
+            let bound = arc_bound(f1, f2, width, ahead);
+            if bound - best.value <= slack {
+                continue;
+            }
+            if budget == 0 {
+                highest = highest.max(bound);
+                continue;
+            }
+            budget -= 1;
+            let half = 0.5 * width;
+            let middle = plane(phi + half).0;
+            self.keep(best, phi + half, middle, best.error);
+            arcs.push((phi, f1, half, middle));
+            arcs.push((phi + half, middle, half, f2));
+        }
+        (highest - best.value).max(slack)
+    }
+}
+
+/// Upper bound of the family between two planes `width` apart with the values `f1`, `f2`.
+fn arc_bound(f1: f64, f2: f64, width: f64, ahead: f64) -> f64 {
+    // λ₁ = sin(width−x)/sin width, λ₂ = sin x/sin width: the greatest value of λ₁f1 + λ₂f2 over 0 ≤ x ≤ width.
+    let (s, c) = width.sin_cos();
+    let quarter = (f2 - f1 * c) / s;
+    let x = quarter.atan2(f1);
+    let top = if (0.0..=width).contains(&x) { f1.hypot(quarter) } else { f1.max(f2) };
+    top + ahead * (1.0 / (0.5 * width).cos() - 1.0)
+}
+
+/// The zero of the derivative in a sector over which it changes from + to −: angle, value, width left.
+fn crest(plane: &dyn Fn(f64) -> (f64, f64), ends: [f64; 2], rates: [f64; 2]) -> (f64, f64, f64) {
+    let ([mut a, mut b], [mut rate_a, mut rate_b]) = (ends, rates);
+    let mut best = (a, f64::NEG_INFINITY);
+    for turn in 0..BISECTIONS {
+        // Secant and bisection by turns: fast where the tool is smooth, safe at its edges.
+        let secant = a - rate_a * (b - a) / (rate_b - rate_a);
+        let phi = if turn % 2 == 1 || !(secant > a && secant < b) { 0.5 * (a + b) } else { secant };
+        let (value, rate) = plane(phi);
+        if value > best.1 {
+            best = (phi, value);
+        }
+        let done = rate == 0.0 || b - a <= 1e-14 || phi <= a || phi >= b;
+        if rate > 0.0 {
+            (a, rate_a) = (phi, rate);
+        } else {
+            (b, rate_b) = (phi, rate);
+        }
+        if done || rate.abs() <= 1e-13 * (rates[0] - rates[1]) {
+            return (best.0, best.1, 0.0);
+        }
+    }
+    (best.0, best.1, b - a)
+}

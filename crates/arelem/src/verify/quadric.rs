@@ -1,0 +1,227 @@
+//! Exact distance of a point to a quadric, by its principal axes and the secular equation.
+//!
+//! In principal axes `F = Σ aᵢyᵢ² + 2bᵢyᵢ + D`, and the foot of a point p is `qᵢ = (pᵢ − λbᵢ)/(1 + λaᵢ)`. The *nearest* foot
+//! is the one with all `1 + λaᵢ ≥ 0` (the single-constraint case of the trust-region theory: sufficient and necessary),
+//! and on that interval F(q(λ)) decreases, so its root is found with a bracket and cannot be the wrong one.
+
+use apt_geometry::{Vec3, canonical};
+use nalgebra::{Matrix3, SymmetricEigen};
+
+/// Coefficients below this fraction of the greatest are round-off of the rotation to principal axes.
+const NEGLIGIBLE: f64 = 1e-13;
+/// Newton with bisection behind it: the bracket alone needs fewer steps than this to reach round-off.
+const ROOT_STEPS: usize = 200;
+
+/// Which of the two regions of space, `F < 0` and `F > 0`, is made of convex pieces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Convexity {
+    /// `F ≤ 0` is one convex body.
+    Inner,
+    /// `F ≥ 0` is one convex body.
+    Outer,
+    /// `F ≤ 0` is two convex bodies.
+    InnerPair,
+    /// `F ≥ 0` is two convex bodies.
+    OuterPair,
+    /// Neither.
+    Saddle,
+}
+
+/// A quadric in its principal axes.
+#[derive(Debug, Clone)]
+pub(super) struct PrincipalQuadric {
+    /// Columns are the principal directions.
+    axes: Matrix3<f64>,
+    /// Eigenvalues of the quadratic part, scaled.
+    a: [f64; 3],
+    /// Halves of the linear coefficients, scaled.
+    b: [f64; 3],
+    /// Constant, scaled.
+    constant: f64,
+    /// Shape of the two regions.
+    pub(super) convexity: Convexity,
+}
+
+/// A point's signed distance (positive where F > 0) and the unit gradient of that distance.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointDistance {
+    pub(super) distance: f64,
+    pub(super) normal: Vec3,
+}
+
+impl PrincipalQuadric {
+    /// None if the coefficients describe no surface (not finite, or no variable in them).
+    pub(super) fn of(quadric: &canonical::Quadric) -> Option<Self> {
+        let [aa, bb, cc, dd, ff, gg, hh, pp, qq, rr] = quadric.coefficients;
+        let scale = [aa, bb, cc, ff, gg, hh].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let linear = [pp, qq, rr].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let scale = if scale > 0.0 { scale } else { linear };
+        if !quadric.coefficients.iter().all(|x| x.is_finite()) || scale <= 0.0 {
+            return None;
+        }
+        let matrix = Matrix3::new(aa, hh, gg, hh, bb, ff, gg, ff, cc) / scale;
+        let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 1000)?;
+        let rotated = eigen.eigenvectors.transpose() * Vec3::new(pp, qq, rr) / scale;
+        let clean = |x: f64, greatest: f64| if x.abs() <= NEGLIGIBLE * greatest { 0.0 } else { x };
+        let a = [0, 1, 2].map(|i| clean(eigen.eigenvalues[i], 1.0));
+        let b = [0, 1, 2].map(|i| clean(rotated[i], linear / scale));
+        let constant = dd / scale;
+        let convexity = classify(&a, &b, constant);
+        Some(Self { axes: eigen.eigenvectors, a, b, constant, convexity })
+    }
+
+    /// True if the surface is a cylinder with rulings along this unit direction.
+    pub(super) fn is_ruled_along(&self, direction: &Vec3) -> bool {
+        let local = self.axes.transpose() * direction;
+        // A direction given to full precision; anything else takes the general route.
+        (0..3).all(|i| local[i].abs() <= 1e-12 || (self.a[i] == 0.0 && self.b[i] == 0.0))
+    }
+
+    fn value(&self, y: &Vec3) -> f64 {
+        (0..3).map(|i| (self.a[i] * y[i] + 2.0 * self.b[i]) * y[i]).sum::<f64>() + self.constant
+    }
+
+    /// Half gradient.
+    fn slope(&self, y: &Vec3) -> Vec3 {
+        Vec3::from_fn(|i, _| self.a[i] * y[i] + self.b[i])
+    }
+
+    fn foot(&self, p: &Vec3, lambda: f64) -> Vec3 {
+        Vec3::from_fn(|i, _| (p[i] - lambda * self.b[i]) / (1.0 + lambda * self.a[i]))
+    }
+
+    /// Signed distance of a point; None if the surface has no real points or the point is not finite.
+    pub(super) fn distance(&self, point: &Vec3) -> Option<PointDistance> {
+        let p = self.axes.transpose() * point;
+        let value = self.value(&p);
+        let slope = self.slope(&p);
+        if !value.is_finite() {
+            return None;
+        }
+        if value == 0.0 {
+            let size = slope.norm();
+            return (size > 0.0).then(|| PointDistance { distance: 0.0, normal: self.axes * slope / size });
+        }
+        let foot = self.nearest(&p, value, &slope)?;
+        let away = p - foot;
+        let distance = away.norm();
+        let sign = value.signum();
+        // Close to the surface the difference p − q loses its digits: take the gradient at the foot.
+        let gradient = self.slope(&foot);
+        let (away_size, gradient_size) = (distance, gradient.norm());
+        let normal = if gradient_size > 0.0 && distance < 1e-6 * (p.norm() + 1.0) {
+            gradient / gradient_size
+        } else if away_size > 0.0 {
+            away * (sign / away_size)
+        } else {
+            return None;
+        };
+        Some(PointDistance { distance: sign * distance, normal: self.axes * normal })
+    }
+
+    fn nearest(&self, p: &Vec3, value: f64, slope: &Vec3) -> Option<Vec3> {
+        // F(q(λ)) decreases: the root is at λ > 0 where F > 0.
+        let toward = value.signum();
+        let critical = (0..3)
+            .filter(|i| self.a[*i] * toward < 0.0)
+            .map(|i| -1.0 / self.a[i])
+            .min_by(|x, y| x.abs().total_cmp(&y.abs()));
+        let f = |lambda: f64| self.value(&self.foot(p, lambda));
+        let size = slope.norm();
+        let first = if size > 0.0 { value / (2.0 * size * size) } else { toward };
+        // Bracket: `inside` has the sign of F(p), `outside` the other.
+        let mut inside = 0.0;
+        let mut outside = None;
+        let mut trial = first;
+        for _ in 0..ROOT_STEPS {
+            if let Some(end) = critical
+                && trial.abs() >= end.abs()
+            {
+                trial = 0.5 * (inside + end);
+                if (end - inside).abs() <= 4.0 * f64::EPSILON * end.abs() {
+                    return self.hard_case(p, end);
+                }
+            }
+            let at = f(trial);
+            if !at.is_finite() || at * toward <= 0.0 {
+                outside = Some(trial);
+                break;
+            }
+            inside = trial;
+            trial = if critical.is_some() { inside + (inside - 0.0) * 0.5 } else { trial * 8.0 };
+        }
+        let mut outside = match (outside, critical) {
+            (Some(x), _) => x,
+            (None, Some(end)) => return self.hard_case(p, end),
+            (None, None) => return None,
+        };
+        let mut lambda =
+            first.abs().clamp(inside.abs().min(outside.abs()), inside.abs().max(outside.abs())) * toward;
+        for _ in 0..ROOT_STEPS {
+            let at = f(lambda);
+            if at * toward > 0.0 {
+                inside = lambda;
+            } else {
+                outside = lambda;
+            }
+            let derivative: f64 =
+                -2.0 * (0..3).map(|i| slope[i].powi(2) / (1.0 + lambda * self.a[i]).powi(3)).sum::<f64>();
+            let step = -at / derivative;
+            let newton = lambda + step;
+            let (low, high) = (inside.min(outside), inside.max(outside));
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - lambda).abs() <= 4.0 * f64::EPSILON * next.abs() || next == lambda {
+                return Some(self.foot(p, next));
+            }
+            lambda = next;
+        }
+        Some(self.foot(p, lambda))
+    }
+
+    /// The point is on a symmetry plane beyond the centre of curvature: the foot leaves that plane.
+    fn hard_case(&self, p: &Vec3, lambda: f64) -> Option<Vec3> {
+        let vanishing = (0..3)
+            .min_by(|i, j| (1.0 + lambda * self.a[*i]).abs().total_cmp(&(1.0 + lambda * self.a[*j]).abs()))?;
+        let near = |i: usize| (1.0 + lambda * self.a[i]).abs() <= 1e-12;
+        let mut q = Vec3::from_fn(|i, _| {
+            if near(i) {
+                -self.b[i] / self.a[i]
+            } else {
+                (p[i] - lambda * self.b[i]) / (1.0 + lambda * self.a[i])
+            }
+        });
+        // a(y − y₀)² must make up for the value that is left.
+        let left = self.value(&q) / self.a[vanishing];
+        if left > 0.0 {
+            // Round-off only: the remaining terms already satisfy the equation.
+            return (left.abs() <= 1e-9 * (1.0 + p.norm_squared())).then_some(q);
+        }
+        q[vanishing] += (-left).sqrt();
+        Some(q)
+    }
+}
+
+/// Convexity of the regions from the signs of the principal coefficients.
+fn classify(a: &[f64; 3], b: &[f64; 3], constant: f64) -> Convexity {
+    let positive = a.iter().filter(|x| **x > 0.0).count();
+    let negative = a.iter().filter(|x| **x < 0.0).count();
+    if negative == 0 {
+        return Convexity::Inner;
+    }
+    if positive == 0 {
+        return Convexity::Outer;
+    }
+    if (0..3).any(|i| a[i] == 0.0 && b[i] != 0.0) {
+        return Convexity::Saddle;
+    }
+    // The value of F at its centre tells one sheet from two.
+    let center = constant - (0..3).filter(|i| a[*i] != 0.0).map(|i| b[i] * b[i] / a[i]).sum::<f64>();
+    let round_off = 1e-14 * (constant.abs() + (0..3).map(|i| b[i] * b[i]).sum::<f64>());
+    if negative == 1 && center >= -round_off {
+        Convexity::InnerPair
+    } else if positive == 1 && center <= round_off {
+        Convexity::OuterPair
+    } else {
+        Convexity::Saddle
+    }
+}

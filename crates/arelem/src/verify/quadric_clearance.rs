@@ -1,0 +1,348 @@
+//! Clearance of the whole tool to a quadric, from exact point distances.
+//!
+//! The tool's boundary is taken apart into edge circles, the corner torus (a circle of balls) and straight patches. The
+//! candidate of each part is a stationary point; the least is the clearance. Where the solid is convex the tangent
+//! plane at the contact proves the minimum at once (distance is a convex function); inside a convex hollow distance is
+//! concave, so only edges matter and the corners of a circumscribed polygon bound what lies between samples.
+
+use apt_geometry::Vec3;
+
+use super::{
+    clearance::{Reading, Shape, Surface},
+    quadric::{PointDistance, PrincipalQuadric},
+    tool::{Meridian, Tool, perpendicular},
+};
+
+/// Azimuths sampled on a circle before local minima are closed in.
+const AZIMUTHS: usize = 16;
+/// Steps of a safeguarded secant search; bisection alone reaches round-off in fewer.
+const STEPS: usize = 100;
+/// Arcs examined per circle by branch and bound; the gap left then is the error term.
+const ARC_BUDGET: usize = 400;
+
+/// A point of the tool with its distance on the tool's side.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    value: f64,
+    point: Vec3,
+    normal: Vec3,
+}
+
+struct Search<'a> {
+    quadric: &'a PrincipalQuadric,
+    side: f64,
+    tip: Vec3,
+    tool: &'a Tool<'a>,
+    across: [Vec3; 2],
+    shape: Shape,
+    best: Option<Candidate>,
+    /// Greatest amount by which the true minimum could be below the best candidate.
+    gap: f64,
+}
+
+/// The clearance; None where the quadric has no distance.
+pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+    if quadric.is_ruled_along(&tool.axis) {
+        // Seen along the rulings the tool is a disc: exact.
+        let PointDistance { distance, normal } = quadric.distance(tip)?;
+        let value = side * distance - tool.profile.widest();
+        return Some(Reading { value, normal: normal * side, error: 0.0 });
+    }
+    let first = perpendicular(&tool.axis);
+    let shape = Surface::Quadric(Box::new(quadric.clone())).shape(side);
+    let mut search = Search {
+        quadric,
+        side,
+        tip: *tip,
+        tool,
+        across: [first, tool.axis.cross(&first)],
+        shape,
+        best: None,
+        gap: 0.0,
+    };
+    search.run()?;
+    let best = search.best?;
+    Some(Reading { value: best.value, normal: best.normal, error: search.gap })
+}
+
+impl Search<'_> {
+    fn radial(&self, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        self.across[0] * c + self.across[1] * s
+    }
+
+    fn radial_rate(&self, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        self.across[1] * c - self.across[0] * s
+    }
+
+    fn place(&self, p: Meridian, phi: f64) -> Vec3 {
+        self.tip + self.radial(phi) * p[0] + self.tool.axis * p[1]
+    }
+
+    /// Distance of a point on the tool's side and its gradient.
+    fn distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+        let d = self.quadric.distance(x)?;
+        Some((self.side * d.distance, d.normal * self.side))
+    }
+
+    fn offer(&mut self, candidate: Candidate) {
+        if self.best.is_none_or(|b| candidate.value < b.value) {
+            self.best = Some(candidate);
+        }
+    }
+
+    fn best_value(&self) -> f64 {
+        self.best.map_or(f64::INFINITY, |b| b.value)
+    }
+
+    fn run(&mut self) -> Option<()> {
+        self.gap = 0.0;
+        if let Some((center, radius)) = self.tool.profile.corner() {
+            self.circle(center, radius)?;
+            if self.proven() {
+                return Some(());
+            }
+        }
+        let mut done: Vec<Meridian> = Vec::with_capacity(4);
+        for edge in std::iter::once([0.0; 2]).chain(self.tool.profile.edges()) {
+            if done.contains(&edge) {
+                continue;
+            }
+            done.push(edge);
+            self.circle(edge, 0.0)?;
+            if self.proven() {
+                return Some(());
+            }
+        }
+        if self.shape == Shape::Concave {
+            if let Some((center, radius)) = self.tool.profile.corner() {
+                self.prove_circle(center, radius)?;
+            }
+            for edge in done {
+                self.prove_circle(edge, 0.0)?;
+            }
+        } else {
+            for (a, b) in self.tool.profile.lines() {
+                if a != b {
+                    self.patch(a, b)?;
+                    if self.proven() {
+                        return Some(());
+                    }
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Whether the tangent plane at the best contact proves that nothing of the tool is nearer (convex solids).
+    fn proven(&mut self) -> bool {
+        let (Shape::Convex, Some(best)) = (self.shape, self.best) else { return false };
+        let least = best.normal.dot(&(self.tip - best.point)) - self.tool.support(&-best.normal).0;
+        let scale = self.tool.profile.reach();
+        self.gap = (-least).max(0.0);
+        self.gap <= 1e-11 * scale
+    }
+
+    /// Candidates on the circle through a meridian point, with a ball of `radius` round each of its points; of the balls of
+    /// the corner only contacts count whose normal is in the fan of the arc.
+    fn circle(&mut self, p: Meridian, radius: f64) -> Option<()> {
+        let middle = self.place([0.0, p[1]], 0.0);
+        let (at_axis, _) = self.distance(&middle)?;
+        if p[0] <= 0.0 {
+            return self.accept(p, 0.0, radius);
+        }
+        if at_axis - p[0] - radius >= self.best_value() {
+            return Some(());
+        }
+        let step = std::f64::consts::TAU / AZIMUTHS as f64;
+        let mut samples = [(0.0, 0.0); AZIMUTHS];
+        for (k, sample) in samples.iter_mut().enumerate() {
+            *sample = self.on_circle(p, step * k as f64)?;
+        }
+        for k in 0..AZIMUTHS {
+            let (from, to) = (samples[k], samples[(k + 1) % AZIMUTHS]);
+            let phi = step * k as f64;
+            if from.1 <= 0.0 && to.1 >= 0.0 {
+                // A function with slopes ≥ from.1 on the left and ≤ to.1 on the right of the trough.
+                let floor = from.0.min(to.0) + step * from.1.min(-to.1);
+                if floor - radius < self.best_value() || radius > 0.0 {
+                    let trough = self.trough(p, [phi, phi + step], [from.1, to.1])?;
+                    self.accept(p, trough, radius)?;
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn on_circle(&self, p: Meridian, phi: f64) -> Option<(f64, f64)> {
+        let (value, normal) = self.distance(&self.place(p, phi))?;
+        Some((value, p[0] * normal.dot(&self.radial_rate(phi))))
+    }
+
+    /// The azimuth in a sector at which the derivative turns from − to +.
+    fn trough(&self, p: Meridian, ends: [f64; 2], rates: [f64; 2]) -> Option<f64> {
+        let ([mut a, mut b], [mut rate_a, mut rate_b]) = (ends, rates);
+        for turn in 0..STEPS {
+            let secant = a - rate_a * (b - a) / (rate_b - rate_a);
+            let phi = if turn % 2 == 1 || !(secant > a && secant < b) { 0.5 * (a + b) } else { secant };
+            let (_, rate) = self.on_circle(p, phi)?;
+            if rate.abs() <= 1e-13 * p[0] || b - a <= 1e-12 {
+                return Some(phi);
+            }
+            if rate < 0.0 {
+                (a, rate_a) = (phi, rate);
+            } else {
+                (b, rate_b) = (phi, rate);
+            }
+        }
+        Some(0.5 * (a + b))
+    }
+
+    fn accept(&mut self, p: Meridian, phi: f64, radius: f64) -> Option<()> {
+        let center = self.place(p, phi);
+        let (value, normal) = self.distance(&center)?;
+        if radius > 0.0 {
+            let height = -normal.dot(&self.tool.axis);
+            let across = -normal + self.tool.axis * (-height);
+            let outward = if p[0] > 0.0 { across.dot(&self.radial(phi)) } else { across.norm() };
+            if outward < -1e-9 || !self.tool.profile.fan_holds([outward.max(0.0), height]) {
+                return Some(());
+            }
+        }
+        self.offer(Candidate { value: value - radius, point: center - normal * radius, normal });
+        Some(())
+    }
+
+    /// Inside a convex hollow: the arc between two samples lies in the triangle with the meeting point of its tangents, and
+    /// a concave function is least at a corner of it.
+    fn prove_circle(&mut self, p: Meridian, radius: f64) -> Option<()> {
+        let (at_axis, _) = self.distance(&self.place([0.0, p[1]], 0.0))?;
+        if p[0] <= 0.0 || at_axis - p[0] - radius >= self.best_value() {
+            return Some(());
+        }
+        let step = std::f64::consts::TAU / AZIMUTHS as f64;
+        let slack = 1e-12 * self.tool.profile.reach();
+        let mut arcs = Vec::with_capacity(2 * AZIMUTHS);
+        for k in 0..AZIMUTHS {
+            let phi = step * k as f64;
+            arcs.push((phi, self.on_circle(p, phi)?.0, step, self.on_circle(p, phi + step)?.0));
+        }
+        let mut lowest = f64::INFINITY;
+        let mut budget = ARC_BUDGET;
+        while let Some((phi, first, width, last)) = arcs.pop() {
+            let half = 0.5 * width;
+            let corner = [p[0] / half.cos(), p[1]];
+            let (at_corner, normal) = self.distance(&self.place(corner, phi + half))?;
+            let bound = first.min(last).min(at_corner) - radius;
+            if self.best_value() - bound <= slack
+                || (radius > 0.0 && !self.fan_near(&normal, phi + half, half))
+            {
+                continue;
+            }
+            if budget == 0 {
+                lowest = lowest.min(bound);
+                continue;
+            }
+            budget -= 1;
+            let (middle, _) = self.on_circle(p, phi + half)?;
+            if middle - radius < self.best_value() {
+                self.accept(p, phi + half, radius)?;
+            }
+            arcs.push((phi, first, half, middle));
+            arcs.push((phi + half, middle, half, last));
+        }
+        self.gap = self.gap.max(self.best_value() - lowest);
+        Some(())
+    }
+
+    /// Whether a ball contact with about this normal could be on the corner arc.
+    fn fan_near(&self, normal: &Vec3, phi: f64, turn: f64) -> bool {
+        let height = -normal.dot(&self.tool.axis);
+        let outward = -normal.dot(&self.radial(phi));
+        let reach = turn + 1e-6;
+        [-reach, 0.0, reach].iter().any(|d| {
+            let (s, c) = d.sin_cos();
+            self.tool.profile.fan_holds([(outward * c - height * s).max(0.0), outward * s + height * c])
+        })
+    }
+
+    /// Candidate on the patch swept by a straight piece of the meridian.
+    fn patch(&mut self, a: Meridian, b: Meridian) -> Option<()> {
+        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let reach = (0.5 * (a[0] - b[0])).hypot(0.5 * (a[1] - b[1]));
+        let (at_axis, _) = self.distance(&self.place([0.0, middle[1]], 0.0))?;
+        if at_axis - middle[0] - reach >= self.best_value() {
+            return Some(());
+        }
+        let step = std::f64::consts::TAU / AZIMUTHS as f64;
+        let mut least = (f64::INFINITY, 0.0);
+        for k in 0..AZIMUTHS {
+            let phi = step * k as f64;
+            let (value, point) = self.on_line(a, b, phi)?;
+            if value < least.0 {
+                least = (value, phi);
+            }
+            self.offer_point(&point)?;
+        }
+        // Golden section over the azimuth in the two sectors round the least sample.
+        let golden = 0.5 * (5f64.sqrt() - 1.0);
+        let (mut low, mut high) = (least.1 - step, least.1 + step);
+        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
+        let mut values = [self.on_line(a, b, inner[0])?.0, self.on_line(a, b, inner[1])?.0];
+        for _ in 0..STEPS {
+            if high - low <= 1e-9 {
+                break;
+            }
+            if values[0] <= values[1] {
+                high = inner[1];
+                inner = [high - golden * (high - low), inner[0]];
+                values = [self.on_line(a, b, inner[0])?.0, values[0]];
+            } else {
+                low = inner[0];
+                inner = [inner[1], low + golden * (high - low)];
+                values = [values[1], self.on_line(a, b, inner[1])?.0];
+            }
+        }
+        let (_, point) = self.on_line(a, b, 0.5 * (low + high))?;
+        self.offer_point(&point)
+    }
+
+    fn offer_point(&mut self, point: &Vec3) -> Option<()> {
+        let (value, normal) = self.distance(point)?;
+        self.offer(Candidate { value, point: *point, normal });
+        Some(())
+    }
+
+    /// Least distance on the straight line of the patch at one azimuth, and where.
+    fn on_line(&self, a: Meridian, b: Meridian, phi: f64) -> Option<(f64, Vec3)> {
+        let (start, end) = (self.place(a, phi), self.place(b, phi));
+        let along = end - start;
+        let read = |t: f64| self.distance(&(start + along * t)).map(|(v, n)| (v, n.dot(&along)));
+        let (mut low, mut high) = (0.0, 1.0);
+        let (first, last) = (read(0.0)?, read(1.0)?);
+        let mut best = if first.0 <= last.0 { (first.0, start) } else { (last.0, end) };
+        let (mut rate_low, mut rate_high) = (first.1, last.1);
+        if rate_low >= 0.0 || rate_high <= 0.0 {
+            return Some(best);
+        }
+        for turn in 0..STEPS {
+            let secant = low - rate_low * (high - low) / (rate_high - rate_low);
+            let t =
+                if turn % 2 == 1 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
+            let (value, rate) = read(t)?;
+            if value < best.0 {
+                best = (value, start + along * t);
+            }
+            if high - low <= 1e-11 || rate.abs() <= 1e-12 * along.norm() {
+                break;
+            }
+            if rate < 0.0 {
+                (low, rate_low) = (t, rate);
+            } else {
+                (high, rate_high) = (t, rate);
+            }
+        }
+        Some(best)
+    }
+}

@@ -1,0 +1,182 @@
+//! Extremes of a clearance over the whole of one cut vector, with proof.
+
+use crate::sequence::ToolPosition;
+
+use super::clearance::{Clearance, Shape};
+
+/// Evaluations that one extreme may cost; the gap left then is the error term.
+const EVALUATIONS: usize = 60;
+/// Pieces a vector is cut into where nothing is known about the shape of the clearance.
+const FIRST_PIECES: usize = 8;
+/// Evaluations over one vector of unknown shape.
+const FREE_EVALUATIONS: usize = 4096;
+/// Step of the derivative with respect to the vector parameter when the tool axis turns.
+const TURN_STEP: f64 = 1e-5;
+
+/// Least and greatest clearance found, and how far beyond them the true ones could be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extremes {
+    pub(super) min: f64,
+    pub(super) max: f64,
+    pub(super) error: f64,
+}
+
+impl Extremes {
+    pub(super) fn join(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            error: self.error.max(other.error),
+        }
+    }
+}
+
+/// Clearance, derivative by the parameter 0 … 1 and error at one place of the vector.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    t: f64,
+    value: f64,
+    slope: f64,
+    error: f64,
+}
+
+/// A clearance along one cut vector.
+pub(super) struct Span<'a> {
+    pub(super) clearance: &'a Clearance<'a>,
+    pub(super) from: ToolPosition,
+    pub(super) to: ToolPosition,
+}
+
+impl Span<'_> {
+    fn turns(&self) -> bool {
+        self.from.axis != self.to.axis
+    }
+
+    fn place(&self, t: f64) -> ToolPosition {
+        let tip = self.from.tip + (self.to.tip - self.from.tip) * t;
+        if !self.turns() {
+            return ToolPosition { tip, axis: self.from.axis };
+        }
+        let axis = self.from.axis * (1.0 - t) + self.to.axis * t;
+        ToolPosition { tip, axis: axis / axis.norm() }
+    }
+
+    fn value(&self, t: f64) -> Option<f64> {
+        let place = self.place(t);
+        self.clearance.at(&place.tip, &place.axis).map(|r| r.value)
+    }
+
+    fn sample(&self, t: f64) -> Option<Sample> {
+        let place = self.place(t);
+        let reading = self.clearance.at(&place.tip, &place.axis)?;
+        let slope = if self.turns() {
+            let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
+            (self.value(high)? - self.value(low)?) / (high - low)
+        } else {
+            reading.normal.dot(&(self.to.tip - self.from.tip))
+        };
+        Some(Sample { t, value: reading.value, slope, error: reading.error })
+    }
+
+    /// Extremes to within `tolerance`; None where there is no distance.
+    pub(super) fn extremes(&self, tolerance: f64) -> Option<Extremes> {
+        let (first, last) = (self.sample(0.0)?, self.sample(1.0)?);
+        let error = first.error.max(last.error);
+        let (low, high) = (first.value.min(last.value), first.value.max(last.value));
+        let shape = if self.turns() { Shape::Free } else { self.clearance.shape() };
+        match shape {
+            Shape::Linear => Some(Extremes { min: low, max: high, error }),
+            Shape::Convex => {
+                let (min, gap) = self.trough(first, last, 1.0, tolerance)?;
+                Some(Extremes { min: min.min(low), max: high, error: error.max(gap) })
+            }
+            Shape::Concave => {
+                let (depth, gap) = self.trough(first, last, -1.0, tolerance)?;
+                Some(Extremes { min: low, max: (-depth).max(high), error: error.max(gap) })
+            }
+            Shape::Free => self.free(first, last, tolerance),
+        }
+    }
+
+    /// Least value of the convex function `sign`·clearance between two samples, and the gap to the lower bound that the
+    /// tangents at both sides give.
+    fn trough(&self, first: Sample, last: Sample, sign: f64, tolerance: f64) -> Option<(f64, f64)> {
+        let turn = |s: Sample| Sample { value: sign * s.value, slope: sign * s.slope, ..s };
+        let (mut a, mut b) = (turn(first), turn(last));
+        let mut least = a.value.min(b.value);
+        let mut error = a.error.max(b.error);
+        if a.slope >= 0.0 || b.slope <= 0.0 {
+            return Some((least, error));
+        }
+        let mut gap = 0.0;
+        for step in 0..EVALUATIONS {
+            let meet = (a.value - b.value + b.slope * b.t - a.slope * a.t) / (b.slope - a.slope);
+            let bound = a.value + a.slope * (meet - a.t);
+            gap = (least - bound).max(0.0);
+            if gap <= tolerance || b.t - a.t <= 4.0 * f64::EPSILON {
+                break;
+            }
+            let secant = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
+            let t = match step % 3 {
+                0 => secant,
+                1 => meet,
+                _ => 0.5 * (a.t + b.t),
+            };
+            let t = if t > a.t && t < b.t { t } else { 0.5 * (a.t + b.t) };
+            let middle = turn(self.sample(t)?);
+            error = error.max(middle.error);
+            least = least.min(middle.value);
+            if middle.slope < 0.0 {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        Some((least, gap + error))
+    }
+
+    /// Subdivision until second differences say that no piece hides more than `tolerance`; a piece shorter than that cannot
+    /// hide more, because clearance changes by no more than the tool moves.
+    fn free(&self, first: Sample, last: Sample, tolerance: f64) -> Option<Extremes> {
+        let swing = if self.turns() {
+            (self.to.axis - self.from.axis).norm() * self.clearance.profile.reach()
+        } else {
+            0.0
+        };
+        let length = (self.to.tip - self.from.tip).norm() + swing;
+        let mut found =
+            Extremes { min: first.value.min(last.value), max: first.value.max(last.value), error: 0.0 };
+        let mut pieces = Vec::with_capacity(2 * FIRST_PIECES);
+        let mut left = first;
+        for k in 1..=FIRST_PIECES {
+            let right = if k == FIRST_PIECES { last } else { self.sample(k as f64 / FIRST_PIECES as f64)? };
+            pieces.push((left, right));
+            left = right;
+        }
+        let mut budget = FREE_EVALUATIONS;
+        while let Some((a, b)) = pieces.pop() {
+            let width = b.t - a.t;
+            let middle = self.sample(0.5 * (a.t + b.t))?;
+            let reading = a.error.max(b.error).max(middle.error);
+            found = found.join(Extremes {
+                min: middle.value.min(a.value).min(b.value),
+                max: middle.value.max(a.value).max(b.value),
+                error: reading,
+            });
+            // What the cubic through the ends misses at the middle, and what curvature can hide beside the three samples:
+            // twice the bulge of a parabola with the observed change of slope over each half.
+            let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
+            let surprise = (middle.value - cubic).abs();
+            let bend = (a.slope - middle.slope).abs().max((b.slope - middle.slope).abs());
+            let hidden = (0.25 * bend * 0.5 * width + surprise).min(0.5 * length * width);
+            if hidden <= tolerance || budget == 0 {
+                found.error = found.error.max(reading + hidden);
+            } else {
+                budget -= 1;
+                pieces.push((a, middle));
+                pieces.push((middle, b));
+            }
+        }
+        Some(found)
+    }
+}

@@ -1,0 +1,141 @@
+//! Replay of the stop condition: the last position must be the n-th event of its label (arelem reference 3, 5.4, 6.1).
+//!
+//! For TO and PAST the tool is *clear* of the check surface on either side or *in violation*; entering violation is a TO
+//! position, leaving it a PAST position. For ON the tool end changes sides. What only brushes the tolerance band is
+//! counted apart: a processor may or may not call it a position.
+
+use apt_geometry::motion::Relation;
+
+use crate::sequence::{CutSequence, Role, ToolPosition};
+
+use super::clearance::{Clearance, Surface};
+use super::tool::Profile;
+
+/// Steps of the replay over the whole sequence; the shortest step is the path length divided by this.
+const FINEST_STEPS: f64 = 20_000.0;
+/// How far beyond the band, in bands, the tool must be for its state to be beyond doubt.
+const CERTAIN: f64 = 1.5;
+
+/// What is beyond doubt about the tool and the check surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// In the band since the start.
+    Touching,
+    /// Clear (TO, PAST) or on the positive side (ON).
+    Clear,
+    /// In violation (TO, PAST) or on the negative side (ON).
+    Violating,
+}
+
+/// Events along the path before the last position.
+#[derive(Debug, Default, Clone, Copy)]
+struct Count {
+    certain: u32,
+    doubtful: u32,
+}
+
+/// Number of the position found, if it is not the one asked for.
+pub(super) struct WrongEvent {
+    /// The position, of its label, at which the sequence really stops; zero if it is none.
+    pub(super) found: u32,
+}
+
+/// Replays the sequence against its check surface.
+pub(super) fn replay(
+    sequence: &CutSequence,
+    role: &Role,
+    occurrence: u32,
+    surface: &Surface,
+    profile: &Profile,
+    guard: f64,
+) -> Option<Result<(), WrongEvent>> {
+    let band = CERTAIN * role.inside_tolerance.max(role.outside_tolerance) + guard;
+    let on = role.relation == Relation::On;
+    if !on && profile.widest() <= 2.0 * band {
+        // A tool thinner than the band is never in violation beyond doubt.
+        return Some(Ok(()));
+    }
+    let make =
+        |side: f64| Clearance { surface, profile, side, thickness: if on { 0.0 } else { role.thickness } };
+    let (natural, opposite) = (make(1.0), make(-1.0));
+    let measure = |p: &ToolPosition| -> Option<f64> {
+        let first = natural.at(&p.tip, &p.axis)?.value;
+        if on || first > band {
+            return Some(first);
+        }
+        Some(first.max(opposite.at(&p.tip, &p.axis)?.value))
+    };
+    let (state, count) = walk(sequence, band, &measure, role.relation)?;
+    let before = match role.relation {
+        Relation::To => State::Clear,
+        Relation::Past => State::Violating,
+        _ => state,
+    };
+    let arrives = state == before || state == State::Touching;
+    let asked = occurrence.max(1) - 1;
+    if arrives && count.certain <= asked && asked <= count.certain + count.doubtful {
+        return Some(Ok(()));
+    }
+    Some(Err(WrongEvent { found: if arrives { count.certain + 1 } else { 0 } }))
+}
+
+/// Follows the path with steps that cannot jump a change of state, and counts events.
+fn walk(
+    sequence: &CutSequence,
+    band: f64,
+    measure: &dyn Fn(&ToolPosition) -> Option<f64>,
+    relation: Relation,
+) -> Option<(State, Count)> {
+    let positions: Vec<ToolPosition> =
+        std::iter::once(sequence.start).chain(sequence.points.iter().copied()).collect();
+    let total: f64 = positions.windows(2).map(|w| (w[1].tip - w[0].tip).norm()).sum();
+    let finest = (total / FINEST_STEPS).max(0.5 * band);
+    let mut state = State::Touching;
+    let mut brushed = false;
+    let mut count = Count::default();
+    // Path length that is known to hold no change of state.
+    let mut safe = 0.0;
+    for pair in positions.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let move_length = (to.tip - from.tip).norm();
+        let turn = (to.axis - from.axis).norm();
+        // With a turning axis the tool moves more than its end; then every vector is looked at closely.
+        let mut at = if turn > 0.0 { 0.0 } else { safe };
+        while at < move_length {
+            let t = at / move_length;
+            let axis = from.axis * (1.0 - t) + to.axis * t;
+            let place = ToolPosition { tip: from.tip + (to.tip - from.tip) * t, axis: axis / axis.norm() };
+            let value = measure(&place)?;
+            let seen = if value > band {
+                Some(State::Clear)
+            } else if value < -band {
+                Some(State::Violating)
+            } else {
+                None
+            };
+            match seen {
+                Some(next) => {
+                    record(&mut count, relation, state, next, brushed);
+                    (state, brushed) = (next, false);
+                }
+                None => brushed = true,
+            }
+            let step = if turn > 0.0 { finest.max(move_length / 64.0) } else { finest };
+            at += (value.abs() - band).max(step);
+        }
+        safe = at - move_length;
+    }
+    Some((state, count))
+}
+
+fn record(count: &mut Count, relation: Relation, from: State, to: State, brushed: bool) {
+    let changes = from != to && from != State::Touching;
+    let starts = from == State::Touching && brushed;
+    match relation {
+        Relation::On if changes => count.certain += 1,
+        Relation::To if changes && to == State::Violating => count.certain += 1,
+        Relation::Past if changes && to == State::Clear => count.certain += 1,
+        _ if brushed && (from == to || starts) => count.doubtful += 1,
+        _ => {}
+    }
+}

@@ -1,0 +1,258 @@
+//! Clearances of single positions: worked cases of arelem reference 6.2, dense sampling, and quadrics against the closed
+//! forms of the surfaces they also describe.
+
+use apt_geometry::{Vec3, canonical::Geometry, cutter::Cutter};
+use proptest::prelude::*;
+
+use super::{
+    super::{
+        clearance::{Clearance, Surface},
+        tool::Profile,
+    },
+    cone, cutter, cylinder, plane, quadric, sphere,
+};
+
+fn clearance(
+    cutter: &Cutter,
+    geometry: &Geometry,
+    side: f64,
+    tip: [f64; 3],
+    axis: [f64; 3],
+) -> (f64, Vec3, f64) {
+    let profile = Profile::of(cutter).unwrap();
+    let surface = Surface::of(geometry).unwrap();
+    let c = Clearance { surface: &surface, profile: &profile, side, thickness: 0.0 };
+    let reading = c.at(&Vec3::from(tip), &Vec3::from(axis).normalize()).unwrap();
+    (reading.value, reading.normal, reading.error)
+}
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+#[test]
+fn seven_parameter_tool_on_tilted_planes_touches_with_each_of_its_parts() {
+    // W17: cutter of W14 on z = −kx.
+    let tool = cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]);
+    for (k, z) in [(0.05, 0.0), (0.3, 0.056268300), (1.0, 0.375165043), (3.0, 1.362608615)] {
+        let (value, ..) = clearance(&tool, &plane([k, 0.0, 1.0], 0.0), 1.0, [0.0, 0.0, z], UP);
+        assert!(value.abs() < 1e-9, "k {k}: {value}");
+    }
+}
+
+#[test]
+fn profile_vertices_of_the_worked_case() {
+    // W14.
+    let profile = Profile::of(&cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0])).unwrap();
+    let want = [[0.454976356, 0.080224607], [0.505839572, 0.154910100], [0.667264021, 2.0]];
+    for (have, want) in profile.edges().iter().zip(want) {
+        assert!((have[0] - want[0]).abs() < 1e-9 && (have[1] - want[1]).abs() < 1e-9, "{have:?} {want:?}");
+    }
+}
+
+#[test]
+fn worked_clearances_on_curved_surfaces() {
+    // W18, W19; W20 is the corner ring alone, whose ball touches the cone with its upper half in the worked case.
+    let tool = cutter(&[1.0, 0.125]);
+    let (value, ..) = clearance(&tool, &sphere([0.0; 3], 2.0), 1.0, [1.1, 0.0, 1.9], UP);
+    assert!((value - 0.025871916).abs() < 1e-9, "{value}");
+    let skew = cylinder([0.0; 3], [0.5, 1.0, 0.2], 2.0);
+    let (value, ..) = clearance(&tool, &skew, 1.0, [1.1, 0.0, 2.1], UP);
+    assert!((value - 0.047944436).abs() < 1e-9, "{value}");
+}
+
+#[test]
+fn impossible_cutters_are_refused() {
+    for numbers in [
+        [1.0, 0.1, 0.4, 0.1, 60.0, 40.0, 2.0],
+        [1.0, -0.1, 0.4, 0.1, 0.0, 0.0, 2.0],
+        [1.0, 0.1, 0.4, 0.3, 0.0, 0.0, 2.0],
+    ] {
+        assert!(Profile::of(&cutter(&numbers)).is_err(), "{numbers:?}");
+    }
+    let mut wild = cutter(&[1.0, 0.25]);
+    wild.height = f64::NAN;
+    assert!(Profile::of(&wild).is_err());
+}
+
+#[test]
+fn a_pin_inside_the_tool_is_deep_penetration() {
+    let tool = cutter(&[1.0, 0.0]);
+    let pin = cylinder([0.1, 0.0, 0.0], UP, 0.05);
+    let (value, ..) = clearance(&tool, &pin, 1.0, [0.0; 3], UP);
+    assert!((value - (0.1 - 0.05 - 0.5)).abs() < 1e-12, "{value}");
+    let (value, ..) = clearance(&tool, &sphere([0.2, 0.0, 1.0], 0.001), 1.0, [0.0; 3], UP);
+    assert!((value + 0.301).abs() < 1e-12, "{value}");
+}
+
+/// Points all over the tool's boundary.
+fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
+    let profile = Profile::of(tool).unwrap();
+    let mut meridian = Vec::new();
+    for (a, b) in profile.lines() {
+        for k in 0..=60 {
+            let t = f64::from(k) / 60.0;
+            meridian.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+        }
+    }
+    if let Some((c, r)) = profile.corner() {
+        for k in 0..=720 {
+            let (s, co) = (f64::from(k) / 720.0 * std::f64::consts::TAU).sin_cos();
+            if profile.fan_holds([co, s]) && co >= 0.0 {
+                meridian.push([c[0] + r * co, c[1] + r * s]);
+            }
+        }
+    }
+    let x = super::super::tool::perpendicular(&axis);
+    let y = axis.cross(&x);
+    let mut all = Vec::new();
+    for m in meridian {
+        for k in 0..240 {
+            let (s, c) = (f64::from(k) / 240.0 * std::f64::consts::TAU).sin_cos();
+            all.push(tip + (x * c + y * s) * m[0] + axis * m[1]);
+        }
+    }
+    all
+}
+
+fn tools() -> impl Strategy<Value = Cutter> {
+    prop_oneof![
+        Just(cutter(&[0.5, 0.25])),
+        Just(cutter(&[0.5, 0.0])),
+        Just(cutter(&[1.0, 0.125])),
+        Just(cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0])),
+        Just(cutter(&[0.8, 0.0, 0.4, 0.0, 20.0, 8.0, 3.0])),
+    ]
+}
+
+fn direction() -> impl Strategy<Value = [f64; 3]> {
+    (-1.0..1.0, -1.0..1.0, 0.2..1.0).prop_map(|(x, y, z)| [x, y, z])
+}
+
+/// The surface as itself and as a quadric whose gradient points outward.
+fn twins() -> impl Strategy<Value = (Geometry, Geometry)> {
+    let ball = (-1.0..1.0f64, 1.0..4.0f64).prop_map(|(x, r)| {
+        let q = [1.0, 1.0, 1.0, x * x - r * r, 0.0, 0.0, 0.0, -x, 0.0, 0.0];
+        (sphere([x, 0.0, 0.0], r), quadric(q))
+    });
+    let pipe = (direction(), 1.0..4.0f64).prop_map(|(t, r)| {
+        let t = Vec3::from(t).normalize();
+        let q = [
+            1.0 - t.x * t.x,
+            1.0 - t.y * t.y,
+            1.0 - t.z * t.z,
+            -r * r,
+            -t.y * t.z,
+            -t.x * t.z,
+            -t.x * t.y,
+            0.0,
+            0.0,
+            0.0,
+        ];
+        (cylinder([0.0; 3], t.into(), r), quadric(q))
+    });
+    prop_oneof![ball, pipe]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn outside_and_inside_agree_with_dense_sampling(
+        tool in tools(),
+        tip in (-2.5..2.5f64, -2.5..2.5f64, -2.0..3.5f64),
+        axis in direction(),
+        which in 0usize..4,
+        outside in any::<bool>(),
+    ) {
+        let geometry = [
+            sphere([0.3, 0.1, -0.2], 2.0),
+            cylinder([0.1, 0.2, 0.0], [0.5, 1.0, 0.2], 1.5),
+            cone([0.0, 0.1, 3.0], [0.1, 0.0, -1.0], 35.0),
+            cone([0.0, 0.0, -3.0], [0.0, 0.2, 1.0], 60.0),
+        ][which].clone();
+        let side = if outside { 1.0 } else { -1.0 };
+        let unit = Vec3::from(axis).normalize();
+        let (value, normal, error) = clearance(&tool, &geometry, side, [tip.0, tip.1, tip.2], axis);
+        let surface = Surface::of(&geometry).unwrap();
+        let sampled = samples(&tool, Vec3::from([tip.0, tip.1, tip.2]), unit)
+            .iter()
+            .map(|p| side * surface.point_distance(p).unwrap().0)
+            .fold(f64::INFINITY, f64::min);
+        prop_assert!(error < 1e-6);
+        prop_assert!((normal.norm() - 1.0).abs() < 1e-9);
+        // Samples can only be too far. In penetration the least way out is no shorter than the deepest sample is deep.
+        // What sticks out through the vertex of a hollow cone is measured by the tangent planes alone.
+        let through_vertex = !outside && which >= 2 && value < 0.0;
+        prop_assert!(through_vertex || value <= sampled + 1e-9, "value {value} sampled {sampled}");
+        if value > 0.0 || (!outside && !through_vertex) {
+            prop_assert!(sampled - value < 5e-3, "value {value} sampled {sampled}");
+        }
+    }
+
+    #[test]
+    fn the_gradient_predicts_the_clearance_nearby(
+        tool in tools(),
+        tip in (-2.5..2.5f64, -2.5..2.5f64, -2.0..3.5f64),
+        step in direction(),
+        pair in twins(),
+        outside in any::<bool>(),
+    ) {
+        // Convex outside, concave inside: the tangent is a bound on the one side.
+        let side = if outside { 1.0 } else { -1.0 };
+        let tip = Vec3::from([tip.0, tip.1, tip.2]);
+        let to = tip + Vec3::from(step) * 0.3;
+        let (value, normal, _) = clearance(&tool, &pair.0, side, tip.into(), UP);
+        let (next, ..) = clearance(&tool, &pair.0, side, to.into(), UP);
+        let predicted = value + normal.dot(&(to - tip));
+        prop_assert!(side * (next - predicted) > -1e-9, "{next} {predicted}");
+        prop_assert!((next - value).abs() <= (to - tip).norm() + 1e-9);
+    }
+
+    #[test]
+    fn a_quadric_agrees_with_the_closed_form_of_the_same_surface(
+        tool in tools(),
+        tip in (-4.5..4.5f64, -4.5..4.5f64, -3.0..4.5f64),
+        axis in direction(),
+        pair in twins(),
+        outside in any::<bool>(),
+    ) {
+        let side = if outside { 1.0 } else { -1.0 };
+        let tip = [tip.0, tip.1, tip.2];
+        let (closed, ..) = clearance(&tool, &pair.0, side, tip, axis);
+        let (value, _, error) = clearance(&tool, &pair.1, side, tip, axis);
+        // Deep penetration of a solid is measured by the way out in the one and by depth in the other.
+        if closed > -0.05 || !outside {
+            prop_assert!((closed - value).abs() < 1e-8 + error, "closed {closed} quadric {value} ± {error}");
+            prop_assert!(error < 1e-5, "error {error}");
+        } else {
+            prop_assert!(value < 0.0);
+        }
+    }
+
+    #[test]
+    fn point_distance_to_a_quadric_is_least(
+        coefficients in prop::array::uniform10(-2.0..2.0f64),
+        point in (-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64),
+        aim in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64), 40),
+    ) {
+        let surface = Surface::of(&quadric(coefficients)).unwrap();
+        let p = Vec3::new(point.0, point.1, point.2);
+        let [a, b, c, d, f, g, h, pp, q, r] = coefficients;
+        let value = |x: &Vec3| {
+            a * x.x * x.x + b * x.y * x.y + c * x.z * x.z + d
+                + 2.0 * (f * x.y * x.z + g * x.x * x.z + h * x.x * x.y + pp * x.x + q * x.y + r * x.z)
+        };
+        if let Some((distance, normal)) = surface.point_distance(&p) {
+            let foot = p - normal * distance;
+            prop_assert!(value(&foot).abs() < 1e-7 * (1.0 + foot.norm_squared()), "foot off by {}", value(&foot));
+            prop_assert!(distance == 0.0 || (distance > 0.0) == (value(&p) > 0.0));
+            // No ray leaves the ball of this radius without a change of sign being farther than the distance.
+            for d in aim {
+                let d = Vec3::new(d.0, d.1, d.2);
+                if d.norm() > 1e-3 {
+                    let near = p + d.normalize() * (distance.abs() * (1.0 - 1e-6));
+                    prop_assert!(value(&near) * value(&p) >= 0.0);
+                }
+            }
+        }
+    }
+}

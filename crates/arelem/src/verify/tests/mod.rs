@@ -1,0 +1,75 @@
+//! Tests of the verifier against closed forms, dense sampling and deliberately broken sequences.
+
+mod clearances;
+mod mutations;
+mod paths;
+
+use apt_geometry::{
+    Vec3,
+    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    cutter::Cutter,
+    motion::{NamedSurface, Relation},
+};
+
+use crate::sequence::Role;
+
+/// CUTTER/d,r and CUTTER/d,r,e,f,α,β,h; degrees.
+pub(super) fn cutter(numbers: &[f64]) -> Cutter {
+    match *numbers {
+        [d, r] => Cutter {
+            diameter: d,
+            corner_radius: r,
+            corner_offset: d / 2.0 - r,
+            corner_height: r,
+            alpha: 0.0,
+            beta: 0.0,
+            height: 5.0,
+        },
+        [d, r, e, f, alpha, beta, h] => Cutter {
+            diameter: d,
+            corner_radius: r,
+            corner_offset: e,
+            corner_height: f,
+            alpha: alpha.to_radians(),
+            beta: beta.to_radians(),
+            height: h,
+        },
+        _ => panic!("two or seven numbers"),
+    }
+}
+
+pub(super) fn plane(normal: [f64; 3], distance: f64) -> Geometry {
+    let normal = Vec3::from(normal);
+    Geometry::Plane(Plane { normal: normal.normalize(), distance: distance / normal.norm() })
+}
+
+pub(super) fn sphere(center: [f64; 3], radius: f64) -> Geometry {
+    Geometry::Sphere(Sphere { center: Vec3::from(center), radius })
+}
+
+pub(super) fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64) -> Geometry {
+    Geometry::Cylinder(Cylinder { point: Vec3::from(point), axis: Vec3::from(axis).normalize(), radius })
+}
+
+pub(super) fn cone(vertex: [f64; 3], axis: [f64; 3], half_angle: f64) -> Geometry {
+    Geometry::Cone(Cone {
+        vertex: Vec3::from(vertex),
+        axis: Vec3::from(axis).normalize(),
+        cosine: half_angle.to_radians().cos(),
+    })
+}
+
+pub(super) fn quadric(coefficients: [f64; 10]) -> Geometry {
+    Geometry::Quadric(Quadric { coefficients })
+}
+
+pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64, outtol: f64) -> Role {
+    Role {
+        surface: NamedSurface { name: "S".to_owned(), geometry },
+        relation,
+        side,
+        inside_tolerance: intol,
+        outside_tolerance: outtol,
+        thickness: 0.0,
+    }
+}

@@ -1,0 +1,211 @@
+//! Valid sequences are accepted; sequences with one thing broken are rejected, for the right reason.
+
+use apt_geometry::{
+    Vec3,
+    motion::{DriveSide, Relation},
+};
+
+use super::{
+    super::{Evidence, Rule, VerifyError, verify},
+    paths::{self, BAND, Curved, Path},
+};
+use crate::sequence::CutSequence;
+
+fn judge(sequence: &CutSequence) -> Evidence {
+    verify(sequence, &|| false).unwrap()
+}
+
+fn rules(sequence: &CutSequence) -> Vec<Rule> {
+    judge(sequence).violations.iter().map(|v| v.rule).collect()
+}
+
+fn curved() -> Vec<Path> {
+    paths::all().into_iter().filter(|p| p.curved != Curved::Neither).collect()
+}
+
+fn curved_rule(path: &Path) -> Rule {
+    if path.curved == Curved::Part { Rule::PartBand } else { Rule::DriveBand }
+}
+
+#[test]
+fn valid_sequences_are_proven() {
+    for path in paths::all() {
+        let evidence = judge(&path.sequence);
+        assert!(evidence.verified, "{}: {:?}", path.name, evidence.violations);
+        for extent in [evidence.part, evidence.drive, evidence.check].into_iter().flatten() {
+            assert!(
+                extent.min <= extent.max && extent.min >= -extent.intol - 1e-8,
+                "{}: {extent:?}",
+                path.name
+            );
+            assert!(extent.max <= extent.outtol + 1e-8, "{}: {extent:?}", path.name);
+        }
+    }
+}
+
+#[test]
+fn extremes_are_the_true_ones() {
+    // Chords of vertices at R+τo with a dip of very nearly τi.
+    let path = paths::circle(true);
+    let extent = judge(&path.sequence).drive.unwrap();
+    assert!((extent.max - BAND.1).abs() < 1e-9, "{extent:?}");
+    let step = std::f64::consts::FRAC_PI_2 / path.sequence.points.len() as f64;
+    let dip = (2.75 + BAND.1) * (0.5 * step).cos() - 2.75;
+    assert!((extent.min - dip).abs() < 1e-8, "{extent:?} {dip}");
+}
+
+#[test]
+fn valid_sequences_are_proven_when_the_surfaces_are_quadrics() {
+    for mut path in paths::all() {
+        for role in [&mut path.sequence.part, &mut path.sequence.drive].into_iter().flatten() {
+            role.surface.geometry = paths::as_quadric(&role.surface.geometry);
+        }
+        let evidence = judge(&path.sequence);
+        assert!(evidence.verified, "{}: {:?}", path.name, evidence.violations);
+    }
+}
+
+#[test]
+fn a_shifted_vertex_is_found() {
+    let tau = BAND.0 + BAND.1;
+    for path in curved() {
+        let count = path.sequence.points.len();
+        for index in [0, count / 2, count - 1] {
+            for sense in [1.5, -1.5] {
+                let mut broken = path.sequence.clone();
+                let tip = broken.points[index].tip;
+                let normal = match path.name {
+                    "ball over a sphere" => (tip + Vec3::z() * 0.25).normalize(),
+                    "ball in a bowl" => (tip + Vec3::z() * 0.25 - Vec3::z() * 5.0).normalize(),
+                    _ => Vec3::new(tip.x, tip.y, 0.0).normalize(),
+                };
+                // A cone's band is wider by 1/cos α along the radius.
+                let wider = if path.name == "round a cone" { 1.2 } else { 1.0 };
+                broken.points[index].tip += normal * (sense * tau * wider);
+                let found = judge(&broken);
+                let wanted = curved_rule(&path);
+                let hit = found.violations.iter().find(|v| v.rule == wanted);
+                let hit = hit.unwrap_or_else(|| panic!("{} at {index}: {found:?}", path.name));
+                assert!(hit.vector == index || hit.vector == index + 1, "{} at {index}: {hit:?}", path.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_dropped_vertex_is_found() {
+    for path in curved() {
+        for index in [0, path.sequence.points.len() / 2] {
+            let mut broken = path.sequence.clone();
+            broken.points.remove(index);
+            assert!(rules(&broken).contains(&curved_rule(&path)), "{}", path.name);
+        }
+        let mut broken = path.sequence.clone();
+        broken.points.pop();
+        assert!(rules(&broken).contains(&Rule::CheckBand), "{}", path.name);
+    }
+}
+
+#[test]
+fn a_reversed_side_is_found() {
+    for path in paths::all() {
+        let mut broken = path.sequence.clone();
+        let role = if path.curved == Curved::Part { &mut broken.part } else { &mut broken.drive };
+        role.as_mut().unwrap().side *= -1.0;
+        assert!(rules(&broken).contains(&curved_rule(&path)), "{}", path.name);
+        if path.sequence.drive_side != DriveSide::On {
+            let mut broken = path.sequence.clone();
+            broken.drive_side =
+                if broken.drive_side == DriveSide::Left { DriveSide::Right } else { DriveSide::Left };
+            assert_eq!(rules(&broken), [Rule::Side], "{}", path.name);
+        }
+    }
+}
+
+#[test]
+fn to_and_past_are_told_apart() {
+    for (relation, wrong) in [(Relation::To, Relation::Past), (Relation::Past, Relation::To)] {
+        for occurrence in [1, 2] {
+            let mut broken = paths::to_circle(relation, occurrence).sequence;
+            broken.stop.as_mut().unwrap().role.relation = wrong;
+            assert_eq!(rules(&broken), [Rule::StopEvent], "{relation:?} {occurrence}");
+            let mut moved = paths::to_circle(relation, occurrence).sequence;
+            moved.stop = paths::to_circle(wrong, occurrence).sequence.stop;
+            assert!(rules(&moved).contains(&Rule::CheckBand), "{relation:?} {occurrence}");
+        }
+    }
+}
+
+#[test]
+fn the_count_of_positions_is_replayed() {
+    for relation in [Relation::To, Relation::On, Relation::Past] {
+        for (made, asked) in [(1, 2), (2, 1), (2, 3)] {
+            let mut broken = paths::to_circle(relation, made).sequence;
+            broken.stop.as_mut().unwrap().occurrence = asked;
+            let found = judge(&broken);
+            let stop = found.violations.iter().find(|v| v.rule == Rule::StopEvent).unwrap();
+            assert_eq!(stop.value, f64::from(made), "{relation:?}: {stop:?}");
+        }
+    }
+}
+
+#[test]
+fn a_missed_tangency_is_found() {
+    let mut broken = paths::tangent().sequence;
+    broken.points[0].tip.x -= 0.2;
+    let found = rules(&broken);
+    assert!(found.contains(&Rule::Tangency), "{found:?}");
+}
+
+#[test]
+fn going_back_and_long_steps_are_found() {
+    for path in curved() {
+        let mut broken = path.sequence.clone();
+        let first = broken.points[0];
+        let middle = broken.points[1];
+        broken.points.insert(2, first);
+        broken.points.insert(3, middle);
+        assert!(rules(&broken).contains(&Rule::Progress), "{}", path.name);
+        let mut short = path.sequence.clone();
+        short.maximum_step = 0.01;
+        assert_eq!(rules(&short), [Rule::StepLength], "{}", path.name);
+        let mut turned = path.sequence.clone();
+        turned.forward = -turned.forward;
+        assert!(rules(&turned).contains(&Rule::Progress), "{}", path.name);
+    }
+}
+
+#[test]
+fn a_start_up_is_bound_at_its_end_only() {
+    let mut path = paths::circle(true).sequence;
+    path.start_up = true;
+    path.start.tip = Vec3::new(9.0, 9.0, 9.0);
+    path.forward = Vec3::zeros();
+    assert!(judge(&path).verified);
+    let last = path.points.len() - 1;
+    path.points[last].tip.z -= 2.0 * BAND.0;
+    assert_eq!(rules(&path), [Rule::PartBand]);
+}
+
+#[test]
+fn point_to_point_motion_is_not_bound() {
+    let mut path = paths::circle(true).sequence;
+    (path.part, path.drive, path.stop) = (None, None, None);
+    let evidence = judge(&path);
+    assert!(evidence.verified && evidence.part.is_none() && evidence.check.is_none());
+}
+
+#[test]
+fn what_cannot_be_judged_is_an_error() {
+    let path = paths::circle(true).sequence;
+    assert_eq!(verify(&path, &|| true), Err(VerifyError::Cancelled));
+    let mut wild = path.clone();
+    wild.points[3].tip.x = f64::NAN;
+    assert_eq!(verify(&wild, &|| false), Err(VerifyError::NotFinite));
+    let mut none = path.clone();
+    none.points.clear();
+    assert_eq!(verify(&none, &|| false), Err(VerifyError::Empty));
+    let mut point = path;
+    point.drive.as_mut().unwrap().surface.geometry = apt_geometry::canonical::Geometry::Point(Vec3::zeros());
+    assert!(matches!(verify(&point, &|| false), Err(VerifyError::Unsupported { .. })));
+}

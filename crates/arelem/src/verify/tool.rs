@@ -1,0 +1,269 @@
+//! The verifier's own model of the seven-parameter cutter: a convex body of revolution, derived here from the seven
+//! numbers alone (arelem reference 1.3).
+//!
+//! The meridian is tip – lower line – corner arc – upper line – top, in the half-plane (ρ, z) of distance from the axis
+//! and height above the tool end. It is closed by the top disc, so that a surface inside the tool counts as penetrated.
+
+use apt_geometry::{Vec3, cutter::Cutter};
+
+use super::VerifyError;
+
+/// How far, relative to the cutter's size, a corner circle may miss a line it should touch: APT III accepts
+/// corner centres written with five decimals (language reference 6.7).
+const TANGENCY_SLACK: f64 = 1e-5;
+
+/// A point of the meridian half-plane: distance from the axis, height above the tool end.
+pub(super) type Meridian = [f64; 2];
+
+/// The meridian of a cutter.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Profile {
+    /// Where the lower line meets the corner arc.
+    lower: Meridian,
+    /// Where the corner arc meets the upper line.
+    upper: Meridian,
+    /// Where the upper line ends.
+    top: Meridian,
+    /// Centre of the corner arc.
+    center: Meridian,
+    /// Radius of the corner arc; zero if there is no arc (then `lower == upper`).
+    radius: f64,
+}
+
+fn sub(a: Meridian, b: Meridian) -> Meridian {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn dot(a: Meridian, b: Meridian) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: Meridian, b: Meridian) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The point of segment `a`–`b` nearest to `p`.
+fn nearest_on_segment(p: Meridian, a: Meridian, b: Meridian) -> Meridian {
+    let along = sub(b, a);
+    let length = dot(along, along);
+    let t = if length > 0.0 { (dot(sub(p, a), along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    [a[0] + t * along[0], a[1] + t * along[1]]
+}
+
+impl Profile {
+    /// The meridian of the seven numbers.
+    ///
+    /// # Errors
+    /// [`VerifyError::Cutter`] when the numbers are not finite or describe no convex body.
+    pub(super) fn of(cutter: &Cutter) -> Result<Self, VerifyError> {
+        let Cutter { diameter, corner_radius: r, corner_offset: e, corner_height: f, alpha, beta, height } =
+            *cutter;
+        let numbers = [diameter, r, e, f, alpha, beta, height];
+        let half = std::f64::consts::FRAC_PI_2;
+        if !numbers.iter().all(|x| x.is_finite() && *x >= 0.0) || alpha + beta >= half {
+            return Err(VerifyError::Cutter);
+        }
+        let slack = TANGENCY_SLACK * diameter.max(height).max(r);
+        let along_lower = [alpha.cos(), alpha.sin()];
+        let along_upper = [beta.sin(), beta.cos()];
+        let knee = [diameter / 2.0, diameter / 2.0 * alpha.tan()];
+        let top = [knee[0] + (height - knee[1]).max(0.0) * beta.tan(), height.max(knee[1])];
+        let center = [e, f];
+        let from_knee = sub(center, knee);
+        if r <= 0.0 || dot(from_knee, from_knee).sqrt() < r - slack {
+            return Ok(Self { lower: knee, upper: knee, top, center: knee, radius: 0.0 });
+        }
+        // Squared half chords that the corner circle cuts out of the two lines.
+        let lower_half = r * r - cross(along_lower, center).powi(2);
+        let upper_half = r * r - cross(along_upper, from_knee).powi(2);
+        if lower_half < -2.0 * r * slack || upper_half < -2.0 * r * slack {
+            return Err(VerifyError::Cutter);
+        }
+        let s = (dot(center, along_lower) + lower_half.max(0.0).sqrt()).max(0.0);
+        let t = dot(from_knee, along_upper) - upper_half.max(0.0).sqrt();
+        let lower = [s * along_lower[0], s * along_lower[1]];
+        let upper = [knee[0] + t * along_upper[0], knee[1] + t * along_upper[1]];
+        Ok(Self { lower, upper, top, center, radius: r })
+    }
+
+    /// The tool end alone, for ON relations.
+    pub(super) fn tool_end() -> Self {
+        Self { lower: [0.0; 2], upper: [0.0; 2], top: [0.0; 2], center: [0.0; 2], radius: 0.0 }
+    }
+
+    /// True for the profile of a single point.
+    pub(super) fn is_point(&self) -> bool {
+        self.top == [0.0; 2] && self.lower == [0.0; 2] && self.radius <= 0.0
+    }
+
+    /// Greatest distance of the body from its axis.
+    pub(super) fn widest(&self) -> f64 {
+        self.support([1.0, 0.0]).0
+    }
+
+    /// Greatest distance of a point of the body from the tool end.
+    pub(super) fn reach(&self) -> f64 {
+        self.farthest([0.0, 0.0]).0
+    }
+
+    /// Vertices of the meridian that are edges of the body: lower and upper end of the corner arc, and the top.
+    pub(super) fn edges(&self) -> [Meridian; 3] {
+        [self.lower, self.upper, self.top]
+    }
+
+    /// Straight parts of the meridian, the closing top disc included.
+    pub(super) fn lines(&self) -> [(Meridian, Meridian); 3] {
+        [([0.0; 2], self.lower), (self.upper, self.top), ([0.0, self.top[1]], self.top)]
+    }
+
+    /// Centre and radius of the corner arc, if there is one.
+    pub(super) fn corner(&self) -> Option<(Meridian, f64)> {
+        (self.radius > 0.0).then_some((self.center, self.radius))
+    }
+
+    /// Whether the corner arc has this direction (unit, ρ ≥ 0 side) among its outward normals.
+    pub(super) fn fan_holds(&self, direction: Meridian) -> bool {
+        let (first, last) = (sub(self.lower, self.center), sub(self.upper, self.center));
+        // Round-off of the arc ends, relative to the radius.
+        let slack = -1e-12 * self.radius;
+        self.radius > 0.0 && cross(first, direction) >= slack && cross(direction, last) >= slack
+    }
+
+    /// Support: greatest `direction·p` over the meridian for a direction with ρ-part ≥ 0, and the point that has it.
+    pub(super) fn support(&self, direction: Meridian) -> (f64, Meridian) {
+        let mut best = (0.0, [0.0; 2]);
+        for vertex in self.edges() {
+            let value = dot(direction, vertex);
+            if value > best.0 {
+                best = (value, vertex);
+            }
+        }
+        let size = dot(direction, direction).sqrt();
+        if size > 0.0 && self.fan_holds(direction) {
+            let value = dot(direction, self.center) + self.radius * size;
+            if value > best.0 {
+                let k = self.radius / size;
+                best = (value, [self.center[0] + k * direction[0], self.center[1] + k * direction[1]]);
+            }
+        }
+        best
+    }
+
+    /// Signed distance of a point of the half-plane (ρ ≥ 0) to the body, negative inside, and the nearest boundary point.
+    pub(super) fn signed_distance(&self, p: Meridian) -> (f64, Meridian) {
+        let mut best = (f64::INFINITY, [0.0; 2]);
+        for (a, b) in self.lines() {
+            let q = nearest_on_segment(p, a, b);
+            let d = sub(p, q);
+            let distance = dot(d, d).sqrt();
+            if distance < best.0 {
+                best = (distance, q);
+            }
+        }
+        if self.radius > 0.0 {
+            let d = sub(p, self.center);
+            let size = dot(d, d).sqrt();
+            if size > 0.0 && self.fan_holds([d[0] / size, d[1] / size]) && (size - self.radius).abs() < best.0
+            {
+                let k = self.radius / size;
+                best = ((size - self.radius).abs(), [self.center[0] + k * d[0], self.center[1] + k * d[1]]);
+            }
+        }
+        if self.contains(p) { (-best.0, best.1) } else { best }
+    }
+
+    fn contains(&self, p: Meridian) -> bool {
+        let left_of = |a: Meridian, b: Meridian| cross(sub(b, a), sub(p, a)) >= 0.0;
+        if self.is_point() || p[1] > self.top[1] || p[1] < 0.0 {
+            return false;
+        }
+        let lower_ok = self.lower[0] <= 0.0 || left_of([0.0; 2], self.lower);
+        let upper_ok = self.top == self.upper || left_of(self.upper, self.top);
+        if !lower_ok || !upper_ok || p[0] > self.widest() {
+            return false;
+        }
+        if self.radius > 0.0 && !left_of(self.lower, self.upper) {
+            let d = sub(p, self.center);
+            return dot(d, d).sqrt() <= self.radius;
+        }
+        true
+    }
+
+    /// Greatest distance from a point at azimuth 0 (ρ ≥ 0) to a point of the body, and that body point with ρ counted
+    /// towards azimuth 0 (so it is ≤ 0: the far side).
+    pub(super) fn farthest(&self, p: Meridian) -> (f64, Meridian) {
+        let mirrored = [-p[0], p[1]];
+        let mut best = (dot(p, p).sqrt(), [0.0; 2]);
+        let mut offer = |q: Meridian| {
+            let d = sub(q, mirrored);
+            let distance = dot(d, d).sqrt();
+            if distance > best.0 {
+                best = (distance, q);
+            }
+        };
+        self.edges().into_iter().for_each(&mut offer);
+        if self.radius > 0.0 {
+            let d = sub(self.center, mirrored);
+            let size = dot(d, d).sqrt();
+            if size > 0.0 && self.fan_holds([d[0] / size, d[1] / size]) {
+                let k = self.radius / size;
+                offer([self.center[0] + k * d[0], self.center[1] + k * d[1]]);
+            }
+        }
+        (best.0, [-best.1[0], best.1[1]])
+    }
+}
+
+/// A cutter with its axis in space; points are relative to the tool end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tool<'a> {
+    /// The meridian.
+    pub(super) profile: &'a Profile,
+    /// Unit tool axis.
+    pub(super) axis: Vec3,
+}
+
+/// Some unit vector perpendicular to a unit vector.
+pub(super) fn perpendicular(axis: &Vec3) -> Vec3 {
+    let least = if axis.x.abs() <= axis.y.abs() && axis.x.abs() <= axis.z.abs() {
+        Vec3::x()
+    } else if axis.y.abs() <= axis.z.abs() {
+        Vec3::y()
+    } else {
+        Vec3::z()
+    };
+    let side = least - axis * axis.dot(&least);
+    side / side.norm()
+}
+
+impl Tool<'_> {
+    /// Distance from the axis, height, and the unit radial direction of a vector from the tool end.
+    fn split(&self, w: &Vec3) -> (Meridian, Vec3) {
+        let z = w.dot(&self.axis);
+        let radial = w - self.axis * z;
+        let rho = radial.norm();
+        let out = if rho > 1e-14 * w.norm() { radial / rho } else { perpendicular(&self.axis) };
+        ([rho, z], out)
+    }
+
+    /// Greatest `n·p` over the body, and the point that has it.
+    pub(super) fn support(&self, n: &Vec3) -> (f64, Vec3) {
+        let (direction, out) = self.split(n);
+        let (value, p) = self.profile.support(direction);
+        (value, out * p[0] + self.axis * p[1])
+    }
+
+    /// Signed distance of a point to the body (negative inside) and the nearest boundary point.
+    pub(super) fn signed_distance(&self, w: &Vec3) -> (f64, Vec3) {
+        let (p, out) = self.split(w);
+        let (distance, q) = self.profile.signed_distance(p);
+        (distance, out * q[0] + self.axis * q[1])
+    }
+
+    /// Greatest distance from a point to a point of the body, and that body point.
+    pub(super) fn farthest(&self, w: &Vec3) -> (f64, Vec3) {
+        let (p, out) = self.split(w);
+        let (distance, q) = self.profile.farthest(p);
+        (distance, out * q[0] + self.axis * q[1])
+    }
+}
