@@ -127,10 +127,20 @@ pub enum Body {
         /// Where to.
         label: Name,
     },
-    /// Any other major word with its parameters: motion, post-processor words, parameters, declarations.
+    /// Any other major word with its parameters: motion, post-processor words, parameters, declarations. A line of bare
+    /// numbers in a CL file is a GOTO whose word has an empty range and no slash.
     Major {
         /// The word.
         word: WordUse,
+        /// Whether a slash follows.
+        slash: bool,
+        /// The parameters.
+        arguments: Vec<Argument>,
+    },
+    /// A major word that nobody knows, where the dialect keeps such statements (CL files).
+    UnknownMajor {
+        /// The word, which is none of the vocabulary.
+        name: Name,
         /// Whether a slash follows.
         slash: bool,
         /// The parameters.
@@ -353,6 +363,22 @@ pub enum ElementKind {
     Relation,
     /// A character outside the set, or a malformed number.
     Bad,
+}
+
+impl Name {
+    /// The name as a label: numeric labels are compared by value, so `01` is `1` (language reference 1.9).
+    pub fn label(&self) -> SmolStr {
+        normalised_label(&self.text)
+    }
+}
+
+/// The spelling under which a label is known: digits lose their leading zeros.
+pub fn normalised_label(text: &str) -> SmolStr {
+    if text.is_empty() || !text.bytes().all(|byte| byte.is_ascii_digit()) {
+        return SmolStr::new(text);
+    }
+    let digits = text.trim_start_matches('0');
+    if digits.is_empty() { SmolStr::new_static("0") } else { SmolStr::new(digits) }
 }
 
 impl Argument {

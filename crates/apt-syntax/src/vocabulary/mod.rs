@@ -1,0 +1,167 @@
+//! The vocabulary: one data file, `vocabulary.toml`, holds class, code, forms and help of every word.
+//!
+//! `cargo xtask codegen` turns it into the table of the module `generated`, so that a start of the program costs
+//! nothing; a test keeps the two equal.
+
+pub mod generate;
+#[rustfmt::skip]
+mod generated;
+
+use crate::dialect::DialectName;
+
+/// The most characters of a spelling.
+pub const LONGEST_SPELLING: usize = 16;
+
+/// One word of the vocabulary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Word {
+    /// The spelling, upper case.
+    pub spelling: &'static str,
+    /// What kind of word it is.
+    pub class: WordClass,
+    /// The integer code: of minor words the code on CL records, of post-processor words the subclass, of types the
+    /// surface number, of functions their number.
+    pub code: Option<u16>,
+    /// Class and subclass of the record that the statement leaves between the sections or on the CL file (language
+    /// reference 3.2).
+    pub record: Option<(u16, u16)>,
+    /// The forms of the statement or definition, one line each.
+    pub forms: &'static [&'static str],
+    /// Where a minor word is used: major words and types.
+    pub used_in: &'static [&'static str],
+    /// The dialects in which the word is reserved.
+    pub dialects: &'static [DialectName],
+    /// One line of help.
+    pub help: &'static str,
+}
+
+impl Word {
+    /// Whether the word is reserved in a dialect.
+    pub fn is_in(&self, dialect: DialectName) -> bool {
+        self.dialects.contains(&dialect)
+    }
+}
+
+/// The class of a word (language reference 3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WordClass {
+    /// PARTNO and its kin: the rest of the card is text.
+    Text,
+    /// Motion.
+    Motion,
+    /// Tool position: TLLFT and its kin.
+    ToolPosition,
+    /// Path parameter with operands: CUTTER, INTOL.
+    PathParameter,
+    /// Path control, may be followed by a comma and another statement.
+    PathControl,
+    /// Logic: IF, LOOPST, MACRO, CALL, FINI.
+    Logic,
+    /// Symbol and definition control: RESERV, SYN, CANON, OBTAIN, ZSURF, REFSYS.
+    Declaration,
+    /// Cutter-path transformation: TRACUT, INDEX, COPY.
+    Transformation,
+    /// Input and output: READ, PUNCH, PRINT.
+    InputOutput,
+    /// System flag.
+    SystemFlag,
+    /// Geometric type.
+    GeometricType,
+    /// Function.
+    Function,
+    /// Post-processor word with parameters.
+    Postprocessor,
+    /// Post-processor word without parameters.
+    PostprocessorBare,
+    /// Minor word.
+    Minor,
+}
+
+impl WordClass {
+    /// Whether a word of this class may begin a statement.
+    pub fn begins_statements(self) -> bool {
+        !matches!(self, WordClass::GeometricType | WordClass::Function | WordClass::Minor)
+    }
+
+    /// Whether a word of this class, written without parameters, may be followed by a comma and another statement
+    /// (language reference 2.4).
+    pub fn joins_statements(self) -> bool {
+        matches!(
+            self,
+            WordClass::PathControl
+                | WordClass::PostprocessorBare
+                | WordClass::SystemFlag
+                | WordClass::ToolPosition
+        )
+    }
+}
+
+/// All words, sorted by spelling.
+pub fn words() -> &'static [Word] {
+    generated::WORDS
+}
+
+/// The word of a spelling (upper case), in whatever dialect it is reserved.
+pub fn lookup(spelling: &str) -> Option<&'static Word> {
+    let words = words();
+    let index = words.binary_search_by(|word| word.spelling.cmp(spelling)).ok()?;
+    words.get(index)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    const SOURCE: &str = include_str!("../../vocabulary.toml");
+
+    #[test]
+    fn the_generated_table_is_that_of_the_data_file() {
+        let made = generate::generate_rust(SOURCE).expect("the data file is valid");
+        assert!(made == include_str!("generated.rs"), "run `cargo xtask codegen`");
+    }
+
+    #[test]
+    fn every_word_is_found_and_explained() {
+        for pair in words().windows(2) {
+            assert!(pair[0].spelling < pair[1].spelling, "{} {}", pair[0].spelling, pair[1].spelling);
+        }
+        for word in words() {
+            assert_eq!(lookup(word.spelling), Some(word));
+            assert!(word.help.len() > 12, "{} has no help", word.spelling);
+            assert!(word.spelling.len() <= LONGEST_SPELLING, "{}", word.spelling);
+            assert!(!word.dialects.is_empty(), "{}", word.spelling);
+            if word.class != WordClass::Minor {
+                assert!(!word.forms.is_empty(), "{} has no form", word.spelling);
+            }
+        }
+        assert_eq!(lookup("NOSUCH"), None);
+        assert_eq!(lookup("goto"), None, "spellings are upper case");
+    }
+
+    #[test]
+    fn apt_iii_has_its_393_words() {
+        let mut count = BTreeMap::new();
+        for word in words().iter().filter(|word| word.is_in(DialectName::Apt3)) {
+            *count.entry(word.class).or_insert(0) += 1;
+        }
+        assert_eq!(count.values().sum::<i32>(), 393, "{count:?}");
+        assert_eq!(count[&WordClass::Text], 5);
+        assert_eq!(count[&WordClass::GeometricType], 23);
+        assert_eq!(count[&WordClass::Function], 15);
+        assert_eq!(count[&WordClass::PostprocessorBare], 22);
+    }
+
+    #[test]
+    fn codes_are_those_of_the_records() {
+        for (spelling, code) in
+            [("TANTO", 27), ("DSTAN", 27), ("FAN", 184), ("SPINDL", 1031), ("STOP", 2), ("POINT", 1)]
+        {
+            assert_eq!(lookup(spelling).and_then(|word| word.code), Some(code), "{spelling}");
+        }
+        assert_eq!(lookup("GOLFT").and_then(|word| word.record), Some((8000, 1)));
+        assert_eq!(lookup("SPINDL").and_then(|word| word.record), Some((2000, 1031)));
+    }
+}
