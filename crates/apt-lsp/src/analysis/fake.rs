@@ -1,0 +1,226 @@
+//! A toy language for the tests of the server: it can be slow, it can fail, and it says which text it saw.
+//!
+//! `BAD` is an error wherever it stands; `SLOW` makes motion and runs last until cancelled; `PANIC` panics.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use super::*;
+
+/// The toy language, with what its documents have done.
+#[derive(Default, Clone)]
+pub(crate) struct FakeLanguage {
+    /// Steps taken by slow work.
+    pub steps: Arc<AtomicU64>,
+    /// Slow works under way.
+    pub running: Arc<AtomicU64>,
+}
+
+struct FakeDocument {
+    text: String,
+    language: FakeLanguage,
+}
+
+/// Slow work that nobody cancels ends here, so that a broken test ends too.
+pub(crate) const SLOW_STEPS: u64 = 20_000;
+
+impl Language for FakeLanguage {
+    fn open(&self, text: &str, _: Option<&str>, _: &Values) -> Arc<dyn Document> {
+        Arc::new(FakeDocument { text: text.to_owned(), language: self.clone() })
+    }
+
+    fn check_settings(&self, settings: &Values) -> Result<(), String> {
+        match settings.keys().find(|key| *key != "dialect") {
+            Some(key) => Err(format!("unknown setting `{key}`")),
+            None => Ok(()),
+        }
+    }
+
+    fn machines(&self) -> Vec<MachineInfo> {
+        vec![MachineInfo { name: "toy".into(), title: "A toy".into(), control: "none".into() }]
+    }
+
+    fn explain(&self, code: &str) -> Option<String> {
+        (code == "APT0001").then(|| "# APT0001\n\nThe word BAD stands in the program.\n".to_owned())
+    }
+
+    fn title(&self, code: &str) -> Option<String> {
+        (code == "APT0001").then(|| "the word BAD".to_owned())
+    }
+}
+
+impl FakeDocument {
+    fn word_at(&self, offset: usize) -> Option<Range<usize>> {
+        let is_word = |character: char| character.is_alphanumeric();
+        let start = self.text[..offset]
+            .rfind(|c| !is_word(c))
+            .map_or(0, |at| at + self.text[at..].chars().next().map_or(1, char::len_utf8));
+        let end = self.text[offset..].find(|c| !is_word(c)).map_or(self.text.len(), |at| offset + at);
+        (start < end).then_some(start..end)
+    }
+
+    fn places(&self, word: &str) -> Vec<Range<usize>> {
+        self.text.match_indices(word).map(|(at, found)| at..at + found.len()).collect()
+    }
+
+    fn slow(&self, control: &Control) -> Answer<()> {
+        assert!(!self.text.contains("PANIC"), "the toy language was asked to panic");
+        if !self.text.contains("SLOW") {
+            return Ok(());
+        }
+        self.language.running.fetch_add(1, Ordering::SeqCst);
+        let mut outcome = Ok(());
+        for done in 0..SLOW_STEPS {
+            if control.is_cancelled() {
+                outcome = Err(Interrupted);
+                break;
+            }
+            control.report(Progress { done, total: Some(SLOW_STEPS), message: "working".into() });
+            self.language.steps.fetch_add(1, Ordering::SeqCst);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        self.language.running.fetch_sub(1, Ordering::SeqCst);
+        outcome
+    }
+}
+
+impl Document for FakeDocument {
+    fn edit(&self, edits: &[TextEdit]) -> Arc<dyn Document> {
+        let mut text = self.text.clone();
+        for edit in edits {
+            text.replace_range(edit.range.clone(), &edit.text);
+        }
+        Arc::new(Self { text, language: self.language.clone() })
+    }
+
+    fn dialect(&self) -> String {
+        "toy".into()
+    }
+
+    fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
+        if level == Level::Motion {
+            self.slow(control)?;
+        }
+        let finding = |range: Range<usize>| Diagnostic {
+            code: "APT0001".into(),
+            severity: Severity::Error,
+            message: "BAD stands here".into(),
+            hint: Some("remove it".into()),
+            isn: Some(1),
+            apt3: None,
+            related: vec![Related { message: "the program begins here".into(), range: 0..0 }],
+            range,
+            origin: Vec::new(),
+            unnecessary: false,
+        };
+        Ok(self.places("BAD").into_iter().map(finding).collect())
+    }
+
+    fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>> {
+        if self.text.contains("SLOWHOVER") {
+            self.slow(control)?;
+        }
+        assert!(!self.text.contains("PANIC"), "the toy language was asked to panic");
+        let Some(range) = self.word_at(offset) else { return Ok(None) };
+        let markdown = format!("{} of {} bytes", &self.text[range.clone()], self.text.len());
+        Ok(Some(Hover { range, markdown }))
+    }
+
+    fn completions(&self, _: usize) -> Vec<Completion> {
+        vec![Completion {
+            label: "GOLFT".into(),
+            kind: CompletionKind::Statement,
+            detail: "go left".into(),
+            documentation: String::new(),
+        }]
+    }
+
+    fn definitions(&self, offset: usize) -> Vec<Range<usize>> {
+        self.occurrences(offset).into_iter().take(1).map(|one| one.range).collect()
+    }
+
+    fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
+        let Some(range) = self.word_at(offset) else { return Vec::new() };
+        let places = self.places(&self.text[range]).into_iter().enumerate();
+        places.map(|(nth, range)| Occurrence { range, defines: nth == 0 }).collect()
+    }
+
+    fn renamable(&self, offset: usize) -> Option<Range<usize>> {
+        self.word_at(offset)
+    }
+
+    fn rename(&self, offset: usize, new: &str) -> Result<Vec<TextEdit>, Refusal> {
+        if new.is_empty() {
+            return Err(Refusal::Impossible("a name has letters".into()));
+        }
+        let edit = |one: Occurrence| TextEdit { range: one.range, text: new.to_owned() };
+        Ok(self.occurrences(offset).into_iter().map(edit).collect())
+    }
+
+    fn outline(&self) -> Vec<OutlineEntry> {
+        vec![OutlineEntry {
+            name: "PROGRAM".into(),
+            detail: String::new(),
+            kind: OutlineKind::Part,
+            range: 0..self.text.len(),
+            focus: 0..0,
+            children: Vec::new(),
+        }]
+    }
+
+    fn folds(&self) -> Vec<Fold> {
+        vec![Fold { range: 0..self.text.len(), kind: FoldKind::Region }]
+    }
+
+    fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
+        let wanted = |place: &Range<usize>| {
+            range.as_ref().is_none_or(|range| place.start < range.end && place.end > range.start)
+        };
+        let token = |range| Token { range, class: TokenClass::Keyword, definition: false };
+        self.places("BAD").into_iter().filter(wanted).map(token).collect()
+    }
+
+    fn lenses(&self) -> Vec<Lens> {
+        vec![Lens { range: 0..0, title: "Run motion".into(), run: None }]
+    }
+
+    fn syntax_tree(&self) -> String {
+        self.text.clone()
+    }
+
+    fn expand(&self, _: Option<usize>, _: Option<u32>, _: &Control) -> Answer<Expansion> {
+        let range = 0..self.text.lines().next().map_or(0, str::len);
+        let origins = vec![ExpandedLine { line: 0, isn: 1, range, stack: Vec::new() }];
+        Ok(Expansion { text: self.text.clone(), origins })
+    }
+
+    fn canonical_form(&self, offset: usize, _: &Control) -> Answer<Option<CanonicalForm>> {
+        let Some(range) = self.word_at(offset) else { return Ok(None) };
+        let name = self.text[range].to_owned();
+        Ok(Some(CanonicalForm {
+            name,
+            kind: "POINT".into(),
+            canonical: vec![0.0; 3],
+            text: "the origin".into(),
+        }))
+    }
+
+    fn run(&self, request: &RunRequest, control: &Control) -> Result<serde_json::Value, Refusal> {
+        self.slow(control)?;
+        let part = request.range.clone().unwrap_or(0..self.text.len());
+        Ok(serde_json::json!({ "ok": true, "ran": &self.text[part] }))
+    }
+
+    fn tape(&self, machine: &str, _: &Control) -> Result<serde_json::Value, Refusal> {
+        match machine {
+            "toy" => Ok(serde_json::json!({ "machine": "toy", "blocks": ["N10 M30"], "origin": [1] })),
+            other => Err(Refusal::UnknownMachine { name: other.to_owned(), known: vec!["toy".into()] }),
+        }
+    }
+
+    fn product(&self, _: &Product, _: &Control) -> Result<Vec<u8>, Refusal> {
+        Ok(self.text.clone().into_bytes())
+    }
+}

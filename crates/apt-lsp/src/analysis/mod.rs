@@ -1,0 +1,131 @@
+//! The narrow door between the protocol side and the analysis of programs.
+//!
+//! Everything in this crate that needs to know something about APT asks a [`Document`]; everything a
+//! document answers is plain data with byte offsets. Handlers convert in, call one method, convert out.
+
+mod answer;
+pub(crate) mod fake;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use tokio_util::sync::CancellationToken;
+
+pub(crate) use self::answer::*;
+use crate::settings::Values;
+
+/// What makes documents: the language as a whole.
+pub(crate) trait Language: Send + Sync + 'static {
+    /// Reads a program. Parsing happens here, evaluation when somebody asks. Settings that are wrong
+    /// count as absent; [`Language::check_settings`] says what is wrong with them.
+    fn open(&self, text: &str, file_name: Option<&str>, settings: &Values) -> Arc<dyn Document>;
+
+    /// Says what is wrong with settings, if something is.
+    fn check_settings(&self, settings: &Values) -> Result<(), String>;
+
+    /// The machines a tape can be made for.
+    fn machines(&self) -> Vec<MachineInfo>;
+
+    /// The page of a diagnostic code, as Markdown.
+    fn explain(&self, code: &str) -> Option<String>;
+
+    /// One line that says what a diagnostic code stands for.
+    fn title(&self, code: &str) -> Option<String>;
+}
+
+/// One immutable version of one program. Offsets and ranges are bytes of its text.
+pub(crate) trait Document: Send + Sync {
+    /// The version after some edits, each relative to the text that the one before it left.
+    fn edit(&self, edits: &[TextEdit]) -> Arc<dyn Document>;
+
+    /// The dialect in force, and why, in words for people.
+    fn dialect(&self) -> String;
+
+    /// Everything found up to a level, ordered by place.
+    fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>>;
+
+    /// What stands at an offset, explained.
+    fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>>;
+
+    /// What could be written at an offset.
+    fn completions(&self, offset: usize) -> Vec<Completion>;
+
+    /// Where the name at an offset gets its meaning; the place in force at the offset first.
+    fn definitions(&self, offset: usize) -> Vec<Range<usize>>;
+
+    /// Where the name at an offset stands.
+    fn occurrences(&self, offset: usize) -> Vec<Occurrence>;
+
+    /// The name at an offset, if it is one that can be renamed.
+    fn renamable(&self, offset: usize) -> Option<Range<usize>>;
+
+    /// The edits that give the name at an offset another spelling, all relative to this version.
+    fn rename(&self, offset: usize, new: &str) -> Result<Vec<TextEdit>, Refusal>;
+
+    /// The outline.
+    fn outline(&self) -> Vec<OutlineEntry>;
+
+    /// What can be folded away.
+    fn folds(&self) -> Vec<Fold>;
+
+    /// The classes of words, in order; only those of statements that touch the range if one is given.
+    fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token>;
+
+    /// The places that can be run on their own.
+    fn lenses(&self) -> Vec<Lens>;
+
+    /// The syntax tree as indented text.
+    fn syntax_tree(&self) -> String;
+
+    /// The program with macros and loops unrolled: all of it, or the one at an offset, `depth` levels deep.
+    fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion>;
+
+    /// The canonical form of the geometry named or defined at an offset.
+    fn canonical_form(&self, offset: usize, control: &Control) -> Answer<Option<CanonicalForm>>;
+
+    /// Runs the program, or the statements that touch a range, and gives the report as JSON.
+    fn run(&self, request: &RunRequest, control: &Control) -> Result<serde_json::Value, Refusal>;
+
+    /// The tape for a machine, as JSON.
+    fn tape(&self, machine: &str, control: &Control) -> Result<serde_json::Value, Refusal>;
+
+    /// What the run produces, in a form that is written to a file.
+    fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal>;
+}
+
+/// How a long computation is stopped and how it tells how far it is.
+#[derive(Clone)]
+pub(crate) struct Control {
+    token: CancellationToken,
+    progress: Option<Arc<dyn Fn(Progress) + Send + Sync>>,
+}
+
+impl Control {
+    /// Stopped by the token; silent.
+    pub(crate) fn new(token: CancellationToken) -> Self {
+        Self { token, progress: None }
+    }
+
+    /// Never stopped, silent.
+    pub(crate) fn unlimited() -> Self {
+        Self::new(CancellationToken::new())
+    }
+
+    /// The same, telling its progress to `report`.
+    pub(crate) fn with_progress(mut self, report: impl Fn(Progress) + Send + Sync + 'static) -> Self {
+        self.progress = Some(Arc::new(report));
+        self
+    }
+
+    /// True when nobody wants the answer any more. Cheap enough to be asked per statement and per pass.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.token.is_cancelled()
+    }
+
+    /// Tells how far the work has come.
+    pub(crate) fn report(&self, progress: Progress) {
+        if let Some(report) = &self.progress {
+            report(progress);
+        }
+    }
+}

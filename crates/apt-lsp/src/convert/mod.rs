@@ -1,0 +1,8 @@
+//! Between byte offsets and the protocol. Nothing else in the program mentions UTF-16.
+
+pub(crate) mod changes;
+pub(crate) mod outgoing;
+pub(crate) mod position;
+pub(crate) mod tokens;
+
+pub(crate) use self::position::{Encoding, TextIndex};

@@ -1,0 +1,268 @@
+//! Answers of the analysis, out: plain data with byte offsets becomes protocol types.
+
+use tower_lsp::ls_types::{self as lsp, Uri};
+
+use super::TextIndex;
+use crate::analysis::{
+    Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover, Lens, Occurrence,
+    OriginFrame, OutlineEntry, OutlineKind, Severity, TextEdit,
+};
+
+/// Who found it, as editors show it.
+pub(crate) const SOURCE: &str = "apt";
+
+/// A finding. Hints become part of the message, since the protocol has no place for them; origins
+/// and related places become related information.
+pub(crate) fn diagnostic(index: &TextIndex, uri: &Uri, found: &Diagnostic) -> lsp::Diagnostic {
+    let message = match &found.hint {
+        Some(hint) => format!("{}\nhelp: {hint}", found.message),
+        None => found.message.clone(),
+    };
+    lsp::Diagnostic {
+        range: index.range(&found.range),
+        severity: Some(match found.severity {
+            Severity::Error => lsp::DiagnosticSeverity::ERROR,
+            Severity::Warning => lsp::DiagnosticSeverity::WARNING,
+            Severity::Information => lsp::DiagnosticSeverity::INFORMATION,
+            Severity::Hint => lsp::DiagnosticSeverity::HINT,
+        }),
+        code: Some(lsp::NumberOrString::String(found.code.clone())),
+        source: Some(SOURCE.to_owned()),
+        message,
+        related_information: related_information(index, uri, found),
+        tags: found.unnecessary.then(|| vec![lsp::DiagnosticTag::UNNECESSARY]),
+        data: Some(serde_json::json!({ "isn": found.isn, "apt3": found.apt3, "hint": found.hint })),
+        code_description: None,
+    }
+}
+
+fn related_information(
+    index: &TextIndex,
+    uri: &Uri,
+    found: &Diagnostic,
+) -> Option<Vec<lsp::DiagnosticRelatedInformation>> {
+    let place = |range, message: String| lsp::DiagnosticRelatedInformation {
+        location: lsp::Location { uri: uri.clone(), range: index.range(range) },
+        message,
+    };
+    let related = found.related.iter().map(|related| place(&related.range, related.message.clone()));
+    let frames = found.origin.iter();
+    let origins = frames.filter_map(|frame| Some(place(frame.range.as_ref()?, frame_text(frame))));
+    let all: Vec<_> = related.chain(origins).collect();
+    (!all.is_empty()).then_some(all)
+}
+
+/// A macro call, loop turn or include in words.
+pub(crate) fn frame_text(frame: &OriginFrame) -> String {
+    let OriginFrame { kind, name, isn, turn, .. } = frame;
+    let name = if name.is_empty() { String::new() } else { format!(" {name}") };
+    match *kind {
+        "loop" => format!("in turn {turn} of the loop{name} at statement {isn}"),
+        "include" => format!("in the file{name} included at statement {isn}"),
+        _ => format!("in the macro{name} called at statement {isn}"),
+    }
+}
+
+/// An explanation.
+pub(crate) fn hover(index: &TextIndex, found: Hover) -> lsp::Hover {
+    lsp::Hover {
+        range: Some(index.range(&found.range)),
+        contents: lsp::HoverContents::Markup(markdown(found.markdown)),
+    }
+}
+
+fn markdown(value: String) -> lsp::MarkupContent {
+    lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value }
+}
+
+/// Completions, in the order in which the analysis gives them.
+pub(crate) fn completions(items: Vec<Completion>) -> Vec<lsp::CompletionItem> {
+    let filled = |text: String| (!text.is_empty()).then_some(text);
+    let convert = |(nth, item): (usize, Completion)| lsp::CompletionItem {
+        label: item.label,
+        kind: Some(completion_kind(item.kind)),
+        detail: filled(item.detail),
+        documentation: filled(item.documentation)
+            .map(|text| lsp::Documentation::MarkupContent(markdown(text))),
+        sort_text: Some(format!("{nth:05}")),
+        ..lsp::CompletionItem::default()
+    };
+    items.into_iter().enumerate().map(convert).collect()
+}
+
+fn completion_kind(kind: CompletionKind) -> lsp::CompletionItemKind {
+    match kind {
+        CompletionKind::Name => lsp::CompletionItemKind::VARIABLE,
+        CompletionKind::Scalar => lsp::CompletionItemKind::VALUE,
+        CompletionKind::Macro => lsp::CompletionItemKind::MODULE,
+        CompletionKind::Modifier => lsp::CompletionItemKind::ENUM_MEMBER,
+        CompletionKind::Type => lsp::CompletionItemKind::CLASS,
+        CompletionKind::Function => lsp::CompletionItemKind::FUNCTION,
+        CompletionKind::Statement => lsp::CompletionItemKind::KEYWORD,
+        CompletionKind::Postprocessor => lsp::CompletionItemKind::EVENT,
+    }
+}
+
+/// An edit.
+pub(crate) fn edit(index: &TextIndex, edit: TextEdit) -> lsp::TextEdit {
+    lsp::TextEdit { range: index.range(&edit.range), new_text: edit.text }
+}
+
+/// A place of a name.
+pub(crate) fn highlight(index: &TextIndex, found: &Occurrence) -> lsp::DocumentHighlight {
+    let kind =
+        if found.defines { lsp::DocumentHighlightKind::WRITE } else { lsp::DocumentHighlightKind::READ };
+    lsp::DocumentHighlight { range: index.range(&found.range), kind: Some(kind) }
+}
+
+/// An entry of the outline with everything inside it.
+pub(crate) fn symbol(index: &TextIndex, found: OutlineEntry) -> lsp::DocumentSymbol {
+    let children: Vec<_> = found.children.into_iter().map(|child| symbol(index, child)).collect();
+    #[expect(deprecated, reason = "the field has no default")]
+    lsp::DocumentSymbol {
+        // Clients reject an empty name.
+        name: if found.name.trim().is_empty() { "(no name)".to_owned() } else { found.name },
+        detail: (!found.detail.is_empty()).then_some(found.detail),
+        kind: symbol_kind(found.kind),
+        tags: None,
+        deprecated: None,
+        range: index.range(&found.range),
+        selection_range: index.range(&found.focus),
+        children: (!children.is_empty()).then_some(children),
+    }
+}
+
+fn symbol_kind(kind: OutlineKind) -> lsp::SymbolKind {
+    match kind {
+        OutlineKind::Part => lsp::SymbolKind::MODULE,
+        OutlineKind::Macro => lsp::SymbolKind::FUNCTION,
+        OutlineKind::Loop => lsp::SymbolKind::NAMESPACE,
+        OutlineKind::Geometry => lsp::SymbolKind::OBJECT,
+        OutlineKind::Array => lsp::SymbolKind::ARRAY,
+        OutlineKind::Scalar => lsp::SymbolKind::NUMBER,
+        OutlineKind::Tool => lsp::SymbolKind::EVENT,
+    }
+}
+
+/// The outline for a client that knows no nesting.
+pub(crate) fn flat_symbols(
+    index: &TextIndex,
+    uri: &Uri,
+    found: Vec<OutlineEntry>,
+) -> Vec<lsp::SymbolInformation> {
+    let mut flat = Vec::new();
+    let mut rest: Vec<(Option<String>, OutlineEntry)> =
+        found.into_iter().rev().map(|symbol| (None, symbol)).collect();
+    while let Some((container_name, symbol)) = rest.pop() {
+        let inside = symbol.children.into_iter().rev().map(|child| (Some(symbol.name.clone()), child));
+        rest.extend(inside);
+        #[expect(deprecated, reason = "the field has no default")]
+        flat.push(lsp::SymbolInformation {
+            name: symbol.name,
+            kind: symbol_kind(symbol.kind),
+            tags: None,
+            deprecated: None,
+            location: lsp::Location { uri: uri.clone(), range: index.range(&symbol.range) },
+            container_name,
+        });
+    }
+    flat
+}
+
+/// A fold; nothing if it lies on one line.
+pub(crate) fn fold(index: &TextIndex, found: &Fold) -> Option<lsp::FoldingRange> {
+    let range = index.range(&found.range);
+    // A fold that ends at the beginning of a line ends with the line before it.
+    let end_line = if range.end.character == 0 { range.end.line.checked_sub(1)? } else { range.end.line };
+    let kind = match found.kind {
+        FoldKind::Region | FoldKind::Statement => lsp::FoldingRangeKind::Region,
+        FoldKind::Comment => lsp::FoldingRangeKind::Comment,
+    };
+    (end_line > range.start.line).then_some(lsp::FoldingRange {
+        start_line: range.start.line,
+        end_line,
+        start_character: None,
+        end_character: None,
+        kind: Some(kind),
+        collapsed_text: None,
+    })
+}
+
+/// A lens that runs its part of the program.
+pub(crate) fn lens(index: &TextIndex, uri: &Uri, found: Lens) -> lsp::CodeLens {
+    let mut argument = serde_json::json!({ "uri": uri.as_str() });
+    if let (Some(run), Some(fields)) = (&found.run, argument.as_object_mut()) {
+        fields.insert("range".to_owned(), serde_json::json!(index.range(run)));
+    }
+    lsp::CodeLens {
+        range: index.range(&found.range),
+        command: Some(lsp::Command {
+            title: found.title,
+            command: "apt.runMotion".to_owned(),
+            arguments: Some(vec![argument]),
+        }),
+        data: None,
+    }
+}
+
+/// An expansion as the commands answer it.
+pub(crate) fn expansion(index: &TextIndex, found: &Expansion) -> serde_json::Value {
+    let origin = |line: &ExpandedLine| {
+        serde_json::json!({
+            "line": line.line,
+            "isn": line.isn,
+            "range": index.range(&line.range),
+            "stack": line.stack,
+        })
+    };
+    let origins: Vec<_> = found.origins.iter().map(origin).collect();
+    serde_json::json!({ "text": found.text, "origins": origins })
+}
+
+#[cfg(test)]
+mod tests {
+    use ropey::Rope;
+
+    use super::super::Encoding;
+    use super::*;
+
+    #[test]
+    fn folds_end_before_the_line_that_only_begins() {
+        let index = TextIndex { rope: Rope::from_str("a\nb\nc\n"), encoding: Encoding::Utf16 };
+        let lines = |range| {
+            let fold = fold(&index, &Fold { range, kind: FoldKind::Region })?;
+            Some((fold.start_line, fold.end_line))
+        };
+        assert_eq!(lines(0..6), Some((0, 2)));
+        assert_eq!(lines(0..5), Some((0, 2)));
+        assert_eq!(lines(0..2), None);
+        assert_eq!(lines(0..1), None);
+    }
+
+    #[test]
+    fn flat_symbols_keep_order_and_container() {
+        let symbol = |name: &str, children| OutlineEntry {
+            name: name.to_owned(),
+            detail: String::new(),
+            kind: OutlineKind::Macro,
+            range: 0..1,
+            focus: 0..1,
+            children,
+        };
+        let tree = vec![
+            symbol("A", vec![symbol("B", Vec::new()), symbol("C", Vec::new())]),
+            symbol("D", Vec::new()),
+        ];
+        let index = TextIndex { rope: Rope::from_str("a"), encoding: Encoding::Utf16 };
+        let flat = flat_symbols(&index, &"file:///a.apt".parse().unwrap(), tree);
+        let names: Vec<_> = flat.iter().map(|s| (s.name.as_str(), s.container_name.as_deref())).collect();
+        assert_eq!(names, [("A", None), ("B", Some("A")), ("C", Some("A")), ("D", None)]);
+    }
+
+    #[test]
+    fn frames_are_told_in_words() {
+        let frame = |kind, name: &str| OriginFrame { kind, name: name.into(), isn: 7, turn: 3, range: None };
+        assert_eq!(frame_text(&frame("loop", "")), "in turn 3 of the loop at statement 7");
+        assert_eq!(frame_text(&frame("macro", "M1")), "in the macro M1 called at statement 7");
+    }
+}

@@ -1,0 +1,465 @@
+//! The handlers: each puts an event into the queue, or asks for a snapshot and has work done on it.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use serde_json::{Value, json};
+use tokio::sync::mpsc;
+use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
+use tower_lsp::ls_types::{self as lsp, ProgressToken, Uri};
+use tower_lsp::{Client, LanguageServer};
+
+use super::capabilities::{ClientFeatures, server_capabilities};
+use super::documents::{self, Event, Snapshot};
+use super::job::{self, Events};
+use super::outbox::Outbox;
+use super::progress::Cancellations;
+use super::{commands, diagnostics, lifetime};
+use crate::analysis::{Answer, Control, Interrupted, Language, Level, Refusal, TextEdit};
+use crate::convert::{outgoing, tokens};
+use crate::settings::{self, Values};
+
+/// The server gave up the work, and the client may ask again (an error code of the protocol).
+const SERVER_CANCELLED: ErrorCode = ErrorCode::ServerError(-32802);
+
+/// Encoded tokens of a document, with the id under which the client knows them.
+type SentTokens = (String, Arc<Vec<lsp::SemanticToken>>);
+
+/// The server's side of one conversation.
+pub(super) struct Backend {
+    client: Client,
+    language: Arc<dyn Language>,
+    events: Events,
+    outbox: Outbox,
+    features: OnceLock<ClientFeatures>,
+    cancellations: Cancellations,
+    offered: AtomicU64,
+    /// What was last sent, for differences.
+    sent_tokens: Mutex<BTreeMap<Uri, SentTokens>>,
+}
+
+impl Backend {
+    /// Starts the tasks of a conversation.
+    pub(super) fn new(client: Client, language: Arc<dyn Language>) -> Self {
+        let (events, waiting) = mpsc::unbounded_channel();
+        let (touched, touches) = mpsc::unbounded_channel();
+        let outbox = Outbox::start(client.clone());
+        if let Err(error) = documents::start(Arc::clone(&language), waiting, touched, outbox.clone()) {
+            lifetime::complain(&format!("cannot start a thread: {error}"));
+        }
+        tokio::spawn(diagnostics::watch(touches, events.clone()));
+        Self {
+            client,
+            language,
+            events,
+            outbox,
+            features: OnceLock::new(),
+            cancellations: Cancellations::default(),
+            offered: AtomicU64::new(0),
+            sent_tokens: Mutex::default(),
+        }
+    }
+
+    pub(super) fn client(&self) -> &Client {
+        &self.client
+    }
+
+    pub(super) fn language(&self) -> &Arc<dyn Language> {
+        &self.language
+    }
+
+    pub(super) fn events(&self) -> &Events {
+        &self.events
+    }
+
+    pub(super) fn cancellations(&self) -> &Cancellations {
+        &self.cancellations
+    }
+
+    /// What the client can do; the least before it has said so.
+    pub(super) fn features(&self) -> ClientFeatures {
+        self.features.get().cloned().unwrap_or_default()
+    }
+
+    /// A token for progress that the server begins, if the client shows such.
+    pub(super) fn offered_progress(&self) -> Option<ProgressToken> {
+        let shows = self.features.get().is_some_and(|features| features.progress);
+        shows.then(|| {
+            ProgressToken::String(format!("apt-lsp/{}", self.offered.fetch_add(1, Ordering::Relaxed)))
+        })
+    }
+
+    fn happened(&self, event: Event) {
+        // The owner of the documents ends only with the conversation.
+        let _ = self.events.send(event);
+    }
+
+    async fn ask<T: Send + 'static>(
+        &self,
+        name: &'static str,
+        uri: Uri,
+        work: impl FnOnce(&Snapshot, &Control) -> Answer<T> + Send + 'static,
+    ) -> Result<T> {
+        let snapshot = job::snapshot(&self.events, uri).await?;
+        job::on_snapshot(name, snapshot, work).await
+    }
+
+    async fn ask_at<T: Send + 'static>(
+        &self,
+        name: &'static str,
+        place: lsp::TextDocumentPositionParams,
+        work: impl FnOnce(&Snapshot, usize, &Control) -> Answer<T> + Send + 'static,
+    ) -> Result<T> {
+        let position = place.position;
+        self.ask(name, place.text_document.uri, move |snapshot, control| {
+            work(snapshot, snapshot.index.offset(position), control)
+        })
+        .await
+    }
+
+    fn remember_tokens(&self, uri: Uri, id: String, tokens: Arc<Vec<lsp::SemanticToken>>) {
+        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(uri, (id, tokens));
+    }
+
+    fn sent_tokens(&self, uri: &Uri) -> Option<SentTokens> {
+        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()
+    }
+
+    async fn all_tokens(&self, uri: Uri) -> Result<SentTokens> {
+        let (id, tokens) = self
+            .ask("semantic tokens", uri.clone(), |snapshot, _| {
+                let found = snapshot.document.tokens(None);
+                Ok((snapshot.revision.to_string(), Arc::new(tokens::encode(&snapshot.index, &found))))
+            })
+            .await?;
+        self.remember_tokens(uri, id.clone(), Arc::clone(&tokens));
+        Ok((id, tokens))
+    }
+
+    async fn own(&self, command: &str, mut params: Value) -> Result<Value> {
+        let token = params.as_object_mut().and_then(|fields| fields.remove("workDoneToken"));
+        let token = token.and_then(|token| serde_json::from_value(token).ok());
+        commands::execute(self, command, params, token).await
+    }
+
+    pub(super) async fn run_motion(&self, params: Value) -> Result<Value> {
+        self.own("apt.runMotion", params).await
+    }
+
+    pub(super) async fn expand(&self, params: Value) -> Result<Value> {
+        self.own("apt.expand", params).await
+    }
+
+    pub(super) async fn canonical_form(&self, params: Value) -> Result<Value> {
+        self.own("apt.canonicalForm", params).await
+    }
+
+    pub(super) async fn post(&self, params: Value) -> Result<Value> {
+        self.own("apt.post", params).await
+    }
+
+    pub(super) async fn syntax_tree(&self, params: Value) -> Result<Value> {
+        self.own("apt.syntaxTree", params).await
+    }
+
+    pub(super) async fn machines(&self, params: Value) -> Result<Value> {
+        self.own("apt.machines", params).await
+    }
+
+    pub(super) async fn cancel_progress(&self, params: lsp::WorkDoneProgressCancelParams) {
+        self.cancellations.cancel(&params.token);
+    }
+
+    /// Asks the client for its settings. Never called by a handler itself: the answer comes through
+    /// the same queue as the message that the handler handles.
+    fn ask_for_settings(&self) {
+        let (client, events, outbox) = (self.client.clone(), self.events.clone(), self.outbox.clone());
+        tokio::spawn(async move {
+            let item = lsp::ConfigurationItem { scope_uri: None, section: Some("apt".to_owned()) };
+            match client.configuration(vec![item]).await {
+                Ok(values) => {
+                    let values = values.first().map(settings::of_editor).unwrap_or_default();
+                    let _ = events.send(Event::Settings(values));
+                }
+                Err(error) => outbox.warn(format!("the client does not tell its settings: {error}")),
+            }
+        });
+    }
+
+    fn watch_project_files(&self) {
+        let (client, outbox) = (self.client.clone(), self.outbox.clone());
+        tokio::spawn(async move {
+            let watcher =
+                json!({ "watchers": [{ "globPattern": format!("**/{}", settings::PROJECT_FILE) }] });
+            let registration = lsp::Registration {
+                id: "apt-lsp/project-files".to_owned(),
+                method: "workspace/didChangeWatchedFiles".to_owned(),
+                register_options: Some(watcher),
+            };
+            if let Err(error) = client.register_capability(vec![registration]).await {
+                outbox.warn(format!("the client does not watch project files: {error}"));
+            }
+        });
+    }
+}
+
+fn location(snapshot: &Snapshot, range: &std::ops::Range<usize>) -> lsp::Location {
+    lsp::Location { uri: snapshot.uri.clone(), range: snapshot.index.range(range) }
+}
+
+impl LanguageServer for Backend {
+    async fn initialize(&self, params: lsp::InitializeParams) -> Result<lsp::InitializeResult> {
+        let features = ClientFeatures::of(&params.capabilities);
+        let capabilities = server_capabilities(&features);
+        self.happened(Event::Introduced {
+            encoding: features.encoding,
+            push: !features.pulls,
+            refresh: features.refresh,
+        });
+        let _ = self.features.set(features);
+        let options = params.initialization_options.unwrap_or_default();
+        self.happened(Event::Settings(settings::of_editor(&options)));
+        if let Some(parent) = params.process_id.and_then(|id| i32::try_from(id).ok()) {
+            lifetime::watch_parent(parent);
+        }
+        let server_info = lsp::ServerInfo {
+            name: env!("CARGO_PKG_NAME").to_owned(),
+            version: Some(env!("CARGO_PKG_VERSION").to_owned()),
+        };
+        Ok(lsp::InitializeResult { capabilities, server_info: Some(server_info), offset_encoding: None })
+    }
+
+    async fn initialized(&self, _: lsp::InitializedParams) {
+        let features = self.features();
+        if features.watches_files {
+            self.watch_project_files();
+        }
+    }
+
+    async fn shutdown(&self) -> Result<()> {
+        Ok(())
+    }
+
+    async fn did_open(&self, params: lsp::DidOpenTextDocumentParams) {
+        let document = params.text_document;
+        self.happened(Event::Opened { uri: document.uri, version: document.version, text: document.text });
+    }
+
+    async fn did_change(&self, params: lsp::DidChangeTextDocumentParams) {
+        let lsp::VersionedTextDocumentIdentifier { uri, version } = params.text_document;
+        self.happened(Event::Changed { uri, version, changes: params.content_changes });
+    }
+
+    async fn did_close(&self, params: lsp::DidCloseTextDocumentParams) {
+        let uri = params.text_document.uri;
+        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&uri);
+        self.happened(Event::Closed(uri));
+    }
+
+    async fn did_change_configuration(&self, params: lsp::DidChangeConfigurationParams) {
+        if params.settings.is_object() {
+            self.happened(Event::Settings(settings::of_editor(&params.settings)));
+        } else if self.features().configuration {
+            self.ask_for_settings();
+        } else {
+            self.happened(Event::Settings(Values::new()));
+        }
+    }
+
+    async fn did_change_watched_files(&self, _: lsp::DidChangeWatchedFilesParams) {
+        self.happened(Event::ProjectChanged);
+    }
+
+    async fn hover(&self, params: lsp::HoverParams) -> Result<Option<lsp::Hover>> {
+        self.ask_at("hover", params.text_document_position_params, |snapshot, offset, control| {
+            let found = snapshot.document.hover(offset, control)?;
+            Ok(found.map(|found| outgoing::hover(&snapshot.index, found)))
+        })
+        .await
+    }
+
+    async fn completion(&self, params: lsp::CompletionParams) -> Result<Option<lsp::CompletionResponse>> {
+        self.ask_at("completion", params.text_document_position, |snapshot, offset, _| {
+            let items = outgoing::completions(snapshot.document.completions(offset));
+            Ok(Some(lsp::CompletionResponse::Array(items)))
+        })
+        .await
+    }
+
+    async fn goto_definition(
+        &self,
+        params: lsp::GotoDefinitionParams,
+    ) -> Result<Option<lsp::GotoDefinitionResponse>> {
+        self.ask_at("definition", params.text_document_position_params, |snapshot, offset, _| {
+            let found = snapshot.document.definitions(offset);
+            let places: Vec<_> = found.iter().map(|range| location(snapshot, range)).collect();
+            Ok((!places.is_empty()).then_some(lsp::GotoDefinitionResponse::Array(places)))
+        })
+        .await
+    }
+
+    async fn references(&self, params: lsp::ReferenceParams) -> Result<Option<Vec<lsp::Location>>> {
+        let with_definition = params.context.include_declaration;
+        self.ask_at("references", params.text_document_position, move |snapshot, offset, _| {
+            let found = snapshot.document.occurrences(offset);
+            let wanted = found.iter().filter(|one| with_definition || !one.defines);
+            Ok(Some(wanted.map(|one| location(snapshot, &one.range)).collect()))
+        })
+        .await
+    }
+
+    async fn document_highlight(
+        &self,
+        params: lsp::DocumentHighlightParams,
+    ) -> Result<Option<Vec<lsp::DocumentHighlight>>> {
+        self.ask_at("highlights", params.text_document_position_params, |snapshot, offset, _| {
+            let found = snapshot.document.occurrences(offset);
+            Ok(Some(found.iter().map(|one| outgoing::highlight(&snapshot.index, one)).collect()))
+        })
+        .await
+    }
+
+    async fn prepare_rename(
+        &self,
+        params: lsp::TextDocumentPositionParams,
+    ) -> Result<Option<lsp::PrepareRenameResponse>> {
+        self.ask_at("rename", params, |snapshot, offset, _| {
+            let found = snapshot.document.renamable(offset);
+            Ok(found.map(|range| lsp::PrepareRenameResponse::Range(snapshot.index.range(&range))))
+        })
+        .await
+    }
+
+    async fn rename(&self, params: lsp::RenameParams) -> Result<Option<lsp::WorkspaceEdit>> {
+        let place = params.text_document_position;
+        let uri = place.text_document.uri.clone();
+        let snapshot = job::snapshot(&self.events, uri.clone()).await?;
+        let edits = job::on_snapshot("rename", snapshot, move |snapshot, _| {
+            let offset = snapshot.index.offset(place.position);
+            let edits = snapshot.document.rename(offset, &params.new_name)?;
+            let convert = |edit: TextEdit| outgoing::edit(&snapshot.index, edit);
+            Ok::<Vec<_>, Refusal>(edits.into_iter().map(convert).collect())
+        })
+        .await?;
+        let changes = std::iter::once((uri, edits)).collect();
+        Ok(Some(lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }))
+    }
+
+    async fn document_symbol(
+        &self,
+        params: lsp::DocumentSymbolParams,
+    ) -> Result<Option<lsp::DocumentSymbolResponse>> {
+        let nested = self.features().nested_symbols;
+        self.ask("document symbols", params.text_document.uri, move |snapshot, _| {
+            let (index, outline) = (&snapshot.index, snapshot.document.outline());
+            Ok(Some(if nested {
+                outline.into_iter().map(|entry| outgoing::symbol(index, entry)).collect::<Vec<_>>().into()
+            } else {
+                outgoing::flat_symbols(index, &snapshot.uri, outline).into()
+            }))
+        })
+        .await
+    }
+
+    async fn folding_range(&self, params: lsp::FoldingRangeParams) -> Result<Option<Vec<lsp::FoldingRange>>> {
+        self.ask("folding ranges", params.text_document.uri, |snapshot, _| {
+            let folds = snapshot.document.folds();
+            Ok(Some(folds.iter().filter_map(|fold| outgoing::fold(&snapshot.index, fold)).collect()))
+        })
+        .await
+    }
+
+    async fn code_lens(&self, params: lsp::CodeLensParams) -> Result<Option<Vec<lsp::CodeLens>>> {
+        self.ask("code lenses", params.text_document.uri, |snapshot, _| {
+            let lenses = snapshot.document.lenses().into_iter();
+            Ok(Some(lenses.map(|lens| outgoing::lens(&snapshot.index, &snapshot.uri, lens)).collect()))
+        })
+        .await
+    }
+
+    async fn semantic_tokens_full(
+        &self,
+        params: lsp::SemanticTokensParams,
+    ) -> Result<Option<lsp::SemanticTokensResult>> {
+        let (id, tokens) = self.all_tokens(params.text_document.uri).await?;
+        let data = Arc::unwrap_or_clone(tokens);
+        Ok(Some(lsp::SemanticTokens { result_id: Some(id), data }.into()))
+    }
+
+    async fn semantic_tokens_full_delta(
+        &self,
+        params: lsp::SemanticTokensDeltaParams,
+    ) -> Result<Option<lsp::SemanticTokensFullDeltaResult>> {
+        let uri = params.text_document.uri;
+        let before = self.sent_tokens(&uri).filter(|(id, _)| *id == params.previous_result_id);
+        let (id, tokens) = self.all_tokens(uri).await?;
+        Ok(Some(match before {
+            Some((_, old)) => {
+                let edits = tokens::difference(&old, &tokens);
+                lsp::SemanticTokensDelta { result_id: Some(id), edits }.into()
+            }
+            None => lsp::SemanticTokens { result_id: Some(id), data: Arc::unwrap_or_clone(tokens) }.into(),
+        }))
+    }
+
+    async fn semantic_tokens_range(
+        &self,
+        params: lsp::SemanticTokensRangeParams,
+    ) -> Result<Option<lsp::SemanticTokensRangeResult>> {
+        let range = params.range;
+        self.ask("semantic tokens", params.text_document.uri, move |snapshot, _| {
+            let found = snapshot.document.tokens(Some(snapshot.index.bytes(range)));
+            let data = tokens::encode(&snapshot.index, &found);
+            Ok(Some(lsp::SemanticTokens { result_id: None, data }.into()))
+        })
+        .await
+    }
+
+    async fn diagnostic(
+        &self,
+        params: lsp::DocumentDiagnosticParams,
+    ) -> Result<lsp::DocumentDiagnosticReportResult> {
+        let snapshot = job::snapshot(&self.events, params.text_document.uri).await?;
+        let id = snapshot.revision.to_string();
+        if params.previous_result_id.as_ref() == Some(&id) {
+            let unchanged = lsp::UnchangedDocumentDiagnosticReport { result_id: id };
+            return Ok(lsp::DocumentDiagnosticReport::Unchanged(
+                lsp::RelatedUnchangedDocumentDiagnosticReport {
+                    related_documents: None,
+                    unchanged_document_diagnostic_report: unchanged,
+                },
+            )
+            .into());
+        }
+        let level = if diagnostics::wants_motion(&snapshot) { Level::Motion } else { Level::Section1 };
+        let superseded = snapshot.superseded.clone();
+        let found = job::on_snapshot("diagnostics", snapshot, move |snapshot, control| {
+            diagnostics::findings(snapshot, level, control)
+        })
+        .await;
+        let items = found.map_err(|error| {
+            if superseded.is_cancelled() && error.code == ErrorCode::ContentModified {
+                let retrigger = json!({ "retriggerRequest": true });
+                return Error {
+                    code: SERVER_CANCELLED,
+                    message: Interrupted.to_string().into(),
+                    data: Some(retrigger),
+                };
+            }
+            error
+        })?;
+        let full = lsp::FullDocumentDiagnosticReport { result_id: Some(id), items };
+        Ok(lsp::DocumentDiagnosticReport::Full(lsp::RelatedFullDocumentDiagnosticReport {
+            related_documents: None,
+            full_document_diagnostic_report: full,
+        })
+        .into())
+    }
+
+    async fn execute_command(&self, params: lsp::ExecuteCommandParams) -> Result<Option<Value>> {
+        let argument = params.arguments.into_iter().next().unwrap_or_else(|| json!({}));
+        let token = params.work_done_progress_params.work_done_token;
+        commands::execute(self, &params.command, argument, token).await.map(Some)
+    }
+}

@@ -1,0 +1,99 @@
+//! Pushed findings: after a moment of quiet, or at once if there was quiet already.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep_until, timeout};
+use tower_lsp::ls_types::{self as lsp, Uri};
+
+use super::documents::{Event, Snapshot};
+use super::job::{self, Events};
+use crate::analysis::{Answer, Control, Level};
+use crate::convert::outgoing;
+
+/// Quiet after which a changed document is checked.
+const QUIET: Duration = Duration::from_millis(40);
+
+/// How long the findings of syntax and geometry wait for those of motion. In most programs motion is
+/// done by then, and findings appear once instead of flickering.
+const MOTION_GRACE: Duration = Duration::from_millis(50);
+
+/// A document that has changed.
+#[derive(Debug)]
+pub(super) struct Touched(pub Uri);
+
+/// Watches for quiet and starts checks. Ends with the owner of the documents.
+pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events: Events) {
+    let mut due: BTreeMap<Uri, Instant> = BTreeMap::new();
+    let mut last_touched: BTreeMap<Uri, Instant> = BTreeMap::new();
+    loop {
+        let next = due.values().min().copied();
+        let quiet_over = async {
+            match next {
+                Some(at) => sleep_until(at).await,
+                None => std::future::pending().await,
+            }
+        };
+        tokio::select! {
+            message = touched.recv() => {
+                let Some(Touched(uri)) = message else { return };
+                let now = Instant::now();
+                let was = last_touched.insert(uri.clone(), now);
+                let idle = was.is_none_or(|was| now - was >= QUIET);
+                due.insert(uri, if idle { now } else { now + QUIET });
+                last_touched.retain(|_, at| now - *at < QUIET);
+            }
+            () = quiet_over => {
+                let now = Instant::now();
+                let ready: Vec<Uri> = due.iter().filter(|(_, at)| **at <= now).map(|(uri, _)| uri.clone()).collect();
+                for uri in ready {
+                    due.remove(&uri);
+                    tokio::spawn(check(uri, events.clone()));
+                }
+            }
+        }
+    }
+}
+
+/// Checks a document, and gives the findings to the owner, who knows whether they still matter.
+async fn check(uri: Uri, events: Events) {
+    let Ok(snapshot) = job::snapshot(&events, uri.clone()).await else { return };
+    let revision = snapshot.revision;
+    let give = |diagnostics| {
+        let _ = events.send(Event::Found { uri: uri.clone(), revision, diagnostics });
+    };
+    let mut motion = None;
+    if wants_motion(&snapshot) {
+        let mut work = tokio::spawn(findings_of(snapshot.clone(), Level::Motion));
+        match timeout(MOTION_GRACE, &mut work).await {
+            Ok(Ok(Ok(diagnostics))) => return give(diagnostics),
+            Ok(_) => {} // Cancelled or broken: what Section 1 finds is still worth telling.
+            Err(_) => motion = Some(work),
+        }
+    }
+    if let Ok(diagnostics) = findings_of(snapshot, Level::Section1).await {
+        give(diagnostics);
+    }
+    if let Some(work) = motion
+        && let Ok(Ok(diagnostics)) = work.await
+    {
+        give(diagnostics);
+    }
+}
+
+async fn findings_of(snapshot: Snapshot, level: Level) -> tower_lsp::jsonrpc::Result<Vec<lsp::Diagnostic>> {
+    job::on_snapshot("diagnostics", snapshot, move |snapshot, control| findings(snapshot, level, control))
+        .await
+}
+
+/// True if the findings of motion are wanted.
+pub(super) fn wants_motion(snapshot: &Snapshot) -> bool {
+    snapshot.settings.motion.unwrap_or(true)
+}
+
+/// The findings of a snapshot.
+pub(super) fn findings(snapshot: &Snapshot, level: Level, control: &Control) -> Answer<Vec<lsp::Diagnostic>> {
+    let found = snapshot.document.diagnostics(level, control)?;
+    Ok(found.iter().map(|found| outgoing::diagnostic(&snapshot.index, &snapshot.uri, found)).collect())
+}

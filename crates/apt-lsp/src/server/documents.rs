@@ -1,0 +1,314 @@
+//! The owner of the documents: one thread, one queue, events in the order of their arrival.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ropey::Rope;
+use tokio::sync::{mpsc, oneshot};
+use tokio_util::sync::CancellationToken;
+use tower_lsp::ls_types::{self as lsp, TextDocumentContentChangeEvent, Uri};
+
+use super::diagnostics::Touched;
+use super::outbox::{Notice, Outbox};
+use crate::analysis::{Document, Language, TextEdit};
+use crate::convert::{Encoding, TextIndex, changes};
+use crate::settings::{Settings, Values};
+
+/// Something that happens to the documents, or a question about them.
+pub(super) enum Event {
+    /// The client has introduced itself.
+    Introduced {
+        /// How positions count.
+        encoding: Encoding,
+        /// True if findings are pushed.
+        push: bool,
+        /// True if the client can be told to pull again.
+        refresh: bool,
+    },
+    /// The settings of the editor are these.
+    Settings(Values),
+    /// Project files may have changed.
+    ProjectChanged,
+    /// A document was opened.
+    Opened {
+        /// Which.
+        uri: Uri,
+        /// Its first version.
+        version: i32,
+        /// Its text.
+        text: String,
+    },
+    /// A document was changed.
+    Changed {
+        /// Which.
+        uri: Uri,
+        /// The version after the changes.
+        version: i32,
+        /// The changes, each relative to the text that the one before it left.
+        changes: Vec<TextDocumentContentChangeEvent>,
+    },
+    /// A document was closed.
+    Closed(Uri),
+    /// Somebody wants to see a document as it is now; none if it is not open.
+    Snapshot(Uri, oneshot::Sender<Option<Snapshot>>),
+    /// Findings are ready; they are told if they are still about the present text.
+    Found {
+        /// The document.
+        uri: Uri,
+        /// The revision in which they were found.
+        revision: u64,
+        /// The findings.
+        diagnostics: Vec<lsp::Diagnostic>,
+    },
+}
+
+/// A document as it was at one moment.
+#[derive(Clone)]
+pub(super) struct Snapshot {
+    /// Which document.
+    pub uri: Uri,
+    /// A number that no other state of any document in this conversation has.
+    pub revision: u64,
+    /// Positions in its text.
+    pub index: TextIndex,
+    /// The analysis of its text.
+    pub document: Arc<dyn Document>,
+    /// The settings in force.
+    pub settings: Arc<Settings>,
+    /// Cancelled when the document changes.
+    pub superseded: CancellationToken,
+}
+
+/// Starts the owner; it ends when the last sender of events is gone.
+pub(super) fn start(
+    language: Arc<dyn Language>,
+    events: mpsc::UnboundedReceiver<Event>,
+    touched: mpsc::UnboundedSender<Touched>,
+    outbox: Outbox,
+) -> std::io::Result<()> {
+    let documents = Documents {
+        language,
+        open: BTreeMap::new(),
+        editor: Values::new(),
+        encoding: Encoding::default(),
+        push: false,
+        refresh: false,
+        revisions: 0,
+        touched,
+        outbox,
+    };
+    std::thread::Builder::new().name("documents".to_owned()).spawn(move || documents.run(events)).map(drop)
+}
+
+struct Documents {
+    language: Arc<dyn Language>,
+    open: BTreeMap<Uri, OpenDocument>,
+    editor: Values,
+    encoding: Encoding,
+    push: bool,
+    refresh: bool,
+    revisions: u64,
+    touched: mpsc::UnboundedSender<Touched>,
+    outbox: Outbox,
+}
+
+struct OpenDocument {
+    version: i32,
+    revision: u64,
+    index: TextIndex,
+    settings: Arc<Settings>,
+    /// The analysis of the text before `edits`; none before anybody asked and after a fault.
+    analysed: Option<Arc<dyn Document>>,
+    /// Edits that the analysis has not seen. A burst of them costs one analysis.
+    edits: Vec<TextEdit>,
+    superseded: CancellationToken,
+}
+
+impl Documents {
+    fn run(mut self, mut events: mpsc::UnboundedReceiver<Event>) {
+        while let Some(event) = events.blocking_recv() {
+            if catch_unwind(AssertUnwindSafe(|| self.apply(event))).is_err() {
+                self.outbox.tell(Notice::Log(
+                    lsp::MessageType::ERROR,
+                    "internal fault while a document was read; it is read afresh".to_owned(),
+                ));
+                for document in self.open.values_mut() {
+                    document.forget_analysis();
+                }
+            }
+        }
+    }
+
+    fn apply(&mut self, event: Event) {
+        match event {
+            Event::Introduced { encoding, push, refresh } => {
+                (self.encoding, self.push, self.refresh) = (encoding, push, refresh);
+            }
+            Event::Settings(settings) => {
+                self.editor = settings;
+                self.read_settings_again();
+            }
+            Event::ProjectChanged => self.read_settings_again(),
+            Event::Opened { uri, version, text } => self.open(uri, version, &text),
+            Event::Changed { uri, version, changes } => self.change(uri, version, changes),
+            Event::Closed(uri) => self.close(&uri),
+            Event::Snapshot(uri, reply) => {
+                let snapshot = self.snapshot(&uri);
+                let _ = reply.send(snapshot);
+            }
+            Event::Found { uri, revision, diagnostics } => self.tell(uri, revision, diagnostics),
+        }
+    }
+
+    fn next_revision(&mut self) -> u64 {
+        self.revisions += 1;
+        self.revisions
+    }
+
+    fn open(&mut self, uri: Uri, version: i32, text: &str) {
+        let document = OpenDocument {
+            version,
+            revision: self.next_revision(),
+            index: TextIndex { rope: Rope::from_str(text), encoding: self.encoding },
+            settings: Arc::new(self.settings_for(&uri)),
+            analysed: None,
+            edits: Vec::new(),
+            superseded: CancellationToken::new(),
+        };
+        if let Some(old) = self.open.insert(uri.clone(), document) {
+            old.superseded.cancel();
+        }
+        self.touch(uri);
+    }
+
+    fn change(&mut self, uri: Uri, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
+        let revision = self.next_revision();
+        let Some(document) = self.open.get_mut(&uri) else {
+            self.outbox.warn(format!("change of {}, which is not open; ignored", uri.as_str()));
+            return;
+        };
+        // Versions only have to increase; some editors count in larger steps, so a gap is no loss.
+        if version <= document.version {
+            self.outbox.warn(format!(
+                "change of {} to version {version} after version {}; ignored",
+                uri.as_str(),
+                document.version
+            ));
+            return;
+        }
+        document.version = version;
+        document.revision = revision;
+        document.superseded.cancel();
+        document.superseded = CancellationToken::new();
+        for change in changes {
+            let edit = changes::apply(&mut document.index, change);
+            document.edits.push(edit);
+        }
+        self.touch(uri);
+    }
+
+    fn close(&mut self, uri: &Uri) {
+        let Some(document) = self.open.remove(uri) else { return };
+        document.superseded.cancel();
+        if self.push {
+            let notice = Notice::Findings { uri: uri.clone(), diagnostics: Vec::new(), version: None };
+            self.outbox.tell(notice);
+        }
+    }
+
+    fn snapshot(&mut self, uri: &Uri) -> Option<Snapshot> {
+        let document = self.open.get_mut(uri)?;
+        let analysed = document.analysis(self.language.as_ref(), uri);
+        Some(Snapshot {
+            uri: uri.clone(),
+            revision: document.revision,
+            index: document.index.clone(),
+            document: analysed,
+            settings: Arc::clone(&document.settings),
+            superseded: document.superseded.clone(),
+        })
+    }
+
+    fn tell(&self, uri: Uri, revision: u64, diagnostics: Vec<lsp::Diagnostic>) {
+        if let Some(document) = self.open.get(&uri)
+            && document.revision == revision
+        {
+            self.outbox.tell(Notice::Findings { uri, diagnostics, version: Some(document.version) });
+        }
+    }
+
+    fn touch(&self, uri: Uri) {
+        if self.push {
+            let _ = self.touched.send(Touched(uri));
+        }
+    }
+
+    fn settings_for(&self, uri: &Uri) -> Settings {
+        let (settings, problems) = Settings::resolve(
+            self.language.as_ref(),
+            file_path(uri).as_deref(),
+            &self.editor,
+            &Values::new(),
+        );
+        for problem in problems {
+            self.outbox.warn(problem.to_string());
+        }
+        settings
+    }
+
+    fn read_settings_again(&mut self) {
+        let uris: Vec<Uri> = self.open.keys().cloned().collect();
+        let mut changed = false;
+        for uri in uris {
+            let settings = self.settings_for(&uri);
+            let revision = self.next_revision();
+            let Some(document) = self.open.get_mut(&uri) else { continue };
+            if *document.settings == settings {
+                continue;
+            }
+            changed = true;
+            document.settings = Arc::new(settings);
+            document.revision = revision;
+            document.forget_analysis();
+            document.superseded.cancel();
+            document.superseded = CancellationToken::new();
+            self.touch(uri);
+        }
+        if changed && self.refresh && !self.push {
+            self.outbox.tell(Notice::Refresh);
+        }
+    }
+}
+
+impl OpenDocument {
+    fn analysis(&mut self, language: &dyn Language, uri: &Uri) -> Arc<dyn Document> {
+        let edits = std::mem::take(&mut self.edits);
+        // Taken out, so that a fault below leaves nothing half done behind.
+        let analysed = match self.analysed.take() {
+            Some(analysed) if edits.is_empty() => analysed,
+            Some(analysed) => analysed.edit(&edits),
+            None => {
+                let path = file_path(uri);
+                let name = path.as_ref().and_then(|path| path.file_name()).and_then(|name| name.to_str());
+                language.open(&self.index.rope.to_string(), name, &self.settings.program)
+            }
+        };
+        self.analysed = Some(Arc::clone(&analysed));
+        analysed
+    }
+
+    fn forget_analysis(&mut self) {
+        self.analysed = None;
+        self.edits.clear();
+    }
+}
+
+/// The path of a document that is a file.
+pub(super) fn file_path(uri: &Uri) -> Option<PathBuf> {
+    if uri.scheme().as_str() != "file" {
+        return None;
+    }
+    uri.to_file_path().map(std::borrow::Cow::into_owned)
+}

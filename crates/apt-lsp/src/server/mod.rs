@@ -1,0 +1,90 @@
+//! The language server.
+//!
+//! One thread owns the documents and applies events in the order in which they arrive; handlers ask it
+//! for immutable snapshots through the same queue, so each sees every edit that was sent before it.
+//! Work happens on the blocking pool, with a token that ends it when nobody wants the answer any more.
+
+mod backend;
+mod capabilities;
+mod commands;
+mod diagnostics;
+mod documents;
+mod framing;
+mod job;
+mod lifetime;
+mod outbox;
+mod progress;
+#[cfg(test)]
+mod tests;
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use tokio::io::{AsyncRead, AsyncWrite};
+use tower_lsp::{LspService, Server};
+
+use self::backend::Backend;
+use crate::analysis::Language;
+
+/// Requests answered at the same time. Order does not depend on it; a small number would only delay
+/// cancellation, which waits for a free place.
+const CONCURRENT_REQUESTS: usize = 256;
+
+/// Bytes between the framing and the service before the reader waits.
+const PIPE_SIZE: usize = 1 << 16;
+
+/// How the conversation ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// `shutdown`, then `exit` or the end of input.
+    Orderly,
+    /// `exit` or the end of input without `shutdown`.
+    Abrupt,
+}
+
+/// Runs the server on standard input and output, and ends the process.
+pub(crate) fn run(language: Arc<dyn Language>) -> ExitCode {
+    let runtime = match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
+        Ok(runtime) => runtime,
+        Err(error) => {
+            lifetime::complain(&format!("cannot start: {error}"));
+            return ExitCode::from(2);
+        }
+    };
+    lifetime::report_panics();
+    let conversation = serve(tokio::io::stdin(), tokio::io::stdout(), language);
+    let ending = runtime.block_on(async { tokio::spawn(conversation).await });
+    // Not a return: the thread that reads standard input would keep the process.
+    std::process::exit(match ending {
+        Ok(Ending::Orderly) => 0,
+        Ok(Ending::Abrupt) => 1,
+        Err(_) => lifetime::EXIT_AFTER_PANIC,
+    });
+}
+
+/// Holds one conversation, until `exit` or the end of input.
+pub(crate) async fn serve(
+    input: impl AsyncRead + Unpin + Send + 'static,
+    output: impl AsyncWrite + Unpin + Send + 'static,
+    language: Arc<dyn Language>,
+) -> Ending {
+    let (service, socket) = LspService::build(|client| Backend::new(client, language))
+        .custom_method("apt/runMotion", Backend::run_motion)
+        .custom_method("apt/expand", Backend::expand)
+        .custom_method("apt/canonicalForm", Backend::canonical_form)
+        .custom_method("apt/post", Backend::post)
+        .custom_method("apt/syntaxTree", Backend::syntax_tree)
+        .custom_method("apt/machines", Backend::machines)
+        .custom_method("window/workDoneProgress/cancel", Backend::cancel_progress)
+        .finish();
+    let (frames_in, service_in) = tokio::io::duplex(PIPE_SIZE);
+    let (service_out, frames_out) = tokio::io::duplex(PIPE_SIZE);
+    let mut framing = tokio::spawn(framing::run(input, frames_in, frames_out, output));
+    let server = Server::new(service_in, service_out, socket).concurrency_level(CONCURRENT_REQUESTS);
+    let ending = tokio::select! {
+        () = server.serve(service) => framing.await,
+        // The end of input, and answers that take too long; dropping the service ends their work.
+        ending = &mut framing => ending,
+    };
+    ending.unwrap_or(Ending::Abrupt)
+}

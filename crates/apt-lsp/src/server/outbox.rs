@@ -1,0 +1,62 @@
+//! What the server tells the client of its own accord, in order, by one task.
+//!
+//! Those who tell something only put it here; nobody who handles a message ever waits for the client.
+
+use tokio::sync::mpsc;
+use tower_lsp::Client;
+use tower_lsp::ls_types::{Diagnostic, MessageType, Uri};
+
+/// Something to tell.
+#[derive(Debug)]
+pub(super) enum Notice {
+    /// The findings in one version of a document.
+    Findings {
+        /// The document.
+        uri: Uri,
+        /// The findings.
+        diagnostics: Vec<Diagnostic>,
+        /// The version in which they were found; none for a closed document.
+        version: Option<i32>,
+    },
+    /// A line for the log of the client.
+    Log(MessageType, String),
+    /// The findings of clients that pull are out of date.
+    Refresh,
+}
+
+/// The way into the outbox.
+#[derive(Debug, Clone)]
+pub(super) struct Outbox(mpsc::UnboundedSender<Notice>);
+
+impl Outbox {
+    /// Starts the task that empties the outbox.
+    pub(super) fn start(client: Client) -> Self {
+        let (sender, mut waiting) = mpsc::unbounded_channel();
+        tokio::spawn(async move {
+            while let Some(notice) = waiting.recv().await {
+                match notice {
+                    Notice::Findings { uri, diagnostics, version } => {
+                        client.publish_diagnostics(uri, diagnostics, version).await;
+                    }
+                    Notice::Log(level, text) => client.log_message(level, text).await,
+                    Notice::Refresh => {
+                        let client = client.clone();
+                        // A request: its answer must not hold up the notices behind it.
+                        tokio::spawn(async move { client.workspace_diagnostic_refresh().await });
+                    }
+                }
+            }
+        });
+        Self(sender)
+    }
+
+    /// Puts something in. After the end of the conversation it goes nowhere.
+    pub(super) fn tell(&self, notice: Notice) {
+        let _ = self.0.send(notice);
+    }
+
+    /// A warning for the log.
+    pub(super) fn warn(&self, text: String) {
+        self.tell(Notice::Log(MessageType::WARNING, text));
+    }
+}

@@ -1,0 +1,171 @@
+//! Work-done progress: told by a task of its own, so that nobody who works waits for the client.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::watch;
+use tokio::time::{sleep, timeout};
+use tokio_util::sync::CancellationToken;
+use tower_lsp::Client;
+use tower_lsp::ls_types::{
+    ProgressParams, ProgressParamsValue, ProgressToken, WorkDoneProgress, WorkDoneProgressBegin,
+    WorkDoneProgressEnd, WorkDoneProgressReport, notification,
+};
+
+use crate::analysis::Progress;
+
+/// Work that ends sooner is not announced by the server.
+const WORTH_SHOWING: Duration = Duration::from_millis(250);
+
+/// Time between two reports.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// A client that does not agree within this time is not shown progress.
+const AGREEMENT: Duration = Duration::from_secs(5);
+
+/// The works whose progress is shown, by the token of the client, so that its user can end them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Cancellations(Arc<Mutex<BTreeMap<String, CancellationToken>>>);
+
+impl Cancellations {
+    /// Ends the work with this token.
+    pub(super) fn cancel(&self, token: &ProgressToken) {
+        let works = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(work) = works.get(&key(token)) {
+            work.cancel();
+        }
+    }
+
+    fn insert(&self, token: &ProgressToken, work: CancellationToken) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key(token), work);
+    }
+
+    fn remove(&self, token: &ProgressToken) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key(token));
+    }
+}
+
+/// A number and a string that look the same are different tokens.
+fn key(token: &ProgressToken) -> String {
+    match token {
+        ProgressToken::Number(number) => format!("number {number}"),
+        ProgressToken::String(text) => format!("string {text}"),
+    }
+}
+
+/// The end at which work tells its progress. Dropping it ends the display.
+#[derive(Debug)]
+pub(super) struct Reporter(watch::Sender<Option<Progress>>);
+
+impl Reporter {
+    /// Tells how far the work is; cheap, and never waits.
+    pub(super) fn report(&self, progress: Progress) {
+        self.0.send_replace(Some(progress));
+    }
+}
+
+/// Who shows the progress.
+#[derive(Debug)]
+pub(super) enum Display {
+    /// The client gave a token with the request and waits for reports.
+    Requested(ProgressToken),
+    /// The server asks for a display under this token if the work takes long.
+    Offered(ProgressToken),
+}
+
+/// Begins to tell the progress of a work that `work` ends.
+pub(super) fn begin(
+    client: Client,
+    cancellations: &Cancellations,
+    display: Display,
+    title: &'static str,
+    work: CancellationToken,
+) -> Reporter {
+    let (sender, receiver) = watch::channel(None);
+    let cancellations = cancellations.clone();
+    let (Display::Requested(token) | Display::Offered(token)) = &display;
+    cancellations.insert(token, work);
+    let token = token.clone();
+    tokio::spawn(async move {
+        show(client, display, title, receiver).await;
+        cancellations.remove(&token);
+    });
+    Reporter(sender)
+}
+
+async fn show(
+    client: Client,
+    display: Display,
+    title: &str,
+    mut progress: watch::Receiver<Option<Progress>>,
+) {
+    let token = match display {
+        Display::Requested(token) => token,
+        Display::Offered(token) => {
+            sleep(WORTH_SHOWING).await;
+            if is_over(&progress) {
+                return;
+            }
+            let agreed = timeout(AGREEMENT, client.create_work_done_progress(token.clone())).await;
+            if !matches!(agreed, Ok(Ok(()))) || is_over(&progress) {
+                return;
+            }
+            token
+        }
+    };
+    let begin =
+        WorkDoneProgressBegin { title: title.to_owned(), cancellable: Some(true), ..Default::default() };
+    tell(&client, &token, WorkDoneProgress::Begin(begin)).await;
+    while progress.changed().await.is_ok() {
+        let report = progress.borrow_and_update().as_ref().map(|now| WorkDoneProgressReport {
+            cancellable: Some(true),
+            message: Some(now.message.clone()),
+            percentage: percentage(now),
+        });
+        if let Some(report) = report {
+            tell(&client, &token, WorkDoneProgress::Report(report)).await;
+        }
+        sleep(INTERVAL).await;
+    }
+    tell(&client, &token, WorkDoneProgress::End(WorkDoneProgressEnd::default())).await;
+}
+
+fn is_over(progress: &watch::Receiver<Option<Progress>>) -> bool {
+    progress.has_changed().is_err()
+}
+
+fn percentage(progress: &Progress) -> Option<u32> {
+    let total = progress.total.filter(|total| *total > 0)?;
+    u32::try_from(progress.done.min(total).saturating_mul(100) / total).ok()
+}
+
+async fn tell(client: &Client, token: &ProgressToken, value: WorkDoneProgress) {
+    let params = ProgressParams { token: token.clone(), value: ProgressParamsValue::WorkDone(value) };
+    client.send_notification::<notification::Progress>(params).await;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentages_stay_within_bounds() {
+        let of = |done, total| percentage(&Progress { done, total, message: String::new() });
+        assert_eq!(of(0, Some(3)), Some(0));
+        assert_eq!(of(2, Some(3)), Some(66));
+        assert_eq!(of(9, Some(3)), Some(100));
+        assert_eq!(of(1, Some(0)), None);
+        assert_eq!(of(1, None), None);
+    }
+
+    #[test]
+    fn tokens_that_look_alike_are_told_apart() {
+        let cancellations = Cancellations::default();
+        let (number, text) = (CancellationToken::new(), CancellationToken::new());
+        cancellations.insert(&ProgressToken::Number(1), number.clone());
+        cancellations.insert(&ProgressToken::String("1".to_owned()), text.clone());
+        cancellations.cancel(&ProgressToken::String("1".to_owned()));
+        assert_eq!((number.is_cancelled(), text.is_cancelled()), (false, true));
+    }
+}
