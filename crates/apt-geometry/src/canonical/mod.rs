@@ -3,6 +3,18 @@
 //! Sign conventions are those of the public APT III processor: a plane is `n·x = d` with unit `n`, a line is a plane
 //! that contains the z direction, a circle is an infinite cylinder about z.
 
+mod cylinder;
+pub mod function;
+mod kind;
+pub mod matrix;
+mod plane;
+mod quadric;
+mod transform;
+mod values;
+
+pub use transform::TransformError;
+pub use values::CanonicalError;
+
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -76,9 +88,9 @@ pub struct Interval {
     pub b: f64,
     /// Chord length `L`.
     pub length: f64,
-    /// Greatest height above the chord, divided by `L` as APT III stores it.
+    /// Greatest height above the chord, divided by `L` as APT III stores it; never negative.
     pub maximum: f64,
-    /// Least height above the chord, divided by `L` as APT III stores it.
+    /// Least height above the chord, divided by `L` as APT III stores it; never positive.
     pub minimum: f64,
 }
 
@@ -87,7 +99,7 @@ pub struct Interval {
 pub struct TabulatedCylinder {
     /// Rows are the unit u, v and w axes in part-program coordinates.
     pub axes: [Vec3; 3],
-    /// The second number of the canonical form (APT III's `k`).
+    /// APT III's second word of the canonical form, which is always 0 there and which listings leave out.
     pub kind: f64,
     /// Intervals in order; the first and the last are the straight extensions.
     pub intervals: Vec<Interval>,

@@ -3,11 +3,31 @@
 //! A definition is matched by the kinds of its parameters, as APT III does (language reference 4.0): the list of
 //! formats of the type is searched for the same length and kinds, then the directional words are checked.
 
+mod canon;
+mod choice;
+mod circle;
+mod conic;
+mod format;
+mod given;
+mod line;
+mod matrix;
 mod modifier;
+mod pattern;
+mod plane;
+mod plane_conic_points;
+mod point;
+mod round;
+mod ruled;
+mod solve;
+mod tabulated;
+mod tabulated_curve;
+mod tabulated_tangent;
+mod vector;
 
+pub use format::{ArgumentKind, Format, Parameter, first_mismatch, formats, type_of_next};
 pub use modifier::Modifier;
 
-use crate::canonical::Geometry;
+use crate::canonical::{CanonicalError, Geometry, GeometryKind};
 
 /// One parameter of a definition, already evaluated.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,4 +124,99 @@ pub enum Impossible {
     NotReal,
     VerticalZSurface,
     AngleOutOfRange { degrees: f64 },
+    Undecided { word: Modifier },
+}
+
+impl Argument {
+    /// The kind by which formats are matched.
+    pub fn kind(&self) -> ArgumentKind {
+        match self {
+            Argument::Scalar(_) => ArgumentKind::Scalar,
+            Argument::Modifier(modifier) => ArgumentKind::Modifier(*modifier),
+            Argument::Geometry(geometry) => ArgumentKind::Geometry(geometry.kind()),
+            Argument::Empty => ArgumentKind::Empty,
+        }
+    }
+}
+
+impl DefinitionContext {
+    /// The context of a program without ZSURF: z is 0.
+    pub fn standard() -> DefinitionContext {
+        DefinitionContext { z_surface: crate::canonical::Plane::horizontal() }
+    }
+}
+
+impl DefinitionError {
+    /// The APT III diagnostic number, if the case has one.
+    pub fn apt3(&self) -> Option<u16> {
+        match self {
+            DefinitionError::UnknownFormat { kind: GeometryKind::Pattern } => Some(800),
+            DefinitionError::UnknownFormat { kind: GeometryKind::RuledSurface } => Some(1002),
+            DefinitionError::UnknownFormat { .. } => Some(1000),
+            DefinitionError::WrongModifier { .. } => Some(1003),
+            DefinitionError::Impossible { .. } => Some(1005),
+            DefinitionError::CanonicalCount { .. } => Some(84),
+            DefinitionError::CanonicalKind { .. } => Some(80),
+            DefinitionError::NotFinite { .. } => None,
+            DefinitionError::Special { number, .. } => Some(*number),
+        }
+    }
+}
+
+impl From<Impossible> for DefinitionError {
+    fn from(reason: Impossible) -> Self {
+        DefinitionError::Impossible { reason }
+    }
+}
+
+impl From<CanonicalError> for DefinitionError {
+    fn from(error: CanonicalError) -> Self {
+        match error {
+            CanonicalError::Count { expected, found, .. } => {
+                DefinitionError::CanonicalCount { expected, found }
+            }
+            CanonicalError::NoRow { kind } => DefinitionError::UnknownFormat { kind },
+            // The values of a CANON list follow the word CANON.
+            CanonicalError::Value { position, .. } => {
+                DefinitionError::Special { number: 83, position: Some(position + 1) }
+            }
+        }
+    }
+}
+
+/// The geometry that `TYPE/arguments` defines.
+///
+/// `kind` is the type word; arguments are evaluated, angles in degrees, geometry in the reference system in force.
+/// The result is in that system too.
+///
+/// # Errors
+/// No format of the type takes these arguments, a directional word is not one of the format's, the geometry does not
+/// exist, or a number is NaN or infinite. See [`DefinitionError`].
+pub fn define(
+    kind: GeometryKind,
+    arguments: &[Argument],
+    context: &DefinitionContext,
+) -> Result<Geometry, DefinitionError> {
+    if let Some(position) = arguments.iter().position(|argument| !is_finite(argument)) {
+        return Err(DefinitionError::NotFinite { position });
+    }
+    if arguments.contains(&Argument::Modifier(Modifier::Canon)) {
+        return canon::define(kind, arguments);
+    }
+    let format = format::find(kind, arguments)?;
+    let geometry = (format.build)(&given::Given { kind, arguments, context })?;
+    // Numbers near the limits of f64 overflow inside constructions: nothing of the kind may leave here.
+    if geometry.canonical_values().iter().all(|value| value.is_finite()) {
+        Ok(geometry)
+    } else {
+        Err(Impossible::Singular.into())
+    }
+}
+
+fn is_finite(argument: &Argument) -> bool {
+    match argument {
+        Argument::Scalar(value) => value.is_finite(),
+        Argument::Geometry(geometry) => geometry.canonical_values().iter().all(|value| value.is_finite()),
+        Argument::Modifier(_) | Argument::Empty => true,
+    }
 }

@@ -10,7 +10,13 @@ macro_rules! modifiers {
         impl Modifier {
             /// The modifier with this spelling, if definitions know it.
             pub fn from_word(word: &str) -> Option<Self> {
-                match word { $($word => Some(Self::$variant),)* "DSTAN" => Some(Self::TangentTo), _ => None }
+                match word {
+                    $($word => Some(Self::$variant),)*
+                    "DSTAN" => Some(Self::TangentTo),
+                    "CIRCUL" => Some(Self::Arc),
+                    "GRID" => Some(Self::Parallel),
+                    _ => None,
+                }
             }
 
             /// The spelling in the language.
