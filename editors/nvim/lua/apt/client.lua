@@ -114,7 +114,11 @@ end
 function M.restart()
   local running = M.clients()
   for _, client in ipairs(running) do
-    vim.lsp.stop_client(client.id)
+    if vim.fn.has('nvim-0.11') == 1 then
+      client:stop()
+    else
+      client.stop()
+    end
   end
   vim.wait(config.options.start_timeout, function() return #M.clients() == 0 end, 20)
   by_root = {}

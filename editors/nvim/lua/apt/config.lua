@@ -19,7 +19,9 @@ local defaults = {
 M.options = vim.deepcopy(defaults)
 
 function M.set(options)
-  vim.validate({ options = { options, 'table', true } })
+  if options ~= nil and type(options) ~= 'table' then
+    error('apt: setup() takes a table', 2)
+  end
   M.options = vim.tbl_deep_extend('force', vim.deepcopy(defaults), options or {})
 end
 
