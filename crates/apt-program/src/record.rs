@@ -95,6 +95,15 @@ pub enum RecordKind {
         /// How many copies.
         count: u32,
     },
+    /// A record that Section 2 only passes through: CUTTER/OPTION, DMILL, BEVELS.
+    Control {
+        /// The word.
+        word: SmolStr,
+        /// Class and subclass.
+        code: [u16; 2],
+        /// Its parameters.
+        arguments: Vec<PostArgument>,
+    },
     /// TRANTO/label.
     Transfer(SmolStr),
     /// FINI.

@@ -1,0 +1,260 @@
+//! Execution of a block: statements in order, jumps inside it, and the bounds that make it end.
+
+use std::sync::Arc;
+
+use apt_syntax::{
+    ParsedStatement, TextRange,
+    statement::{Body, Name, Reference},
+};
+use smol_str::SmolStr;
+
+use super::{Bindings, Block};
+use crate::{
+    evaluator::{Evaluator, Flow, Here, Region},
+    finding::{FindingKind, RelatedKind},
+    record::{Frame, FrameKind},
+    symbols::{Value, similar_names},
+};
+
+/// Records of an endless loop that are kept: enough to see what it did.
+const RECORDS_KEPT_OF_ENDLESS_LOOP: usize = 10_000;
+
+/// How often cancellation is asked for, in statements.
+const CANCEL_INTERVAL: u64 = 256;
+
+/// A DO loop in execution (APT4).
+#[derive(Debug, Clone)]
+pub(crate) struct DoLoop {
+    /// The label of its last statement.
+    pub(crate) label: SmolStr,
+    /// The index variable.
+    pub(crate) index: Reference,
+    /// The last value.
+    pub(crate) last: f64,
+    /// The step, not zero.
+    pub(crate) step: f64,
+    /// Index of the first statement of the body.
+    pub(crate) body: usize,
+}
+
+/// What a block is executed as.
+pub(crate) struct Activation<'b> {
+    /// The statements.
+    pub(crate) block: &'b Block,
+    /// Macro variables.
+    pub(crate) bindings: Bindings,
+    /// Loop or macro.
+    pub(crate) region: Region,
+    /// The frame of its first turn.
+    pub(crate) frame: Frame,
+}
+
+impl Evaluator<'_> {
+    /// Executes a block. Where control goes afterwards is `Next`, or `Abort` when everything is to stop.
+    pub(crate) fn run_block(&mut self, activation: Activation<'_>) -> Flow {
+        let outer = self.here.clone();
+        let depth = outer.depth + u32::from(activation.region == Region::Macro);
+        self.here = Here {
+            isn: activation.frame.isn,
+            frame: Some(Arc::new(activation.frame.clone())),
+            label: None,
+            region: activation.region,
+            depth,
+        };
+        let flow = self.run_statements(&activation);
+        self.here = outer;
+        match flow {
+            Flow::Abort => Flow::Abort,
+            _ => Flow::Next,
+        }
+    }
+
+    /// The statements of a block, jump by jump.
+    fn run_statements(&mut self, activation: &Activation<'_>) -> Flow {
+        let block = activation.block;
+        let errors_before = self.errors;
+        let mut parsed: Vec<Option<Arc<ParsedStatement>>> = vec![None; block.statements.len()];
+        let mut do_loops: Vec<DoLoop> = Vec::new();
+        let mut jumps_after_error = 0_u32;
+        let mut turn_start = self.output.definitions.len();
+        let mut index = 0;
+        while let Some(original) = block.statements.get(index) {
+            self.here.isn = block.isn(index);
+            if let Some(flow) = self.spend_budget(activation, turn_start) {
+                return flow;
+            }
+            let statement = parsed[index].get_or_insert_with(|| {
+                let substituted = activation.bindings.apply(original, &self.dialect);
+                self.state.without_synonyms(&substituted, &self.dialect)
+            });
+            let statement = Arc::clone(statement);
+            let flow = self.block_statement(&statement, index, &mut do_loops);
+            let target = match flow {
+                Flow::Next => self.continue_do_loops(&statement, &mut do_loops),
+                Flow::Jump(label) => self.block_label(activation, &label),
+                other => return other,
+            };
+            let next = target.unwrap_or(index + 1);
+            if next <= index {
+                if self.errors > errors_before {
+                    jumps_after_error += 1;
+                    if jumps_after_error > self.options.jumps_after_error {
+                        return Flow::Leave;
+                    }
+                }
+                turn_start = self.output.definitions.len();
+                self.next_turn();
+            }
+            index = next;
+        }
+        Flow::Next
+    }
+
+    /// One statement of a block; DO opens a loop.
+    fn block_statement(
+        &mut self,
+        statement: &ParsedStatement,
+        index: usize,
+        do_loops: &mut Vec<DoLoop>,
+    ) -> Flow {
+        self.here.label = statement.statement.label.as_ref().map(|label| super::normalised_label(&label.text));
+        if let Some(part) = statement.statement.parts.first()
+            && let Body::Do { label, index: variable, bounds, .. } = &part.body
+        {
+            if let Some(opened) = self.open_do_loop(label, variable, bounds, part.range, index + 1) {
+                do_loops.push(opened);
+            }
+            return Flow::Next;
+        }
+        // The words that close the block are its last statement.
+        if matches!(super::single_word(statement), Some("LOOPND" | "TERMAC"))
+            && self.here.region != Region::Top
+            && (self.here.region == Region::Macro) == (super::single_word(statement) == Some("TERMAC"))
+        {
+            return Flow::Next;
+        }
+        self.statement(statement)
+    }
+
+    /// Counts the statement; gives up when the budget is exhausted or the work is cancelled.
+    fn spend_budget(&mut self, activation: &Activation<'_>, turn_start: usize) -> Option<Flow> {
+        if self.budget.left == 0 {
+            self.report_endless(activation, turn_start);
+            return Some(Flow::Abort);
+        }
+        self.budget.left -= 1;
+        if self.budget.left.is_multiple_of(CANCEL_INTERVAL) && self.is_cancelled() {
+            return Some(Flow::Abort);
+        }
+        None
+    }
+
+    /// Reports where the budget went: the loop or macro, and what changed in its last turn.
+    fn report_endless(&mut self, activation: &Activation<'_>, turn_start: usize) {
+        let changing = self.changing_names(turn_start);
+        let finding = FindingKind::Endless { statements: self.budget.granted, changing };
+        let kind = if activation.region == Region::Macro { RelatedKind::Macro } else { RelatedKind::Loop };
+        let mut origin = self.origin(activation.frame.range);
+        origin.isn = activation.frame.isn;
+        origin.frame = activation.frame.parent.clone();
+        let range = activation.block.statements.first().map_or(activation.frame.range, |_| TextRange::default());
+        self.report_related(finding, range, vec![(kind, origin)]);
+        self.state.exhausted = self.state.exhausted.saturating_add(1);
+        self.output.records.truncate(self.output.records.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
+        self.output.definitions.truncate(self.output.definitions.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
+        if self.pending.as_ref().is_some_and(|pending| pending.record >= self.output.records.len()) {
+            self.pending = None;
+        }
+    }
+
+    /// Names whose values differ from the value they had before the last turn.
+    fn changing_names(&self, turn_start: usize) -> Vec<SmolStr> {
+        let (before, turn) = self.output.definitions.split_at(turn_start.min(self.output.definitions.len()));
+        let mut names: Vec<SmolStr> = turn
+            .iter()
+            .filter(|event| matches!(event.value, Value::Scalar(_)))
+            .filter(|event| {
+                let earlier = before.iter().rev().find(|other| other.name == event.name);
+                earlier.is_none_or(|earlier| earlier.value != event.value)
+            })
+            .map(|event| event.name.clone())
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// A backward jump: the frame gets the next turn number.
+    fn next_turn(&mut self) {
+        if let Some(frame) = &self.here.frame {
+            let mut next = (**frame).clone();
+            next.turn = next.turn.saturating_add(1);
+            self.here.frame = Some(Arc::new(next));
+        }
+    }
+
+    /// The statement that a jump leads to, or a finding that the label is not in this block.
+    fn block_label(&mut self, activation: &Activation<'_>, label: &Name) -> Option<usize> {
+        let found = activation.block.label(&label.text);
+        if found.is_none() {
+            let similar = similar_names(&label.text, activation.block.labels());
+            self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
+        }
+        found
+    }
+
+    /// DO: sets the index to the first value.
+    pub(crate) fn open_do_loop(
+        &mut self,
+        label: &Name,
+        variable: &Reference,
+        bounds: &[apt_syntax::statement::Expression],
+        range: TextRange,
+        body: usize,
+    ) -> Option<DoLoop> {
+        let values: Vec<Option<f64>> = bounds.iter().map(|bound| self.scalar(bound)).collect();
+        let (first, last, step) = match *values.as_slice() {
+            [first, last] => (first, last, Some(1.0)),
+            [first, last, step] => (first, last, step),
+            _ => (None, None, None),
+        };
+        self.assign_scalar(variable, first);
+        let (last, step) = (last?, step?);
+        if step == 0.0 {
+            self.report(FindingKind::ZeroStep, range);
+            return None;
+        }
+        first?;
+        let label = super::normalised_label(&label.text);
+        Some(DoLoop { label, index: variable.clone(), last, step, body })
+    }
+
+    /// After the last statement of a DO loop: the next value, or out of the loop.
+    pub(crate) fn continue_do_loops(
+        &mut self,
+        statement: &ParsedStatement,
+        do_loops: &mut Vec<DoLoop>,
+    ) -> Option<usize> {
+        let label = super::normalised_label(&statement.statement.label.as_ref()?.text);
+        while let Some(innermost) = do_loops.last() {
+            if innermost.label != label {
+                return None;
+            }
+            let innermost = innermost.clone();
+            let crate::expression::Resolved::Scalar(value) = self.resolve(&innermost.index)? else { return None };
+            let next = value + innermost.step;
+            let past = if innermost.step > 0.0 { next > innermost.last } else { next < innermost.last };
+            if !past {
+                self.assign_scalar(&innermost.index, Some(next));
+                return Some(innermost.body);
+            }
+            do_loops.pop();
+        }
+        None
+    }
+
+    /// A frame around the statement being executed.
+    pub(crate) fn frame(&self, kind: FrameKind, name: SmolStr, range: TextRange) -> Frame {
+        Frame { kind, name, isn: self.here.isn, range, turn: 1, parent: self.here.frame.clone() }
+    }
+}

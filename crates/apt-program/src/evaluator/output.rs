@@ -1,0 +1,52 @@
+//! What a stretch of the program leaves behind.
+
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
+
+use crate::{
+    finding::Finding,
+    record::{Origin, Record},
+    symbols::DefinitionEvent,
+};
+
+/// Findings of one place and kind that are kept: the first of a loop tells what the others would.
+const MOST_ALIKE: usize = 1;
+
+/// Records, findings and definitions, in order of execution.
+#[derive(Debug, Default)]
+pub(crate) struct Output {
+    /// Records.
+    pub(crate) records: Vec<Record>,
+    /// Findings, one for each place and kind.
+    pub(crate) findings: Vec<Finding>,
+    /// Definitions.
+    pub(crate) definitions: Vec<DefinitionEvent>,
+    /// Names whose meaning changed.
+    pub(crate) touched: FxHashSet<SmolStr>,
+    /// Names that were used.
+    pub(crate) used: FxHashSet<SmolStr>,
+    /// Labels that TRANTO and check surfaces name, for a check at the end.
+    pub(crate) transfers: Vec<(SmolStr, Origin)>,
+}
+
+impl Output {
+    /// Adds a finding unless the same one was made at the same place.
+    pub(crate) fn add_finding(&mut self, finding: Finding) {
+        let alike = self.findings.iter().filter(|other| same_place_and_kind(other, &finding)).count();
+        if alike < MOST_ALIKE {
+            self.findings.push(finding);
+        }
+    }
+
+    /// Whether a finding was made for this part of this statement.
+    pub(crate) fn has_finding_at(&self, isn: u32, range: apt_syntax::TextRange) -> bool {
+        self.findings.iter().any(|finding| finding.origin.isn == isn && finding.origin.range == range)
+    }
+}
+
+/// Whether two findings say the same about the same words of the program, whatever the loop turn.
+pub(crate) fn same_place_and_kind(left: &Finding, right: &Finding) -> bool {
+    left.origin.isn == right.origin.isn
+        && left.origin.range == right.origin.range
+        && std::mem::discriminant(&left.kind) == std::mem::discriminant(&right.kind)
+}

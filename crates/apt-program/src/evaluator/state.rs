@@ -1,0 +1,90 @@
+//! Everything that later statements depend on. Cheap to clone: tables are persistent.
+
+use std::sync::Arc;
+
+use apt_geometry::{canonical::Plane, motion::DriveSide};
+use smol_str::SmolStr;
+
+use crate::symbols::{ReferenceSystem, Symbol, SymbolTable};
+
+/// The state of Section 1 between two statements.
+#[derive(Debug, Clone)]
+pub(crate) struct State {
+    /// Names.
+    pub(crate) symbols: SymbolTable,
+    /// Synonyms, and words that have become names.
+    pub(crate) synonyms: imbl::OrdMap<SmolStr, Synonym>,
+    /// The plane that supplies z, in the coordinates of `z_system`.
+    pub(crate) z_surface: Plane,
+    /// The reference system in which ZSURF was given.
+    pub(crate) z_system: Option<Arc<ReferenceSystem>>,
+    /// REFSYS in force.
+    pub(crate) system: Option<Arc<ReferenceSystem>>,
+    /// CANON/ON.
+    pub(crate) canon: bool,
+    /// TLLFT, TLRGT or TLON in force, which decides implied check surfaces.
+    pub(crate) drive_side: DriveSide,
+    /// Plain MULTAX was given: the other forms are ignored from then on.
+    pub(crate) axes_for_good: bool,
+    /// MACHIN statements so far.
+    pub(crate) machines: u32,
+    /// Budgets exhausted so far; each one makes the next smaller.
+    pub(crate) exhausted: u32,
+    /// Statements executed again at the top level (dialects with free jumps).
+    pub(crate) repeated: u64,
+    /// The highest statement index reached, plus one (dialects with free jumps).
+    pub(crate) reached: usize,
+    /// FINI has been executed.
+    pub(crate) ended: bool,
+}
+
+/// What a synonym stands for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Synonym {
+    /// A vocabulary word.
+    Word(SmolStr),
+    /// A name: a vocabulary word that was assigned to (APT4).
+    Name,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            symbols: SymbolTable::default(),
+            synonyms: imbl::OrdMap::new(),
+            z_surface: Plane::horizontal(),
+            z_system: None,
+            system: None,
+            canon: false,
+            drive_side: DriveSide::On,
+            axes_for_good: false,
+            machines: 0,
+            exhausted: 0,
+            repeated: 0,
+            reached: 0,
+            ended: false,
+        }
+    }
+}
+
+impl State {
+    /// Whether all but the symbols is the same.
+    pub(crate) fn same_modal_values(&self, other: &State) -> bool {
+        self.synonyms == other.synonyms
+            && self.z_surface == other.z_surface
+            && self.z_system == other.z_system
+            && self.system == other.system
+            && self.canon == other.canon
+            && self.drive_side == other.drive_side
+            && self.axes_for_good == other.axes_for_good
+            && self.machines == other.machines
+            && self.exhausted == other.exhausted
+            && self.repeated == other.repeated
+            && self.ended == other.ended
+    }
+
+    /// The meaning of a name.
+    pub(crate) fn symbol(&self, name: &str) -> Option<&Symbol> {
+        self.symbols.get(name)
+    }
+}

@@ -1,0 +1,373 @@
+//! The top level: one statement of a program or included file at a time, with the macro bodies and loop regions it opens.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use apt_syntax::{
+    ParsedStatement, SyntaxTree, TextRange,
+    statement::{Body, Element, ElementKind, Name, Part},
+};
+use smol_str::SmolStr;
+
+use super::{Budget, Evaluator, Flow, Region, TracedLine};
+use crate::{
+    blocks::{self, Activation, Bindings, Block, DoLoop, normalised_label},
+    finding::{FindingKind, RelatedKind},
+    record::{FrameKind, RecordKind},
+    statements::Major,
+    symbols::{Meaning, similar_names},
+};
+
+/// By how much each exhausted budget makes the next one smaller: so that many endless loops end soon.
+const BUDGET_SHRINK: u64 = 16;
+/// A budget never shrinks below so many statements.
+const LEAST_BUDGET: u64 = 2_000;
+
+/// Statements of a file at the top level, with what jumps among them need.
+pub(crate) struct TopLevel<'t> {
+    /// The statements.
+    pub(crate) tree: &'t SyntaxTree,
+    /// DO loops that are open.
+    pub(crate) do_loops: Vec<DoLoop>,
+    /// Where labels are; filled at the first jump.
+    labels: Option<BTreeMap<SmolStr, usize>>,
+}
+
+/// Where a top-level step ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct StepEnd {
+    /// The statement to go on with; the number of statements at the end.
+    pub(crate) next: usize,
+    /// One more than the highest statement index that was read.
+    pub(crate) read_to: usize,
+    /// The lowest statement index that was read.
+    pub(crate) read_from: usize,
+}
+
+impl<'t> TopLevel<'t> {
+    /// The statements of a file.
+    pub(crate) fn new(tree: &'t SyntaxTree) -> Self {
+        Self { tree, do_loops: Vec::new(), labels: None }
+    }
+
+    /// The index of the statement that carries a label.
+    fn label(&mut self, label: &str) -> Option<usize> {
+        let labels = self.labels.get_or_insert_with(|| {
+            let mut labels = BTreeMap::new();
+            for index in 0..self.tree.statement_count() {
+                if let Some(label) = &self.tree.statement(index).parsed().statement.label {
+                    labels.entry(normalised_label(&label.text)).or_insert(index);
+                }
+            }
+            labels
+        });
+        labels.get(&normalised_label(label)).copied()
+    }
+}
+
+impl Evaluator<'_> {
+    /// Executes the top-level statement at `index` and all that it opens.
+    pub(crate) fn step(&mut self, top: &mut TopLevel<'_>, index: usize) -> StepEnd {
+        let count = top.tree.statement_count();
+        let past = |next: usize| StepEnd { next, read_to: next.min(count), read_from: index };
+        let shrink = BUDGET_SHRINK.saturating_pow(self.state.exhausted);
+        if self.here.depth == 0 && self.here.region == Region::Top {
+            self.budget = Budget::new((self.options.statement_budget / shrink).max(LEAST_BUDGET));
+        }
+        self.here.isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
+        self.here.label = None;
+        let original = top.tree.statement(index).parsed();
+        let statement = self.state.without_synonyms(&original, &self.dialect);
+        if !self.may_repeat(top, index) {
+            return past(count);
+        }
+        if let Some(part) = statement.statement.parts.first() {
+            match &part.body {
+                Body::Macro { name, parameters, .. } => {
+                    self.open_statement(&statement);
+                    let (body, next) = self.gather(top, index, "TERMAC", Some(name), part.range);
+                    self.define_macro(name, parameters, body);
+                    return past(next);
+                }
+                Body::Major { word, .. }
+                    if word.word.spelling == "LOOPST" && !self.dialect.branch_anywhere =>
+                {
+                    self.open_statement(&statement);
+                    let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
+                    let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
+                    let bindings = Bindings::default();
+                    self.run_block(Activation { block: &block, bindings, region: Region::Loop, frame });
+                    return past(next);
+                }
+                Body::Do { label, index: variable, bounds, .. } => {
+                    self.open_statement(&statement);
+                    let opened = self.open_do_loop(label, variable, bounds, part.range, index + 1);
+                    top.do_loops.extend(opened);
+                    return past(index + 1);
+                }
+                _ => {}
+            }
+        }
+        let flow = self.statement(&statement);
+        match flow {
+            Flow::Next => match self.continue_do_loops(&statement, &mut top.do_loops) {
+                Some(next) => StepEnd { next, read_to: index + 1, read_from: index.min(next) },
+                None => past(index + 1),
+            },
+            Flow::Jump(label) => self.top_level_jump(top, index, &label),
+            Flow::Abort | Flow::Leave => past(index + 1),
+            Flow::End => StepEnd { next: count, read_to: index + 1, read_from: index },
+        }
+    }
+
+    /// Counts statements executed again at the top level; gives up when there are too many.
+    fn may_repeat(&mut self, top: &TopLevel<'_>, index: usize) -> bool {
+        if self.here.frame.is_some() || !self.dialect.branch_anywhere {
+            return true;
+        }
+        if index >= self.state.reached {
+            self.state.reached = index + 1;
+            return true;
+        }
+        self.state.repeated += 1;
+        if self.state.repeated <= self.options.statement_budget {
+            return !(self.state.repeated.is_multiple_of(BUDGET_SHRINK * BUDGET_SHRINK) && self.is_cancelled());
+        }
+        let range = top.tree.statement(index).parsed().statement.parts.first().map_or(TextRange::default(), |p| p.range);
+        let finding = FindingKind::Endless { statements: self.options.statement_budget, changing: Vec::new() };
+        self.report(finding, range);
+        false
+    }
+
+    /// Executes the parts of a statement.
+    pub(crate) fn statement(&mut self, statement: &ParsedStatement) -> Flow {
+        self.open_statement(statement);
+        for part in &statement.statement.parts {
+            self.trace_part(statement, part);
+            match self.execute_part(part) {
+                Flow::Next => {}
+                other => return other,
+            }
+        }
+        Flow::Next
+    }
+
+    /// Syntax errors and the label.
+    fn open_statement(&mut self, statement: &ParsedStatement) {
+        for error in &statement.errors {
+            self.report(FindingKind::Syntax(error.kind.clone()), error.range);
+        }
+        if let Some(name) = &statement.spoiled
+            && self.state.symbol(&name.text).is_none()
+        {
+            let origin = self.origin(name.range);
+            self.set_symbol(name.text.clone(), Meaning::Poisoned, origin);
+        }
+        if let Some(label) = &statement.statement.label {
+            self.open_label(label);
+        }
+    }
+
+    /// A label: at the top level it is a name of the program.
+    fn open_label(&mut self, label: &Name) {
+        let text = normalised_label(&label.text);
+        self.here.label = Some(text.clone());
+        if self.here.region != Region::Top {
+            return;
+        }
+        let origin = self.origin(label.range);
+        let existing = self.state.symbol(&text).map(|symbol| (symbol.meaning.clone(), symbol.origin.clone()));
+        match existing {
+            None => self.set_symbol(text, Meaning::Label, origin),
+            Some((Meaning::Label, first)) if first.isn != origin.isn || first.frame != origin.frame => {
+                let related = vec![(RelatedKind::Label, first)];
+                self.report_related(FindingKind::DuplicateLabel { name: text }, label.range, related);
+            }
+            Some((Meaning::Label | Meaning::Poisoned, _)) => {}
+            Some((_, first)) => {
+                let related = vec![(RelatedKind::Definition, first)];
+                self.report_related(FindingKind::LabelIsName { name: text }, label.range, related);
+            }
+        }
+    }
+
+    /// Collects the statements up to and with the closing word. Returns them and the index to go on with.
+    fn gather(
+        &mut self,
+        top: &TopLevel<'_>,
+        header: usize,
+        closing: &str,
+        macro_name: Option<&Name>,
+        range: TextRange,
+    ) -> (Block, usize) {
+        let count = top.tree.statement_count();
+        let opened_at = self.here.isn;
+        let mut block = Block::new(opened_at.saturating_add(1));
+        let mut index = header + 1;
+        while index < count {
+            let view = top.tree.statement(index);
+            let original = view.parsed();
+            let statement = self.state.without_synonyms(&original, &self.dialect);
+            let word = blocks::single_word(&statement);
+            let foreign_macro = macro_name.is_some() && blocks::is_macro_header(&statement);
+            if word == Some("FINI") || foreign_macro {
+                self.report_unclosed(index, &statement, opened_at, macro_name, foreign_macro, range);
+                return (block, index);
+            }
+            self.push_to_block(&mut block, index, original, view.content_hash());
+            index += 1;
+            if word == Some(closing) {
+                return (block, index);
+            }
+        }
+        let finding = match macro_name {
+            Some(name) => FindingKind::MacroNotClosed { name: name.text.clone() },
+            None => FindingKind::LoopNotClosed,
+        };
+        self.report(finding, range);
+        (block, count)
+    }
+
+    /// Adds a statement to a block; a label twice in it is reported.
+    fn push_to_block(&mut self, block: &mut Block, index: usize, statement: Arc<ParsedStatement>, hash: u64) {
+        let label = statement.statement.label.clone();
+        if !block.push(statement, hash)
+            && let Some(label) = label
+        {
+            let header = std::mem::replace(&mut self.here.isn, u32::try_from(index + 1).unwrap_or(u32::MAX));
+            self.report(FindingKind::DuplicateLabel { name: label.text.clone() }, label.range);
+            self.here.isn = header;
+        }
+    }
+
+    /// FINI, or another macro header, where the closing word is missing: reported there, with the opening as evidence.
+    fn report_unclosed(
+        &mut self,
+        index: usize,
+        statement: &ParsedStatement,
+        opened_at: u32,
+        macro_name: Option<&Name>,
+        foreign_macro: bool,
+        range: TextRange,
+    ) {
+        let opening = self.origin(macro_name.map_or(range, |name| name.range));
+        let kind = if macro_name.is_some() { RelatedKind::Macro } else { RelatedKind::Loop };
+        self.here.isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
+        let at = statement.statement.parts.first().map_or(TextRange::default(), |part| part.range);
+        let finding = if foreign_macro { FindingKind::MacroInRegion } else { FindingKind::EndInRegion };
+        self.report_related(finding, at, vec![(kind, opening)]);
+        self.here.isn = opened_at;
+    }
+
+    /// A jump at the top level: only some dialects have it.
+    fn top_level_jump(&mut self, top: &mut TopLevel<'_>, index: usize, label: &Name) -> StepEnd {
+        let count = top.tree.statement_count();
+        if !self.dialect.branch_anywhere {
+            self.report(FindingKind::JumpOutsideRegion, label.range);
+            return StepEnd { next: index + 1, read_to: index + 1, read_from: index };
+        }
+        let target = top.label(&label.text);
+        if target.is_none() {
+            let labels = top.labels.iter().flat_map(BTreeMap::keys).map(SmolStr::as_str);
+            let similar = similar_names(&label.text, labels);
+            self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
+        }
+        let next = target.unwrap_or(index + 1);
+        // Where labels are depends on every statement.
+        StepEnd { next, read_to: count, read_from: index.min(next) }
+    }
+
+    /// INCLUD: executes the statements of another file in place.
+    pub(crate) fn include(&mut self, major: Major<'_>) -> Flow {
+        let Some(name) = included_name(major) else {
+            self.wrong_count(major, major.arguments.len(), "a file name", 129);
+            return Flow::Next;
+        };
+        let tree = self.options.include.as_ref().and_then(|resolver| resolver.resolve(&name));
+        let Some(tree) = tree else {
+            self.report(FindingKind::IncludeNotFound { name }, major.range);
+            return Flow::Next;
+        };
+        let limit = self.options.macro_depth;
+        if self.here.depth >= limit {
+            self.report(FindingKind::MacroDepth { name, limit }, major.range);
+            return Flow::Abort;
+        }
+        let outer = self.here.clone();
+        let frame = self.frame(FrameKind::Include, name, major.range);
+        self.here.frame = Some(Arc::new(frame));
+        self.here.depth += 1;
+        let mut top = TopLevel::new(&tree);
+        let mut index = 0;
+        let mut flow = Flow::Next;
+        while index < tree.statement_count() && !self.state.ended {
+            if self.budget.left == 0 || self.is_cancelled() {
+                flow = Flow::Abort;
+                break;
+            }
+            self.budget.left -= 1;
+            index = self.step(&mut top, index).next;
+        }
+        self.here = outer;
+        if self.state.ended { Flow::End } else { flow }
+    }
+
+    /// Notes an executed part for an expansion; jumps and the words that open and close regions leave no line.
+    fn trace_part(&mut self, statement: &ParsedStatement, part: &Part) {
+        if self.trace.is_none() || !leaves_line(&part.body) {
+            return;
+        }
+        let elements: Vec<Element> = if statement.statement.parts.len() == 1 {
+            without_label(&statement.elements).to_vec()
+        } else {
+            statement.elements.iter().filter(|element| part.range.contains_range(element.range)).cloned().collect()
+        };
+        let origin = self.origin(part.range);
+        if let Some(trace) = &mut self.trace {
+            trace.lines.push(TracedLine { elements, origin });
+        }
+    }
+
+    /// Whether the program has ended without FINI, reported at its last statement.
+    pub(crate) fn close_program(&mut self, tree: &SyntaxTree) {
+        if self.state.ended || self.is_cl() || tree.statement_count() == 0 {
+            return;
+        }
+        let last = tree.statement_count() - 1;
+        self.here.isn = u32::try_from(last + 1).unwrap_or(u32::MAX);
+        let parsed = tree.statement(last).parsed();
+        let range = parsed.statement.parts.first().map_or(TextRange::default(), |part| part.range);
+        self.break_pending(FindingKind::ImpliedCheckOpen, range);
+        self.report(FindingKind::EndMissing, range);
+        self.emit(RecordKind::End, range);
+        self.state.ended = true;
+    }
+}
+
+/// The name after INCLUD/.
+fn included_name(major: Major<'_>) -> Option<SmolStr> {
+    use apt_syntax::statement::{Argument, Expression};
+    match major.arguments.first()? {
+        Argument::Text { text, .. } => Some(text.clone()),
+        Argument::Expression(Expression::Reference(reference)) => Some(reference.name.text.clone()),
+        _ => None,
+    }
+}
+
+/// Whether a part stands in an expansion.
+fn leaves_line(body: &Body) -> bool {
+    match body {
+        Body::Call { section, .. } => section.is_some(),
+        Body::ArithmeticIf { .. } | Body::LogicalIf { .. } | Body::Do { .. } | Body::Error => false,
+        Body::Jump { word, .. } => word.word.spelling == "TRANTO",
+        Body::Major { word, .. } => !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "INCLUD" | "CONTIN"),
+        _ => true,
+    }
+}
+
+/// The elements after the label.
+fn without_label(elements: &[Element]) -> &[Element] {
+    match elements {
+        [_, close, rest @ ..] if close.kind == ElementKind::RightParenthesis => rest,
+        all => all,
+    }
+}

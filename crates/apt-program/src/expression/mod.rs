@@ -1,0 +1,11 @@
+//! Arithmetic: expressions, references, functions, conditions and the operands of statements.
+
+mod arithmetic;
+mod condition;
+mod function;
+mod operand;
+mod reference;
+
+pub(crate) use function::degrees_sine;
+pub(crate) use operand::{Item, Items, Operand};
+pub(crate) use reference::Resolved;

@@ -1,0 +1,155 @@
+//! Names and subscripts: what a reference stands for.
+
+use apt_syntax::statement::{Expression, Reference};
+use smol_str::{SmolStr, format_smolstr};
+
+use crate::{
+    evaluator::Evaluator,
+    finding::{FindingKind, RelatedKind},
+    symbols::{ARRAY_KEY_SUFFIX, ArrayElement, Meaning, Stored, similar_names},
+};
+
+/// What a reference stands for.
+#[derive(Debug, Clone)]
+pub(crate) enum Resolved {
+    /// A number.
+    Scalar(f64),
+    /// Geometry, with its name as `NAME` or `NAME(3)`.
+    Geometry {
+        /// The name.
+        name: SmolStr,
+        /// The geometry.
+        stored: Stored,
+    },
+}
+
+impl Evaluator<'_> {
+    /// What a reference stands for; nothing if it has no value, which has been reported unless its definition failed.
+    pub(crate) fn resolve(&mut self, reference: &Reference) -> Option<Resolved> {
+        match &reference.subscript {
+            Some(subscript) => {
+                let subscript = self.scalar(subscript);
+                let index = self.element_index(reference, subscript?)?;
+                self.resolve_element(reference, index)
+            }
+            None => self.resolve_name(reference),
+        }
+    }
+
+    /// A name without subscript.
+    fn resolve_name(&mut self, reference: &Reference) -> Option<Resolved> {
+        let name = &reference.name.text;
+        self.mark_used(name);
+        let Some(symbol) = self.state.symbol(name) else {
+            self.report_undefined(name.clone(), reference);
+            return None;
+        };
+        let origin = symbol.origin.clone();
+        let kind = match &symbol.meaning {
+            Meaning::Scalar(value) => return Some(Resolved::Scalar(*value)),
+            Meaning::Geometry(stored) => {
+                return Some(Resolved::Geometry { name: name.clone(), stored: stored.clone() });
+            }
+            Meaning::Poisoned => return None,
+            Meaning::Array(array) => FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent },
+            Meaning::Macro(_) => FindingKind::MacroAsValue { name: name.clone() },
+            Meaning::Label => FindingKind::LabelAsValue { name: name.clone() },
+        };
+        self.report_related(kind, reference.range, vec![(RelatedKind::Definition, origin)]);
+        None
+    }
+
+    /// An element of an array.
+    fn resolve_element(&mut self, reference: &Reference, index: u32) -> Option<Resolved> {
+        let key = self.array_key(&reference.name.text);
+        let name = format_smolstr!("{}({index})", reference.name.text);
+        let element = match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
+            Some(Meaning::Array(array)) => array.get(index).cloned(),
+            _ => None,
+        };
+        match element {
+            Some(ArrayElement::Scalar(value)) => Some(Resolved::Scalar(value)),
+            Some(ArrayElement::Geometry(stored)) => Some(Resolved::Geometry { name, stored }),
+            Some(ArrayElement::Poisoned) => None,
+            None => {
+                self.report_undefined(name, reference);
+                None
+            }
+        }
+    }
+
+    /// The key of an array in the symbol table: in APT4 `P1` and `P1(1)` are distinct.
+    pub(crate) fn array_key(&self, name: &SmolStr) -> SmolStr {
+        if self.is_apt4() { format_smolstr!("{name}{ARRAY_KEY_SUFFIX}") } else { name.clone() }
+    }
+
+    /// The subscript as an index of this array: truncated, and inside the reserved range.
+    pub(crate) fn element_index(&mut self, reference: &Reference, subscript: f64) -> Option<u32> {
+        let extent = self.array_extent(reference)?;
+        let whole = subscript.trunc();
+        if whole >= 1.0 && whole <= f64::from(extent) {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside 1..=extent")]
+            return Some(whole as u32);
+        }
+        let name = reference.name.text.clone();
+        let related = self.reservation(&name);
+        self.report_related(FindingKind::SubscriptRange { name, subscript, extent }, reference.range, related);
+        None
+    }
+
+    /// The extent of a reserved array, or a finding that the name is not reserved.
+    pub(crate) fn array_extent(&mut self, reference: &Reference) -> Option<u32> {
+        let key = self.array_key(&reference.name.text);
+        self.mark_used(&key);
+        match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
+            Some(Meaning::Array(array)) => Some(array.extent),
+            Some(Meaning::Poisoned) => None,
+            Some(_) | None => {
+                let name = reference.name.text.clone();
+                let related = self.definition_of(&name);
+                self.report_related(FindingKind::NotReserved { name }, reference.range, related);
+                None
+            }
+        }
+    }
+
+    /// The RESERV of an array, as a related place.
+    fn reservation(&self, name: &SmolStr) -> Vec<(RelatedKind, crate::record::Origin)> {
+        let key = self.array_key(name);
+        let symbol = self.state.symbol(&key);
+        symbol.map(|symbol| (RelatedKind::Reservation, symbol.origin.clone())).into_iter().collect()
+    }
+
+    /// The definition of a name, as a related place.
+    pub(crate) fn definition_of(&self, name: &str) -> Vec<(RelatedKind, crate::record::Origin)> {
+        let symbol = self.state.symbol(name);
+        symbol.map(|symbol| (RelatedKind::Definition, symbol.origin.clone())).into_iter().collect()
+    }
+
+    /// Reports an undefined name with names like it; once for each place.
+    fn report_undefined(&mut self, name: SmolStr, reference: &Reference) {
+        if self.output.has_finding_at(self.here.isn, reference.range) {
+            self.errors += 1;
+            return;
+        }
+        let names = self.state.symbols.keys().map(|key| key.trim_end_matches(ARRAY_KEY_SUFFIX));
+        let similar = similar_names(&name, names);
+        self.report(FindingKind::Undefined { name, similar }, reference.range);
+    }
+
+    /// Notes that a name was used.
+    pub(crate) fn mark_used(&mut self, name: &SmolStr) {
+        if !self.output.used.contains(name) {
+            self.output.used.insert(name.clone());
+        }
+    }
+
+    /// Whether an expression is a plain reference, perhaps in parentheses.
+    pub(crate) fn plain_reference(expression: &Expression) -> Option<&Reference> {
+        match expression {
+            Expression::Reference(reference) => Some(reference),
+            Expression::Parenthesised { inner, .. } => Self::plain_reference(inner),
+            _ => None,
+        }
+    }
+}

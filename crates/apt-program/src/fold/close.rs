@@ -1,0 +1,79 @@
+//! Findings of the program as a whole: unused names, transfers that lead nowhere.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+use super::chunk::Chunk;
+use crate::{
+    evaluator::{State, same_place_and_kind},
+    finding::{Finding, FindingKind},
+    record::Origin,
+    symbols::{ARRAY_KEY_SUFFIX, Meaning},
+};
+
+/// The findings of all chunks, each once, and those that need the whole program.
+pub(super) fn closing_findings(chunks: &[Chunk], end: &State, complete: bool) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = Vec::new();
+    let mut by_place: FxHashMap<(u32, u32), Vec<usize>> = FxHashMap::default();
+    for finding in chunks.iter().flat_map(|chunk| chunk.data().findings.iter()) {
+        let place = (finding.origin.isn, u32::from(finding.origin.range.start()));
+        let known = by_place.entry(place).or_default();
+        if known.iter().any(|index| same_place_and_kind(&findings[*index], finding)) {
+            continue;
+        }
+        known.push(findings.len());
+        findings.push(finding.clone());
+    }
+    if complete {
+        add_unknown_transfers(chunks, end, &mut findings);
+        add_unused(chunks, end, &mut findings);
+    }
+    findings
+}
+
+/// TRANTO and labels of check surfaces that no statement carries.
+fn add_unknown_transfers(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
+    let mut carried: FxHashSet<SmolStr> = FxHashSet::default();
+    let transfers: Vec<&(SmolStr, Origin)> =
+        chunks.iter().flat_map(|chunk| chunk.data().transfers.iter()).collect();
+    if transfers.is_empty() {
+        return;
+    }
+    for record in chunks.iter().flat_map(|chunk| chunk.data().records.iter()) {
+        carried.extend(record.label.clone());
+    }
+    for (label, origin) in transfers {
+        if !carried.contains(label) {
+            let kind = if matches!(end.symbol(label).map(|symbol| &symbol.meaning), Some(Meaning::Label)) {
+                FindingKind::UnknownTransfer { name: label.clone() }
+            } else {
+                FindingKind::UnknownLabel { name: label.clone(), similar: Vec::new() }
+            };
+            push(findings, kind, origin.clone());
+        }
+    }
+}
+
+/// Names that are defined and never used, in the order of their definition.
+fn add_unused(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
+    let used: FxHashSet<&SmolStr> = chunks.iter().flat_map(|chunk| chunk.data().used.iter()).collect();
+    let mut unused: Vec<(&SmolStr, &Origin)> = end
+        .symbols
+        .iter()
+        .filter(|(name, symbol)| {
+            let has_value = !matches!(symbol.meaning, Meaning::Label | Meaning::Poisoned);
+            has_value && !used.contains(name)
+        })
+        .map(|(name, symbol)| (name, &symbol.origin))
+        .collect();
+    unused.sort_by_key(|(name, origin)| (origin.isn, origin.range.start(), (*name).clone()));
+    for (name, origin) in unused {
+        let name = SmolStr::new(name.trim_end_matches(ARRAY_KEY_SUFFIX));
+        push(findings, FindingKind::Unused { name }, origin.clone());
+    }
+}
+
+/// Adds a finding with its usual severity.
+fn push(findings: &mut Vec<Finding>, kind: FindingKind, origin: Origin) {
+    findings.push(Finding { severity: kind.severity(), kind, origin, related: Vec::new() });
+}

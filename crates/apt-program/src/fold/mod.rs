@@ -1,0 +1,10 @@
+//! Evaluation as a fold over statements: chunks with checkpoints, restart after an edit, reuse of what did not change.
+
+mod chunk;
+mod close;
+mod converge;
+mod program;
+mod run;
+mod shift;
+
+pub use program::{Program, Statistics};

@@ -1,0 +1,158 @@
+//! An evaluated program.
+
+use std::sync::Arc;
+
+use apt_syntax::{StatementChange, SyntaxTree};
+use smol_str::SmolStr;
+
+use super::{
+    chunk::Chunk,
+    close::closing_findings,
+    run::{End, Old, Outcome, evaluate_from},
+};
+use crate::{
+    evaluator::State,
+    finding::Finding,
+    options::Options,
+    record::Record,
+    symbols::{DefinitionEvent, Value, values_of},
+};
+
+/// The result of Section 1: records, findings and definitions in order of execution, and the symbol table at the end.
+#[derive(Debug, Clone)]
+pub struct Program {
+    chunks: Vec<Chunk>,
+    end: Arc<State>,
+    complete: bool,
+    findings: Arc<Vec<Finding>>,
+    statistics: Statistics,
+}
+
+/// What an evaluation cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Statistics {
+    /// Top-level statements executed (a loop or a call counts as one).
+    pub evaluated_statements: u64,
+    /// Top-level statements whose results were taken over from before the edit.
+    pub reused_statements: u64,
+    /// Checkpoints kept.
+    pub checkpoints: usize,
+}
+
+impl Program {
+    /// Evaluates a program from its first statement.
+    pub(crate) fn evaluate(tree: &SyntaxTree, options: &Options, cancel: &dyn Fn() -> bool) -> Program {
+        let outcome = evaluate_from(tree, options, cancel, (0, State::default()), None);
+        Program::assemble(Vec::new(), outcome, None)
+    }
+
+    /// Evaluates after an edit: from the checkpoint before the first changed statement until the state is what it was
+    /// before the edit at the same statement; everything else is taken over. The result equals that of [`crate::evaluate`].
+    pub fn update(
+        &self,
+        tree: &SyntaxTree,
+        change: &StatementChange,
+        options: &Options,
+        cancel: &dyn Fn() -> bool,
+    ) -> Program {
+        if !self.complete || options.include.is_some() {
+            // Included files may have changed too.
+            return Program::evaluate(tree, options, cancel);
+        }
+        // Statements are read in order of execution; a chunk that has read a changed statement is evaluated again.
+        // At the end of the program the closing chunk depends on the last statement.
+        let kept = self.chunks.iter().take_while(|chunk| chunk.read_to() <= change.first).count();
+        let kept = if kept == self.chunks.len() { kept.saturating_sub(1) } else { kept };
+        let start = match self.chunks.get(kept) {
+            Some(chunk) => (chunk.start().min(change.first), chunk.data().before.clone()),
+            None => (0, State::default()),
+        };
+        let old = Old { chunks: &self.chunks, first: kept, change };
+        let outcome = evaluate_from(tree, options, cancel, start, Some(&old));
+        Program::assemble(self.chunks[..kept.min(self.chunks.len())].to_vec(), outcome, Some(self))
+    }
+
+    /// Puts kept, new and reused chunks together.
+    fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>) -> Program {
+        let mut reused: u64 = kept.iter().map(Chunk::steps).sum();
+        let mut chunks = kept;
+        chunks.extend(outcome.chunks);
+        let (end, complete) = match outcome.end {
+            End::Complete(state) => (Arc::new(*state), true),
+            End::Cancelled => (Arc::new(State::default()), false),
+            End::Converged(first, shift) => {
+                let Some(old) = old else { return Program::assemble_nothing() };
+                for chunk in &old.chunks[first..] {
+                    reused += chunk.steps();
+                    chunks.push(chunk.moved(shift));
+                }
+                if shift.is_nothing() {
+                    (Program::joined_end(&chunks, old), true)
+                } else {
+                    let mut end = (*Program::joined_end(&chunks, old)).clone();
+                    shift.state(&mut end);
+                    (Arc::new(end), true)
+                }
+            }
+        };
+        let findings = Arc::new(closing_findings(&chunks, &end, complete));
+        let statistics = Statistics {
+            evaluated_statements: outcome.steps,
+            reused_statements: reused,
+            checkpoints: chunks.len(),
+        };
+        Program { chunks, end, complete, findings, statistics }
+    }
+
+    /// The state at the end when the rest was reused: states agree from the seam on.
+    fn joined_end(_chunks: &[Chunk], old: &Program) -> Arc<State> {
+        Arc::clone(&old.end)
+    }
+
+    /// An evaluation that gave nothing.
+    fn assemble_nothing() -> Program {
+        Program {
+            chunks: Vec::new(),
+            end: Arc::new(State::default()),
+            complete: false,
+            findings: Arc::new(Vec::new()),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// The records in order of execution.
+    pub fn records(&self) -> impl Iterator<Item = &Record> {
+        self.chunks.iter().flat_map(|chunk| chunk.data().records.iter())
+    }
+
+    /// How many records there are.
+    pub fn record_count(&self) -> usize {
+        self.chunks.iter().map(Chunk::record_count).sum()
+    }
+
+    /// All findings: those of the statements in order of execution, then those of the program as a whole. A finding of
+    /// a statement that is executed many times stands once.
+    pub fn findings(&self) -> impl Iterator<Item = &Finding> {
+        self.findings.iter()
+    }
+
+    /// Every definition in order of execution.
+    pub fn definitions(&self) -> impl Iterator<Item = &DefinitionEvent> {
+        self.chunks.iter().flat_map(|chunk| chunk.data().definitions.iter())
+    }
+
+    /// All names with their values at the end, sorted; elements of arrays as `NAME(3)`.
+    pub fn symbols(&self) -> Vec<(SmolStr, Value)> {
+        values_of(&self.end.symbols)
+    }
+
+    /// What the evaluation cost.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    /// False when the evaluation was cancelled; what there is of it is then the beginning.
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+}

@@ -1,0 +1,194 @@
+//! The loop over top-level statements that makes chunks.
+
+use apt_syntax::{StatementChange, SyntaxTree};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
+
+use super::{
+    chunk::{Chunk, ChunkData},
+    converge::same_state,
+    shift::Shift,
+};
+use crate::{
+    evaluator::{Evaluator, Output, State, TopLevel},
+    options::Options,
+};
+
+/// Top-level statements between two checkpoints.
+const CHUNK_STEPS: u64 = 128;
+
+/// Chunks a program had before an edit, for reuse.
+pub(super) struct Old<'o> {
+    /// The chunks.
+    pub(super) chunks: &'o [Chunk],
+    /// The first of them that is evaluated again.
+    pub(super) first: usize,
+    /// The edit.
+    pub(super) change: &'o StatementChange,
+}
+
+/// What an evaluation gives.
+pub(crate) struct Outcome {
+    /// The chunks made.
+    pub(super) chunks: Vec<Chunk>,
+    /// The state at the end; none if the rest is reused from the old chunk with this index.
+    pub(super) end: End,
+    /// Top-level statements executed.
+    pub(super) steps: u64,
+}
+
+/// How an evaluation ended.
+pub(crate) enum End {
+    /// At the end of the program.
+    Complete(Box<State>),
+    /// In the state of an old chunk: the rest is that of the old evaluation, moved.
+    Converged(usize, Shift),
+    /// Cancelled.
+    Cancelled,
+}
+
+/// Evaluates from a statement on; with `old` until the state is that of the old evaluation.
+pub(crate) fn evaluate_from(
+    tree: &SyntaxTree,
+    options: &Options,
+    cancel: &dyn Fn() -> bool,
+    start: (usize, State),
+    old: Option<&Old<'_>>,
+) -> Outcome {
+    let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, start.1);
+    let mut top = TopLevel::new(tree);
+    let mut outcome = Outcome { chunks: Vec::new(), end: End::Cancelled, steps: 0 };
+    let mut reuse = old.map(Reuse::new);
+    let mut index = start.0;
+    let count = tree.statement_count();
+    loop {
+        if evaluator.is_cancelled() {
+            return outcome;
+        }
+        if let Some(reuse) = &mut reuse
+            && let Some((chunk, shift)) = reuse.converged(index, &evaluator.state)
+        {
+            outcome.end = End::Converged(chunk, shift);
+            return outcome;
+        }
+        if index >= count || evaluator.state.ended {
+            break;
+        }
+        let until = reuse.as_ref().and_then(|reuse| reuse.next_boundary(index));
+        let (chunk, next) = run_chunk(&mut evaluator, &mut top, index, until);
+        if evaluator.cancelled {
+            return outcome;
+        }
+        outcome.steps += chunk.steps;
+        if let Some(reuse) = &mut reuse {
+            reuse.touched.extend(chunk.touched.iter().cloned());
+        }
+        outcome.chunks.push(Chunk::new(chunk));
+        index = next;
+    }
+    close(&mut evaluator, tree, &mut outcome);
+    outcome.end = End::Complete(Box::new(evaluator.state));
+    outcome
+}
+
+/// The last chunk: what follows from the end of the program without FINI.
+fn close(evaluator: &mut Evaluator<'_>, tree: &SyntaxTree, outcome: &mut Outcome) {
+    let before = evaluator.state.clone();
+    let count = tree.statement_count();
+    evaluator.close_program(tree);
+    let output = std::mem::take(&mut evaluator.output);
+    if !output.findings.is_empty() || !output.records.is_empty() {
+        outcome.chunks.push(Chunk::new(ChunkData::new(before, count, (0, count), 0, output)));
+    }
+}
+
+/// Executes statements until it is time for a checkpoint: not while a motion waits for its check surface or a DO loop
+/// is open.
+fn run_chunk(
+    evaluator: &mut Evaluator<'_>,
+    top: &mut TopLevel<'_>,
+    start: usize,
+    until: Option<usize>,
+) -> (ChunkData, usize) {
+    let before = evaluator.state.clone();
+    let count = top.tree.statement_count();
+    let mut index = start;
+    let mut steps = 0;
+    let (mut read_from, mut read_to) = (start, start);
+    while index < count && !evaluator.state.ended && !evaluator.cancelled {
+        let end = evaluator.step(top, index);
+        steps += 1;
+        read_from = read_from.min(end.read_from);
+        read_to = read_to.max(end.read_to);
+        index = end.next;
+        let settled = evaluator.pending.is_none() && top.do_loops.is_empty();
+        if settled && (steps >= CHUNK_STEPS || until == Some(index)) {
+            break;
+        }
+        if steps % CHUNK_STEPS == 0 && evaluator.is_cancelled() {
+            break;
+        }
+    }
+    let output: Output = std::mem::take(&mut evaluator.output);
+    (ChunkData::new(before, start, (read_from, read_to), steps, output), index)
+}
+
+/// Looks for a statement where the old evaluation can take over.
+struct Reuse<'o> {
+    old: &'o Old<'o>,
+    shift: Shift,
+    /// The next old chunk to compare with.
+    candidate: usize,
+    /// Names that either evaluation touched since the restart.
+    touched: FxHashSet<SmolStr>,
+    /// The first old chunk from which on nothing before the end of the change is read.
+    independent_from: usize,
+}
+
+impl<'o> Reuse<'o> {
+    fn new(old: &'o Old<'o>) -> Self {
+        let change = old.change;
+        let by = i64::try_from(change.inserted).unwrap_or(i64::MAX).saturating_sub(
+            i64::try_from(change.removed).unwrap_or(i64::MAX),
+        );
+        let from = change.first + change.removed;
+        let mut independent_from = old.chunks.len();
+        while independent_from > 0 && old.chunks[independent_from - 1].read_from() >= from {
+            independent_from -= 1;
+        }
+        Self {
+            old,
+            shift: Shift { from, by },
+            candidate: old.first,
+            touched: FxHashSet::default(),
+            independent_from,
+        }
+    }
+
+    /// Where the next old chunk begins, in new indices.
+    fn next_boundary(&self, index: usize) -> Option<usize> {
+        let ahead = self.old.chunks[self.candidate.min(self.old.chunks.len())..].iter();
+        ahead
+            .map(Chunk::start)
+            .filter(|start| *start >= self.shift.from)
+            .map(|start| self.shift.index(start))
+            .find(|start| *start > index)
+    }
+
+    /// The old chunk that begins here in the same state.
+    fn converged(&mut self, index: usize, state: &State) -> Option<(usize, Shift)> {
+        while let Some(chunk) = self.old.chunks.get(self.candidate) {
+            let start = chunk.start();
+            let passed = start < self.shift.from || self.shift.index(start) < index;
+            if passed {
+                self.touched.extend(chunk.data().touched.iter().cloned());
+                self.candidate += 1;
+                continue;
+            }
+            let here = self.shift.index(start) == index && self.candidate >= self.independent_from;
+            let same = here && same_state(state, &chunk.data().before, self.shift, &self.touched);
+            return same.then_some((self.candidate, self.shift));
+        }
+        None
+    }
+}

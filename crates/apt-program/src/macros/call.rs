@@ -1,0 +1,135 @@
+//! CALL: binds the variables and executes the body.
+
+use std::sync::Arc;
+
+use apt_syntax::{
+    TextRange,
+    statement::{Element, ElementKind, MacroParameter, Name, WordUse},
+};
+use smol_str::SmolStr;
+
+use super::MacroDefinition;
+use crate::{
+    blocks::{Activation, Bindings},
+    evaluator::{Evaluator, Flow, Region},
+    finding::{FindingKind, RelatedKind},
+    record::FrameKind,
+    symbols::{Meaning, similar_names},
+};
+
+impl Evaluator<'_> {
+    /// CALL of a macro, or of an installation routine.
+    pub(crate) fn call(
+        &mut self,
+        name: &Name,
+        arguments: &[MacroParameter],
+        section: Option<&WordUse>,
+        range: TextRange,
+    ) -> Flow {
+        if section.is_some() {
+            self.report(FindingKind::RoutineNotAvailable { name: name.text.clone() }, name.range);
+            return Flow::Next;
+        }
+        self.mark_used(&name.text);
+        let definition = match self.state.symbol(&name.text) {
+            Some(symbol) => match &symbol.meaning {
+                Meaning::Macro(definition) => Some((Arc::clone(definition), symbol.origin.clone())),
+                Meaning::Poisoned => return Flow::Next,
+                _ => None,
+            },
+            None => None,
+        };
+        let Some((definition, origin)) = definition else {
+            self.report_unknown_macro(name);
+            return Flow::Next;
+        };
+        let Some(bindings) = self.bind(&definition, name, arguments, &origin) else { return Flow::Next };
+        let limit = self.macro_depth();
+        if self.here.depth >= limit {
+            let related = vec![(RelatedKind::Macro, origin)];
+            self.report_related(FindingKind::MacroDepth { name: name.text.clone(), limit }, range, related);
+            return Flow::Abort;
+        }
+        let frame = self.frame(FrameKind::Macro, name.text.clone(), range);
+        self.run_block(Activation { block: &definition.body, bindings, region: Region::Macro, frame })
+    }
+
+    /// Reports a CALL of something that is not a macro.
+    fn report_unknown_macro(&mut self, name: &Name) {
+        let related = self.definition_of(&name.text);
+        let macros = self
+            .state
+            .symbols
+            .iter()
+            .filter(|(_, symbol)| matches!(symbol.meaning, Meaning::Macro(_)))
+            .map(|(name, _)| name.as_str());
+        let similar = similar_names(&name.text, macros);
+        self.report_related(FindingKind::UnknownMacro { name: name.text.clone(), similar }, name.range, related);
+    }
+
+    /// The values of the variables; nothing if one is missing or unknown.
+    fn bind(
+        &mut self,
+        definition: &MacroDefinition,
+        name: &Name,
+        arguments: &[MacroParameter],
+        origin: &crate::record::Origin,
+    ) -> Option<Bindings> {
+        let mut bindings = Bindings::default();
+        let mut sound = true;
+        for argument in arguments {
+            if !definition.variables.iter().any(|variable| variable.name == argument.name.text) {
+                let known = definition.variables.iter().map(|variable| variable.name.clone()).collect();
+                let finding = FindingKind::UnknownMacroVariable {
+                    name: name.text.clone(),
+                    parameter: argument.name.text.clone(),
+                    known,
+                };
+                let related = vec![(RelatedKind::Macro, origin.clone())];
+                self.report_related(finding, argument.name.range, related);
+                sound = false;
+                continue;
+            }
+            match &argument.value {
+                Some(value) => {
+                    self.mark_elements_used(value);
+                    bindings.bind(argument.name.text.clone(), value.clone());
+                }
+                None => {
+                    let parameter = argument.name.text.clone();
+                    self.report(FindingKind::MacroValueMissing { parameter }, argument.range);
+                    sound = false;
+                }
+            }
+        }
+        for variable in &definition.variables {
+            if arguments.iter().any(|argument| argument.name.text == variable.name) {
+                continue;
+            }
+            match &variable.default {
+                Some(value) => {
+                    self.mark_elements_used(value);
+                    bindings.bind(variable.name.clone(), value.clone());
+                }
+                None => {
+                    let finding = FindingKind::MacroVariableMissing {
+                        name: name.text.clone(),
+                        parameter: variable.name.clone(),
+                    };
+                    self.report_related(finding, name.range, vec![(RelatedKind::Macro, origin.clone())]);
+                    sound = false;
+                }
+            }
+        }
+        sound.then_some(bindings)
+    }
+
+    /// Names handed to a macro count as used: the body decides what becomes of them.
+    fn mark_elements_used(&mut self, value: &[Element]) {
+        for element in value.iter().filter(|element| element.kind == ElementKind::Name) {
+            self.mark_used(&element.text);
+            let key: SmolStr = self.array_key(&element.text);
+            self.mark_used(&key);
+        }
+    }
+}

@@ -1,0 +1,355 @@
+//! Assignments and definitions: what gives a name its meaning.
+
+use std::sync::Arc;
+
+use apt_geometry::{
+    canonical::{Geometry, GeometryKind, Plane},
+    definition::{self, DefinitionContext, Modifier},
+};
+use apt_syntax::{
+    TextRange,
+    statement::{Definition, Expression, Reference},
+};
+use smol_str::SmolStr;
+
+use crate::{
+    evaluator::Evaluator,
+    expression::{Item, Operand, Resolved},
+    finding::{FindingKind, Found, RelatedKind, Severity},
+    record::Origin,
+    symbols::{ArrayElement, DefinitionEvent, Meaning, Stored, Symbol, Value},
+};
+
+/// A target with its subscript evaluated.
+struct Target<'a> {
+    reference: &'a Reference,
+    index: Option<u32>,
+}
+
+impl Evaluator<'_> {
+    /// `target = expression`.
+    pub(crate) fn assignment(&mut self, target: &Reference, value: &Expression) {
+        if self.is_apt4() && self.copy_geometry(target, value).is_some() {
+            return;
+        }
+        let number = self.scalar(value);
+        self.assign_scalar(target, number);
+    }
+
+    /// `Q=P` copies geometry in APT4.
+    fn copy_geometry(&mut self, target: &Reference, value: &Expression) -> Option<()> {
+        let source = Self::plain_reference(value)?;
+        let is_geometry = match self.state.symbol(&source.name.text).map(|symbol| &symbol.meaning) {
+            Some(Meaning::Geometry(_)) => true,
+            _ => source.subscript.is_some() && self.holds_geometry(source),
+        };
+        if !is_geometry {
+            return None;
+        }
+        if let Some(Resolved::Geometry { stored, .. }) = self.resolve(source) {
+            self.define_stored(target, Some(stored), false);
+        }
+        Some(())
+    }
+
+    /// Whether a reference names an array of geometry.
+    fn holds_geometry(&self, reference: &Reference) -> bool {
+        let key = self.array_key(&reference.name.text);
+        matches!(
+            self.state.symbol(&key).map(|symbol| &symbol.meaning),
+            Some(Meaning::Array(array)) if array.holds_geometry == Some(true)
+        )
+    }
+
+    /// Gives a name a number, or poisons it when there is none.
+    pub(crate) fn assign_scalar(&mut self, target: &Reference, number: Option<f64>) {
+        let Some(target) = self.target(target) else { return };
+        if let Some(index) = target.index {
+            self.assign_element(&target, index, number.map_or(ArrayElement::Poisoned, ArrayElement::Scalar));
+            return;
+        }
+        let name = &target.reference.name.text;
+        if let Some(symbol) = self.state.symbol(name) {
+            let finding = match &symbol.meaning {
+                Meaning::Scalar(_) | Meaning::Poisoned => None,
+                Meaning::Geometry(stored) => {
+                    Some(FindingKind::GeometryToScalar { name: name.clone(), kind: stored.geometry.kind() })
+                }
+                Meaning::Array(array) => {
+                    Some(FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent })
+                }
+                other => Some(FindingKind::NotAssignable { name: name.clone(), found: other.found() }),
+            };
+            if let Some(finding) = finding {
+                let related = vec![(RelatedKind::Definition, symbol.origin.clone())];
+                self.report_related(finding, target.reference.range, related);
+                return;
+            }
+        }
+        let origin = self.origin(target.reference.range);
+        match number {
+            Some(value) => {
+                self.log(name.clone(), None, Value::Scalar(value), &origin);
+                self.set_symbol(name.clone(), Meaning::Scalar(value), origin);
+            }
+            None => self.set_symbol(name.clone(), Meaning::Poisoned, origin),
+        }
+    }
+
+    /// `target = TYPE/…`.
+    pub(crate) fn definition(&mut self, target: &Reference, definition: &Definition) {
+        let geometry = self.define(definition, Some(target));
+        let stored = geometry.map(|geometry| Stored { geometry, system: self.state.system.clone() });
+        self.define_stored(target, stored, has_canon(definition));
+    }
+
+    /// `(TYPE/…)` or `(name=TYPE/…)`.
+    pub(crate) fn nested_definition(
+        &mut self,
+        target: Option<&Reference>,
+        definition: &Definition,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let geometry = self.define(definition, target);
+        if let Some(target) = target {
+            let stored =
+                geometry.clone().map(|geometry| Stored { geometry, system: self.state.system.clone() });
+            self.define_stored(target, stored, has_canon(definition));
+        }
+        let geometry = geometry?;
+        if target.is_none() && matches!(*geometry, Geometry::Pattern(_)) {
+            self.report(FindingKind::UnnamedPattern, range);
+            return None;
+        }
+        let name = target.map_or_else(SmolStr::default, |target| target.name.text.clone());
+        Some(Operand::Geometry { name, geometry })
+    }
+
+    /// Evaluates a definition. Mistakes are reported at the definition.
+    fn define(&mut self, definition: &Definition, target: Option<&Reference>) -> Option<Arc<Geometry>> {
+        let word = definition.kind.word.spelling;
+        let items = self.operands(&definition.arguments);
+        let Some(kind) = GeometryKind::from_word(word) else {
+            let finding = FindingKind::UnknownType { word: SmolStr::new_static(word) };
+            self.report(finding, definition.kind.range);
+            return None;
+        };
+        let items = items?;
+        if items.is_empty() {
+            self.report(
+                FindingKind::OperandCount {
+                    statement: SmolStr::new_static(word),
+                    found: 0,
+                    expected: SmolStr::new_static("at least 1"),
+                    number: 129,
+                },
+                definition.range,
+            );
+            return None;
+        }
+        let arguments = self.definition_arguments(kind, &items)?;
+        let Some(z_surface) = self.z_plane() else {
+            self.report(FindingKind::VerticalZSurface, definition.range);
+            return None;
+        };
+        match definition::define(kind, &arguments, &DefinitionContext { z_surface }) {
+            Ok(geometry) => Some(Arc::new(geometry)),
+            Err(error) => {
+                let range = target.map_or(definition.range, |target| definition.range.cover(target.range));
+                self.report(FindingKind::Definition { kind, error }, range);
+                None
+            }
+        }
+    }
+
+    /// Operands as arguments of a definition.
+    fn definition_arguments(&mut self, kind: GeometryKind, items: &[Item]) -> Option<Vec<definition::Argument>> {
+        let mut arguments = Vec::with_capacity(items.len());
+        for item in items {
+            arguments.push(match &item.operand {
+                Operand::Scalar(value) => definition::Argument::Scalar(*value),
+                Operand::Geometry { geometry, .. } => definition::Argument::Geometry((**geometry).clone()),
+                Operand::Empty => definition::Argument::Empty,
+                Operand::Word(word) => match Modifier::from_word(word.spelling) {
+                    Some(modifier) => definition::Argument::Modifier(modifier),
+                    None => return self.unknown_modifier(kind, SmolStr::new_static(word.spelling), item.range),
+                },
+                Operand::Text(text) => return self.unknown_modifier(kind, text.clone(), item.range),
+            });
+        }
+        Some(arguments)
+    }
+
+    /// Reports a word that no definition knows.
+    fn unknown_modifier<T>(&mut self, kind: GeometryKind, word: SmolStr, range: TextRange) -> Option<T> {
+        self.report(FindingKind::DefinitionWord { kind, word }, range);
+        None
+    }
+
+    /// The ZSURF plane in the coordinates of the reference system in force; none if it cannot be carried there.
+    pub(crate) fn z_plane(&self) -> Option<Plane> {
+        if self.state.z_system == self.state.system {
+            return Some(self.state.z_surface);
+        }
+        let stored = Stored {
+            geometry: Arc::new(Geometry::Plane(self.state.z_surface)),
+            system: self.state.z_system.clone(),
+        };
+        match stored.seen_from(self.state.system.as_ref()).as_deref() {
+            Some(Geometry::Plane(plane)) => Some(*plane),
+            _ => None,
+        }
+    }
+
+    /// Gives a name geometry, or poisons it when there is none; `canon` allows a redefinition.
+    fn define_stored(&mut self, target: &Reference, stored: Option<Stored>, canon: bool) {
+        let Some(target) = self.target(target) else { return };
+        let canon = canon || self.state.canon;
+        if let Some(index) = target.index {
+            if self.may_redefine_element(&target, index, stored.as_ref(), canon) {
+                let element = stored.map_or(ArrayElement::Poisoned, ArrayElement::Geometry);
+                self.assign_element(&target, index, element);
+            }
+            return;
+        }
+        let name = target.reference.name.text.clone();
+        let range = target.reference.range;
+        let existing = self.state.symbol(&name).cloned();
+        if let Some(symbol) = &existing
+            && !self.may_redefine(&name, symbol, stored.as_ref(), canon, range)
+        {
+            return;
+        }
+        let origin = self.origin(range);
+        match stored {
+            Some(stored) => {
+                self.log(name.clone(), None, Value::Geometry(Arc::clone(&stored.geometry)), &origin);
+                self.set_symbol(name, Meaning::Geometry(stored), origin);
+            }
+            None if existing.is_none() => self.set_symbol(name, Meaning::Poisoned, origin),
+            None => {}
+        }
+    }
+
+    /// Whether this name may get this geometry; if not, it has been reported.
+    fn may_redefine(
+        &mut self,
+        name: &SmolStr,
+        symbol: &Symbol,
+        stored: Option<&Stored>,
+        canon: bool,
+        range: TextRange,
+    ) -> bool {
+        let finding = match &symbol.meaning {
+            Meaning::Poisoned => return true,
+            Meaning::Geometry(old) => {
+                let old = old.geometry.kind();
+                match stored.map(|stored| stored.geometry.kind()) {
+                    None => return true,
+                    Some(new) if new == old && canon => return true,
+                    Some(new) if canon => FindingKind::RedefinedAsOtherKind { name: name.clone(), old, new },
+                    Some(_) => FindingKind::Redefined { name: name.clone(), kind: old },
+                }
+            }
+            Meaning::Scalar(_) => FindingKind::ScalarToGeometry { name: name.clone() },
+            Meaning::Array(array) => FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent },
+            other => FindingKind::NotAssignable { name: name.clone(), found: other.found() },
+        };
+        let warns_only = self.is_apt4() && matches!(finding, FindingKind::Redefined { .. });
+        let severity = if warns_only { Severity::Warning } else { finding.severity() };
+        let related = vec![(RelatedKind::Definition, symbol.origin.clone())];
+        self.report_as(finding, severity, range, related);
+        warns_only
+    }
+
+    /// The same for an element of an array.
+    fn may_redefine_element(
+        &mut self,
+        target: &Target<'_>,
+        index: u32,
+        stored: Option<&Stored>,
+        canon: bool,
+    ) -> bool {
+        let key = self.array_key(&target.reference.name.text);
+        let Some(symbol) = self.state.symbol(&key).cloned() else { return false };
+        let Meaning::Array(array) = &symbol.meaning else { return false };
+        let Some(ArrayElement::Geometry(old)) = array.get(index) else { return true };
+        let name = smol_str::format_smolstr!("{}({index})", target.reference.name.text);
+        let element = Symbol { meaning: Meaning::Geometry(old.clone()), origin: symbol.origin.clone() };
+        self.may_redefine(&name, &element, stored, canon, target.reference.range)
+    }
+
+    /// Defines an element of an array, unless it holds the other sort.
+    fn assign_element(&mut self, target: &Target<'_>, index: u32, element: ArrayElement) {
+        let name = &target.reference.name.text;
+        let key = self.array_key(name);
+        let Some(symbol) = self.state.symbol(&key) else { return };
+        let Meaning::Array(array) = &symbol.meaning else { return };
+        let reserved = symbol.origin.clone();
+        let is_geometry = matches!(element, ArrayElement::Geometry(_));
+        let clash = array.holds_geometry.is_some_and(|holds| holds != is_geometry)
+            && !matches!(element, ArrayElement::Poisoned);
+        if clash {
+            let finding = FindingKind::MixedArray { name: name.clone(), holds_geometry: !is_geometry };
+            let related = vec![(RelatedKind::Reservation, reserved)];
+            self.report_related(finding, target.reference.range, related);
+            return;
+        }
+        let mut array = array.clone();
+        let origin = self.origin(target.reference.range);
+        let value = match &element {
+            ArrayElement::Scalar(number) => Some(Value::Scalar(*number)),
+            ArrayElement::Geometry(stored) => Some(Value::Geometry(Arc::clone(&stored.geometry))),
+            ArrayElement::Poisoned => None,
+        };
+        if let Some(value) = value {
+            self.log(name.clone(), Some(index), value, &origin);
+        }
+        array.set(index, element);
+        self.set_symbol(key, Meaning::Array(array), reserved);
+    }
+
+    /// A target with its subscript evaluated and checked.
+    fn target<'b>(&mut self, reference: &'b Reference) -> Option<Target<'b>> {
+        let index = match &reference.subscript {
+            None => None,
+            Some(subscript) => {
+                let number = self.scalar(subscript);
+                let was_used = self.output.used.contains(&reference.name.text);
+                let index = self.element_index(reference, number?)?;
+                if !was_used {
+                    self.output.used.remove(&reference.name.text);
+                }
+                Some(index)
+            }
+        };
+        Some(Target { reference, index })
+    }
+
+    /// Sets the meaning of a name.
+    pub(crate) fn set_symbol(&mut self, name: SmolStr, meaning: Meaning, origin: Origin) {
+        if !self.output.touched.contains(&name) {
+            self.output.touched.insert(name.clone());
+        }
+        self.state.symbols.insert(name, Symbol { meaning, origin });
+    }
+
+    /// Writes a definition to the log.
+    fn log(&mut self, name: SmolStr, subscript: Option<u32>, value: Value, origin: &Origin) {
+        self.output.definitions.push(DefinitionEvent { name, subscript, value, origin: origin.clone() });
+    }
+
+    /// What a name is, as evidence.
+    pub(crate) fn found_name(&self, name: &str) -> Found {
+        self.state.symbol(name).map_or(Found::Nothing, |symbol| symbol.meaning.found())
+    }
+}
+
+/// Whether CANON stands among the parameters, which allows a redefinition.
+fn has_canon(definition: &Definition) -> bool {
+    use apt_syntax::statement::Argument;
+    definition
+        .arguments
+        .iter()
+        .any(|argument| matches!(argument, Argument::Word(word) if word.word.spelling == "CANON"))
+}

@@ -1,0 +1,125 @@
+//! Path parameters and path control: CUTTER, tolerances, limits, switches (language reference 6.5, 6.7, 6.8).
+
+use apt_geometry::motion::{MotionCommand, PerRole};
+use smol_str::SmolStr;
+
+use super::Major;
+use crate::{
+    evaluator::Evaluator,
+    finding::{Expected, FindingKind, Found},
+    record::{PostArgument, RecordKind},
+};
+
+impl Evaluator<'_> {
+    /// CUTTER with 1, 2 or 7 numbers, or CUTTER/OPTION.
+    pub(crate) fn cutter(&mut self, major: Major<'_>) {
+        const EXPECTED: &str = "1, 2 or 7";
+        let Some(items) = self.operands_of(major, EXPECTED, 129) else { return };
+        if items.first().and_then(|item| item.word()) == Some("OPTION") {
+            return self.control(major, &items, [6000, 6]);
+        }
+        // CL files of CAM systems give any number of values.
+        let Some(values) = self.scalars_of(major, &items, 129) else { return };
+        if !matches!(values.len(), 1 | 2 | 7) && !self.is_cl() {
+            return self.wrong_count(major, values.len(), EXPECTED, 129);
+        }
+        self.motion(MotionCommand::Cutter(values), major.range);
+    }
+
+    /// INTOL, OUTTOL, TOLER and THICK: missing values repeat the last one.
+    pub(crate) fn per_role(&mut self, major: Major<'_>) {
+        const EXPECTED: &str = "1 to 4";
+        let Some(items) = self.operands_of(major, EXPECTED, 129) else { return };
+        let Some(values) = self.scalars_of(major, &items, 129) else { return };
+        let (Some(first), 1..=4) = (values.first().copied(), values.len()) else {
+            return self.wrong_count(major, values.len(), EXPECTED, 129);
+        };
+        let last = values.last().copied().unwrap_or(first);
+        let value = |index: usize| values.get(index).copied().unwrap_or(last);
+        let roles = PerRole { part: first, drive: value(1), check: [value(2), value(3)] };
+        let is_thickness = major.spelling() == "THICK";
+        if !is_thickness && let Some(negative) = values.iter().find(|value| **value < 0.0) {
+            self.report(FindingKind::Doubtful { statement: major.name(), value: *negative }, major.range);
+        }
+        match major.spelling() {
+            "INTOL" => self.motion(MotionCommand::InsideTolerance(roles), major.range),
+            "OUTTOL" => self.motion(MotionCommand::OutsideTolerance(roles), major.range),
+            "THICK" => self.motion(MotionCommand::Thickness(roles), major.range),
+            _ => {
+                self.motion(MotionCommand::OutsideTolerance(roles), major.range);
+                self.motion(MotionCommand::InsideTolerance(PerRole::all(0.0)), major.range);
+            }
+        }
+    }
+
+    /// MAXDP and NUMPTS.
+    pub(crate) fn limit(&mut self, major: Major<'_>) {
+        let Some(items) = self.operands_of(major, "1", 129) else { return };
+        let Some(values) = self.scalars_of(major, &items, 129) else { return };
+        let [value] = *values.as_slice() else { return self.wrong_count(major, values.len(), "1", 129) };
+        let is_step = major.spelling() == "MAXDP";
+        if !(value > 0.0) || (!is_step && value < 1.0) {
+            let finding = FindingKind::OperandRange { statement: major.name(), value, number: None };
+            return self.report(finding, major.range);
+        }
+        if is_step {
+            return self.motion(MotionCommand::MaximumStep(value), major.range);
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive; saturates")]
+        self.motion(MotionCommand::MaximumPoints(value as u32), major.range);
+    }
+
+    /// CUT, DNTCUT, 2DCALC, 3DCALC, NDTEST, AUTOPS, NOPS, MULTAX and GOUGCK.
+    pub(crate) fn path_control(&mut self, major: Major<'_>) {
+        let Some(items) = self.operands(major.arguments) else { return };
+        let words: Option<Vec<&str>> = items.iter().map(|item| item.word()).collect();
+        let command = match (major.spelling(), words.as_deref()) {
+            ("CUT", Some([])) => MotionCommand::Output(true),
+            ("DNTCUT", Some([] | ["PRINT"])) => MotionCommand::Output(false),
+            ("2DCALC" | "NDTEST", Some([])) => MotionCommand::ForceIteration(false),
+            ("3DCALC", Some([])) => MotionCommand::ForceIteration(true),
+            ("AUTOPS", Some([])) => MotionCommand::AutomaticPartSurface,
+            ("NOPS", Some([])) => MotionCommand::NoPartSurface,
+            ("GOUGCK", Some(["ON"])) => MotionCommand::GougeCheck(true),
+            ("GOUGCK", Some(["OFF"])) => MotionCommand::GougeCheck(false),
+            ("MULTAX", Some([])) => {
+                self.state.axes_for_good = true;
+                MotionCommand::MultipleAxes(None)
+            }
+            // After plain MULTAX the other forms have no effect (language reference 6.9).
+            ("MULTAX", Some(["ON" | "OFF"])) if self.state.axes_for_good => return,
+            ("MULTAX", Some(["ON"])) => MotionCommand::MultipleAxes(Some(true)),
+            ("MULTAX", Some(["OFF"])) => MotionCommand::MultipleAxes(Some(false)),
+            ("MULTAX" | "GOUGCK", _) => {
+                let found = items.first().map_or(Found::Nothing, |item| item.found());
+                return self.wrong_operand(major, Expected::OnOrOff, found, 132, major.range);
+            }
+            _ => return self.report(FindingKind::PostBare { word: major.name() }, major.range),
+        };
+        self.motion(command, major.range);
+    }
+
+    /// DMILL and BEVELS: accepted by the translator, kept on the CL file (language reference 6.8).
+    pub(crate) fn accepted_control(&mut self, major: Major<'_>) {
+        let subclass = if major.spelling() == "DMILL" { 11 } else { 2 };
+        if let Some(items) = self.operands(major.arguments) {
+            self.control(major, &items, [6000, subclass]);
+        }
+    }
+
+    /// A control record of words and numbers.
+    pub(crate) fn control(&mut self, major: Major<'_>, items: &[crate::expression::Item], code: [u16; 2]) {
+        let mut arguments = Vec::with_capacity(items.len());
+        for item in items {
+            match (item.scalar(), item.word()) {
+                (Some(number), _) => arguments.push(PostArgument::Number(number)),
+                (_, Some(word)) => {
+                    let code = crate::statements::postprocessor::minor_code(word);
+                    arguments.push(PostArgument::Word(SmolStr::new_static(word), code));
+                }
+                _ => return self.wrong_operand(major, Expected::ScalarOrWord, item.found(), 132, item.range),
+            }
+        }
+        self.emit(RecordKind::Control { word: major.name(), code, arguments }, major.range);
+    }
+}

@@ -1,0 +1,170 @@
+//! Post-processor statements and texts: opaque, but the kind of each parameter is checked (language reference 8).
+
+use apt_geometry::canonical::{Geometry, GeometryKind};
+use apt_syntax::{
+    TextRange,
+    statement::{Argument, Expression, Name, WordUse},
+    vocabulary::{self, WordClass},
+};
+use smol_str::SmolStr;
+
+use super::Major;
+use crate::{
+    evaluator::Evaluator,
+    expression::{Item, Items, Operand},
+    finding::FindingKind,
+    record::{PostArgument, RecordKind},
+};
+
+/// Most MACHIN statements (language reference 1.10).
+const MOST_MACHINES: u32 = 9;
+
+/// Subclass of a word that has none: those of later dialects.
+const NO_CODE: u16 = 0;
+
+/// The integer code of a minor word; zero for a word without one.
+pub(crate) fn minor_code(word: &str) -> u16 {
+    vocabulary::lookup(word).and_then(|word| word.code).unwrap_or(NO_CODE)
+}
+
+/// What geometry a post-processor word takes: none, any surface, or one type.
+enum TakesGeometry {
+    No,
+    AnySurface,
+    Only(GeometryKind),
+}
+
+/// The words that take geometry (language reference 3.5).
+fn takes_geometry(word: &str) -> TakesGeometry {
+    match word {
+        "CLEARP" => TakesGeometry::Only(GeometryKind::Plane),
+        "CLRSRF" => TakesGeometry::AnySurface,
+        "TRANS" | "ORIGIN" => TakesGeometry::Only(GeometryKind::Matrix),
+        _ => TakesGeometry::No,
+    }
+}
+
+impl Evaluator<'_> {
+    /// PARTNO, PPRINT, INSERT; REMARK and TITLES leave nothing.
+    pub(crate) fn text_statement(&mut self, word: &WordUse, text: &SmolStr, range: TextRange) {
+        let spelling = word.word.spelling;
+        if matches!(spelling, "REMARK" | "TITLES") {
+            return;
+        }
+        let code = word.word.code.unwrap_or(NO_CODE);
+        self.emit(RecordKind::Text { word: SmolStr::new_static(spelling), code, text: text.clone() }, range);
+    }
+
+    /// A post-processor word with its parameters.
+    pub(crate) fn postprocessor(&mut self, major: Major<'_>) {
+        let bare = major.word.word.class == WordClass::PostprocessorBare && self.dialect.bare_words_strict;
+        if bare && (major.slash || !major.arguments.is_empty()) {
+            return self.report(FindingKind::PostBare { word: major.name() }, major.range);
+        }
+        if major.spelling() == "MACHIN" {
+            return self.machine(major);
+        }
+        let Some(items) = self.post_operands(major.arguments) else { return };
+        self.emit_post(major, &items, Vec::with_capacity(items.len()));
+    }
+
+    /// A word that nobody knows, in a CL file: its parameters go through as they are.
+    pub(crate) fn unknown_word(&mut self, name: &Name, arguments: &[Argument], range: TextRange) {
+        let Some(items) = self.post_operands(arguments) else { return };
+        let arguments = items
+            .into_iter()
+            .map(|item| match item.operand {
+                Operand::Scalar(value) => PostArgument::Number(value),
+                Operand::Word(word) => {
+                    PostArgument::Word(SmolStr::new_static(word.spelling), word.code.unwrap_or(NO_CODE))
+                }
+                Operand::Text(text) => PostArgument::Text(text),
+                Operand::Empty => PostArgument::Text(SmolStr::default()),
+                Operand::Geometry { geometry, .. } => PostArgument::Geometry((*geometry).clone()),
+            })
+            .collect();
+        self.emit(RecordKind::Postprocessor { word: name.text.clone(), code: NO_CODE, arguments }, range);
+    }
+
+    /// Operands; in CL files a name without value is text.
+    fn post_operands(&mut self, arguments: &[Argument]) -> Option<Items> {
+        if !self.is_cl() {
+            return self.operands(arguments);
+        }
+        let mut items = Vec::with_capacity(arguments.len());
+        let mut complete = true;
+        for argument in arguments {
+            if let Argument::Expression(Expression::Reference(reference)) = argument
+                && self.state.symbol(&reference.name.text).is_none()
+            {
+                let operand = Operand::Text(reference.name.text.clone());
+                items.push(Item { operand, range: reference.range });
+                continue;
+            }
+            complete &= self.operand(argument, &mut items).is_some();
+        }
+        complete.then_some(items)
+    }
+
+    /// Checks the operands and writes the record.
+    fn emit_post(&mut self, major: Major<'_>, items: &[Item], mut arguments: Vec<PostArgument>) {
+        let mut sound = true;
+        for item in items {
+            let argument = match &item.operand {
+                Operand::Scalar(value) => PostArgument::Number(*value),
+                Operand::Word(word) => {
+                    PostArgument::Word(SmolStr::new_static(word.spelling), word.code.unwrap_or(NO_CODE))
+                }
+                Operand::Text(text) => PostArgument::Text(text.clone()),
+                Operand::Empty => PostArgument::Text(SmolStr::default()),
+                Operand::Geometry { geometry, .. } => match self.post_geometry(major, geometry, item.range) {
+                    Some(argument) => argument,
+                    None => {
+                        sound = false;
+                        continue;
+                    }
+                },
+            };
+            arguments.push(argument);
+        }
+        if sound {
+            let code = major.word.word.code.unwrap_or(NO_CODE);
+            self.emit(RecordKind::Postprocessor { word: major.name(), code, arguments }, major.range);
+        }
+    }
+
+    /// Geometry, where the word takes it.
+    fn post_geometry(&mut self, major: Major<'_>, geometry: &Geometry, range: TextRange) -> Option<PostArgument> {
+        let kind = geometry.kind();
+        let takes = takes_geometry(major.spelling());
+        let fits = match takes {
+            TakesGeometry::No => false,
+            TakesGeometry::AnySurface => kind.is_surface(),
+            TakesGeometry::Only(only) => kind == only,
+        };
+        if fits {
+            return Some(PostArgument::Geometry(geometry.clone()));
+        }
+        let other_type = !matches!(takes, TakesGeometry::No);
+        self.report(FindingKind::PostGeometry { word: major.name(), kind, other_type }, range);
+        None
+    }
+
+    /// MACHIN/name,n,...: the name is taken as it stands.
+    fn machine(&mut self, major: Major<'_>) {
+        let name = match major.arguments.first() {
+            Some(Argument::Expression(Expression::Reference(reference))) if reference.subscript.is_none() => {
+                reference.name.text.clone()
+            }
+            Some(Argument::Word(word)) if self.is_cl() => SmolStr::new_static(word.word.spelling),
+            Some(Argument::Text { text, .. }) => text.clone(),
+            _ => return self.report(FindingKind::MachineName, major.range),
+        };
+        self.state.machines += 1;
+        if self.state.machines > MOST_MACHINES {
+            return self.report(FindingKind::MachineCount { limit: MOST_MACHINES }, major.range);
+        }
+        let Some(items) = self.post_operands(&major.arguments[1..]) else { return };
+        self.emit_post(major, &items, vec![PostArgument::Text(name)]);
+    }
+}
