@@ -4,6 +4,7 @@
 //! analysis, and converts what comes back.
 
 mod analysis;
+mod cli;
 mod convert;
 mod server;
 mod settings;
@@ -13,5 +14,5 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 fn main() -> ExitCode {
-    server::run(Arc::new(analysis::fake::FakeLanguage::default()))
+    cli::main(Arc::new(analysis::fake::FakeLanguage::default()))
 }

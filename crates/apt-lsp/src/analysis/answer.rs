@@ -354,8 +354,6 @@ pub(crate) struct RunRequest {
 /// What can be written to a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Product {
-    /// The listing for people.
-    Listing,
     /// CL text.
     ClText,
     /// The binary CLTAPE of APT III.

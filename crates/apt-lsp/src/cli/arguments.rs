@@ -1,0 +1,265 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Language server, motion engine and checks for APT part programs.
+///
+/// Without a command and without --check it is a language server on standard input and output.
+#[derive(Debug, Parser)]
+#[command(name = "apt-lsp", version, about, long_about)]
+pub(super) struct Arguments {
+    /// Language server on standard input and output (as without arguments)
+    #[arg(long, conflicts_with = "check")]
+    pub stdio: bool,
+    /// Process id of the editor; some editors pass it, the server gets it in the protocol
+    #[arg(long = "clientProcessId", hide = true)]
+    pub client_process_id: Option<u32>,
+    /// Diagnostics of files and folders
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub check: Vec<PathBuf>,
+    #[command(flatten)]
+    pub check_options: CheckOptions,
+    /// When to colour
+    #[arg(long, value_enum, default_value_t = Color::Auto, global = true, value_name = "WHEN")]
+    pub color: Color,
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// When to colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Color {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The calls.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Diagnostics of files and folders
+    Check(CheckCall),
+    /// Run a program: canonical forms, CL points, totals
+    Run(RunCall),
+    /// Make the control tape of a program
+    Post(PostCall),
+    /// A program with macros and loops unrolled, each line with its origin
+    Expand(ExpandCall),
+    /// The path as a stand-alone page or picture
+    View(ViewCall),
+    /// What a diagnostic means, with a wrong and a right sample
+    Explain(ExplainCall),
+    /// The syntax tree of a program
+    Tree(ProgramArgument),
+    /// The machines that a tape can be made for
+    Machines,
+}
+
+/// A program and how to read it.
+#[derive(Debug, Args)]
+pub(super) struct ProgramArgument {
+    /// The program; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub dialect: DialectOption,
+}
+
+/// The dialect, for every call that reads a program.
+#[derive(Debug, Clone, Args)]
+pub(super) struct DialectOption {
+    /// Dialect: free, apt3, apt4, cl … (default: project file, first line, detection)
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<String>,
+}
+
+/// How findings are told by `check`.
+#[derive(Debug, Clone, Args)]
+pub(super) struct CheckOptions {
+    #[command(flatten)]
+    pub dialect: DialectOption,
+    /// How to tell the findings
+    #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
+    pub format: CheckFormat,
+    /// Leave out motion: syntax, names and geometry only
+    #[arg(long)]
+    pub no_motion: bool,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+/// `check`.
+#[derive(Debug, Args)]
+pub(super) struct CheckCall {
+    /// Files and folders; `-` is standard input
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    #[command(flatten)]
+    pub options: CheckOptions,
+}
+
+/// Formats of findings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum CheckFormat {
+    /// With excerpts of the source, for people
+    Human,
+    /// JSON
+    Json,
+    /// SARIF 2.1.0
+    Sarif,
+    /// Annotations of GitHub workflows
+    Github,
+}
+
+/// Formats of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum RunFormat {
+    /// A listing for people
+    Human,
+    /// JSON
+    Json,
+    /// SARIF 2.1.0 (findings only)
+    Sarif,
+    /// Annotations of GitHub workflows (findings only)
+    Github,
+    /// CL text
+    Cl,
+    /// The binary CLTAPE of APT III
+    Cltape,
+}
+
+/// `run`.
+#[derive(Debug, Args)]
+pub(super) struct RunCall {
+    #[command(flatten)]
+    pub program: ProgramArgument,
+    /// What to print (default: by the name of OUT, else human)
+    #[arg(long, value_enum)]
+    pub format: Option<RunFormat>,
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+/// Codes of punched tape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Punch {
+    /// EIA RS-244
+    Eia,
+    /// ISO, RS-358
+    Iso,
+}
+
+/// `post`.
+#[derive(Debug, Args)]
+pub(super) struct PostCall {
+    /// The program; `-` is standard input
+    #[arg(value_name = "FILE", required_unless_present = "list_machines")]
+    pub file: Option<PathBuf>,
+    #[command(flatten)]
+    pub dialect: DialectOption,
+    /// The machine (default: project file)
+    #[arg(long, value_name = "NAME")]
+    pub machine: Option<String>,
+    /// Print the machines there are
+    #[arg(long)]
+    pub list_machines: bool,
+    /// Write the image of a punched tape
+    #[arg(long, value_enum, value_name = "CODE")]
+    pub punch: Option<Punch>,
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// `expand`.
+#[derive(Debug, Args)]
+pub(super) struct ExpandCall {
+    #[command(flatten)]
+    pub program: ProgramArgument,
+    /// Only the macro call or loop at this line (from 1), and column (from 1)
+    #[arg(long, value_name = "LINE[:COL]", value_parser = Place::parse)]
+    pub at: Option<Place>,
+    /// Levels of macros and loops to unroll (default: all)
+    #[arg(long, value_name = "LEVELS")]
+    pub depth: Option<u32>,
+}
+
+/// A place as people count: from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The line.
+    pub line: u32,
+    /// The column, in characters.
+    pub column: u32,
+}
+
+impl Place {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (line, column) = text.split_once(':').unwrap_or((text, "1"));
+        match (line.parse(), column.parse()) {
+            (Ok(line), Ok(column)) if line > 0 && column > 0 => Ok(Self { line, column }),
+            _ => Err("not LINE or LINE:COL, both from 1".to_owned()),
+        }
+    }
+}
+
+/// `view`.
+#[derive(Debug, Args)]
+pub(super) struct ViewCall {
+    #[command(flatten)]
+    pub program: ProgramArgument,
+    /// The page or picture; its name ends with .html, .svg or .png
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+}
+
+/// `explain`.
+#[derive(Debug, Args)]
+pub(super) struct ExplainCall {
+    /// The code, APTnnnn
+    #[arg(value_name = "CODE")]
+    pub code: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn check_is_an_option_and_a_command() {
+        let parse = |words: &[&str]| Arguments::try_parse_from([&["apt-lsp"], words].concat()).unwrap();
+        let option = parse(&["--check", "a", "b", "--format", "sarif", "--no-motion"]);
+        assert_eq!((option.check.len(), option.check_options.format), (2, CheckFormat::Sarif));
+        let Some(Command::Check(call)) = parse(&["check", "a", "--deny-warnings"]).command else {
+            panic!("no call")
+        };
+        assert_eq!((call.paths.len(), call.options.deny_warnings), (1, true));
+        assert!(parse(&["--stdio"]).command.is_none());
+    }
+
+    #[test]
+    fn places_count_from_one() {
+        assert_eq!(Place::parse("3"), Ok(Place { line: 3, column: 1 }));
+        assert_eq!(Place::parse("3:7"), Ok(Place { line: 3, column: 7 }));
+        for wrong in ["", "0", "1:0", "a", "1:", "-1", "1:2:3"] {
+            assert!(Place::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! `expand`: a program with macros and loops unrolled.
+
+use tower_lsp::ls_types::Position;
+
+use super::Outcome;
+use super::arguments::ExpandCall;
+use super::console::Console;
+use super::program::Program;
+use crate::analysis::{ExpandedLine, Expansion, Language};
+use crate::convert::Encoding;
+use crate::convert::outgoing::frame_text;
+
+/// Column at which the origin of a line begins.
+const ORIGIN_COLUMN: usize = 40;
+
+/// Prints the expansion, the origin of each line in a remark behind it.
+pub(super) fn expand(call: &ExpandCall, console: &Console, language: &dyn Language) -> Outcome {
+    let Some(mut program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
+    let at = match call.at {
+        None => None,
+        Some(place) if place.line as usize > program.index.rope.len_lines() => {
+            console.error(&format!("{}: there is no line {}", program.name, place.line));
+            return Outcome::Unusable;
+        }
+        Some(place) => {
+            // People count characters.
+            program.index.encoding = Encoding::Utf32;
+            Some(program.index.offset(Position { line: place.line - 1, character: place.column - 1 }))
+        }
+    };
+    let (control, bar) = console.control(&program.name);
+    let expansion = program.document.expand(at, call.depth, &control);
+    bar.finish_and_clear();
+    match expansion {
+        Ok(expansion) => console.print(&with_origins(&expansion)),
+        Err(interrupted) => {
+            console.error(&format!("{}: {interrupted}", program.name));
+            Outcome::Unusable
+        }
+    }
+}
+
+fn with_origins(expansion: &Expansion) -> String {
+    let mut text = String::new();
+    let mut origins = expansion.origins.iter().peekable();
+    for (number, line) in expansion.text.lines().enumerate() {
+        match origins.next_if(|origin| origin.line as usize == number) {
+            Some(origin) => {
+                text.push_str(&format!("{line:<ORIGIN_COLUMN$} $$ {}\n", origin_text(origin)));
+            }
+            None => text.push_str(&format!("{line}\n")),
+        }
+    }
+    text
+}
+
+fn origin_text(origin: &ExpandedLine) -> String {
+    let frames = origin.stack.iter().map(|frame| format!(", {}", frame_text(frame)));
+    format!("statement {}{}", origin.isn, frames.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::OriginFrame;
+
+    #[test]
+    fn origins_stand_behind_their_lines() {
+        let frame = OriginFrame { kind: "macro", name: "M".into(), isn: 9, turn: 1, range: None };
+        let line = |line, isn, stack| ExpandedLine { line, isn, range: 0..0, stack };
+        let expansion = Expansion {
+            text: "PARTNO\n  NOTHING\nGOLFT/L1\n".into(),
+            origins: vec![line(0, 1, Vec::new()), line(2, 4, vec![frame])],
+        };
+        let text = with_origins(&expansion);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(lines[0], format!("{:<40} $$ statement 1", "PARTNO"));
+        assert_eq!(lines[1], "  NOTHING");
+        assert_eq!(
+            lines[2],
+            format!("{:<40} $$ statement 4, in the macro M called at statement 9", "GOLFT/L1")
+        );
+    }
+}

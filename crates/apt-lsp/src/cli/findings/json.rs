@@ -1,0 +1,38 @@
+//! Findings as JSON.
+
+use serde_json::{Value, json};
+
+use super::{Checked, Counts};
+use crate::analysis::Diagnostic;
+use crate::cli::program::Program;
+
+/// The report as a line of JSON.
+pub(in crate::cli) fn text(checked: &[Checked]) -> String {
+    let Counts { errors, warnings } = Counts::of(checked);
+    let file = |checked: &Checked| {
+        let diagnostics: Vec<_> =
+            checked.diagnostics.iter().map(|found| diagnostic(&checked.program, found)).collect();
+        json!({ "file": checked.program.name, "diagnostics": diagnostics })
+    };
+    let files: Vec<_> = checked.iter().map(file).collect();
+    format!("{}\n", json!({ "files": files, "summary": { "errors": errors, "warnings": warnings } }))
+}
+
+fn diagnostic(program: &Program, found: &Diagnostic) -> Value {
+    let range = |bytes| json!(program.index.range(bytes));
+    let related = found.related.iter().map(
+        |related| json!({ "message": related.message, "file": program.name, "range": range(&related.range) }),
+    );
+    json!({
+        "code": found.code,
+        "severity": found.severity.name(),
+        "message": found.message,
+        "isn": found.isn,
+        "apt3": found.apt3,
+        "file": program.name,
+        "range": range(&found.range),
+        "origin": found.origin,
+        "related": related.collect::<Vec<_>>(),
+        "hint": found.hint,
+    })
+}

@@ -1,0 +1,143 @@
+//! Findings as SARIF 2.1.0.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+use serde_sarif::sarif;
+
+use super::Checked;
+use crate::analysis::{Diagnostic, Language, Severity};
+use crate::cli::Outcome;
+use crate::cli::console::Console;
+use crate::cli::program::Program;
+use crate::convert::outgoing::frame_text;
+
+/// Prints the log.
+pub(in crate::cli) fn print(checked: &[Checked], console: &Console, language: &dyn Language) -> Outcome {
+    match serde_json::to_string_pretty(&log(checked, language)) {
+        Ok(text) => console.print(&format!("{text}\n")),
+        Err(error) => {
+            console.error(&format!("SARIF: {error}"));
+            Outcome::Unusable
+        }
+    }
+}
+
+fn log(checked: &[Checked], language: &dyn Language) -> sarif::Sarif {
+    let codes = rule_numbers(checked);
+    let results: Vec<_> = checked
+        .iter()
+        .flat_map(|checked| checked.diagnostics.iter().map(|found| result(&checked.program, found, &codes)))
+        .collect();
+    let rules: Vec<_> = codes.keys().map(|code| rule(code, language)).collect();
+    let driver = sarif::ToolComponent::builder()
+        .name(env!("CARGO_PKG_NAME"))
+        .version(env!("CARGO_PKG_VERSION"))
+        .rules(rules)
+        .build();
+    let tool = sarif::Tool::builder().driver(driver).build();
+    let run = sarif::Run::builder().tool(tool).results(results).column_kind(json!("utf16CodeUnits")).build();
+    sarif::Sarif::builder()
+        .version(json!("2.1.0"))
+        .schema("https://json.schemastore.org/sarif-2.1.0.json")
+        .runs(vec![run])
+        .build()
+}
+
+/// The codes that occur, each with its place in the list of rules.
+fn rule_numbers(checked: &[Checked]) -> BTreeMap<&str, i64> {
+    let found = checked.iter().flat_map(|checked| &checked.diagnostics);
+    let codes: std::collections::BTreeSet<&str> = found.map(|found| found.code.as_str()).collect();
+    codes.into_iter().zip(0..).collect()
+}
+
+fn rule(code: &str, language: &dyn Language) -> sarif::ReportingDescriptor {
+    let words = |text: String| sarif::MultiformatMessageString::builder().text(text).build();
+    let title = language.title(code).unwrap_or_else(|| code.to_owned());
+    let mut rule = sarif::ReportingDescriptor::builder().id(code).short_description(words(title)).build();
+    rule.help = language
+        .explain(code)
+        .map(|page| sarif::MultiformatMessageString::builder().text(page.clone()).markdown(page).build());
+    rule
+}
+
+fn result(program: &Program, found: &Diagnostic, codes: &BTreeMap<&str, i64>) -> sarif::Result {
+    let text = match &found.hint {
+        Some(hint) => format!("{}\nhelp: {hint}", found.message),
+        None => found.message.clone(),
+    };
+    let level = match found.severity {
+        Severity::Error => sarif::ResultLevel::Error,
+        Severity::Warning => sarif::ResultLevel::Warning,
+        Severity::Information | Severity::Hint => sarif::ResultLevel::Note,
+    };
+    let mut related: Vec<_> = found
+        .related
+        .iter()
+        .map(|related| location(program, &related.range, Some(&related.message)))
+        .collect();
+    related.extend(
+        found
+            .origin
+            .iter()
+            .filter_map(|frame| Some(location(program, frame.range.as_ref()?, Some(&frame_text(frame))))),
+    );
+    let mut result = sarif::Result::builder()
+        .rule_id(found.code.as_str())
+        .message(sarif::Message::builder().text(text).build())
+        .level(level)
+        .locations(vec![location(program, &found.range, None)])
+        .build();
+    result.rule_index = codes.get(found.code.as_str()).copied();
+    result.related_locations = (!related.is_empty()).then_some(related);
+    result.properties = Some(properties(found));
+    result
+}
+
+fn properties(found: &Diagnostic) -> sarif::PropertyBag {
+    let facts: [(&str, Value); 2] = [("isn", json!(found.isn)), ("apt3", json!(found.apt3))];
+    let known = facts.into_iter().filter(|(_, value)| !value.is_null());
+    let additional: BTreeMap<String, Value> = known.map(|(name, value)| (name.to_owned(), value)).collect();
+    sarif::PropertyBag::builder().additional_properties(additional).build()
+}
+
+fn location(program: &Program, bytes: &std::ops::Range<usize>, message: Option<&str>) -> sarif::Location {
+    let range = program.index.range(bytes);
+    let region = sarif::Region::builder()
+        .start_line(i64::from(range.start.line) + 1)
+        .start_column(i64::from(range.start.character) + 1)
+        .end_line(i64::from(range.end.line) + 1)
+        .end_column(i64::from(range.end.character) + 1)
+        .build();
+    let artifact = sarif::ArtifactLocation::builder().uri(uri_reference(&program.name)).build();
+    let place = sarif::PhysicalLocation::builder().artifact_location(artifact).region(region).build();
+    let mut location = sarif::Location::builder().physical_location(place).build();
+    location.message = message.map(|text| sarif::Message::builder().text(text).build());
+    location
+}
+
+/// A path as a relative reference or, if it is absolute, a `file` URI.
+fn uri_reference(path: &str) -> String {
+    let mut uri = String::new();
+    for byte in path.replace('\\', "/").bytes() {
+        let plain = byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte);
+        if plain {
+            uri.push(char::from(byte));
+        } else {
+            uri.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    if uri.starts_with('/') { format!("file://{uri}") } else { uri }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_become_references() {
+        assert_eq!(uri_reference("parts/a b.apt"), "parts/a%20b.apt");
+        assert_eq!(uri_reference("/é.apt"), "file:///%C3%A9.apt");
+        assert_eq!(uri_reference("<stdin>"), "%3Cstdin%3E");
+    }
+}

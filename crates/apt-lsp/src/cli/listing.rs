@@ -1,0 +1,189 @@
+//! The listing of a run for people, made from its report.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+/// Decimals of coordinates.
+const DECIMALS: usize = 6;
+
+/// Width of a coordinate.
+const WIDTH: usize = 14;
+
+/// The listing. Writing to a string cannot fail, so results of `write!` are dropped.
+pub(super) fn text(report: &Value) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "PROGRAM {}", words(&report["program"]));
+    symbols(&mut text, report);
+    motions(&mut text, report);
+    records(&mut text, report);
+    totals(&mut text, &report["totals"]);
+    text
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+fn words(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), plain),
+        Value::Null => "-".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// A number without needless zeros.
+fn plain(number: f64) -> String {
+    let text = format!("{number:.DECIMALS$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn numbers(values: &Value) -> String {
+    list(values).iter().map(words).collect::<Vec<_>>().join(", ")
+}
+
+fn symbols(text: &mut String, report: &Value) {
+    let Some(symbols) = report["symbols"].as_object().filter(|symbols| !symbols.is_empty()) else { return };
+    text.push_str("\nCANONICAL FORMS\n");
+    for (name, symbol) in symbols {
+        let _ =
+            writeln!(text, "  {name:<12} {:<8} {}", words(&symbol["type"]), numbers(&symbol["canonical"]));
+    }
+}
+
+fn motions(text: &mut String, report: &Value) {
+    let motions = list(&report["motions"]);
+    if motions.is_empty() {
+        return;
+    }
+    text.push_str("\nMOTIONS\n");
+    for motion in motions {
+        let verified = if motion["verified"] == true { "verified" } else { "NOT VERIFIED" };
+        let _ = writeln!(
+            text,
+            "  {:>5}  {:<36} {:>6} cut vectors  {verified}{}{}",
+            words(&motion["isn"]),
+            words(&motion["statement"]),
+            words(&motion["cut_vectors"]),
+            clearance("part", &motion["part"]),
+            clearance("drive", &motion["drive"]),
+        );
+    }
+}
+
+fn clearance(name: &str, extremes: &Value) -> String {
+    if extremes.is_null() {
+        return String::new();
+    }
+    let end =
+        |end: &str| extremes[end].as_f64().map_or_else(|| "-".to_owned(), |value| format!("{value:+.6}"));
+    format!("  {name} {}..{}", end("min"), end("max"))
+}
+
+fn records(text: &mut String, report: &Value) {
+    let records = list(&report["cl"]);
+    if records.is_empty() {
+        return;
+    }
+    text.push_str("\nCUTTER LOCATIONS\n");
+    for record in records {
+        let kind = record["type"].as_str().unwrap_or_default();
+        let what = match kind {
+            "from" | "go" => {
+                format!("{} {}", kind.to_uppercase(), record["surface"].as_str().unwrap_or_default())
+            }
+            "fini" => "FINI".to_owned(),
+            _ => list(&record["words"]).iter().map(words).collect::<Vec<_>>().join(" "),
+        };
+        let _ = writeln!(text, "  {:>5}  {}", words(&record["isn"]), what.trim_end());
+        for point in list(&record["points"]) {
+            text.push_str("       ");
+            for number in list(point) {
+                let number = number.as_f64().unwrap_or(f64::NAN);
+                let _ = write!(text, "{number:>WIDTH$.DECIMALS$}");
+            }
+            text.push('\n');
+        }
+    }
+}
+
+fn totals(text: &mut String, totals: &Value) {
+    text.push_str("\nTOTALS\n");
+    for (name, key) in [
+        ("points", "points"),
+        ("length", "length"),
+        ("cutting", "cut_length"),
+        ("rapid", "rapid_length"),
+        ("minutes", "time_minutes"),
+    ] {
+        let _ = writeln!(text, "  {name:<8} {}", words(&totals[key]));
+    }
+    if let [least, greatest] = list(&totals["box"]) {
+        let _ = writeln!(text, "  {:<8} {} to {}", "box", numbers(least), numbers(greatest));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use expect_test::expect;
+    use serde_json::json;
+
+    #[test]
+    fn a_listing_shows_forms_motions_points_and_totals() {
+        let report = json!({
+            "program": "A.apt",
+            "symbols": { "C1": { "type": "CIRCLE", "canonical": [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.5] } },
+            "motions": [{
+                "isn": 4, "statement": "GOLFT/C1,PAST,L1", "cut_vectors": 2, "verified": true,
+                "part": { "min": -0.0001, "max": 0.0005 }, "drive": null,
+            }],
+            "cl": [
+                { "isn": 2, "type": "postprocessor", "words": ["SPINDL", 800.0, "CLW"] },
+                { "isn": 3, "type": "from", "points": [[0.0, 0.0, 1.0]] },
+                { "isn": 4, "type": "go", "surface": "C1", "points": [[1.25, 0.0, 0.0], [-2.0, 0.0, 0.0]] },
+                { "isn": 5, "type": "fini" },
+            ],
+            "totals": {
+                "points": 3, "length": 5.5, "cut_length": 5.5, "rapid_length": 0.0, "time_minutes": null,
+                "box": [[-2.0, 0.0, 0.0], [1.25, 0.0, 1.0]],
+            },
+        });
+        expect![[r#"
+            PROGRAM A.apt
+
+            CANONICAL FORMS
+              C1           CIRCLE   0, 0, 0, 0, 0, 1, 2.5
+
+            MOTIONS
+                  4  GOLFT/C1,PAST,L1                          2 cut vectors  verified  part -0.000100..+0.000500
+
+            CUTTER LOCATIONS
+                  2  SPINDL 800 CLW
+                  3  FROM
+                         0.000000      0.000000      1.000000
+                  4  GO C1
+                         1.250000      0.000000      0.000000
+                        -2.000000      0.000000      0.000000
+                  5  FINI
+
+            TOTALS
+              points   3
+              length   5.5
+              cutting  5.5
+              rapid    0
+              minutes  -
+              box      -2, 0, 0 to 1.25, 0, 1
+        "#]].assert_eq(&super::text(&report));
+    }
+
+    #[test]
+    fn a_report_with_holes_is_listed_too() {
+        assert!(super::text(&json!({})).contains("TOTALS"));
+        assert!(
+            super::text(&json!({ "cl": [{ "points": [[null]] }], "totals": { "box": [1] } })).contains("NaN")
+        );
+    }
+}

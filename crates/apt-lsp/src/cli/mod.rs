@@ -1,0 +1,77 @@
+//! The command line: one file per call, one place for findings in every format.
+
+mod arguments;
+mod check;
+mod console;
+mod expand;
+mod explain;
+mod findings;
+mod listing;
+mod post;
+mod program;
+mod run;
+mod tree;
+mod view;
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
+
+use self::arguments::{Arguments, Command};
+use self::console::Console;
+use crate::analysis::Language;
+
+/// How a call ended, as its exit code says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Outcome {
+    /// Nothing was found.
+    Clean = 0,
+    /// Something was found.
+    Findings = 1,
+    /// Arguments or input cannot be used, or something of ours is broken.
+    Unusable = 2,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        Self::from(outcome as u8)
+    }
+}
+
+/// Does what the arguments of the process say.
+pub(crate) fn main(language: Arc<dyn Language>) -> ExitCode {
+    let arguments = Arguments::parse();
+    if arguments.command.is_none() && arguments.check.is_empty() {
+        return crate::server::run(language);
+    }
+    let console = Console::new(arguments.color);
+    // A fault of ours is no finding: it has an exit code of its own, and no half a report before it.
+    let work = std::panic::AssertUnwindSafe(|| dispatch(arguments, &console, language.as_ref()));
+    match std::panic::catch_unwind(work) {
+        Ok(outcome) => outcome.into(),
+        Err(_) => {
+            console.error("internal fault; the lines above say where");
+            Outcome::Unusable.into()
+        }
+    }
+}
+
+fn dispatch(arguments: Arguments, console: &Console, language: &dyn Language) -> Outcome {
+    if arguments.command.is_some() && (arguments.stdio || !arguments.check.is_empty()) {
+        let message = "`--stdio` and `--check` stand alone, without a command";
+        Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
+    }
+    match arguments.command {
+        None => check::check(&arguments.check, &arguments.check_options, console, language),
+        Some(Command::Check(call)) => check::check(&call.paths, &call.options, console, language),
+        Some(Command::Run(call)) => run::run(&call, console, language),
+        Some(Command::Post(call)) => post::post(&call, console, language),
+        Some(Command::Expand(call)) => expand::expand(&call, console, language),
+        Some(Command::View(call)) => view::view(&call, console, language),
+        Some(Command::Explain(call)) => explain::explain(&call.code, console, language),
+        Some(Command::Tree(call)) => tree::tree(&call, console, language),
+        Some(Command::Machines) => post::list_machines(console, language),
+    }
+}

@@ -1,0 +1,143 @@
+//! Programs named on the command line: files, folders, standard input.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use ropey::Rope;
+use serde_json::Value;
+
+use super::arguments::{DialectOption, ProgramArgument};
+use super::console::Console;
+use crate::analysis::{Document, Language};
+use crate::convert::{Encoding, TextIndex};
+use crate::settings::{Settings, Values};
+use crate::source;
+
+/// Endings of files that are programs when a folder is walked.
+const ENDINGS: [&str; 5] = ["apt", "ncl", "cl", "cls", "cldata"];
+
+/// The name that means standard input.
+const STANDARD_INPUT: &str = "-";
+
+/// A program that has been read.
+pub(super) struct Program {
+    /// Its name in messages.
+    pub name: String,
+    /// Positions in its text, as JSON and SARIF tell them (UTF-16).
+    pub index: TextIndex,
+    /// Its analysis.
+    pub document: Arc<dyn Document>,
+    /// The settings in force.
+    pub settings: Settings,
+}
+
+impl Program {
+    /// Reads a program and says on standard error which dialect is in force.
+    pub(super) fn read(
+        argument: &ProgramArgument,
+        console: &Console,
+        language: &dyn Language,
+    ) -> Option<Self> {
+        let program = Self::load(&argument.file, &argument.dialect, console, language)?;
+        console.note(&format!("{}: dialect {}", program.name, program.document.dialect()));
+        Some(program)
+    }
+
+    /// Reads a program. What is wrong is said on standard error.
+    pub(super) fn load(
+        path: &Path,
+        dialect: &DialectOption,
+        console: &Console,
+        language: &dyn Language,
+    ) -> Option<Self> {
+        let from_standard_input = path.as_os_str() == STANDARD_INPUT;
+        let name = if from_standard_input { "<stdin>".to_owned() } else { path.display().to_string() };
+        let read = if from_standard_input { source::read_standard_input() } else { source::read_file(path) };
+        let source = match read {
+            Ok(source) => source,
+            Err(error) => {
+                console.error(&format!("{name}: {error}"));
+                return None;
+            }
+        };
+        if !source.utf8 {
+            console.note(&format!("{name}: not UTF-8; read as Latin-1"));
+        }
+        let mut typed = Values::new();
+        if let Some(dialect) = &dialect.dialect {
+            typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
+        }
+        if let Err(message) = language.check_settings(&typed) {
+            console.error(&message);
+            return None;
+        }
+        // Relative paths have parents too, once they are made whole.
+        let whole = std::path::absolute(path).ok().filter(|_| !from_standard_input);
+        let home = whole.or_else(|| Some(std::env::current_dir().ok()?.join(&name)));
+        let (settings, problems) = Settings::resolve(language, home.as_deref(), &Values::new(), &typed);
+        for problem in &problems {
+            console.error(&problem.to_string());
+        }
+        if !problems.is_empty() {
+            return None;
+        }
+        let document = language.open(&source.text, Some(&name), &settings.program);
+        let index = TextIndex { rope: Rope::from_str(&source.text), encoding: Encoding::Utf16 };
+        Some(Self { name, index, document, settings })
+    }
+}
+
+/// Says which dialects are in force in many programs.
+pub(super) fn note_dialects(programs: &[Program], console: &Console) {
+    let mut by_dialect: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for program in programs {
+        by_dialect.entry(program.document.dialect()).or_default().push(&program.name);
+    }
+    for (dialect, names) in by_dialect {
+        match names[..] {
+            [name] => console.note(&format!("{name}: dialect {dialect}")),
+            _ => console.note(&format!("{} programs: dialect {dialect}", names.len())),
+        }
+    }
+}
+
+/// The programs that paths name: files as they are, folders with everything that looks like a program,
+/// in order of their names. The number tells how many paths could not be read.
+pub(super) fn find(paths: &[PathBuf], console: &Console) -> (Vec<PathBuf>, usize) {
+    let mut found = Vec::new();
+    let mut unreadable = 0;
+    for path in paths {
+        if !path.is_dir() {
+            found.push(path.clone());
+            continue;
+        }
+        let before = found.len();
+        let mut walk = ignore::WalkBuilder::new(path);
+        walk.require_git(false).sort_by_file_path(Path::cmp);
+        for entry in walk.build() {
+            match entry {
+                Ok(entry)
+                    if entry.file_type().is_some_and(|kind| kind.is_file()) && is_program(entry.path()) =>
+                {
+                    found.push(entry.into_path());
+                }
+                Ok(_) => {}
+                Err(error) => {
+                    console.error(&error.to_string());
+                    unreadable += 1;
+                }
+            }
+        }
+        if found.len() == before {
+            console.note(&format!("{}: no programs (.{})", path.display(), ENDINGS.join(", .")));
+        }
+    }
+    found.dedup();
+    (found, unreadable)
+}
+
+fn is_program(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}

@@ -1,0 +1,37 @@
+//! `view`: the path as a picture.
+
+use std::path::Path;
+
+use super::Outcome;
+use super::arguments::ViewCall;
+use super::console::Console;
+use super::program::Program;
+use crate::analysis::{Language, PictureKind, Product};
+
+/// Draws the path of a program.
+pub(super) fn view(call: &ViewCall, console: &Console, language: &dyn Language) -> Outcome {
+    let Some(kind) = kind_of(&call.output) else {
+        console.error(&format!("{}: not .html, .svg or .png", call.output.display()));
+        return Outcome::Unusable;
+    };
+    let Some(program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
+    let (control, bar) = console.control(&program.name);
+    let picture = program.document.product(&Product::Picture(kind), &control);
+    bar.finish_and_clear();
+    match picture {
+        Ok(bytes) => console.write(&bytes, Some(&call.output)),
+        Err(refusal) => {
+            console.error(&format!("{}: {refusal}", program.name));
+            Outcome::Unusable
+        }
+    }
+}
+
+fn kind_of(output: &Path) -> Option<PictureKind> {
+    match output.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "html" | "htm" => Some(PictureKind::Html),
+        "svg" => Some(PictureKind::Svg),
+        "png" => Some(PictureKind::Png),
+        _ => None,
+    }
+}

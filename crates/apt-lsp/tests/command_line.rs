@@ -1,0 +1,197 @@
+//! The real binary as a command: exit codes, formats, what goes to which stream.
+
+mod support;
+
+use serde_json::Value;
+
+use support::{Folder, run, run_in};
+
+const GOOD: &str = "PARTNO GOOD\nFROM/0,0,1\nGOTO/1,0,1\nGOTO/1,2,1\nFINI\n";
+const BAD: &str = "PARTNO BAD\n$$ é😀\nP1=POINT/1,2\nL1=LINE/P1,P9\nFROM/0,0,0\nGOTO/P1\nFINI\n";
+
+#[test]
+fn exit_codes_tell_clean_findings_and_unusable() {
+    let folder = Folder::new("codes");
+    folder.write("good.apt", GOOD);
+    folder.write("bad.apt", BAD);
+    for (arguments, code) in [
+        (&["--check", "good.apt"][..], 0),
+        (&["check", "good.apt"], 0),
+        (&["--check", "bad.apt"], 1),
+        (&["--check", "good.apt", "bad.apt"], 1),
+        (&["check", "."], 1),
+        (&["check", "no-such-file.apt"], 2),
+        (&["check", "bad.apt", "no-such-file.apt"], 2),
+        (&["check"], 2),
+        (&["--check"], 2),
+        (&["--no-such-option"], 2),
+        (&["no-such-command"], 2),
+        (&["--stdio", "--check", "good.apt"], 2),
+        (&["--stdio", "run", "good.apt"], 2),
+        (&["run", "good.apt"], 0),
+        (&["run", "bad.apt"], 1),
+        (&["run", "no-such-file.apt"], 2),
+        (&["run", "good.apt", "--format", "nonsense"], 2),
+        (&["run", "good.apt", "--dialect", "nonsense"], 2),
+        (&["post", "good.apt", "--machine", "nonsense"], 2),
+        (&["post", "good.apt"], 2),
+        (&["expand", "good.apt", "--at", "0"], 2),
+        (&["expand", "good.apt", "--at", "99"], 2),
+        (&["view", "good.apt", "-o", "picture.gif"], 2),
+        (&["explain", "APT9999"], 2),
+        (&["--help"], 0),
+        (&["--version"], 0),
+    ] {
+        let ran = folder.run(arguments);
+        assert_eq!(ran.code, code, "{arguments:?}: {ran:?}");
+        if code == 2 {
+            assert!(!ran.stderr.is_empty(), "{arguments:?} says nothing");
+        }
+    }
+}
+
+#[test]
+fn people_get_excerpts_and_a_count() {
+    let folder = Folder::new("human");
+    folder.write("bad.apt", BAD);
+    let ran = folder.run(&["--check", "bad.apt"]);
+    assert!(ran.stdout.contains("--> bad.apt:4:"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("L1=LINE/P1,P9"), "{}", ran.stdout);
+    assert!(ran.stdout.contains('^') && ran.stdout.contains("error[APT"), "{}", ran.stdout);
+    assert!(!ran.stdout.contains('\u{1b}'), "colours in a pipe");
+    assert!(ran.stderr.contains("1 error, ") && ran.stderr.contains("dialect"), "{}", ran.stderr);
+    let coloured = folder.run(&["--check", "bad.apt", "--color", "always"]);
+    assert!(coloured.stdout.contains('\u{1b}'), "no colours though asked for");
+}
+
+#[test]
+fn json_tells_places_in_utf_16() {
+    let folder = Folder::new("json");
+    folder.write("bad.apt", BAD);
+    folder.write("good.apt", GOOD);
+    let ran = folder.run(&["--check", "good.apt", "bad.apt", "--format", "json"]);
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(report["summary"]["errors"], 1);
+    assert_eq!(
+        (&report["files"][0]["file"], &report["files"][1]["file"]),
+        (&"good.apt".into(), &"bad.apt".into())
+    );
+    let found = report["files"][1]["diagnostics"].as_array().unwrap();
+    let error = found.iter().find(|found| found["severity"] == "error").unwrap();
+    assert_eq!((&error["isn"], &error["range"]["start"]["line"]), (&4.into(), &3.into()));
+    for key in ["code", "message", "apt3", "file", "origin", "related", "hint"] {
+        assert!(error.get(key).is_some(), "{key} is missing in {error}");
+    }
+}
+
+#[test]
+fn sarif_and_github_name_the_same_place() {
+    let folder = Folder::new("sarif");
+    folder.write("a b/bad.apt", BAD);
+    let ran = folder.run(&["check", "a b", "--format", "sarif"]);
+    assert_eq!(ran.code, 1, "{ran:?}");
+    let log: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(log["version"], "2.1.0");
+    let run = &log["runs"][0];
+    let driver = &run["tool"]["driver"];
+    assert_eq!((&driver["name"], &run["columnKind"]), (&"apt-lsp".into(), &"utf16CodeUnits".into()));
+    let results = run["results"].as_array().unwrap();
+    let result = results.iter().find(|result| result["level"] == "error").unwrap();
+    let place = &result["locations"][0]["physicalLocation"];
+    assert_eq!(place["artifactLocation"]["uri"], "a%20b/bad.apt");
+    assert_eq!(place["region"]["startLine"], 4);
+    let rule = result["ruleIndex"].as_u64().unwrap() as usize;
+    assert_eq!(driver["rules"][rule]["id"], result["ruleId"]);
+
+    let ran = folder.run(&["check", "a b", "--format", "github"]);
+    assert!(
+        ran.stdout.starts_with("::") && ran.stdout.contains("::error file=a b/bad.apt,line=4,"),
+        "{}",
+        ran.stdout
+    );
+}
+
+#[test]
+fn standard_input_is_a_program_too() {
+    let ran = run_in(std::path::Path::new("."), &["--check", "-", "--format", "json"], BAD.as_bytes());
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!((ran.code, &report["files"][0]["file"]), (1, &"<stdin>".into()));
+    let ran = run_in(std::path::Path::new("."), &["run", "-", "--format", "json"], GOOD.as_bytes());
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!((ran.code, &report["ok"], &report["totals"]["points"]), (0, &true.into(), &3.into()));
+}
+
+#[test]
+fn any_bytes_are_checked_without_a_fault() {
+    let folder = Folder::new("bytes");
+    folder.write("latin.apt", b"PARTNO \xe9\nFROM/0,0,0\nFINI\n");
+    folder.write(
+        "noise.apt",
+        (0..4096_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8).collect::<Vec<_>>(),
+    );
+    folder.write("empty.apt", "");
+    let ran = folder.run(&["check", "latin.apt"]);
+    assert!(ran.stderr.contains("Latin-1"), "{ran:?}");
+    assert!([0, 1].contains(&folder.run(&["check", "noise.apt"]).code));
+    assert!([0, 1].contains(&folder.run(&["check", "empty.apt"]).code));
+}
+
+#[test]
+fn a_run_is_listed_for_people_and_for_programs() {
+    let folder = Folder::new("run");
+    folder.write("good.apt", GOOD);
+    let ran = folder.run(&["run", "good.apt"]);
+    for part in ["PROGRAM good.apt", "CUTTER LOCATIONS", "TOTALS"] {
+        assert!(ran.stdout.contains(part), "{part} is missing in {}", ran.stdout);
+    }
+    let ran = folder.run(&["run", "good.apt", "--format", "cl"]);
+    assert!(ran.stdout.contains("GOTO"), "{ran:?}");
+    let ran = folder.run(&["run", "good.apt", "-o", "out.json"]);
+    assert_eq!((ran.code, ran.stdout.as_str()), (0, ""));
+    let report: Value = serde_json::from_slice(&std::fs::read(folder.0.join("out.json")).unwrap()).unwrap();
+    assert_eq!(report["program"], "good.apt");
+}
+
+#[test]
+fn a_project_file_is_found_and_a_broken_one_is_told() {
+    let folder = Folder::new("project");
+    folder.write("parts/good.apt", GOOD);
+    folder.write("apt-lsp.toml", "dialect = \"apt3\"\n");
+    let ran = folder.run(&["check", "parts/good.apt"]);
+    assert!(ran.stderr.contains("apt3"), "{ran:?}");
+    let ran = folder.run(&["check", "parts/good.apt", "--dialect", "free"]);
+    assert!(ran.stderr.contains("free"), "{ran:?}");
+    folder.write("apt-lsp.toml", "dialekt = \"apt3\"\n");
+    let ran = folder.run(&["check", "parts/good.apt"]);
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("apt-lsp.toml") && ran.stderr.contains("dialekt"), "{ran:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_who_has_seen_enough_is_no_fault() {
+    use std::process::{Command, Stdio};
+
+    let folder = Folder::new("pipe");
+    folder.write("bad.apt", format!("{BAD}{}", "Q=UNKNWN\n".repeat(20_000)));
+    let mut process = Command::new(env!("CARGO_BIN_EXE_apt-lsp"))
+        .args(["check", "bad.apt"])
+        .current_dir(&folder.0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(process.stdout.take());
+    let output = process.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(!told.contains("panicked"), "{told}");
+}
+
+#[test]
+fn machines_and_pages_are_printed() {
+    let list = run(&["machines"]);
+    assert_eq!(list.code, 0);
+    assert!(!list.stdout.is_empty());
+    assert_eq!(run(&["post", "--list-machines"]).stdout, list.stdout);
+}
