@@ -5,25 +5,26 @@ use serde_json::{Value, json};
 
 use super::words::Vocabulary;
 
-/// The scope of the words of a class. The first part is what colour themes know; it agrees with the semantic
-/// token types of the server.
+/// The scope of the words of a class. The first parts are what colour themes know. They are those that the
+/// extension gives to the server's semantic tokens of the class (`semanticTokenScopes` in its `package.json`), so
+/// that no colour changes when the tokens arrive.
 fn scope(class: WordClass) -> &'static str {
     match class {
-        WordClass::Text => "keyword.other.text.apt",
+        WordClass::Text => "support.function.postprocessor.text.apt",
         WordClass::Motion => "keyword.control.motion.apt",
         WordClass::ToolPosition => "keyword.control.tool-position.apt",
-        WordClass::PathParameter => "keyword.other.path-parameter.apt",
-        WordClass::PathControl => "keyword.other.path-control.apt",
+        WordClass::PathParameter => "keyword.control.path-parameter.apt",
+        WordClass::PathControl => "keyword.control.path-control.apt",
         WordClass::Logic => "keyword.control.logic.apt",
-        WordClass::Declaration => "storage.modifier.declaration.apt",
-        WordClass::Transformation => "keyword.other.transformation.apt",
-        WordClass::InputOutput => "keyword.other.input-output.apt",
-        WordClass::SystemFlag => "keyword.other.system-flag.apt",
+        WordClass::Declaration => "keyword.control.declaration.apt",
+        WordClass::Transformation => "keyword.control.transformation.apt",
+        WordClass::InputOutput => "keyword.control.input-output.apt",
+        WordClass::SystemFlag => "keyword.control.system-flag.apt",
         WordClass::GeometricType => "support.type.geometric.apt",
         WordClass::Function => "support.function.arithmetic.apt",
         WordClass::Postprocessor => "support.function.postprocessor.apt",
         WordClass::PostprocessorBare => "support.function.postprocessor.bare.apt",
-        WordClass::Minor => "support.constant.minor.apt",
+        WordClass::Minor => "variable.other.enummember.minor.apt",
     }
 }
 
@@ -141,6 +142,35 @@ mod tests {
         assert!(found.iter().any(|p| p.contains("(?:GOLFT|GO)")), "{found:?}");
         assert!(found.iter().any(|p| p.contains("(?:END\\-OF\\-PATH)")), "{found:?}");
         assert_eq!(patterns.len(), 4);
+    }
+
+    #[test]
+    fn the_grammar_agrees_with_the_semantic_tokens() {
+        let package = crate::layout::vscode().join("package.json");
+        let package = std::fs::read_to_string(package).expect("the extension has a package file");
+        let package: Value = serde_json::from_str(&package).expect("the package file is JSON");
+        let scopes = &package["contributes"]["semanticTokenScopes"][0]["scopes"];
+        for (class, token) in [
+            (WordClass::Text, "event"),
+            (WordClass::Motion, "keyword"),
+            (WordClass::ToolPosition, "keyword"),
+            (WordClass::PathParameter, "keyword"),
+            (WordClass::PathControl, "keyword"),
+            (WordClass::Logic, "keyword"),
+            (WordClass::Declaration, "keyword"),
+            (WordClass::Transformation, "keyword"),
+            (WordClass::InputOutput, "keyword"),
+            (WordClass::SystemFlag, "keyword"),
+            (WordClass::GeometricType, "type"),
+            (WordClass::Function, "function"),
+            (WordClass::Postprocessor, "event"),
+            (WordClass::PostprocessorBare, "event"),
+            (WordClass::Minor, "modifier"),
+        ] {
+            let token_scope = scopes[token][0].as_str().unwrap_or_default();
+            let common = token_scope.strip_suffix(".apt").expect("a scope of the language");
+            assert!(scope(class).starts_with(common), "{class:?}: {} and {token_scope}", scope(class));
+        }
     }
 
     #[test]

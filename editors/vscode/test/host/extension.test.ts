@@ -2,9 +2,12 @@ import * as assert from 'node:assert';
 import * as vscode from 'vscode';
 import type { RunResult } from '../../src/protocol';
 
+/** Only a hang lets this pass. */
+const WAIT_MS = 60_000;
+
 /** Waits for `probe` to give something; what it waits for comes with an event of the server. */
 async function until<T>(what: string, probe: () => T | undefined | false | Promise<T | undefined | false>): Promise<T> {
-  for (const end = Date.now() + 20_000; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 30))) {
+  for (const end = Date.now() + WAIT_MS; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 30))) {
     const found = await probe();
     if (found !== undefined && found !== false) {
       return found;

@@ -21,7 +21,7 @@ function report(verdict: { tests: Outcome[]; crash?: string }): void {
 export async function run(): Promise<void> {
   try {
     const { default: Mocha } = await import('mocha');
-    const mocha = new Mocha({ ui: 'bdd', timeout: 30_000, reporter: class {} as never });
+    const mocha = new Mocha({ ui: 'bdd', timeout: 90_000, reporter: class {} as never });
     for (const name of fs.readdirSync(__dirname).filter((name) => name.endsWith('.test.js')).sort()) {
       mocha.addFile(path.join(__dirname, name));
     }
