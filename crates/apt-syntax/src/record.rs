@@ -106,15 +106,32 @@ fn is_text_word(spelling: &str, dialect: &Dialect) -> bool {
 
 /// The record after leading blanks and the `N12 ,` or `C12` prefix that PostWorks writes before its statements.
 fn after_sequence_prefix(record: &str) -> &str {
-    let trimmed = record.trim_start_matches([' ', '\t']);
+    const BLANKS: [char; 2] = [' ', '\t'];
+    let trimmed = record.trim_start_matches(BLANKS);
     let Some(rest) = trimmed.strip_prefix(['N', 'n', 'C', 'c']) else { return trimmed };
     let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
     let rest = rest.get(digits..).unwrap_or("");
-    if digits == 0 || !rest.starts_with([' ', '\t', ',']) {
+    let after = rest.trim_start_matches(BLANKS);
+    if digits == 0 {
         return trimmed;
     }
-    let rest = rest.trim_start_matches([' ', '\t']);
-    rest.strip_prefix(',').unwrap_or(rest).trim_start_matches([' ', '\t'])
+    if trimmed.starts_with(['N', 'n']) {
+        return after.strip_prefix(',').map_or(trimmed, |statement| statement.trim_start_matches(BLANKS));
+    }
+    let word_follows =
+        after.len() < rest.len() && after.starts_with(|first: char| first.is_ascii_alphabetic());
+    if word_follows { after } else { trimmed }
+}
+
+/// The bytes of a statement's first record that are a sequence number of PostWorks (with the blanks before it).
+pub(crate) fn sequence_prefix_length(record: &str, layout: &Layout) -> usize {
+    if !layout.dialect.text_words_anywhere {
+        return 0;
+    }
+    let rest = after_sequence_prefix(record);
+    let prefix = record.len() - rest.len();
+    let blank = record.get(..prefix).is_none_or(|prefix| prefix.trim().is_empty());
+    if blank { 0 } else { prefix }
 }
 
 /// Divides the record at the start of `text`, which belongs to a statement of the given form.

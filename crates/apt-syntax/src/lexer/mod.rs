@@ -148,11 +148,11 @@ impl Lexer<'_> {
     fn name_or_number(&mut self, start: usize) {
         let length = self.word_length();
         let digits = (0..length).all(|ahead| self.byte(ahead).is_some_and(|byte| byte.is_ascii_digit()));
+        self.position += length;
         if digits {
             self.number(start);
             return;
         }
-        self.position += length;
         let spelling = self.spelling(start);
         if self.layout.dialect.blanks_separate
             && let Some(joined) = self.two_word_spelling(&spelling)

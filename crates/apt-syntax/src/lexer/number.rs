@@ -8,9 +8,8 @@ use crate::statement::ElementKind;
 const RELATIONS: [&[u8]; 9] = [b"EQ", b"NE", b"LT", b"LE", b"GT", b"GE", b"AND", b"OR", b"NOT"];
 
 impl Lexer<'_> {
-    /// A number that begins with a digit.
+    /// A number that begins with digits, which are read.
     pub(super) fn number(&mut self, start: usize) {
-        self.digits();
         if self.byte(0) == Some(b'.') && self.joined(0) && self.relation_length().is_none() {
             self.position += 1;
             self.digits();

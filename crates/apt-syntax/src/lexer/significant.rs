@@ -5,7 +5,7 @@ use rowan::TextRange;
 use super::Token;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
-use crate::record::{Layout, Record, StatementForm, divide_record};
+use crate::record::{Layout, Record, StatementForm, divide_record, sequence_prefix_length};
 use crate::text_range;
 
 /// A character that counts, and where it stands.
@@ -73,10 +73,13 @@ impl Reduced {
     fn ordinary(&mut self, rest: &str, offset: usize, record: &Record, layout: &Layout) {
         self.runs_into_sequence_field(rest, offset, record);
         let significant = rest.get(..record.significant).unwrap_or("");
+        // A sequence number of PostWorks before the statement.
+        let prefix = if offset == 0 { sequence_prefix_length(significant, layout) } else { 0 };
+        self.trivia(SyntaxKind::SequenceField, 0, prefix);
         let quotes = layout.dialect.quoted_text && significant.matches('\'').count() >= 2;
         let mut quoted = false;
         let mut blank_start = None;
-        for (index, character) in significant.char_indices() {
+        for (index, character) in significant.char_indices().skip_while(|(index, _)| *index < prefix) {
             if quotes && character == '\'' {
                 quoted = !quoted;
             }
