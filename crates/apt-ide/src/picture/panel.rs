@@ -92,11 +92,11 @@ impl Panel {
             self.grid(out, axes);
         }
         for wire in wires {
-            self.polylines(out, &format!("surface {}", wire.class), wire.lines.iter().map(Vec::as_slice));
+            self.polylines(out, &format!("surface {}", wire.class), &wire.lines.iter().map(Vec::as_slice));
         }
         for kind in [SegmentKind::Rapid, SegmentKind::Start, SegmentKind::Feed] {
             let lines = runs.iter().filter(|r| r.kind == kind).map(|r| r.points.as_slice());
-            self.polylines(out, &format!("path {}", class(kind)), lines);
+            self.polylines(out, &format!("path {}", class(kind)), &lines);
         }
         self.arrows(out, runs);
         self.ends(out, runs);
@@ -170,7 +170,12 @@ impl Panel {
     }
 
     /// Polylines as one path element: points that would not be seen apart are left out, and so are pieces drawn before.
-    fn polylines<'a>(&self, out: &mut String, class: &str, lines: impl Iterator<Item = &'a [Point]> + Clone) {
+    fn polylines<'a>(
+        &self,
+        out: &mut String,
+        class: &str,
+        lines: &(impl Iterator<Item = &'a [Point]> + Clone),
+    ) {
         let mut grain = FINEST;
         let mut data = String::new();
         for _ in 0..8 {

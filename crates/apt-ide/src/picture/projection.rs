@@ -15,9 +15,9 @@ impl Bounds {
     pub(super) fn of(points: impl Iterator<Item = Point>) -> Option<Self> {
         points.fold(None, |all: Option<Self>, p| {
             let mut b = all.unwrap_or(Self { low: p, high: p });
-            for i in 0..3 {
-                b.low[i] = b.low[i].min(p[i]);
-                b.high[i] = b.high[i].max(p[i]);
+            for (i, x) in p.into_iter().enumerate() {
+                b.low[i] = b.low[i].min(x);
+                b.high[i] = b.high[i].max(x);
             }
             Some(b)
         })
