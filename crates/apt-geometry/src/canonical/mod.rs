@@ -9,9 +9,11 @@ mod kind;
 pub mod matrix;
 mod plane;
 mod quadric;
+mod ruled;
 mod transform;
 mod values;
 
+pub use ruled::{RuledCurve, RuledEnd};
 pub use transform::TransformError;
 pub use values::CanonicalError;
 
@@ -110,7 +112,8 @@ pub struct TabulatedCylinder {
 /// A ruled surface: its defining surfaces, points and vectors in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RuledSurface {
-    /// The parts as the definition gave them.
+    /// The parts in the order of the definition: surface, two end points, direction across the chord; then the same
+    /// of the second curve or a single point. See [`RuledSurface::curves`].
     pub parts: Vec<Geometry>,
 }
 

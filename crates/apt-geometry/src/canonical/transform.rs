@@ -10,7 +10,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 use super::{
-    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, RuledSurface, Sphere,
+    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Sphere,
     TabulatedCylinder,
 };
 use crate::Vec3;
@@ -77,9 +77,7 @@ impl Geometry {
                 Geometry::TabulatedCylinder(Arc::new(tabulated_image(surface, matrix)?))
             }
             Geometry::RuledSurface(surface) => {
-                let parts: Result<Vec<_>, _> =
-                    surface.parts.iter().map(|part| part.transform(matrix)).collect();
-                Geometry::RuledSurface(Arc::new(RuledSurface { parts: parts? }))
+                Geometry::RuledSurface(Arc::new(surface.image(matrix)?))
             }
             Geometry::Pattern(pattern) => Geometry::Pattern(Arc::new(Pattern {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),

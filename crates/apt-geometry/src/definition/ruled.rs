@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::format::{Format, Parameter};
 use super::given::Given;
-use super::{DefinitionError, Impossible};
+use super::DefinitionError;
+use super::solve::PARALLEL_SINE;
 use crate::Vec3;
 use crate::canonical::{Geometry, GeometryKind, RuledSurface};
 
@@ -12,7 +13,7 @@ use Parameter::Entity;
 
 /// Squared distance of the end points of a curve that is too short (APT III 701).
 const LEAST_SQUARED_CHORD: f64 = 1e-4;
-/// Squared sine of the angle at the first point below which the three points are in line (APT III 702).
+/// Squared sine of the angle between chord and vector below which they span no plane (APT III 702).
 const LEAST_SQUARED_SINE: f64 = 1e-2;
 
 const SURFACE: Parameter = Entity(
@@ -57,31 +58,34 @@ pub(super) static FORMATS: &[Format] = &[
     },
 ];
 
-/// One curve: the surface, its end points, and the unit vector in the cutting plane across the chord.
+/// One curve: the surface, its end points, and the unit direction in the cutting plane. The latter keeps the type word
+/// that it was given with.
 fn curve(given: &Given<'_>, first: usize) -> Result<Vec<Geometry>, DefinitionError> {
     let (start, end) = (given.place(first + 1)?, given.place(first + 2)?);
     let chord = end - start;
     if chord.norm_squared() <= LEAST_SQUARED_CHORD {
         return Err(DefinitionError::Special { number: 701, position: Some(first + 2) });
     }
-    let toward = match given.geometry(first + 3)? {
-        Geometry::Point(point) => point - start,
-        _ => given.place(first + 3)?,
+    let in_line = DefinitionError::Special { number: 702, position: Some(first + 3) };
+    let third = match given.geometry(first + 3)? {
+        Geometry::Point(third) => Geometry::Point(across(&chord, &(third - start)).ok_or(in_line)?),
+        _ => Geometry::Vector(steep(&chord, &given.place(first + 3)?).ok_or(in_line)?),
     };
-    let across =
-        across(&chord, &toward).ok_or(DefinitionError::Special { number: 702, position: Some(first + 3) })?;
-    Ok(vec![
-        given.geometry(first)?.clone(),
-        Geometry::Point(start),
-        Geometry::Point(end),
-        Geometry::Vector(across.try_normalize(0.0).ok_or(Impossible::ZeroVector)?),
-    ])
+    Ok(vec![given.geometry(first)?.clone(), Geometry::Point(start), Geometry::Point(end), third])
 }
 
-/// The part of `toward` across the chord; `None` when the two are nearly in line.
+/// The unit vector across the chord in the plane with a third point; `None` when that is in line with the ends.
 fn across(chord: &Vec3, toward: &Vec3) -> Option<Vec3> {
     let normal = chord.cross(toward);
-    let squared_sine = normal.norm_squared() / (chord.norm_squared() * toward.norm_squared());
-    // A third point at the first one gives NaN, which is in line too.
-    (squared_sine > LEAST_SQUARED_SINE).then(|| normal.cross(chord))
+    // A third point at the first one gives zero on both sides, which is in line too.
+    (normal.norm() > PARALLEL_SINE * chord.norm() * toward.norm())
+        .then(|| normal.cross(chord))
+        .and_then(|across| across.try_normalize(0.0))
+}
+
+/// A given vector as a unit vector, not turned; `None` when it is nearly along the chord.
+fn steep(chord: &Vec3, vector: &Vec3) -> Option<Vec3> {
+    let unit = vector.try_normalize(0.0)?;
+    let squared_sine = chord.cross(&unit).norm_squared() / chord.norm_squared();
+    (squared_sine > LEAST_SQUARED_SINE).then_some(unit)
 }
