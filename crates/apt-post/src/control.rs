@@ -1,0 +1,309 @@
+//! What the control holds, and the building of blocks.
+
+use std::collections::BTreeMap;
+
+use apt_cldata::record::Units;
+
+use crate::{
+    finding::{PostFinding, PostFindingKind},
+    format::FormatError,
+    machine::MachineDefinition,
+    tape::Block,
+    template::{Piece, pieces},
+};
+
+/// Values for the placeholders of a template.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Values {
+    numbers: BTreeMap<&'static str, f64>,
+    texts: BTreeMap<&'static str, String>,
+}
+
+impl Values {
+    pub(crate) fn number(mut self, name: &'static str, value: f64) -> Self {
+        self.numbers.insert(name, value);
+        self
+    }
+
+    pub(crate) fn optional(self, name: &'static str, value: Option<f64>) -> Self {
+        match value {
+            Some(value) => self.number(name, value),
+            None => self,
+        }
+    }
+
+    pub(crate) fn text(mut self, name: &'static str, text: impl Into<String>) -> Self {
+        self.texts.insert(name, text.into());
+        self
+    }
+}
+
+/// One word of a motion block.
+pub(crate) struct Word {
+    /// Register.
+    pub(crate) register: &'static str,
+    /// Value.
+    pub(crate) value: f64,
+    /// Written even when the control holds it already.
+    pub(crate) force: bool,
+}
+
+/// The tape so far and the state of the control behind it.
+pub(crate) struct Control<'a> {
+    pub(crate) machine: &'a MachineDefinition,
+    pub(crate) units: Units,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) findings: Vec<PostFinding>,
+    /// Statement and origin that everything made now belongs to.
+    pub(crate) place: (u32, u32),
+    /// Text of the modal registers.
+    held: BTreeMap<String, String>,
+    /// Code in force in each modal group.
+    modes: BTreeMap<&'a str, &'a str>,
+    pub(crate) skip: bool,
+    pub(crate) numbering: Numbering,
+}
+
+/// Sequence numbering in force.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Numbering {
+    pub(crate) on: bool,
+    pub(crate) next: u32,
+    pub(crate) step: u32,
+    pub(crate) every: u32,
+    pub(crate) count: u32,
+}
+
+impl<'a> Control<'a> {
+    pub(crate) fn new(machine: &'a MachineDefinition, units: Units) -> Self {
+        let sequence = machine.block.sequence;
+        Control {
+            machine,
+            units,
+            blocks: Vec::new(),
+            findings: Vec::new(),
+            place: (0, u32::MAX),
+            held: BTreeMap::new(),
+            modes: BTreeMap::new(),
+            skip: false,
+            numbering: Numbering {
+                on: sequence.on,
+                next: sequence.start,
+                step: sequence.step,
+                every: sequence.every.max(1),
+                count: 0,
+            },
+        }
+    }
+
+    pub(crate) fn find(&mut self, kind: PostFindingKind) {
+        let (isn, source) = self.place;
+        self.findings.push(PostFinding { isn, source, block: self.blocks.len(), kind });
+    }
+
+    /// The text of a register with its number, and what the control reads; a finding when it cannot be written.
+    pub(crate) fn number_text(&mut self, register: &str, value: f64) -> Option<String> {
+        let definition = self.machine.registers.get(register)?;
+        match definition.format(self.units == Units::Inches).text(value) {
+            Ok(text) => Some(format!("{}{text}", definition.address)),
+            Err(FormatError::NotFinite) => {
+                self.find(PostFindingKind::NotFinite);
+                None
+            }
+            Err(FormatError::TooManyDigits) => {
+                self.find(PostFindingKind::DigitLimit { axis: register.into(), value });
+                None
+            }
+        }
+    }
+
+    /// The value that the control reads for a register; the value itself when it cannot be written.
+    pub(crate) fn rounded(&self, register: &str, value: f64) -> f64 {
+        let definition = self.machine.registers.get(register);
+        definition
+            .and_then(|definition| definition.format(self.units == Units::Inches).rounded(value).ok())
+            .unwrap_or(value)
+    }
+
+    /// Whether writing a value would change what the control holds.
+    pub(crate) fn changes(&self, register: &str, value: f64) -> bool {
+        let Some(definition) = self.machine.registers.get(register) else { return false };
+        let text = definition.format(self.units == Units::Inches).text(value);
+        match (text, self.held.get(register)) {
+            (Ok(text), Some(held)) => *held != format!("{}{text}", definition.address),
+            _ => true,
+        }
+    }
+
+    /// The word of a register under its modal rule.
+    fn register_word(&mut self, register: &str, value: f64, force: bool) -> Option<String> {
+        // The computed planes of a cycle are written as Z.
+        let register = if matches!(register, "ZR" | "ZI") { "Z" } else { register };
+        let text = self.number_text(register, value)?;
+        let modal = self.machine.registers.get(register).is_some_and(|definition| definition.modal);
+        if modal {
+            let same = self.held.get(register) == Some(&text);
+            self.held.insert(register.to_owned(), text.clone());
+            if same && !force {
+                return None;
+            }
+        }
+        Some(text)
+    }
+
+    /// Takes a register out of what the control is known to hold.
+    pub(crate) fn forget(&mut self, registers: &[&str]) {
+        for register in registers {
+            self.held.remove(*register);
+        }
+    }
+
+    /// Forgets everything: the next block carries all that it needs.
+    pub(crate) fn forget_all(&mut self) {
+        self.held.clear();
+        self.modes.clear();
+    }
+
+    /// Notes that a code is in force, and says whether it was not before. Codes without group always count as new.
+    pub(crate) fn set_mode(&mut self, code: &str) -> bool {
+        let machine = self.machine;
+        for (group, codes) in &machine.groups {
+            if let Some(code) = codes.iter().find(|known| *known == code) {
+                return self.modes.insert(group, code) != Some(code.as_str());
+            }
+        }
+        true
+    }
+
+    /// A block of motion: codes that are not in force yet, then words in the order of the machine. Nothing is made
+    /// when neither a word nor a forced code remains.
+    pub(crate) fn motion(&mut self, before: &[String], codes: &[&str], words: &[Word]) -> bool {
+        let mut texts: Vec<(usize, String)> = Vec::new();
+        for word in words {
+            if let Some(text) = self.register_word(word.register, word.value, word.force) {
+                let order = self.machine.block.order.iter().position(|register| register == word.register);
+                texts.push((order.unwrap_or(usize::MAX), text));
+            }
+        }
+        if texts.is_empty() {
+            return false;
+        }
+        texts.sort_by_key(|(order, _)| *order);
+        let mut all: Vec<String> = before.to_vec();
+        for code in codes {
+            if self.set_mode(code) {
+                all.push((*code).to_owned());
+            }
+        }
+        all.extend(texts.into_iter().map(|(_, text)| text));
+        let separator = if self.machine.block.spaces { " " } else { "" };
+        self.push_block(&all.join(separator));
+        true
+    }
+
+    /// A block from a template; nothing when it has placeholders and none of them has something to write.
+    pub(crate) fn template(&mut self, template: &str, values: &Values) {
+        let mut words: Vec<String> = Vec::new();
+        let (mut placeholders, mut written) = (0, 0);
+        for word in template.split_whitespace() {
+            let mut text = String::new();
+            let mut complete = true;
+            for piece in pieces(word) {
+                match piece {
+                    Piece::Literal(literal) => text.push_str(literal),
+                    Piece::Placeholder { name, force } => {
+                        placeholders += 1;
+                        match self.placeholder(name, force, values) {
+                            Some(value) => {
+                                written += 1;
+                                text.push_str(&value);
+                            }
+                            None => complete = false,
+                        }
+                    }
+                }
+            }
+            if complete && !text.is_empty() {
+                words.push(text);
+            }
+        }
+        if words.is_empty() || placeholders > 0 && written == 0 {
+            return;
+        }
+        for word in &words {
+            self.set_mode(word);
+        }
+        let separator = if self.machine.block.spaces { " " } else { "" };
+        self.push_block(&words.join(separator));
+    }
+
+    fn placeholder(&mut self, name: &str, force: bool, values: &Values) -> Option<String> {
+        if let Some(text) = values.texts.get(name) {
+            return Some(text.clone()).filter(|text| !text.is_empty());
+        }
+        let value = values.numbers.get(name)?;
+        self.register_word(name, *value, force)
+    }
+
+    pub(crate) fn templates(&mut self, templates: &[String], values: &Values) {
+        for template in templates {
+            self.template(template, values);
+        }
+    }
+
+    /// A block of one code.
+    pub(crate) fn code(&mut self, code: &str) {
+        for word in code.split_whitespace() {
+            self.set_mode(word);
+        }
+        self.push_block(code);
+    }
+
+    /// A comment or message; characters that would end it are replaced, others that the control lacks reported.
+    pub(crate) fn remark(&mut self, template: &str, text: &str) {
+        let mut clean = String::new();
+        for character in text.trim().chars() {
+            match character {
+                '(' => clean.push('['),
+                ')' => clean.push(']'),
+                ' '..='~' => clean.push(character),
+                _ => {
+                    self.find(PostFindingKind::Character { character });
+                    clean.push('?');
+                }
+            }
+        }
+        // Not through `template`, which would close up runs of blanks in the text.
+        self.push_block(&template.replace("{text}", &clean));
+    }
+
+    /// Appends a block, with skip mark and sequence number where they belong.
+    pub(crate) fn push_block(&mut self, text: &str) {
+        let plain = text.is_empty() || text.starts_with(['%', 'O', '(', ';']);
+        let mut block = String::new();
+        if self.skip && !plain {
+            block.push_str(&self.machine.block.skip);
+        }
+        if self.numbering.on && !plain {
+            if self.numbering.count % self.numbering.every == 0 {
+                let number = self.numbering.next;
+                if let Some(word) = self.number_text("N", f64::from(number)) {
+                    block.push_str(&word);
+                    if self.machine.block.spaces {
+                        block.push(' ');
+                    }
+                }
+                let after = number.saturating_add(self.numbering.step);
+                let sequence = self.machine.block.sequence;
+                self.numbering.next = if after > sequence.max { sequence.start } else { after };
+            }
+            self.numbering.count = self.numbering.count.wrapping_add(1);
+        }
+        block.push_str(text);
+        if block.len() > self.machine.max_block {
+            self.find(PostFindingKind::BlockTooLong { length: block.len(), limit: self.machine.max_block });
+        }
+        let (isn, source) = self.place;
+        self.blocks.push(Block { text: block, isn, source });
+    }
+}

@@ -1,0 +1,295 @@
+//! The post-processor itself: takes the records in order and makes blocks.
+
+mod hole;
+mod motion;
+mod start;
+mod statement;
+mod tool;
+
+use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, Units};
+use apt_geometry::Vec3;
+use smol_str::SmolStr;
+
+use crate::{
+    control::{Control, Values},
+    finding::PostFindingKind,
+    machine::MachineDefinition,
+    tape::{PostOptions, Tape},
+    words::{FeedMode, LengthUnit},
+};
+
+/// Millimetres in an inch.
+pub(crate) const MILLIMETERS_PER_INCH: f64 = 25.4;
+/// Cosine of the angle by which a tool axis may differ from the spindle's: about a thousandth of a degree.
+const SPINDLE_AXIS_COSINE: f64 = 1.0 - 1.5e-10;
+
+/// Makes the control tape of a program for a machine.
+///
+/// The tape is made also where something is found, with the faulty statement left out; [`Tape::is_ok`] says whether
+/// it may be run.
+pub fn post(records: &[ClRecord], machine: &MachineDefinition, options: &PostOptions) -> Tape {
+    let units = start::units(records, machine, options);
+    let mut engine = Engine::new(machine, options, &units);
+    engine.start(records);
+    for record in records {
+        engine.record(record);
+    }
+    engine.finish();
+    Tape { blocks: engine.control.blocks, findings: engine.control.findings, units: units.tape }
+}
+
+/// A feed rate in force, in tape units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Feed {
+    mode: FeedMode,
+    value: f64,
+    /// `FEDRAT/INVERS,AUTO`: the value is per minute and each block says its time.
+    timed: bool,
+}
+
+/// The spindle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Spindle {
+    speed: Option<f64>,
+    counterclockwise: bool,
+    on: bool,
+    maximum: Option<f64>,
+}
+
+/// One position of a run at feed rate, waiting to be fitted.
+#[derive(Debug, Clone, Copy)]
+struct RunPoint {
+    position: Vec3,
+    place: (u32, u32),
+    /// Index of the circle that it lies on.
+    circle: Option<usize>,
+}
+
+/// A circle record, in tape units.
+#[derive(Debug, Clone, Copy)]
+struct Circle {
+    center: Vec3,
+    axis: Vec3,
+}
+
+/// Cutter compensation that waits for the next motion in its plane.
+#[derive(Debug, Clone, PartialEq)]
+struct PendingCompensation {
+    words: Vec<String>,
+    place: (u32, u32),
+}
+
+struct Engine<'a> {
+    control: Control<'a>,
+    machine: &'a MachineDefinition,
+    fit_points: bool,
+    /// Unit of the program and factor from it to the tape's.
+    program_units: Units,
+    scale: f64,
+    /// Where the tool is, in tape units, as far as it is known.
+    position: Option<Vec3>,
+    rapid: Option<(u32, u32)>,
+    feed: Option<Feed>,
+    spindle: Spindle,
+    spindle_reported: bool,
+    feed_reported: bool,
+    tool: Option<u32>,
+    length_offset: u32,
+    /// A tool change after which no motion has come yet, with the coolant code that rides on its first Z.
+    approach: Option<String>,
+    coolant: bool,
+    coolant_code: Option<String>,
+    cutter_diameter: Option<f64>,
+    intol: f64,
+    outtol: f64,
+    arc_tolerance: Option<f64>,
+    run: Vec<RunPoint>,
+    circles: Vec<Circle>,
+    /// Circle of the motion record that comes next.
+    next_circle: Option<usize>,
+    compensation: Option<PendingCompensation>,
+    cycle: Option<hole::Cycle>,
+    suspended_cycle: Option<hole::Cycle>,
+    clearance: Option<f64>,
+    retracted_from: Option<f64>,
+    shift: Vec3,
+    moved: bool,
+    ended: bool,
+    closed: bool,
+    named: bool,
+}
+
+impl<'a> Engine<'a> {
+    fn new(machine: &'a MachineDefinition, options: &PostOptions, units: &start::UnitChoice) -> Self {
+        Engine {
+            control: Control::new(machine, units.tape),
+            machine,
+            fit_points: options.fit_points.unwrap_or(machine.arc.fit_points),
+            program_units: units.program,
+            scale: units.scale(),
+            position: None,
+            rapid: None,
+            feed: None,
+            spindle: Spindle::default(),
+            spindle_reported: false,
+            feed_reported: false,
+            tool: None,
+            length_offset: 0,
+            approach: None,
+            coolant: false,
+            coolant_code: None,
+            cutter_diameter: None,
+            intol: 0.0,
+            outtol: 0.0,
+            arc_tolerance: None,
+            run: Vec::new(),
+            circles: Vec::new(),
+            next_circle: None,
+            compensation: None,
+            cycle: None,
+            suspended_cycle: None,
+            clearance: None,
+            retracted_from: None,
+            shift: Vec3::zeros(),
+            moved: false,
+            ended: false,
+            closed: false,
+            named: false,
+        }
+    }
+
+    fn record(&mut self, record: &ClRecord) {
+        if !matches!(record.kind, ClKind::Motion { .. } | ClKind::Arc { .. } | ClKind::Control { .. }) {
+            self.flush();
+        }
+        self.control.place = (record.isn, record.source);
+        match &record.kind {
+            ClKind::Motion { from, points, .. } => self.motion(*from, points),
+            ClKind::Arc { center, axis, .. } => {
+                let center = (center + self.shift) * self.scale;
+                self.circles.push(Circle { center, axis: *axis });
+                self.next_circle = Some(self.circles.len() - 1);
+            }
+            ClKind::Control { word, arguments, .. } => self.parameter(word, arguments),
+            ClKind::Text { word, text, .. } => self.text(word, text),
+            ClKind::Postprocessor { word, arguments, .. } => self.word(word, arguments),
+            ClKind::Units(units) => {
+                if *units != self.program_units {
+                    self.find(PostFindingKind::UnitsChanged);
+                }
+            }
+            ClKind::MultipleAxes(_) => {}
+            ClKind::End => self.close(),
+        }
+    }
+
+    fn find(&mut self, kind: PostFindingKind) {
+        self.control.find(kind);
+    }
+
+    fn finish(&mut self) {
+        self.flush();
+        if !self.closed {
+            self.find(PostFindingKind::NoFini);
+            self.close();
+        }
+    }
+
+    /// FINI.
+    fn close(&mut self) {
+        if self.closed {
+            return self.find(PostFindingKind::Repeated { word: "FINI".into() });
+        }
+        self.unused();
+        self.end_program();
+        self.closed = true;
+        let machine = self.machine;
+        self.control.templates(&machine.templates.trailer, &Values::default());
+    }
+
+    /// The end of the program, once.
+    fn end_program(&mut self) {
+        if self.ended {
+            return;
+        }
+        self.end_cycle();
+        self.coolant_now();
+        self.ended = true;
+        let machine = self.machine;
+        let off = |on: bool, code: &str| if on { code.to_owned() } else { String::new() };
+        let values = Values::default()
+            .text("coolant_off", off(self.coolant, &machine.codes.coolant_off))
+            .text("spindle_off", off(self.spindle.on, &machine.codes.spindle_off))
+            .number("Z", 0.0);
+        self.control.templates(&machine.templates.program_end, &values);
+        self.spindle.on = false;
+        self.coolant = false;
+    }
+
+    /// Reports what waits for a motion that does not come.
+    fn unused(&mut self) {
+        if let Some(place) = self.rapid.take() {
+            self.find_at(place, PostFindingKind::RapidUnused);
+        }
+        if let Some(pending) = self.compensation.take() {
+            self.find_at(pending.place, PostFindingKind::CompensationUnused);
+        }
+    }
+
+    fn find_at(&mut self, place: (u32, u32), kind: PostFindingKind) {
+        let here = std::mem::replace(&mut self.control.place, place);
+        self.control.find(kind);
+        self.control.place = here;
+    }
+
+    /// A length in millimetres as the tape has it.
+    fn from_millimeters(&self, length: f64) -> f64 {
+        if self.control.units == Units::Inches { length / MILLIMETERS_PER_INCH } else { length }
+    }
+
+    /// Factor from a stated unit to the tape's.
+    fn unit_factor(&self, unit: LengthUnit) -> f64 {
+        let inch = self.control.units == Units::Inches;
+        match unit {
+            LengthUnit::Program => self.scale,
+            LengthUnit::Inch if inch => 1.0,
+            LengthUnit::Inch => MILLIMETERS_PER_INCH,
+            LengthUnit::Millimeter if inch => MILLIMETERS_PER_INCH.recip(),
+            LengthUnit::Millimeter => 1.0,
+        }
+    }
+
+    fn parameter(&mut self, word: &SmolStr, arguments: &[ClWord]) {
+        let number = arguments.iter().find_map(|argument| match argument {
+            ClWord::Number(number) => Some(number.abs() * self.scale),
+            ClWord::Word(_) => None,
+        });
+        // A run made with one tolerance must not be fitted with another.
+        if matches!(word.as_str(), "INTOL" | "OUTTOL" | "TOLER") {
+            self.flush();
+        }
+        match (word.as_str(), number) {
+            ("INTOL", Some(number)) => self.intol = number,
+            ("OUTTOL", Some(number)) => self.outtol = number,
+            ("TOLER", Some(number)) => (self.intol, self.outtol) = (0.0, number),
+            ("CUTTER", Some(number)) => self.cutter_diameter = Some(number),
+            _ => {}
+        }
+    }
+
+    /// A position on the tape, if the tool stands as the spindle does.
+    fn tape_position(&mut self, point: &ClPoint) -> Option<Vec3> {
+        let axis = point.axis;
+        if point.with_axis && !(axis.z >= SPINDLE_AXIS_COSINE * axis.norm() && axis.z > 0.0) {
+            self.find(PostFindingKind::ToolAxis { i: axis.x, j: axis.y, k: axis.z });
+            return None;
+        }
+        let position = (point.position + self.shift) * self.scale;
+        if position.iter().all(|value| value.is_finite()) {
+            Some(position)
+        } else {
+            self.find(PostFindingKind::NotFinite);
+            None
+        }
+    }
+}

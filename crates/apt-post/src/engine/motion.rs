@@ -1,0 +1,307 @@
+//! Motion: rapid moves, and runs at feed rate with arcs fitted in.
+
+use apt_cldata::record::ClPoint;
+use apt_geometry::Vec3;
+
+use super::{Engine, Feed, RunPoint};
+use crate::{
+    arc::{self, Arc, ArcLimits},
+    control::{Values, Word},
+    finding::PostFindingKind,
+    machine::{ArcCenter, ArcPlane},
+    words::FeedMode,
+};
+
+/// The linear axes by coordinate.
+pub(super) const AXES: [&str; 3] = ["X", "Y", "Z"];
+/// The registers of an arc's centre by coordinate.
+const CENTERS: [&str; 3] = ["I", "J", "K"];
+/// How far the axis of a circle may lean from a machine axis, as the sine of the angle.
+const PLANE_TOLERANCE: f64 = 1e-7;
+
+impl Engine<'_> {
+    pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
+        let circle = self.next_circle.take();
+        let positions: Vec<Vec3> = points.iter().filter_map(|point| self.tape_position(point)).collect();
+        if from {
+            self.flush();
+            // FROM says where the tool stands; the tape says nothing of it.
+            self.position = positions.last().copied().or(self.position);
+            return;
+        }
+        if self.ended && !positions.is_empty() {
+            self.find(PostFindingKind::MotionAfterEnd);
+        }
+        self.moved |= !positions.is_empty();
+        if self.rapid.is_some() {
+            self.flush();
+            self.rapid = None;
+            for position in positions {
+                self.leave_cycle();
+                self.rapid_to(position);
+            }
+        } else if self.cycle.is_some() {
+            self.flush();
+            for position in positions {
+                self.hole(position);
+            }
+        } else {
+            let place = self.control.place;
+            self.run.extend(positions.into_iter().map(|position| RunPoint { position, place, circle }));
+        }
+    }
+
+    /// A position as the control reads it.
+    pub(super) fn rounded(&self, position: Vec3) -> Vec3 {
+        Vec3::new(
+            self.control.rounded(AXES[0], position.x),
+            self.control.rounded(AXES[1], position.y),
+            self.control.rounded(AXES[2], position.z),
+        )
+    }
+
+    fn check_travel(&mut self, position: Vec3) {
+        for (name, value) in AXES.into_iter().zip(position.iter()) {
+            let Some(axis) = self.machine.axes.get(name) else { continue };
+            let [least, greatest] = axis.limits_mm.map(|limit| self.from_millimeters(limit));
+            if !(least..=greatest).contains(value) {
+                self.find(PostFindingKind::AxisLimit { axis: name.into(), value: *value, least, greatest });
+            }
+        }
+    }
+
+    pub(super) fn axis_words(position: Vec3) -> Vec<Word> {
+        let words = AXES.into_iter().zip(position.iter());
+        words.map(|(register, value)| Word { register, value: *value, force: false }).collect()
+    }
+
+    /// A rapid move; the first one after a tool change goes to its place first and then down with the tool's length.
+    pub(super) fn rapid_to(&mut self, position: Vec3) {
+        self.check_travel(position);
+        let machine = self.machine;
+        if let Some(coolant) = self.approach.take() {
+            let values = Values::default()
+                .number("X", position.x)
+                .number("Y", position.y)
+                .number("Z", position.z)
+                .number("H", f64::from(self.length_offset))
+                .text("coolant", coolant);
+            self.control.template(&machine.templates.first_xy, &values);
+            self.control.template(&machine.templates.first_z, &values);
+        } else {
+            self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(position));
+        }
+        self.position = Some(self.rounded(position));
+    }
+
+    /// Makes blocks of the waiting run.
+    pub(super) fn flush(&mut self) {
+        let run = std::mem::take(&mut self.run);
+        let here = self.control.place;
+        let mut rest = run.as_slice();
+        while let Some(first) = rest.first() {
+            let count = rest.iter().take_while(|point| point.circle == first.circle).count();
+            let (group, others) = rest.split_at(count);
+            self.group(group);
+            rest = others;
+        }
+        self.control.place = here;
+    }
+
+    /// Points on one circle, or on none.
+    fn group(&mut self, points: &[RunPoint]) {
+        let positions: Vec<Vec3> = points.iter().map(|point| self.rounded(point.position)).collect();
+        let mut at = 0;
+        let mut arcs = 0;
+        let (planes, center) = self.planes(points);
+        while let Some(point) = points.get(at) {
+            self.control.place = point.place;
+            let straight = self.position.is_none() || self.compensation.is_some() || self.approach.is_some();
+            if let (false, Some(start)) = (straight, self.position) {
+                let mut run = vec![start];
+                run.extend_from_slice(&positions[at..]);
+                let limits = self.arc_limits(center.is_some());
+                let best = planes
+                    .iter()
+                    .filter_map(|plane| Some((*plane, arc::longest(&run, *plane, center, &limits)?)))
+                    .max_by_key(|(_, (count, _))| *count);
+                if let Some((plane, (count, fitted))) = best {
+                    self.control.place = points[at + count - 1].place;
+                    self.arc_to(positions[at + count - 1], plane, &fitted);
+                    at += count;
+                    arcs += 1;
+                    continue;
+                }
+            } else if self.compensation.is_some() && point.circle.is_some() {
+                self.find(PostFindingKind::CompensationOnArc);
+            }
+            self.linear_to(positions[at]);
+            at += 1;
+        }
+        self.report_chords(points, &positions, center, arcs);
+    }
+
+    fn report_chords(&mut self, points: &[RunPoint], positions: &[Vec3], center: Option<Vec3>, arcs: usize) {
+        let on_circle = points.first().is_some_and(|point| point.circle.is_some());
+        if !on_circle || arcs > 0 || points.len() < 3 {
+            return;
+        }
+        let Some(center) = center else { return self.find(PostFindingKind::ArcNotInPlane) };
+        let limits = self.arc_limits(true);
+        let planes = self.machine.arc.planes.clone();
+        let deviation = planes
+            .into_iter()
+            .filter_map(|plane| arc::fit(positions, plane, Some(center), &limits).err())
+            .fold(f64::INFINITY, f64::min);
+        self.find(PostFindingKind::ArcAsChords { deviation });
+    }
+
+    /// The planes in which a group may be an arc, and the centre that its circle record states.
+    fn planes(&self, points: &[RunPoint]) -> (Vec<ArcPlane>, Option<Vec3>) {
+        let circle = points.first().and_then(|point| point.circle).and_then(|index| self.circles.get(index));
+        let Some(circle) = circle else {
+            let planes = if self.fit_points { self.machine.arc.planes.clone() } else { Vec::new() };
+            return (planes, None);
+        };
+        let across = |plane: &ArcPlane| {
+            let [u, v, _] = arc::plane_axes(*plane);
+            circle.axis[u].hypot(circle.axis[v]) <= PLANE_TOLERANCE * circle.axis.norm()
+        };
+        let planes: Vec<ArcPlane> = self.machine.arc.planes.iter().copied().filter(across).collect();
+        let center = (!planes.is_empty()).then_some(circle.center);
+        (planes, center)
+    }
+
+    fn arc_limits(&self, vouched: bool) -> ArcLimits {
+        let rules = &self.machine.arc;
+        let own = self.arc_tolerance.unwrap_or_else(|| self.from_millimeters(rules.tolerance_mm));
+        let band = self.intol + self.outtol;
+        let sweep = rules.split_degrees.to_radians();
+        let register = self.machine.registers.get("X");
+        let inch = self.control.units == apt_cldata::record::Units::Inches;
+        ArcLimits {
+            tolerance: if vouched { own + band } else { own },
+            chord_tolerance: band,
+            least_radius: self.from_millimeters(rules.min_radius_mm),
+            greatest_radius: self.from_millimeters(rules.max_radius_mm),
+            sweep: if vouched { sweep } else { sweep.min(std::f64::consts::PI) },
+            helix: rules.helix,
+            resolution: register.map_or(f64::EPSILON, |register| register.format(inch).resolution()),
+            least_points: rules.fit_least_points,
+        }
+    }
+
+    /// What has to be in order before the tool cuts.
+    pub(super) fn check_cutting(&mut self) {
+        if self.feed.is_none() && !self.feed_reported {
+            self.feed_reported = true;
+            self.find(PostFindingKind::NoFeed);
+        }
+        if !self.spindle.on && !self.spindle_reported {
+            self.spindle_reported = true;
+            self.find(PostFindingKind::SpindleOff);
+        }
+    }
+
+    /// The feed as code and word of a block over a length.
+    fn feed_words(&mut self, length: f64) -> (Option<String>, Option<Word>) {
+        let Some(Feed { mode, value, timed }) = self.feed else { return (None, None) };
+        let codes = &self.machine.codes;
+        let code = match mode {
+            FeedMode::PerMinute => Some(codes.feed_per_minute.clone()),
+            FeedMode::PerRevolution => codes.feed_per_revolution.clone(),
+            FeedMode::Inverse => codes.feed_inverse.clone(),
+        };
+        let value = if timed && length > 0.0 { value / length } else { value };
+        (code, Some(Word { register: "F", value, force: mode == FeedMode::Inverse }))
+    }
+
+    /// Length offset and coolant that an approach by rapid would have brought.
+    pub(super) fn approach_now(&mut self) {
+        if let Some(coolant) = self.approach.take() {
+            let machine = self.machine;
+            let values = Values::default().number("H", f64::from(self.length_offset));
+            self.control.template(&machine.templates.length_offset, &values);
+            if !coolant.is_empty() {
+                self.control.code(&coolant);
+            }
+        }
+    }
+
+    /// A straight move at feed rate to a rounded position.
+    pub(super) fn linear_to(&mut self, position: Vec3) {
+        let moves = AXES.into_iter().zip(position.iter()).any(|(name, value)| self.control.changes(name, *value));
+        if !moves {
+            self.position = Some(position);
+            return;
+        }
+        self.approach_now();
+        self.check_travel(position);
+        self.check_cutting();
+        let length = self.position.map_or(0.0, |start| (position - start).norm());
+        let (feed_code, feed) = self.feed_words(length);
+        let in_plane = self.control.changes(AXES[0], position.x) || self.control.changes(AXES[1], position.y);
+        let before = if in_plane { self.compensation.take().map(|pending| pending.words) } else { None };
+        let machine = self.machine;
+        let mut words = Self::axis_words(position);
+        words.extend(feed);
+        self.cut(&before.unwrap_or_default(), feed_code, &[&machine.codes.linear], &words);
+        self.position = Some(position);
+    }
+
+    /// A cutting block; a new feed mode makes the control forget its feed rate.
+    fn cut(&mut self, before: &[String], feed_code: Option<String>, codes: &[&str], words: &[Word]) {
+        let mut before = before.to_vec();
+        if let Some(code) = feed_code
+            && self.control.set_mode(&code)
+        {
+            self.control.forget(&["F"]);
+            before.push(code);
+        }
+        self.control.motion(&before, codes, words);
+    }
+
+    /// An arc to a rounded position.
+    fn arc_to(&mut self, end: Vec3, plane: ArcPlane, fitted: &Arc) {
+        let Some(start) = self.position else { return };
+        self.check_travel(end);
+        self.check_cutting();
+        let [u, v, w] = arc::plane_axes(plane);
+        let machine = self.machine;
+        let codes = &machine.codes;
+        let plane_code = match plane {
+            ArcPlane::Xy => &codes.plane_xy,
+            ArcPlane::Zx => &codes.plane_zx,
+            ArcPlane::Yz => &codes.plane_yz,
+        };
+        let turn = if fitted.counterclockwise { &codes.counterclockwise } else { &codes.clockwise };
+        let mut words = vec![
+            Word { register: AXES[u], value: end[u], force: true },
+            Word { register: AXES[v], value: end[v], force: true },
+            Word { register: AXES[w], value: end[w], force: false },
+        ];
+        for axis in [u, v] {
+            let value = match machine.arc.center {
+                ArcCenter::Incremental => fitted.center[axis] - start[axis],
+                ArcCenter::Absolute => fitted.center[axis],
+            };
+            words.push(Word { register: CENTERS[axis], value, force: true });
+        }
+        let (feed_code, feed) = self.feed_words(arc_length(start, end, fitted, [u, v, w]));
+        words.extend(feed);
+        self.cut(&[], feed_code, &[plane_code, turn], &words);
+        self.position = Some(end);
+    }
+}
+
+fn arc_length(start: Vec3, end: Vec3, fitted: &Arc, [u, v, w]: [usize; 3]) -> f64 {
+    let (a, b) = (start - fitted.center, end - fitted.center);
+    let angle = (a[u] * b[v] - a[v] * b[u]).atan2(a[u] * b[u] + a[v] * b[v]);
+    let turn = std::f64::consts::TAU;
+    let sweep = match (fitted.full_turn, fitted.counterclockwise) {
+        (true, _) => turn,
+        (false, true) => angle.rem_euclid(turn),
+        (false, false) => (-angle).rem_euclid(turn),
+    };
+    (sweep * a[u].hypot(a[v])).hypot(end[w] - start[w])
+}

@@ -1,0 +1,98 @@
+//! What has to be known before the first block: units, part name, program number.
+
+use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
+
+use super::{Engine, MILLIMETERS_PER_INCH};
+use crate::{
+    control::Values,
+    machine::{MachineDefinition, OutputUnits},
+    tape::PostOptions,
+};
+
+/// Program number of a part whose name has none, and the largest that four-digit controls take.
+const DEFAULT_PROGRAM: u32 = 1;
+const LARGEST_PROGRAM: u32 = 9999;
+
+/// Unit of the program and of the tape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct UnitChoice {
+    pub(super) program: Units,
+    pub(super) tape: Units,
+}
+
+impl UnitChoice {
+    /// Factor from program lengths to tape lengths.
+    pub(super) fn scale(self) -> f64 {
+        match (self.program, self.tape) {
+            (Units::Inches, Units::Millimeters) => MILLIMETERS_PER_INCH,
+            (Units::Millimeters, Units::Inches) => MILLIMETERS_PER_INCH.recip(),
+            _ => 1.0,
+        }
+    }
+}
+
+/// The program's UNITS; without it the unit of its first feed rate; without that the caller's default.
+pub(super) fn units(records: &[ClRecord], machine: &MachineDefinition, options: &PostOptions) -> UnitChoice {
+    let stated = records.iter().find_map(|record| match record.kind {
+        ClKind::Units(units) => Some(units),
+        _ => None,
+    });
+    let program = stated.or_else(|| records.iter().find_map(feed_units)).unwrap_or(options.default_units);
+    let tape = match machine.units {
+        OutputUnits::Program => program,
+        OutputUnits::Mm => Units::Millimeters,
+        OutputUnits::Inch => Units::Inches,
+    };
+    UnitChoice { program, tape }
+}
+
+fn feed_units(record: &ClRecord) -> Option<Units> {
+    let ClKind::Postprocessor { word, arguments, .. } = &record.kind else { return None };
+    if word != "FEDRAT" && word != "CYCLE" {
+        return None;
+    }
+    arguments.iter().find_map(|argument| match argument {
+        ClWord::Word(word) if word == "IPM" || word == "IPR" => Some(Units::Inches),
+        ClWord::Word(word) if word == "MMPM" || word == "MMPR" => Some(Units::Millimeters),
+        _ => None,
+    })
+}
+
+impl Engine<'_> {
+    /// The first blocks.
+    pub(super) fn start(&mut self, records: &[ClRecord]) {
+        let name = records.iter().find_map(|record| match &record.kind {
+            ClKind::Text { word, text, .. } if word == "PARTNO" => Some((record, text.trim())),
+            _ => None,
+        });
+        if let Some((record, _)) = name {
+            self.control.place = (record.isn, record.source);
+        }
+        let text = name.map_or("", |(_, text)| text);
+        let codes = &self.machine.codes;
+        let unit = match self.control.units {
+            Units::Inches => codes.inch.clone(),
+            Units::Millimeters => codes.millimeter.clone(),
+        };
+        let program = program_number(text).to_string();
+        let values = Values::default().text("unit", unit).text("program", program);
+        let machine = self.machine;
+        for template in &machine.templates.program_start {
+            if template.contains("{partno}") {
+                if !text.is_empty() {
+                    self.control.remark(&template.replace("{partno}", "{text}"), text);
+                }
+            } else {
+                self.control.template(template, &values);
+            }
+        }
+    }
+}
+
+/// The first whole number in the part's name that a control takes as program number.
+fn program_number(name: &str) -> u32 {
+    name.split(|c: char| !c.is_ascii_digit())
+        .filter_map(|digits| digits.parse().ok())
+        .find(|number| (1..=LARGEST_PROGRAM).contains(number))
+        .unwrap_or(DEFAULT_PROGRAM)
+}

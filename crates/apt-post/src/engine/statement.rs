@@ -1,0 +1,325 @@
+//! Post-processor words and texts.
+
+use apt_cldata::record::{ClWord, Units};
+use apt_geometry::Vec3;
+use smol_str::SmolStr;
+
+use super::{Engine, Feed};
+use crate::{
+    control::Values,
+    finding::PostFindingKind,
+    words::{Arguments, FeedMode, LengthUnit, feed_unit},
+};
+
+const SECONDS_PER_MINUTE: f64 = 60.0;
+/// Largest M and G numbers that AUXFUN and PREFUN write.
+const LARGEST_CODE: f64 = 999.9;
+
+/// Words that say nothing to a three-axis mill: statements of the processor, of listings and plots.
+const SILENT: [&str; 31] = [
+    "MACHIN", "TRACUT", "INDEX", "COPY", "CLPRNT", "LPRINT", "PLOT", "OVPLOT", "PPLOT", "PENUP", "PENDWN", "DRAFT",
+    "LEADER", "DISPLY", "REMARK", "TITLES", "LETTER", "TLDATA", "PAINT", "MODE", "AIR", "TMARK", "PLABEL", "NOPOST",
+    "LINTOL", "MCHFIN", "MAXDPM", "MAXVEL", "REGBRK", "DMIS", "BREAK",
+];
+/// Words for which a three-axis mill has nothing.
+const NOT_SUPPORTED: [&str; 22] = [
+    "ROTABL", "ROTHED", "ROTATE", "HEAD", "PIVOTZ", "COUPLE", "THREAD", "PITCH", "SADDLE", "CLAMP", "TLAXIS",
+    "VTLAXS", "WCORN", "ALIGN", "POSITN", "SAFETY", "INTCOD", "IFRO", "CORNFD", "SLOWDN", "ASLOPE", "SMOOTH",
+];
+
+impl Engine<'_> {
+    pub(super) fn text(&mut self, word: &SmolStr, text: &str) {
+        let machine = self.machine;
+        match word.as_str() {
+            "PARTNO" => {
+                if std::mem::replace(&mut self.named, true) {
+                    self.find(PostFindingKind::Repeated { word: word.clone() });
+                    self.control.remark(&machine.block.comment, text);
+                }
+            }
+            "INSERT" => {
+                self.control.push_block(text.trim());
+                // The text may have changed anything.
+                self.control.forget_all();
+                self.position = None;
+            }
+            "PPRINT" | "TPRINT" => self.control.remark(&machine.templates.message, text),
+            _ => {}
+        }
+    }
+
+    pub(super) fn word(&mut self, word: &SmolStr, items: &[ClWord]) {
+        let arguments = Arguments { word, items };
+        if self.site_word(&arguments) {
+            return;
+        }
+        let machine = self.machine;
+        match word.as_str() {
+            "RAPID" => self.rapid_statement(&arguments),
+            "FEDRAT" => self.feed_statement(&arguments),
+            "SPINDL" => self.spindle_statement(&arguments),
+            "COOLNT" => self.coolant_statement(&arguments),
+            "LOADTL" | "LOAD" | "TURRET" | "UNLOAD" => self.load_tool(&arguments),
+            "TOOLNO" if !arguments.has("ADJUST") => self.load_tool(&arguments),
+            "TOOLNO" | "OFSTNO" => self.offset_statement(&arguments),
+            "SELCTL" | "SELECT" => self.select_tool(&arguments),
+            "CUTCOM" => self.compensation_statement(&arguments),
+            "CYCLE" => self.cycle_statement(&arguments),
+            "DELAY" | "DWELL" => self.delay_statement(&arguments),
+            "STOP" => self.control.code(&machine.codes.stop),
+            "OPSTOP" | "ISTOP" => self.control.code(&machine.codes.optional_stop),
+            "END" | "REWIND" => {
+                self.unused();
+                self.end_program();
+            }
+            "GOHOME" => self.home(),
+            "CLEARP" | "CLRSRF" => self.clearance_statement(&arguments),
+            "RETRCT" | "GOCLER" => self.retract(),
+            "PLUNGE" => self.plunge(&arguments),
+            "ORIGIN" => self.shift_statement(&arguments, -1.0),
+            "TRANS" => self.shift_statement(&arguments, 1.0),
+            "SEQNO" => self.sequence_statement(&arguments),
+            "OPSKIP" => self.skip_statement(&arguments),
+            "AUXFUN" => self.function(&arguments, "M"),
+            "PREFUN" => self.function(&arguments, "G"),
+            "MCHTOL" => match arguments.number() {
+                Some(tolerance) if tolerance >= 0.0 => self.arc_tolerance = Some(tolerance * self.scale),
+                _ => self.find(arguments.missing("the tolerance")),
+            },
+            "ARCSLP" | "SET" => self.fitting_statement(&arguments),
+            other if SILENT.contains(&other) => {}
+            other if NOT_SUPPORTED.contains(&other) => {
+                self.find(PostFindingKind::NotSupported { word: word.clone() });
+            }
+            _ => self.find(PostFindingKind::UnknownWord { word: word.clone() }),
+        }
+    }
+
+    /// Words that the machine definition gives a meaning: `WORD/first` before `WORD`.
+    fn site_word(&mut self, arguments: &Arguments<'_>) -> bool {
+        let machine = self.machine;
+        let texts: Vec<String> = arguments
+            .items
+            .iter()
+            .map(|item| match item {
+                ClWord::Number(number) => number.to_string(),
+                ClWord::Word(word) => word.to_string(),
+            })
+            .collect();
+        let first = texts.first().map(|first| format!("{}/{first}", arguments.word));
+        let template = first
+            .and_then(|key| machine.words.get(&key))
+            .or_else(|| machine.words.get(arguments.word.as_str()));
+        let Some(template) = template else { return false };
+        self.control.template(template, &Values::default().text("text", texts.join(",")));
+        true
+    }
+
+    fn rapid_statement(&mut self, arguments: &Arguments<'_>) {
+        if arguments.has("OFF") {
+            self.rapid = None;
+            return;
+        }
+        if let Some(place) = self.rapid.replace(self.control.place) {
+            self.find_at(place, PostFindingKind::RapidUnused);
+        }
+    }
+
+    /// Reports a feed in the unit that the program does not use.
+    pub(super) fn check_unit(&mut self, word: &SmolStr, unit: LengthUnit) {
+        let other = match unit {
+            LengthUnit::Inch => self.program_units != Units::Inches,
+            LengthUnit::Millimeter => self.program_units != Units::Millimeters,
+            LengthUnit::Program => false,
+        };
+        if other {
+            self.find(PostFindingKind::UnitMismatch { word: word.clone() });
+        }
+    }
+
+    fn feed_statement(&mut self, arguments: &Arguments<'_>) {
+        let stated = arguments.items.iter().find_map(|item| match item {
+            ClWord::Word(word) => feed_unit(word).map(|unit| (word.clone(), unit)),
+            ClWord::Number(_) => None,
+        });
+        let timed = arguments.has("AUTO");
+        let off = arguments.has("OFF");
+        let known = ["IPM", "MMPM", "PERMIN", "IPR", "MMPR", "PERREV", "INVERS", "AUTO", "OFF"];
+        if let Some(kind) = arguments.unknown(&known) {
+            return self.find(kind);
+        }
+        let (mode, unit) = match &stated {
+            Some((word, (mode, unit))) => {
+                self.check_unit(word, *unit);
+                (*mode, *unit)
+            }
+            None => (FeedMode::PerMinute, LengthUnit::Program),
+        };
+        let codes = &self.machine.codes;
+        let lacking = match mode {
+            FeedMode::PerMinute => None,
+            FeedMode::PerRevolution => codes.feed_per_revolution.is_none().then_some("feed_per_revolution"),
+            FeedMode::Inverse => codes.feed_inverse.is_none().then_some("feed_inverse"),
+        };
+        if let Some(name) = lacking {
+            return self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: name.into() });
+        }
+        let value = match (arguments.number(), self.feed) {
+            (Some(value), _) if mode == FeedMode::Inverse && !timed => value,
+            (Some(value), _) => value * self.unit_factor(unit),
+            // INVERS,AUTO and INVERS,OFF keep the rate.
+            (None, Some(feed)) if mode == FeedMode::Inverse => feed.value,
+            (None, _) => return self.find(arguments.missing("the feed rate")),
+        };
+        if !(value > 0.0 && value.is_finite()) {
+            return self.find(PostFindingKind::FeedNotPositive { value });
+        }
+        let mode = if off { FeedMode::PerMinute } else { mode };
+        if mode == FeedMode::PerRevolution && self.spindle.speed.is_none() {
+            self.find(PostFindingKind::FeedPerRevolutionWithoutSpindle);
+        }
+        if let (FeedMode::PerMinute, Some(range)) = (mode, self.machine.limits.feed_mm) {
+            let [least, greatest] = range.map(|limit| self.from_millimeters(limit));
+            if !(least..=greatest).contains(&value) {
+                self.find(PostFindingKind::FeedOutOfRange { value, least, greatest });
+            }
+        }
+        self.feed_reported = false;
+        self.feed = Some(Feed { mode, value, timed: timed && mode == FeedMode::Inverse });
+    }
+
+    fn delay_statement(&mut self, arguments: &Arguments<'_>) {
+        let Some(value) = arguments.number() else { return self.find(arguments.missing("the time")) };
+        let seconds = match (arguments.has("REV"), self.spindle.speed) {
+            (false, _) => value,
+            (true, Some(speed)) if self.spindle.on && speed > 0.0 => value / speed * SECONDS_PER_MINUTE,
+            (true, _) => return self.find(PostFindingKind::NoSpindleSpeed),
+        };
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            let word = arguments.word.clone();
+            return self.find(PostFindingKind::BadValue { word, argument: "time".into(), value });
+        }
+        self.dwell_block(seconds);
+    }
+
+    fn offset_statement(&mut self, arguments: &Arguments<'_>) {
+        let Some(number) = arguments.after("ADJUST").or_else(|| arguments.number()) else {
+            return self.find(arguments.missing("the offset number"));
+        };
+        if !(number >= 0.0 && number.fract() == 0.0 && number <= f64::from(u16::MAX)) {
+            let word = arguments.word.clone();
+            return self.find(PostFindingKind::BadValue { word, argument: "offset".into(), value: number });
+        }
+        self.length_offset = number as u32;
+        if self.approach.is_none() {
+            let machine = self.machine;
+            self.control.template(&machine.templates.length_offset, &Values::default().number("H", number));
+        }
+    }
+
+    fn home(&mut self) {
+        self.end_cycle();
+        self.coolant_now();
+        let machine = self.machine;
+        self.control.templates(&machine.templates.home, &Values::default());
+        self.control.forget(&["X", "Y", "Z"]);
+        self.position = None;
+    }
+
+    fn clearance_statement(&mut self, arguments: &Arguments<'_>) {
+        if let Some(argument) = ["YZPLAN", "ZXPLAN", "TOOL", "AVOID"].into_iter().find(|word| arguments.has(word)) {
+            let word = arguments.word.clone();
+            return self.find(PostFindingKind::UnknownArgument { word, argument: argument.into() });
+        }
+        let numbers: Vec<f64> = arguments.numbers().collect();
+        let height = match numbers[..] {
+            [height] => Some(height),
+            // A plane's canonical form that is level.
+            [i, j, k, distance] if i == 0.0 && j == 0.0 && k != 0.0 => Some(distance / k),
+            _ => None,
+        };
+        match height {
+            Some(height) => self.clearance = Some((height + self.shift.z) * self.scale),
+            None => self.find(arguments.missing("a level plane")),
+        }
+    }
+
+    fn retract(&mut self) {
+        let Some(height) = self.clearance else { return self.find(PostFindingKind::NoClearance) };
+        let Some(here) = self.position else { return self.find(PostFindingKind::NoClearance) };
+        self.leave_cycle();
+        self.retracted_from = Some(here.z);
+        self.rapid_to(Vec3::new(here.x, here.y, height));
+    }
+
+    fn plunge(&mut self, arguments: &Arguments<'_>) {
+        let (Some(height), Some(here)) = (self.retracted_from.take(), self.position) else {
+            return self.find(PostFindingKind::NoRetract);
+        };
+        let target = Vec3::new(here.x, here.y, height);
+        if let Some(value) = arguments.number() {
+            self.feed = Some(Feed { mode: FeedMode::PerMinute, value: value * self.scale, timed: false });
+            self.linear_to(target);
+        } else {
+            self.rapid_to(target);
+        }
+    }
+
+    /// ORIGIN is subtracted, TRANS is added.
+    fn shift_statement(&mut self, arguments: &Arguments<'_>, sign: f64) {
+        let numbers: Vec<f64> = arguments.numbers().collect();
+        match numbers[..] {
+            [x, y] => self.shift = Vec3::new(x, y, 0.0) * sign,
+            [x, y, z] => self.shift = Vec3::new(x, y, z) * sign,
+            _ => self.find(arguments.missing("three coordinates")),
+        }
+    }
+
+    fn sequence_statement(&mut self, arguments: &Arguments<'_>) {
+        let numbering = &mut self.control.numbering;
+        if arguments.has("ON") || arguments.has("OFF") {
+            numbering.on = arguments.has("ON");
+            return;
+        }
+        let whole = |value: f64| (0.0..=f64::from(self.machine.block.sequence.max)).contains(&value).then_some(value as u32);
+        let Some(start) = arguments.number().and_then(whole) else {
+            return self.find(arguments.missing("the number"));
+        };
+        numbering.on = true;
+        (numbering.next, numbering.count) = (start, 0);
+        if let Some(step) = arguments.after("INCR").and_then(whole) {
+            numbering.step = step;
+        }
+    }
+
+    fn skip_statement(&mut self, arguments: &Arguments<'_>) {
+        self.control.skip = !arguments.has("OFF");
+        // A skipped block must not have been the only one that carried a modal word.
+        self.control.forget_all();
+    }
+
+    fn function(&mut self, arguments: &Arguments<'_>, letter: &str) {
+        match arguments.number() {
+            Some(number) if (0.0..=LARGEST_CODE).contains(&number) => {
+                let tenths = (number * 10.0).round() / 10.0;
+                self.control.code(&format!("{letter}{tenths}"));
+            }
+            Some(value) => {
+                let word = arguments.word.clone();
+                self.find(PostFindingKind::BadValue { word, argument: "number".into(), value });
+            }
+            None => self.find(arguments.missing("the number")),
+        }
+    }
+
+    /// ARCSLP/LINCIR,ON and SET/LINCIR, SET/LINEAR.
+    fn fitting_statement(&mut self, arguments: &Arguments<'_>) {
+        if arguments.has("LINCIR") {
+            self.fit_points = !arguments.has("OFF");
+        } else if arguments.has("LINEAR") {
+            self.fit_points = false;
+        } else {
+            self.find(PostFindingKind::NotSupported { word: arguments.word.clone() });
+        }
+    }
+}

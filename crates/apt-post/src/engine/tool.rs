@@ -1,0 +1,252 @@
+//! Tools, spindle, coolant, cutter compensation.
+
+use apt_cldata::record::{ClWord, Units};
+
+use super::{Engine, MILLIMETERS_PER_INCH, PendingCompensation, Spindle};
+use crate::{
+    control::Values,
+    finding::PostFindingKind,
+    words::Arguments,
+};
+
+/// Largest tool number that is taken.
+const LARGEST_TOOL: f64 = 99_999.0;
+const INCHES_PER_FOOT: f64 = 12.0;
+const MILLIMETERS_PER_METER: f64 = 1000.0;
+
+impl Engine<'_> {
+    /// A tool or offset number.
+    fn tool_number(&mut self, arguments: &Arguments<'_>, name: &str, value: f64) -> Option<u32> {
+        if (0.0..=LARGEST_TOOL).contains(&value) && value.fract() == 0.0 {
+            return Some(value as u32);
+        }
+        self.find(PostFindingKind::BadValue { word: arguments.word.clone(), argument: name.into(), value });
+        None
+    }
+
+    /// LOADTL, LOAD/TOOL, TOOLNO, TURRET, UNLOAD.
+    pub(super) fn load_tool(&mut self, arguments: &Arguments<'_>) {
+        let unload = arguments.word == "UNLOAD";
+        let number = if unload { Some(0.0) } else { arguments.number() };
+        let Some(number) = number else { return self.find(arguments.missing("the tool number")) };
+        let Some(number) = self.tool_number(arguments, "tool", number) else { return };
+        let offset = ["OSETNO", "OFFSET", "ADJUST"].into_iter().find_map(|word| arguments.after(word));
+        let offset = match offset {
+            Some(offset) => self.tool_number(arguments, "offset", offset),
+            None => Some(number),
+        };
+        let Some(offset) = offset else { return };
+        self.end_cycle();
+        self.unused();
+        if self.tool == Some(number) {
+            self.find(PostFindingKind::SameTool { number });
+        }
+        let machine = self.machine;
+        if self.spindle.on {
+            self.find(PostFindingKind::ToolChangeWhile { what: "SPINDL".into() });
+            self.control.code(&machine.codes.spindle_off);
+            self.spindle.on = false;
+        }
+        if self.coolant {
+            self.control.code(&machine.codes.coolant_off);
+            self.coolant = false;
+        }
+        let values = Values::default().number("T", f64::from(number)).number("H", f64::from(offset));
+        self.control.templates(&machine.templates.tool_change, &values);
+        self.tool = Some(number);
+        self.length_offset = offset;
+        // Where the machine goes to change a tool, the post-processor does not know.
+        self.control.forget(&["X", "Y", "Z"]);
+        self.position = None;
+        self.approach = Some(String::new());
+        if unload {
+            self.approach = None;
+        }
+    }
+
+    /// SELCTL, SELECT/TOOL.
+    pub(super) fn select_tool(&mut self, arguments: &Arguments<'_>) {
+        let Some(number) = arguments.number() else { return self.find(arguments.missing("the tool number")) };
+        let Some(number) = self.tool_number(arguments, "tool", number) else { return };
+        let machine = self.machine;
+        let values = Values::default().number("T", f64::from(number));
+        self.control.template(&machine.templates.tool_select, &values);
+    }
+
+    pub(super) fn spindle_statement(&mut self, arguments: &Arguments<'_>) {
+        const KNOWN: [&str; 19] = [
+            "RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "OFF", "ORIENT", "LOCK", "MAXRPM", "LOW", "MEDIUM", "HIGH", "AUTO",
+            "RANGE", "RADIUS", "DIAMTR", "BOTH", "NEUTRL",
+        ];
+        if let Some(kind) = arguments.unknown(&KNOWN) {
+            return self.find(kind);
+        }
+        self.spindle_reported = false;
+        let machine = self.machine;
+        if arguments.has("OFF") {
+            self.control.code(&machine.codes.spindle_off);
+            self.spindle.on = false;
+            return;
+        }
+        if arguments.has("ORIENT") || arguments.has("LOCK") {
+            match &machine.codes.spindle_orient {
+                Some(code) => self.control.code(code),
+                None => self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: "spindle_orient".into() }),
+            }
+            self.spindle.on = false;
+            return;
+        }
+        for argument in ["LOW", "MEDIUM", "HIGH", "AUTO", "RANGE", "BOTH", "NEUTRL"] {
+            if arguments.has(argument) {
+                let word = arguments.word.clone();
+                self.find(PostFindingKind::ArgumentNotUsed { word, argument: argument.into() });
+            }
+        }
+        if arguments.has("MAXRPM") {
+            self.spindle.maximum = arguments.after("MAXRPM").or(self.spindle.maximum);
+            if arguments.numbers().count() == 1 {
+                return;
+            }
+        }
+        let Some(speed) = self.spindle_speed(arguments) else { return };
+        let counterclockwise =
+            if arguments.has("ON") { self.spindle.counterclockwise } else { arguments.has("CCLW") };
+        let direction = match counterclockwise {
+            true => machine.codes.spindle_counterclockwise.clone(),
+            false => machine.codes.spindle_clockwise.clone(),
+        };
+        self.spindle = Spindle { speed: Some(speed), counterclockwise, on: true, ..self.spindle };
+        let values = Values::default().number("S", speed).text("direction", direction);
+        self.control.template(&machine.templates.spindle_on, &values);
+    }
+
+    /// Revolutions per minute, within the machine's range.
+    fn spindle_speed(&mut self, arguments: &Arguments<'_>) -> Option<f64> {
+        let stated = arguments.items.iter().enumerate().find_map(|(at, item)| match item {
+            ClWord::Number(number) => {
+                let keyword = at.checked_sub(1).and_then(|before| arguments.items.get(before));
+                let other = matches!(keyword, Some(ClWord::Word(word)) if matches!(word.as_str(), "MAXRPM" | "RANGE" | "RADIUS" | "DIAMTR"));
+                (!other).then_some(*number)
+            }
+            ClWord::Word(_) => None,
+        });
+        let surface_speed = arguments.has("SFM") || arguments.has("SMM");
+        let mut speed = match stated {
+            None => {
+                let speed = self.spindle.speed;
+                if speed.is_none() {
+                    self.find(PostFindingKind::NoSpindleSpeed);
+                }
+                speed?
+            }
+            Some(value) if surface_speed => {
+                let stated = arguments.after("DIAMTR").or_else(|| arguments.after("RADIUS").map(|radius| radius * 2.0));
+                let diameter = stated.map(|diameter| diameter * self.scale).or(self.cutter_diameter);
+                let Some(diameter) = diameter.filter(|diameter| *diameter > 0.0) else {
+                    self.find(PostFindingKind::NoCutterDiameter);
+                    return None;
+                };
+                let millimeters =
+                    if self.control.units == Units::Inches { diameter * MILLIMETERS_PER_INCH } else { diameter };
+                let per_minute = if arguments.has("SFM") {
+                    value * INCHES_PER_FOOT * MILLIMETERS_PER_INCH
+                } else {
+                    value * MILLIMETERS_PER_METER
+                };
+                per_minute / (std::f64::consts::PI * millimeters)
+            }
+            Some(value) => value,
+        };
+        if !(speed > 0.0) {
+            let word = arguments.word.clone();
+            self.find(PostFindingKind::BadValue { word, argument: "speed".into(), value: speed });
+            return None;
+        }
+        let [least, greatest] = self.machine.limits.spindle.unwrap_or([0.0, f64::INFINITY]);
+        let greatest = self.spindle.maximum.map_or(greatest, |maximum| maximum.min(greatest));
+        if !(least..=greatest).contains(&speed) {
+            self.find(PostFindingKind::SpindleOutOfRange { value: speed, least, greatest });
+            speed = speed.clamp(least.min(greatest), greatest);
+        }
+        Some(speed)
+    }
+
+    pub(super) fn coolant_statement(&mut self, arguments: &Arguments<'_>) {
+        let codes = &self.machine.codes;
+        let kind = arguments.items.iter().find_map(|item| match item {
+            ClWord::Word(word) => Some(word.to_ascii_uppercase()),
+            ClWord::Number(_) => None,
+        });
+        let name = kind.as_deref().unwrap_or("ON");
+        let code = match name {
+            "OFF" => {
+                self.approach = self.approach.take().map(|_| String::new());
+                self.coolant = false;
+                let code = codes.coolant_off.clone();
+                return self.control.code(&code);
+            }
+            "ON" => self.coolant_code.clone().or_else(|| Some(codes.coolant_flood.clone())),
+            "FLOOD" | "TAPKUL" | "TAP" => Some(codes.coolant_flood.clone()),
+            "MIST" => codes.coolant_mist.clone(),
+            "AIR" => codes.coolant_air.clone(),
+            "THRU" => codes.coolant_through.clone(),
+            other => {
+                let argument = other.into();
+                return self.find(PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument });
+            }
+        };
+        let code = match code {
+            Some(code) => code,
+            None => {
+                let argument = format!("{name} (flood instead)").into();
+                self.find(PostFindingKind::ArgumentNotUsed { word: arguments.word.clone(), argument });
+                codes.coolant_flood.clone()
+            }
+        };
+        self.coolant_code = Some(code.clone());
+        self.coolant = true;
+        match &mut self.approach {
+            Some(pending) => *pending = code,
+            None => self.control.code(&code),
+        }
+    }
+
+    /// Coolant that still waits for a first Z that does not come.
+    pub(super) fn coolant_now(&mut self) {
+        if let Some(code) = self.approach.take().filter(|code| !code.is_empty()) {
+            self.control.code(&code);
+        }
+    }
+
+    pub(super) fn compensation_statement(&mut self, arguments: &Arguments<'_>) {
+        const KNOWN: [&str; 5] = ["ON", "OFF", "LEFT", "RIGHT", "XYPLAN"];
+        if let Some(kind) = arguments.unknown(&KNOWN) {
+            return self.find(kind);
+        }
+        let codes = &self.machine.codes;
+        let (code, name) = if arguments.has("OFF") {
+            (&codes.compensation_off, "compensation_off")
+        } else if arguments.has("LEFT") {
+            (&codes.compensation_left, "compensation_left")
+        } else if arguments.has("RIGHT") {
+            (&codes.compensation_right, "compensation_right")
+        } else {
+            // ON announces; the side comes with a statement of its own.
+            return;
+        };
+        let Some(code) = code.clone() else {
+            return self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: name.into() });
+        };
+        let mut words = vec![code];
+        if !arguments.has("OFF") {
+            let number = arguments.number().or(self.tool.map(f64::from));
+            let Some(number) = number else { return self.find(arguments.missing("the offset number")) };
+            let Some(number) = self.tool_number(arguments, "offset", number) else { return };
+            words.extend(self.control.number_text("D", f64::from(number)));
+        }
+        if let Some(pending) = self.compensation.take() {
+            self.find_at(pending.place, PostFindingKind::CompensationUnused);
+        }
+        self.compensation = Some(PendingCompensation { words, place: self.control.place });
+    }
+}

@@ -1,0 +1,148 @@
+//! What the post-processor has to say about a program.
+
+use smol_str::SmolStr;
+
+/// A finding with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PostFinding {
+    /// Number of the source statement.
+    pub isn: u32,
+    /// Origin, as in [`apt_cldata::record::ClRecord::source`].
+    pub source: u32,
+    /// Index of the block that was made next.
+    pub block: usize,
+    /// What it is.
+    pub kind: PostFindingKind,
+}
+
+/// How bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The tape says what the program says; the reader may want to know.
+    Information,
+    /// The tape runs, but perhaps not as meant.
+    Warning,
+    /// The tape is not what the program asks for.
+    Error,
+}
+
+/// What was found. Lengths are in the unit of the tape.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the fields are the evidence that the messages name")]
+pub enum PostFindingKind {
+    #[error("cutting without a feed rate")]
+    NoFeed,
+    #[error("feed rate {value} is not positive")]
+    FeedNotPositive { value: f64 },
+    #[error("feed rate {value} is outside {least} to {greatest}")]
+    FeedOutOfRange { value: f64, least: f64, greatest: f64 },
+    #[error("feed per revolution while the spindle speed is unknown")]
+    FeedPerRevolutionWithoutSpindle,
+    #[error("FEDRAT/{word} in a program of the other unit; converted")]
+    UnitMismatch { word: SmolStr },
+    #[error("the unit of the program changes after its first motion; ignored")]
+    UnitsChanged,
+    #[error("cutting with the spindle off")]
+    SpindleOff,
+    #[error("spindle speed {value} is outside {least} to {greatest}")]
+    SpindleOutOfRange { value: f64, least: f64, greatest: f64 },
+    #[error("SPINDL without a speed, now or before")]
+    NoSpindleSpeed,
+    #[error("surface speed needs a cutter diameter")]
+    NoCutterDiameter,
+    #[error("{axis} {value} is outside the travel {least} to {greatest}")]
+    AxisLimit { axis: SmolStr, value: f64, least: f64, greatest: f64 },
+    #[error("{axis} {value} has more digits than the control takes")]
+    DigitLimit { axis: SmolStr, value: f64 },
+    #[error("a coordinate is not finite")]
+    NotFinite,
+    #[error("the tool axis {i} {j} {k} is not the spindle's; the move is left out")]
+    ToolAxis { i: f64, j: f64, k: f64 },
+    #[error("{word} is not known; nothing is made of it")]
+    UnknownWord { word: SmolStr },
+    #[error("{word} is not supported by this machine; nothing is made of it")]
+    NotSupported { word: SmolStr },
+    #[error("{word}: {argument} is not known; the statement is left out")]
+    UnknownArgument { word: SmolStr, argument: SmolStr },
+    #[error("{word}: {argument} has no effect here")]
+    ArgumentNotUsed { word: SmolStr, argument: SmolStr },
+    #[error("{word}: {missing} is missing; the statement is left out")]
+    MissingArgument { word: SmolStr, missing: SmolStr },
+    #[error("{word}: {argument} {value} is out of range")]
+    BadValue { word: SmolStr, argument: SmolStr, value: f64 },
+    #[error("the machine definition has no {name}; {word} is left out")]
+    NoCode { word: SmolStr, name: SmolStr },
+    #[error("tool {number} is loaded already")]
+    SameTool { number: u32 },
+    #[error("the tool is changed while {what} is on")]
+    ToolChangeWhile { what: SmolStr },
+    #[error("a cycle needs a position before it")]
+    CycleWithoutPosition,
+    #[error("CYCLE/{cycle} has no code on this machine; expanded into moves")]
+    CycleExpanded { cycle: SmolStr },
+    #[error("CYCLE/{cycle} cannot be expanded; the hole is left out")]
+    CycleNotPossible { cycle: SmolStr },
+    #[error("the feed {feed} of a tap does not fit pitch {pitch} at {speed} rpm")]
+    TapFeed { feed: f64, pitch: f64, speed: f64 },
+    #[error("STEP {step} is not less than the depth {depth}: one pass")]
+    StepNotLessThanDepth { step: f64, depth: f64 },
+    #[error("a cycle without points")]
+    CycleWithoutPoints,
+    #[error("a circle off tolerance by {deviation}: made of chords")]
+    ArcAsChords { deviation: f64 },
+    #[error("a circle whose axis is no machine axis: made of chords")]
+    ArcNotInPlane,
+    #[error("cutter compensation begins or ends on an arc; a straight block is used")]
+    CompensationOnArc,
+    #[error("cutter compensation is never used by a motion in its plane")]
+    CompensationUnused,
+    #[error("RETRCT without a clearance plane")]
+    NoClearance,
+    #[error("PLUNGE without a RETRCT before it")]
+    NoRetract,
+    #[error("motion after END")]
+    MotionAfterEnd,
+    #[error("no FINI")]
+    NoFini,
+    #[error("RAPID without a motion after it")]
+    RapidUnused,
+    #[error("{word} a second time")]
+    Repeated { word: SmolStr },
+    #[error("{character:?} is not in the character set of the control")]
+    Character { character: char },
+    #[error("the block has {length} characters, {limit} are allowed")]
+    BlockTooLong { length: usize, limit: usize },
+}
+
+impl PostFindingKind {
+    /// How bad it is.
+    pub fn severity(&self) -> Severity {
+        use PostFindingKind as Kind;
+        match self {
+            Kind::ArcAsChords { .. }
+            | Kind::ArcNotInPlane
+            | Kind::CycleExpanded { .. }
+            | Kind::ArgumentNotUsed { .. }
+            | Kind::SameTool { .. } => Severity::Information,
+            Kind::SpindleOff
+            | Kind::FeedOutOfRange { .. }
+            | Kind::UnitMismatch { .. }
+            | Kind::SpindleOutOfRange { .. }
+            | Kind::AxisLimit { .. }
+            | Kind::UnknownWord { .. }
+            | Kind::NotSupported { .. }
+            | Kind::ToolChangeWhile { .. }
+            | Kind::TapFeed { .. }
+            | Kind::StepNotLessThanDepth { .. }
+            | Kind::CycleWithoutPoints
+            | Kind::CompensationOnArc
+            | Kind::CompensationUnused
+            | Kind::NoFini
+            | Kind::RapidUnused
+            | Kind::Repeated { .. }
+            | Kind::Character { .. }
+            | Kind::MotionAfterEnd => Severity::Warning,
+            _ => Severity::Error,
+        }
+    }
+}

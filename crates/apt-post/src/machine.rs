@@ -1,0 +1,483 @@
+//! Machine definitions: what a control and its machine want, as data.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::format::{NumberFormat, Sign, Style};
+
+/// Version of the definition format that this program reads.
+const SCHEMA: u32 = 1;
+
+/// The definitions that come with the program.
+const BUNDLED: [&str; 3] = [
+    include_str!("../machines/linuxcnc-mill3.toml"),
+    include_str!("../machines/fanuc-mill3.toml"),
+    include_str!("../machines/haas-mill3.toml"),
+];
+
+/// What a user needs to choose a machine.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MachineInfo {
+    /// Name by which it is asked for.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// Its control.
+    pub control: String,
+}
+
+/// Why a definition cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MachineError {
+    /// The text is not a definition; the message names line and key.
+    #[error("{message}")]
+    Syntax {
+        /// Zero-based line, where known.
+        line: Option<usize>,
+        /// What the parser says.
+        message: String,
+    },
+    /// A format version that this program does not read.
+    #[error("schema {found}, this program reads {SCHEMA}")]
+    Schema {
+        /// What the file says.
+        found: u32,
+    },
+    /// A template or order names a register that is not defined.
+    #[error("{place}: register {register} is not defined")]
+    UnknownRegister {
+        /// Where it is named.
+        place: String,
+        /// The register.
+        register: String,
+    },
+    /// A register that every mill needs is missing.
+    #[error("register {register} is missing")]
+    MissingRegister {
+        /// The register.
+        register: String,
+    },
+    /// Limits in the wrong order.
+    #[error("{place}: {least} is not less than {greatest}")]
+    Limits {
+        /// Where they stand.
+        place: String,
+        /// Lower limit.
+        least: String,
+        /// Upper limit.
+        greatest: String,
+    },
+    /// No bundled machine has this name.
+    #[error("no machine is called {name}")]
+    UnknownMachine {
+        /// The name asked for.
+        name: String,
+    },
+}
+
+/// A machine and its control.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MachineDefinition {
+    /// Version of the format.
+    pub schema: u32,
+    /// Name by which it is asked for.
+    pub id: String,
+    /// What it is.
+    pub title: String,
+    /// Its control.
+    pub control: String,
+    /// Unit of the tape.
+    pub units: OutputUnits,
+    /// Most characters in a block.
+    pub max_block: usize,
+    /// Axes by name.
+    pub axes: BTreeMap<String, Axis>,
+    /// Registers by name.
+    pub registers: BTreeMap<String, Register>,
+    /// Layout of blocks.
+    pub block: BlockLayout,
+    /// Modal groups: codes of which one is in force.
+    pub groups: BTreeMap<String, Vec<String>>,
+    /// Codes.
+    pub codes: Codes,
+    /// Arcs.
+    pub arc: ArcRules,
+    /// Templates of blocks.
+    pub templates: Templates,
+    /// Cycles by name.
+    #[serde(default)]
+    pub cycles: BTreeMap<String, CycleTemplate>,
+    /// Which cycle a word of CYCLE means.
+    #[serde(default)]
+    pub cycle_words: BTreeMap<String, String>,
+    /// Words of a site, as templates; they go before the built-in meaning.
+    #[serde(default)]
+    pub words: BTreeMap<String, String>,
+    /// Ranges.
+    #[serde(default)]
+    pub limits: Limits,
+}
+
+/// Unit of the tape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OutputUnits {
+    /// That of the program.
+    Program,
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    Inch,
+}
+
+/// A linear axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// Travel in millimetres, seen from the work origin.
+    pub limits_mm: [f64; 2],
+}
+
+/// A word address and the format of its number.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Register {
+    /// What is written before the number.
+    pub address: String,
+    /// How the number is written.
+    pub style: Style,
+    /// Digits before the point.
+    pub left: u8,
+    /// Decimals; those of metric tapes where `right_inch` stands too.
+    #[serde(default)]
+    pub right: u8,
+    /// Decimals of inch tapes.
+    #[serde(default)]
+    pub right_inch: Option<u8>,
+    /// Digits before the point that are written at least.
+    #[serde(default)]
+    pub least_left: u8,
+    /// Sign.
+    #[serde(default)]
+    pub sign: Sign,
+    /// Whether it is written only when it changes.
+    #[serde(default)]
+    pub modal: bool,
+}
+
+impl Register {
+    /// The format on an inch or a metric tape.
+    pub fn format(&self, inch: bool) -> NumberFormat {
+        let right = if inch { self.right_inch.unwrap_or(self.right) } else { self.right };
+        NumberFormat { style: self.style, left: self.left, right, least_left: self.least_left, sign: self.sign }
+    }
+}
+
+/// Layout of blocks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockLayout {
+    /// Registers in the order in which they are written.
+    pub order: Vec<String>,
+    /// Whether words are separated by a blank.
+    pub spaces: bool,
+    /// A comment, with `{text}`.
+    pub comment: String,
+    /// What makes a block optional.
+    pub skip: String,
+    /// Sequence numbers.
+    pub sequence: Sequence,
+}
+
+/// Sequence numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sequence {
+    /// Whether blocks are numbered from the start.
+    pub on: bool,
+    /// First number.
+    pub start: u32,
+    /// Step.
+    pub step: u32,
+    /// Every how many blocks.
+    pub every: u32,
+    /// Largest number; after it the start comes again.
+    pub max: u32,
+}
+
+/// Codes; what a control lacks is left out.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Codes {
+    pub rapid: String,
+    pub linear: String,
+    pub clockwise: String,
+    pub counterclockwise: String,
+    pub plane_xy: String,
+    pub plane_zx: String,
+    pub plane_yz: String,
+    pub inch: String,
+    pub millimeter: String,
+    pub feed_per_minute: String,
+    pub feed_per_revolution: Option<String>,
+    pub feed_inverse: Option<String>,
+    pub spindle_clockwise: String,
+    pub spindle_counterclockwise: String,
+    pub spindle_off: String,
+    pub spindle_orient: Option<String>,
+    pub coolant_flood: String,
+    pub coolant_mist: Option<String>,
+    pub coolant_air: Option<String>,
+    pub coolant_through: Option<String>,
+    pub coolant_off: String,
+    pub compensation_left: Option<String>,
+    pub compensation_right: Option<String>,
+    pub compensation_off: Option<String>,
+    pub stop: String,
+    pub optional_stop: String,
+    pub cycle_off: Option<String>,
+    pub retract_initial: Option<String>,
+    pub retract_plane: Option<String>,
+}
+
+/// Arcs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArcRules {
+    /// How the centre is given.
+    pub center: ArcCenter,
+    /// Planes in which the control makes arcs: `xy`, `zx`, `yz`.
+    pub planes: Vec<ArcPlane>,
+    /// Smallest radius, millimetres.
+    pub min_radius_mm: f64,
+    /// Largest radius, millimetres.
+    pub max_radius_mm: f64,
+    /// Most degrees in one block.
+    pub split_degrees: f64,
+    /// Whether the third axis may move along.
+    pub helix: bool,
+    /// How far points may be off an arc, millimetres, besides INTOL and OUTTOL.
+    pub tolerance_mm: f64,
+    /// Whether runs of points without a circle record are fitted.
+    pub fit_points: bool,
+    /// Fewest points of such a run, start included.
+    pub fit_least_points: usize,
+}
+
+/// How an arc's centre is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ArcCenter {
+    /// From the start.
+    Incremental,
+    /// In coordinates.
+    Absolute,
+}
+
+/// A plane of arcs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum ArcPlane {
+    Xy,
+    Zx,
+    Yz,
+}
+
+/// Templates of blocks: `{X}` is a register under its modal rule, `{!X}` forces it, other names are texts; a word
+/// whose placeholder has no value disappears.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Templates {
+    pub program_start: Vec<String>,
+    pub program_end: Vec<String>,
+    pub trailer: Vec<String>,
+    pub tool_change: Vec<String>,
+    pub tool_select: String,
+    pub length_offset: String,
+    pub first_xy: String,
+    pub first_z: String,
+    pub spindle_on: String,
+    pub dwell: String,
+    pub message: String,
+    pub home: Vec<String>,
+    /// Milliseconds instead of seconds in `{P}`.
+    #[serde(default)]
+    pub dwell_in_milliseconds: bool,
+}
+
+/// How a cycle is written.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CycleTemplate {
+    /// Block before the first hole.
+    #[serde(default)]
+    pub pre: Option<String>,
+    /// Block at the first hole, and wherever a parameter changes.
+    #[serde(default)]
+    pub on: Option<String>,
+    /// Block at the other holes.
+    #[serde(default)]
+    pub next: Option<String>,
+    /// Blocks at every hole, for a cycle that is not modal. `{ZR}` and `{ZI}` are Z at the clearance and the initial
+    /// plane.
+    #[serde(default)]
+    pub each: Vec<String>,
+}
+
+/// Ranges; outside them there is a warning.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Millimetres per minute.
+    #[serde(default)]
+    pub feed_mm: Option<[f64; 2]>,
+    /// Revolutions per minute.
+    #[serde(default)]
+    pub spindle: Option<[f64; 2]>,
+}
+
+/// Registers that every mill needs.
+const NEEDED: [&str; 10] = ["N", "G", "X", "Y", "Z", "I", "J", "K", "F", "S"];
+
+impl MachineDefinition {
+    /// Reads a definition file.
+    ///
+    /// # Errors
+    /// Text that is no definition, with line and key, and definitions that contradict themselves.
+    pub fn from_toml(text: &str) -> Result<MachineDefinition, MachineError> {
+        let machine: MachineDefinition = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count());
+            MachineError::Syntax { line, message: error.to_string() }
+        })?;
+        machine.validate()?;
+        Ok(machine)
+    }
+
+    /// What a user needs to choose it.
+    pub fn info(&self) -> MachineInfo {
+        MachineInfo { name: self.id.clone(), title: self.title.clone(), control: self.control.clone() }
+    }
+
+    fn validate(&self) -> Result<(), MachineError> {
+        if self.schema != SCHEMA {
+            return Err(MachineError::Schema { found: self.schema });
+        }
+        for register in NEEDED {
+            if !self.registers.contains_key(register) {
+                return Err(MachineError::MissingRegister { register: register.to_owned() });
+            }
+        }
+        for register in &self.block.order {
+            self.known("block.order", register)?;
+        }
+        for (place, template) in self.all_templates() {
+            for name in crate::template::register_names(&template) {
+                self.known(&place, &name)?;
+            }
+        }
+        let axes = self.axes.iter().map(|(name, axis)| (format!("axes.{name}.limits_mm"), axis.limits_mm));
+        let ranges = [("limits.feed_mm", self.limits.feed_mm), ("limits.spindle", self.limits.spindle)];
+        let ranges = ranges.into_iter().filter_map(|(place, range)| Some((place.to_owned(), range?)));
+        let radii = ("arc".to_owned(), [self.arc.min_radius_mm, self.arc.max_radius_mm]);
+        for (place, [least, greatest]) in axes.chain(ranges).chain([radii]) {
+            // Written so that a NaN is refused too.
+            if least.partial_cmp(&greatest) != Some(std::cmp::Ordering::Less) {
+                let (least, greatest) = (least.to_string(), greatest.to_string());
+                return Err(MachineError::Limits { place, least, greatest });
+            }
+        }
+        Ok(())
+    }
+
+    fn known(&self, place: &str, register: &str) -> Result<(), MachineError> {
+        let computed = matches!(register, "ZR" | "ZI");
+        if computed || self.registers.contains_key(register) {
+            return Ok(());
+        }
+        Err(MachineError::UnknownRegister { place: place.to_owned(), register: register.to_owned() })
+    }
+
+    fn all_templates(&self) -> Vec<(String, String)> {
+        let t = &self.templates;
+        let mut all: Vec<(String, String)> = Vec::new();
+        let lists = [
+            ("program_start", &t.program_start),
+            ("program_end", &t.program_end),
+            ("trailer", &t.trailer),
+            ("tool_change", &t.tool_change),
+            ("home", &t.home),
+        ];
+        for (name, list) in lists {
+            all.extend(list.iter().map(|text| (format!("templates.{name}"), text.clone())));
+        }
+        let single = [
+            ("tool_select", &t.tool_select),
+            ("length_offset", &t.length_offset),
+            ("first_xy", &t.first_xy),
+            ("first_z", &t.first_z),
+            ("spindle_on", &t.spindle_on),
+            ("dwell", &t.dwell),
+            ("message", &t.message),
+        ];
+        all.extend(single.map(|(name, text)| (format!("templates.{name}"), text.clone())));
+        for (name, cycle) in &self.cycles {
+            let texts = [&cycle.pre, &cycle.on, &cycle.next].into_iter().flatten().chain(&cycle.each);
+            all.extend(texts.map(|text| (format!("cycles.{name}"), text.clone())));
+        }
+        all
+    }
+}
+
+/// The bundled machines, in a fixed order.
+pub fn machines() -> Vec<MachineInfo> {
+    BUNDLED.iter().filter_map(|text| MachineDefinition::from_toml(text).ok()).map(|machine| machine.info()).collect()
+}
+
+/// A bundled machine.
+///
+/// # Errors
+/// A name that no bundled machine has.
+pub fn machine(name: &str) -> Result<MachineDefinition, MachineError> {
+    for text in BUNDLED {
+        let machine = MachineDefinition::from_toml(text)?;
+        if machine.id == name {
+            return Ok(machine);
+        }
+    }
+    Err(MachineError::UnknownMachine { name: name.to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_bundled_definition_is_valid() {
+        for text in BUNDLED {
+            let machine = MachineDefinition::from_toml(text).unwrap();
+            assert_eq!(super::machine(&machine.id).unwrap(), machine);
+        }
+        let names: Vec<String> = machines().into_iter().map(|info| info.name).collect();
+        assert_eq!(names, ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
+        assert_eq!(super::machine("x"), Err(MachineError::UnknownMachine { name: "x".to_owned() }));
+    }
+
+    #[test]
+    fn mistakes_name_line_and_key() {
+        let text = BUNDLED[0].replace("max_block", "max_blok");
+        let Err(MachineError::Syntax { line: Some(line), message }) = MachineDefinition::from_toml(&text) else {
+            panic!("accepted");
+        };
+        assert!(text.lines().nth(line).unwrap().starts_with("max_blok"), "{line}");
+        assert!(message.contains("max_blok"), "{message}");
+        let text = BUNDLED[0].replace("{!Z}", "{!W}");
+        assert!(matches!(MachineDefinition::from_toml(&text), Err(MachineError::UnknownRegister { register, .. }) if register == "W"));
+        let text = BUNDLED[0].replace("schema = 1", "schema = 7");
+        assert_eq!(MachineDefinition::from_toml(&text), Err(MachineError::Schema { found: 7 }));
+    }
+}

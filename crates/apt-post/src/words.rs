@@ -1,0 +1,237 @@
+//! Reading the arguments of post-processor words: keywords may stand in any order.
+
+use apt_cldata::record::ClWord;
+use smol_str::SmolStr;
+
+use crate::finding::PostFindingKind;
+
+/// The arguments of one statement.
+pub(crate) struct Arguments<'a> {
+    pub(crate) word: &'a SmolStr,
+    pub(crate) items: &'a [ClWord],
+}
+
+impl Arguments<'_> {
+    pub(crate) fn has(&self, wanted: &str) -> bool {
+        self.items.iter().any(|item| matches!(item, ClWord::Word(word) if word == wanted))
+    }
+
+    /// The first number, wherever it stands.
+    pub(crate) fn number(&self) -> Option<f64> {
+        self.numbers().next()
+    }
+
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> + '_ {
+        self.items.iter().filter_map(|item| match item {
+            ClWord::Number(number) => Some(*number),
+            ClWord::Word(_) => None,
+        })
+    }
+
+    /// The number right after a keyword.
+    pub(crate) fn after(&self, wanted: &str) -> Option<f64> {
+        let at = self.items.iter().position(|item| matches!(item, ClWord::Word(word) if word == wanted))?;
+        match self.items.get(at + 1) {
+            Some(ClWord::Number(number)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// The keywords that are not among those known.
+    pub(crate) fn unknown(&self, known: &[&str]) -> Option<PostFindingKind> {
+        self.items.iter().find_map(|item| match item {
+            ClWord::Word(argument) if !argument.is_empty() && !known.contains(&argument.as_str()) => {
+                Some(PostFindingKind::UnknownArgument { word: self.word.clone(), argument: argument.clone() })
+            }
+            _ => None,
+        })
+    }
+
+    pub(crate) fn missing(&self, missing: &str) -> PostFindingKind {
+        PostFindingKind::MissingArgument { word: self.word.clone(), missing: missing.into() }
+    }
+}
+
+/// What a feed rate counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FeedMode {
+    PerMinute,
+    PerRevolution,
+    Inverse,
+}
+
+/// Unit in which a length is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LengthUnit {
+    Program,
+    Inch,
+    Millimeter,
+}
+
+/// A unit word of FEDRAT and CYCLE.
+pub(crate) fn feed_unit(word: &str) -> Option<(FeedMode, LengthUnit)> {
+    Some(match word {
+        "IPM" => (FeedMode::PerMinute, LengthUnit::Inch),
+        "MMPM" => (FeedMode::PerMinute, LengthUnit::Millimeter),
+        "PERMIN" => (FeedMode::PerMinute, LengthUnit::Program),
+        "IPR" => (FeedMode::PerRevolution, LengthUnit::Inch),
+        "MMPR" => (FeedMode::PerRevolution, LengthUnit::Millimeter),
+        "PERREV" => (FeedMode::PerRevolution, LengthUnit::Program),
+        "INVERS" => (FeedMode::Inverse, LengthUnit::Program),
+        _ => return None,
+    })
+}
+
+/// A feed in a CYCLE.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum CycleFeed {
+    Rate(f64, FeedMode, LengthUnit),
+    ThreadsPerInch(f64),
+}
+
+/// Where the tool goes between holes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Retract {
+    /// To where it stood before the cycle.
+    Initial,
+    /// This far above the hole.
+    Above(f64),
+}
+
+/// What a CYCLE statement says. Lengths in program units, down to the bottom positive.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CycleOrder {
+    pub(crate) kind: SmolStr,
+    pub(crate) depth: Option<f64>,
+    pub(crate) clearance: Option<f64>,
+    pub(crate) retract: Retract,
+    pub(crate) feed: Option<CycleFeed>,
+    pub(crate) step: Option<f64>,
+    /// Seconds, or revolutions when the second field is true.
+    pub(crate) dwell: Option<(f64, bool)>,
+}
+
+/// Reads `CYCLE/type, ...` with couples in any order, and with the bare numbers of the CAM systems: depth, feed if the
+/// unit follows it, clearance.
+pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostFindingKind> {
+    let Some((ClWord::Word(kind), rest)) = arguments.items.split_first() else {
+        return Err(arguments.missing("the kind of cycle"));
+    };
+    let mut order = CycleOrder {
+        kind: kind.clone(),
+        depth: None,
+        clearance: None,
+        retract: Retract::Initial,
+        feed: None,
+        step: None,
+        dwell: None,
+    };
+    let mut bare: Vec<f64> = Vec::new();
+    let mut items = rest.iter().peekable();
+    while let Some(item) = items.next() {
+        let word = match item {
+            ClWord::Number(number) => {
+                bare.push(*number);
+                continue;
+            }
+            ClWord::Word(word) => word,
+        };
+        let next = match items.peek() {
+            Some(ClWord::Number(number)) => Some(*number),
+            _ => None,
+        };
+        if let Some((mode, unit)) = feed_unit(word) {
+            // `depth, feed, UNIT` or `UNIT, feed`.
+            let value = match (bare.len(), next) {
+                (2.., _) => bare.remove(1),
+                (_, Some(number)) => {
+                    items.next();
+                    number
+                }
+                (_, None) => return Err(arguments.missing(word)),
+            };
+            order.feed = Some(CycleFeed::Rate(value, mode, unit));
+            continue;
+        }
+        match word.as_str() {
+            "RTRCTO" | "RETURN" | "RETRCT" => {
+                if let Some(number) = next {
+                    items.next();
+                    order.retract = Retract::Above(number);
+                }
+                continue;
+            }
+            "AUTO" | "ON" | "" => continue,
+            "REV" => {
+                if let Some((_, revolutions)) = &mut order.dwell {
+                    *revolutions = true;
+                }
+                continue;
+            }
+            "DEPTH" | "FEDTO" | "RAPTO" | "CLEAR" | "STEP" | "INCR" | "DWELL" | "TPI" => {}
+            _ => {
+                return Err(PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument: word.clone() });
+            }
+        }
+        let Some(number) = next else { return Err(arguments.missing(word)) };
+        items.next();
+        match word.as_str() {
+            // NX gives a signed offset, the others a depth.
+            "DEPTH" | "FEDTO" => order.depth = Some(number.abs()),
+            "RAPTO" | "CLEAR" => order.clearance = Some(number),
+            "STEP" | "INCR" => order.step = Some(number),
+            "DWELL" => order.dwell = Some((number, false)),
+            _ => order.feed = Some(CycleFeed::ThreadsPerInch(number)),
+        }
+    }
+    let mut bare = bare.into_iter();
+    if order.depth.is_none() {
+        order.depth = bare.next().map(f64::abs);
+    }
+    if order.clearance.is_none() {
+        order.clearance = bare.next();
+    }
+    Ok(order)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn order(items: &[&str]) -> Result<CycleOrder, PostFindingKind> {
+        let items: Vec<ClWord> = items
+            .iter()
+            .map(|item| item.parse().map_or_else(|_| ClWord::Word((*item).into()), ClWord::Number))
+            .collect();
+        cycle_order(&Arguments { word: &"CYCLE".into(), items: &items })
+    }
+
+    #[test]
+    fn five_spellings_of_one_hole() {
+        let spellings: [&[&str]; 5] = [
+            &["DRILL", "10.", "200.", "MMPM", "2."],
+            &["DRILL", "RAPTO", "2.", "FEDTO", "-10.", "RTRCTO", "AUTO", "MMPM", "200."],
+            &["DRILL", "DEPTH", "10.", "MMPM", "200.", "CLEAR", "2."],
+            &["DRILL", "FEDTO", "10.", "MMPM", "200.", "RAPTO", "2."],
+            &["DRILL", "10.", "MMPM", "200.", "2."],
+        ];
+        for items in spellings {
+            let order = order(items).unwrap();
+            assert_eq!((order.depth, order.clearance), (Some(10.0), Some(2.0)), "{items:?}");
+            assert_eq!(order.feed, Some(CycleFeed::Rate(200.0, FeedMode::PerMinute, LengthUnit::Millimeter)));
+            assert_eq!(order.retract, Retract::Initial);
+        }
+    }
+
+    #[test]
+    fn other_couples_and_mistakes() {
+        let deep = order(&["DEEP", "DEPTH", "1.25", "STEP", ".25", "IPM", "5.", "CLEAR", ".1", "DWELL", "2", "REV"]);
+        let deep = deep.unwrap();
+        assert_eq!((deep.step, deep.dwell), (Some(0.25), Some((2.0, true))));
+        let tap = order(&["TAP", "DEPTH", ".4", "TPI", "20", "RTRCTO", "1"]).unwrap();
+        assert_eq!((tap.feed, tap.retract), (Some(CycleFeed::ThreadsPerInch(20.0)), Retract::Above(1.0)));
+        assert!(matches!(order(&["DRILL", "DEPTH"]), Err(PostFindingKind::MissingArgument { .. })));
+        assert!(matches!(order(&["DRILL", "SIDEWAYS", "1"]), Err(PostFindingKind::UnknownArgument { .. })));
+        assert!(matches!(order(&[]), Err(PostFindingKind::MissingArgument { .. })));
+    }
+}
