@@ -6,8 +6,8 @@ use crate::failure::{FileContext, Outcome};
 use crate::layout;
 use crate::process::{Call, TestCount};
 
-/// Seconds after which a test run of one Neovim is stopped: a run takes about three; a hang must not stop CI.
-const LIMIT_SECONDS: &str = "120";
+/// Seconds after which a test program is stopped: each takes about three; a hang must not stop CI.
+const LIMIT_SECONDS: &str = "240";
 
 /// Runs the plugin's tests in each of `programs` with the server binary `server`.
 pub(crate) fn run(programs: &[PathBuf], server: &Path, count: &mut TestCount) -> Outcome {
@@ -19,19 +19,27 @@ pub(crate) fn run(programs: &[PathBuf], server: &Path, count: &mut TestCount) ->
         }
         std::fs::create_dir_all(&home).on("create", &home)?;
         let plugin = layout::nvim();
-        let mut call = Call::new("timeout")
+        let test = |call: Call| {
+            let mut call = call
+                .folder(&home)
+                .env("APT_LSP", server)
+                .env("APT_TEST_FOLDER", plugin.join("test"))
+                .env("APT_TEST_HOME", &home)
+                .env("NVIM", program);
+            for variable in ["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
+                call = call.env(variable, home.join(variable));
+            }
+            call
+        };
+        let headless = Call::new("timeout")
             .args([LIMIT_SECONDS.as_ref(), program.as_os_str()])
             .args(["--headless", "--clean", "-n", "-i", "NONE", "--cmd"])
             .args([format!("set runtimepath^={}", plugin.display())])
-            .args(["-c".to_owned(), format!("luafile {}", plugin.join("test/run.lua").display())])
-            .folder(&home)
-            .env("APT_LSP", server)
-            .env("APT_TEST_FOLDER", plugin.join("test"))
-            .env("APT_TEST_HOME", &home);
-        for variable in ["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
-            call = call.env(variable, home.join(variable));
-        }
-        call.run_counting(count)?;
+            .args(["-c".to_owned(), format!("luafile {}", plugin.join("test/run.lua").display())]);
+        let screen = Call::new("timeout").args([LIMIT_SECONDS]).args([plugin.join("test/screen.sh")]);
+        // Both run, whatever the first one says: one run shall tell everything.
+        let outcomes = [test(headless).run_counting(count), test(screen).run_counting(count)];
+        outcomes.into_iter().collect::<Outcome>()?;
     }
     Ok(())
 }

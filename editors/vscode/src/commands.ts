@@ -24,7 +24,7 @@ export function registerCommands(session: Session, views: ViewProvider): vscode.
     register('apt.showSelectedMotion', show('motion', 'selection')),
     register('apt.showExpansion', show('expansion')),
     register('apt.showClFile', show('cl')),
-    register('apt.showControlTape', show('tape')),
+    register('apt.showControlTape', () => showControlTape(session, views)),
     register('apt.showSyntaxTree', show('tree')),
     register('apt.showCanonicalForm', show('canonical', 'position')),
     register('apt.selectMachine', () => selectMachine(session)),
@@ -69,7 +69,24 @@ async function runMotion(session: Session, views: ViewProvider, argument: unknow
   return session.execute<RunResult>('running motion', 'apt.runMotion', argument as { uri: string; position?: Position });
 }
 
-async function selectMachine(session: Session): Promise<void> {
+/** The tape; without a machine in the settings or the project file, one is chosen first. */
+async function showControlTape(session: Session, views: ViewProvider): Promise<unknown> {
+  const view = viewOfEditor('tape', 'program');
+  if (vscode.workspace.getConfiguration('apt', view.source).get<string>('machine', '') === '') {
+    try {
+      await session.execute('making the control tape', 'apt.post', { uri: view.source.toString() });
+    } catch {
+      // Whatever else is wrong is said again when the view asks for the tape.
+      if (!(await selectMachine(session))) {
+        return undefined;
+      }
+    }
+  }
+  return views.open(view);
+}
+
+/** Lets the user choose the machine of the tape; false when nothing was chosen. */
+async function selectMachine(session: Session): Promise<boolean> {
   const machines = await session.execute<Machine[]>('listing machines', 'apt.machines', {});
   const resource = vscode.window.activeTextEditor?.document.uri;
   const current = vscode.workspace.getConfiguration('apt', resource).get<string>('machine', '');
@@ -82,10 +99,12 @@ async function selectMachine(session: Session): Promise<void> {
     })),
     { title: 'Machine of the control tape', matchOnDescription: true, matchOnDetail: true },
   );
-  if (choice !== undefined) {
-    const target = vscode.workspace.workspaceFolders === undefined
-      ? vscode.ConfigurationTarget.Global
-      : vscode.ConfigurationTarget.Workspace;
-    await vscode.workspace.getConfiguration('apt').update('machine', choice.label, target);
+  if (choice === undefined) {
+    return false;
   }
+  const target = vscode.workspace.workspaceFolders === undefined
+    ? vscode.ConfigurationTarget.Global
+    : vscode.ConfigurationTarget.Workspace;
+  await vscode.workspace.getConfiguration('apt').update('machine', choice.label, target);
+  return true;
 }

@@ -232,10 +232,13 @@ export class Session implements vscode.Disposable {
 }
 
 /** Settings of the section `apt` that are the server's business. */
-const SERVER_SETTINGS = ['dialect', 'motion', 'machine', 'severity'];
+const SERVER_SETTINGS = ['dialect', 'units', 'include', 'motion', 'machine', 'severity', 'budget'];
 
 /** Values that stand for "not set": the project file or the server's own default decides. */
 function isUnset(value: unknown): boolean {
+  if (typeof value === 'object' && value !== null) {
+    return Object.keys(value).length === 0;
+  }
   return value === undefined || value === null || value === '' || value === 'auto';
 }
 

@@ -64,12 +64,34 @@ function M.expand(bufnr, position)
   end)
 end
 
+local function show_tape(bufnr, machine)
+  ask(bufnr, 'apt.post', { uri = uri_of(bufnr), machine = machine }, function(tape)
+    show_list(bufnr, 'tape', nil, report.tape(tape))
+  end)
+end
+
+--- Shows the tape; without a machine in the command, the settings or the project file, one is chosen.
 function M.tape(bufnr, machine)
   if not machine or machine == '' then
     machine = config.options.settings.machine
   end
-  ask(bufnr, 'apt.post', { uri = uri_of(bufnr), machine = machine }, function(tape)
-    show_list(bufnr, 'tape', nil, report.tape(tape))
+  if machine then
+    show_tape(bufnr, machine)
+    return
+  end
+  client.execute(bufnr, 'apt.post', { uri = uri_of(bufnr) }, function(err, tape)
+    if not err then
+      show_list(bufnr, 'tape', nil, report.tape(tape))
+      return
+    end
+    ask(bufnr, 'apt.machines', vim.empty_dict(), function(machines)
+      local names = vim.tbl_map(function(known) return known.name end, machines)
+      vim.ui.select(names, { prompt = 'Machine of the control tape:' }, function(choice)
+        if choice then
+          show_tape(bufnr, choice)
+        end
+      end)
+    end)
   end)
 end
 
