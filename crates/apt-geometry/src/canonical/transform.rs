@@ -10,8 +10,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 use super::{
-    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Sphere,
-    TabulatedCylinder,
+    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Sphere, TabulatedCylinder,
 };
 use crate::Vec3;
 
@@ -76,9 +75,7 @@ impl Geometry {
             Geometry::TabulatedCylinder(surface) => {
                 Geometry::TabulatedCylinder(Arc::new(tabulated_image(surface, matrix)?))
             }
-            Geometry::RuledSurface(surface) => {
-                Geometry::RuledSurface(Arc::new(surface.image(matrix)?))
-            }
+            Geometry::RuledSurface(surface) => Geometry::RuledSurface(Arc::new(surface.image(matrix)?)),
             Geometry::Pattern(pattern) => Geometry::Pattern(Arc::new(Pattern {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),
                 ..Pattern::clone(pattern)

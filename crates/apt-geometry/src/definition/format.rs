@@ -229,6 +229,11 @@ fn allowed_words(parameter: &Parameter) -> Vec<Modifier> {
     }
 }
 
+/// The format that takes arguments of these kinds, its directional words included.
+pub fn matching_format(kind: GeometryKind, given: &[ArgumentKind]) -> Option<&'static Format> {
+    formats(kind).iter().find(|format| Walk::new(given, Words::Listed).matches(format))
+}
+
 /// What can stand after the arguments `given`, in the order of the formats; without repetition. Nothing when no format
 /// begins like this.
 pub fn type_of_next(kind: GeometryKind, given: &[ArgumentKind]) -> Vec<ArgumentKind> {

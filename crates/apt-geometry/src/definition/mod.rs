@@ -24,7 +24,7 @@ mod tabulated_curve;
 mod tabulated_tangent;
 mod vector;
 
-pub use format::{ArgumentKind, Format, Parameter, first_mismatch, formats, type_of_next};
+pub use format::{ArgumentKind, Format, Parameter, first_mismatch, formats, matching_format, type_of_next};
 pub use modifier::Modifier;
 
 use crate::canonical::{CanonicalError, Geometry, GeometryKind};

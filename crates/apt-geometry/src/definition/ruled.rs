@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use super::DefinitionError;
 use super::format::{Format, Parameter};
 use super::given::Given;
-use super::DefinitionError;
 use super::solve::PARALLEL_SINE;
 use crate::Vec3;
 use crate::canonical::{Geometry, GeometryKind, RuledSurface};

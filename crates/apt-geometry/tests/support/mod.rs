@@ -42,7 +42,7 @@ impl Session {
         define(kind, &self.arguments(parameters)?, &self.context)
     }
 
-    fn arguments(&self, text: &str) -> Result<Vec<Argument>, DefinitionError> {
+    pub(crate) fn arguments(&self, text: &str) -> Result<Vec<Argument>, DefinitionError> {
         split(text).into_iter().map(|item| self.argument(item)).collect()
     }
 
