@@ -3,6 +3,16 @@
 //! Deterministic and free of global state: [`execute`](section2::execute) is a function of the modal state and one
 //! command. Sources: Galbiati & Trumpy 1970 (routines DDST … ARLM3), Trumpy 1970 (command level), re-derived.
 
+pub mod bound;
+pub mod clearance;
+mod directed;
+pub mod error;
+mod plane_curve;
+mod position;
+mod role;
 pub mod section2;
 pub mod sequence;
+mod start_up;
 pub mod verify;
+
+pub use error::{MotionFailure, MotionWarning};

@@ -1,1 +1,61 @@
-//! stub
+//! The state machine of Section 2 (SECTN2): modal state, one command at a time, restart mode after a failure.
+
+mod modal;
+mod restart;
+mod state;
+
+use apt_geometry::motion::MotionCommand;
+
+pub(crate) use self::modal::required_position;
+pub use self::{restart::Restart, state::State};
+use crate::{
+    error::{MotionFailure, MotionWarning},
+    sequence::{CutSequence, ToolPosition},
+};
+
+/// What a command made of the tool.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// FROM, GOTO, GODLTA: one position.
+    Position(ToolPosition),
+    /// GO, OFFSET and the directed motions.
+    Sequence(CutSequence),
+    /// Restart mode skipped the command.
+    Ignored,
+}
+
+/// The result of one command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Execution {
+    /// The modal state after it.
+    pub state: State,
+    /// The motion, if the command is one.
+    pub output: Option<Output>,
+    /// What is doubtful.
+    pub warnings: Vec<MotionWarning>,
+    /// Why it failed; the state is then in restart mode.
+    pub failure: Option<MotionFailure>,
+}
+
+/// Carries out one command. A function of its arguments: nothing else is read, nothing is kept.
+///
+/// `cancel` is polled once per cut vector and iteration; when it says true the failure is
+/// [`MotionFailure::Cancelled`] and the state is the one before.
+pub fn execute(state: &State, command: &MotionCommand, cancel: &dyn Fn() -> bool) -> Execution {
+    let mut next = state.clone();
+    let mut warnings = Vec::new();
+    match modal::apply(&mut next, command, &mut warnings, cancel) {
+        Ok(output) => Execution { state: next, output, warnings, failure: None },
+        Err(MotionFailure::Cancelled) => Execution {
+            state: state.clone(),
+            output: None,
+            warnings,
+            failure: Some(MotionFailure::Cancelled),
+        },
+        Err(failure) => {
+            let mut failed = state.clone();
+            failed.fail(command);
+            Execution { state: failed, output: None, warnings, failure: Some(failure) }
+        }
+    }
+}

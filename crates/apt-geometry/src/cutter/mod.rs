@@ -1,6 +1,12 @@
 //! The seven-parameter cutter of APT (arelem reference 1.3).
 
+mod numbers;
+mod profile;
+
 use serde::{Deserialize, Serialize};
+
+pub use numbers::{CutterError, CutterWarning};
+pub use profile::{Profile, ProfilePoint};
 
 /// The seven numbers of CUTTER, completed: lengths in the part program's unit, angles in radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,4 +25,26 @@ pub struct Cutter {
     pub beta: f64,
     /// Height of the top.
     pub height: f64,
+}
+
+impl Cutter {
+    /// Half the diameter, where lower and upper line meet.
+    pub fn radius(&self) -> f64 {
+        0.5 * self.diameter
+    }
+
+    /// Height of the point where lower and upper line meet.
+    pub fn knee_height(&self) -> f64 {
+        self.radius() * self.alpha.tan()
+    }
+
+    /// Radius of the upper line at the top.
+    pub fn top_radius(&self) -> f64 {
+        self.radius() + (self.height - self.knee_height()) * self.beta.tan()
+    }
+
+    /// The profile: vertices, corner arc and support function.
+    pub fn profile(&self) -> Profile {
+        Profile::new(self)
+    }
 }

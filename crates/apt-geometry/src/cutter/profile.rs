@@ -1,0 +1,292 @@
+//! The profile of a cutter in the half-plane (ρ, z): ρ from the tool axis, z above the tool end.
+
+use super::Cutter;
+
+/// A point of the profile: distance from the axis and height above the tool end, program units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfilePoint {
+    /// Distance from the tool axis.
+    pub radius: f64,
+    /// Height above the tool end.
+    pub height: f64,
+}
+
+/// Where the corner circle meets the two lines of the profile.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CornerLines {
+    /// Distance of the corner centre from the lower line, positive inside the body.
+    pub(super) lower_distance: f64,
+    /// Distance from the tip, along the lower line, of the outer crossing.
+    pub(super) lower_along: f64,
+    /// Distance of the corner centre from the upper line, positive inside the body.
+    pub(super) upper_distance: f64,
+    /// Distance from the knee, along the upper line, of the lower crossing.
+    pub(super) upper_along: f64,
+}
+
+/// The convex profile: tip, lower edge `A`, corner arc, upper edge `B`, top edge (arelem reference 1.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    /// End of the lower line (`Aₚ`).
+    pub lower: ProfilePoint,
+    /// Start of the upper line (`Bₚ`).
+    pub upper: ProfilePoint,
+    /// End of the upper line.
+    pub top: ProfilePoint,
+    /// Centre of the corner arc; meaningful when `arc` is positive.
+    pub center: ProfilePoint,
+    /// Radius of the corner arc; zero for a sharp corner.
+    pub arc: f64,
+    /// Polar angles of the arc's outward normals from straight down, at `lower` and at `upper`, radians.
+    pub fan: [f64; 2],
+}
+
+impl Profile {
+    pub(super) fn corner_lines(cutter: &Cutter) -> CornerLines {
+        let (sa, ca) = cutter.alpha.sin_cos();
+        let (sb, cb) = cutter.beta.sin_cos();
+        let Cutter { corner_radius: r, corner_offset: e, corner_height: f, .. } = *cutter;
+        let (kx, kz) = (cutter.radius(), cutter.knee_height());
+        let lower_distance = f * ca - e * sa;
+        let upper_distance = (kx - e) * cb + (f - kz) * sb;
+        // A tangent arc may miss the line by rounding: the root is then zero.
+        let chord = |distance: f64| (r * r - distance * distance).max(0.0).sqrt();
+        CornerLines {
+            lower_distance,
+            lower_along: e * ca + f * sa + chord(lower_distance),
+            upper_distance,
+            upper_along: (e - kx) * sb + (f - kz) * cb - chord(upper_distance),
+        }
+    }
+
+    pub(super) fn new(cutter: &Cutter) -> Self {
+        let (sa, ca) = cutter.alpha.sin_cos();
+        let (sb, cb) = cutter.beta.sin_cos();
+        let (e, f, r) = (cutter.corner_offset, cutter.corner_height, cutter.corner_radius);
+        let knee = ProfilePoint { radius: cutter.radius(), height: cutter.knee_height() };
+        let top = ProfilePoint { radius: cutter.top_radius(), height: cutter.height.max(knee.height) };
+        let sharp = r <= 0.0 || (e - knee.radius).hypot(f - knee.height) <= r * (1.0 - 1e-12);
+        if sharp {
+            let normal = cutter.alpha;
+            return Self { lower: knee, upper: knee, top, center: knee, arc: 0.0, fan: [normal, normal] };
+        }
+        let lines = Self::corner_lines(cutter);
+        let along_low = lines.lower_along.max(0.0);
+        let along_up = lines.upper_along.max(0.0);
+        let lower = ProfilePoint { radius: along_low * ca, height: along_low * sa };
+        let upper = ProfilePoint { radius: knee.radius + along_up * sb, height: knee.height + along_up * cb };
+        let upper = if upper.height > top.height { top } else { upper };
+        let polar = |p: ProfilePoint| (p.radius - e).atan2(f - p.height);
+        Self {
+            lower,
+            upper,
+            top,
+            center: ProfilePoint { radius: e, height: f },
+            arc: r,
+            fan: [polar(lower), polar(upper)],
+        }
+    }
+
+    /// Support function `max (s ρ + c z)` over the profile, for `s ≥ 0`, and the point that attains it.
+    pub fn support(&self, s: f64, c: f64) -> (f64, ProfilePoint) {
+        let mut best = (0.0, ProfilePoint { radius: 0.0, height: 0.0 });
+        for point in [self.lower, self.upper, self.top, ProfilePoint { radius: 0.0, height: self.top.height }]
+        {
+            let value = s * point.radius + c * point.height;
+            if value > best.0 {
+                best = (value, point);
+            }
+        }
+        let norm = s.hypot(c);
+        if self.arc > 0.0 && norm > 0.0 {
+            // Polar angle from straight down of the direction (s, c).
+            let polar = s.atan2(-c);
+            if polar >= self.fan[0] && polar <= self.fan[1] {
+                let value = s * self.center.radius + c * self.center.height + self.arc * norm;
+                if value > best.0 {
+                    let radius = self.center.radius + self.arc * s / norm;
+                    let height = self.center.height + self.arc * c / norm;
+                    best = (value, ProfilePoint { radius, height });
+                }
+            }
+        }
+        best
+    }
+
+    /// Greatest distance of the profile from the tool axis.
+    pub fn greatest_radius(&self) -> f64 {
+        self.support(1.0, 0.0).0
+    }
+
+    /// Signed distance of the point (ρ, z), ρ ≥ 0, from the solid tool (positive outside) and its nearest point on
+    /// the profile.
+    pub fn distance(&self, radius: f64, height: f64) -> (f64, ProfilePoint) {
+        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
+        let axis_top = ProfilePoint { radius: 0.0, height: self.top.height };
+        let mut best = (f64::INFINITY, tip);
+        let mut take = |point: ProfilePoint| {
+            let d = (radius - point.radius).hypot(height - point.height);
+            if d < best.0 {
+                best = (d, point);
+            }
+        };
+        let mut inside = true;
+        for (a, b) in [(tip, self.lower), (self.upper, self.top), (self.top, axis_top)] {
+            let (dx, dz) = (b.radius - a.radius, b.height - a.height);
+            let length = dx.hypot(dz);
+            if length <= 0.0 {
+                take(a);
+                continue;
+            }
+            let t = ((radius - a.radius) * dx + (height - a.height) * dz) / (length * length);
+            let t01 = t.clamp(0.0, 1.0);
+            take(ProfilePoint { radius: a.radius + t01 * dx, height: a.height + t01 * dz });
+            // Outward normal of a counter-clockwise edge is (dz, -dx).
+            inside &= (radius - a.radius) * dz - (height - a.height) * dx <= 0.0;
+        }
+        if self.arc > 0.0 {
+            let (x, z) = (radius - self.center.radius, height - self.center.height);
+            let polar = x.atan2(-z);
+            let rho = x.hypot(z);
+            if polar >= self.fan[0] && polar <= self.fan[1] {
+                let k = if rho > 0.0 { self.arc / rho } else { 0.0 };
+                take(ProfilePoint { radius: self.center.radius + k * x, height: self.center.height + k * z });
+            }
+            // Beyond the chord of the arc, the arc decides.
+            let (dx, dz) = (self.upper.radius - self.lower.radius, self.upper.height - self.lower.height);
+            if (radius - self.lower.radius) * dz - (height - self.lower.height) * dx > 0.0 {
+                inside &= rho <= self.arc;
+            }
+        }
+        if inside { (-best.0, best.1) } else { best }
+    }
+
+    /// Greatest distance of the point (ρ, z), ρ ≥ 0, from the solid tool and the farthest profile point; that point
+    /// lies on the other side of the axis, so its radius is returned as a positive number measured there.
+    pub fn greatest_distance(&self, radius: f64, height: f64) -> (f64, ProfilePoint) {
+        let mut best = (0.0, ProfilePoint { radius: 0.0, height: 0.0 });
+        let mut take = |point: ProfilePoint| {
+            let d = (radius + point.radius).hypot(height - point.height);
+            if d > best.0 {
+                best = (d, point);
+            }
+        };
+        take(ProfilePoint { radius: 0.0, height: 0.0 });
+        take(self.lower);
+        take(self.upper);
+        take(self.top);
+        if self.arc > 0.0 {
+            let (x, z) = (self.center.radius + radius, self.center.height - height);
+            let rho = x.hypot(z);
+            let polar = x.atan2(-z);
+            if rho > 0.0 && polar >= self.fan[0] && polar <= self.fan[1] {
+                let k = self.arc / rho;
+                take(ProfilePoint { radius: self.center.radius + k * x, height: self.center.height + k * z });
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn cutter(numbers: &[f64]) -> Cutter {
+        Cutter::from_numbers(numbers, 1.0).expect("legal cutter")
+    }
+
+    fn near(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-9, "found {found}, expected {expected}");
+    }
+
+    #[test]
+    fn w14_w15_seven_parameter_profile() {
+        let profile = cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]).profile();
+        near(profile.lower.radius, 0.454976356);
+        near(profile.lower.height, 0.080224607);
+        near(profile.upper.radius, 0.505839572);
+        near(profile.upper.height, 0.154910100);
+        near(profile.top.radius, 0.667264021);
+        near(profile.top.height, 2.0);
+        near(profile.fan[0].sin(), 0.666540565);
+        near(-profile.fan[0].cos(), -0.745468762);
+        near(profile.fan[1].sin(), 0.937811049);
+        near(-profile.fan[1].cos(), -0.347146131);
+    }
+
+    #[test]
+    fn w16_bull_nose() {
+        let profile = cutter(&[1.0, 0.125]).profile();
+        near(profile.lower.radius, 0.375);
+        near(profile.lower.height, 0.0);
+        near(profile.upper.radius, 0.5);
+        near(profile.upper.height, 0.125);
+    }
+
+    #[test]
+    fn w17_plane_heights() {
+        let profile = cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]).profile();
+        for (slope, expected) in [(0.05, 0.0), (0.3, 0.056268300), (1.0, 0.375165043), (3.0, 1.362608615)] {
+            // Plane z = -k x: unit normal (k, 0, 1)/√(1+k²); height = H(s, -c)/c.
+            let norm = f64::hypot(1.0, slope);
+            let height = profile.support(slope / norm, -1.0 / norm).0 * norm;
+            near(height, expected);
+        }
+    }
+
+    fn dense(profile: &Profile) -> Vec<ProfilePoint> {
+        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
+        let mut points = vec![tip, profile.lower, profile.upper, profile.top];
+        for k in 0..=200 {
+            let t = f64::from(k) / 200.0;
+            points.push(ProfilePoint { radius: t * profile.lower.radius, height: t * profile.lower.height });
+            points.push(ProfilePoint {
+                radius: profile.upper.radius + t * (profile.top.radius - profile.upper.radius),
+                height: profile.upper.height + t * (profile.top.height - profile.upper.height),
+            });
+            if profile.arc > 0.0 {
+                let polar = profile.fan[0] + t * (profile.fan[1] - profile.fan[0]);
+                points.push(ProfilePoint {
+                    radius: profile.center.radius + profile.arc * polar.sin(),
+                    height: profile.center.height - profile.arc * polar.cos(),
+                });
+            }
+        }
+        points
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn support_bounds_the_dense_profile(polar in 0.0..std::f64::consts::PI, which in 0usize..4) {
+            let shapes: [&[f64]; 4] =
+                [&[1.0], &[1.0, 0.125], &[1.0, 0.5], &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]];
+            let profile = cutter(shapes[which]).profile();
+            let (s, c) = (polar.sin(), -polar.cos());
+            let (value, point) = profile.support(s, c);
+            let sampled = dense(&profile).iter().map(|p| s * p.radius + c * p.height).fold(f64::MIN, f64::max);
+            prop_assert!(value >= sampled - 1e-12);
+            prop_assert!((s * point.radius + c * point.height - value).abs() < 1e-12);
+        }
+
+        #[test]
+        fn distances_match_the_dense_profile(radius in 0.0..3.0, height in -1.5..1.9, which in 0usize..3) {
+            let shapes: [&[f64]; 3] =
+                [&[1.0, 0.125, 0.375, 0.125, 0.0, 0.0, 2.0], &[1.0, 0.5], &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]];
+            let profile = cutter(shapes[which]).profile();
+            let (value, _) = profile.distance(radius, height);
+            let points = dense(&profile);
+            let nearest = points.iter().map(|p| (radius - p.radius).hypot(height - p.height)).fold(f64::MAX, f64::min);
+            if value > 0.0 {
+                prop_assert!((nearest - value).abs() < 0.02, "{value} against {nearest}");
+            } else {
+                prop_assert!(-value <= nearest + 1e-9);
+            }
+            let farthest = points.iter().map(|p| (radius + p.radius).hypot(height - p.height)).fold(0.0, f64::max);
+            prop_assert!((profile.greatest_distance(radius, height).0 - farthest).abs() < 1e-4);
+        }
+    }
+}

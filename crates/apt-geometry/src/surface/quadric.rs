@@ -1,0 +1,247 @@
+//! Quadrics in principal axes. The nearest point solves one monotone equation in one unknown.
+
+use nalgebra::{Matrix3, SymmetricEigen};
+
+use super::{Convexity, Foot, NoNormal, Surface};
+use crate::{
+    Vec3,
+    canonical::{Plane, Quadric},
+};
+
+/// An eigenvalue or linear term below this share of the largest is zero.
+const NEGLIGIBLE: f64 = 1e-11;
+/// Bound of the Newton iteration for the nearest point; it is bracketed, so this is never reached in practice.
+const MAX_ITERATIONS: u32 = 80;
+
+/// `Σ (aᵢ yᵢ² + 2 bᵢ yᵢ) + d = 0` with `y = Rᵀ(x − origin)`, and `bᵢ = 0` wherever `aᵢ ≠ 0`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrincipalQuadric {
+    /// Columns are the principal axes.
+    rotation: Matrix3<f64>,
+    origin: Vec3,
+    square: Vec3,
+    linear: Vec3,
+    constant: f64,
+    /// The canonical coefficients, `A,B,C,D,F,G,H,P,Q,R`, for directed distances and normals.
+    pub coefficients: [f64; 10],
+}
+
+/// The surface of a canonical quadric; a plane if it has no quadratic terms.
+pub(super) fn surface(quadric: &Quadric) -> Option<Surface> {
+    let [a, b, c, d, f, g, h, p, q, r] = quadric.coefficients;
+    if !quadric.coefficients.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let matrix = Matrix3::new(a, h, g, h, b, f, g, f, c);
+    let vector = Vec3::new(p, q, r);
+    let scale = matrix.amax();
+    let normal = vector * 2.0;
+    if scale <= NEGLIGIBLE * vector.amax() {
+        let norm = normal.norm();
+        return (norm > 0.0).then(|| Surface::Plane(Plane { normal: normal / norm, distance: -d / norm }));
+    }
+    let eigen = SymmetricEigen::new(matrix);
+    let rotation = eigen.eigenvectors;
+    let mut square = eigen.eigenvalues;
+    let mut linear = rotation.transpose() * vector;
+    let mut shift = Vec3::zeros();
+    let mut constant = d;
+    for i in 0..3 {
+        if square[i].abs() <= NEGLIGIBLE * scale {
+            square[i] = 0.0;
+            if linear[i].abs() <= NEGLIGIBLE * vector.amax().max(scale) {
+                linear[i] = 0.0;
+            }
+        } else {
+            shift[i] = -linear[i] / square[i];
+            constant -= linear[i] * linear[i] / square[i];
+            linear[i] = 0.0;
+        }
+    }
+    if constant.abs() <= NEGLIGIBLE * (d.abs() + scale * shift.norm_squared()) {
+        constant = 0.0;
+    }
+    let form = PrincipalQuadric {
+        rotation,
+        origin: rotation * shift,
+        square,
+        linear,
+        constant,
+        coefficients: quadric.coefficients,
+    };
+    form.has_real_points().then(|| Surface::Quadric(Box::new(form)))
+}
+
+impl PrincipalQuadric {
+    fn has_real_points(&self) -> bool {
+        if self.linear != Vec3::zeros() {
+            return true;
+        }
+        let positive = self.square.iter().any(|&a| a > 0.0) && self.constant <= 0.0;
+        let negative = self.square.iter().any(|&a| a < 0.0) && self.constant >= 0.0;
+        positive || negative || (self.square.min() < 0.0 && self.square.max() > 0.0)
+    }
+
+    pub(super) fn convexity(&self) -> Convexity {
+        // {F ≤ 0} is convex when F is a convex function, {F ≥ 0} when it is concave.
+        if self.square.min() >= 0.0 {
+            Convexity::Convex
+        } else if self.square.max() <= 0.0 {
+            Convexity::Hollow
+        } else {
+            Convexity::General
+        }
+    }
+
+    fn local(&self, p: &Vec3) -> Vec3 {
+        self.rotation.tr_mul(&(p - self.origin))
+    }
+
+    fn value_local(&self, y: &Vec3) -> f64 {
+        (0..3).map(|i| (self.square[i] * y[i] + 2.0 * self.linear[i]) * y[i]).sum::<f64>() + self.constant
+    }
+
+    /// Point and value of F for a multiplier: `Qᵢ = (yᵢ − λ bᵢ)/(1 + λ aᵢ)`.
+    fn at(&self, y: &Vec3, multiplier: f64) -> (Vec3, f64, f64) {
+        let mut q = Vec3::zeros();
+        let mut slope = 0.0;
+        for i in 0..3 {
+            let k = 1.0 + multiplier * self.square[i];
+            q[i] = (y[i] - multiplier * self.linear[i]) / k;
+            let gradient = self.square[i] * q[i] + self.linear[i];
+            slope -= 2.0 * gradient * gradient / k;
+        }
+        (q, self.value_local(&q), slope)
+    }
+
+    /// The nearest point and its multiplier: `p − Q = λ·∇F(Q)/2`, with every `1 + λ aᵢ > 0`.
+    pub(super) fn foot(&self, p: &Vec3) -> (Foot, f64) {
+        let y = self.local(p);
+        let (lowest, highest) = (
+            if self.square.max() > 0.0 { -1.0 / self.square.max() } else { f64::NEG_INFINITY },
+            if self.square.min() < 0.0 { -1.0 / self.square.min() } else { f64::INFINITY },
+        );
+        let start = self.value_local(&y);
+        let multiplier = self.multiplier(&y, lowest, highest);
+        let mut q = self.at(&y, multiplier).0;
+        if multiplier == lowest || multiplier == highest {
+            q = self.on_symmetry_plane(&y, multiplier);
+        }
+        let gradient = self.square.component_mul(&q) + self.linear;
+        let length = gradient.norm();
+        let offset = y - q;
+        let (distance, normal) = if length > 0.0 && multiplier != lowest && multiplier != highest {
+            (multiplier * length, gradient / length)
+        } else if length > 0.0 {
+            (offset.norm() * start.signum(), gradient / length)
+        } else {
+            let d = offset.norm();
+            let normal = if d > 0.0 { offset / d } else { Vec3::z() };
+            (d * start.signum(), normal * start.signum())
+        };
+        let foot = Foot { distance, point: self.origin + self.rotation * q, normal: self.rotation * normal };
+        (foot, multiplier)
+    }
+
+    /// Root of the decreasing function F(Q(λ)) between the poles; a pole itself if there is none.
+    fn multiplier(&self, y: &Vec3, lowest: f64, highest: f64) -> f64 {
+        let (mut low, mut high) = (lowest, highest);
+        let mut x = 0.0;
+        for _ in 0..MAX_ITERATIONS {
+            let (_, value, slope) = self.at(y, x);
+            if value == 0.0 {
+                return x;
+            }
+            if value > 0.0 {
+                low = x;
+            } else {
+                high = x;
+            }
+            let newton = if slope < 0.0 { x - value / slope } else { f64::NAN };
+            let next = if newton > low && newton < high {
+                newton
+            } else if low.is_finite() && high.is_finite() {
+                0.5 * (low + high)
+            } else if low.is_finite() {
+                // No upper pole: go outward.
+                low + 2.0 * (low.abs() + 1.0 / self.square.amax().max(f64::MIN_POSITIVE))
+            } else {
+                high - 2.0 * (high.abs() + 1.0 / self.square.amax().max(f64::MIN_POSITIVE))
+            };
+            let done = (next - x).abs() <= 4.0 * f64::EPSILON * x.abs();
+            x = next;
+            if done {
+                break;
+            }
+        }
+        // Without a root the bracket closes on a pole: the point lies on a plane of symmetry.
+        let at_pole = |pole: f64| pole.is_finite() && (x - pole).abs() <= 1e-14 * pole.abs();
+        if at_pole(lowest) {
+            lowest
+        } else if at_pole(highest) {
+            highest
+        } else {
+            x
+        }
+    }
+
+    /// Nearest point when the multiplier is a pole: the component with the pole is free and is set by F = 0.
+    fn on_symmetry_plane(&self, y: &Vec3, multiplier: f64) -> Vec3 {
+        let mut q = Vec3::zeros();
+        let mut free = 0;
+        let mut smallest = f64::INFINITY;
+        for i in 0..3 {
+            let k = 1.0 + multiplier * self.square[i];
+            if k.abs() < smallest {
+                smallest = k.abs();
+                free = i;
+            }
+        }
+        for i in 0..3 {
+            let k = 1.0 + multiplier * self.square[i];
+            if i != free && k.abs() > 1e-9 {
+                q[i] = (y[i] - multiplier * self.linear[i]) / k;
+            }
+        }
+        let rest = self.value_local(&q);
+        q[free] = (-rest / self.square[free]).max(0.0).sqrt();
+        q
+    }
+
+    /// Second derivatives of the signed distance at the point whose foot this is.
+    pub(super) fn hessian(&self, foot: &Foot, multiplier: f64) -> Matrix3<f64> {
+        let q = self.local(&foot.point);
+        let gradient = self.square.component_mul(&q) + self.linear;
+        let length = gradient.norm();
+        if length <= 0.0 {
+            return Matrix3::zeros();
+        }
+        let n = gradient / length;
+        let mut stretch = Vec3::zeros();
+        for i in 0..3 {
+            let k = 1.0 + multiplier * self.square[i];
+            stretch[i] = if k.abs() > 1e-12 { 1.0 / k } else { 0.0 };
+        }
+        let sn = stretch.component_mul(&n);
+        let along = sn.dot(&n);
+        if along.abs() <= f64::MIN_POSITIVE {
+            return Matrix3::zeros();
+        }
+        let moved = Matrix3::from_diagonal(&stretch) - sn * sn.transpose() / along;
+        let bent = Matrix3::from_diagonal(&self.square) * moved;
+        let projected = bent - n * (n.transpose() * bent);
+        self.rotation * (projected / length) * self.rotation.transpose()
+    }
+
+    /// UNQUAD: the direction of the gradient of the canonical form.
+    pub(super) fn natural_normal(&self, p: &Vec3) -> Result<Vec3, NoNormal> {
+        let [a, b, c, _, f, g, h, l, m, n] = self.coefficients;
+        let gradient = Vec3::new(
+            a * p.x + h * p.y + g * p.z + l,
+            h * p.x + b * p.y + f * p.z + m,
+            g * p.x + f * p.y + c * p.z + n,
+        );
+        let scale = self.square.amax() * (1.0 + p.norm()) + self.linear.amax();
+        if gradient.norm() <= super::ON_AXIS * scale { Err(NoNormal) } else { Ok(gradient.normalize()) }
+    }
+}

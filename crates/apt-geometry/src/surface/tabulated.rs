@@ -1,0 +1,300 @@
+//! Tabulated cylinders: a piecewise cubic directrix ruled along a straight line.
+
+use nalgebra::{Matrix3, Vector2};
+
+use super::Foot;
+use crate::{Vec3, canonical::TabulatedCylinder};
+
+type Vec2 = Vector2<f64>;
+
+/// Starting points per interval for the nearest point.
+const STARTS: u32 = 4;
+/// Bound of the Newton iteration for the nearest point of an interval; it is bracketed.
+const MAX_ITERATIONS: u32 = 60;
+
+/// Cosine defect above which the nearest point is a corner of the curve.
+const CORNER: f64 = 1e-9;
+/// Curvature of a corner: large enough to be infinite for any tool, small enough to compute with.
+const CORNER_CURVATURE: f64 = 1e12;
+
+/// One cubic over its chord: `v = a u³ + b u² + c u` with the chord along u.
+#[derive(Debug, Clone, PartialEq)]
+struct Cubic {
+    start: Vec2,
+    along: Vec2,
+    length: f64,
+    coefficients: [f64; 3],
+    /// Least and greatest height over the chord.
+    bounds: [f64; 2],
+    /// The straight extension before the first or after the last point: it has no end on that side.
+    open: [bool; 2],
+}
+
+/// The directrix with its frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectrixCurve {
+    axes: [Vec3; 3],
+    intervals: Vec<Cubic>,
+}
+
+impl Cubic {
+    fn new(start: Vec2, end: Vec2, a: f64, b: f64) -> Option<Self> {
+        let chord = end - start;
+        let length = chord.norm();
+        if !(length > 0.0 && a.is_finite() && b.is_finite() && length.is_finite()) {
+            return None;
+        }
+        let coefficients = [a, b, -length * (a * length + b)];
+        let mut cubic = Self {
+            start,
+            along: chord / length,
+            length,
+            coefficients,
+            bounds: [0.0, 0.0],
+            open: [false, false],
+        };
+        for s in super::solve_quadratic(3.0 * a, b, coefficients[2]) {
+            if s > 0.0 && s < length {
+                let height = cubic.height(s)[0];
+                cubic.bounds = [cubic.bounds[0].min(height), cubic.bounds[1].max(height)];
+            }
+        }
+        Some(cubic)
+    }
+
+    /// Height over the chord, its slope and its second derivative. The extensions stay straight beyond their ends.
+    fn height(&self, s: f64) -> [f64; 3] {
+        let [a, b, c] = self.coefficients;
+        let inner = s.clamp(0.0, self.length);
+        let value = ((a * inner + b) * inner + c) * inner;
+        let slope = (3.0 * a * inner + 2.0 * b) * inner + c;
+        if inner == s {
+            [value, slope, 6.0 * a * s + 2.0 * b]
+        } else {
+            [value + slope * (s - inner), slope, 0.0]
+        }
+    }
+
+    fn normal_axis(&self) -> Vec2 {
+        Vec2::new(-self.along.y, self.along.x)
+    }
+
+    fn to_local(&self, p: Vec2) -> Vec2 {
+        let w = p - self.start;
+        Vec2::new(w.dot(&self.along), w.dot(&self.normal_axis()))
+    }
+
+    /// No point of the interval is nearer than this.
+    fn lower_bound(&self, local: Vec2) -> f64 {
+        if self.open[0] || self.open[1] {
+            return 0.0;
+        }
+        let dx = (-local.x).max(local.x - self.length).max(0.0);
+        let dy = (self.bounds[0] - local.y).max(local.y - self.bounds[1]).max(0.0);
+        dx.hypot(dy)
+    }
+
+    /// Parameter of the nearest point near a starting value, between limits.
+    fn nearest_from(&self, local: Vec2, from: f64, limits: [f64; 2]) -> f64 {
+        let [mut low, mut high] = limits;
+        let mut s = from;
+        for _ in 0..MAX_ITERATIONS {
+            let [h, h1, h2] = self.height(s);
+            let gradient = (s - local.x) + (h - local.y) * h1;
+            if gradient > 0.0 {
+                high = s;
+            } else {
+                low = s;
+            }
+            let curvature = 1.0 + h1 * h1 + (h - local.y) * h2;
+            let newton = s - gradient / curvature;
+            let next =
+                if curvature > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            if (next - s).abs() <= 1e-15 * (self.length + s.abs()) {
+                return next;
+            }
+            s = next;
+        }
+        s
+    }
+
+    /// The nearest point: its parameter and distance.
+    fn nearest(&self, local: Vec2) -> (f64, f64) {
+        let reach = self.length + local.norm();
+        let low = if self.open[0] { -reach } else { 0.0 };
+        let high = if self.open[1] { self.length + reach } else { self.length };
+        let distance = |s: f64| (s - local.x).hypot(self.height(s)[0] - local.y);
+        let mut best = (low, distance(low));
+        let mut take = |s: f64| {
+            let d = distance(s);
+            if d < best.1 {
+                best = (s, d);
+            }
+        };
+        take(high);
+        if self.open[0] || self.open[1] {
+            take(self.nearest_from(local, local.x.clamp(low, high), [low, high]));
+            return best;
+        }
+        for k in 0..STARTS {
+            let left = low + (high - low) * f64::from(k) / f64::from(STARTS);
+            let right = low + (high - low) * f64::from(k + 1) / f64::from(STARTS);
+            take(self.nearest_from(local, 0.5 * (left + right), [left, right]));
+        }
+        best
+    }
+}
+
+impl DirectrixCurve {
+    pub(super) fn new(cylinder: &TabulatedCylinder) -> Option<Self> {
+        let mut axes = cylinder.axes;
+        for axis in &mut axes {
+            *axis = super::unit(axis)?;
+        }
+        let count = cylinder.intervals.len();
+        let mut intervals = Vec::with_capacity(count);
+        for (k, interval) in cylinder.intervals.iter().enumerate() {
+            let start = Vec2::new(interval.u, interval.v);
+            let end = match cylinder.intervals.get(k + 1) {
+                Some(next) => Vec2::new(next.u, next.v),
+                None => Vec2::from(cylinder.last),
+            };
+            let mut cubic = Cubic::new(start, end, interval.a, interval.b)?;
+            cubic.open = [k == 0, k + 1 == count];
+            intervals.push(cubic);
+        }
+        if intervals.is_empty() { None } else { Some(Self { axes, intervals }) }
+    }
+
+    fn flat(&self, p: &Vec3) -> Vec2 {
+        Vec2::new(self.axes[0].dot(p), self.axes[1].dot(p))
+    }
+
+    fn lift(&self, v: Vec2) -> Vec3 {
+        self.axes[0] * v.x + self.axes[1] * v.y
+    }
+
+    /// The nearest point, and the curvature of the directrix there, positive where it curves away from the natural
+    /// normal `(−sin φ, cos φ)`.
+    pub(super) fn foot(&self, p: &Vec3) -> (Foot, f64) {
+        let flat = self.flat(p);
+        let mut best: Option<(usize, f64, f64)> = None;
+        for (k, interval) in self.intervals.iter().enumerate() {
+            let local = interval.to_local(flat);
+            if let Some((_, _, distance)) = best
+                && interval.lower_bound(local) > distance
+            {
+                continue;
+            }
+            let (s, distance) = interval.nearest(local);
+            if best.is_none_or(|(_, _, least)| distance < least) {
+                best = Some((k, s, distance));
+            }
+        }
+        let (k, s, _) = best.unwrap_or((0, 0.0, 0.0));
+        let interval = &self.intervals[k];
+        let [h, h1, h2] = interval.height(s);
+        let norm = h1.hypot(1.0);
+        let normal = (interval.normal_axis() - interval.along * h1) / norm;
+        let point = interval.start + interval.along * s + interval.normal_axis() * h;
+        let offset = flat - point;
+        let (height, length) = (offset.dot(&normal), offset.norm());
+        // At a corner between intervals the nearest point stays while the normal turns.
+        let corner = height.abs() < length * (1.0 - CORNER);
+        let distance = if corner { length.copysign(height) } else { height };
+        let curvature = if corner { CORNER_CURVATURE.copysign(height) } else { -h2 / (norm * norm * norm) };
+        let normal = self.lift(if corner { offset / distance } else { normal });
+        (Foot { distance, point: p - normal * distance, normal }, curvature)
+    }
+
+    pub(super) fn hessian(&self, foot: &Foot, curvature: f64) -> Matrix3<f64> {
+        let tangent = self.axes[2].cross(&foot.normal);
+        let stretch = 1.0 + foot.distance * curvature;
+        if stretch.abs() <= 1e-12 {
+            return Matrix3::zeros();
+        }
+        tangent * tangent.transpose() * (curvature / stretch)
+    }
+
+    /// Parameters of all crossings of a ray with the curve (DDTABC), in units of |direction|.
+    pub(super) fn ray_roots(&self, from: &Vec3, direction: &Vec3) -> Vec<f64> {
+        let (p, d) = (self.flat(from), self.flat(direction));
+        let mut roots = Vec::new();
+        if d.norm() <= 1e-12 * direction.norm() {
+            return roots;
+        }
+        for interval in &self.intervals {
+            interval.ray_roots(p, d, &mut roots);
+        }
+        roots
+    }
+}
+
+impl Cubic {
+    fn ray_roots(&self, p: Vec2, d: Vec2, roots: &mut Vec<f64>) {
+        let local = self.to_local(p);
+        let (du, dv) = (d.dot(&self.along), d.dot(&self.normal_axis()));
+        let inside = |s: f64| (self.open[0] || s >= 0.0) && (self.open[1] || s <= self.length);
+        if du.abs() <= 1e-12 * dv.abs() {
+            if inside(local.x) {
+                roots.push((self.height(local.x)[0] - local.y) / dv);
+            }
+            return;
+        }
+        // Signed height of the curve over the ray, as a function of s; its turning points split the interval.
+        let slope = dv / du;
+        let gap = |s: f64| self.height(s)[0] - (local.y + slope * (s - local.x));
+        let [a, b, c] = self.coefficients;
+        let mut limits = vec![0.0];
+        for s in super::solve_quadratic(3.0 * a, b, c - slope) {
+            if s > 0.0 && s < self.length {
+                limits.push(s);
+            }
+        }
+        limits.push(self.length);
+        limits.sort_by(f64::total_cmp);
+        for pair in limits.windows(2) {
+            if let Some(s) = bracketed_root(&gap, pair[0], pair[1]) {
+                roots.push((s - local.x) / du);
+            }
+        }
+        // The straight extensions beyond their ends.
+        for (open, end, outward) in [(self.open[0], 0.0, -1.0), (self.open[1], self.length, 1.0)] {
+            let [h, h1, _] = self.height(end);
+            let relative = h1 - slope;
+            if open && relative != 0.0 {
+                let s = end - (h - (local.y + slope * (end - local.x))) / relative;
+                if (s - end) * outward > 0.0 {
+                    roots.push((s - local.x) / du);
+                }
+            }
+        }
+    }
+}
+
+/// Root of a monotone function between limits of opposite sign.
+fn bracketed_root(f: &impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
+    let (mut low, mut high) = (low, high);
+    let (at_low, at_high) = (f(low), f(high));
+    if at_low == 0.0 {
+        return Some(low);
+    }
+    if at_high == 0.0 {
+        return Some(high);
+    }
+    if (at_low > 0.0) == (at_high > 0.0) {
+        return None;
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if (f(middle) > 0.0) == (at_low > 0.0) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(0.5 * (low + high))
+}

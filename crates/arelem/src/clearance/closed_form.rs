@@ -1,0 +1,99 @@
+//! Clearances in closed form: planes, spheres, and cylinders and cones whose axis is parallel to the tool's.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{Cylinder, Plane, Sphere},
+    cutter::ProfilePoint,
+    surface::{ConeForm, Surface},
+};
+
+use super::{Contact, Tool};
+
+/// Sine of the angle between two axes below which they are parallel.
+const PARALLEL: f64 = 1e-13;
+
+/// The clearance on one side, if the configuration has a closed form.
+pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<Contact> {
+    match surface {
+        Surface::Plane(given) => Some(plane(tool, given, side, tip)),
+        Surface::Sphere(given) => Some(sphere(tool, given, side, tip)),
+        Surface::Cylinder(given) if given.axis.cross(&tool.axis).norm() <= PARALLEL => {
+            Some(parallel_cylinder(tool, given, side, tip))
+        }
+        Surface::Cone(given) if given.axis.cross(&tool.axis).norm() <= PARALLEL => {
+            Some(parallel_cone(tool, given, side, tip))
+        }
+        _ => None,
+    }
+}
+
+/// `g = n·TE − d − H(s, −c)` with `n` towards the tool.
+fn plane(tool: &Tool, plane: &Plane, side: f64, tip: &Vec3) -> Contact {
+    let normal = plane.normal * side;
+    let (along, across, radial) = tool.split(&normal);
+    let (support, point) = tool.profile.support(across, -along);
+    let clearance = normal.dot(tip) - side * plane.distance - support;
+    let contact = tip + tool.axis * point.height - radial * point.radius;
+    Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
+}
+
+fn sphere(tool: &Tool, sphere: &Sphere, side: f64, tip: &Vec3) -> Contact {
+    if side > 0.0 {
+        return ball_outside(tool, &sphere.center, sphere.radius, tip);
+    }
+    let (along, across, radial) = tool.split(&(sphere.center - tip));
+    let (distance, point) = tool.profile.greatest_distance(across, along);
+    let contact = tip + tool.axis * point.height - radial * point.radius;
+    let outward = (contact - sphere.center).try_normalize(0.0).unwrap_or(-tool.axis);
+    Contact {
+        clearance: sphere.radius - distance,
+        gradient: -outward,
+        tool: contact,
+        surface: sphere.center + outward * sphere.radius,
+    }
+}
+
+/// The tool outside a ball, or outside a point when the radius is zero.
+fn ball_outside(tool: &Tool, center: &Vec3, radius: f64, tip: &Vec3) -> Contact {
+    let (along, across, radial) = tool.split(&(center - tip));
+    let (distance, point) = tool.profile.distance(across, along);
+    let contact = tip + tool.axis * point.height + radial * point.radius;
+    let outward = (contact - center).try_normalize(0.0).unwrap_or(-radial);
+    let normal = if distance < 0.0 { -outward } else { outward };
+    Contact {
+        clearance: distance - radius,
+        gradient: normal,
+        tool: contact,
+        surface: center + normal * radius,
+    }
+}
+
+fn parallel_cylinder(tool: &Tool, cylinder: &Cylinder, side: f64, tip: &Vec3) -> Contact {
+    let (_, across, radial) = tool.split(&(tip - cylinder.point));
+    let (reach, ProfilePoint { radius, height }) = tool.profile.support(1.0, 0.0);
+    let (clearance, towards) = if side > 0.0 {
+        (across - cylinder.radius - reach, -radius)
+    } else {
+        (cylinder.radius - across - reach, radius)
+    };
+    let contact = tip + tool.axis * height + radial * towards;
+    let gradient = radial * side;
+    Contact { clearance, gradient, tool: contact, surface: contact - gradient * clearance }
+}
+
+/// `n = −sin α T + cos α E` with E the radial direction from the cone's axis to the tool's.
+fn parallel_cone(tool: &Tool, cone: &ConeForm, side: f64, tip: &Vec3) -> Contact {
+    let w = tip - cone.vertex;
+    let radial = tool.split(&w).2;
+    let outward = radial * cone.cosine - cone.axis * cone.sine;
+    let gradient = outward * side;
+    let (support, point) = tool.profile.support(cone.cosine, -gradient.dot(&tool.axis));
+    let clearance = gradient.dot(&w) - support;
+    let contact = tip + tool.axis * point.height - radial * (side * point.radius);
+    let surface = contact - gradient * clearance;
+    let generator = cone.axis * cone.cosine + radial * cone.sine;
+    if side > 0.0 && (surface - cone.vertex).dot(&generator) < 0.0 {
+        return ball_outside(tool, &cone.vertex, 0.0, tip);
+    }
+    Contact { clearance, gradient, tool: contact, surface }
+}

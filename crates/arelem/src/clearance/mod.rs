@@ -1,0 +1,100 @@
+//! Signed clearance between tool and surface as one function of the tool end (arelem reference 1.6 and 5.2), with
+//! its gradient and the contact points.
+
+mod closed_form;
+mod search;
+mod tool;
+
+use apt_geometry::{
+    Vec3,
+    surface::{Convexity, Surface},
+};
+
+pub use tool::Tool;
+
+/// Where tool and surface are nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Signed distance, positive when separated; negative depth when the tool cuts into the surface.
+    pub clearance: f64,
+    /// Unit gradient with respect to the tool end: the surface normal turned towards the tool.
+    pub gradient: Vec3,
+    /// The tool's contact point; the tool end for ON.
+    pub tool: Vec3,
+    /// The surface's contact point.
+    pub surface: Vec3,
+}
+
+/// How clearance behaves along a straight line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Linear.
+    Flat,
+    /// A convex function: at most one interior minimum.
+    Convex,
+    /// A concave function: at most one interior maximum.
+    Concave,
+    /// Anything smooth.
+    General,
+}
+
+/// A surface with a relation to keep: what clearance is measured, and from which side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gauge {
+    /// The surface.
+    pub surface: Surface,
+    /// True for ON: the tool end itself is measured and THICK does not count.
+    pub on: bool,
+    /// Side of the natural normal that the tool lives on.
+    pub side: f64,
+    /// THICK.
+    pub thickness: f64,
+}
+
+impl Gauge {
+    /// Clearance with contact points for a tool whose end is at `tip`.
+    pub fn contact(&self, tool: &Tool, tip: &Vec3) -> Contact {
+        if self.on {
+            let foot = self.surface.foot(tip);
+            return Contact {
+                clearance: self.side * foot.distance,
+                gradient: foot.normal * self.side,
+                tool: *tip,
+                surface: foot.point,
+            };
+        }
+        let mut contact = offset_contact(tool, &self.surface, self.side, tip);
+        contact.clearance -= self.thickness;
+        contact
+    }
+
+    /// How the clearance behaves along a straight line.
+    pub fn shape(&self) -> Shape {
+        match (self.surface.convexity(), self.side > 0.0) {
+            (Convexity::Flat, _) => Shape::Flat,
+            (Convexity::Convex, true) | (Convexity::Hollow, false) => Shape::Convex,
+            (Convexity::Convex, false) | (Convexity::Hollow, true) => Shape::Concave,
+            (Convexity::General, _) => Shape::General,
+        }
+    }
+}
+
+/// Distance between the tool body and the surface, with the tool on the given side.
+pub(crate) fn offset_contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
+    closed_form::contact(tool, surface, side, tip)
+        .unwrap_or_else(|| search::contact(tool, surface, side, tip))
+}
+
+/// Distance of the whole tool from a surface without regard to sides: positive when they do not touch, on whichever
+/// side the tool is; the side with the greater clearance.
+pub(crate) fn separation(tool: &Tool, surface: &Surface, tip: &Vec3) -> (Contact, f64) {
+    let above = offset_contact(tool, surface, 1.0, tip);
+    if above.clearance >= 0.0 {
+        return (above, 1.0);
+    }
+    let below = offset_contact(tool, surface, -1.0, tip);
+    if above.clearance >= below.clearance { (above, 1.0) } else { (below, -1.0) }
+}
+
+#[cfg(test)]
+mod tests;

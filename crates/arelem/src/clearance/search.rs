@@ -1,0 +1,267 @@
+//! Clearance to any surface with a signed distance: the least distance over all pieces of the tool's boundary. Each
+//! circle is scanned and every promising valley refined by Newton's method with the surface's curvature; the bottom
+//! and the conical patches are looked into where their edges say that contact lies further inside.
+
+use apt_geometry::{
+    Vec3,
+    surface::{Foot, Surface},
+};
+use nalgebra::{Matrix2, Matrix3, Vector2};
+
+use super::{Contact, Tool, tool::Piece};
+
+/// Scan points on a circle.
+const SCAN: usize = 12;
+/// Bound of the Newton iterations; they are bracketed or damped.
+const MAX_ITERATIONS: u32 = 40;
+/// An azimuth step below this (radians) ends the refinement: the clearance then errs by its square.
+const ANGLE_RESOLUTION: f64 = 1e-10;
+/// Slack of the fan of contact normals of the corner torus, radians.
+const FAN_SLACK: f64 = 1e-9;
+
+/// The best contact so far.
+struct Best {
+    value: f64,
+    contact: Option<Contact>,
+}
+
+impl Best {
+    fn take(&mut self, value: f64, contact: impl FnOnce() -> Contact) {
+        if value < self.value || self.contact.is_none() {
+            self.value = value;
+            self.contact = Some(contact());
+        }
+    }
+}
+
+struct Search<'a> {
+    tool: &'a Tool,
+    surface: &'a Surface,
+    side: f64,
+    tip: &'a Vec3,
+    best: Best,
+}
+
+/// The clearance on one side, for any surface.
+pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
+    let mut search = Search { tool, surface, side, tip, best: Best { value: f64::INFINITY, contact: None } };
+    for piece in &tool.pieces {
+        match *piece {
+            Piece::Ring { radius, height, ball, fan } => search.ring(radius, height, ball, fan),
+            Piece::Disc { radius } => search.disc(radius),
+            Piece::Frustum { radius, height } => search.frustum(radius, height),
+        }
+    }
+    search.best.contact.unwrap_or_else(|| {
+        let foot = surface.foot(tip);
+        Contact {
+            clearance: side * foot.distance,
+            gradient: foot.normal * side,
+            tool: *tip,
+            surface: foot.point,
+        }
+    })
+}
+
+impl Search<'_> {
+    fn point(&self, radius: f64, height: f64, azimuth: f64) -> Vec3 {
+        self.tip + self.tool.axis * height + self.direction(azimuth) * radius
+    }
+
+    fn direction(&self, azimuth: f64) -> Vec3 {
+        let (sin, cos) = azimuth.sin_cos();
+        self.tool.across[0] * cos + self.tool.across[1] * sin
+    }
+
+    fn contact_at(&self, p: &Vec3, foot: &Foot, ball: f64) -> Contact {
+        let gradient = foot.normal * self.side;
+        Contact {
+            clearance: self.side * foot.distance - ball,
+            gradient,
+            tool: p - gradient * ball,
+            surface: foot.point,
+        }
+    }
+
+    fn take(&mut self, p: &Vec3, foot: &Foot, ball: f64) {
+        let contact = self.contact_at(p, foot, ball);
+        self.best.take(contact.clearance, || contact);
+    }
+
+    fn ring(&mut self, radius: f64, height: f64, ball: f64, fan: Option<[f64; 2]>) {
+        if radius.abs() <= f64::EPSILON * (ball + height.abs()) {
+            let p = self.point(0.0, height, 0.0);
+            let foot = self.surface.foot(&p);
+            self.take_in_fan(&p, &foot, ball, fan);
+            return;
+        }
+        let step = std::f64::consts::TAU / SCAN as f64;
+        let mut values = [0.0; SCAN];
+        for (k, value) in values.iter_mut().enumerate() {
+            let p = self.point(radius, height, step * k as f64);
+            *value = self.side * self.surface.signed_distance(&p) - ball;
+        }
+        let mut order: [usize; SCAN] = std::array::from_fn(|k| k);
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        for k in order {
+            // Between two scan points the distance cannot fall by more than half the arc between them.
+            if values[k] - 0.5 * step * radius.abs() >= self.best.value {
+                break;
+            }
+            let (before, after) = (values[(k + SCAN - 1) % SCAN], values[(k + 1) % SCAN]);
+            if values[k] <= before && values[k] <= after {
+                let azimuth = self.refine(radius, height, step * k as f64, step);
+                let p = self.point(radius, height, azimuth);
+                let foot = self.surface.foot(&p);
+                self.take_in_fan(&p, &foot, ball, fan);
+            }
+        }
+    }
+
+    fn take_in_fan(&mut self, p: &Vec3, foot: &Foot, ball: f64, fan: Option<[f64; 2]>) {
+        if let Some([least, greatest]) = fan {
+            // Polar angle, from straight down, of the tool's outward normal at contact.
+            let down = (foot.normal.dot(&self.tool.axis) * self.side).clamp(-1.0, 1.0);
+            let polar = down.acos();
+            if polar < least - FAN_SLACK || polar > greatest + FAN_SLACK {
+                return;
+            }
+        }
+        self.take(p, foot, ball);
+    }
+
+    /// The azimuth of the valley near a scan point, by Newton's method between its neighbours.
+    fn refine(&self, radius: f64, height: f64, azimuth: f64, step: f64) -> f64 {
+        let (mut low, mut high) = (azimuth - step, azimuth + step);
+        let mut x = azimuth;
+        for _ in 0..MAX_ITERATIONS {
+            let radial = self.direction(x);
+            let tangent = self.tool.axis.cross(&radial);
+            let p = self.tip + self.tool.axis * height + radial * radius;
+            let (foot, hessian) = self.surface.foot_and_hessian(&p);
+            let slope = self.side * radius * foot.normal.dot(&tangent);
+            let bend =
+                self.side * radius * (radius * tangent.dot(&(hessian * tangent)) - foot.normal.dot(&radial));
+            if slope > 0.0 {
+                high = x;
+            } else {
+                low = x;
+            }
+            let newton = x - slope / bend;
+            let next = if bend > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - x).abs() <= ANGLE_RESOLUTION {
+                return next;
+            }
+            x = next;
+        }
+        x
+    }
+
+    /// The flat bottom: contact in its interior where the distance falls from the edge inward.
+    fn disc(&mut self, radius: f64) {
+        let start = match self.best.contact {
+            Some(contact) if contact.gradient.dot(&(contact.tool - self.tip)) > 0.0 => {
+                contact.tool - self.tip
+            }
+            Some(_) => {
+                let foot = self.surface.foot(self.tip);
+                if self.side * foot.distance >= self.best.value {
+                    return;
+                }
+                Vec3::zeros()
+            }
+            None => Vec3::zeros(),
+        };
+        let mut q = Vector2::new(start.dot(&self.tool.across[0]), start.dot(&self.tool.across[1]));
+        for _ in 0..MAX_ITERATIONS {
+            let p = self.tip + self.tool.across[0] * q.x + self.tool.across[1] * q.y;
+            let (foot, hessian) = self.surface.foot_and_hessian(&p);
+            self.take(&p, &foot, 0.0);
+            let (x, y) = (self.tool.across[0], self.tool.across[1]);
+            let gradient = Vector2::new(foot.normal.dot(&x), foot.normal.dot(&y)) * self.side;
+            let bend = reduced(&hessian, &x, &y) * self.side;
+            let mut next = q + descent(&bend, &gradient, radius);
+            if next.norm() > radius {
+                next *= radius / next.norm();
+            }
+            if (next - q).norm() <= ANGLE_RESOLUTION * radius {
+                return;
+            }
+            q = next;
+        }
+    }
+
+    /// A conical patch: contact in its interior where the distance falls from an edge inward.
+    fn frustum(&mut self, radius: [f64; 2], height: [f64; 2]) {
+        let Some(contact) = self.best.contact else { return };
+        let (_, _, radial) = self.tool.split(&(contact.tool - self.tip));
+        let azimuth = radial.dot(&self.tool.across[1]).atan2(radial.dot(&self.tool.across[0]));
+        let line = self.tool.axis * (height[1] - height[0]) + radial * (radius[1] - radius[0]);
+        let at = |t: f64| {
+            let p = self.point(
+                radius[0] + t * (radius[1] - radius[0]),
+                height[0] + t * (height[1] - height[0]),
+                azimuth,
+            );
+            let foot = self.surface.foot(&p);
+            (self.side * foot.distance, self.side * foot.normal.dot(&line))
+        };
+        let ((v0, s0), (v1, s1)) = (at(0.0), at(1.0));
+        if s0 >= 0.0 || s1 <= 0.0 {
+            return;
+        }
+        // Minimum of the tangents' envelope as a first guess.
+        let t = ((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0);
+        self.inside_frustum(radius, height, Vector2::new(t, azimuth));
+    }
+
+    fn inside_frustum(&mut self, radius: [f64; 2], height: [f64; 2], start: Vector2<f64>) {
+        let mut q = start;
+        for _ in 0..MAX_ITERATIONS {
+            let radial = self.direction(q.y);
+            let tangent = self.tool.axis.cross(&radial);
+            let rho = radius[0] + q.x * (radius[1] - radius[0]);
+            let p = self.tip + self.tool.axis * (height[0] + q.x * (height[1] - height[0])) + radial * rho;
+            let (foot, hessian) = self.surface.foot_and_hessian(&p);
+            self.take(&p, &foot, 0.0);
+            let line = self.tool.axis * (height[1] - height[0]) + radial * (radius[1] - radius[0]);
+            let around = tangent * rho;
+            let n = foot.normal * self.side;
+            let gradient = Vector2::new(n.dot(&line), n.dot(&around));
+            let mixed = n.dot(&tangent) * (radius[1] - radius[0]);
+            let turned = -n.dot(&radial) * rho;
+            let bend =
+                reduced(&hessian, &line, &around) * self.side + Matrix2::new(0.0, mixed, mixed, turned);
+            let step = descent(&bend, &gradient, 1.0);
+            let next = Vector2::new((q.x + step.x).clamp(0.0, 1.0), q.y + step.y.clamp(-0.5, 0.5));
+            if (next - q).norm() <= ANGLE_RESOLUTION {
+                return;
+            }
+            q = next;
+        }
+    }
+}
+
+/// A quadratic form on two directions.
+fn reduced(hessian: &Matrix3<f64>, a: &Vec3, b: &Vec3) -> Matrix2<f64> {
+    let (ha, hb) = (hessian * a, hessian * b);
+    let ab = a.dot(&hb);
+    Matrix2::new(a.dot(&ha), ab, ab, b.dot(&hb))
+}
+
+/// Newton step towards a minimum: negative and zero curvatures are replaced so that it always descends.
+fn descent(bend: &Matrix2<f64>, gradient: &Vector2<f64>, reach: f64) -> Vector2<f64> {
+    let scale = bend.amax().max(gradient.norm() / reach);
+    if scale <= 0.0 {
+        return Vector2::zeros();
+    }
+    let eigen = bend.symmetric_eigen();
+    let mut step = Vector2::zeros();
+    for i in 0..2 {
+        let direction: Vector2<f64> = eigen.eigenvectors.column(i).into();
+        let curvature = eigen.eigenvalues[i].abs().max(1e-9 * scale);
+        let length = -gradient.dot(&direction) / curvature;
+        step += direction * length.clamp(-reach, reach);
+    }
+    step
+}

@@ -1,0 +1,89 @@
+//! The cutter as a convex body of revolution with a fixed axis, and the pieces of its boundary where contact happens.
+
+use apt_geometry::{
+    Vec3,
+    cutter::{Cutter, Profile},
+    surface::perpendicular,
+};
+
+/// A piece of the tool's boundary, for surfaces without closed form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Piece {
+    /// A circle about the axis carrying a ball: an edge (`ball` zero) or the corner torus. `fan` limits the polar
+    /// angle of the contact normal from straight down; outside it the neighbouring pieces are in contact.
+    Ring { radius: f64, height: f64, ball: f64, fan: Option<[f64; 2]> },
+    /// The flat bottom.
+    Disc { radius: f64 },
+    /// A conical or cylindrical patch between two circles.
+    Frustum { radius: [f64; 2], height: [f64; 2] },
+}
+
+/// The cutter with its axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tool {
+    /// The seven numbers.
+    pub cutter: Cutter,
+    /// Unit axis from the tip to the spindle.
+    pub axis: Vec3,
+    pub(crate) profile: Profile,
+    pub(crate) across: [Vec3; 2],
+    pub(crate) pieces: Vec<Piece>,
+}
+
+impl Tool {
+    /// A cutter with a fixed unit axis.
+    pub fn new(cutter: Cutter, axis: Vec3) -> Self {
+        let profile = cutter.profile();
+        let x = perpendicular(&axis);
+        Self { cutter, axis, profile, across: [x, axis.cross(&x)], pieces: pieces(&profile) }
+    }
+
+    /// Greatest distance of the body from its axis.
+    pub fn radius(&self) -> f64 {
+        self.profile.greatest_radius()
+    }
+
+    /// The point half way up the tool, from which sides are judged.
+    pub fn observer(&self, tip: &Vec3) -> Vec3 {
+        tip + self.axis * (0.5 * self.cutter.height)
+    }
+
+    /// Component of a vector along the axis, length of the rest and its unit direction.
+    pub(crate) fn split(&self, w: &Vec3) -> (f64, f64, Vec3) {
+        let along = w.dot(&self.axis);
+        let radial = w - self.axis * along;
+        let across = radial.norm();
+        (along, across, if across > 0.0 { radial / across } else { self.across[0] })
+    }
+}
+
+fn pieces(profile: &Profile) -> Vec<Piece> {
+    let mut pieces = Vec::with_capacity(6);
+    let edge = |radius, height| Piece::Ring { radius, height, ball: 0.0, fan: None };
+    let (lower, upper, top) = (profile.lower, profile.upper, profile.top);
+    if lower.height > 0.0 {
+        pieces.push(edge(0.0, 0.0));
+        pieces.push(edge(lower.radius, lower.height));
+        pieces.push(Piece::Frustum { radius: [0.0, lower.radius], height: [0.0, lower.height] });
+    } else {
+        pieces.push(edge(lower.radius, 0.0));
+        if lower.radius > 0.0 {
+            pieces.push(Piece::Disc { radius: lower.radius });
+        }
+    }
+    if profile.arc > 0.0 {
+        pieces.push(Piece::Ring {
+            radius: profile.center.radius,
+            height: profile.center.height,
+            ball: profile.arc,
+            fan: Some(profile.fan),
+        });
+        pieces.push(edge(upper.radius, upper.height));
+    }
+    if top.height > upper.height {
+        pieces.push(edge(top.radius, top.height));
+        pieces
+            .push(Piece::Frustum { radius: [upper.radius, top.radius], height: [upper.height, top.height] });
+    }
+    pieces
+}

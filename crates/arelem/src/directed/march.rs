@@ -1,0 +1,186 @@
+//! The general route (ARLM3, ADELTA, CENTR2): from vertex to vertex along the common tangent of part and drive surface,
+//! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
+
+mod finish;
+mod step;
+mod straight;
+mod tangency;
+
+use apt_geometry::{Vec3, motion::CheckSurface};
+
+use self::step::Stepper;
+use super::{Path, Prepared, stop::Watcher};
+use crate::{
+    clearance::{Contact, Shape},
+    error::{Iteration, MotionFailure},
+    section2::State,
+};
+
+/// A position on the path with what is known there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Vertex {
+    pub(super) tip: Vec3,
+    pub(super) part: Contact,
+    pub(super) drive: Contact,
+    pub(super) tangent: Vec3,
+}
+
+impl Vertex {
+    /// The contacts at a position; the tangent continues a given sense.
+    pub(super) fn at(prepared: &Prepared, tip: Vec3, sense: &Vec3) -> Self {
+        let part = prepared.part.gauge.contact(&prepared.tool, &tip);
+        let drive = prepared.drive.gauge.contact(&prepared.tool, &tip);
+        Self { tip, part, drive, tangent: tangent(&part, &drive, sense) }
+    }
+}
+
+/// Unit tangent of the path in the given sense; that sense itself where the surfaces are tangent.
+fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
+    match part.gradient.cross(&drive.gradient).try_normalize(TANGENT_SINE) {
+        Some(t) if t.dot(sense) >= 0.0 => t,
+        Some(t) => -t,
+        None => *sense,
+    }
+}
+
+/// Sine between part and drive normal below which the line of motion is kept.
+const TANGENT_SINE: f64 = 1e-7;
+/// How often a vector that ends at the check surface is shortened before giving up.
+const MAX_FINALS: u32 = 60;
+/// Share of the way to the stop for the vertex before it, when one vector cannot reach it.
+const SHARE_BEFORE_STOP: f64 = 0.55;
+
+/// The path of a directed motion.
+pub(super) fn run(
+    state: &State,
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    cancel: &dyn Fn() -> bool,
+) -> Result<Path, MotionFailure> {
+    if prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat {
+        return straight::run(prepared, checks, cancel);
+    }
+    let mut march = March {
+        state,
+        prepared,
+        checks,
+        stepper: Stepper::new(prepared, state.maximum_step),
+        watcher: Watcher::new(prepared, checks),
+        tangency: tangency::Watch::new(prepared, checks),
+        points: Vec::new(),
+        revolutions: 0,
+    };
+    march.run(cancel)
+}
+
+struct March<'a> {
+    state: &'a State,
+    prepared: &'a Prepared,
+    checks: &'a [CheckSurface],
+    stepper: Stepper<'a>,
+    watcher: Watcher<'a>,
+    tangency: tangency::Watch<'a>,
+    points: Vec<Vec3>,
+    revolutions: u32,
+}
+
+impl March<'_> {
+    fn run(&mut self, cancel: &dyn Fn() -> bool) -> Result<Path, MotionFailure> {
+        let mut here = Vertex::at(self.prepared, self.prepared.tip, &self.prepared.tangent);
+        let start = here;
+        let mut cap = self.state.maximum_step;
+        let mut finals = 0;
+        while self.points.len() < self.state.maximum_points as usize {
+            if cancel() {
+                return Err(MotionFailure::Cancelled);
+            }
+            let next = self.stepper.advance(&here, cap)?;
+            let event = match self.watcher.scan(&here.tip, &next.tip) {
+                Some(event) => Some(event),
+                None => self.tangency.scan(&here, &next)?,
+            };
+            let Some(event) = event else {
+                self.points.push(next.tip);
+                self.count_revolution(&start, &here, &next)?;
+                here = next;
+                cap = self.state.maximum_step;
+                continue;
+            };
+            let end = finish::locate(self.prepared, self.checks, &event)?;
+            if self.accept(&here, &end.tip) {
+                self.points.push(end.tip);
+                return Ok(self.path(&end));
+            }
+            finals += 1;
+            if finals > MAX_FINALS {
+                return Err(MotionFailure::IterationLimit {
+                    iteration: Iteration::FinalVector,
+                    limit: MAX_FINALS,
+                    tip: here.tip,
+                });
+            }
+            cap = SHARE_BEFORE_STOP * (end.tip - here.tip).norm().min((next.tip - here.tip).norm());
+            if cap <= 1e-9 * self.prepared.size {
+                // The stop is where the last vertex already is.
+                if self.points.pop().is_none() {
+                    self.points.clear();
+                }
+                self.points.push(end.tip);
+                return Ok(self.path(&end));
+            }
+        }
+        Err(MotionFailure::TooManyPoints {
+            limit: self.state.maximum_points,
+            remaining: self.watcher.nearest.0.min(self.tangency.nearest.abs()),
+            at: here.tip,
+        })
+    }
+
+    fn path(&mut self, end: &finish::End) -> Path {
+        Path { points: std::mem::take(&mut self.points), check: end.check, check_side: end.side }
+    }
+
+    /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.
+    fn accept(&self, here: &Vertex, end: &Vec3) -> bool {
+        let delta = end - here.tip;
+        if delta.dot(&here.tangent) < 0.0 && !self.points.is_empty() {
+            return false;
+        }
+        if delta.norm() > self.state.maximum_step * (1.0 + 1e-9) {
+            return false;
+        }
+        let end = Vertex::at(self.prepared, *end, &here.tangent);
+        self.stepper.proven(here, &end)
+    }
+
+    /// On a closed path: a whole turn without a single position means that there is none.
+    fn count_revolution(&mut self, start: &Vertex, from: &Vertex, to: &Vertex) -> Result<(), MotionFailure> {
+        let delta = to.tip - from.tip;
+        let length = delta.norm();
+        if self.points.len() < 3 || length <= 0.0 {
+            return Ok(());
+        }
+        let along = (start.tip - from.tip).dot(&delta) / length;
+        let aside = (start.tip - from.tip - delta * (along / length)).norm();
+        let band = self.prepared.part.band() + self.prepared.drive.band();
+        let passed =
+            along > 0.0 && along <= length && aside <= 4.0 * band && to.tangent.dot(&start.tangent) > 0.5;
+        if !passed {
+            return Ok(());
+        }
+        self.revolutions += 1;
+        let wanted = self.checks.iter().map(|c| c.occurrence).max().unwrap_or(1);
+        if self.watcher.met == 0 && self.tangency.met == 0 || self.revolutions > wanted {
+            return Err(self.never_met());
+        }
+        Ok(())
+    }
+
+    fn never_met(&self) -> MotionFailure {
+        if self.watcher.nearest.0.is_finite() {
+            let (nearest, at, check) = self.watcher.nearest;
+            return MotionFailure::NeverMet { check, relation: self.checks[check].relation, nearest, at };
+        }
+        MotionFailure::NotTangent { check: self.tangency.check, gap: self.tangency.nearest }
+    }
+}

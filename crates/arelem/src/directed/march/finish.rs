@@ -1,0 +1,42 @@
+//! The end of a motion: the position on part, drive and check surface together (CENTR from the last vertex).
+
+use apt_geometry::{Vec3, motion::CheckSurface};
+
+use crate::{
+    directed::{Prepared, is_tangent, stop::Event},
+    error::{Iteration, MotionFailure},
+    position::{self, Condition},
+};
+
+/// Where a motion ends.
+pub(in crate::directed) struct End {
+    pub(in crate::directed) tip: Vec3,
+    pub(in crate::directed) check: usize,
+    pub(in crate::directed) side: f64,
+}
+
+/// The exact position of an event found on a straight vector.
+pub(in crate::directed) fn locate(
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    event: &Event,
+) -> Result<End, MotionFailure> {
+    if is_tangent(checks[event.check].relation) {
+        return Ok(End { tip: event.tip, check: event.check, side: event.side });
+    }
+    let mut check = prepared.checks[event.check].clone();
+    check.set_side(event.side);
+    let conditions = [
+        Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
+        Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),
+        Condition::Clearance(&check.gauge, check.rest()),
+    ];
+    match position::solve(&prepared.tool, &conditions, &event.tip) {
+        Ok(solution) => Ok(End { tip: solution.tip, check: event.check, side: event.side }),
+        Err(unsolved) => Err(MotionFailure::IterationLimit {
+            iteration: Iteration::ThreeSurfaces,
+            limit: unsolved.iterations,
+            tip: unsolved.tip,
+        }),
+    }
+}

@@ -1,0 +1,266 @@
+//! One cut vector: as long as its proof allows (ADELTA, DELTA). Vertices lie at the limit opposite to the sag, so that
+//! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it.
+
+use apt_geometry::Vec3;
+
+use super::{Prepared, Vertex, tangent};
+use crate::{
+    clearance::{Contact, Shape},
+    directed::proof::{self, Extremes},
+    error::{Iteration, MotionFailure},
+    position::{self, Condition},
+    role::{Bend, GUARD, Working},
+};
+
+/// Bound of the trials for one vector.
+const MAX_TRIALS: u32 = 60;
+/// Trials that try to lengthen a vector already proven.
+const LENGTHENINGS: u32 = 4;
+/// A vector whose length could grow by less than this share is long enough.
+const LONG_ENOUGH: f64 = 6e-4;
+/// Share of the predicted length that is tried.
+const AIM: f64 = 0.9999;
+/// Greatest growth of the length from one trial to the next.
+const GREATEST_GROWTH: f64 = 4.0;
+/// Cosine between the directions at both ends below which the vector is shortened (60°).
+const LEAST_TURN_COSINE: f64 = 0.5;
+/// A surface whose sag over the longest vector is below this share of its band counts as straight.
+const STRAIGHT_SHARE: f64 = 0.02;
+/// Length, relative to the size of the coordinates, over which curvature is first estimated.
+const PROBE: f64 = 1e-4;
+
+/// Computes vectors one after the other, remembering curvature.
+pub(super) struct Stepper<'a> {
+    prepared: &'a Prepared,
+    maximum: f64,
+    /// Second derivative of each clearance along the path: part, drive.
+    curvature: Option<[f64; 2]>,
+    /// How much longer than predicted the last vector came out.
+    correction: f64,
+}
+
+struct Trial {
+    vertex: Vertex,
+    length: f64,
+    curvature: [f64; 2],
+    /// Factor by which the length could grow, below one if it must shrink.
+    growth: f64,
+    proven: bool,
+    culprit: usize,
+    worst: f64,
+}
+
+impl<'a> Stepper<'a> {
+    pub(super) fn new(prepared: &'a Prepared, maximum: f64) -> Self {
+        Self { prepared, maximum, curvature: None, correction: 1.0 }
+    }
+
+    fn roles(&self) -> [&Working; 2] {
+        [&self.prepared.part, &self.prepared.drive]
+    }
+
+    /// The next vertex, at most `cap` away.
+    pub(super) fn advance(&mut self, here: &Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+        let cap = cap.min(self.maximum);
+        let curvature = match self.curvature {
+            Some(known) => known,
+            None => self.probe(here),
+        };
+        let mut bends = self.bends(&curvature);
+        let mut length = (self.predict(here, &curvature, &bends) * self.correction).min(cap);
+        let mut best: Option<Trial> = None;
+        let (mut shortest_bad, mut lengthenings) = (f64::INFINITY, 0);
+        let mut culprit = (self.prepared.part.name, 0.0);
+        let least = 1e-10 * self.prepared.size;
+        for _ in 0..MAX_TRIALS {
+            if length <= least {
+                break;
+            }
+            let Some(trial) = self.attempt(here, length, cap, &bends) else {
+                shortest_bad = shortest_bad.min(length);
+                length *= 0.5;
+                continue;
+            };
+            if trial.proven {
+                let at_cap = trial.length >= cap * (1.0 - 1e-6);
+                let enough = trial.growth <= 1.0 + LONG_ENOUGH || at_cap || lengthenings >= LENGTHENINGS;
+                let growth = trial.growth;
+                let longer = best.as_ref().is_none_or(|b| trial.length > b.length);
+                if longer {
+                    best = Some(trial);
+                }
+                let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(cap);
+                if enough || next >= shortest_bad * (1.0 - LONG_ENOUGH) || next <= length * (1.0 + 1e-9) {
+                    break;
+                }
+                lengthenings += 1;
+                length = next;
+            } else {
+                shortest_bad = shortest_bad.min(length);
+                culprit = (self.roles()[trial.culprit].name, trial.worst);
+                if best.is_some() {
+                    break;
+                }
+                bends = self.bends(&trial.curvature);
+                length *= (trial.growth * AIM).clamp(0.3, 0.999);
+            }
+        }
+        let Some(best) = best else {
+            return Err(if shortest_bad.is_finite() && culprit.1 != 0.0 {
+                MotionFailure::NoAdmissibleVector { role: culprit.0, clearance: culprit.1, tip: here.tip }
+            } else {
+                MotionFailure::IterationLimit {
+                    iteration: Iteration::StepLength,
+                    limit: MAX_TRIALS,
+                    tip: here.tip,
+                }
+            });
+        };
+        self.curvature = Some(best.curvature);
+        Ok(best.vertex)
+    }
+
+    /// True if the straight move between two positions keeps both bands.
+    pub(super) fn proven(&self, from: &Vertex, to: &Vertex) -> bool {
+        self.extremes(from, to).iter().all(|e| e.proven)
+    }
+
+    fn extremes(&self, from: &Vertex, to: &Vertex) -> [Extremes; 2] {
+        let Prepared { tool, part, drive, size, .. } = self.prepared;
+        [
+            proof::extremes(tool, part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
+            proof::extremes(tool, drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
+        ]
+    }
+
+    /// Curvature from the change of the slopes over a short way.
+    fn probe(&self, here: &Vertex) -> [f64; 2] {
+        let reach = PROBE * self.prepared.size;
+        let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent);
+        let behind = Vertex::at(self.prepared, here.tip - here.tangent * reach, &here.tangent);
+        let rate = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&here.tangent) / (2.0 * reach);
+        [rate(&behind.part, &ahead.part), rate(&behind.drive, &ahead.drive)]
+    }
+
+    fn bends(&self, curvature: &[f64; 2]) -> [Bend; 2] {
+        let mut bends = [Bend::Straight; 2];
+        for ((bend, role), k) in bends.iter_mut().zip(self.roles()).zip(curvature) {
+            let sag = k.abs() * self.maximum * self.maximum / 8.0;
+            *bend = match role.shape {
+                _ if sag <= STRAIGHT_SHARE * role.band() => Bend::Straight,
+                Shape::Flat => Bend::Straight,
+                Shape::Convex => Bend::Convex,
+                Shape::Concave => Bend::Concave,
+                Shape::General if *k > 0.0 => Bend::Convex,
+                Shape::General => Bend::Concave,
+            };
+        }
+        bends
+    }
+
+    /// Length at which a parabola of the known curvature fills the bands.
+    fn predict(&self, here: &Vertex, curvature: &[f64; 2], bends: &[Bend; 2]) -> f64 {
+        let mut length = self.maximum;
+        let clearances = [here.part.clearance, here.drive.clearance];
+        for (((role, k), bend), clearance) in self.roles().iter().zip(curvature).zip(bends).zip(clearances) {
+            let (at_start, at_end) = match bend {
+                Bend::Straight => continue,
+                Bend::Convex => (clearance + role.inside, role.vertex(*bend) + role.inside),
+                Bend::Concave => (role.outside - clearance, role.outside - role.vertex(*bend)),
+            };
+            let reach = |room: f64| (2.0 * room.max(0.0) / k.abs().max(f64::MIN_POSITIVE)).sqrt();
+            length = length.min(reach(at_start) + reach(at_end));
+        }
+        length.max(1e-9 * self.prepared.size)
+    }
+
+    /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
+    fn attempt(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2]) -> Option<Trial> {
+        let Prepared { tool, part, drive, .. } = self.prepared;
+        let conditions = [
+            Condition::Clearance(&part.gauge, part.vertex(bends[0])),
+            Condition::Clearance(&drive.gauge, drive.vertex(bends[1])),
+        ];
+        let tip = position::solve(tool, &conditions, &(here.tip + here.tangent * length)).ok()?.tip;
+        let chord = tip - here.tip;
+        let reached = chord.norm();
+        if reached > cap * (1.0 + 1e-9) {
+            // The correction made it longer than allowed: try again a little shorter.
+            return self.shorter(here, length * (cap / reached) * (1.0 - 1e-6), cap, bends, length);
+        }
+        let vertex = Vertex::at(self.prepared, tip, &here.tangent);
+        self.judge(here, vertex, chord, reached)
+    }
+
+    fn shorter(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2], before: f64) -> Option<Trial> {
+        if length < 0.5 * before { None } else { self.attempt(here, length, cap, bends) }
+    }
+
+    fn judge(&self, here: &Vertex, vertex: Vertex, chord: Vec3, reached: f64) -> Option<Trial> {
+        let forward = chord.dot(&here.tangent) > 0.5 * reached;
+        if !forward || reached <= 0.0 || vertex.tangent.dot(&here.tangent) < LEAST_TURN_COSINE {
+            return None;
+        }
+        let vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
+        let direction = chord / reached;
+        let turn = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&direction) / reached;
+        let curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
+        let extremes = self.extremes(here, &vertex);
+        let mut trial = Trial {
+            vertex,
+            length: reached,
+            curvature,
+            growth: GREATEST_GROWTH,
+            proven: extremes.iter().all(|e| e.proven),
+            culprit: 0,
+            worst: 0.0,
+        };
+        let ends =
+            [(here.part.clearance, vertex.part.clearance), (here.drive.clearance, vertex.drive.clearance)];
+        for (k, role) in self.roles().iter().enumerate() {
+            let growth = growth(role, &extremes[k], ends[k]);
+            if growth < trial.growth {
+                let deep = extremes[k].least < -role.inside;
+                trial.worst = if deep { extremes[k].least } else { extremes[k].greatest };
+                (trial.growth, trial.culprit) = (growth, k);
+            }
+        }
+        Some(trial)
+    }
+}
+
+/// Factor by which the length may grow until the sag fills the band, taking the sag as quadratic in the length.
+fn growth(role: &Working, extremes: &Extremes, (start, end): (f64, f64)) -> f64 {
+    if role.shape == Shape::Flat {
+        return GREATEST_GROWTH;
+    }
+    let guard = 0.25 * GUARD * role.band();
+    let mut factor: f64 = GREATEST_GROWTH;
+    let mut consider = |depth: f64, room_start: f64, room_end: f64, left: f64| {
+        // Parabola through both ends with its vertex `depth` beyond the nearer end.
+        let sag = depth.max(0.0);
+        if sag <= 1e-3 * role.band() && left > 0.0 {
+            return;
+        }
+        let used = (room_start - left).max(0.0).sqrt() + (room_end - left).max(0.0).sqrt();
+        let available = room_start.max(0.0).sqrt() + room_end.max(0.0).sqrt();
+        if used > 0.0 {
+            factor = factor.min(available / used);
+        }
+    };
+    let low_left = extremes.least + role.inside - guard;
+    consider(
+        start.min(end) - extremes.least,
+        start + role.inside - guard,
+        end + role.inside - guard,
+        low_left,
+    );
+    let high_left = role.outside - guard - extremes.greatest;
+    consider(
+        extremes.greatest - start.max(end),
+        role.outside - guard - start,
+        role.outside - guard - end,
+        high_left,
+    );
+    factor
+}

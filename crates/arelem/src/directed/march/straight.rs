@@ -1,0 +1,52 @@
+//! Part and drive surface both planes: one straight vector of any length.
+
+use apt_geometry::motion::CheckSurface;
+
+use super::{Vertex, finish, tangency};
+use crate::{
+    directed::{Path, Prepared, is_tangent, stop::Watcher},
+    error::MotionFailure,
+};
+
+/// How far ahead a stop is looked for, relative to the size of the coordinates and surfaces.
+const REACH: f64 = 1e5;
+
+pub(super) fn run(
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    cancel: &dyn Fn() -> bool,
+) -> Result<Path, MotionFailure> {
+    let here = Vertex::at(prepared, prepared.tip, &prepared.tangent);
+    let mut watcher = Watcher::new(prepared, checks);
+    let mut tangency = tangency::Watch::new(prepared, checks);
+    let mut from = here;
+    let mut length = prepared.size;
+    let mut travelled = 0.0;
+    // Stretches of growing length keep the steps of the search in proportion.
+    while travelled < REACH * prepared.size {
+        if cancel() {
+            return Err(MotionFailure::Cancelled);
+        }
+        let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent);
+        let event = match watcher.scan(&from.tip, &to.tip) {
+            Some(event) => Some(event),
+            None => tangency.scan(&from, &to)?,
+        };
+        if let Some(event) = event {
+            let end = finish::locate(prepared, checks, &event)?;
+            return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side });
+        }
+        travelled += length;
+        length *= 2.0;
+        from = to;
+    }
+    let (nearest, at, check) = watcher.nearest;
+    if checks.iter().all(|c| is_tangent(c.relation)) {
+        return Err(MotionFailure::NotTangent { check: tangency.check, gap: tangency.nearest });
+    }
+    Err(if watcher.met > 0 {
+        MotionFailure::NoneAhead { check, relation: checks[check].relation, found: watcher.met }
+    } else {
+        MotionFailure::NeverMet { check, relation: checks[check].relation, nearest, at }
+    })
+}

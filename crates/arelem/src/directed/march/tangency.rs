@@ -1,0 +1,127 @@
+//! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
+
+use apt_geometry::{Vec3, motion::CheckSurface};
+
+use super::Vertex;
+use crate::{
+    clearance::Contact,
+    directed::{Prepared, is_tangent, stop::Event},
+    error::{Iteration, MotionFailure},
+    position::{self, Condition},
+    role::Working,
+};
+
+/// Bound of the bisection along one cut vector.
+const MAX_ITERATIONS: u32 = 80;
+
+/// Watches the check surfaces that stop at a tangency.
+pub(super) struct Watch<'a> {
+    prepared: &'a Prepared,
+    checks: &'a [CheckSurface],
+    counts: Vec<u32>,
+    /// Tangencies met so far.
+    pub(super) met: usize,
+    /// Gap at the nearest parallel position that was not a tangency, and of which check surface.
+    pub(super) nearest: f64,
+    pub(super) check: usize,
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
+        Self { prepared, checks, counts: vec![0; checks.len()], met: 0, nearest: f64::INFINITY, check: 0 }
+    }
+
+    /// The first tangency on a cut vector.
+    pub(super) fn scan(&mut self, from: &Vertex, to: &Vertex) -> Result<Option<Event>, MotionFailure> {
+        let mut first: Option<Event> = None;
+        for index in 0..self.checks.len() {
+            if !is_tangent(self.checks[index].relation) {
+                continue;
+            }
+            let (before, after) = (self.slope(index, from), self.slope(index, to));
+            if before == 0.0 || (before > 0.0) == (after > 0.0) {
+                continue;
+            }
+            let vertex = self.parallel(index, from, to, before > 0.0)?;
+            let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip);
+            let working = &self.prepared.checks[index];
+            let band = working.band() + self.prepared.drive.band() + self.prepared.part.band();
+            if contact.clearance.abs() > band + 1e-9 * self.prepared.size {
+                if contact.clearance.abs() < self.nearest.abs() {
+                    (self.nearest, self.check) = (contact.clearance, index);
+                }
+                continue;
+            }
+            self.counts[index] += 1;
+            self.met += 1;
+            if self.counts[index] < self.checks[index].occurrence.max(1) {
+                continue;
+            }
+            let x = (vertex.tip - from.tip).norm();
+            if first.is_none_or(|best| x < best.x) {
+                first = Some(Event { check: index, tip: vertex.tip, x, side });
+            }
+        }
+        if let Some(event) = first {
+            // The vector may be tried again shorter: the count starts afresh then.
+            self.counts[event.check] -= 1;
+            self.met -= 1;
+        }
+        Ok(first)
+    }
+
+    /// How fast the tool moves away from the check surface.
+    fn slope(&self, index: usize, vertex: &Vertex) -> f64 {
+        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip);
+        (contact.gradient * side).dot(&vertex.tangent)
+    }
+
+    /// The position on both surfaces where the path is parallel to the check surface.
+    fn parallel(
+        &self,
+        index: usize,
+        from: &Vertex,
+        to: &Vertex,
+        positive: bool,
+    ) -> Result<Vertex, MotionFailure> {
+        let Prepared { tool, part, drive, .. } = self.prepared;
+        let conditions = [
+            Condition::Clearance(&part.gauge, part.rest()),
+            Condition::Clearance(&drive.gauge, drive.rest()),
+        ];
+        let at = |share: f64| -> Result<Vertex, MotionFailure> {
+            let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;
+            let solved = position::solve(tool, &conditions, &on_chord).map_err(|unsolved| {
+                MotionFailure::IterationLimit {
+                    iteration: Iteration::TwoSurfaces,
+                    limit: unsolved.iterations,
+                    tip: unsolved.tip,
+                }
+            })?;
+            Ok(Vertex::at(self.prepared, solved.tip, &from.tangent))
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..MAX_ITERATIONS {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if (self.slope(index, &at(middle)?) > 0.0) == positive {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        at(0.5 * (low + high))
+    }
+}
+
+/// Contact with the check surface on the side where the tool touches it more nearly.
+fn nearer(prepared: &Prepared, check: &Working, tip: &Vec3) -> (Contact, f64) {
+    let mut gauge = check.gauge.clone();
+    gauge.side = 1.0;
+    let above = gauge.contact(&prepared.tool, tip);
+    gauge.side = -1.0;
+    let below = gauge.contact(&prepared.tool, tip);
+    if above.clearance.abs() <= below.clearance.abs() { (above, 1.0) } else { (below, -1.0) }
+}

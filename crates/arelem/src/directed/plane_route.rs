@@ -1,0 +1,389 @@
+//! The exact two-dimensional route (ARLM2): drive and check surface parallel to a vertical tool, the part surface a
+//! plane. The path is the line or circle through the present position, so that a starting error inside the band is
+//! kept; stops are intersections in closed form; circles are cut into the fewest chords of the tolerance ring.
+
+use apt_geometry::{
+    Vec3,
+    motion::{CheckSurface, Relation},
+    surface::Surface,
+};
+
+use super::{Path, Prepared};
+use crate::{
+    error::MotionFailure,
+    plane_curve::{Curve, flat},
+    role::GUARD,
+    section2::State,
+};
+
+/// |cos| of the tool axis to z above which the tool is vertical.
+const VERTICAL: f64 = 0.99995;
+/// |cos| between part plane normal and tool axis above which the route applies.
+const LEAST_PART_COSINE: f64 = 0.2;
+/// Share of the band kept free of the limits when the path is moved to reach a stop.
+const LIMIT_GUARD: f64 = 1e-3;
+/// Angle, radians, below which a stop on a circle is the start itself.
+const START_ANGLE: f64 = 1e-9;
+
+/// The path of the tool end, normal to the tool axis.
+struct Track {
+    curve: TrackCurve,
+    from: Vec3,
+    axis: Vec3,
+}
+
+enum TrackCurve {
+    Line {
+        direction: Vec3,
+    },
+    /// Radius and unit vectors at the start: outward and in the sense of motion.
+    Circle {
+        center: Vec3,
+        radius: f64,
+        outward: Vec3,
+        forward: Vec3,
+    },
+}
+
+impl Track {
+    /// Position at a parameter: length on a line, angle on a circle.
+    fn at(&self, x: f64) -> Vec3 {
+        match &self.curve {
+            TrackCurve::Line { direction } => self.from + direction * x,
+            TrackCurve::Circle { radius, .. } => self.on_circle(x, *radius),
+        }
+    }
+
+    fn on_circle(&self, angle: f64, radius: f64) -> Vec3 {
+        match &self.curve {
+            TrackCurve::Line { .. } => self.from,
+            TrackCurve::Circle { center, outward, forward, .. } => {
+                let (sin, cos) = angle.sin_cos();
+                let height = self.axis * (self.from - center).dot(&self.axis);
+                center + height + (outward * cos + forward * sin) * radius
+            }
+        }
+    }
+
+    fn closed(&self) -> bool {
+        matches!(self.curve, TrackCurve::Circle { .. })
+    }
+
+    /// Parameters at which the path is at a signed distance from a curve; on a circle within one turn.
+    fn crossings(&self, curve: &Curve, level: f64) -> Vec<f64> {
+        match &self.curve {
+            TrackCurve::Line { direction } => curve.line_crossings(&self.from, direction, level, &self.axis),
+            TrackCurve::Circle { center, radius, .. } => {
+                match curve.circle_crossings(center, *radius, level, &self.axis) {
+                    Some((towards, half)) => vec![self.angle(&towards, half), self.angle(&towards, -half)],
+                    None => Vec::new(),
+                }
+            }
+        }
+    }
+
+    /// Angle of travel to a direction turned by another angle, in [0, 2π).
+    fn angle(&self, towards: &Vec3, turned: f64) -> f64 {
+        let TrackCurve::Circle { outward, forward, .. } = &self.curve else { return 0.0 };
+        let angle =
+            (towards.dot(forward).atan2(towards.dot(outward)) + turned).rem_euclid(std::f64::consts::TAU);
+        if angle > std::f64::consts::TAU - START_ANGLE { 0.0 } else { angle }
+    }
+}
+
+/// A stop: parameter and signed level of the check surface.
+#[derive(Clone, Copy)]
+struct Candidate {
+    x: f64,
+    level: f64,
+}
+
+/// The path, or `None` if the route does not apply.
+pub(super) fn run(
+    state: &State,
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    cancel: &dyn Fn() -> bool,
+) -> Result<Option<Path>, MotionFailure> {
+    let [check] = checks else { return Ok(None) };
+    let Some((drive, stop)) = eligible(state, prepared, check) else { return Ok(None) };
+    if cancel() {
+        return Err(MotionFailure::Cancelled);
+    }
+    let (below, above) = reach_of_band(prepared);
+    let mut failure = None;
+    // The path through the present position; if that meets nothing, the paths at the limits of the band.
+    for shift in [0.0, -below * (1.0 - LIMIT_GUARD), above * (1.0 - LIMIT_GUARD)] {
+        let track = track(prepared, &drive, shift);
+        match choose(prepared, check, &track, &stop) {
+            Ok(found) => {
+                let points = cut(state, prepared, &track, found.x)?;
+                let check_side = side(prepared, &stop, &track, found);
+                return Ok(Some(Path { points, check: 0, check_side }));
+            }
+            Err(error) => failure = failure.or(Some(error)),
+        }
+    }
+    Err(failure.unwrap_or(MotionFailure::NeverMet {
+        check: 0,
+        relation: check.relation,
+        nearest: f64::INFINITY,
+        at: prepared.tip,
+    }))
+}
+
+fn eligible(state: &State, prepared: &Prepared, check: &CheckSurface) -> Option<(Curve, Curve)> {
+    let axis = &prepared.tool.axis;
+    let Surface::Plane(part) = &prepared.part.gauge.surface else { return None };
+    let applies = !state.force_iteration
+        && axis.z.abs() >= VERTICAL
+        && prepared.tool.cutter.beta == 0.0
+        && part.normal.dot(axis).abs() > LEAST_PART_COSINE
+        && prepared.checks[0].gauge.thickness == 0.0
+        && check.relation != Relation::TangentToPart;
+    if !applies {
+        return None;
+    }
+    let drive = Curve::of(&prepared.drive.gauge.surface, axis)?;
+    let stop = Curve::of(&prepared.checks[0].gauge.surface, axis)?;
+    Some((drive, stop))
+}
+
+/// How far the path may move against and along the drive surface's gradient and stay in the band.
+fn reach_of_band(prepared: &Prepared) -> (f64, f64) {
+    let clearance = prepared.drive.gauge.contact(&prepared.tool, &prepared.tip).clearance;
+    ((clearance + prepared.drive.inside).max(0.0), (prepared.drive.outside - clearance).max(0.0))
+}
+
+/// The path through the present position, moved by `shift` along the drive surface's gradient.
+fn track(prepared: &Prepared, drive: &Curve, shift: f64) -> Track {
+    let axis = prepared.tool.axis;
+    let gradient = prepared.drive.gauge.contact(&prepared.tool, &prepared.tip).gradient;
+    let from = prepared.tip + gradient * shift;
+    let ahead = flat(&prepared.tangent, &axis);
+    let curve = match drive {
+        Curve::Line { normal, .. } => {
+            let direction = (ahead - normal * ahead.dot(normal)).try_normalize(0.0).unwrap_or(ahead);
+            TrackCurve::Line { direction }
+        }
+        Curve::Circle { center, .. } => {
+            let w = flat(&(from - center), &axis);
+            let radius = w.norm();
+            let outward = if radius > 0.0 { w / radius } else { gradient };
+            let around = axis.cross(&outward);
+            let forward = if around.dot(&ahead) < 0.0 { -around } else { around };
+            TrackCurve::Circle { center: *center, radius, outward, forward }
+        }
+    };
+    Track { curve, from, axis }
+}
+
+/// The stop asked for.
+fn choose(
+    prepared: &Prepared,
+    check: &CheckSurface,
+    track: &Track,
+    stop: &Curve,
+) -> Result<Candidate, MotionFailure> {
+    match check.relation {
+        Relation::To | Relation::Past | Relation::On => crossing(prepared, check, track, stop),
+        Relation::TangentToDrive | Relation::TangentToPart => tangency(prepared, check, track, stop),
+    }
+}
+
+fn crossing(
+    prepared: &Prepared,
+    check: &CheckSurface,
+    track: &Track,
+    stop: &Curve,
+) -> Result<Candidate, MotionFailure> {
+    let on = check.relation == Relation::On;
+    let reach = if on { 0.0 } else { prepared.tool.radius() };
+    let levels: &[f64] = if reach == 0.0 { &[0.0] } else { &[reach, -reach] };
+    let mut all: Vec<Candidate> = Vec::new();
+    for &level in levels {
+        all.extend(track.crossings(stop, level).into_iter().map(|x| Candidate { x, level }));
+    }
+    all.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let value = |x: f64| {
+        let distance = stop.signed_distance(&track.at(x), &track.axis);
+        if on { distance } else { distance.abs() - reach }
+    };
+    let start = value(0.0);
+    if all.is_empty() {
+        return Err(MotionFailure::NeverMet {
+            check: 0,
+            relation: check.relation,
+            nearest: start.abs(),
+            at: track.from,
+        });
+    }
+    let found = all.len();
+    let band = prepared.checks[0].inside.max(prepared.checks[0].outside) + 1e-9 * prepared.size;
+    let ahead = turns(track, &all, check.occurrence);
+    let mut remaining = check.occurrence.max(1);
+    let mut clear = start > band;
+    let mut leaving = start.abs() <= band;
+    let mut previous = 0.0;
+    for candidate in ahead {
+        // Already there at the start: only the next position counts.
+        if leaving && (1..=3).all(|k| value(candidate.x * f64::from(k) / 4.0).abs() <= band) {
+            previous = candidate.x;
+            continue;
+        }
+        if leaving {
+            leaving = false;
+            clear = value(0.5 * (previous + candidate.x)) > 0.0;
+        }
+        let label = if on {
+            Relation::On
+        } else if clear {
+            Relation::To
+        } else {
+            Relation::Past
+        };
+        clear = !clear;
+        if label == check.relation {
+            remaining -= 1;
+            if remaining == 0 {
+                return Ok(candidate);
+            }
+        }
+    }
+    Err(MotionFailure::NoneAhead { check: 0, relation: check.relation, found })
+}
+
+/// The candidates ahead, repeated over as many turns as the count can need.
+fn turns(track: &Track, all: &[Candidate], occurrence: u32) -> Vec<Candidate> {
+    if !track.closed() {
+        return all.iter().copied().filter(|c| c.x >= 0.0).collect();
+    }
+    let count = occurrence.clamp(1, MAXIMUM_TURNS) + 1;
+    (0..count)
+        .flat_map(|turn| {
+            let offset = f64::from(turn) * std::f64::consts::TAU;
+            all.iter().map(move |c| Candidate { x: c.x + offset, level: c.level })
+        })
+        .collect()
+}
+
+/// Turns about a circle that a count of intersections can ask for.
+const MAXIMUM_TURNS: u32 = 1000;
+
+fn tangency(
+    prepared: &Prepared,
+    check: &CheckSurface,
+    track: &Track,
+    stop: &Curve,
+) -> Result<Candidate, MotionFailure> {
+    let places: Vec<f64> = match (&track.curve, stop) {
+        (TrackCurve::Line { .. }, Curve::Line { .. }) => {
+            return Err(MotionFailure::TangentLines { check: 0 });
+        }
+        (TrackCurve::Line { direction }, Curve::Circle { center, .. }) => {
+            vec![(center - track.from).dot(direction)]
+        }
+        (TrackCurve::Circle { center, .. }, _) => match stop.parallel_directions(center, &track.axis) {
+            Some(towards) => vec![track.angle(&towards, 0.0), track.angle(&towards, std::f64::consts::PI)],
+            None => Vec::new(),
+        },
+    };
+    let working = &prepared.checks[0];
+    let reach = if working.gauge.on { 0.0 } else { prepared.tool.radius() };
+    let band = working.band() + prepared.drive.band() + 1e-9 * prepared.size;
+    let mut nearest = f64::INFINITY;
+    let mut tangent: Vec<Candidate> = Vec::new();
+    for x in places {
+        let distance = stop.signed_distance(&track.at(x), &track.axis);
+        let gap = distance.abs() - reach;
+        if gap.abs() <= band {
+            tangent.push(Candidate { x, level: distance.signum() * reach });
+        } else if gap.abs() < nearest.abs() {
+            nearest = gap;
+        }
+    }
+    if tangent.is_empty() {
+        return Err(MotionFailure::NotTangent { check: 0, gap: nearest });
+    }
+    let found = tangent.len();
+    tangent.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let start = if track.closed() { START_ANGLE } else { START_ANGLE * prepared.size };
+    let wanted = check.occurrence.max(1) as usize - 1;
+    turns(track, &tangent, check.occurrence)
+        .into_iter()
+        .filter(|c| c.x > start)
+        .nth(wanted)
+        .ok_or(MotionFailure::NoneAhead { check: 0, relation: check.relation, found })
+}
+
+/// Side of the check surface on which the tool stands at the end; for ON the side it came from.
+fn side(prepared: &Prepared, stop: &Curve, track: &Track, found: Candidate) -> f64 {
+    let signed = if found.level == 0.0 {
+        let start = stop.signed_distance(&prepared.tip, &track.axis);
+        if start == 0.0 { 1.0 } else { start }
+    } else {
+        found.level
+    };
+    signed.signum()
+}
+
+/// The vertices up to the stop, on the part plane's parallel through the present position.
+fn cut(state: &State, prepared: &Prepared, track: &Track, end: f64) -> Result<Vec<Vec3>, MotionFailure> {
+    let mut points = match &track.curve {
+        TrackCurve::Line { .. } => vec![track.at(end)],
+        TrackCurve::Circle { center, radius, .. } => chords(state, prepared, track, (center, *radius), end)?,
+    };
+    let Surface::Plane(part) = &prepared.part.gauge.surface else { return Ok(points) };
+    let cosine = part.normal.dot(&track.axis);
+    for point in &mut points {
+        *point -= track.axis * (part.normal.dot(&(*point - prepared.tip)) / cosine);
+    }
+    Ok(points)
+}
+
+/// The fewest chords of the tolerance ring from the start to an angle of travel, spread evenly.
+fn chords(
+    state: &State,
+    prepared: &Prepared,
+    track: &Track,
+    (center, radius): (&Vec3, f64),
+    angle: f64,
+) -> Result<Vec<Vec3>, MotionFailure> {
+    let start = flat(&(prepared.tip - center), &track.axis).norm();
+    let (below, above) = reach_of_band(prepared);
+    let guard = 0.5 * GUARD * prepared.drive.band();
+    let (inner, outer) = if prepared.drive.gauge.side > 0.0 {
+        (start - below + guard, start + above - guard)
+    } else {
+        (start - above + guard, start + below - guard)
+    };
+    let inner = inner.clamp(0.0, start.min(radius));
+    let outer = outer.max(start).max(radius);
+    let half = |r: f64| (inner / r).clamp(0.0, 1.0).acos();
+    let longest = (0.5 * state.maximum_step / outer).clamp(0.0, 1.0).asin().max(f64::MIN_POSITIVE);
+    let (first, last, step) = (half(start), half(radius), half(outer).min(longest));
+    if step <= 0.0 {
+        return Err(MotionFailure::NoAdmissibleVector {
+            role: prepared.drive.name,
+            clearance: above.min(below),
+            tip: prepared.tip,
+        });
+    }
+    let inside = ((angle - first - last) / (2.0 * step)).ceil().max(0.0);
+    if inside + 1.0 > f64::from(state.maximum_points) {
+        return Err(MotionFailure::TooManyPoints {
+            limit: state.maximum_points,
+            remaining: angle * radius,
+            at: prepared.tip,
+        });
+    }
+    let count = inside as u32;
+    let share = if count == 0 { 1.0 } else { angle / (first + last + 2.0 * step * inside) };
+    let mut points = Vec::with_capacity(count as usize + 1);
+    for k in 0..count {
+        let travelled = share * (first + step * f64::from(2 * k + 1));
+        points.push(track.on_circle(travelled, outer));
+    }
+    points.push(track.at(angle));
+    Ok(points)
+}

@@ -1,0 +1,177 @@
+//! Before a directed motion (AREPRE): start check, forward direction, turn, line of motion and its sense.
+
+use apt_geometry::{
+    Vec3,
+    motion::{CheckSurface, DriveSide, NamedSurface, PartSide, Relation, ToolAxis, Turn},
+};
+
+use crate::{
+    clearance::{Contact, Tool},
+    error::{ContactPoints, MotionFailure, MotionWarning, RoleName},
+    position,
+    role::Working,
+    section2::{State, required_position},
+};
+
+/// A motion within this angle of a right angle to the direction asked for has no sense (2°).
+const UNDETERMINED: f64 = 0.0349;
+/// Sine between part and drive normal below which there is no line of motion.
+const TANGENT_SINE: f64 = 1e-6;
+/// |cos| to the tool axis above which the last move says nothing about the forward direction.
+const ALONG_AXIS_COSINE: f64 = 0.997;
+/// Sine below which the side of the drive surface is not judged.
+const SIDE_SINE: f64 = 0.05;
+
+/// A directed motion ready to go.
+#[derive(Debug, Clone)]
+pub(crate) struct Prepared {
+    pub(crate) tool: Tool,
+    pub(crate) tip: Vec3,
+    pub(crate) part: Working,
+    pub(crate) drive: Working,
+    /// The check surfaces; their sides are settled when they are met.
+    pub(crate) checks: Vec<Working>,
+    /// Unit tangent of the path in the sense of motion.
+    pub(crate) tangent: Vec3,
+    /// Size of the coordinates, for rounding.
+    pub(crate) size: f64,
+}
+
+pub(super) fn prepare(
+    state: &State,
+    turn: Turn,
+    drive: &NamedSurface,
+    checks: &[CheckSurface],
+    warnings: &mut Vec<MotionWarning>,
+) -> Result<Prepared, MotionFailure> {
+    let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: false })?;
+    if !matches!(state.axis_mode, ToolAxis::Fixed(_)) {
+        return Err(MotionFailure::AxisModeUnsupported);
+    }
+    let position = required_position(state)?;
+    let (tool, tip) = (Tool::new(cutter, position.axis), position.tip);
+    let size = position::size(&tool, &tip);
+    let part_on = state.part_side == PartSide::On;
+    let drive_on = state.drive_side == DriveSide::On;
+    let relation = |on: bool| if on { Relation::On } else { Relation::To };
+    let mut part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on)?;
+    let mut drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on)?;
+    for role in [&part, &drive] {
+        if role.band() <= 0.0 {
+            return Err(MotionFailure::NoTolerance {
+                role: role.name,
+                inside: role.inside,
+                outside: role.outside,
+            });
+        }
+    }
+    let part_contact = start_check(&tool, &mut part, &tip, size)?;
+    let drive_contact = start_check(&tool, &mut drive, &tip, size)?;
+    let wanted = turned(state, &tip, turn)?;
+    let tangent = line_of_motion(&part_contact, &drive_contact, &wanted, &tip)?;
+    judge_side(state, &tool, &drive_contact, &tangent, warnings);
+    let mut working = Vec::with_capacity(checks.len());
+    for (index, check) in checks.iter().enumerate() {
+        let on =
+            check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
+        working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
+    }
+    Ok(Prepared { tool, tip, part, drive, checks: working, tangent, size })
+}
+
+/// At a tangency the tool stands to the check surface as it does to the surface it is tangent to.
+fn tangent_on(check: &CheckSurface, state: &State) -> bool {
+    match check.relation {
+        Relation::TangentToPart => state.part_side == PartSide::On,
+        _ => state.drive_side == DriveSide::On,
+    }
+}
+
+/// Operation 1: the tool must be within the band of the surface, on one side or the other; the side is the one where it
+/// is, that of the observer when both would do.
+fn start_check(tool: &Tool, role: &mut Working, tip: &Vec3, size: f64) -> Result<Contact, MotionFailure> {
+    let observed = role.gauge.surface.signed_distance(&tool.observer(tip));
+    let preferred = if observed < 0.0 { -1.0 } else { 1.0 };
+    let mut nearest: Option<(f64, Contact)> = None;
+    for side in [preferred, -preferred] {
+        role.set_side(side);
+        let contact = role.gauge.contact(tool, tip);
+        if role.holds(contact.clearance, size) {
+            return Ok(contact);
+        }
+        let excess = (-role.inside - contact.clearance).max(contact.clearance - role.outside);
+        if nearest.is_none_or(|(least, _)| excess < least) {
+            nearest = Some((excess, contact));
+        }
+    }
+    role.set_side(preferred);
+    let contact = nearest.map_or_else(|| role.gauge.contact(tool, tip), |(_, contact)| contact);
+    Err(MotionFailure::OutOfToleranceAtStart {
+        role: role.name,
+        clearance: contact.clearance,
+        inside: role.inside,
+        outside: role.outside,
+        contact: ContactPoints { tip: *tip, tool: contact.tool, surface: contact.surface },
+    })
+}
+
+/// Operations 2 and 3: the direction asked for, from the last move and the motion word.
+fn turned(state: &State, tip: &Vec3, turn: Turn) -> Result<Vec3, MotionFailure> {
+    let axis = state.axis;
+    match turn {
+        Turn::Up => return Ok(axis),
+        Turn::Down => return Ok(-axis),
+        _ => {}
+    }
+    let last = (tip - state.previous).try_normalize(0.0);
+    let forward = match last {
+        Some(direction) if direction.dot(&axis).abs() <= ALONG_AXIS_COSINE => direction,
+        _ => state.forward.ok_or(MotionFailure::NoForwardDirection)?,
+    };
+    let right = forward.cross(&axis).try_normalize(1e-9).ok_or(MotionFailure::NoForwardDirection)?;
+    let forward = axis.cross(&right);
+    Ok(match turn {
+        Turn::Back => -forward,
+        Turn::Right => right,
+        Turn::Left => -right,
+        _ => forward,
+    })
+}
+
+/// Operations 4 and 5: the common tangent of part and drive surface, in the sense asked for.
+fn line_of_motion(part: &Contact, drive: &Contact, wanted: &Vec3, tip: &Vec3) -> Result<Vec3, MotionFailure> {
+    let cross = part.gradient.cross(&drive.gradient);
+    let tangent = if cross.norm() > TANGENT_SINE {
+        cross.normalize()
+    } else {
+        // Tangent surfaces: the direction asked for, as far as it lies in both.
+        let flat = wanted - part.gradient * wanted.dot(&part.gradient);
+        flat.try_normalize(UNDETERMINED).ok_or(MotionFailure::TangentSurfaces { tip: *tip })?
+    };
+    let cosine = tangent.dot(wanted);
+    if cosine.abs() <= UNDETERMINED {
+        let angle = cosine.clamp(-1.0, 1.0).asin().abs();
+        return Err(MotionFailure::DirectionUndetermined { angle, tangent, wanted: *wanted });
+    }
+    Ok(if cosine > 0.0 { tangent } else { -tangent })
+}
+
+/// Warning 1601: the tool is not where TLLFT or TLRGT says.
+fn judge_side(
+    state: &State,
+    tool: &Tool,
+    drive: &Contact,
+    tangent: &Vec3,
+    warnings: &mut Vec<MotionWarning>,
+) {
+    // From the surface to the tool, seen with the axis up: positive when the tool is to the left.
+    let sine = tangent.cross(&drive.gradient).dot(&tool.axis);
+    let wrong = match state.drive_side {
+        DriveSide::Left => sine < -SIDE_SINE,
+        DriveSide::Right => sine > SIDE_SINE,
+        DriveSide::On => false,
+    };
+    if wrong {
+        warnings.push(MotionWarning::WrongSideOfDrive { sine });
+    }
+}

@@ -1,0 +1,177 @@
+//! Proof that a cut vector keeps a role's band over its whole length (GOUGCK made exact). Convex and concave clearances
+//! have one interior extreme, which tangents bound from beyond; other clearances are followed from slope to slope.
+
+use apt_geometry::Vec3;
+
+use crate::{
+    clearance::{Contact, Shape, Tool},
+    role::Working,
+};
+
+/// Bound of the refinement of one extreme.
+const MAX_ITERATIONS: u32 = 24;
+/// Pieces into which a vector is cut when the clearance is neither convex nor concave.
+const PIECES: usize = 6;
+/// An extreme is known well enough when its bound and its value differ by this share of the band.
+const ENOUGH: f64 = 2e-4;
+
+/// Extreme clearances over a cut vector, and whether they were shown to be in the band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extremes {
+    pub(crate) least: f64,
+    pub(crate) greatest: f64,
+    pub(crate) proven: bool,
+}
+
+/// Clearance and its derivative at a place along the vector.
+#[derive(Clone, Copy)]
+struct Sample {
+    x: f64,
+    value: f64,
+    slope: f64,
+}
+
+/// A clearance along a straight line.
+struct Line<'a> {
+    tool: &'a Tool,
+    role: &'a Working,
+    from: Vec3,
+    direction: Vec3,
+    /// −1 turns a concave clearance into a convex one.
+    sign: f64,
+}
+
+impl Line<'_> {
+    fn sample(&self, x: f64) -> Sample {
+        let contact = self.role.gauge.contact(self.tool, &(self.from + self.direction * x));
+        self.known(x, &contact)
+    }
+
+    fn known(&self, x: f64, contact: &Contact) -> Sample {
+        Sample {
+            x,
+            value: self.sign * contact.clearance,
+            slope: self.sign * contact.gradient.dot(&self.direction),
+        }
+    }
+}
+
+/// Least and greatest clearance over the straight move between two positions with known contacts.
+pub(crate) fn extremes(
+    tool: &Tool,
+    role: &Working,
+    from: (&Vec3, &Contact),
+    to: (&Vec3, &Contact),
+    size: f64,
+) -> Extremes {
+    let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
+    let delta = to.0 - from.0;
+    let length = delta.norm();
+    let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
+    if role.shape == Shape::Flat || length <= 0.0 {
+        return ends;
+    }
+    let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
+    let line = Line { tool, role, from: *from.0, direction: delta / length, sign };
+    let (a, b) = (line.known(0.0, from.1), line.known(length, to.1));
+    match role.shape {
+        Shape::Flat => ends,
+        Shape::Convex => {
+            let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let proven = ends.proven && role.holds(bound, size);
+            Extremes { least: value.min(least), greatest, proven }
+        }
+        Shape::Concave => {
+            let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let proven = ends.proven && role.holds(-bound, size);
+            Extremes { least, greatest: (-value).max(greatest), proven }
+        }
+        Shape::General => general(&line, a, b, ends, size),
+    }
+}
+
+/// Minimum of a convex function between two samples: its least value found and a lower bound from tangents.
+fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f64) {
+    if a.slope >= 0.0 || b.slope <= 0.0 {
+        let value = a.value.min(b.value);
+        return (value, value);
+    }
+    let (mut a, mut b) = (a, b);
+    let mut value = a.value.min(b.value);
+    for _ in 0..MAX_ITERATIONS {
+        let (x, bound) = tangents_meet(a, b);
+        if value - bound <= enough {
+            return (value, bound);
+        }
+        let middle = line.sample(x);
+        value = value.min(middle.value);
+        // With the new tangent both sides are bounded.
+        let left = tangents_meet(a, middle).1;
+        let right = tangents_meet(middle, b).1;
+        let bound = if middle.slope >= 0.0 { left } else { right }.min(middle.value);
+        if value - bound <= enough {
+            return (value, bound);
+        }
+        if middle.slope >= 0.0 {
+            b = middle;
+        } else {
+            a = middle;
+        }
+    }
+    (value, tangents_meet(a, b).1)
+}
+
+/// Where the tangents of two samples with slopes of opposite sign meet.
+fn tangents_meet(a: Sample, b: Sample) -> (f64, f64) {
+    let turn = b.slope - a.slope;
+    if turn <= 0.0 {
+        return (0.5 * (a.x + b.x), a.value.min(b.value));
+    }
+    let x = ((a.value - b.value) + b.slope * b.x - a.slope * a.x) / turn;
+    let x = x.clamp(a.x, b.x);
+    (x, a.value + a.slope * (x - a.x))
+}
+
+/// Every interior extreme between equally spaced samples.
+fn general(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
+    let mut samples = [a; PIECES + 1];
+    samples[PIECES] = b;
+    for (k, sample) in samples.iter_mut().enumerate().take(PIECES).skip(1) {
+        *sample = line.sample(b.x * k as f64 / PIECES as f64);
+    }
+    let (mut least, mut greatest) = (ends.least, ends.greatest);
+    for sample in samples {
+        least = least.min(sample.value);
+        greatest = greatest.max(sample.value);
+    }
+    for pair in samples.windows(2) {
+        if (pair[0].slope < 0.0) != (pair[1].slope < 0.0) {
+            let value = turning_value(line, pair[0], pair[1], ENOUGH * line.role.band());
+            least = least.min(value);
+            greatest = greatest.max(value);
+        }
+    }
+    Extremes { least, greatest, proven: line.role.holds(least, size) && line.role.holds(greatest, size) }
+}
+
+/// The extreme between two samples whose slopes differ in sign.
+fn turning_value(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> f64 {
+    let (mut a, mut b) = (a, b);
+    let mut value = a.value;
+    for _ in 0..MAX_ITERATIONS {
+        let x = (a.x * b.slope - b.x * a.slope) / (b.slope - a.slope);
+        let x = if x > a.x && x < b.x { x } else { 0.5 * (a.x + b.x) };
+        let middle = line.sample(x);
+        value = middle.value;
+        // What is left to gain is at most slope times distance.
+        if middle.slope.abs() * (b.x - a.x) <= enough {
+            break;
+        }
+        if (middle.slope < 0.0) == (a.slope < 0.0) {
+            a = middle;
+        } else {
+            b = middle;
+        }
+    }
+    value
+}

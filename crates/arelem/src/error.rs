@@ -1,0 +1,341 @@
+//! Why a motion cannot be computed, and what is doubtful about one that can: data with evidence, no sentences.
+
+use apt_geometry::{
+    Vec3,
+    canonical::GeometryKind,
+    cutter::{CutterError, CutterWarning},
+    motion::Relation,
+};
+
+/// Which surface of a motion is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RoleName {
+    /// Part surface.
+    Part,
+    /// Drive surface.
+    Drive,
+    /// Check surface with its index in the command.
+    Check(usize),
+}
+
+/// A loop that ended at its bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say which loop it is")]
+pub enum Iteration {
+    StartUp,
+    TwoSurfaces,
+    ThreeSurfaces,
+    StepLength,
+    Stop,
+    FinalVector,
+}
+
+/// Where the tool and a surface come nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoints {
+    /// Tool end.
+    pub tip: Vec3,
+    /// Point of the tool.
+    pub tool: Vec3,
+    /// Point of the surface.
+    pub surface: Vec3,
+}
+
+/// Why a command to Section 2 gives no motion. Lengths in program units, angles in radians.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MotionFailure {
+    /// The command was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+    /// A number of the command is NaN or infinite.
+    #[error("the command holds a number that is not finite")]
+    NotFinite,
+    /// The cutter's numbers make no cutter (401 to 417).
+    #[error(transparent)]
+    Cutter(#[from] CutterError),
+    /// No cutter before a start-up motion (311) or a directed motion (312).
+    #[error("no cutter")]
+    NoCutter {
+        /// True for a start-up motion.
+        start_up: bool,
+    },
+    /// No position: neither FROM nor GOTO came before.
+    #[error("the tool has no position")]
+    NoPosition,
+    /// TLAXIS or an axis of FROM and GOTO has no length (3).
+    #[error("tool axis of zero length")]
+    ZeroAxis,
+    /// INDIRP (6), INDIRV (7) or SRFVCT (8) of zero length.
+    #[error("direction of zero length: APT III {number}")]
+    ZeroDirection {
+        /// The APT III number.
+        number: u16,
+    },
+    /// The axis mode is not supported.
+    #[error("tool axis mode not supported")]
+    AxisModeUnsupported,
+    /// POCKET is not supported.
+    #[error("POCKET not supported")]
+    PocketUnsupported,
+    /// This kind of geometry cannot be a surface here.
+    #[error("{kind:?} cannot be a {role:?} surface")]
+    SurfaceUnsupported {
+        /// In which role.
+        role: RoleName,
+        /// What it is.
+        kind: GeometryKind,
+    },
+    /// The canonical form is degenerate (zero radius, zero normal, no real points).
+    #[error("degenerate {kind:?} as {role:?} surface")]
+    SurfaceDegenerate {
+        /// In which role.
+        role: RoleName,
+        /// What it is.
+        kind: GeometryKind,
+    },
+    /// GO with a wrong number of surfaces or OFFSET with more than two (129).
+    #[error("{found} surfaces")]
+    SurfaceCount {
+        /// How many.
+        found: usize,
+    },
+    /// GO with several surfaces while NOPS is in force (601).
+    #[error("NOPS before a GO with {found} surfaces")]
+    NoPartWithSeveral {
+        /// How many surfaces.
+        found: usize,
+    },
+    /// INTOL and OUTTOL of a role are both zero, negative or not finite.
+    #[error("no tolerance for the {role:?} surface")]
+    NoTolerance {
+        /// Which role.
+        role: RoleName,
+        /// INTOL.
+        inside: f64,
+        /// OUTTOL.
+        outside: f64,
+    },
+    /// The tool stands on the surface, so that the side is not known (40).
+    #[error("tool on the surface, side unknown")]
+    SideUnknown {
+        /// Which role.
+        role: RoleName,
+        /// Distance of the observer from the surface.
+        distance: f64,
+    },
+    /// The direction given does not meet the surface (34).
+    #[error("the direction misses the surface")]
+    NotReachedAlong {
+        /// Which role.
+        role: RoleName,
+        /// Where the ray began.
+        from: Vec3,
+        /// Its unit direction.
+        direction: Vec3,
+    },
+    /// OFFSET without a direction (33).
+    #[error("OFFSET without direction")]
+    OffsetWithoutDirection,
+    /// The part surface is not reached along the tool axis (36).
+    #[error("part surface not reached along the tool axis")]
+    PartNotReached,
+    /// Start-up does not converge (602): what is left at the best position found.
+    #[error("start-up does not converge: {residual} left")]
+    StartUpDiverges {
+        /// Greatest distance of a surface from its relation.
+        residual: f64,
+        /// The role it belongs to.
+        role: RoleName,
+        /// The best position.
+        tip: Vec3,
+        /// Iterations made.
+        iterations: u32,
+    },
+    /// The tool is out of tolerance of the part (502) or drive surface (503) at the start of a cut.
+    #[error("{role:?} surface out of tolerance at the start: {clearance} not in [-{inside}, {outside}]")]
+    OutOfToleranceAtStart {
+        /// Part or drive surface.
+        role: RoleName,
+        /// Signed clearance on the nearer side.
+        clearance: f64,
+        /// INTOL.
+        inside: f64,
+        /// OUTTOL.
+        outside: f64,
+        /// Where tool and surface come nearest.
+        contact: ContactPoints,
+    },
+    /// No forward direction is defined (504).
+    #[error("no forward direction")]
+    NoForwardDirection,
+    /// The turn does not settle the direction along the path (505).
+    #[error("direction within {angle} of a right angle to the path")]
+    DirectionUndetermined {
+        /// How far from the right angle, radians.
+        angle: f64,
+        /// Unit tangent of the path.
+        tangent: Vec3,
+        /// The direction asked for.
+        wanted: Vec3,
+    },
+    /// Part and drive surface are tangent, so that there is no path (802).
+    #[error("part and drive surface are tangent")]
+    TangentSurfaces {
+        /// Where.
+        tip: Vec3,
+    },
+    /// The check surface is never met (714): how near the path comes.
+    #[error("check surface never met; nearest {nearest}")]
+    NeverMet {
+        /// Which check surface.
+        check: usize,
+        /// The relation asked for.
+        relation: Relation,
+        /// Least distance from the relation seen on the way.
+        nearest: f64,
+        /// Where.
+        at: Vec3,
+    },
+    /// There are stopping positions, but none ahead with the relation and count asked for (724).
+    #[error("no stopping position ahead; {found} elsewhere")]
+    NoneAhead {
+        /// Which check surface.
+        check: usize,
+        /// The relation asked for.
+        relation: Relation,
+        /// Positions met with any relation.
+        found: usize,
+    },
+    /// TANTO: drive and check surface are not tangent (721).
+    #[error("not tangent: gap {gap}")]
+    NotTangent {
+        /// Which check surface.
+        check: usize,
+        /// Distance between tool and check surface at the nearest parallel position.
+        gap: f64,
+    },
+    /// TANTO between two lines (720).
+    #[error("TANTO between two lines")]
+    TangentLines {
+        /// Which check surface.
+        check: usize,
+    },
+    /// The tool is larger than the circle it runs in (705).
+    #[error("tool radius {tool} in a circle of radius {circle}")]
+    ToolTooLarge {
+        /// Tool radius.
+        tool: f64,
+        /// Circle radius.
+        circle: f64,
+    },
+    /// More cut vectors than NUMPTS allows (803).
+    #[error("more than {limit} cut vectors")]
+    TooManyPoints {
+        /// NUMPTS.
+        limit: u32,
+        /// Distance of the check surface at the last point.
+        remaining: f64,
+        /// The last point.
+        at: Vec3,
+    },
+    /// A bounded iteration ended at its bound (801, 802, 804).
+    #[error("iteration limit: {iteration:?}")]
+    IterationLimit {
+        /// Which one.
+        iteration: Iteration,
+        /// Its bound.
+        limit: u32,
+        /// Where the tool was.
+        tip: Vec3,
+    },
+    /// No cut vector from here stays in tolerance (801).
+    #[error("no admissible cut vector")]
+    NoAdmissibleVector {
+        /// The role that prevents it.
+        role: RoleName,
+        /// Least or greatest clearance on the shortest vector tried.
+        clearance: f64,
+        /// Where.
+        tip: Vec3,
+    },
+}
+
+impl MotionFailure {
+    /// The APT III diagnostic number.
+    pub fn apt3(&self) -> Option<u16> {
+        Some(match self {
+            Self::Cancelled
+            | Self::NotFinite
+            | Self::NoPosition
+            | Self::AxisModeUnsupported
+            | Self::PocketUnsupported
+            | Self::NoTolerance { .. } => return None,
+            Self::Cutter(error) => return error.apt3(),
+            Self::NoCutter { start_up: true } => 311,
+            Self::NoCutter { start_up: false } => 312,
+            Self::ZeroAxis => 3,
+            Self::ZeroDirection { number } => *number,
+            Self::SurfaceUnsupported { .. } => 1201,
+            Self::SurfaceDegenerate { .. } => 1402,
+            Self::SurfaceCount { .. } => 129,
+            Self::NoPartWithSeveral { .. } => 601,
+            Self::SideUnknown { .. } => 40,
+            Self::NotReachedAlong { .. } => 34,
+            Self::OffsetWithoutDirection => 33,
+            Self::PartNotReached => 36,
+            Self::StartUpDiverges { .. } => 602,
+            Self::OutOfToleranceAtStart { role: RoleName::Part, .. } => 502,
+            Self::OutOfToleranceAtStart { .. } => 503,
+            Self::NoForwardDirection => 504,
+            Self::DirectionUndetermined { .. } => 505,
+            Self::TangentSurfaces { .. } => 802,
+            Self::NeverMet { .. } => 714,
+            Self::NoneAhead { .. } => 724,
+            Self::NotTangent { .. } => 721,
+            Self::TangentLines { .. } => 720,
+            Self::ToolTooLarge { .. } => 705,
+            Self::TooManyPoints { .. } => 803,
+            Self::IterationLimit { iteration, .. } => match iteration {
+                Iteration::StartUp => 602,
+                Iteration::TwoSurfaces | Iteration::ThreeSurfaces => 802,
+                Iteration::StepLength | Iteration::FinalVector => 801,
+                Iteration::Stop => 804,
+            },
+            Self::NoAdmissibleVector { .. } => 801,
+        })
+    }
+}
+
+/// What is doubtful about a command that was carried out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MotionWarning {
+    /// The tool is on the other side of the drive surface than TLLFT or TLRGT says (1601).
+    WrongSideOfDrive {
+        /// Sine of the angle between the drive normal and the direction of motion, about the tool axis.
+        sine: f64,
+    },
+    /// Doubtful cutter (415, 416).
+    Cutter(CutterWarning),
+    /// AUTOPS with an inclined tool (3520).
+    AutomaticPartWithTiltedAxis {
+        /// Angle of the tool axis from z, radians.
+        tilt: f64,
+    },
+    /// A negative tolerance was given; it is taken as zero.
+    NegativeTolerance {
+        /// The value.
+        value: f64,
+    },
+}
+
+impl MotionWarning {
+    /// The APT III diagnostic number.
+    pub fn apt3(&self) -> Option<u16> {
+        match self {
+            Self::WrongSideOfDrive { .. } => Some(1601),
+            Self::Cutter(warning) => warning.apt3(),
+            Self::AutomaticPartWithTiltedAxis { .. } => Some(3520),
+            Self::NegativeTolerance { .. } => None,
+        }
+    }
+}

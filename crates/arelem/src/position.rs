@@ -1,0 +1,169 @@
+//! Positioning on one, two or three surfaces (CENTR, CENTR2, GAUSS): Newton's method on the clearances with their
+//! analytic gradients, taking the shortest correction when there are fewer than three surfaces.
+
+use apt_geometry::Vec3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
+
+use crate::clearance::{Contact, Gauge, Tool};
+
+/// Bound of the iteration.
+const MAX_ITERATIONS: u32 = 60;
+/// How often a correction that makes things worse is halved.
+const MAX_HALVINGS: u32 = 10;
+/// Residual, relative to the size of the coordinates, at which the iteration ends.
+const RESOLUTION: f64 = 1e-13;
+/// Residual, relative to the size of the coordinates, that is good enough when rounding stops further progress.
+const ACCEPTABLE: f64 = 1e-10;
+/// Determinant of unit normals below which they are dependent.
+const DEPENDENT: f64 = 1e-10;
+/// Damping of the normal equations when the normals are dependent.
+const DAMPING: f64 = 1e-6;
+
+/// One condition on the position.
+#[derive(Clone, Copy)]
+pub(crate) enum Condition<'a> {
+    /// The clearance of a gauge has this value.
+    Clearance(&'a Gauge, f64),
+    /// The tool end lies on the plane with this unit normal and distance.
+    Plane(Vec3, f64),
+}
+
+/// A position that satisfies all conditions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Solution {
+    pub(crate) tip: Vec3,
+}
+
+/// What was left when no position was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Unsolved {
+    /// Greatest residual.
+    pub(crate) residual: f64,
+    /// Index of its condition.
+    pub(crate) row: usize,
+    /// Best position.
+    pub(crate) tip: Vec3,
+    pub(crate) iterations: u32,
+}
+
+#[derive(Clone, Copy)]
+struct Rows {
+    residual: [f64; 3],
+    normal: [Vec3; 3],
+    count: usize,
+}
+
+impl Rows {
+    fn greatest(&self) -> (f64, usize) {
+        let mut best = (0.0, 0);
+        for (k, r) in self.residual[..self.count].iter().enumerate() {
+            if r.abs() > best.0 || r.is_nan() {
+                best = (r.abs(), k);
+            }
+        }
+        best
+    }
+}
+
+/// Size of the coordinates around a position: what rounding is measured against.
+pub(crate) fn size(tool: &Tool, tip: &Vec3) -> f64 {
+    tip.amax() + tool.cutter.height + tool.radius()
+}
+
+/// Finds the position nearest to `start`, in the sense of successive shortest corrections.
+pub(crate) fn solve(tool: &Tool, conditions: &[Condition<'_>], start: &Vec3) -> Result<Solution, Unsolved> {
+    let mut tip = *start;
+    let mut rows = evaluate(tool, conditions, &tip);
+    for iteration in 0..MAX_ITERATIONS {
+        let (worst, row) = rows.greatest();
+        let scale = size(tool, &tip);
+        if worst <= RESOLUTION * scale {
+            return Ok(Solution { tip });
+        }
+        let step = correction(&rows);
+        let Some((next, next_rows)) = improve(tool, conditions, &tip, &rows, &step) else {
+            return if worst <= ACCEPTABLE * scale {
+                Ok(Solution { tip })
+            } else {
+                Err(Unsolved { residual: worst, row, tip, iterations: iteration + 1 })
+            };
+        };
+        tip = next;
+        rows = next_rows;
+    }
+    let (residual, row) = rows.greatest();
+    if residual <= ACCEPTABLE * size(tool, &tip) {
+        return Ok(Solution { tip });
+    }
+    Err(Unsolved { residual, row, tip, iterations: MAX_ITERATIONS })
+}
+
+/// The first of the step and its halves that reduces the greatest residual.
+fn improve(
+    tool: &Tool,
+    conditions: &[Condition<'_>],
+    tip: &Vec3,
+    rows: &Rows,
+    step: &Vec3,
+) -> Option<(Vec3, Rows)> {
+    let (worst, _) = rows.greatest();
+    let mut share = 1.0;
+    for _ in 0..=MAX_HALVINGS {
+        let next = tip + step * share;
+        let next_rows = evaluate(tool, conditions, &next);
+        if next_rows.greatest().0 < worst {
+            return Some((next, next_rows));
+        }
+        share *= 0.5;
+    }
+    None
+}
+
+fn evaluate(tool: &Tool, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
+    let mut rows = Rows { residual: [0.0; 3], normal: [Vec3::zeros(); 3], count: conditions.len().min(3) };
+    for (k, condition) in conditions.iter().take(3).enumerate() {
+        (rows.residual[k], rows.normal[k]) = match condition {
+            Condition::Clearance(gauge, target) => {
+                let Contact { clearance, gradient, .. } = gauge.contact(tool, tip);
+                (clearance - target, gradient)
+            }
+            Condition::Plane(normal, distance) => (normal.dot(tip) - distance, *normal),
+        };
+    }
+    rows
+}
+
+/// `X = −Nᵀ (N Nᵀ)⁻¹ r`, damped when the normals are dependent.
+fn correction(rows: &Rows) -> Vec3 {
+    let [a, b, c] = rows.normal;
+    let [ra, rb, rc] = rows.residual;
+    match rows.count {
+        0 => Vec3::zeros(),
+        1 => -a * ra,
+        2 => {
+            let cosine = a.dot(&b);
+            let damping = if 1.0 - cosine * cosine < DEPENDENT { DAMPING } else { 0.0 };
+            let gram = Matrix2::new(1.0 + damping, cosine, cosine, 1.0 + damping);
+            match gram.try_inverse() {
+                Some(inverse) => {
+                    let x = inverse * Vector2::new(ra, rb);
+                    -(a * x.x + b * x.y)
+                }
+                None => -a * ra,
+            }
+        }
+        _ => {
+            // Cramer's rule with the sine of the solid angle as determinant.
+            let determinant = a.dot(&b.cross(&c));
+            if determinant.abs() > DEPENDENT {
+                return -(b.cross(&c) * ra + c.cross(&a) * rb + a.cross(&b) * rc) / determinant;
+            }
+            let normals = Matrix3::from_rows(&[a.transpose(), b.transpose(), c.transpose()]);
+            let gram = normals * normals.transpose() + Matrix3::identity() * DAMPING;
+            match gram.try_inverse() {
+                Some(inverse) => -(normals.transpose() * (inverse * Vec3::new(ra, rb, rc))),
+                None => -a * ra,
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! A surface in its role while a motion is computed: the gauge that measures it and the band it must stay in.
+
+use apt_geometry::{
+    motion::{NamedSurface, PerRole, Relation},
+    surface::{Surface, SurfaceError},
+};
+
+use crate::{
+    clearance::{Gauge, Shape},
+    error::{MotionFailure, RoleName},
+    section2::State,
+    sequence::Role,
+};
+
+/// Share of the band kept free between a vertex and the limit it aims at, so that rounding never leaves the band.
+/// It costs half its size in step length.
+pub(crate) const GUARD: f64 = 1e-3;
+/// Rounding of a clearance, relative to the size of the coordinates: the slack of all band tests.
+pub(crate) const ROUNDING: f64 = 1e-12;
+
+/// A role with everything needed to compute with it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Working {
+    pub(crate) name: RoleName,
+    pub(crate) named: NamedSurface,
+    pub(crate) relation: Relation,
+    pub(crate) gauge: Gauge,
+    pub(crate) inside: f64,
+    pub(crate) outside: f64,
+    pub(crate) shape: Shape,
+}
+
+/// How a path bends against a role's surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Bend {
+    Straight,
+    Convex,
+    Concave,
+}
+
+impl Working {
+    /// A role from the modal state; the side is set later. ON is the only relation that measures the tool end.
+    pub(crate) fn new(
+        state: &State,
+        name: RoleName,
+        named: &NamedSurface,
+        relation: Relation,
+        on: bool,
+    ) -> Result<Self, MotionFailure> {
+        let surface = surface(name, named)?;
+        let pick = |values: &PerRole| match name {
+            RoleName::Part => values.part,
+            RoleName::Drive => values.drive,
+            RoleName::Check(index) => values.check[index.min(1)],
+        };
+        let (inside, outside) = (pick(&state.inside), pick(&state.outside));
+        if !(inside >= 0.0 && outside >= 0.0 && (inside + outside).is_finite()) {
+            return Err(MotionFailure::NoTolerance { role: name, inside, outside });
+        }
+        let thickness = if on { 0.0 } else { pick(&state.thickness) };
+        let gauge = Gauge { surface, on, side: 1.0, thickness };
+        let shape = gauge.shape();
+        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape })
+    }
+
+    pub(crate) fn set_side(&mut self, side: f64) {
+        self.gauge.side = side;
+        self.shape = self.gauge.shape();
+    }
+
+    /// Width of the band.
+    pub(crate) fn band(&self) -> f64 {
+        self.inside + self.outside
+    }
+
+    /// Where the ends of a motion lie: exactly on planes, in the middle of the band on curved surfaces.
+    pub(crate) fn rest(&self) -> f64 {
+        if self.shape == Shape::Flat { 0.0 } else { 0.5 * (self.outside - self.inside) }
+    }
+
+    /// Where the vertices between cut vectors lie: at the limit opposite to the sag.
+    pub(crate) fn vertex(&self, bend: Bend) -> f64 {
+        match bend {
+            Bend::Straight => self.rest(),
+            Bend::Convex => self.outside - GUARD * self.band(),
+            Bend::Concave => -self.inside + GUARD * self.band(),
+        }
+    }
+
+    pub(crate) fn holds(&self, clearance: f64, size: f64) -> bool {
+        clearance >= -self.inside - ROUNDING * size && clearance <= self.outside + ROUNDING * size
+    }
+
+    pub(crate) fn role(&self) -> Role {
+        Role {
+            surface: self.named.clone(),
+            relation: self.relation,
+            side: self.gauge.side,
+            inside_tolerance: self.inside,
+            outside_tolerance: self.outside,
+            thickness: self.gauge.thickness,
+        }
+    }
+}
+
+/// The surface of a role.
+pub(crate) fn surface(role: RoleName, named: &NamedSurface) -> Result<Surface, MotionFailure> {
+    Surface::from_geometry(&named.geometry).map_err(|error| match error {
+        SurfaceError::Unsupported { kind } => MotionFailure::SurfaceUnsupported { role, kind },
+        SurfaceError::Degenerate { kind } => MotionFailure::SurfaceDegenerate { role, kind },
+    })
+}

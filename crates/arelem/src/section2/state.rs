@@ -1,0 +1,131 @@
+//! The modal state of Section 2.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{Geometry, Plane},
+    cutter::Cutter,
+    motion::{Direction, DriveSide, NamedSurface, PartSide, PerRole, ToolAxis},
+};
+
+use super::Restart;
+use crate::sequence::ToolPosition;
+
+/// Default OUTTOL, inches.
+const DEFAULT_OUTSIDE_INCHES: f64 = 0.0005;
+/// Default MAXDP, inches.
+const DEFAULT_STEP_INCHES: f64 = 10.0;
+/// Default NUMPTS.
+const DEFAULT_POINTS: u32 = 400;
+/// A motion with |cos| > .997 to the tool axis (4.4°) says nothing about the forward direction.
+const ALONG_AXIS_COSINE: f64 = 0.997;
+/// The same limit as a sine.
+pub(super) const ALONG_AXIS_SINE: f64 = 0.0774;
+
+/// Everything that a command can depend on besides its own contents. Plain data: compare or hash it as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Program units per inch: 1 for inches, 25.4 for millimetres. Scales the defaults.
+    pub units: f64,
+    /// Tool end, once a FROM or GOTO gave it.
+    pub tip: Option<Vec3>,
+    /// Previous tool end, for the direction of the last motion; the origin after FROM.
+    pub previous: Vec3,
+    /// Unit tool axis from the tip to the spindle.
+    pub axis: Vec3,
+    /// How the axis is controlled.
+    pub axis_mode: ToolAxis,
+    /// Direction of the last motion that was not along the axis.
+    pub forward: Option<Vec3>,
+    /// Modal part surface.
+    pub part: NamedSurface,
+    /// TLOFPS or TLONPS.
+    pub part_side: PartSide,
+    /// TLLFT, TLRGT, TLON.
+    pub drive_side: DriveSide,
+    /// The cutter, once defined.
+    pub cutter: Option<Cutter>,
+    /// INTOL.
+    pub inside: PerRole,
+    /// OUTTOL.
+    pub outside: PerRole,
+    /// THICK.
+    pub thickness: PerRole,
+    /// MAXDP.
+    pub maximum_step: f64,
+    /// NUMPTS.
+    pub maximum_points: u32,
+    /// CL points carry the tool axis.
+    pub multiple_axes: bool,
+    /// MULTAX without ON or OFF was given: later forms are ignored.
+    pub multiple_axes_locked: bool,
+    /// GOUGCK/ON.
+    pub gouge_check: bool,
+    /// 3DCALC.
+    pub force_iteration: bool,
+    /// CUT (true) or DNTCUT.
+    pub output: bool,
+    /// INDIRV and INDIRP for drive, part and check surface; one-shot.
+    pub directions: [Option<Direction>; 3],
+    /// SRFVCT for drive, part and check surface; one-shot.
+    pub surface_vectors: [Option<Vec3>; 3],
+    /// NOPS; one-shot.
+    pub no_part: bool,
+    /// Restart mode.
+    pub restart: Restart,
+}
+
+impl State {
+    /// The state at the start of a program.
+    pub fn new(units: f64) -> Self {
+        let plane = Plane { normal: Vec3::z(), distance: 0.0 };
+        Self {
+            units,
+            tip: None,
+            previous: Vec3::zeros(),
+            axis: Vec3::z(),
+            axis_mode: ToolAxis::Fixed(Vec3::z()),
+            forward: None,
+            part: NamedSurface { name: String::new(), geometry: Geometry::Plane(plane) },
+            part_side: PartSide::Offset,
+            drive_side: DriveSide::On,
+            cutter: None,
+            inside: PerRole::all(0.0),
+            outside: PerRole::all(DEFAULT_OUTSIDE_INCHES * units),
+            thickness: PerRole::all(0.0),
+            maximum_step: DEFAULT_STEP_INCHES * units,
+            maximum_points: DEFAULT_POINTS,
+            multiple_axes: false,
+            multiple_axes_locked: false,
+            gouge_check: false,
+            force_iteration: false,
+            output: true,
+            directions: [None; 3],
+            surface_vectors: [None; 3],
+            no_part: false,
+            restart: Restart::Running,
+        }
+    }
+
+    /// Where the tool is, if it is anywhere.
+    pub fn position(&self) -> Option<ToolPosition> {
+        self.tip.map(|tip| ToolPosition { tip, axis: self.axis })
+    }
+
+    /// Moves the tool end and remembers the direction of the move.
+    pub(super) fn move_to(&mut self, previous: Vec3, tip: Vec3) {
+        self.previous = previous;
+        self.tip = Some(tip);
+        if let Some(direction) = (tip - previous).try_normalize(0.0)
+            && direction.dot(&self.axis).abs() <= ALONG_AXIS_COSINE
+        {
+            self.forward = Some(direction);
+        }
+    }
+
+    /// Forgets what applies to the next motion only.
+    pub(super) fn clear_one_shot(&mut self) {
+        self.directions = [None; 3];
+        self.surface_vectors = [None; 3];
+        self.no_part = false;
+    }
+}

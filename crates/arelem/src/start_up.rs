@@ -1,0 +1,237 @@
+//! Start-up motions (STRTUP): GO with one to three surfaces, and OFFSET.
+
+mod directed;
+mod plane;
+mod side;
+
+use apt_geometry::{
+    Vec3,
+    motion::{PartSide, Relation, StartSurface},
+    surface::{RootSelection, Surface},
+};
+
+use crate::{
+    clearance::{Shape, Tool},
+    error::{MotionFailure, RoleName},
+    position::{self, Condition},
+    role::Working,
+    section2::{State, required_position},
+    sequence::{CutSequence, Stop, ToolPosition},
+};
+
+/// What a start-up works with.
+pub(crate) struct StartUp<'a> {
+    pub(crate) state: &'a State,
+    pub(crate) tool: Tool,
+    pub(crate) tip: Vec3,
+    /// Drive, part, check, as far as they take part.
+    pub(crate) roles: Vec<Working>,
+}
+
+/// GO (class 7000/1).
+pub(crate) fn start(
+    state: &State,
+    surfaces: &[StartSurface],
+    cancel: &dyn Fn() -> bool,
+) -> Result<CutSequence, MotionFailure> {
+    if surfaces.is_empty() || surfaces.len() > 3 {
+        return Err(MotionFailure::SurfaceCount { found: surfaces.len() });
+    }
+    if state.no_part && surfaces.len() > 1 {
+        return Err(MotionFailure::NoPartWithSeveral { found: surfaces.len() });
+    }
+    if cancel() {
+        return Err(MotionFailure::Cancelled);
+    }
+    let mut work = StartUp::new(state, surfaces)?;
+    let tip = match plane::solve(&mut work)? {
+        Some(tip) => tip,
+        None => in_space(&mut work)?,
+    };
+    Ok(work.sequence(tip))
+}
+
+/// OFFSET (class 7000/2): pierce the drive surface along the direction given, stand off along its normal, then move
+/// along the tool axis to the part surface.
+pub(crate) fn offset(
+    state: &State,
+    surfaces: &[StartSurface],
+    cancel: &dyn Fn() -> bool,
+) -> Result<CutSequence, MotionFailure> {
+    if surfaces.is_empty() || surfaces.len() > 2 {
+        return Err(MotionFailure::SurfaceCount { found: surfaces.len() });
+    }
+    if cancel() {
+        return Err(MotionFailure::Cancelled);
+    }
+    let mut work = StartUp::new(state, surfaces)?;
+    let Some(direction) = state.directions[0] else { return Err(MotionFailure::OffsetWithoutDirection) };
+    let direction = directed::unit_direction(&direction, &work.tip)?;
+    side::assign(&mut work, None)?;
+    let drive = &work.roles[0];
+    let along =
+        drive.gauge.surface.directed_distance(&work.tip, &direction, RootSelection::Ahead).map_err(|_| {
+            MotionFailure::NotReachedAlong { role: RoleName::Drive, from: work.tip, direction }
+        })?;
+    let pierce = work.tip + direction * along;
+    // The tool end goes from the pierce point along the normal until the relation holds.
+    let rest = drive.rest();
+    let normal = drive.gauge.surface.foot(&pierce).normal;
+    let line = along_line(&work.tool, drive, &pierce, &normal, rest)?;
+    let mut tip = line;
+    if let Some(part) = work.roles.get(1) {
+        tip = along_line(&work.tool, part, &tip, &work.tool.axis, part.rest())
+            .map_err(|_| MotionFailure::PartNotReached)?;
+    }
+    Ok(work.sequence(tip))
+}
+
+/// The position on a straight line where a clearance has a value.
+fn along_line(
+    tool: &Tool,
+    role: &Working,
+    from: &Vec3,
+    direction: &Vec3,
+    target: f64,
+) -> Result<Vec3, MotionFailure> {
+    let (u, v) = across(direction);
+    let conditions = [
+        Condition::Clearance(&role.gauge, target),
+        Condition::Plane(u, u.dot(from)),
+        Condition::Plane(v, v.dot(from)),
+    ];
+    position::solve(tool, &conditions, from).map(|s| s.tip).map_err(|unsolved| {
+        MotionFailure::StartUpDiverges {
+            residual: unsolved.residual,
+            role: role.name,
+            tip: unsolved.tip,
+            iterations: unsolved.iterations,
+        }
+    })
+}
+
+/// Two unit vectors that make a frame with a direction.
+pub(crate) fn across(direction: &Vec3) -> (Vec3, Vec3) {
+    let u = apt_geometry::surface::perpendicular(direction);
+    let v = direction.cross(&u).try_normalize(0.0).unwrap_or(u);
+    (u, v)
+}
+
+impl<'a> StartUp<'a> {
+    fn new(state: &'a State, surfaces: &[StartSurface]) -> Result<Self, MotionFailure> {
+        let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: true })?;
+        let ToolPosition { tip, axis } = required_position(state)?;
+        if !matches!(state.axis_mode, apt_geometry::motion::ToolAxis::Fixed(_)) {
+            return Err(MotionFailure::AxisModeUnsupported);
+        }
+        let names = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
+        let mut roles = Vec::with_capacity(3);
+        for (start, name) in surfaces.iter().zip(names) {
+            let on = start.relation == Relation::On;
+            roles.push(Working::new(state, name, &start.surface, start.relation, on)?);
+        }
+        if roles.len() == 1 && !state.no_part {
+            let on = state.part_side == PartSide::On;
+            let relation = if on { Relation::On } else { Relation::To };
+            roles.push(Working::new(state, RoleName::Part, &state.part, relation, on)?);
+        }
+        Ok(Self { state, tool: Tool::new(cutter, axis), tip, roles })
+    }
+
+    fn sequence(&self, tip: Vec3) -> CutSequence {
+        let axis = self.tool.axis;
+        let role = |name: RoleName| self.roles.iter().find(|r| r.name == name).map(Working::role);
+        CutSequence {
+            start: ToolPosition { tip: self.tip, axis },
+            points: vec![ToolPosition { tip, axis }],
+            cutter: self.tool.cutter,
+            part: role(RoleName::Part),
+            drive: role(RoleName::Drive),
+            stop: role(RoleName::Check(0)).map(|role| Stop { role, occurrence: 1, index: 0 }),
+            drive_side: self.state.drive_side,
+            start_up: true,
+            forward: Vec3::zeros(),
+            maximum_step: self.state.maximum_step,
+            minimum: Some(1),
+        }
+    }
+}
+
+/// The general route: interim moves along the directions given, sides, then the shortest way to the position.
+fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
+    let original = work.tip;
+    let start = directed::interim(work)?;
+    side::assign(work, Some(start))?;
+    let mut guide = None;
+    if work.roles.len() < 3 {
+        guide = directed::guide_plane(work, &original);
+    }
+    let tangent = work
+        .roles
+        .iter()
+        .position(|r| matches!(r.relation, Relation::TangentToDrive | Relation::TangentToPart));
+    if tangent.is_some() {
+        return directed::tangent_start(work, &start);
+    }
+    let mut conditions: Vec<Condition<'_>> =
+        work.roles.iter().map(|r| Condition::Clearance(&r.gauge, r.rest())).collect();
+    conditions.extend(guide.map(|(normal, distance)| Condition::Plane(normal, distance)));
+    if work.roles.len() == 1 && guide.is_none() {
+        // One surface without part surface: the shortest move.
+        return converge(work, &conditions[..1], &start);
+    }
+    converge(work, &conditions, &start)
+}
+
+/// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side.
+pub(crate) fn converge(
+    work: &StartUp<'_>,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+) -> Result<Vec3, MotionFailure> {
+    let first = match position::solve(&work.tool, conditions, start) {
+        Ok(solution) => return Ok(solution.tip),
+        Err(unsolved) => unsolved,
+    };
+    let mut begin = Vec::with_capacity(conditions.len());
+    for condition in conditions {
+        begin.push(match condition {
+            Condition::Clearance(gauge, _) => gauge.contact(&work.tool, start).clearance,
+            Condition::Plane(normal, _) => normal.dot(start),
+        });
+    }
+    let mut tip = *start;
+    for step in 1..=HOMOTOPY_STEPS {
+        let share = f64::from(step) / f64::from(HOMOTOPY_STEPS);
+        let staged: Vec<Condition<'_>> = conditions
+            .iter()
+            .zip(&begin)
+            .map(|(condition, from)| match condition {
+                Condition::Clearance(gauge, to) => Condition::Clearance(gauge, from + (to - from) * share),
+                Condition::Plane(normal, to) => Condition::Plane(*normal, from + (to - from) * share),
+            })
+            .collect();
+        match position::solve(&work.tool, &staged, &tip) {
+            Ok(solution) => tip = solution.tip,
+            Err(unsolved) if step == HOMOTOPY_STEPS => {
+                let role = work.roles.get(unsolved.row).map_or(RoleName::Drive, |r| r.name);
+                return Err(MotionFailure::StartUpDiverges {
+                    residual: unsolved.residual.min(first.residual),
+                    role,
+                    tip: unsolved.tip,
+                    iterations: first.iterations + unsolved.iterations,
+                });
+            }
+            Err(unsolved) => tip = unsolved.tip,
+        }
+    }
+    Ok(tip)
+}
+
+/// Stages of the homotopy.
+const HOMOTOPY_STEPS: u32 = 24;
+
+/// True for a surface whose clearance is linear.
+pub(crate) fn is_plane(role: &Working) -> bool {
+    role.shape == Shape::Flat && matches!(role.gauge.surface, Surface::Plane(_))
+}
