@@ -119,8 +119,13 @@ pub(crate) fn of_editor(value: &Value) -> Values {
     let section = value.get("apt").unwrap_or(value);
     let Some(section) = section.as_object() else { return Values::new() };
     let known = |key: &String| PROGRAM_KEYS.contains(&key.as_str()) || key == MOTION_KEY;
-    let set = section.iter().filter(|(key, value)| known(key) && !value.is_null());
+    let set = section.iter().filter(|(key, value)| known(key) && !is_unset(value));
     set.map(|(key, value)| (key.clone(), kebab_case_keys(key, value))).collect()
+}
+
+/// Editors fill in defaults where nobody has set anything; these mean that.
+fn is_unset(value: &Value) -> bool {
+    value.is_null() || matches!(value.as_str(), Some("" | "auto"))
 }
 
 /// `macroDepth` becomes `macro-depth`. Codes of diagnostics stay as they are.
@@ -213,7 +218,7 @@ mod tests {
     #[test]
     fn the_editor_sends_the_section_or_what_holds_it() {
         let section = json!({
-            "dialect": "apt3", "units": null, "server": { "path": "x" },
+            "dialect": "apt3", "units": "auto", "machine": "", "include": null, "server": { "path": "x" },
             "severity": { "APT0001": "off" }, "budget": { "macroDepth": 5 },
         });
         let values = of_editor(&section);

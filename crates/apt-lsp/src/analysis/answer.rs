@@ -385,8 +385,6 @@ pub(crate) enum PictureKind {
     Html,
     /// A drawing.
     Svg,
-    /// Pixels.
-    Png,
 }
 
 /// A machine a tape can be made for.

@@ -218,7 +218,7 @@ impl Place {
 pub(super) struct ViewCall {
     #[command(flatten)]
     pub program: ProgramArgument,
-    /// The page or picture; its name ends with .html, .svg or .png
+    /// The page or picture; its name ends with .html or .svg
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 }

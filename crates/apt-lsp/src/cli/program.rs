@@ -15,7 +15,7 @@ use crate::settings::{Settings, Values};
 use crate::source;
 
 /// Endings of files that are programs when a folder is walked.
-const ENDINGS: [&str; 5] = ["apt", "ncl", "cl", "cls", "cldata"];
+const ENDINGS: [&str; 9] = ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
 
 /// The name that means standard input.
 const STANDARD_INPUT: &str = "-";

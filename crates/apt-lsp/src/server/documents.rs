@@ -1,6 +1,6 @@
 //! The owner of the documents: one thread, one queue, events in the order of their arrival.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -96,6 +96,7 @@ pub(super) fn start(
         push: false,
         refresh: false,
         revisions: 0,
+        told: BTreeSet::new(),
         touched,
         outbox,
     };
@@ -110,6 +111,8 @@ struct Documents {
     push: bool,
     refresh: bool,
     revisions: u64,
+    /// Problems with settings that the user has been told; once is enough until something changes.
+    told: BTreeSet<String>,
     touched: mpsc::UnboundedSender<Touched>,
     outbox: Outbox,
 }
@@ -168,11 +171,12 @@ impl Documents {
     }
 
     fn open(&mut self, uri: Uri, version: i32, text: &str) {
+        let settings = Arc::new(self.settings_for(&uri));
         let document = OpenDocument {
             version,
             revision: self.next_revision(),
             index: TextIndex { rope: Rope::from_str(text), encoding: self.encoding },
-            settings: Arc::new(self.settings_for(&uri)),
+            settings,
             analysed: None,
             edits: Vec::new(),
             superseded: CancellationToken::new(),
@@ -245,7 +249,7 @@ impl Documents {
         }
     }
 
-    fn settings_for(&self, uri: &Uri) -> Settings {
+    fn settings_for(&mut self, uri: &Uri) -> Settings {
         let (settings, problems) = Settings::resolve(
             self.language.as_ref(),
             file_path(uri).as_deref(),
@@ -253,12 +257,16 @@ impl Documents {
             &Values::new(),
         );
         for problem in problems {
-            self.outbox.warn(problem.to_string());
+            let text = problem.to_string();
+            if self.told.insert(text.clone()) {
+                self.outbox.tell(Notice::Show(text));
+            }
         }
         settings
     }
 
     fn read_settings_again(&mut self) {
+        self.told.clear();
         let uris: Vec<Uri> = self.open.keys().cloned().collect();
         let mut changed = false;
         for uri in uris {

@@ -20,6 +20,8 @@ pub(super) enum Notice {
     },
     /// A line for the log of the client.
     Log(MessageType, String),
+    /// Something that the user should see.
+    Show(String),
     /// The findings of clients that pull are out of date.
     Refresh,
 }
@@ -39,6 +41,7 @@ impl Outbox {
                         client.publish_diagnostics(uri, diagnostics, version).await;
                     }
                     Notice::Log(level, text) => client.log_message(level, text).await,
+                    Notice::Show(text) => client.show_message(MessageType::WARNING, text).await,
                     Notice::Refresh => {
                         let client = client.clone();
                         // A request: its answer must not hold up the notices behind it.

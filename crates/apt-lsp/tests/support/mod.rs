@@ -1,7 +1,9 @@
 //! The real binary: as a server over its standard streams, and as a command.
 #![allow(dead_code, reason = "each test file uses its part")]
+#![allow(clippy::unwrap_used, reason = "a failure here is the failure of a test")]
+#![allow(clippy::needless_pass_by_value, reason = "messages are written in place")]
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -10,10 +12,10 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 /// A test that waits longer has failed; it says nothing about speed.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A server process with the client's end of its streams.
-pub struct Server {
+pub(crate) struct Server {
     process: Child,
     input: Option<ChildStdin>,
     messages: Receiver<Value>,
@@ -23,7 +25,7 @@ pub struct Server {
 
 impl Server {
     /// Starts the binary as an editor does, with these arguments.
-    pub fn start(arguments: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_apt-lsp"))
             .args(arguments)
             .stdin(Stdio::piped())
@@ -44,7 +46,7 @@ impl Server {
     }
 
     /// A server that has been introduced to a client with these capabilities.
-    pub fn initialized(capabilities: &Value) -> Self {
+    pub(crate) fn initialized(capabilities: &Value) -> Self {
         let mut server = Self::start(&["--stdio"]);
         server
             .ask("initialize", json!({ "processId": std::process::id(), "capabilities": capabilities }))
@@ -53,29 +55,29 @@ impl Server {
         server
     }
 
-    pub fn write(&mut self, bytes: &[u8]) {
+    pub(crate) fn write(&mut self, bytes: &[u8]) {
         let input = self.input.as_mut().unwrap();
         input.write_all(bytes).unwrap();
         input.flush().unwrap();
     }
 
-    pub fn send(&mut self, message: &Value) {
+    pub(crate) fn send(&mut self, message: &Value) {
         let body = message.to_string();
         self.write(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
     }
 
-    pub fn tell(&mut self, method: &str, params: Value) {
+    pub(crate) fn tell(&mut self, method: &str, params: Value) {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    pub fn begin(&mut self, method: &str, params: Value) -> i64 {
+    pub(crate) fn begin(&mut self, method: &str, params: Value) -> i64 {
         self.requests += 1;
         let id = self.requests;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
         id
     }
 
-    pub fn answer(&mut self, id: i64) -> Result<Value, Value> {
+    pub(crate) fn answer(&mut self, id: i64) -> Result<Value, Value> {
         let answer = self.wait(|message| message["id"] == id && message.get("method").is_none());
         match answer.get("error") {
             Some(error) => Err(error.clone()),
@@ -83,13 +85,13 @@ impl Server {
         }
     }
 
-    pub fn ask(&mut self, method: &str, params: Value) -> Result<Value, Value> {
+    pub(crate) fn ask(&mut self, method: &str, params: Value) -> Result<Value, Value> {
         let id = self.begin(method, params);
         self.answer(id)
     }
 
     /// The first message that is wanted.
-    pub fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         if let Some(at) = self.waiting.iter().position(&wanted) {
             return self.waiting.remove(at);
         }
@@ -102,13 +104,21 @@ impl Server {
         }
     }
 
-    pub fn open(&mut self, uri: &str, text: &str) {
+    pub(crate) fn open(&mut self, uri: &str, text: &str) {
         let document = json!({ "uri": uri, "languageId": "apt", "version": 1, "text": text });
         self.tell("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
     /// Replaces a piece of one line.
-    pub fn change(&mut self, uri: &str, version: i64, line: usize, from: usize, to: usize, text: &str) {
+    pub(crate) fn change(
+        &mut self,
+        uri: &str,
+        version: i64,
+        line: usize,
+        from: usize,
+        to: usize,
+        text: &str,
+    ) {
         let range =
             json!({ "start": { "line": line, "character": from }, "end": { "line": line, "character": to } });
         let document = json!({ "uri": uri, "version": version });
@@ -116,25 +126,25 @@ impl Server {
         self.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
     }
 
-    pub fn begin_hover(&mut self, uri: &str, line: usize, character: usize) -> i64 {
+    pub(crate) fn begin_hover(&mut self, uri: &str, line: usize, character: usize) -> i64 {
         let place =
             json!({ "textDocument": { "uri": uri }, "position": { "line": line, "character": character } });
         self.begin("textDocument/hover", place)
     }
 
     /// The syntax tree as the server has it.
-    pub fn tree(&mut self, uri: &str) -> String {
+    pub(crate) fn tree(&mut self, uri: &str) -> String {
         let answer = self.ask("apt/syntaxTree", json!({ "uri": uri })).unwrap();
         answer["text"].as_str().unwrap().to_owned()
     }
 
     /// Closes the server's input.
-    pub fn close_input(&mut self) {
+    pub(crate) fn close_input(&mut self) {
         self.input = None;
     }
 
     /// Waits for the process to end.
-    pub fn ended(mut self) -> ExitStatus {
+    pub(crate) fn ended(mut self) -> ExitStatus {
         let started = Instant::now();
         loop {
             if let Some(status) = self.process.try_wait().unwrap() {
@@ -172,14 +182,14 @@ fn read(output: &mut impl BufRead) -> Option<Value> {
 
 /// What a command gave.
 #[derive(Debug)]
-pub struct Ran {
-    pub code: i32,
-    pub stdout: String,
-    pub stderr: String,
+pub(crate) struct Ran {
+    pub(crate) code: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
 /// Runs the binary with arguments and input in a folder.
-pub fn run_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Ran {
+pub(crate) fn run_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Ran {
     let mut process = Command::new(env!("CARGO_BIN_EXE_apt-lsp"))
         .args(arguments)
         .current_dir(folder)
@@ -200,28 +210,28 @@ pub fn run_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Ran {
 }
 
 /// Runs the binary with arguments.
-pub fn run(arguments: &[&str]) -> Ran {
+pub(crate) fn run(arguments: &[&str]) -> Ran {
     run_in(Path::new("."), arguments, b"")
 }
 
 /// A folder that goes away with the test.
-pub struct Folder(pub PathBuf);
+pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
-    pub fn new(name: &str) -> Self {
+    pub(crate) fn new(name: &str) -> Self {
         let path = std::env::temp_dir().join(format!("apt-lsp-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&path).unwrap();
         Self(path)
     }
 
-    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(&path, text).unwrap();
         path
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Ran {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Ran {
         run_in(&self.0, arguments, b"")
     }
 }

@@ -224,8 +224,8 @@ async fn wrong_settings_are_named_and_settings_can_be_asked_for() {
     assert_eq!(request["params"]["items"][0]["section"], "apt");
     let answer = json!({ "jsonrpc": "2.0", "id": request["id"], "result": [{ "machine": "x" }] });
     talk.send(answer).await;
-    let log = talk.wait_for("window/logMessage").await;
-    assert!(log["params"]["message"].as_str().unwrap().contains("machine"), "{log}");
+    let shown = talk.wait_for("window/showMessage").await;
+    assert!(shown["params"]["message"].as_str().unwrap().contains("machine"), "{shown}");
     talk.tell("workspace/didChangeConfiguration", json!({ "settings": { "apt": { "dialect": "apt3" } } }))
         .await;
     talk.wait_for("workspace/diagnostic/refresh").await;
