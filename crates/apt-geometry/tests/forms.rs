@@ -38,6 +38,7 @@ const BASE: &[&str] = &[
     "PB=PATERN/LINEAR,(0,0),VY,2",
 ];
 
+#[expect(clippy::approx_constant, reason = "tables are read by their digits")]
 #[rustfmt::skip]
 const ROWS: &[(&str, &[f64])] = &[
     ("POINT/1,2", &[1.0, 2.0, 0.0]),
@@ -274,6 +275,8 @@ const ERRORS: &[(&str, u16, &str)] = &[
     ("VECTOR/(1,2,3)", 1000, "UnknownFormat"),
     ("POLCON/1,2", 1000, "UnknownFormat"),
     ("POINT/ZLARGE,INTOF,L0,C2", 1003, "XLarge"),
+    ("LINE/PARLEL,L0,RIGHT,2", 1003, "position: 2"),
+    ("LINE/(1,2),PARLEL,C2", 1000, "UnknownFormat"),
     ("LINE/ZAXIS", 1003, "position: 0"),
     ("LINE/PARLEL,L0,ZLARGE,1", 1003, "position: 2"),
     ("LINE/(9,9),LARGE,TANTO,C2", 1003, "position: 1"),

@@ -14,6 +14,7 @@ const SCALED: &str = "LCONIC";
 /// A statement and the canonical values that it gives, if the processor listed them.
 type Row = (&'static str, Option<&'static [f64]>);
 
+#[expect(clippy::approx_constant, reason = "the numbers stand as the processor listed them")]
 #[rustfmt::skip]
 const PROGRAMS: &[(&str, &[Row])] = &[
     ("canon-various", &[

@@ -78,3 +78,29 @@ impl RuledSurface {
         Ok(RuledSurface { parts: parts? })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::Plane;
+    use super::super::matrix::CoordinatePlane;
+    use super::*;
+
+    #[test]
+    fn curves_move_with_the_surface_and_directions_only_turn() {
+        let plane = Geometry::Plane(Plane { normal: Vec3::z(), distance: 3.0 });
+        let at = |x: f64, y: f64, z: f64| Geometry::Point(Vec3::new(x, y, z));
+        let parts = vec![plane, at(0.0, 0.0, 3.0), at(4.0, 0.0, 3.0), at(0.0, 1.0, 0.0), at(2.0, 5.0, 5.0)];
+        let matrix = Matrix::translation(Vec3::new(10.0, 0.0, 0.0))
+            .multiply(&Matrix::rotation(CoordinatePlane::Xy, 90.0))
+            .multiply(&Matrix::scaling(2.0));
+        let surface = Geometry::RuledSurface(Arc::new(RuledSurface { parts }));
+        let Ok(Geometry::RuledSurface(moved)) = surface.transform(&matrix) else { panic!("a ruled surface") };
+        let (curve, end) = moved.curves().expect("the parts of a definition");
+        assert_eq!(curve.end, Vec3::new(10.0, 8.0, 6.0));
+        assert_eq!(curve.across, Vec3::new(-1.0, 0.0, 0.0));
+        assert_eq!(end, RuledEnd::Apex(Vec3::new(0.0, 4.0, 10.0)));
+        assert_eq!(RuledSurface { parts: Vec::new() }.curves(), None);
+    }
+}

@@ -78,7 +78,8 @@ pub(super) static FORMATS: &[Format] = &[
         build: |given| {
             let rows = linear_points(given, 2)?;
             let origin = rows.first().copied().unwrap_or_else(Vec3::zeros);
-            parallel(given, rows.iter().map(|point| point - origin).collect())
+            let offsets: Vec<Vec3> = rows.iter().map(|point| point - origin).collect();
+            parallel(given, &offsets)
         },
     },
     Format {
@@ -86,7 +87,8 @@ pub(super) static FORMATS: &[Format] = &[
         help: "a linear pattern repeated one vector apart",
         build: |given| {
             let step = given.place(2)?;
-            parallel(given, (0..count(given, 3)?).map(|index| step * index as f64).collect())
+            let offsets: Vec<Vec3> = (0..count(given, 3)?).map(|index| step * index as f64).collect();
+            parallel(given, &offsets)
         },
     },
     Format {
@@ -94,7 +96,8 @@ pub(super) static FORMATS: &[Format] = &[
         help: "a linear pattern repeated at increments along a vector",
         build: |given| {
             let along = unit(given, 2)?;
-            parallel(given, stations(given, 4)?.into_iter().map(|station| along * station).collect())
+            let offsets: Vec<Vec3> = stations(given, 4)?.into_iter().map(|station| along * station).collect();
+            parallel(given, &offsets)
         },
     },
     Format {
@@ -193,7 +196,7 @@ fn linear_points<'a>(given: &Given<'a>, index: usize) -> Result<&'a [Vec3], Defi
 }
 
 /// The column at every offset; every second column runs backwards, so that the tool goes to and fro.
-fn parallel(given: &Given<'_>, offsets: Vec<Vec3>) -> Result<Geometry, DefinitionError> {
+fn parallel(given: &Given<'_>, offsets: &[Vec3]) -> Result<Geometry, DefinitionError> {
     let column = linear_points(given, 1)?;
     if (column.len() * offsets.len()) as f64 > MOST_POINTS {
         return Err(DefinitionError::Special { number: 802, position: None });

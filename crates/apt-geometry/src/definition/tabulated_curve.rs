@@ -93,7 +93,7 @@ pub(super) fn build(samples: &[Sample], option: Modifier) -> Result<Curve, Defin
     let (cubics, ends) = match option {
         Modifier::FourPoint => four_point(&places, &chords)?,
         _ => {
-            let given: Vec<Option<Vec3>> = samples.iter().map(|sample| tangent(sample)).collect();
+            let given: Vec<Option<Vec3>> = samples.iter().map(tangent).collect();
             let mut directions = circle_tangents(&places, &given)?;
             if option == Modifier::Spline {
                 relax(&chords, &given, &mut directions)?;
