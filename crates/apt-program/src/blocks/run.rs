@@ -80,7 +80,7 @@ impl Evaluator<'_> {
         let mut index = 0;
         while let Some(original) = block.statements.get(index) {
             self.here.isn = block.isn(index);
-            if let Some(flow) = self.spend_budget(activation, turn_start) {
+            if let Some(flow) = self.spend_budget(activation, index, turn_start) {
                 return flow;
             }
             let statement = parsed[index].get_or_insert_with(|| {
@@ -137,9 +137,9 @@ impl Evaluator<'_> {
     }
 
     /// Counts the statement; gives up when the budget is exhausted or the work is cancelled.
-    fn spend_budget(&mut self, activation: &Activation<'_>, turn_start: usize) -> Option<Flow> {
+    fn spend_budget(&mut self, activation: &Activation<'_>, index: usize, turn_start: usize) -> Option<Flow> {
         if self.budget.left == 0 {
-            self.report_endless(activation, turn_start);
+            self.report_endless(activation, index, turn_start);
             return Some(Flow::Abort);
         }
         self.budget.left -= 1;
@@ -150,14 +150,16 @@ impl Evaluator<'_> {
     }
 
     /// Reports where the budget went: the loop or macro, and what changed in its last turn.
-    fn report_endless(&mut self, activation: &Activation<'_>, turn_start: usize) {
+    fn report_endless(&mut self, activation: &Activation<'_>, index: usize, turn_start: usize) {
         let changing = self.changing_names(turn_start);
         let finding = FindingKind::Endless { statements: self.budget.granted, changing };
         let kind = if activation.region == Region::Macro { RelatedKind::Macro } else { RelatedKind::Loop };
         let mut origin = self.origin(activation.frame.range);
         origin.isn = activation.frame.isn;
         origin.frame = activation.frame.parent.clone();
-        let range = activation.block.statements.first().map_or(activation.frame.range, |_| TextRange::default());
+        let statement = activation.block.statements.get(index);
+        let part = statement.and_then(|statement| statement.statement.parts.first());
+        let range = part.map_or(TextRange::default(), |part| part.range);
         self.report_related(finding, range, vec![(kind, origin)]);
         self.state.exhausted = self.state.exhausted.saturating_add(1);
         self.output.records.truncate(self.output.records.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));

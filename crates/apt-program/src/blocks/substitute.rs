@@ -49,7 +49,11 @@ impl Bindings {
             let is_formal =
                 is_call && previous == Some(ElementKind::Comma) && next == Some(ElementKind::Equals);
             match value {
-                Some(value) if !is_formal => splice(&mut replaced, element, value, previous, next),
+                Some(value) if !is_formal => {
+                    let is_value = next == Some(ElementKind::Equals)
+                        || (is_call && previous == Some(ElementKind::Equals));
+                    splice(&mut replaced, element, value, (previous, next), is_value);
+                }
                 _ => replaced.push(element.clone()),
             }
         }
@@ -74,18 +78,14 @@ fn splice(
     into: &mut Vec<Element>,
     variable: &Element,
     value: &[Element],
-    previous: Option<ElementKind>,
-    next: Option<ElementKind>,
+    (previous, next): (Option<ElementKind>, Option<ElementKind>),
+    is_value: bool,
 ) {
     let has_sign = matches!(value.first().map(|element| element.kind), Some(ElementKind::Plus | ElementKind::Minus));
     let after_operator =
         matches!(previous, Some(ElementKind::Plus | ElementKind::Minus | ElementKind::Star | ElementKind::Power));
-    let to_value = previous == Some(ElementKind::Equals) || next == Some(ElementKind::Equals);
-    let wrap = if is_expression(value) {
-        !to_value || after_operator
-    } else {
-        has_sign && (after_operator || next == Some(ElementKind::Power))
-    };
+    let binds = is_expression(value) || (has_sign && (after_operator || next == Some(ElementKind::Power)));
+    let wrap = binds && !is_value;
     let placed = |kind: ElementKind, text: &str| Element { kind, text: SmolStr::new(text), range: variable.range };
     if wrap {
         into.push(placed(ElementKind::LeftParenthesis, "("));

@@ -34,6 +34,8 @@ pub(crate) struct State {
     pub(crate) repeated: u64,
     /// The highest statement index reached, plus one (dialects with free jumps).
     pub(crate) reached: usize,
+    /// Labels of check surfaces whose statements are still to come: Section 2 may go on there.
+    pub(crate) open_checks: imbl::OrdSet<SmolStr>,
     /// FINI has been executed.
     pub(crate) ended: bool,
 }
@@ -62,6 +64,7 @@ impl Default for State {
             exhausted: 0,
             repeated: 0,
             reached: 0,
+            open_checks: imbl::OrdSet::new(),
             ended: false,
         }
     }
@@ -80,6 +83,7 @@ impl State {
             && self.machines == other.machines
             && self.exhausted == other.exhausted
             && self.repeated == other.repeated
+            && self.open_checks == other.open_checks
             && self.ended == other.ended
     }
 

@@ -174,6 +174,9 @@ impl Evaluator<'_> {
         if self.here.region != Region::Top {
             return;
         }
+        if !self.state.open_checks.is_empty() {
+            self.state.open_checks.remove(&text);
+        }
         let origin = self.origin(label.range);
         let existing = self.state.symbol(&text).map(|symbol| (symbol.meaning.clone(), symbol.origin.clone()));
         match existing {
@@ -271,9 +274,22 @@ impl Evaluator<'_> {
             let similar = similar_names(&label.text, labels);
             self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
         }
-        let next = target.unwrap_or(index + 1);
+        let mut next = target.unwrap_or(index + 1);
+        if self.skips_check_label(top, index, next) {
+            // Only Section 2 can know whether the statements between are reached: it makes the jump.
+            let text = normalised_label(&label.text);
+            let origin = self.origin(label.range);
+            self.output.transfers.push((text.clone(), origin));
+            self.emit(RecordKind::Transfer(text), label.range);
+            next = index + 1;
+        }
         // Where labels are depends on every statement.
         StepEnd { next, read_to: count, read_from: index.min(next) }
+    }
+
+    /// Whether a statement that a check surface may lead to stands between a jump and its target.
+    fn skips_check_label(&self, top: &mut TopLevel<'_>, index: usize, next: usize) -> bool {
+        self.state.open_checks.iter().any(|open| top.label(open).is_some_and(|at| at > index && at < next))
     }
 
     /// INCLUD: executes the statements of another file in place.

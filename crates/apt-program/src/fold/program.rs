@@ -86,13 +86,12 @@ impl Program {
                     reused += chunk.steps();
                     chunks.push(chunk.moved(shift));
                 }
-                if shift.is_nothing() {
-                    (Program::joined_end(&chunks, old), true)
-                } else {
-                    let mut end = (*Program::joined_end(&chunks, old)).clone();
-                    shift.state(&mut end);
-                    (Arc::new(end), true)
+                // The states agree at the seam, and what follows is the same: so does the end.
+                let mut end = Arc::clone(&old.end);
+                if !shift.is_nothing() {
+                    shift.state(Arc::make_mut(&mut end));
                 }
+                (end, true)
             }
         };
         let findings = Arc::new(closing_findings(&chunks, &end, complete));
@@ -102,11 +101,6 @@ impl Program {
             checkpoints: chunks.len(),
         };
         Program { chunks, end, complete, findings, statistics }
-    }
-
-    /// The state at the end when the rest was reused: states agree from the seam on.
-    fn joined_end(_chunks: &[Chunk], old: &Program) -> Arc<State> {
-        Arc::clone(&old.end)
     }
 
     /// An evaluation that gave nothing.
@@ -141,9 +135,10 @@ impl Program {
         self.chunks.iter().flat_map(|chunk| chunk.data().definitions.iter())
     }
 
-    /// All names with their values at the end, sorted; elements of arrays as `NAME(3)`.
+    /// All names with their values at the end, sorted; elements of arrays as `NAME(3)`. Geometry is in the coordinates
+    /// of the reference system in force at the end.
     pub fn symbols(&self) -> Vec<(SmolStr, Value)> {
-        values_of(&self.end.symbols)
+        values_of(&self.end.symbols, self.end.system.as_ref())
     }
 
     /// What the evaluation cost.

@@ -8,12 +8,12 @@ use apt_geometry::{
 };
 use apt_syntax::{
     TextRange,
-    statement::{Definition, Expression, Reference},
+    statement::{Definition, Expression, Name, Reference},
 };
 use smol_str::SmolStr;
 
 use crate::{
-    evaluator::Evaluator,
+    evaluator::{Evaluator, Synonym},
     expression::{Item, Operand, Resolved},
     finding::{FindingKind, Found, RelatedKind, Severity},
     record::Origin,
@@ -153,6 +153,10 @@ impl Evaluator<'_> {
             return None;
         };
         match definition::define(kind, &arguments, &DefinitionContext { z_surface }) {
+            Ok(Geometry::Line(line)) if self.is_apt4() && is_line_by_two_points(&arguments) => {
+                // The normal of APT4 points to the left of the way from the first to the second point.
+                Some(Arc::new(Geometry::Line(line.reversed())))
+            }
             Ok(geometry) => Some(Arc::new(geometry)),
             Err(error) => {
                 let range = target.map_or(definition.range, |target| definition.range.cover(target.range));
@@ -323,7 +327,19 @@ impl Evaluator<'_> {
                 Some(index)
             }
         };
+        self.claim_word(&reference.name);
         Some(Target { reference, index })
+    }
+
+    /// A vocabulary word that is assigned to becomes a name from here on, where the dialect says so.
+    fn claim_word(&mut self, name: &Name) {
+        if !self.dialect.words_as_names || self.state.synonyms.contains_key(&name.text) {
+            return;
+        }
+        if apt_syntax::vocabulary::lookup(&name.text).is_some() {
+            self.report(FindingKind::WordBecomesName { name: name.text.clone() }, name.range);
+            self.state.synonyms.insert(name.text.clone(), Synonym::Name);
+        }
     }
 
     /// Sets the meaning of a name.
@@ -352,4 +368,14 @@ fn has_canon(definition: &Definition) -> bool {
         .arguments
         .iter()
         .any(|argument| matches!(argument, Argument::Word(word) if word.word.spelling == "CANON"))
+}
+
+/// Whether these are the arguments of a LINE by two points: four numbers, or two points.
+fn is_line_by_two_points(arguments: &[definition::Argument]) -> bool {
+    use definition::Argument as Given;
+    matches!(
+        arguments,
+        [Given::Scalar(_), Given::Scalar(_), Given::Scalar(_), Given::Scalar(_)]
+            | [Given::Geometry(Geometry::Point(_)), Given::Geometry(Geometry::Point(_))]
+    )
 }

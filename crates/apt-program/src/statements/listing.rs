@@ -60,6 +60,19 @@ impl Evaluator<'_> {
         }
     }
 
+    /// LIBRY: there is no library of system macros, so each name is one that is not found.
+    pub(crate) fn library(&mut self, major: Major<'_>) {
+        for argument in major.arguments {
+            match argument {
+                Argument::Expression(Expression::Reference(reference)) => {
+                    let name = reference.name.text.clone();
+                    self.report(FindingKind::IncludeNotFound { name }, reference.range);
+                }
+                other => self.wrong_operand(major, Expected::Name, Found::Nothing, 156, other.range()),
+            }
+        }
+    }
+
     /// System flags: accepted; those that APT III does not implement get its warning.
     pub(crate) fn system_flag(&mut self, major: Major<'_>) {
         match major.spelling() {

@@ -132,6 +132,8 @@ impl Evaluator<'_> {
             "LOOPND" => return self.loop_word_in_region(major, false),
             "TERMAC" => self.report(FindingKind::MacroEndAlone, major.word.range),
             "INCLUD" => return self.include(major),
+            "MACHIN" => self.machine(major),
+            "LIBRY" => self.library(major),
             _ => self.other_major(major),
         }
         Flow::Next

@@ -61,9 +61,6 @@ impl Evaluator<'_> {
         if bare && (major.slash || !major.arguments.is_empty()) {
             return self.report(FindingKind::PostBare { word: major.name() }, major.range);
         }
-        if major.spelling() == "MACHIN" {
-            return self.machine(major);
-        }
         let Some(items) = self.post_operands(major.arguments) else { return };
         self.emit_post(major, &items, Vec::with_capacity(items.len()));
     }
@@ -151,7 +148,7 @@ impl Evaluator<'_> {
     }
 
     /// MACHIN/name,n,...: the name is taken as it stands.
-    fn machine(&mut self, major: Major<'_>) {
+    pub(crate) fn machine(&mut self, major: Major<'_>) {
         let name = match major.arguments.first() {
             Some(Argument::Expression(Expression::Reference(reference))) if reference.subscript.is_none() => {
                 reference.name.text.clone()

@@ -93,19 +93,26 @@ impl Meaning {
     }
 }
 
-/// All names with values, sorted; elements of arrays as `NAME(3)`.
-pub(crate) fn values_of(table: &SymbolTable) -> Vec<(SmolStr, Value)> {
+/// All names with values, sorted; elements of arrays as `NAME(3)`. Geometry is in the coordinates of `system`, or, if
+/// it cannot be carried there, of the system in which it was defined.
+pub(crate) fn values_of(
+    table: &SymbolTable,
+    system: Option<&Arc<ReferenceSystem>>,
+) -> Vec<(SmolStr, Value)> {
+    let seen = |stored: &Stored| {
+        Value::Geometry(stored.seen_from(system).unwrap_or_else(|| Arc::clone(&stored.geometry)))
+    };
     let mut values = Vec::new();
     for (name, symbol) in table {
         match &symbol.meaning {
             Meaning::Scalar(number) => values.push((name.clone(), Value::Scalar(*number))),
-            Meaning::Geometry(stored) => values.push((name.clone(), Value::Geometry(Arc::clone(&stored.geometry)))),
+            Meaning::Geometry(stored) => values.push((name.clone(), seen(stored))),
             Meaning::Array(array) => {
                 let stem = name.trim_end_matches(ARRAY_KEY_SUFFIX);
                 for (subscript, element) in array.elements() {
                     let value = match element {
                         ArrayElement::Scalar(number) => Value::Scalar(*number),
-                        ArrayElement::Geometry(stored) => Value::Geometry(Arc::clone(&stored.geometry)),
+                        ArrayElement::Geometry(stored) => seen(stored),
                         ArrayElement::Poisoned => continue,
                     };
                     values.push((smol_str::format_smolstr!("{stem}({subscript})"), value));

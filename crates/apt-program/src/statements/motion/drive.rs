@@ -211,6 +211,7 @@ impl Evaluator<'_> {
         check.label = Some(label.to_string());
         let origin = self.origin(range);
         self.mark_used(name);
+        self.state.open_checks.insert(label.clone());
         self.output.transfers.push((label, origin));
         Some(())
     }

@@ -1,0 +1,191 @@
+//! Mistakes and the findings they give: statement number and APT III number (language reference 9.5).
+
+use apt_program::{Finding, Options, Program, Severity, evaluate};
+use apt_syntax::{Dialect, DialectName, SyntaxTree};
+
+fn run(text: &str) -> Program {
+    let tree = SyntaxTree::parse(text, Dialect::named(DialectName::Free));
+    evaluate(&tree, &Options::default(), &|| false)
+}
+
+fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
+    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
+    serious.map(|finding: &Finding| (finding.origin.isn, finding.kind.apt3())).collect()
+}
+
+/// Name, program without FINI, and the problems as (statement, APT III number).
+const CASES: &[(&str, &str, &[(u32, u16)])] = &[
+    ("undefined name", "A=ZZZ", &[(1, 101)]),
+    ("three undefined names", "P=POINT/UU,VV,WW", &[(1, 101), (1, 101), (1, 101)]),
+    ("poisoned name is silent", "P=POINT/UU,0\nL=LINE/P,P\nL2=LINE/L,L", &[(1, 101)]),
+    ("poisoned scalar is silent", "A=4/0\nB=A+1\nGOTO/B,0,0", &[(1, 63)]),
+    ("label as scalar", "XX)A=1\nB=XX+1", &[(2, 251)]),
+    ("label is a name", "A=1\nA)B=2", &[(2, 3)]),
+    ("label twice", "A)B=1\nA)B=2", &[(2, 6)]),
+    ("point as scalar", "P=POINT/1,2\nA=P+1", &[(2, 83)]),
+    ("surface copy", "P1=POINT/1,2\nP2=P1", &[(2, 83)]),
+    ("redefined surface", "P=POINT/1,2\nP=POINT/3,4", &[(2, 1002)]),
+    ("scalar to surface", "P=3\nP=POINT/3,4", &[(2, 1002)]),
+    ("surface to scalar", "P=POINT/3,4\nP=3", &[(2, 108)]),
+    ("other type under CANON", "P=POINT/3,4\nCANON/ON\nP=LINE/0,0,1,1", &[(3, 1006)]),
+    ("redefinition allowed", "P=POINT/3,4\nCANON/ON\nP=POINT/0,0", &[]),
+    ("redefinition by CANON", "P=POINT/3,4\nP=POINT/CANON,1,2,3", &[]),
+    ("subscript range", "RESERV/A,3\nA(4)=1", &[(2, 104)]),
+    ("subscript zero", "RESERV/A,3\nA(0)=1", &[(2, 104)]),
+    ("subscript missing", "RESERV/A,3\nA=1", &[(2, 105)]),
+    ("not reserved", "A(1)=3", &[(1, 108)]),
+    ("unknown function", "A=INTF(3)", &[(1, 108)]),
+    ("mixed array", "RESERV/A,3\nA(1)=1\nA(2)=POINT/1,2", &[(3, 106)]),
+    ("mixed order of RESERV", "RESERV/A,3,4,B", &[(1, 255)]),
+    ("RESERV of a used name", "A=1\nRESERV/A,3", &[(2, 256)]),
+    ("RESERV in a macro", "M=MACRO\nRESERV/A,3\nTERMAC\nCALL/M", &[(2, 252)]),
+    ("RESERV in a loop", "LOOPST\nRESERV/A,3\nLOOPND", &[(2, 252)]),
+    ("no such format", "P=POINT/1", &[(1, 1000)]),
+    ("degenerate geometry", "L=LINE/1,2,1,2", &[(1, 1005)]),
+    ("CANON count", "P=POINT/CANON,1,2", &[(1, 84)]),
+    ("OBTAIN other type", "C=CIRCLE/0,0,1\nOBTAIN,LINE/C,X", &[(2, 153)]),
+    ("OBTAIN too many", "P=POINT/0,0,1\nOBTAIN,POINT/P,X,Y,Z,W", &[(2, 154)]),
+    ("OBTAIN into geometry", "P=POINT/0,0,1\nOBTAIN,POINT/P,P", &[(2, 1002)]),
+    ("scalar to PSIS", "PSIS/3", &[(1, 1000)]),
+    ("point to PSIS", "PSIS/(POINT/1,2)", &[(1, 576)]),
+    ("point to REFSYS", "P=POINT/1,2\nREFSYS/P", &[(2, 651)]),
+    ("unnamed matrix to REFSYS", "REFSYS/(MATRIX/SCALE,2)", &[(1, 651)]),
+    ("TRACUT of a scalar", "TRACUT/4", &[(1, 506)]),
+    ("point in a post statement", "P=POINT/1,2\nSPINDL/P", &[(2, 501)]),
+    ("line for CLEARP", "L=LINE/XAXIS\nCLEARP/L", &[(2, 502)]),
+    ("undefined in a post statement", "SPINDL/N", &[(1, 101)]),
+    ("number for MACHIN", "MACHIN/1,2", &[(1, 503)]),
+    ("SYN with one operand", "SYN/A", &[(1, 351)]),
+    ("SYN in a macro", "M=MACRO\nSYN/GL,GOLFT\nTERMAC\nCALL/M", &[(2, 353)]),
+    ("COPY count", "COPY/1,TRANSL,1,0,0", &[(1, 507)]),
+    ("COPY option", "COPY/1,SCALE,2,2", &[(1, 503)]),
+    ("implied check before GOTO", "L=LINE/XAXIS\nGOLFT/L\nGOTO/1,1,1", &[(3, 137)]),
+    ("implied check before FINI", "L=LINE/XAXIS\nGOLFT/L", &[(3, 650)]),
+    ("implied check of GOUP", "L=LINE/XAXIS\nGOUP/L", &[(2, 136)]),
+    ("modifier on drive", "L=LINE/XAXIS\nGOLFT/TO,L,TO,L", &[(2, 135)]),
+    ("GO with four surfaces", "L=LINE/XAXIS\nGO/L,L,L,L", &[(2, 129)]),
+    ("OFFSET with three surfaces", "L=LINE/XAXIS\nOFFSET/L,L,L", &[(2, 129)]),
+    ("five numbers", "GOTO/1,2,3,4,5", &[(1, 129)]),
+    ("three cutter numbers", "CUTTER/1,2,3", &[(1, 129)]),
+    ("five tolerances", "INTOL/1,2,3,4,5", &[(1, 129)]),
+    ("pattern number", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,OMIT,9", &[(2, 812)]),
+    ("OMIT and RETAIN", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,OMIT,1,RETAIN,2", &[(2, 811)]),
+    ("OMIT without number", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,OMIT", &[(2, 836)]),
+    ("OMIT not ascending", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,OMIT,3,1", &[(2, 838)]),
+    ("unknown pattern word", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,LEFT", &[(2, 832)]),
+    ("number after pattern", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,2", &[(2, 830)]),
+    ("INVERS twice", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,INVERS,INVERS", &[(2, 834)]),
+    ("INVERS too late", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,OMIT,1,INVERS", &[(2, 833)]),
+    ("ZIGZAG of a row", "P=PATERN/LINEAR,(1,1),(2,2),5\nGOTO/P,ZIGZAG", &[(2, 835)]),
+    ("JUMPTO outside", "A)B=1\nJUMPTO/A", &[(2, 407)]),
+    ("IF outside", "A)B=1\nIF(B)A,A,A", &[(2, 407)]),
+    ("foreign label", "A)B=1\nLOOPST\nJUMPTO/A\nLOOPND", &[(3, 406)]),
+    ("LOOPND alone", "LOOPND", &[(1, 208)]),
+    ("nested loop", "LOOPST\nLOOPST\nLOOPND\nLOOPND", &[(2, 206), (4, 208)]),
+    ("loop in macro", "M=MACRO\nLOOPST\nTERMAC\nCALL/M", &[(2, 210)]),
+    ("TERMAC alone", "TERMAC", &[(1, 209)]),
+    ("macro not closed", "M=MACRO\nA=1", &[(3, 16)]),
+    ("loop not closed", "LOOPST\nA=1", &[(3, 16)]),
+    ("macro in macro", "M=MACRO\nN=MACRO\nTERMAC\nTERMAC", &[(2, 201), (4, 209)]),
+    ("macro in loop", "LOOPST\nN=MACRO\nTERMAC\nLOOPND", &[(2, 201), (3, 209)]),
+    ("macro name used", "M=1\nM=MACRO\nTERMAC", &[(2, 202)]),
+    ("unknown macro", "CALL/NOSUCH", &[(1, 233)]),
+    ("unknown macro variable", "M=MACRO/A\nTERMAC\nCALL/M,A=1,B=2", &[(3, 228)]),
+    ("macro variable without value", "M=MACRO/A\nTERMAC\nCALL/M", &[(3, 230)]),
+    ("macro value expression", "M=MACRO/A\nB=A\nTERMAC\nCALL/M,A=3+4", &[(4, 235)]),
+    ("assignment to a number", "M=MACRO/A\nA=9\nTERMAC\nCALL/M,A=4", &[(2, 5)]),
+    ("recursion", "M=MACRO\nCALL/M\nTERMAC\nCALL/M", &[(2, 231)]),
+    ("error in a macro stands at the body", "M=MACRO/A\nB=1/A\nTERMAC\nCALL/M,A=0", &[(2, 63)]),
+    ("SQRTF negative", "A=SQRTF(-4)\nB=A+1", &[(1, 67)]),
+    ("fractional power of negative", "A=(-8)**.5", &[(1, 68)]),
+    ("LOGF of zero", "A=LOGF(0)", &[(1, 66)]),
+    ("DISTF not parallel", "A=LINE/0,0,1,1\nB=LINE/0,0,1,2\nD=DISTF(A,B)", &[(3, 66)]),
+    ("DOTF of one", "V=VECTOR/1,0,0\nA=DOTF(V)", &[(2, 65)]),
+    ("scalar to ZSURF", "Z=4\nZSURF/Z", &[(2, 1000)]),
+    ("circle to ZSURF", "C=CIRCLE/0,0,1\nZSURF/C", &[(2, 26)]),
+    ("vertical ZSURF", "ZSURF/1,0,0,1", &[(1, 1005)]),
+    ("POCKET without numbers", "POCKET/1,2", &[(1, 376)]),
+    ("POCKET points", "POCKET/.4,1,.8,5,5,5,1,1,0,0,0,1,1,1", &[(1, 377)]),
+    ("unknown transfer label", "TRANTO/NIX", &[(1, 406)]),
+    ("PRINT number", "PRINT/7", &[(1, 326)]),
+];
+
+#[test]
+fn each_mistake_is_reported_at_its_statement_with_its_number() {
+    let mut wrong = String::new();
+    for (name, text, expected) in CASES {
+        let program = run(&format!("{text}\nFINI\n"));
+        let found = problems(&program);
+        let expected: Vec<(u32, Option<u16>)> = expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
+        if found != expected {
+            let kinds: Vec<String> = program.findings().map(|finding| format!("{:?}", finding.kind)).collect();
+            wrong.push_str(&format!("{name}: expected {expected:?}, found {found:?} {kinds:?}\n"));
+        }
+        assert!(program.is_complete());
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn a_missing_fini_is_a_warning() {
+    let program = run("A=1\nB=A");
+    assert_eq!(problems(&program), [(2, Some(23))]);
+}
+
+#[test]
+fn an_endless_loop_ends_and_says_where_it_went() {
+    let program = run("I=0\nLOOPST\nA)I=I+1\nJ=2\nJUMPTO/A\nLOOPND\nGOTO/1,2,3\nFINI\n");
+    let found: Vec<&Finding> = program.findings().filter(|finding| finding.severity == Severity::Error).collect();
+    let [endless] = found.as_slice() else { panic!("{found:?}") };
+    let apt_program::FindingKind::Endless { changing, statements } = &endless.kind else { panic!("{endless:?}") };
+    assert_eq!(changing.as_slice(), ["I"]);
+    assert_eq!(*statements, Options::default().statement_budget);
+    let frame = endless.origin.frame.as_ref().expect("a loop turn");
+    assert!(frame.turn > 1000 && frame.isn == 2);
+    assert_eq!(program.record_count(), 2, "the program goes on after the loop");
+}
+
+#[test]
+fn a_finding_in_a_loop_in_a_macro_tells_the_way_there() {
+    let text = "M=MACRO/N\nI=0\nA)I=I+1\nB=1/(I-2)\nIF(I-N)A,Z,Z\nZ)TERMAC\nCALL/M,N=3\nFINI\n";
+    let program = run(text);
+    let error = program.findings().find(|finding| finding.severity == Severity::Error).expect("an error");
+    assert_eq!((error.origin.isn, error.kind.apt3()), (4, Some(63)));
+    let frame = error.origin.frame.as_ref().expect("a frame");
+    assert_eq!((frame.name.as_str(), frame.isn, frame.turn), ("M", 7, 2));
+}
+
+#[test]
+fn similar_names_are_offered() {
+    let program = run("RADIU1=2\nC=CIRCLE/0,0,RADIU2\nFINI\n");
+    let kinds: Vec<_> = program.findings().map(|finding| finding.kind.clone()).collect();
+    let expected = apt_program::FindingKind::Undefined { name: "RADIU2".into(), similar: vec!["RADIU1".into()] };
+    assert!(kinds.contains(&expected), "{kinds:?}");
+}
+
+#[test]
+fn cancelled_work_is_not_complete() {
+    let tree = SyntaxTree::parse("A=1\nFINI\n", Dialect::named(DialectName::Free));
+    let program = evaluate(&tree, &Options::default(), &|| true);
+    assert!(!program.is_complete());
+}
+
+#[test]
+fn every_major_word_of_apt_iii_does_something() {
+    use apt_program::FindingKind;
+    use apt_syntax::vocabulary::{WordClass, words};
+    let majors = words().iter().filter(|word| {
+        !matches!(
+            word.class,
+            WordClass::Minor | WordClass::Function | WordClass::GeometricType | WordClass::Text
+        ) && word.dialects.contains(&DialectName::Apt3)
+    });
+    let mut count = 0;
+    for word in majors {
+        count += 1;
+        let program = run(&format!("{}\nFINI\n", word.spelling));
+        let unknown = program.findings().find(|finding| matches!(finding.kind, FindingKind::NotInDialect { .. }));
+        assert!(unknown.is_none(), "{} is not handled", word.spelling);
+    }
+    assert!(count > 120, "{count} major words");
+}

@@ -1,0 +1,146 @@
+//! Evaluation after edits equals evaluation from scratch, and costs what the edit touches.
+
+use apt_program::{Options, Program, evaluate};
+use apt_syntax::{Dialect, DialectName, SyntaxTree, TextRange, TextSize};
+use proptest::prelude::*;
+
+fn parse(text: &str) -> SyntaxTree {
+    SyntaxTree::parse(text, Dialect::named(DialectName::Free))
+}
+
+fn run(tree: &SyntaxTree) -> Program {
+    evaluate(tree, &options(), &|| false)
+}
+
+/// Small budgets: random programs loop endlessly now and then.
+fn options() -> Options {
+    Options { statement_budget: 5_000, ..Options::default() }
+}
+
+fn assert_same(left: &Program, right: &Program, text: &str) {
+    let records = |program: &Program| program.records().cloned().collect::<Vec<_>>();
+    let findings = |program: &Program| program.findings().cloned().collect::<Vec<_>>();
+    let definitions = |program: &Program| program.definitions().cloned().collect::<Vec<_>>();
+    assert_eq!(records(left), records(right), "records of\n{text}");
+    assert_eq!(definitions(left), definitions(right), "definitions of\n{text}");
+    assert_eq!(findings(left), findings(right), "findings of\n{text}");
+    assert_eq!(left.symbols(), right.symbols(), "symbols of\n{text}");
+    assert_eq!(left.record_count(), right.record_count());
+}
+
+fn edited(tree: &SyntaxTree, start: usize, end: usize, insert: &str) -> (SyntaxTree, apt_syntax::StatementChange) {
+    let size = |offset: usize| TextSize::new(u32::try_from(offset).expect("small"));
+    tree.edit(TextRange::new(size(start), size(end)), insert)
+}
+
+fn long_program(lines: usize) -> String {
+    let mut text = String::from("PARTNO LONG\nA=1\nP=POINT/1,2,3\n");
+    for line in 0..lines {
+        text.push_str(&format!("GOTO/{line},A,0\n"));
+    }
+    text.push_str("FINI\n");
+    text
+}
+
+#[test]
+fn an_edit_in_the_middle_evaluates_little() {
+    let text = long_program(10_000);
+    let tree = parse(&text);
+    let program = run(&tree);
+    assert_eq!(program.statistics().evaluated_statements, 10_004);
+    let at = text.find("GOTO/5000,").expect("the line");
+    let (tree, change) = edited(&tree, at + 5, at + 9, "7777");
+    let updated = program.update(&tree, &change, &options(), &|| false);
+    assert_same(&updated, &run(&tree), "an edited line");
+    assert!(updated.statistics().evaluated_statements <= 256, "{:?}", updated.statistics());
+    assert!(updated.statistics().reused_statements >= 9_700);
+}
+
+#[test]
+fn inserted_lines_move_the_rest() {
+    let text = long_program(2_000);
+    let tree = parse(&text);
+    let program = run(&tree);
+    let at = text.find("GOTO/500,").expect("the line");
+    let (tree, change) = edited(&tree, at, at, "$$ one\nGOTO/9,9,9\n$$ three\n");
+    let updated = program.update(&tree, &change, &options(), &|| false);
+    assert_same(&updated, &run(&tree), "inserted lines");
+    assert!(updated.statistics().evaluated_statements <= 260, "{:?}", updated.statistics());
+    let last = updated.records().last().expect("records");
+    assert_eq!(last.origin.isn, 2_007);
+}
+
+#[test]
+fn a_changed_value_reaches_everything_after_it() {
+    let text = long_program(1_000);
+    let tree = parse(&text);
+    let program = run(&tree);
+    let at = text.find("A=1").expect("the line");
+    let (tree, change) = edited(&tree, at + 2, at + 3, "5");
+    let updated = program.update(&tree, &change, &options(), &|| false);
+    assert_same(&updated, &run(&tree), "a changed scalar");
+    assert!(updated.statistics().evaluated_statements > 900);
+}
+
+/// Statements that random programs are made of.
+const LINES: &[&str] = &[
+    "A=1", "A=A+1", "B=A*2", "A=ZZ", "B=1/0", "P1=POINT/A,B", "P1=POINT/CANON,1,2,3", "P2=POINT/1,2,3",
+    "L1=LINE/P1,P2", "L1=LINE/XAXIS", "L2=LINE/YAXIS", "C1=CIRCLE/0,0,A", "CANON/ON", "CANON/OFF", "GOTO/P1",
+    "GOTO/A,B,3", "FROM/0,0", "GO/TO,L1", "TLLFT,GOLFT/L1", "GORGT/L2,TO,L1", "TLON,GOFWD/L2", "RAPID",
+    "FEDRAT/A,IPM", "M1=MACRO/X,Y=2", "TERMAC", "X=X+Y", "GOTO/X,Y,0", "CALL/M1,X=A", "CALL/M1,X=3", "LOOPST",
+    "LOOPND", "I=0", "T1)I=I+1", "IF(I-3)T1,T2,T2", "T2)B=I", "JUMPTO/T1", "RESERV/Q,5", "Q(A)=I", "Q(2)=P1",
+    "GODLTA/Q(1)", "M2=MATRIX/TRANSL,A,0,0", "REFSYS/M2", "REFSYS/NOMORE", "ZSURF/0,0,1,A", "TRACUT/M2",
+    "SYN/GG,GOTO", "GG/1,1,1", "OBTAIN,POINT/P1,PX,PY", "TRANTO/T2", "$$ a comment", "", "P=(", "FINI", "PPRINT HI",
+    "GOLFT/L1,TO,L2,T1,TO,C1,T2", "INDEX/1", "COPY/1,SAME,2", "MULTAX", "PT1=PATERN/LINEAR,P1,P2,4", "GOTO/PT1,INVERS",
+];
+
+fn line() -> impl Strategy<Value = &'static str> {
+    prop::sample::select(LINES)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(192))]
+
+    #[test]
+    fn update_equals_evaluation_from_scratch(
+        lines in prop::collection::vec(line(), 1..60),
+        repeat in 1_usize..8,
+        edits in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..3, prop::collection::vec(line(), 0..3)), 1..6),
+    ) {
+        let mut current: Vec<&str> = lines.iter().copied().cycle().take(lines.len() * repeat).collect();
+        let mut tree = parse(&(current.join("\n") + "\n"));
+        let mut program = run(&tree);
+        for (place, removed, inserted) in edits {
+            let first = place.index(current.len().max(1)).min(current.len());
+            let last = (first + removed).min(current.len());
+            let offset = |index: usize| current[..index].iter().map(|line| line.len() + 1).sum::<usize>();
+            let text: String = inserted.iter().map(|line| format!("{line}\n")).collect();
+            let (new_tree, change) = edited(&tree, offset(first), offset(last), &text);
+            current.splice(first..last, inserted);
+            tree = new_tree;
+            program = program.update(&tree, &change, &options(), &|| false);
+            assert_same(&program, &run(&tree), &tree.text());
+        }
+    }
+
+    #[test]
+    fn mutated_programs_never_panic(
+        lines in prop::collection::vec(line(), 1..40),
+        cuts in prop::collection::vec((any::<prop::sample::Index>(), "[ -~]{0,3}"), 0..12),
+        dialect in prop::sample::select(&DialectName::ALL[..]),
+    ) {
+        let mut text: Vec<char> = lines.join("\n").chars().collect();
+        for (place, insert) in cuts {
+            if !text.is_empty() {
+                let at = place.index(text.len());
+                text.splice(at..=at, insert.chars());
+            }
+        }
+        let text: String = text.into_iter().collect();
+        let tree = SyntaxTree::parse(&text, Dialect::named(dialect));
+        let program = evaluate(&tree, &options(), &|| false);
+        prop_assert!(program.is_complete());
+        let expansion = apt_program::expand(&tree, &options(), None, None, &|| false);
+        prop_assert!(expansion.lines.len() < 1_000_000);
+    }
+}
