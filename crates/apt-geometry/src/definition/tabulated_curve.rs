@@ -23,7 +23,7 @@ const UPRIGHT: f64 = 1e-9;
 /// Height of a cubic term over its chord, relative to the chord, that is rounding.
 const FLAT: f64 = 1e-14;
 /// Most points that a TABCYL takes; APT III had room for 139, the bound here only keeps the spline's work finite.
-const MOST_POINTS: usize = 20_000;
+const MOST_POINTS: usize = 2_000;
 
 /// One data point in the (u,v) plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
