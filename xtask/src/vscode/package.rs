@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{install_modules, npm_run};
-use crate::failure::{FileContext, Outcome};
+use crate::failure::{Failure, FileContext, Outcome};
 use crate::layout;
 use crate::process::Call;
 
@@ -19,6 +19,7 @@ pub(crate) fn run(output: &Path) -> Outcome {
 
 /// Writes a package with the binary `server` in it.
 pub(super) fn with_server(server: &Path, output: &Path) -> Outcome {
+    let platform = platform()?;
     let folder = layout::vscode().join("server");
     if folder.exists() {
         std::fs::remove_dir_all(&folder).on("remove", &folder)?;
@@ -32,10 +33,42 @@ pub(super) fn with_server(server: &Path, output: &Path) -> Outcome {
         std::fs::create_dir_all(parent).on("create", parent)?;
     }
     Call::new(layout::vscode().join("node_modules/.bin/vsce"))
-        .args(["package", "--no-dependencies", "--allow-missing-repository", "--out"])
+        .args(["package", "--no-dependencies", "--allow-missing-repository", "--target", &platform, "--out"])
         .args([output])
         .folder(layout::vscode())
         .run()?;
     println!("packaged {}", output.display());
     Ok(())
+}
+
+/// This platform's name in the packages of VS Code: the package holds a binary, so it fits one platform.
+fn platform() -> Outcome<String> {
+    let system = match std::env::consts::OS {
+        "linux" => "linux",
+        "macos" => "darwin",
+        "windows" => "win32",
+        other => return Err(unsupported(other)),
+    };
+    let machine = match std::env::consts::ARCH {
+        "x86_64" => "x64",
+        "aarch64" => "arm64",
+        other => return Err(unsupported(other)),
+    };
+    Ok(format!("{system}-{machine}"))
+}
+
+fn unsupported(what: &str) -> Failure {
+    Failure::Missing {
+        what: format!("a VS Code for {what}"),
+        remedy: "set apt.server.path in an extension packaged elsewhere".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_platform_has_system_and_machine() {
+        let platform = super::platform().expect("tests run where VS Code does");
+        assert_eq!(platform.split('-').count(), 2, "{platform}");
+    }
 }
