@@ -4,6 +4,8 @@ pub(super) mod github;
 pub(super) mod human;
 pub(super) mod json;
 pub(super) mod sarif;
+#[cfg(test)]
+mod tests;
 
 use super::Outcome;
 use super::program::Program;

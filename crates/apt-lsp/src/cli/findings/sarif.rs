@@ -23,7 +23,8 @@ pub(in crate::cli) fn print(checked: &[Checked], console: &Console, language: &d
     }
 }
 
-fn log(checked: &[Checked], language: &dyn Language) -> sarif::Sarif {
+/// The log, with one rule for each code that occurs.
+pub(super) fn log(checked: &[Checked], language: &dyn Language) -> sarif::Sarif {
     let codes = rule_numbers(checked);
     let results: Vec<_> = checked
         .iter()
