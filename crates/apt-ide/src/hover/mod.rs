@@ -1,0 +1,156 @@
+//! Hovers: a word's help, a name's value with the meaning of each number, a motion's result.
+
+mod canonical;
+mod motion;
+
+use std::ops::Range;
+
+use apt_program::symbols::Value;
+use apt_syntax::{
+    statement::ElementKind,
+    vocabulary::{Word, WordClass, lookup},
+};
+
+pub use canonical::{CanonicalForm, number};
+
+use crate::{Analysis, Cancel, Cancelled, absolute};
+
+/// A hover.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hover {
+    /// What it is about, bytes of the text.
+    pub range: Range<usize>,
+    /// The text, Markdown.
+    pub markdown: String,
+}
+
+impl Analysis {
+    /// What is to be said about the place at an offset.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the answer was found.
+    pub fn hover(&self, offset: usize, cancel: Cancel<'_>) -> Result<Option<Hover>, Cancelled> {
+        let Some((view, relative)) = self.statement_at(offset) else { return Ok(None) };
+        let parsed = view.parsed();
+        let Some(element) = parsed.elements.iter().find(|element| element.range.contains_inclusive(relative))
+        else {
+            return Ok(None);
+        };
+        let range = absolute(&view, element.range);
+        let markdown = match element.kind {
+            ElementKind::Word => match lookup(&element.text) {
+                Some(word) if matches!(word.class, WordClass::Motion) => {
+                    let result = self.motion_markdown(view.isn(), cancel)?;
+                    format!("{result}{}", word_markdown(word))
+                }
+                Some(word) => word_markdown(word),
+                None => return Ok(None),
+            },
+            ElementKind::Name => match self.name_markdown(offset, view.isn(), cancel)? {
+                Some(markdown) => markdown,
+                None => return Ok(None),
+            },
+            _ => return Ok(None),
+        };
+        Ok(Some(Hover { range, markdown }))
+    }
+
+    /// The canonical form of the name at an offset.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the answer was found.
+    pub fn canonical_form(
+        &self,
+        offset: usize,
+        cancel: Cancel<'_>,
+    ) -> Result<Option<CanonicalForm>, Cancelled> {
+        let Some((view, _)) = self.statement_at(offset) else { return Ok(None) };
+        let Some(at) = self.name_at(offset) else { return Ok(None) };
+        Ok(self
+            .value_at(&at.name, view.isn(), cancel)?
+            .map(|(name, value)| CanonicalForm::new(&name, &value)))
+    }
+
+    /// The value of a name at a statement: the last one given up to it, else the first one given after it.
+    fn value_at(
+        &self,
+        name: &str,
+        isn: u32,
+        cancel: Cancel<'_>,
+    ) -> Result<Option<(String, Value)>, Cancelled> {
+        let program = self.document().program(cancel)?;
+        let mut found = None;
+        for event in program.definitions().filter(|event| event.name == name) {
+            if event.origin.isn > isn && found.is_some() {
+                break;
+            }
+            let title = match event.subscript {
+                Some(subscript) => format!("{name}({subscript})"),
+                None => name.to_owned(),
+            };
+            found = Some((title, event.value.clone()));
+        }
+        Ok(found)
+    }
+
+    fn name_markdown(
+        &self,
+        offset: usize,
+        isn: u32,
+        cancel: Cancel<'_>,
+    ) -> Result<Option<String>, Cancelled> {
+        let Some(at) = self.name_at(offset) else { return Ok(None) };
+        if at.label {
+            return Ok(Some(format!("label `{}`", at.name)));
+        }
+        if let Some((name, value)) = self.value_at(&at.name, isn, cancel)? {
+            return Ok(Some(CanonicalForm::new(&name, &value).markdown()));
+        }
+        let region = self.regions().iter().find(|region| region.name == at.name);
+        if let Some(region) = region {
+            let count = region.last.saturating_sub(region.first + 1);
+            let header = format!("{}=MACRO/{}", region.name, region.variables.join(","));
+            return Ok(Some(format!("```apt\n{header}\n```\nmacro of {count} statements")));
+        }
+        let local = self.regions().iter().rfind(|region| {
+            region.variables.contains(&at.name) && at.scope.statements == Some((region.first, region.last))
+        });
+        Ok(local.map(|region| format!("variable `{}` of macro `{}`", at.name, region.name)))
+    }
+}
+
+/// A word's page: forms and help.
+pub fn word_markdown(word: &Word) -> String {
+    let mut text = String::new();
+    if !word.forms.is_empty() {
+        text.push_str(&format!("```apt\n{}\n```\n", word.forms.join("\n")));
+    } else {
+        text.push_str(&format!("**{}** ", word.spelling));
+    }
+    text.push_str(word.help);
+    if let Some(code) = word.code {
+        text.push_str(&format!("\n\n{} {code}", class_title(word.class)));
+    }
+    text
+}
+
+fn class_title(class: WordClass) -> &'static str {
+    match class {
+        WordClass::Text => "text word, code",
+        WordClass::Motion => "motion, code",
+        WordClass::ToolPosition => "tool position, code",
+        WordClass::PathParameter => "path parameter, code",
+        WordClass::PathControl => "path control, code",
+        WordClass::Logic => "logic, code",
+        WordClass::Declaration => "declaration, code",
+        WordClass::Transformation => "transformation of the path, code",
+        WordClass::InputOutput => "input and output, code",
+        WordClass::SystemFlag => "system flag, code",
+        WordClass::GeometricType => "geometric type, number",
+        WordClass::Function => "function, code",
+        WordClass::Postprocessor | WordClass::PostprocessorBare => "post-processor word, code",
+        WordClass::Minor => "modifier, code",
+    }
+}

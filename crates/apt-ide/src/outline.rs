@@ -1,0 +1,132 @@
+//! The outline of a program: definitions, macros and loops, nested, and the sections that PARTNO and LOADTL begin.
+
+use std::ops::Range;
+
+use apt_syntax::statement::Body;
+
+use crate::{Analysis, absolute};
+
+/// The kind of an outline entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum OutlineKind {
+    Part,
+    Macro,
+    Loop,
+    Geometry,
+    Scalar,
+    Array,
+    Tool,
+}
+
+/// One entry of the outline.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OutlineEntry {
+    /// What is shown.
+    pub name: String,
+    /// More about it: the type word, the operation.
+    pub detail: String,
+    /// The kind.
+    pub kind: OutlineKind,
+    /// The whole, bytes of the text.
+    pub range: Range<usize>,
+    /// The name in it.
+    pub focus: Range<usize>,
+    /// Entries inside.
+    pub children: Vec<OutlineEntry>,
+}
+
+/// The most entries that one outline carries: a reply must stay small whatever the program.
+pub const GREATEST_OUTLINE: usize = 20_000;
+
+impl Analysis {
+    /// The outline, in order of the text.
+    pub fn outline(&self) -> Vec<OutlineEntry> {
+        let tree = self.document().tree();
+        let mut stack: Vec<(usize, OutlineEntry)> = Vec::new();
+        let mut top = Vec::new();
+        let mut count = 0;
+        for view in tree.statements() {
+            while stack.last().is_some_and(|(last, _)| *last < view.index) {
+                pop(&mut stack, &mut top);
+            }
+            if count >= GREATEST_OUTLINE || !may_define(view.text()) {
+                continue;
+            }
+            let parsed = view.parsed();
+            for part in &parsed.statement.parts {
+                let whole = absolute(&view, part.range);
+                let Some(mut entry) = entry(&view, &part.body, whole.clone()) else { continue };
+                count += 1;
+                let region = self.regions().iter().find(|region| region.first == view.index);
+                match (entry.kind, region) {
+                    (OutlineKind::Macro | OutlineKind::Loop, Some(region)) => {
+                        let end = usize::from(tree.statement(region.last).range().end());
+                        entry.range = whole.start..end.max(whole.end);
+                        stack.push((region.last, entry));
+                    }
+                    _ => match stack.last_mut() {
+                        Some((_, parent)) => parent.children.push(entry),
+                        None => top.push(entry),
+                    },
+                }
+            }
+        }
+        while !stack.is_empty() {
+            pop(&mut stack, &mut top);
+        }
+        top
+    }
+}
+
+fn pop(stack: &mut Vec<(usize, OutlineEntry)>, top: &mut Vec<OutlineEntry>) {
+    if let Some((_, entry)) = stack.pop() {
+        match stack.last_mut() {
+            Some((_, parent)) => parent.children.push(entry),
+            None => top.push(entry),
+        }
+    }
+}
+
+/// Only these statements can have an entry; the rest need not be parsed.
+fn may_define(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    let first = text.trim_start().as_bytes().first().map(u8::to_ascii_uppercase);
+    bytes.contains(&b'=') || matches!(first, Some(b'P' | b'L' | b'R'))
+}
+
+fn entry(view: &apt_syntax::tree::StatementView, body: &Body, range: Range<usize>) -> Option<OutlineEntry> {
+    let named = |name: &str, detail: &str, kind, focus| OutlineEntry {
+        name: name.to_owned(),
+        detail: detail.to_owned(),
+        kind,
+        range: range.clone(),
+        focus,
+        children: Vec::new(),
+    };
+    Some(match body {
+        Body::Text { word, text, .. } if word.word.spelling == "PARTNO" => {
+            named(text.trim(), "PARTNO", OutlineKind::Part, absolute(view, word.range))
+        }
+        Body::Macro { name, .. } => {
+            named(&name.text, "MACRO", OutlineKind::Macro, absolute(view, name.range))
+        }
+        Body::Definition { target, definition } => {
+            let focus = absolute(view, target.range);
+            named(&target.name.text, definition.kind.word.spelling, OutlineKind::Geometry, focus)
+        }
+        Body::Assignment { target, .. } => {
+            named(&target.name.text, "", OutlineKind::Scalar, absolute(view, target.range))
+        }
+        Body::Major { word, .. } => match word.word.spelling {
+            "LOOPST" => named("LOOPST", "", OutlineKind::Loop, absolute(view, word.range)),
+            "LOADTL" | "TURRET" | "TOOLNO" => {
+                named(word.word.spelling, "", OutlineKind::Tool, absolute(view, word.range))
+            }
+            "RESERV" => named("RESERV", "", OutlineKind::Array, absolute(view, word.range)),
+            _ => return None,
+        },
+        _ => return None,
+    })
+    .filter(|entry: &OutlineEntry| !entry.name.is_empty())
+}

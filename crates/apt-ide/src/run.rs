@@ -1,0 +1,172 @@
+//! Run motion: the report of a run, the tape, and the scene for viewers.
+
+use std::ops::Range;
+
+use apt_cldata::record::{ClKind, ClRecord};
+use apt_geometry::motion::MotionCommand;
+use apt_post::{MachineDefinition, Tape};
+use apt_program::record::RecordKind;
+use apt_run::{pipeline::RunResult, report::Report};
+
+use crate::{
+    Analysis, Cancel, Cancelled,
+    picture::{Scene, SceneSurface, Segment, SegmentKind},
+};
+
+/// Why a tape cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TapeError {
+    /// There is no machine of this name.
+    #[error("there is no machine {name}; there are {}", known.join(", "))]
+    UnknownMachine {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// The machines that come with the program.
+pub fn machines() -> Vec<apt_post::MachineInfo> {
+    apt_post::machines()
+}
+
+/// The definition of a machine that comes with the program.
+///
+/// # Errors
+///
+/// [`TapeError::UnknownMachine`].
+pub fn machine(name: &str) -> Result<MachineDefinition, TapeError> {
+    apt_post::machine(name).map_err(|_| TapeError::UnknownMachine {
+        name: name.to_owned(),
+        known: machines().into_iter().map(|machine| machine.name).collect(),
+    })
+}
+
+impl Analysis {
+    /// Runs the program and reports it, or only the statements that a byte range touches.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn run(
+        &self,
+        range: Option<Range<usize>>,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Report, Cancelled> {
+        let statements = range.and_then(|range| self.statements_of(range));
+        self.document().report(cancel, progress, statements)
+    }
+
+    /// The numbers of the statements that a byte range touches.
+    fn statements_of(&self, range: Range<usize>) -> Option<std::ops::RangeInclusive<u32>> {
+        let (first, _) = self.statement_at(range.start)?;
+        let (last, _) = self.statement_at(range.end.max(range.start + 1) - 1)?;
+        Some(first.isn()..=last.isn())
+    }
+
+    /// The control tape for a machine.
+    ///
+    /// # Errors
+    ///
+    /// [`TapeError`] when there is no such machine or the run was cancelled.
+    pub fn tape(
+        &self,
+        machine_name: &str,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Tape, TapeError> {
+        let machine = machine(machine_name)?;
+        let result = self.document().run(cancel, progress)?;
+        Ok(apt_post::post(&result.records, &machine, &apt_post::PostOptions::default()))
+    }
+
+    /// The path and the surfaces for a picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn scene(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Scene, Cancelled> {
+        let result = self.document().run(cancel, progress)?;
+        let program = self.document().program(cancel)?;
+        let mut surfaces = Vec::new();
+        let mut cutter_diameter = None;
+        for record in program.records() {
+            let RecordKind::Motion(command) = &record.kind else { continue };
+            match &**command {
+                MotionCommand::Cutter(numbers) => {
+                    cutter_diameter = numbers.first().copied().or(cutter_diameter)
+                }
+                MotionCommand::Start(list) | MotionCommand::Offset(list) => {
+                    for (role, start) in ["drive", "part", "check"].iter().zip(list) {
+                        add(&mut surfaces, &start.surface, role);
+                    }
+                }
+                MotionCommand::PartSurface(surface) => add(&mut surfaces, surface, "part"),
+                MotionCommand::Drive { drive, checks, .. } => {
+                    add(&mut surfaces, drive, "drive");
+                    checks.iter().for_each(|check| add(&mut surfaces, &check.surface, "check"));
+                }
+                _ => {}
+            }
+        }
+        let title = self.document().file().unwrap_or("program").to_owned();
+        Ok(Scene {
+            title: part_name(&result).unwrap_or(title),
+            segments: segments(&result.records),
+            surfaces,
+            units: None,
+            cutter_diameter,
+        })
+    }
+}
+
+fn part_name(result: &RunResult) -> Option<String> {
+    result.records.iter().find_map(|record| match &record.kind {
+        ClKind::Text { word, text, .. } if word == "PARTNO" && !text.trim().is_empty() => {
+            Some(text.trim().to_owned())
+        }
+        _ => None,
+    })
+}
+
+fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSurface, role: &str) {
+    let known = surfaces.iter().any(|one| one.name == surface.name && one.geometry == surface.geometry);
+    if !known {
+        let (name, geometry) = (surface.name.clone(), surface.geometry.clone());
+        surfaces.push(SceneSurface { name, geometry, role: role.to_owned() });
+    }
+}
+
+/// The straight pieces of a path; a path without FROM begins at its first point.
+fn segments(records: &[ClRecord]) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    let mut at: Option<[f64; 3]> = None;
+    let mut rapid = false;
+    for record in records {
+        match &record.kind {
+            ClKind::Postprocessor { word, .. } if word == "RAPID" => rapid = true,
+            ClKind::Motion { from, points, .. } => {
+                for point in points {
+                    let to: [f64; 3] = point.position.into();
+                    if let (Some(start), false) = (at, *from) {
+                        let kind = if rapid { SegmentKind::Rapid } else { SegmentKind::Feed };
+                        segments.push(Segment { from: start, to, kind, isn: record.isn });
+                    }
+                    at = Some(to);
+                }
+                rapid &= *from;
+            }
+            _ => {}
+        }
+    }
+    segments
+}

@@ -1,0 +1,156 @@
+//! Semantic tokens: the class of every element, for colouring.
+
+use std::ops::Range;
+
+use apt_syntax::{
+    statement::{Body, ElementKind},
+    tree::StatementView,
+    vocabulary::{WordClass, lookup},
+};
+
+use crate::{Analysis, absolute};
+
+/// The class of a token; the TextMate grammar and the Vim syntax use the same classes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum TokenClass {
+    Keyword,
+    Modifier,
+    Type,
+    Function,
+    Postprocessor,
+    Macro,
+    Parameter,
+    Variable,
+    Label,
+    Number,
+    String,
+    Operator,
+    Comment,
+}
+
+/// One token.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Token {
+    /// Bytes of the text; never over a line end.
+    pub range: Range<usize>,
+    /// The class.
+    pub class: TokenClass,
+    /// The name is given its value here.
+    pub definition: bool,
+}
+
+impl Analysis {
+    /// The tokens of the statements that a byte range touches, or of the whole text, in order.
+    pub fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
+        let tree = self.document().tree();
+        if tree.statement_count() == 0 {
+            return Vec::new();
+        }
+        let whole = 0..usize::from(tree.len());
+        let range = range.unwrap_or(whole);
+        let index = |offset: usize| tree.statement_at((offset.min(usize::from(tree.len())) as u32).into());
+        let (first, last) = (index(range.start), index(range.end));
+        let mut tokens = Vec::new();
+        for statement in first..=last {
+            self.statement_tokens(&tree.statement(statement), &mut tokens);
+        }
+        tokens
+    }
+
+    fn statement_tokens(&self, view: &StatementView, tokens: &mut Vec<Token>) {
+        let start = usize::from(view.range().start());
+        let text = view.text();
+        let parsed = view.parsed();
+        let from = tokens.len();
+        for (index, element) in parsed.elements.iter().enumerate() {
+            let labelled = parsed.statement.label.as_ref().is_some_and(|label| label.range == element.range);
+            let defined = parsed.statement.parts.iter().any(|part| match &part.body {
+                Body::Assignment { target, .. } | Body::Definition { target, .. } => {
+                    target.name.range == element.range
+                }
+                Body::Macro { name, .. } => name.range == element.range,
+                _ => false,
+            });
+            let class = match element.kind {
+                ElementKind::Word => {
+                    lookup(&element.text).map_or(TokenClass::Variable, |word| class(word.class))
+                }
+                ElementKind::Name | ElementKind::Number if labelled => TokenClass::Label,
+                ElementKind::Name => self.name_class(view.index, &element.text, &parsed, index),
+                ElementKind::Number => TokenClass::Number,
+                ElementKind::Text => TokenClass::String,
+                ElementKind::Bad => continue,
+                _ => TokenClass::Operator,
+            };
+            push_lines(tokens, text, start, absolute(view, element.range), class, labelled || defined);
+        }
+        for comment in &parsed.comments {
+            push_lines(tokens, text, start, absolute(view, *comment), TokenClass::Comment, false);
+        }
+        tokens[from..].sort_by_key(|token| token.range.start);
+    }
+
+    fn name_class(
+        &self,
+        statement: usize,
+        name: &str,
+        parsed: &apt_syntax::ParsedStatement,
+        index: usize,
+    ) -> TokenClass {
+        let range = parsed.elements[index].range;
+        for part in &parsed.statement.parts {
+            match &part.body {
+                Body::Macro { name, .. } | Body::Call { name, .. } if name.range == range => {
+                    return TokenClass::Macro;
+                }
+                Body::Call { arguments, .. } if arguments.iter().any(|one| one.name.range == range) => {
+                    return TokenClass::Parameter;
+                }
+                Body::Jump { label, .. } | Body::Do { label, .. } if label.range == range => {
+                    return TokenClass::Label;
+                }
+                Body::ArithmeticIf { labels, .. } if labels.iter().any(|label| label.range == range) => {
+                    return TokenClass::Label;
+                }
+                _ => {}
+            }
+        }
+        let local = |region: &crate::regions::Region| {
+            region.contains(statement) && region.variables.iter().any(|variable| variable == name)
+        };
+        if self.regions().iter().any(local) { TokenClass::Parameter } else { TokenClass::Variable }
+    }
+}
+
+fn class(class: WordClass) -> TokenClass {
+    match class {
+        WordClass::Minor => TokenClass::Modifier,
+        WordClass::GeometricType => TokenClass::Type,
+        WordClass::Function => TokenClass::Function,
+        WordClass::Postprocessor | WordClass::PostprocessorBare | WordClass::Text => {
+            TokenClass::Postprocessor
+        }
+        _ => TokenClass::Keyword,
+    }
+}
+
+/// Adds a token, cut at line ends: an element may be split over a continuation.
+fn push_lines(
+    tokens: &mut Vec<Token>,
+    text: &str,
+    start: usize,
+    range: Range<usize>,
+    class: TokenClass,
+    definition: bool,
+) {
+    let Some(piece) = text.get(range.start - start..range.end - start) else { return };
+    let mut at = range.start;
+    for line in piece.split_inclusive('\n') {
+        let visible = line.trim_end_matches(['\n', '\r']);
+        if !visible.trim().is_empty() {
+            tokens.push(Token { range: at..at + visible.len(), class, definition });
+        }
+        at += line.len();
+    }
+}

@@ -1,0 +1,152 @@
+//! Words for definitions and operands (codes 03xx).
+
+use apt_geometry::{
+    canonical::GeometryKind,
+    definition::{DefinitionError, Impossible, formats},
+};
+use apt_program::finding::{Expected, FindingKind as Kind};
+
+use super::{Text, a_kind, names::found, number, say};
+
+pub(super) fn word(kind: &Kind) -> Option<Text> {
+    Some(match kind {
+        Kind::Definition { kind, error } => definition(*kind, error),
+        Kind::DefinitionWord { kind, word } => {
+            say("APT0302", format!("the word {word} cannot stand in the definition of {}", a_kind(*kind)))
+        }
+        Kind::UnknownType { word } => say("APT0309", format!("{word} cannot be defined by this version")),
+        Kind::Untransformable { kind } => {
+            say("APT0310", format!("{} cannot be carried into this reference system", a_kind(*kind)))
+        }
+        Kind::UnnamedPattern => say("APT0311", "a nested pattern needs a name").hint("write (NAME=PATERN/…)"),
+        Kind::VerticalZSurface => say("APT0312", "z cannot be found: the ZSURF plane is parallel to z"),
+        Kind::Operand { statement, expected, found: what, .. } => {
+            say("APT0320", format!("{statement} needs {} here, not {}", wanted(*expected), found(what)))
+        }
+        Kind::OperandCount { statement, found, expected, .. } => {
+            let plural = if *found == 1 { "operand" } else { "operands" };
+            say("APT0321", format!("{statement} cannot take {found} {plural}"))
+                .hint(format!("it takes {expected}"))
+        }
+        Kind::OperandRange { statement, value, .. } => {
+            say("APT0322", format!("{statement} cannot take the value {}", number(*value)))
+        }
+        Kind::Doubtful { statement, value } => {
+            say("APT0323", format!("{} is a doubtful value for {statement}", number(*value)))
+        }
+        Kind::ObtainType { name, expected, found } => {
+            say("APT0330", format!("{name} is {}, not {}", a_kind(*found), a_kind(*expected)))
+                .hint(format!("write OBTAIN,{}/{name},…", found.word()))
+        }
+        Kind::ObtainCount { kind, available, wanted } => {
+            say("APT0331", format!("{} has {available} numbers, {wanted} are asked for", a_kind(*kind)))
+        }
+        Kind::ObtainLarge { kind } => {
+            say("APT0332", format!("no numbers can be obtained from {}", a_kind(*kind)))
+        }
+        Kind::ReferenceSystem { found: what } => {
+            say("APT0333", format!("REFSYS needs a matrix, not {}", found(what)))
+                .hint("REFSYS/NOMORE returns to the base system")
+        }
+        Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system"),
+        _ => return None,
+    })
+}
+
+fn wanted(expected: Expected) -> &'static str {
+    match expected {
+        Expected::Scalar => "a number",
+        Expected::Surface => "a surface",
+        Expected::Plane => "a plane",
+        Expected::Point => "a point",
+        Expected::Vector => "a vector",
+        Expected::Matrix => "a matrix",
+        Expected::MatrixOrNomore => "a matrix or NOMORE",
+        Expected::PlaneOrNumbers => "a plane or its four numbers",
+        Expected::Name => "a name",
+        Expected::Label => "a label",
+        Expected::Word => "a word",
+        Expected::OnOrOff => "ON or OFF",
+        Expected::ScalarOrWord => "a number or a word",
+        Expected::Integer => "a whole number",
+        Expected::Pattern => "a pattern",
+        Expected::Nothing => "nothing",
+    }
+}
+
+fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
+    let type_word = kind.word();
+    match error {
+        DefinitionError::UnknownFormat { .. } => {
+            say("APT0301", format!("{type_word} has no form with these parameters")).maybe(forms(kind))
+        }
+        DefinitionError::WrongModifier { found, expected, .. } => {
+            let expected: Vec<_> = expected.iter().map(|modifier| modifier.word()).collect();
+            let hint = (!expected.is_empty()).then(|| format!("one of {} is needed", expected.join(", ")));
+            say("APT0303", format!("{} does not fit this form of {type_word}", found.word())).maybe(hint)
+        }
+        DefinitionError::Impossible { reason } => impossible(type_word, reason),
+        DefinitionError::CanonicalCount { expected, found } => {
+            say("APT0305", format!("the canonical form of {type_word} has {expected} numbers, not {found}"))
+        }
+        DefinitionError::CanonicalKind { expected, found } => {
+            say("APT0306", format!("CANON copies {}, and this is {}", a_kind(*expected), a_kind(*found)))
+        }
+        DefinitionError::NotFinite { position } => {
+            say("APT0307", format!("parameter {} is too large, or not a number", position + 1))
+        }
+        DefinitionError::Special { number, position } => {
+            let place =
+                position.map(|position| format!(" at parameter {}", position + 1)).unwrap_or_default();
+            say("APT0308", format!("the definition breaks a rule of {type_word}{place}"))
+                .hint(format!("it is diagnostic {number} of APT III"))
+        }
+    }
+}
+
+/// A few forms of a type, to choose from.
+fn forms(kind: GeometryKind) -> Option<String> {
+    /// More would not be read.
+    const SHOWN: usize = 4;
+    let all = formats(kind);
+    let mut lines: Vec<_> = all.iter().take(SHOWN).map(|format| format.help.to_owned()).collect();
+    if all.len() > SHOWN {
+        lines.push(format!("and {} more forms", all.len() - SHOWN));
+    }
+    (!lines.is_empty()).then(|| format!("its forms are {}", lines.join("; ")))
+}
+
+fn impossible(type_word: &str, reason: &Impossible) -> Text {
+    let why = match reason {
+        Impossible::Coincident { distance } => {
+            format!("two of its entities coincide (they are {} apart)", number(*distance))
+        }
+        Impossible::Collinear => "its points lie on one line".to_owned(),
+        Impossible::Parallel => "its entities are parallel and do not meet".to_owned(),
+        Impossible::ZeroVector => "a vector has no direction".to_owned(),
+        Impossible::ZeroLength => "a length is zero".to_owned(),
+        Impossible::NotPositive { value } => format!("{} is not positive", number(*value)),
+        Impossible::NoIntersection { gap } => {
+            format!("its entities do not meet: {} is missing", number(*gap))
+        }
+        Impossible::InsideCircle { distance, radius } => format!(
+            "the point lies inside the circle ({} from the centre, the radius is {})",
+            number(*distance),
+            number(*radius)
+        ),
+        Impossible::RadiusTooSmall { radius, least } => {
+            format!("the radius {} is too small, it must be at least {}", number(*radius), number(*least))
+        }
+        Impossible::RadiusTooLarge { radius, greatest } => {
+            format!("the radius {} is too large, it must be at most {}", number(*radius), number(*greatest))
+        }
+        Impossible::Singular => "its conditions do not determine it".to_owned(),
+        Impossible::NotReal => "it has no real points".to_owned(),
+        Impossible::VerticalZSurface => "the ZSURF plane is parallel to z".to_owned(),
+        Impossible::Undecided { word } => {
+            format!("{} does not decide between its two solutions", word.word())
+        }
+        Impossible::AngleOutOfRange { degrees } => format!("the angle {}° is out of range", number(*degrees)),
+    };
+    say("APT0304", format!("this {type_word} does not exist: {why}"))
+}

@@ -1,0 +1,163 @@
+//! The one place where findings become words: stable codes, messages, hints, and a page for each code.
+//!
+//! Codes: 00xx lexical and syntactic, 01xx names and subscripts, 02xx arithmetic, 03xx definitions and operands,
+//! 04xx labels, loops and macros, 05xx motion statements, 06xx the arithmetic element, 07xx path transformations,
+//! 08xx post-processor statements and tape, 09xx the program as a whole. A code is never given a new meaning.
+
+mod definitions;
+mod motion;
+mod names;
+mod pages;
+mod postprocessor;
+mod program;
+mod syntax;
+
+use apt_geometry::canonical::GeometryKind;
+use apt_post::{PostFinding, Tape};
+use apt_program::{
+    Origin, Program,
+    finding::{Finding, RelatedKind, Severity as ProgramSeverity},
+};
+use apt_syntax::TextRange;
+use smol_str::SmolStr;
+
+pub use pages::{Page, explain, pages};
+
+use crate::{
+    diagnostic::{Diagnostic, Severity, Wording},
+    pipeline::{RunFinding, RunResult},
+    settings::Settings,
+};
+
+/// Code, message and hint, before the APT III number is added.
+pub(crate) struct Text {
+    code: &'static str,
+    message: String,
+    hint: Option<String>,
+}
+
+/// A text without a hint.
+fn say(code: &'static str, message: impl Into<String>) -> Text {
+    Text { code, message: message.into(), hint: None }
+}
+
+impl Text {
+    /// Adds what would help.
+    fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds the hint if there is one.
+    fn maybe(mut self, hint: Option<String>) -> Self {
+        self.hint = hint.or(self.hint);
+        self
+    }
+}
+
+/// All diagnostics of a program and perhaps its run, in order of their place, with the severities of the settings.
+pub fn diagnostics(program: &Program, result: Option<&RunResult>, settings: &Settings) -> Vec<Diagnostic> {
+    let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
+    list.extend(result.into_iter().flat_map(|result| &result.findings).map(of_run));
+    in_order(list, settings)
+}
+
+fn of_program(finding: &Finding) -> Diagnostic {
+    let text = program::word(&finding.kind);
+    let severity = match finding.severity {
+        ProgramSeverity::Hint => Severity::Hint,
+        ProgramSeverity::Information => Severity::Information,
+        ProgramSeverity::Warning => Severity::Warning,
+        ProgramSeverity::Error => Severity::Error,
+    };
+    let related =
+        finding.related.iter().map(|(kind, origin)| (related(*kind).to_owned(), origin.clone())).collect();
+    Diagnostic {
+        wording: Wording {
+            code: text.code,
+            message: text.message,
+            hint: text.hint,
+            apt3: finding.kind.apt3(),
+        },
+        severity,
+        origin: finding.origin.clone(),
+        related,
+        unnecessary: program::is_unnecessary(&finding.kind),
+    }
+}
+
+fn of_run(finding: &RunFinding) -> Diagnostic {
+    let (text, severity, apt3) = motion::word(&finding.kind);
+    Diagnostic {
+        wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3 },
+        severity,
+        origin: finding.origin.clone(),
+        related: Vec::new(),
+        unnecessary: false,
+    }
+}
+
+/// The diagnostics of a tape, with the severities of the settings. `origins` is the table that the findings refer to.
+pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
+    let of_post = |finding: &PostFinding| {
+        let (text, severity) = postprocessor::word(&finding.kind);
+        let unknown = || Origin { isn: finding.isn.max(1), range: TextRange::default(), frame: None };
+        Diagnostic {
+            wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
+            severity,
+            origin: origins.get(finding.source as usize).cloned().unwrap_or_else(unknown),
+            related: Vec::new(),
+            unnecessary: false,
+        }
+    };
+    in_order(tape.findings.iter().map(of_post).collect(), settings)
+}
+
+/// Applies the severities of the settings and sorts by place.
+fn in_order(mut list: Vec<Diagnostic>, settings: &Settings) -> Vec<Diagnostic> {
+    list.retain_mut(|diagnostic| match settings.severity.get(diagnostic.wording.code) {
+        None => true,
+        Some(setting) => setting.severity().map(|severity| diagnostic.severity = severity).is_some(),
+    });
+    list.sort_by_key(|diagnostic| (diagnostic.origin.isn, diagnostic.origin.range.start()));
+    list
+}
+
+fn related(kind: RelatedKind) -> &'static str {
+    match kind {
+        RelatedKind::Definition => "it is defined here",
+        RelatedKind::Reservation => "it is reserved here",
+        RelatedKind::Macro => "the macro is defined here",
+        RelatedKind::Loop => "the loop begins here",
+        RelatedKind::Label => "the label stands here",
+        RelatedKind::WaitingMotion => "this motion waits for its check surface",
+    }
+}
+
+/// "did you mean" for a misspelt name.
+fn similar(names: &[SmolStr]) -> Option<String> {
+    match names {
+        [] => None,
+        [one] => Some(format!("did you mean {one}?")),
+        [first, .., last] if names.len() == 2 => Some(format!("did you mean {first} or {last}?")),
+        _ => Some(format!("did you mean one of {}?", names.join(", "))),
+    }
+}
+
+/// A type with its article: `a LINE`, `an ELLIPS`.
+fn a_kind(kind: GeometryKind) -> String {
+    let word = kind.word();
+    let article = if word.starts_with(['A', 'E', 'I', 'O', 'U']) { "an" } else { "a" };
+    format!("{article} {word}")
+}
+
+/// A number in a message: nine significant digits at most.
+fn number(value: f64) -> String {
+    let text = format!("{value:.9}");
+    let rounded = text.trim_end_matches('0').trim_end_matches('.');
+    if value != 0.0 && (value.abs() < 1e-4 || value.abs() >= 1e12) {
+        format!("{value:.6e}")
+    } else {
+        rounded.to_owned()
+    }
+}

@@ -1,0 +1,404 @@
+//! Words for the arithmetic element, its verifier and the path transformations (codes 06xx and 07xx).
+
+use apt_cldata::edit::EditErrorKind;
+use apt_geometry::{
+    Vec3,
+    cutter::{CutterError, CutterWarning},
+    motion::Relation,
+};
+use arelem::{
+    error::{Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
+    verify::{Evidence, Rule, VerifyError},
+};
+
+use super::{Text, a_kind, number, say};
+use crate::{diagnostic::Severity, pipeline::RunFindingKind};
+
+/// The words, the severity and the APT III number of a finding of Sections 2 and 3.
+pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
+    match kind {
+        RunFindingKind::Failure(failure) => (failure_text(failure), Severity::Error, failure.apt3()),
+        RunFindingKind::Warning(warning) => (warning_text(warning), Severity::Warning, warning.apt3()),
+        RunFindingKind::Unverified(evidence) => (unverified(evidence), Severity::Error, None),
+        RunFindingKind::NotJudged(error) => (not_judged(error), Severity::Warning, error.apt3()),
+        RunFindingKind::Skipped { statements, last } => {
+            let text = say("APT0690", format!("{statements} motion statements, up to statement {last}, were not computed"))
+                .hint("after an error motion goes on at a FROM, or where GOTO is followed by a statement that gives a direction");
+            (text, Severity::Information, None)
+        }
+        RunFindingKind::TransferPending { label } => {
+            let text = say(
+                "APT0691",
+                format!("the program ends before the label {label}, where processing should go on"),
+            );
+            (text, Severity::Warning, Some(9))
+        }
+        RunFindingKind::Edit(error) => {
+            let severity = match error.kind {
+                EditErrorKind::ZeroCount { .. } => Severity::Warning,
+                _ => Severity::Error,
+            };
+            (edit(&error.kind), severity, error.apt3())
+        }
+    }
+}
+
+fn role(role: RoleName) -> &'static str {
+    match role {
+        RoleName::Part => "part surface",
+        RoleName::Drive => "drive surface",
+        RoleName::Check(0) => "check surface",
+        RoleName::Check(_) => "second check surface",
+    }
+}
+
+fn relation(relation: Relation) -> &'static str {
+    match relation {
+        Relation::To => "TO",
+        Relation::On => "ON",
+        Relation::Past => "PAST",
+        Relation::TangentToDrive => "TANTO",
+        Relation::TangentToPart => "PSTAN",
+    }
+}
+
+fn place(at: &Vec3) -> String {
+    format!("({}, {}, {})", number(at.x), number(at.y), number(at.z))
+}
+
+fn failure_text(failure: &Failure) -> Text {
+    match failure {
+        Failure::Cutter(error) => cutter(error),
+        _ => setting(failure).or_else(|| start(failure)).unwrap_or_else(|| path(failure)),
+    }
+}
+
+/// Failures of what must be said before a motion.
+fn setting(failure: &Failure) -> Option<Text> {
+    Some(match failure {
+        Failure::Cancelled => say("APT0600", "the computation was cancelled"),
+        Failure::NotFinite => say("APT0601", "a number of this statement is too large, or not a number"),
+        Failure::NoCutter { .. } => say("APT0602", "there is no cutter")
+            .hint("give CUTTER/diameter before the first motion; CUTTER/0 is a line"),
+        Failure::NoPosition => say("APT0603", "the tool has no position yet").hint("begin with FROM/x,y,z"),
+        Failure::ZeroAxis => say("APT0604", "the tool axis has no length"),
+        Failure::ZeroDirection { number } => {
+            let what = match number {
+                6 => "INDIRP names the point where the tool is",
+                8 => "a vector of SRFVCT has no length",
+                _ => "the vector of INDIRV has no length",
+            };
+            say("APT0605", what).hint("a direction needs a vector that is not zero")
+        }
+        Failure::AxisModeUnsupported => {
+            say("APT0606", "this tool axis mode cannot be computed yet; only a fixed axis can")
+                .hint("TLAXIS/i,j,k fixes the axis")
+        }
+        Failure::PocketUnsupported => say("APT0607", "POCKET cannot be computed yet"),
+        Failure::SurfaceUnsupported { role: name, kind } => {
+            say("APT0608", format!("{} cannot be a {}", a_kind(*kind), role(*name)))
+        }
+        Failure::SurfaceDegenerate { role: name, kind } => say(
+            "APT0609",
+            format!(
+                "the {} is {} without extent: its canonical form is degenerate",
+                role(*name),
+                a_kind(*kind)
+            ),
+        ),
+        Failure::SurfaceCount { found } => say("APT0610", format!("{found} surfaces cannot be met at once")),
+        Failure::NoPartWithSeveral { found } => {
+            say("APT0611", format!("NOPS allows one surface in the next GO, and there are {found}"))
+        }
+        Failure::NoTolerance { role: name, inside, outside } => say(
+            "APT0612",
+            format!(
+                "INTOL {} and OUTTOL {} leave no tolerance for the {}",
+                number(*inside),
+                number(*outside),
+                role(*name)
+            ),
+        )
+        .hint("at least one of INTOL and OUTTOL must be positive"),
+        _ => return None,
+    })
+}
+
+/// Failures of a start-up motion, or before the first cut vector.
+fn start(failure: &Failure) -> Option<Text> {
+    Some(match failure {
+        Failure::SideUnknown { role: name, distance } => say(
+            "APT0620",
+            format!("the tool stands on the {} ({} away), so its side is not known", role(*name), number(*distance)),
+        )
+        .hint("say it by SRFVCT, INDIRV or INDIRP, or start from farther away"),
+        Failure::NotReachedAlong { role: name, from, direction } => say(
+            "APT0621",
+            format!("from {} along {} the {} is not met", place(from), place(direction), role(*name)),
+        )
+        .hint("correct INDIRV or INDIRP"),
+        Failure::OffsetWithoutDirection => {
+            say("APT0622", "OFFSET needs a direction").hint("give INDIRV or INDIRP towards the drive surface before it")
+        }
+        Failure::PartNotReached => say("APT0623", "the part surface is not met along the tool axis").hint("check PSIS and AUTOPS"),
+        Failure::StartUpDiverges { residual, role: name, tip, iterations } => say(
+            "APT0624",
+            format!(
+                "no position was found in {iterations} steps: at {} the {} is still {} off",
+                place(tip),
+                role(*name),
+                number(*residual)
+            ),
+        )
+        .hint("start closer, or give a direction by INDIRV"),
+        Failure::OutOfToleranceAtStart { role: name, clearance, inside, outside, contact } => say(
+            "APT0625",
+            format!(
+                "at the start of the cut the tool is {} from the {}, outside the tolerance −{} to {}",
+                number(*clearance),
+                role(*name),
+                number(*inside),
+                number(*outside)
+            ),
+        )
+        .hint(format!(
+            "the tool end is at {}, the nearest point of the surface at {}; the GO before must reach the relation that TLLFT, TLRGT, TLON, TLONPS or TLOFPS asks for",
+            place(&contact.tip),
+            place(&contact.surface)
+        )),
+        Failure::NoForwardDirection => {
+            say("APT0626", "the tool has no forward direction yet").hint("give INDIRV/i,j,k before this statement")
+        }
+        Failure::DirectionUndetermined { angle, tangent, .. } => say(
+            "APT0627",
+            format!(
+                "the direction word does not decide: it is within {}° of a right angle to the path, which runs along {}",
+                number(angle.to_degrees()),
+                place(tangent)
+            ),
+        )
+        .hint("use GOLFT, GORGT, GOFWD or GOBACK as the path turns, or give INDIRV"),
+        _ => return None,
+    })
+}
+
+/// Failures on the way.
+fn path(failure: &Failure) -> Text {
+    match failure {
+        Failure::TangentSurfaces { tip } => say(
+            "APT0640",
+            format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
+        ),
+        Failure::NeverMet { relation: wanted, nearest, at, .. } => say(
+            "APT0641",
+            format!(
+                "the check surface is never met: the nearest approach to {} is {} at {}",
+                relation(*wanted),
+                number(*nearest),
+                place(at)
+            ),
+        )
+        .hint("check the direction word and the check surface"),
+        Failure::NoneAhead { relation: wanted, found, .. } => {
+            let there = match found {
+                0 => "there is no such position elsewhere".to_owned(),
+                1 => "there is one position elsewhere".to_owned(),
+                _ => format!("there are {found} positions elsewhere"),
+            };
+            say("APT0642", format!("there is no position {} the check surface ahead", relation(*wanted)))
+                .hint(format!("{there}; the direction word may be wrong, or TO and PAST exchanged"))
+        }
+        Failure::NotTangent { gap, .. } => say(
+            "APT0643",
+            format!(
+                "the drive and the check surface are not tangent: {} is between them where they are parallel",
+                number(*gap)
+            ),
+        )
+        .hint("use TO, ON or PAST"),
+        Failure::TangentLines { .. } => {
+            say("APT0644", "two lines cannot be tangent").hint("use TO, ON or PAST")
+        }
+        Failure::ToolTooLarge { tool, circle } => say(
+            "APT0645",
+            format!(
+                "the tool of radius {} does not fit into the circle of radius {}",
+                number(*tool),
+                number(*circle)
+            ),
+        ),
+        Failure::TooManyPoints { limit, remaining, at } => say(
+            "APT0646",
+            format!(
+                "after {limit} cut vectors the check surface is still {} away, at {}",
+                number(*remaining),
+                place(at)
+            ),
+        )
+        .hint("the check surface may lie the other way; NUMPTS/n allows more cut vectors"),
+        Failure::IterationLimit { iteration, limit, tip } => say(
+            "APT0647",
+            format!(
+                "{} did not come to an end in {limit} steps at {}",
+                iteration_name(*iteration),
+                place(tip)
+            ),
+        )
+        .hint("the surfaces may be nearly tangent here; start closer or loosen the tolerance"),
+        Failure::NoAdmissibleVector { role: name, clearance, tip } => say(
+            "APT0648",
+            format!(
+                "from {} no cut vector keeps the tolerance of the {}: the shortest tried is {} off",
+                place(tip),
+                role(*name),
+                number(*clearance)
+            ),
+        )
+        .hint("the tool may touch the surface at a second place, or the tolerance is too tight"),
+        other => say("APT0699", format!("{other}")),
+    }
+}
+
+fn iteration_name(iteration: Iteration) -> &'static str {
+    match iteration {
+        Iteration::StartUp => "the search for the start-up position",
+        Iteration::TwoSurfaces => "the search for a position on part and drive surface",
+        Iteration::ThreeSurfaces => "the search for the position at the check surface",
+        Iteration::StepLength => "the search for the length of a cut vector",
+        Iteration::Stop => "the search for the check surface",
+        Iteration::FinalVector => "the search for the last cut vector",
+    }
+}
+
+fn cutter(error: &CutterError) -> Text {
+    let why = match error {
+        CutterError::Count { found } => {
+            return say("APT0650", format!("CUTTER takes 1, 2 or 7 numbers, not {found}"));
+        }
+        CutterError::NotFinite { position } => format!("number {position} is too large, or not a number"),
+        CutterError::Diameter { diameter } => format!("the diameter {} is negative", number(*diameter)),
+        CutterError::Height { height } => format!("the height {} is negative", number(*height)),
+        CutterError::Angles { .. } => "its two angles add up to 90° or more".to_owned(),
+        CutterError::Alpha { .. } => "the angle of the lower line is negative".to_owned(),
+        CutterError::HeightBelowLine { height, least } => {
+            format!(
+                "the height {} is less than the end of the lower line at {}",
+                number(*height),
+                number(*least)
+            )
+        }
+        CutterError::Beta { .. } => "the angle of the upper line is negative".to_owned(),
+        CutterError::CornerRadius { radius } => format!("the corner radius {} is negative", number(*radius)),
+        CutterError::CornerBelowLine { height, least } => {
+            format!(
+                "the corner centre at height {} is below the corner at {}",
+                number(*height),
+                number(*least)
+            )
+        }
+        CutterError::ArcAtTip { .. } => "the corner arc does not fit the tip".to_owned(),
+        CutterError::ArcMissesLowerLine { distance, radius, .. } => format!(
+            "the corner arc of radius {} does not meet the lower line, which is {} from its centre",
+            number(*radius),
+            number(*distance)
+        ),
+        CutterError::ArcMissesUpperLine { distance, radius, .. } => format!(
+            "the corner arc of radius {} does not meet the upper line, which is {} from its centre",
+            number(*radius),
+            number(*distance)
+        ),
+        CutterError::ArcAtTop { reached, height } => {
+            format!("the corner arc reaches {} and the cutter ends at {}", number(*reached), number(*height))
+        }
+        CutterError::NothingLeft => "no part of its profile is left".to_owned(),
+        CutterError::CornerTooNear { distance, radius } => format!(
+            "the corner radius {} reaches beyond the corner, which is {} from its centre",
+            number(*radius),
+            number(*distance)
+        ),
+    };
+    say("APT0651", format!("there is no such cutter: {why}"))
+        .hint("CUTTER/d,r is enough for most tools; the corner must touch both lines")
+}
+
+fn warning_text(warning: &Warning) -> Text {
+    match warning {
+        Warning::WrongSideOfDrive { .. } => {
+            say("APT0660", "the tool is on the other side of the drive surface than TLLFT or TLRGT says")
+                .hint("check TLLFT and TLRGT, and the direction word")
+        }
+        Warning::Cutter(CutterWarning::ArcReachesAxis) => {
+            say("APT0661", "the corner arc of the cutter reaches the tool axis")
+        }
+        Warning::Cutter(CutterWarning::ArcReachesTop) => {
+            say("APT0662", "the corner arc of the cutter reaches its top")
+        }
+        Warning::AutomaticPartWithTiltedAxis { tilt } => say(
+            "APT0663",
+            format!(
+                "AUTOPS makes a horizontal part surface, and the tool axis is tilted by {}°",
+                number(tilt.to_degrees())
+            ),
+        )
+        .hint("give the part surface by PSIS"),
+        Warning::NegativeTolerance { value } => {
+            say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
+        }
+    }
+}
+
+fn unverified(evidence: &Evidence) -> Text {
+    let text = say("APT0680", "the verifier did not confirm this motion");
+    match evidence.violations.first() {
+        None => text,
+        Some(violation) => {
+            let rule = match violation.rule {
+                Rule::PartBand => "the part surface is out of tolerance",
+                Rule::DriveBand => "the drive surface is out of tolerance",
+                Rule::CheckBand => "the check surface is out of tolerance at the end",
+                Rule::StopEvent => "the tool stopped at another position than asked for",
+                Rule::Tangency => "the surfaces are not tangent where it stopped",
+                Rule::Side => "the tool changes the side of a surface",
+                Rule::Progress => "the tool moves back",
+                Rule::StepLength => "a cut vector is longer than MAXDP",
+                #[expect(unreachable_patterns, reason = "a new rule of the verifier still gets a sentence")]
+                _ => "a rule is broken",
+            };
+            text.hint(format!("{rule}: {} on cut vector {}", number(violation.value), violation.vector + 1))
+        }
+    }
+}
+
+fn not_judged(error: &VerifyError) -> Text {
+    say("APT0681", "the verifier could not judge this motion").hint(error.to_string())
+}
+
+fn edit(kind: &EditErrorKind) -> Text {
+    match kind {
+        EditErrorKind::NestedTooDeep { number, depth } => {
+            say("APT0710", format!("INDEX {number} is nested {depth} deep")).hint("three levels are possible")
+        }
+        EditErrorKind::CopyWithoutIndex { number } => {
+            say("APT0711", format!("there is no INDEX/{number} before this COPY"))
+        }
+        EditErrorKind::EndWithoutIndex { number } => say("APT0712", format!("INDEX/{number} is not open")),
+        EditErrorKind::Overlap { number, open } => {
+            say("APT0713", format!("the range of INDEX/{number} overlaps that of INDEX/{open}"))
+                .hint("ranges must lie inside each other or apart")
+        }
+        EditErrorKind::IndexReused { number } => say("APT0714", format!("INDEX/{number} is open already")),
+        EditErrorKind::TooManyCopies { number } => {
+            say("APT0715", format!("too many COPY statements name INDEX/{number}"))
+        }
+        EditErrorKind::ZeroCount { number } => say("APT0716", format!("COPY/{number} makes no copy")),
+        EditErrorKind::TooManyRecords { number, limit } => {
+            say("APT0717", format!("COPY/{number} would make more than {limit} records"))
+        }
+        EditErrorKind::AxisVanishes { .. } => {
+            say("APT0718", "the transformation leaves the tool axis without direction")
+        }
+        EditErrorKind::NotFinite { .. } => {
+            say("APT0719", "the transformation gives a position that is not a number")
+        }
+    }
+}

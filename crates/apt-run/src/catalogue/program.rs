@@ -1,0 +1,196 @@
+//! Words for labels, loops, macros, motion statements, post-processor statements and the program as a whole
+//! (codes 04xx, 05xx, 08xx, 09xx), and the door to the other groups of Section 1.
+
+use apt_program::finding::FindingKind as Kind;
+
+use super::{Text, a_kind, definitions, names, number, say, similar, syntax};
+
+/// The words of a finding of Section 1.
+pub(super) fn word(kind: &Kind) -> Text {
+    if let Kind::Syntax(error) = kind {
+        return syntax::word(error);
+    }
+    names::word(kind)
+        .or_else(|| definitions::word(kind))
+        .or_else(|| jump(kind))
+        .or_else(|| macro_call(kind))
+        .or_else(|| motion(kind))
+        .or_else(|| postprocessor(kind))
+        .unwrap_or_else(|| whole(kind))
+}
+
+/// Whether a finding marks code without effect.
+pub(super) fn is_unnecessary(kind: &Kind) -> bool {
+    matches!(kind, Kind::Unused { .. } | Kind::AfterEnd | Kind::Unreachable)
+}
+
+fn jump(kind: &Kind) -> Option<Text> {
+    Some(match kind {
+        Kind::DuplicateLabel { name } => {
+            say("APT0401", format!("the label {name} stands twice in this part of the program"))
+        }
+        Kind::LabelIsName { name } => {
+            say("APT0402", format!("{name} is the name of something else and cannot be a label"))
+        }
+        Kind::UnknownLabel { name, similar: names } => {
+            say("APT0403", format!("there is no label {name} here"))
+                .hint("a jump stays inside its loop or macro")
+                .maybe(similar(names))
+        }
+        Kind::JumpOutsideRegion => say("APT0404", "IF and JUMPTO work inside loops and macros only")
+            .hint("put the statements between LOOPST and LOOPND"),
+        Kind::UnknownTransfer { name } => say("APT0405", format!("no statement carries the label {name}")),
+        Kind::NestedLoop => say("APT0406", "LOOPST cannot stand inside a loop").hint(
+            "one pair of LOOPST and LOOPND may hold several counters, or put the inner loop into a macro",
+        ),
+        Kind::LoopEndAlone => say("APT0407", "LOOPND without LOOPST"),
+        Kind::LoopInMacro => say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
+            .hint("IF and JUMPTO work in a macro without them"),
+        Kind::LoopNotClosed => say("APT0409", "this loop is never closed").hint("add LOOPND"),
+        Kind::Endless { statements, changing } => {
+            let text =
+                say("APT0410", format!("{statements} statements were executed and no end is in sight"));
+            match changing.as_slice() {
+                [] => text.hint("nothing changes from one turn to the next"),
+                names => text.hint(format!(
+                    "{} changed in the last turn; the setting budget.statements allows more",
+                    names.join(", ")
+                )),
+            }
+        }
+        _ => return None,
+    })
+}
+
+fn macro_call(kind: &Kind) -> Option<Text> {
+    Some(match kind {
+        Kind::MacroInRegion => say("APT0420", "a macro cannot be defined inside a loop or another macro"),
+        Kind::MacroNotClosed { name } => {
+            say("APT0421", format!("the macro {name} is never closed")).hint("add TERMAC")
+        }
+        Kind::MacroEndAlone => say("APT0422", "TERMAC without MACRO"),
+        Kind::EndInRegion => {
+            say("APT0423", "FINI stands inside a loop or macro").hint("TERMAC or LOOPND is missing before it")
+        }
+        Kind::MacroNameUsed { name } => {
+            say("APT0424", format!("{name} is in use already and cannot name a macro"))
+        }
+        Kind::MacroVariableCount { found, limit } => {
+            say("APT0425", format!("the macro has {found} variables; this dialect takes {limit}"))
+        }
+        Kind::MacroVariableTwice { name } => {
+            say("APT0426", format!("the macro variable {name} stands twice"))
+        }
+        Kind::UnknownMacro { name, similar: names } => say("APT0427", format!("there is no macro {name}"))
+            .hint("a macro must stand before its first CALL")
+            .maybe(similar(names)),
+        Kind::UnknownMacroVariable { name, parameter, known } => {
+            let hint = if known.is_empty() {
+                "it has no variables".to_owned()
+            } else {
+                format!("it has {}", known.join(", "))
+            };
+            say("APT0428", format!("the macro {name} has no variable {parameter}")).hint(hint)
+        }
+        Kind::MacroVariableMissing { name, parameter } => {
+            say("APT0429", format!("{parameter} of the macro {name} has neither a value nor a default"))
+                .hint(format!("add {parameter}=… to the CALL"))
+        }
+        Kind::MacroValueMissing { parameter } => say("APT0430", format!("{parameter} needs = and a value")),
+        Kind::MacroDepth { name, limit } => {
+            say("APT0433", format!("the CALL of {name} is nested deeper than {limit}"))
+                .hint("the macro may call itself; the setting budget.macro-depth allows more")
+        }
+        Kind::RoutineNotAvailable { name } => say("APT0434", format!("the routine {name} is not available")),
+        Kind::SynonymPairs { found } => {
+            say("APT0440", format!("SYN takes pairs, and there are {found} operands"))
+        }
+        Kind::SynonymInRegion => say("APT0441", "SYN cannot stand in a loop or macro"),
+        Kind::SynonymCount { limit } => say("APT0442", format!("there are more than {limit} synonyms")),
+        Kind::SynonymKind { first, second } => say(
+            "APT0443",
+            format!("SYN/{first},{second} does not pair a new name with a word of the language"),
+        ),
+        _ => return None,
+    })
+}
+
+fn motion(kind: &Kind) -> Option<Text> {
+    Some(match kind {
+        Kind::ModifierOnDrive { word } => {
+            say("APT0501", format!("{word} cannot stand before the drive surface"))
+                .hint("where the tool is relative to the drive surface is said by TLLFT, TLRGT or TLON")
+        }
+        Kind::ImpliedCheckVertical => {
+            say("APT0502", "GOUP and GODOWN need their check surface in the statement")
+                .hint("add the check surface after the drive surface")
+        }
+        Kind::ImpliedCheckBroken { word } => say(
+            "APT0503",
+            format!("{word} comes while a motion waits for its check surface"),
+        )
+        .hint(
+            "the motion before takes the drive surface of the next motion as its check surface; write it out",
+        ),
+        Kind::ImpliedCheckOpen => say("APT0504", "FINI comes while a motion waits for its check surface")
+            .hint("write the check surface in the last motion statement"),
+        Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and one takes none"),
+        Kind::SurfaceCount { found, limit } => {
+            say("APT0506", format!("there are {found} surfaces; at most {limit} can stand here"))
+        }
+        Kind::RelationNotHere { word } => say("APT0507", format!("{word} cannot stand before this surface")),
+        Kind::PatternList { number: apt3, value, points } => {
+            let value = value.map(|value| format!(" {}", number(value))).unwrap_or_default();
+            say("APT0508", format!("the operand{value} does not fit a pattern of {points} points")).hint(
+                match apt3 {
+                    812 => "it must be the number of one of its points",
+                    811 => "OMIT and RETAIN exclude each other",
+                    838 => "numbers must rise in the order of output",
+                    835 => "ZIGZAG needs a PARLEL pattern",
+                    _ => "the order is INVERS, ZIGZAG, CONST, then OMIT or RETAIN, and AVOID",
+                },
+            )
+        }
+        Kind::PocketNumbers => say("APT0509", "POCKET begins with eight numbers"),
+        Kind::PocketPoints { found } => say("APT0510", format!("POCKET takes 3 to 20 points, not {found}")),
+        _ => return None,
+    })
+}
+
+fn postprocessor(kind: &Kind) -> Option<Text> {
+    Some(match kind {
+        Kind::PostGeometry { word, kind, .. } => {
+            say("APT0801", format!("{word} cannot take {}", a_kind(*kind)))
+        }
+        Kind::PostBare { word } => say("APT0802", format!("{word} takes no parameters")),
+        Kind::MachineName => say("APT0803", "MACHIN needs the name of a post-processor first"),
+        Kind::MachineCount { limit } => {
+            say("APT0804", format!("there are more than {limit} MACHIN statements"))
+        }
+        Kind::TransformForm { found } => {
+            say("APT0701", format!("TRACUT needs a matrix or NOMORE, not {}", names::found(found)))
+        }
+        Kind::CopyCount { found, expected } => {
+            say("APT0702", format!("the statement has {found} parameters where {expected} are needed"))
+        }
+        Kind::CopyOption { found } => {
+            say("APT0703", format!("COPY needs SAME, TRANSL, XYROT or MODIFY, not {}", names::found(found)))
+        }
+        _ => return None,
+    })
+}
+
+fn whole(kind: &Kind) -> Text {
+    match kind {
+        Kind::EndMissing => say("APT0901", "the program does not end with FINI"),
+        Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
+        Kind::Unreachable => say("APT0903", "this statement is never reached"),
+        Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),
+        Kind::NotInDialect { word } => say("APT0905", format!("{word} is not part of this dialect"))
+            .hint("set the dialect in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),
+        Kind::IncludeNotFound { name } => say("APT0906", format!("{name} cannot be found"))
+            .hint("the setting include lists the folders that are searched"),
+        // The other groups have taken the rest.
+        other => say("APT0999", format!("{other}")),
+    }
+}

@@ -1,0 +1,92 @@
+//! Diagnostics as the user sees them: a stable code, words from the catalogue, a place and the way that led there.
+
+use apt_program::record::{FrameKind, Origin};
+use apt_syntax::SyntaxTree;
+use serde::{Deserialize, Serialize};
+
+/// How grave a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Severity {
+    Hint,
+    Information,
+    Warning,
+    Error,
+}
+
+/// The words of a finding, from the catalogue.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Wording {
+    /// Stable code, `APTnnnn`.
+    pub code: &'static str,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// What would help.
+    pub hint: Option<String>,
+    /// The APT III diagnostic number, where one exists.
+    pub apt3: Option<u16>,
+}
+
+/// One finding about a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnostic {
+    /// The words.
+    pub wording: Wording,
+    /// How grave.
+    pub severity: Severity,
+    /// Where it is, with the macro calls and loop turns that led there.
+    pub origin: Origin,
+    /// Places that belong to it.
+    pub related: Vec<(String, Origin)>,
+    /// The place is code without effect: editors may fade it.
+    pub unnecessary: bool,
+}
+
+/// One level of macro call, loop turn or inclusion, as the interfaces have it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct OriginStep {
+    /// `macro`, `loop` or `include`.
+    pub kind: &'static str,
+    /// Name of the macro or file.
+    pub name: String,
+    /// ISN of the CALL or LOOPST.
+    pub isn: u32,
+    /// Which turn.
+    pub turn: u32,
+}
+
+/// The frames of an origin, innermost first.
+pub fn origin_steps(origin: &Origin) -> Vec<OriginStep> {
+    let mut steps = Vec::new();
+    let mut frame = origin.frame.as_deref();
+    while let Some(step) = frame {
+        let kind = match step.kind {
+            FrameKind::Macro => "macro",
+            FrameKind::Loop => "loop",
+            FrameKind::Include => "include",
+        };
+        steps.push(OriginStep { kind, name: step.name.to_string(), isn: step.isn, turn: step.turn });
+        frame = step.parent.as_deref();
+    }
+    steps
+}
+
+/// The byte range of an origin in the text of a tree.
+pub fn absolute_range(tree: &SyntaxTree, origin: &Origin) -> std::ops::Range<usize> {
+    statement_range(tree, origin.isn, origin.range)
+}
+
+/// The byte range of a place relative to the statement with this number.
+pub fn statement_range(tree: &SyntaxTree, isn: u32, range: apt_syntax::TextRange) -> std::ops::Range<usize> {
+    let count = tree.statement_count();
+    if count == 0 {
+        return 0..0;
+    }
+    let index = (isn.max(1) as usize - 1).min(count - 1);
+    let whole = tree.statement(index).range();
+    let start = usize::from(whole.start()) + usize::from(range.start());
+    let end = usize::from(whole.start()) + usize::from(range.end());
+    let limit = usize::from(whole.end());
+    start.min(limit)..end.min(limit)
+}

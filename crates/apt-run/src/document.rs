@@ -1,0 +1,250 @@
+//! One part program with its settings: syntax at once, evaluation and run when asked for, each computed at most once.
+//!
+//! A document is an immutable version. [`Document::edit`] makes the next one, which restarts evaluation at the first
+//! statement that changed and shares the memo of motions.
+
+use std::{
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
+
+use apt_program::{Options, Program, evaluate};
+use apt_syntax::{
+    StatementChange, SyntaxTree, TextRange, TextSize,
+    dialect::{DetectionReason, Dialect, DialectName, detect},
+};
+
+use crate::{
+    Cancel, Cancelled, catalogue,
+    diagnostic::Diagnostic,
+    memo::MotionMemo,
+    pipeline::{RunResult, run},
+    report::{Report, ReportInput, report},
+    settings::Settings,
+};
+
+/// How far diagnostics go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Section 1: syntax and evaluation.
+    Section1,
+    /// Sections 1 to 3: the motions are computed and verified.
+    Motion,
+}
+
+/// Why a dialect is in force.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum DialectReason {
+    /// The settings name it.
+    Setting,
+    /// It was detected.
+    Detected(DetectionReason),
+}
+
+/// The change between an evaluated version and this one.
+#[derive(Debug, Clone)]
+struct Basis {
+    program: Arc<Program>,
+    change: StatementChange,
+}
+
+/// One version of one part program.
+#[derive(Debug)]
+pub struct Document {
+    tree: SyntaxTree,
+    file: Option<String>,
+    settings: Arc<Settings>,
+    dialect_reason: DialectReason,
+    memo: MotionMemo,
+    basis: Option<Basis>,
+    program: OnceLock<Arc<Program>>,
+    result: OnceLock<Arc<RunResult>>,
+}
+
+impl Document {
+    /// Parses a text. The dialect is that of the settings, else it is detected.
+    pub fn new(text: &str, file: Option<String>, settings: &Arc<Settings>) -> Self {
+        let set = settings.dialect.as_deref().and_then(|name| name.parse::<DialectName>().ok());
+        let (name, dialect_reason) = match set {
+            Some(name) => (name, DialectReason::Setting),
+            None => {
+                let detection = detect(text, file.as_deref());
+                (detection.name, DialectReason::Detected(detection.reason))
+            }
+        };
+        Self {
+            tree: SyntaxTree::parse(text, Dialect::named(name)),
+            file,
+            settings: Arc::clone(settings),
+            dialect_reason,
+            memo: MotionMemo::default(),
+            basis: None,
+            program: OnceLock::new(),
+            result: OnceLock::new(),
+        }
+    }
+
+    /// The next version: `range` (bytes) replaced by `insert`.
+    pub fn edit(&self, range: Range<usize>, insert: &str) -> Self {
+        let range = TextRange::new(TextSize::new(range.start as u32), TextSize::new(range.end as u32));
+        let (tree, change) = self.tree.edit(range, insert);
+        let basis = match (self.program.get(), &self.basis) {
+            (Some(program), _) => Some(Basis { program: Arc::clone(program), change }),
+            (None, Some(basis)) => {
+                Some(Basis { program: Arc::clone(&basis.program), change: merge(&basis.change, &change) })
+            }
+            (None, None) => None,
+        };
+        Self {
+            tree,
+            file: self.file.clone(),
+            settings: Arc::clone(&self.settings),
+            dialect_reason: self.dialect_reason.clone(),
+            memo: self.memo.clone(),
+            basis,
+            program: OnceLock::new(),
+            result: OnceLock::new(),
+        }
+    }
+
+    /// The syntax.
+    pub fn tree(&self) -> &SyntaxTree {
+        &self.tree
+    }
+
+    /// The file name, if there is one.
+    pub fn file(&self) -> Option<&str> {
+        self.file.as_deref()
+    }
+
+    /// The settings in force.
+    pub fn settings(&self) -> &Arc<Settings> {
+        &self.settings
+    }
+
+    /// The dialect in force.
+    pub fn dialect(&self) -> DialectName {
+        self.tree.dialect().name
+    }
+
+    /// Why this dialect is in force.
+    pub fn dialect_reason(&self) -> &DialectReason {
+        &self.dialect_reason
+    }
+
+    /// The memo of motions, shared by all versions.
+    pub fn memo(&self) -> &MotionMemo {
+        &self.memo
+    }
+
+    /// The evaluation, if it has been computed.
+    pub fn evaluated(&self) -> Option<&Arc<Program>> {
+        self.program.get()
+    }
+
+    /// Section 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn program(&self, cancel: Cancel<'_>) -> Result<Arc<Program>, Cancelled> {
+        if let Some(program) = self.program.get() {
+            return Ok(Arc::clone(program));
+        }
+        let options = Options::from(&*self.settings);
+        let program = match &self.basis {
+            Some(basis) => basis.program.update(&self.tree, &basis.change, &options, &cancel),
+            None => evaluate(&self.tree, &options, &cancel),
+        };
+        if !program.is_complete() {
+            return Err(Cancelled);
+        }
+        Ok(Arc::clone(self.program.get_or_init(|| Arc::new(program))))
+    }
+
+    /// Sections 1 to 3. `progress` gets the number of records done and to do.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn run(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Arc<RunResult>, Cancelled> {
+        if let Some(result) = self.result.get() {
+            return Ok(Arc::clone(result));
+        }
+        let program = self.program(cancel)?;
+        let result = run(&self.tree, &program, &self.settings, &self.memo, cancel, progress)?;
+        Ok(Arc::clone(self.result.get_or_init(|| Arc::new(result))))
+    }
+
+    /// The diagnostics up to a level, in order of their place.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn diagnostics(
+        &self,
+        level: Level,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<Diagnostic>, Cancelled> {
+        let program = self.program(cancel)?;
+        let result = match level {
+            Level::Section1 => None,
+            Level::Motion => Some(self.run(cancel, progress)?),
+        };
+        Ok(catalogue::diagnostics(&program, result.as_deref(), &self.settings))
+    }
+
+    /// The report of a run, of the whole program or of some statements.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn report(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+        statements: Option<std::ops::RangeInclusive<u32>>,
+    ) -> Result<Report, Cancelled> {
+        let program = self.program(cancel)?;
+        let result = self.run(cancel, progress)?;
+        let diagnostics = catalogue::diagnostics(&program, Some(&result), &self.settings);
+        Ok(report(&ReportInput {
+            file: self.file.as_deref().unwrap_or("-"),
+            text: &self.tree.text(),
+            tree: &self.tree,
+            program: &program,
+            result: &result,
+            diagnostics: &diagnostics,
+            statements,
+        }))
+    }
+}
+
+impl From<&Settings> for Options {
+    fn from(settings: &Settings) -> Self {
+        Options {
+            statement_budget: settings.budget.statements,
+            macro_depth: settings.budget.macro_depth,
+            ..Options::default()
+        }
+    }
+}
+
+/// One change that has the effect of two, the second coming after the first.
+fn merge(a: &StatementChange, b: &StatementChange) -> StatementChange {
+    let first = a.first.min(b.first);
+    let middle_end = (a.first + a.inserted).max(b.first + b.removed);
+    let old_end = middle_end - a.inserted + a.removed;
+    let new_end = middle_end - b.removed + b.inserted;
+    StatementChange {
+        first,
+        removed: old_end - first,
+        inserted: new_end - first,
+        scanned: a.scanned + b.scanned,
+    }
+}

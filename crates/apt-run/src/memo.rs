@@ -1,0 +1,140 @@
+//! The memo of motions: a motion whose inputs did not change is not computed again.
+//!
+//! The key is the content of the modal state and of the command, so an edit before or after a motion that leaves both
+//! as they were costs nothing.
+
+use std::{
+    collections::HashMap,
+    fmt::Write,
+    hash::Hasher,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use apt_geometry::motion::MotionCommand;
+use arelem::{
+    section2::{Execution, State},
+    verify::{Evidence, VerifyError},
+};
+use rustc_hash::{FxBuildHasher, FxHasher};
+
+/// A motion that has been computed and verified.
+#[derive(Debug)]
+pub struct ComputedMotion {
+    state: State,
+    command: MotionCommand,
+    /// What the engine answered.
+    pub execution: Execution,
+    /// What the verifier found; `None` where there was nothing to verify.
+    pub evidence: Option<Result<Evidence, VerifyError>>,
+    /// How long engine and verifier took, seconds; for people, never for decisions.
+    pub seconds: f64,
+}
+
+/// How often the memo had the answer.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct MemoCounters {
+    /// Motions taken from the memo.
+    pub reused: u64,
+    /// Motions computed.
+    pub computed: u64,
+}
+
+#[derive(Debug)]
+struct Entry {
+    motion: Arc<ComputedMotion>,
+    last_run: u64,
+}
+
+#[derive(Debug, Default)]
+struct Inner {
+    entries: HashMap<u64, Vec<Entry>, FxBuildHasher>,
+    run: u64,
+    counters: MemoCounters,
+}
+
+/// The memo; cheap to clone, all clones share one table.
+#[derive(Debug, Clone, Default)]
+pub struct MotionMemo {
+    inner: Arc<Mutex<Inner>>,
+}
+
+/// Motions that no run has used for this many runs are forgotten.
+const RUNS_KEPT: u64 = 8;
+
+impl MotionMemo {
+    /// Marks the start of a run and forgets motions that have long been unused.
+    pub fn begin_run(&self) {
+        let mut inner = self.lock();
+        inner.run += 1;
+        let oldest = inner.run.saturating_sub(RUNS_KEPT);
+        inner.entries.retain(|_, bucket| {
+            bucket.retain(|entry| entry.last_run >= oldest);
+            !bucket.is_empty()
+        });
+    }
+
+    /// The counters since the memo was made.
+    pub fn counters(&self) -> MemoCounters {
+        self.lock().counters
+    }
+
+    /// The motion of this command in this state: from the memo, or computed by `compute`, which gives `None` when it
+    /// was cancelled.
+    pub fn get_or_compute(
+        &self,
+        state: &State,
+        command: &MotionCommand,
+        compute: impl FnOnce() -> Option<(Execution, Option<Result<Evidence, VerifyError>>, f64)>,
+    ) -> Option<Arc<ComputedMotion>> {
+        let key = content_hash(state, command);
+        if let Some(found) = self.find(key, state, command) {
+            return Some(found);
+        }
+        let (execution, evidence, seconds) = compute()?;
+        let motion = Arc::new(ComputedMotion {
+            state: state.clone(),
+            command: command.clone(),
+            execution,
+            evidence,
+            seconds,
+        });
+        let mut inner = self.lock();
+        inner.counters.computed += 1;
+        let last_run = inner.run;
+        inner.entries.entry(key).or_default().push(Entry { motion: Arc::clone(&motion), last_run });
+        Some(motion)
+    }
+
+    fn find(&self, key: u64, state: &State, command: &MotionCommand) -> Option<Arc<ComputedMotion>> {
+        let mut inner = self.lock();
+        let run = inner.run;
+        let bucket = inner.entries.get_mut(&key)?;
+        let entry = bucket
+            .iter_mut()
+            .find(|entry| entry.motion.state == *state && entry.motion.command == *command)?;
+        entry.last_run = run;
+        let found = Arc::clone(&entry.motion);
+        inner.counters.reused += 1;
+        Some(found)
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Inner> {
+        // A panic while the lock is held can only lose an entry, never corrupt one.
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Hashes the `Debug` form, which writes every number so that it reads back to the same bits.
+fn content_hash(state: &State, command: &MotionCommand) -> u64 {
+    struct Sink(FxHasher);
+    impl Write for Sink {
+        fn write_str(&mut self, text: &str) -> std::fmt::Result {
+            self.0.write(text.as_bytes());
+            Ok(())
+        }
+    }
+    let mut sink = Sink(FxHasher::default());
+    // Writing to the hasher cannot fail.
+    let _ = write!(sink, "{state:?}{command:?}");
+    sink.0.finish()
+}

@@ -1,0 +1,121 @@
+//! Runs the sections in order over an evaluated program: motion, edit, totals.
+
+mod section2;
+
+use std::sync::Arc;
+
+use apt_cldata::{
+    edit::EditError,
+    record::ClRecord,
+    totals::{Totals, totals},
+};
+use apt_program::{Origin, Program};
+use apt_syntax::SyntaxTree;
+use arelem::error::{MotionFailure, MotionWarning};
+
+use crate::{
+    Cancel, Cancelled,
+    memo::{ComputedMotion, MotionMemo},
+    settings::Settings,
+};
+
+/// A motion statement that Section 2 has computed.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The computed sequence with its evidence, shared with the memo.
+    pub computed: Arc<ComputedMotion>,
+}
+
+/// What went wrong, or is worth saying, after Section 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunFinding {
+    /// What.
+    pub kind: RunFindingKind,
+    /// The statement concerned.
+    pub origin: Origin,
+}
+
+/// The kinds of findings of Sections 2 and 3.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunFindingKind {
+    /// The engine could not carry out a command.
+    Failure(MotionFailure),
+    /// The engine did, with a doubt.
+    Warning(MotionWarning),
+    /// The independent verifier did not confirm a computed motion.
+    Unverified(arelem::verify::Evidence),
+    /// The verifier could not judge a computed motion.
+    NotJudged(arelem::verify::VerifyError),
+    /// Motion statements were passed over after a failure, up to the next restart point.
+    Skipped {
+        /// How many.
+        statements: u32,
+        /// ISN of the last of them.
+        last: u32,
+    },
+    /// FINI came while a transfer to this label was pending (APT III 9).
+    TransferPending {
+        /// The label.
+        label: String,
+    },
+    /// TRACUT, INDEX or COPY.
+    Edit(EditError),
+}
+
+/// What a run gives.
+#[derive(Debug, Clone)]
+pub struct RunResult {
+    /// The final CL records, after TRACUT and COPY.
+    pub records: Vec<ClRecord>,
+    /// Where records come from; [`ClRecord::source`] is an index into it.
+    pub origins: Vec<Origin>,
+    /// The motions, in order of execution.
+    pub motions: Vec<Motion>,
+    /// What is to be said about them.
+    pub findings: Vec<RunFinding>,
+    /// Lengths, time and box of the final path.
+    pub totals: Totals,
+}
+
+/// Runs Sections 2 and 3 over a program. `progress` gets the number of records done and to do.
+///
+/// # Errors
+///
+/// [`Cancelled`] when `cancel` said so before the end.
+pub fn run(
+    tree: &SyntaxTree,
+    program: &Program,
+    settings: &Settings,
+    memo: &MotionMemo,
+    cancel: Cancel<'_>,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<RunResult, Cancelled> {
+    memo.begin_run();
+    let mut section2 = section2::Section2::new(settings, memo, cancel);
+    let total = program.record_count();
+    for (done, record) in program.records().enumerate() {
+        if done % 64 == 0 {
+            if cancel() {
+                return Err(Cancelled);
+            }
+            progress(done, total);
+        }
+        section2.record(record)?;
+    }
+    let output = section2.finish();
+    let (records, edit_errors) = apt_cldata::edit::edit(output.items);
+    let mut findings = output.findings;
+    findings.extend(edit_errors.into_iter().map(|error| {
+        let origin = output.origins.get(error.source as usize).cloned();
+        let origin = origin.unwrap_or(Origin {
+            isn: tree.statement_count() as u32,
+            range: Default::default(),
+            frame: None,
+        });
+        RunFinding { kind: RunFindingKind::Edit(error), origin }
+    }));
+    let totals = totals(&records);
+    Ok(RunResult { records, origins: output.origins, motions: output.motions, findings, totals })
+}

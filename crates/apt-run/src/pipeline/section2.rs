@@ -1,0 +1,351 @@
+//! Drives Section 2: hands motion commands to the engine, collects CL items, keeps the transfer mode of Trumpy 1970.
+
+use std::time::Instant;
+
+use apt_cldata::{
+    edit::EditItem,
+    record::{ClKind, ClPoint, ClRecord, ClWord},
+};
+use apt_geometry::{
+    canonical::Geometry,
+    motion::{MotionCommand, PerRole},
+};
+use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
+use arelem::{
+    section2::{Execution, Output, State, execute},
+    sequence::{CutSequence, ToolPosition},
+    verify::{Evidence, VerifyError, verify},
+};
+use smol_str::SmolStr;
+
+use super::{Motion, RunFinding, RunFindingKind};
+use crate::{Cancel, Cancelled, memo::MotionMemo, settings::Settings};
+
+/// Class and subclass of the control records on the CL file (language reference 3.2).
+mod code {
+    pub(super) const CUT: [u16; 2] = [6000, 1];
+    pub(super) const CALCULATION: [u16; 2] = [6000, 2];
+    pub(super) const INTOL: [u16; 2] = [6000, 4];
+    pub(super) const OUTTOL: [u16; 2] = [6000, 5];
+    pub(super) const CUTTER: [u16; 2] = [6000, 6];
+}
+
+/// Everything Section 2 leaves behind.
+pub(super) struct SectionTwoOutput {
+    pub(super) items: Vec<EditItem>,
+    pub(super) origins: Vec<Origin>,
+    pub(super) motions: Vec<Motion>,
+    pub(super) findings: Vec<RunFinding>,
+}
+
+/// The state of the driver.
+pub(super) struct Section2<'a> {
+    memo: &'a MotionMemo,
+    cancel: Cancel<'a>,
+    state: State,
+    output: SectionTwoOutput,
+    /// Label of the record where processing goes on; records before it are passed over.
+    transfer: Option<(SmolStr, Origin)>,
+    /// First statement passed over in restart mode, how many so far and the last.
+    skipped: Option<(Origin, u32, u32)>,
+    tool: Option<ToolPosition>,
+    output_on: bool,
+    with_axis: bool,
+}
+
+impl<'a> Section2<'a> {
+    pub(super) fn new(settings: &Settings, memo: &'a MotionMemo, cancel: Cancel<'a>) -> Self {
+        let output = SectionTwoOutput {
+            items: Vec::new(),
+            origins: Vec::new(),
+            motions: Vec::new(),
+            findings: Vec::new(),
+        };
+        Self {
+            memo,
+            cancel,
+            state: State::new(settings.units.per_inch()),
+            output,
+            transfer: None,
+            skipped: None,
+            tool: None,
+            output_on: true,
+            with_axis: false,
+        }
+    }
+
+    /// Takes one record of Section 1.
+    pub(super) fn record(&mut self, record: &Record) -> Result<(), Cancelled> {
+        if let Some((label, _)) = &self.transfer {
+            if record.label.as_ref() == Some(label) {
+                self.transfer = None;
+            } else if !matches!(record.kind, RecordKind::End) {
+                return Ok(());
+            }
+        }
+        let source = self.source(&record.origin);
+        match &record.kind {
+            RecordKind::Motion(command) => return self.command(command, &record.origin, source),
+            RecordKind::Postprocessor { word, code, arguments } => {
+                let arguments = arguments.iter().flat_map(cl_words).collect();
+                let kind = ClKind::Postprocessor { word: word.clone(), code: Some(*code), arguments };
+                self.push(record.origin.isn, source, kind);
+            }
+            RecordKind::Text { word, code, text } => {
+                let kind = ClKind::Text { word: word.clone(), code: Some(*code), text: text.clone() };
+                self.push(record.origin.isn, source, kind);
+            }
+            RecordKind::Transform(matrix) => {
+                self.output.items.push(EditItem::Transform {
+                    matrix: *matrix,
+                    isn: record.origin.isn,
+                    source,
+                });
+            }
+            RecordKind::Index { number, end } => self.output.items.push(EditItem::Index {
+                number: *number,
+                end: *end,
+                isn: record.origin.isn,
+                source,
+            }),
+            RecordKind::Copy { number, step, count } => {
+                let matrix = match step {
+                    CopyStep::Same => None,
+                    CopyStep::Matrix(matrix) => Some(*matrix),
+                };
+                self.output.items.push(EditItem::Copy {
+                    number: *number,
+                    matrix,
+                    count: *count,
+                    isn: record.origin.isn,
+                    source,
+                });
+            }
+            RecordKind::Control { word, code, arguments } => {
+                let arguments = arguments.iter().flat_map(cl_words).collect();
+                self.push(
+                    record.origin.isn,
+                    source,
+                    ClKind::Control { word: word.clone(), code: *code, arguments },
+                );
+            }
+            RecordKind::Transfer(label) => self.transfer = Some((label.clone(), record.origin.clone())),
+            RecordKind::End => {
+                self.pending_transfer();
+                self.push(record.origin.isn, source, ClKind::End);
+            }
+        }
+        Ok(())
+    }
+
+    /// Closes the run.
+    pub(super) fn finish(mut self) -> SectionTwoOutput {
+        self.pending_transfer();
+        self.end_of_skipping();
+        self.output
+    }
+
+    fn command(&mut self, command: &MotionCommand, origin: &Origin, source: u32) -> Result<(), Cancelled> {
+        self.parameter_record(command, origin.isn, source);
+        let execution = if is_costly(command) {
+            let computed = {
+                let (state, cancel) = (&self.state, self.cancel);
+                self.memo.get_or_compute(state, command, || compute(state, command, cancel))
+            };
+            let computed = computed.ok_or(Cancelled)?;
+            self.judge(&computed.evidence, origin);
+            if matches!(computed.execution.output, Some(Output::Sequence(_))) {
+                self.output.motions.push(Motion { origin: origin.clone(), computed: computed.clone() });
+            }
+            computed.execution.clone()
+        } else {
+            execute(&self.state, command, &self.cancel)
+        };
+        if (self.cancel)() {
+            return Err(Cancelled);
+        }
+        self.take(execution, command, origin, source);
+        Ok(())
+    }
+
+    fn judge(&mut self, evidence: &Option<Result<Evidence, VerifyError>>, origin: &Origin) {
+        let kind = match evidence {
+            Some(Ok(evidence)) if !evidence.verified => RunFindingKind::Unverified(evidence.clone()),
+            Some(Err(error)) => RunFindingKind::NotJudged(error.clone()),
+            _ => return,
+        };
+        self.output.findings.push(RunFinding { kind, origin: origin.clone() });
+    }
+
+    fn take(&mut self, execution: Execution, command: &MotionCommand, origin: &Origin, source: u32) {
+        self.state = execution.state;
+        let warnings = execution.warnings.into_iter().map(RunFindingKind::Warning);
+        let failure = execution.failure.map(RunFindingKind::Failure);
+        for kind in warnings.chain(failure) {
+            self.output.findings.push(RunFinding { kind, origin: origin.clone() });
+        }
+        match execution.output {
+            Some(Output::Position(position)) => {
+                self.end_of_skipping();
+                let (from, name) = match command {
+                    MotionCommand::From { name, .. } => (true, name.as_str()),
+                    MotionCommand::GoTo { name, .. } => (false, name.as_str()),
+                    _ => (false, ""),
+                };
+                self.tool = Some(position);
+                self.positions(origin.isn, source, from, name, &[position]);
+            }
+            Some(Output::Sequence(sequence)) => {
+                self.end_of_skipping();
+                self.sequence(command, &sequence, origin, source);
+            }
+            Some(Output::Ignored) => {
+                let (_, count, last) = self.skipped.get_or_insert_with(|| (origin.clone(), 0, origin.isn));
+                *count += 1;
+                *last = origin.isn;
+            }
+            None => {}
+        }
+    }
+
+    fn sequence(&mut self, command: &MotionCommand, sequence: &CutSequence, origin: &Origin, source: u32) {
+        let name = match command {
+            MotionCommand::Drive { drive, .. } => drive.name.as_str(),
+            MotionCommand::Start(surfaces) | MotionCommand::Offset(surfaces) => {
+                surfaces.first().map_or("", |first| first.surface.name.as_str())
+            }
+            MotionCommand::Pocket(_) => "POCKET",
+            _ => "",
+        };
+        if let MotionCommand::Drive { drive, checks, .. } = command {
+            if let Geometry::Circle(circle) | Geometry::Cylinder(circle) = &drive.geometry {
+                let kind = ClKind::Arc {
+                    surface: SmolStr::new(name),
+                    center: circle.point,
+                    axis: circle.axis,
+                    radius: circle.radius,
+                };
+                self.push(origin.isn, source, kind);
+            }
+            let label = sequence
+                .stop
+                .as_ref()
+                .and_then(|stop| checks.get(stop.index))
+                .and_then(|check| check.label.as_ref());
+            if let Some(label) = label {
+                self.transfer = Some((SmolStr::new(label), origin.clone()));
+            }
+        }
+        self.tool = sequence.points.last().copied().or(self.tool);
+        self.positions(origin.isn, source, false, name, &sequence.points);
+    }
+
+    fn positions(&mut self, isn: u32, source: u32, from: bool, name: &str, positions: &[ToolPosition]) {
+        if positions.is_empty() || !self.output_on {
+            return;
+        }
+        let with_axis = self.with_axis;
+        let points =
+            positions.iter().map(|at| ClPoint { position: at.tip, axis: at.axis, with_axis }).collect();
+        self.push(isn, source, ClKind::Motion { from, surface: SmolStr::new(name), points });
+    }
+
+    /// The CL record of a parameter statement, where it has one.
+    fn parameter_record(&mut self, command: &MotionCommand, isn: u32, source: u32) {
+        let kind = match command {
+            MotionCommand::Cutter(numbers) => control("CUTTER", code::CUTTER, numbers),
+            MotionCommand::InsideTolerance(values) => control("INTOL", code::INTOL, &per_role(values)),
+            MotionCommand::OutsideTolerance(values) => control("OUTTOL", code::OUTTOL, &per_role(values)),
+            MotionCommand::ForceIteration(force) => {
+                control(if *force { "3DCALC" } else { "2DCALC" }, code::CALCULATION, &[])
+            }
+            MotionCommand::MultipleAxes(setting) => {
+                self.with_axis = setting.unwrap_or(true);
+                ClKind::MultipleAxes(self.with_axis)
+            }
+            MotionCommand::Output(on) => {
+                let resumed = *on && !self.output_on;
+                self.output_on = *on;
+                if let (true, Some(tool)) = (resumed, self.tool) {
+                    self.positions(isn, source, false, "", &[tool]);
+                }
+                control(if *on { "CUT" } else { "DNTCUT" }, code::CUT, &[])
+            }
+            _ => return,
+        };
+        self.push(isn, source, kind);
+    }
+
+    fn push(&mut self, isn: u32, source: u32, kind: ClKind) {
+        self.output.items.push(EditItem::Record(ClRecord { isn, source, kind }));
+    }
+
+    fn source(&mut self, origin: &Origin) -> u32 {
+        if self.output.origins.last() != Some(origin) {
+            self.output.origins.push(origin.clone());
+        }
+        self.output.origins.len() as u32 - 1
+    }
+
+    fn pending_transfer(&mut self) {
+        if let Some((label, origin)) = self.transfer.take() {
+            let kind = RunFindingKind::TransferPending { label: label.to_string() };
+            self.output.findings.push(RunFinding { kind, origin });
+        }
+    }
+
+    fn end_of_skipping(&mut self) {
+        if let Some((origin, statements, last)) = self.skipped.take() {
+            self.output
+                .findings
+                .push(RunFinding { kind: RunFindingKind::Skipped { statements, last }, origin });
+        }
+    }
+}
+
+/// Commands whose computation is worth remembering.
+fn is_costly(command: &MotionCommand) -> bool {
+    matches!(
+        command,
+        MotionCommand::Start(_)
+            | MotionCommand::Offset(_)
+            | MotionCommand::Drive { .. }
+            | MotionCommand::Pocket(_)
+    )
+}
+
+/// Computes and verifies; `None` when cancelled on the way.
+fn compute(
+    state: &State,
+    command: &MotionCommand,
+    cancel: Cancel<'_>,
+) -> Option<(Execution, Option<Result<Evidence, VerifyError>>, f64)> {
+    let begin = Instant::now();
+    let execution = execute(state, command, &cancel);
+    let evidence = match &execution.output {
+        Some(Output::Sequence(sequence)) if !cancel() => Some(verify(sequence, &cancel)),
+        _ => None,
+    };
+    (!cancel()).then(|| (execution, evidence, begin.elapsed().as_secs_f64()))
+}
+
+fn control(word: &str, code: [u16; 2], numbers: &[f64]) -> ClKind {
+    let arguments = numbers.iter().map(|&number| ClWord::Number(number)).collect();
+    ClKind::Control { word: SmolStr::new(word), code, arguments }
+}
+
+fn per_role(values: &PerRole) -> [f64; 4] {
+    [values.part, values.drive, values.check[0], values.check[1]]
+}
+
+/// A canonical form goes into the record as its numbers.
+fn cl_words(argument: &PostArgument) -> Vec<ClWord> {
+    match argument {
+        PostArgument::Number(number) => vec![ClWord::Number(*number)],
+        PostArgument::Word(word, _) => vec![ClWord::Word(word.clone())],
+        PostArgument::Text(text) => vec![ClWord::Word(text.clone())],
+        PostArgument::Geometry(geometry) => {
+            geometry.canonical_values().into_iter().map(ClWord::Number).collect()
+        }
+    }
+}

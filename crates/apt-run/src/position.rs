@@ -1,0 +1,86 @@
+//! Byte offsets to the zero-based line and UTF-16 character of the fixed interfaces.
+
+use serde::Serialize;
+
+/// A zero-based line and a UTF-16 offset in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Position {
+    /// Line, from 0.
+    pub line: u32,
+    /// UTF-16 code units from the start of the line.
+    pub character: u32,
+}
+
+/// From one position up to another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Range {
+    /// First position.
+    pub start: Position,
+    /// Position after the last character.
+    pub end: Position,
+}
+
+/// The starts of the lines of a text.
+#[derive(Debug, Clone)]
+pub struct LineIndex {
+    starts: Vec<usize>,
+}
+
+impl LineIndex {
+    /// Finds the lines of a text; LF, CRLF and a lone CR end a line, as in the language server protocol.
+    pub fn new(text: &str) -> Self {
+        let bytes = text.as_bytes();
+        let ends = bytes
+            .iter()
+            .enumerate()
+            .filter(|&(at, &byte)| byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n')));
+        let starts = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
+        Self { starts }
+    }
+
+    /// The position of a byte offset; offsets past the end or inside a character are moved back to the nearest place.
+    pub fn position(&self, text: &str, offset: usize) -> Position {
+        let mut offset = offset.min(text.len());
+        while !text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        let line = self.starts.partition_point(|&start| start <= offset).saturating_sub(1);
+        let start = self.starts.get(line).copied().unwrap_or(0);
+        let character = text[start..offset].encode_utf16().count();
+        Position { line: line as u32, character: character as u32 }
+    }
+
+    /// The range between two byte offsets.
+    pub fn range(&self, text: &str, bytes: std::ops::Range<usize>) -> Range {
+        Range {
+            start: self.position(text, bytes.start),
+            end: self.position(text, bytes.end.max(bytes.start)),
+        }
+    }
+
+    /// The byte range of a zero-based line, its line end included; `None` past the last line.
+    pub fn line(&self, text: &str, line: u32) -> Option<std::ops::Range<usize>> {
+        let start = *self.starts.get(line as usize)?;
+        let end = self.starts.get(line as usize + 1).copied().unwrap_or(text.len());
+        Some(start..end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_utf16_and_every_line_end() {
+        let text = "a\r\né𝄞x\rz";
+        let index = LineIndex::new(text);
+        assert_eq!(index.position(text, 0), Position { line: 0, character: 0 });
+        assert_eq!(index.position(text, 3), Position { line: 1, character: 0 });
+        assert_eq!(index.position(text, 9), Position { line: 1, character: 3 }, "é is 1 unit, 𝄞 is 2");
+        assert_eq!(index.position(text, 8), Position { line: 1, character: 1 }, "inside 𝄞 moves back");
+        assert_eq!(index.position(text, 11), Position { line: 2, character: 0 });
+        assert_eq!(index.position(text, 99), Position { line: 2, character: 1 });
+        assert_eq!(index.line(text, 1), Some(3..11));
+        assert_eq!(index.line(text, 3), None);
+    }
+}

@@ -1,0 +1,225 @@
+//! Builds a [`Report`] from the values of the sections.
+
+use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
+use apt_geometry::canonical::Geometry;
+use apt_program::{Program, Value as SymbolValue};
+use apt_syntax::SyntaxTree;
+use serde_json::{Map, Value, json};
+
+use super::{ClEntry, DiagnosticReport, MotionEntry, RelatedReport, Report, TotalsEntry};
+use crate::{
+    diagnostic::{Diagnostic, Severity, absolute_range, origin_steps},
+    pipeline::{Motion, RunResult},
+    position::LineIndex,
+};
+
+/// What a report is made from.
+pub struct ReportInput<'a> {
+    /// File name of the program.
+    pub file: &'a str,
+    /// Its text.
+    pub text: &'a str,
+    /// Its syntax.
+    pub tree: &'a SyntaxTree,
+    /// Its evaluation.
+    pub program: &'a Program,
+    /// Its run.
+    pub result: &'a RunResult,
+    /// All diagnostics of Sections 1 to 3.
+    pub diagnostics: &'a [Diagnostic],
+    /// Only statements with these numbers are listed under `cl` and `motions`; everything without.
+    pub statements: Option<std::ops::RangeInclusive<u32>>,
+}
+
+/// Builds the report.
+pub fn report(input: &ReportInput<'_>) -> Report {
+    let lines = LineIndex::new(input.text);
+    let wanted = |isn: u32| input.statements.as_ref().is_none_or(|range| range.contains(&isn));
+    Report {
+        program: input.file.to_owned(),
+        ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
+        dialect: input.tree.dialect().name.as_str().to_owned(),
+        diagnostics: input
+            .diagnostics
+            .iter()
+            .map(|diagnostic| diagnostic_report(diagnostic, input.file, input.text, input.tree, &lines))
+            .collect(),
+        symbols: symbols(input.program),
+        cl: input.result.records.iter().filter(|record| wanted(record.isn)).map(cl_entry).collect(),
+        motions: input
+            .result
+            .motions
+            .iter()
+            .filter(|motion| wanted(motion.origin.isn))
+            .map(|motion| motion_entry(motion, input.tree))
+            .collect(),
+        totals: totals_entry(input.result),
+    }
+}
+
+/// A diagnostic with its places as lines and characters.
+pub fn diagnostic_report(
+    diagnostic: &Diagnostic,
+    file: &str,
+    text: &str,
+    tree: &SyntaxTree,
+    lines: &LineIndex,
+) -> DiagnosticReport {
+    let related = diagnostic.related.iter().map(|(message, origin)| RelatedReport {
+        message: message.clone(),
+        file: file.to_owned(),
+        range: lines.range(text, absolute_range(tree, origin)),
+    });
+    DiagnosticReport {
+        code: diagnostic.wording.code.to_owned(),
+        severity: diagnostic.severity,
+        message: diagnostic.wording.message.clone(),
+        isn: diagnostic.origin.isn,
+        apt3: diagnostic.wording.apt3,
+        file: file.to_owned(),
+        range: lines.range(text, absolute_range(tree, &diagnostic.origin)),
+        origin: origin_steps(&diagnostic.origin),
+        related: related.collect(),
+        hint: diagnostic.wording.hint.clone(),
+    }
+}
+
+/// A number for JSON: `-0.0` becomes `0.0`; what JSON cannot hold becomes null.
+pub fn clean_number(number: f64) -> Value {
+    json!(number + 0.0)
+}
+
+fn clean(number: f64) -> f64 {
+    number + 0.0
+}
+
+fn symbols(program: &Program) -> Map<String, Value> {
+    let mut map = Map::new();
+    for (name, value) in program.symbols() {
+        let entry = match value {
+            SymbolValue::Scalar(number) => json!({ "type": "SCALAR", "canonical": [clean_number(number)] }),
+            SymbolValue::Geometry(geometry) => geometry_value(&geometry),
+        };
+        map.insert(name.to_string(), entry);
+    }
+    map
+}
+
+/// Type and canonical values as the oracle corpus shows them: a pattern has none, a ruled surface shows its parts.
+fn geometry_value(geometry: &Geometry) -> Value {
+    let word = geometry.kind().word();
+    match geometry {
+        Geometry::Pattern(_) => json!({ "type": word, "canonical": null }),
+        Geometry::RuledSurface(surface) => {
+            let parts: Vec<_> = surface.parts.iter().map(geometry_value).collect();
+            json!({ "type": word, "canonical": null, "parts": parts })
+        }
+        _ => {
+            let values: Vec<_> = geometry.canonical_values().into_iter().map(clean_number).collect();
+            json!({ "type": word, "canonical": values })
+        }
+    }
+}
+
+fn cl_entry(record: &ClRecord) -> ClEntry {
+    let entry =
+        |kind| ClEntry { isn: record.isn, kind, surface: None, words: None, code: None, points: None };
+    match &record.kind {
+        ClKind::Postprocessor { word, code, arguments } => ClEntry {
+            words: Some(words(word, arguments)),
+            code: code.map(|code| json!(code)),
+            ..entry("postprocessor")
+        },
+        ClKind::Text { word, code, text } => ClEntry {
+            words: Some(vec![json!(word), json!(text.trim())]),
+            code: code.map(|code| json!(code)),
+            ..entry("postprocessor")
+        },
+        ClKind::Arc { surface, center, axis, radius } => ClEntry {
+            surface: name(surface),
+            code: Some(json!([3000, 2])),
+            words: Some(center.iter().chain(axis.iter()).chain([radius]).map(|&n| clean_number(n)).collect()),
+            ..entry("other")
+        },
+        ClKind::Motion { from, surface, points } => {
+            let point = |at: &apt_cldata::record::ClPoint| -> Vec<f64> {
+                let axis = at.axis.iter().take(if at.with_axis { 3 } else { 0 });
+                at.position.iter().chain(axis).map(|&n| clean(n)).collect()
+            };
+            ClEntry {
+                surface: name(surface),
+                points: Some(points.iter().map(point).collect()),
+                ..entry(if *from { "from" } else { "go" })
+            }
+        }
+        ClKind::Control { word, code, arguments } => {
+            ClEntry { words: Some(words(word, arguments)), code: Some(json!(code)), ..entry("control") }
+        }
+        ClKind::MultipleAxes(on) => ClEntry {
+            words: Some(vec![json!("MULTAX"), json!(if *on { "ON" } else { "OFF" })]),
+            ..entry("mode")
+        },
+        ClKind::Units(units) => {
+            let unit = match units {
+                Units::Inches => "INCHES",
+                Units::Millimeters => "MM",
+            };
+            ClEntry { words: Some(vec![json!("UNITS"), json!(unit)]), ..entry("mode") }
+        }
+        ClKind::End => entry("fini"),
+    }
+}
+
+fn name(surface: &str) -> Option<String> {
+    (!surface.is_empty()).then(|| surface.to_owned())
+}
+
+fn words(word: &str, arguments: &[ClWord]) -> Vec<Value> {
+    let argument = |argument: &ClWord| match argument {
+        ClWord::Number(number) => clean_number(*number),
+        ClWord::Word(word) => json!(word),
+    };
+    std::iter::once(json!(word)).chain(arguments.iter().map(argument)).collect()
+}
+
+fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
+    let computed = &motion.computed;
+    let sequence = match &computed.execution.output {
+        Some(arelem::section2::Output::Sequence(sequence)) => Some(sequence),
+        _ => None,
+    };
+    let evidence = computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
+    MotionEntry {
+        isn: motion.origin.isn,
+        statement: statement_text(tree, motion.origin.isn),
+        cut_vectors: sequence.map_or(0, |sequence| sequence.points.len()),
+        minimum: sequence.and_then(|sequence| sequence.minimum),
+        part: evidence.and_then(|evidence| evidence.part),
+        drive: evidence.and_then(|evidence| evidence.drive),
+        check: evidence.and_then(|evidence| evidence.check),
+        verified: evidence.is_some_and(|evidence| evidence.verified),
+        seconds: computed.seconds,
+    }
+}
+
+/// The statement as its elements spell it: blanks, comments and cards left out.
+fn statement_text(tree: &SyntaxTree, isn: u32) -> String {
+    let index = (isn.max(1) - 1) as usize;
+    if index >= tree.statement_count() {
+        return String::new();
+    }
+    let parsed = tree.statement(index).parsed();
+    parsed.elements.iter().map(|element| element.text.as_str()).collect()
+}
+
+fn totals_entry(result: &RunResult) -> TotalsEntry {
+    let totals = &result.totals;
+    TotalsEntry {
+        points: totals.points,
+        length: clean(totals.length),
+        cut_length: clean(totals.cut_length),
+        rapid_length: clean(totals.rapid_length),
+        time_minutes: totals.time_minutes,
+        bounds: totals.bounds.map(|bounds| bounds.map(|corner| corner.map(clean).into())),
+    }
+}

@@ -1,0 +1,133 @@
+//! The report of a run: the shape of `run --format json` (and of `apt.runMotion`), for machines and editors.
+
+mod build;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::{
+    diagnostic::{OriginStep, Severity},
+    position::Range,
+};
+
+pub use build::{ReportInput, clean_number, diagnostic_report, report};
+
+/// The result of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// File name of the program.
+    pub program: String,
+    /// No diagnostic is an error.
+    pub ok: bool,
+    /// The dialect in force.
+    pub dialect: String,
+    /// All diagnostics, in order of their place.
+    pub diagnostics: Vec<DiagnosticReport>,
+    /// Final value of every symbol, `NAME` or `NAME(3)`, in alphabetic order.
+    pub symbols: Map<String, Value>,
+    /// The final CL records.
+    pub cl: Vec<ClEntry>,
+    /// What each motion statement gave.
+    pub motions: Vec<MotionEntry>,
+    /// Sums over the path.
+    pub totals: TotalsEntry,
+}
+
+/// One diagnostic.
+#[derive(Debug, Clone, Serialize)]
+pub struct DiagnosticReport {
+    /// Stable code.
+    pub code: String,
+    /// How grave.
+    pub severity: Severity,
+    /// What is wrong.
+    pub message: String,
+    /// Statement number.
+    pub isn: u32,
+    /// The APT III number, if there is one.
+    pub apt3: Option<u16>,
+    /// The file.
+    pub file: String,
+    /// The place.
+    pub range: Range,
+    /// Macro calls and loop turns, innermost first.
+    pub origin: Vec<OriginStep>,
+    /// Places that belong to it.
+    pub related: Vec<RelatedReport>,
+    /// What would help.
+    pub hint: Option<String>,
+}
+
+/// A place that belongs to a diagnostic.
+#[derive(Debug, Clone, Serialize)]
+pub struct RelatedReport {
+    /// What is there.
+    pub message: String,
+    /// The file.
+    pub file: String,
+    /// The place.
+    pub range: Range,
+}
+
+/// One CL record group.
+#[derive(Debug, Clone, Serialize)]
+pub struct ClEntry {
+    /// Statement number.
+    pub isn: u32,
+    /// `from`, `go`, `postprocessor`, `control`, `mode`, `fini` or `other`.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Drive surface or point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<String>,
+    /// The word and its parameters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub words: Option<Vec<Value>>,
+    /// Class and subclass, or the code of a post-processor word.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub code: Option<Value>,
+    /// Tool ends, with the axis while MULTAX is in effect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<Vec<Vec<f64>>>,
+}
+
+/// What one motion statement gave.
+#[derive(Debug, Clone, Serialize)]
+pub struct MotionEntry {
+    /// Statement number.
+    pub isn: u32,
+    /// The statement as written, without comments.
+    pub statement: String,
+    /// How many cut vectors.
+    pub cut_vectors: usize,
+    /// The number that no sequence within tolerance can beat, where known.
+    pub minimum: Option<u32>,
+    /// Extreme clearances to the part surface.
+    pub part: Option<arelem::verify::Extent>,
+    /// Extreme clearances to the drive surface.
+    pub drive: Option<arelem::verify::Extent>,
+    /// Clearance to the check surface at the end.
+    pub check: Option<arelem::verify::Extent>,
+    /// The independent verifier has proven the motion.
+    pub verified: bool,
+    /// Time of engine and verifier, seconds.
+    pub seconds: f64,
+}
+
+/// Sums over the path.
+#[derive(Debug, Clone, Serialize)]
+pub struct TotalsEntry {
+    /// Number of tool positions.
+    pub points: usize,
+    /// Length of the path, program units.
+    pub length: f64,
+    /// Length travelled at feed.
+    pub cut_length: f64,
+    /// Length travelled at rapid.
+    pub rapid_length: f64,
+    /// Time at the programmed feeds, minutes; `null` where a feed is missing.
+    pub time_minutes: Option<f64>,
+    /// Least and greatest coordinates of the tool end; `null` for an empty path.
+    #[serde(rename = "box")]
+    pub bounds: Option<[[f64; 3]; 2]>,
+}
