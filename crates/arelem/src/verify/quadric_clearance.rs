@@ -17,6 +17,8 @@ use super::{
 const AZIMUTHS: usize = 16;
 /// Steps of a safeguarded secant search; bisection alone reaches round-off in fewer.
 const STEPS: usize = 100;
+/// Shortest part of a straight piece between two readings where the surface is a saddle.
+const LINE_PIECES: f64 = 48.0;
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
 const ARC_BUDGET: usize = 400;
 
@@ -317,32 +319,75 @@ impl Search<'_> {
     /// Least distance on the straight line of the patch at one azimuth, and where.
     fn on_line(&self, a: Meridian, b: Meridian, phi: f64) -> Option<(f64, Vec3)> {
         let (start, end) = (self.place(a, phi), self.place(b, phi));
-        let along = end - start;
-        let read = |t: f64| self.distance(&(start + along * t)).map(|(v, n)| (v, n.dot(&along)));
-        let (mut low, mut high) = (0.0, 1.0);
-        let (first, last) = (read(0.0)?, read(1.0)?);
-        let mut best = if first.0 <= last.0 { (first.0, start) } else { (last.0, end) };
-        let (mut rate_low, mut rate_high) = (first.1, last.1);
-        if rate_low >= 0.0 || rate_high <= 0.0 {
+        let line = Line { search: self, start, along: end - start };
+        let (first, last) = (line.read(0.0)?, line.read(1.0)?);
+        let mut best = if first.value <= last.value { (first.value, start) } else { (last.value, end) };
+        if self.shape == Shape::Convex {
+            line.trough(first, last, &mut best)?;
             return Some(best);
         }
-        for turn in 0..STEPS {
-            let secant = low - rate_low * (high - low) / (rate_high - rate_low);
-            let t =
-                if turn % 2 == 1 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
-            let (value, rate) = read(t)?;
-            if value < best.0 {
-                best = (value, start + along * t);
+        // Nothing is known between the ends but that distance changes no faster than the point moves.
+        let length = line.along.norm();
+        let mut from = first;
+        while from.t < 1.0 {
+            let clear = (from.value - best.0.min(self.best_value())) / length;
+            let t = (from.t + clear.max(1.0 / LINE_PIECES)).min(1.0);
+            let to = if t < 1.0 { line.read(t)? } else { last };
+            if to.value < best.0 {
+                best = (to.value, start + line.along * to.t);
             }
-            if high - low <= 1e-11 || rate.abs() <= 1e-12 * along.norm() {
-                break;
-            }
-            if rate < 0.0 {
-                (low, rate_low) = (t, rate);
-            } else {
-                (high, rate_high) = (t, rate);
-            }
+            line.trough(from, to, &mut best)?;
+            from = to;
         }
         Some(best)
+    }
+}
+
+/// Distance on a straight piece of the tool.
+#[derive(Debug, Clone, Copy)]
+struct OnLine {
+    t: f64,
+    value: f64,
+    rate: f64,
+}
+
+struct Line<'a> {
+    search: &'a Search<'a>,
+    start: Vec3,
+    along: Vec3,
+}
+
+impl Line<'_> {
+    fn read(&self, t: f64) -> Option<OnLine> {
+        let (value, normal) = self.search.distance(&(self.start + self.along * t))?;
+        Some(OnLine { t, value, rate: normal.dot(&self.along) })
+    }
+
+    /// Lowers `best` to the least value between two readings, if the slope changes from − to + between them.
+    fn trough(&self, mut low: OnLine, mut high: OnLine, best: &mut (f64, Vec3)) -> Option<()> {
+        if low.rate >= 0.0 || high.rate <= 0.0 {
+            return Some(());
+        }
+        for turn in 0..STEPS {
+            let secant = low.t - low.rate * (high.t - low.t) / (high.rate - low.rate);
+            let t = if turn % 2 == 1 || !(secant > low.t && secant < high.t) {
+                0.5 * (low.t + high.t)
+            } else {
+                secant
+            };
+            let middle = self.read(t)?;
+            if middle.value < best.0 {
+                *best = (middle.value, self.start + self.along * t);
+            }
+            if high.t - low.t <= 1e-11 || middle.rate.abs() <= 1e-12 * self.along.norm() {
+                break;
+            }
+            if middle.rate < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(())
     }
 }

@@ -255,4 +255,37 @@ proptest! {
             }
         }
     }
+
+    #[test]
+    fn any_quadric_agrees_with_dense_sampling(
+        tool in tools(),
+        tip in (-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64),
+        axis in direction(),
+        squares in prop::array::uniform3(prop_oneof![-1.0..-0.2f64, 0.2..1.0f64, Just(0.0)]),
+        rest in prop::array::uniform7(-0.4..0.4f64),
+    ) {
+        let [f, g, h, p, q, r, d] = rest;
+        let [a, b, c] = squares;
+        let geometry = quadric([a, b, c, 4.0 * d, 0.3 * f, 0.3 * g, 0.3 * h, p, q, r]);
+        let unit = Vec3::from(axis).normalize();
+        let tip = Vec3::new(tip.0, tip.1, tip.2);
+        let surface = Surface::of(&geometry).unwrap();
+        let Some((at_tip, _)) = surface.point_distance(&tip) else { return Ok(()) };
+        // The side that the tool end is on.
+        let side = at_tip.signum();
+        let (value, normal, error) = clearance(&tool, &geometry, side, tip.into(), axis);
+        let sampled = samples(&tool, tip, unit)
+            .iter()
+            .map(|x| side * surface.point_distance(x).unwrap().0)
+            .fold(f64::INFINITY, f64::min);
+        prop_assert!((normal.norm() - 1.0).abs() < 1e-6);
+        // Only a tool that stands clear must be measured exactly: in penetration there is more than one depth.
+        if sampled > 0.0 {
+            prop_assert!(value <= sampled + error + 1e-9, "value {value} ± {error} sampled {sampled}");
+            prop_assert!(sampled - value < 5e-3, "value {value} sampled {sampled}");
+            prop_assert!(error < 1e-4, "error {error}");
+        } else {
+            prop_assert!(value < 5e-3, "value {value} sampled {sampled}");
+        }
+    }
 }
