@@ -162,6 +162,9 @@ pub enum SyntaxErrorKind {
     /// A mark that does not belong here.
     #[error("unexpected {0}")]
     UnexpectedMark(SmolStr),
+    /// A name with several arguments in an expression: a function that the dialect does not have.
+    #[error("there is no function {0}")]
+    UnknownFunction(SmolStr),
     /// A slash, but no parameters.
     #[error("parameters missing after the slash")]
     MissingParameters,
@@ -253,6 +256,7 @@ impl SyntaxErrorKind {
             Kind::EmptyParentheses | Kind::UnexpectedMark(_) | Kind::ConditionMissing => 78,
             Kind::WordRequired => 81,
             Kind::NameWithoutEquals { .. } => 82,
+            Kind::UnknownFunction(_) => 108,
             Kind::BadInclusiveSubscript => 109,
             Kind::MissingParameters => 129,
             Kind::ObtainTypeExpected => 153,

@@ -4,7 +4,7 @@ use super::{Parsed, Parser};
 use crate::error::SyntaxErrorKind;
 use crate::kind::SyntaxKind;
 use crate::statement::{Argument, Definition, ElementKind, Expression, Name, WordUse};
-use crate::vocabulary::WordClass;
+use crate::vocabulary::{Word, WordClass};
 
 /// Where empty positions (two commas in a row) may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -245,7 +245,7 @@ impl Parser<'_> {
 
     // Inclusive subscripts.
 
-    /// Whether the name here has a parenthesis with THRU, ALL or a comma on its own level.
+    /// Whether the name here has a parenthesis with THRU, ALL, INCR or DECR on its own level.
     fn inclusive_follows(&self) -> bool {
         if self.kind(1) != Some(ElementKind::LeftParenthesis) {
             return false;
@@ -256,9 +256,9 @@ impl Parser<'_> {
                 ElementKind::LeftParenthesis => depth += 1,
                 ElementKind::RightParenthesis if depth <= 1 => return false,
                 ElementKind::RightParenthesis => depth -= 1,
-                ElementKind::Comma if depth == 1 => return true,
                 ElementKind::Word if depth == 1 => {
-                    if self.word_at(ahead).is_some_and(|word| matches!(word.spelling, "ALL" | "THRU")) {
+                    let bound = |word: &Word| matches!(word.spelling, "ALL" | "THRU" | "INCR" | "DECR");
+                    if self.word_at(ahead).is_some_and(bound) {
                         return true;
                     }
                 }

@@ -313,7 +313,8 @@ impl<'a> Parser<'a> {
             }
             let value = self.nested(Self::subscript_value)?;
             if self.at(ElementKind::Comma) {
-                return self.fail(SyntaxErrorKind::BadInclusiveSubscript);
+                self.position = first;
+                return self.fail(SyntaxErrorKind::UnknownFunction(name.text));
             }
             self.close()?;
             self.note(SyntaxKind::Subscript, open);

@@ -5,6 +5,7 @@ use smol_str::SmolStr;
 
 use super::argument::{EmptyPositions, ListRules};
 use super::{MAXIMUM_DEPTH, Parsed, Parser};
+use crate::dialect::SequenceFieldRule;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
 use crate::statement::{Body, Definition, Element, ElementKind, Name, Part, Statement, WordUse};
@@ -50,7 +51,10 @@ impl Parser<'_> {
 
     /// Notes the error and makes the rest of the statement, from `first` on, a part that says nothing.
     fn give_up(&mut self, first: usize, error: SyntaxError, parts: &mut Vec<Part>) {
-        if !self.errors.contains(&error) {
+        // A bad element makes the rest hard to read: what is said of that would be noise.
+        let bad =
+            self.elements.iter().any(|element| element.kind == ElementKind::Bad) && !self.errors.is_empty();
+        if !bad && !self.errors.contains(&error) {
             self.errors.push(error);
         }
         self.spoiled = self.spoiled.take().or_else(|| self.defined_name(first));
@@ -207,7 +211,8 @@ impl Parser<'_> {
                 self.implicit_goto()
             }
             Some(ElementKind::Bad) => self.fail_at_bad(),
-            _ => self.fail(SyntaxErrorKind::BadStatementStart),
+            None => self.fail(SyntaxErrorKind::EndsOnPunctuation),
+            Some(_) => self.fail(SyntaxErrorKind::BadStatementStart),
         }
     }
 
@@ -354,11 +359,23 @@ impl Parser<'_> {
         let mut arguments = Vec::new();
         if slash {
             self.bump();
+            if word.word.spelling == "MACHIN" {
+                self.excuse_machine_name();
+            }
             if !(self.at_end() && self.dialect.empty_parameters) {
                 arguments = self.parameters(rules)?;
             }
         }
         Ok((Body::Major { word, slash, arguments }, SyntaxKind::Major))
+    }
+
+    /// Machines are named by their makers: only cards hold them to six characters.
+    fn excuse_machine_name(&mut self) {
+        let on_cards = self.dialect.sequence_field == SequenceFieldRule::Always;
+        let Some(range) = self.element(0).map(|element| element.range).filter(|_| !on_cards) else { return };
+        self.errors.retain(|error| {
+            !(error.range == range && matches!(error.kind, SyntaxErrorKind::NameTooLong { .. }))
+        });
     }
 
     /// Whether the name here is a major word of later systems, such as UNITS, in a place where no name can stand.

@@ -18,6 +18,9 @@ use crate::{text_range, text_size};
 pub(crate) use number::number_value;
 use significant::{Significant, reduce};
 
+/// How many errors of single elements are told of one statement; what has more is no statement.
+pub const MAXIMUM_ERRORS: usize = 32;
+
 /// A token: every byte of a statement belongs to exactly one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Token {
@@ -126,6 +129,9 @@ impl Lexer<'_> {
     }
 
     fn error(&mut self, kind: SyntaxErrorKind, start: usize) {
+        if self.lexed.errors.len() >= MAXIMUM_ERRORS {
+            return;
+        }
         let range = self.range(start);
         self.lexed.errors.push(SyntaxError::new(kind, range));
     }

@@ -50,7 +50,8 @@ pub(super) fn reduce(text: &str, form: StatementForm, layout: &Layout) -> Reduce
             // The records of a text are one text; only the columns after it and the last line end are not.
             StatementForm::Text { .. } => text_end = offset + record.field,
         }
-        if !matches!(form, StatementForm::Text { .. }) || !record.continues {
+        let goes_on = record.continues && offset + record.end < text.len();
+        if !matches!(form, StatementForm::Text { .. }) || !goes_on {
             reduced.trivia(SyntaxKind::SequenceField, offset + record.field, offset + record.content);
             let end_kind = if record.separated { SyntaxKind::Semicolon } else { SyntaxKind::LineEnd };
             reduced.trivia(end_kind, offset + record.content, offset + record.end);
