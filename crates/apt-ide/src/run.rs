@@ -2,11 +2,15 @@
 
 use std::ops::Range;
 
-use apt_cldata::record::{ClKind, ClRecord};
+use apt_cldata::{
+    codes::CodeTable,
+    record::{ClKind, ClRecord},
+};
 use apt_geometry::motion::MotionCommand;
 use apt_post::{MachineDefinition, Tape};
 use apt_program::record::RecordKind;
 use apt_run::{pipeline::RunResult, report::Report};
+use apt_syntax::vocabulary::{self, WordClass};
 
 use crate::{
     Analysis, Cancel, Cancelled,
@@ -24,6 +28,17 @@ pub enum TapeError {
         /// What there is.
         known: Vec<String>,
     },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Why a binary CLTAPE cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ClTapeError {
+    /// A record does not fit the tape.
+    #[error(transparent)]
+    Tape(#[from] apt_cldata::cltape::TapeWriteError),
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -85,6 +100,34 @@ impl Analysis {
         Ok(apt_post::post(&result.records, &machine, &apt_post::PostOptions::default()))
     }
 
+    /// The CL file as APT text (`GOTO/…`).
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn cl_text(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<String, Cancelled> {
+        let result = self.document().run(cancel, progress)?;
+        Ok(apt_cldata::text::write_text(&result.records, &apt_cldata::text::TextOptions::default()))
+    }
+
+    /// The CL file as the binary CLTAPE of APT III.
+    ///
+    /// # Errors
+    ///
+    /// [`ClTapeError`] when the run was cancelled or a record does not fit the tape.
+    pub fn cl_tape(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<u8>, ClTapeError> {
+        let result = self.document().run(cancel, progress)?;
+        Ok(apt_cldata::cltape::write_tape(&result.records, &code_table())?)
+    }
+
     /// The path and the surfaces for a picture.
     ///
     /// # Errors
@@ -127,6 +170,27 @@ impl Analysis {
             cutter_diameter,
         })
     }
+}
+
+/// The codes of the vocabulary for binary CL records.
+fn code_table() -> CodeTable {
+    let mut table = CodeTable::new();
+    for word in vocabulary::words() {
+        let Some(code) = word.code else { continue };
+        match word.class {
+            WordClass::Postprocessor
+            | WordClass::PostprocessorBare
+            | WordClass::Text
+            | WordClass::Transformation => {
+                table.major(word.spelling, code);
+            }
+            WordClass::Minor => {
+                table.minor(word.spelling, code);
+            }
+            _ => {}
+        }
+    }
+    table
 }
 
 fn part_name(result: &RunResult) -> Option<String> {
