@@ -14,5 +14,5 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 fn main() -> ExitCode {
-    cli::main(Arc::new(analysis::fake::FakeLanguage::default()))
+    cli::main(Arc::new(analysis::Engine))
 }

@@ -118,7 +118,7 @@ fn mistakes_are_pushed_with_their_version_and_go_when_they_are_mended() {
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0]["range"]["start"]["line"], 2);
     assert!(found[0]["code"].as_str().unwrap().starts_with("APT"), "{found:?}");
-    server.change(URI, 2, 2, 11, 13, "POINT/3,4");
+    server.change(URI, 2, 2, 11, 13, "(POINT/3,4)");
     let mended = server.wait(pushed(2));
     assert_eq!(errors(&mended), Vec::<Value>::new());
 }

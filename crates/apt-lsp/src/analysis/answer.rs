@@ -354,28 +354,13 @@ pub(crate) struct RunRequest {
 /// What can be written to a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Product {
-    /// CL text.
-    ClText,
-    /// The binary CLTAPE of APT III.
-    Cltape,
     /// The tape of a machine, as text.
     Tape {
         /// The machine.
         machine: String,
-        /// Tape image in this code instead of text.
-        punch: Option<PunchCode>,
     },
     /// A picture of the path.
     Picture(PictureKind),
-}
-
-/// Code of a punched tape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PunchCode {
-    /// EIA RS-244.
-    Eia,
-    /// ISO (RS-358).
-    Iso,
 }
 
 /// Format of a picture.

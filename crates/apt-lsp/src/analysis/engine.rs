@@ -3,12 +3,16 @@
 //! Only conversions stand here: of cancellation and progress into the form that the analysis knows, and
 //! of places with a statement into ranges of the text.
 
+use std::iter::successors;
 use std::ops::Range;
 use std::sync::Arc;
 
 use apt_ide::{Analysis, Cancelled};
-use apt_run::catalogue::pages;
+use apt_run::catalogue::tape_diagnostics;
 use apt_run::diagnostic as found;
+use apt_run::document::DialectReason;
+use apt_run::position::LineIndex;
+use apt_run::report::diagnostic_report;
 use apt_run::settings::Settings;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -27,38 +31,38 @@ impl Language for Engine {
     }
 
     fn check_settings(&self, settings: &Values) -> Result<(), String> {
-        let settings = read_settings(settings).map_err(|error| error.to_string())?;
-        settings.check().map_err(|error| error.to_string())
+        let settings = Arc::new(read_settings(settings).map_err(|error| error.to_string())?);
+        let empty = Analysis::new("", None, &settings);
+        match &settings.dialect {
+            Some(name) if *empty.document().dialect_reason() != DialectReason::Setting => {
+                Err(format!("there is no dialect `{name}`"))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn machines(&self) -> Vec<MachineInfo> {
-        let machine = |machine: apt_ide::run::MachineInfo| MachineInfo {
-            name: machine.name,
-            title: machine.title,
-            control: machine.control,
-        };
-        apt_ide::run::machines().into_iter().map(machine).collect()
+        let all = apt_ide::run::machines().into_iter();
+        all.map(|one| MachineInfo { name: one.name, title: one.title, control: one.control }).collect()
     }
 
     fn explain(&self, code: &str) -> Option<String> {
-        pages::explain(code).map(page_text)
+        let page = apt_ide::explain(code)?;
+        let sample =
+            |title: &str, sample: &str| format!("\n{title}:\n\n```apt\n{}\n```\n", sample.trim_end());
+        let mut text = format!("# {}: {}\n\n{}\n", page.code, page.title, page.text.trim());
+        text.push_str(&sample("Wrong", &page.wrong));
+        text.push_str(&sample("Right", &page.right));
+        Some(text)
     }
 
     fn title(&self, code: &str) -> Option<String> {
-        pages::explain(code).map(|page| page.title.clone())
+        apt_ide::explain(code).map(|page| page.title.clone())
     }
 }
 
 fn read_settings(values: &Values) -> Result<Settings, serde_json::Error> {
     Settings::deserialize(&Value::Object(values.clone()))
-}
-
-fn page_text(page: &pages::Page) -> String {
-    let sample = |title: &str, sample: &str| format!("\n{title}:\n\n```apt\n{}\n```\n", sample.trim_end());
-    let mut text = format!("# {}: {}\n\n{}\n", page.code, page.title, page.text.trim());
-    text.push_str(&sample("Wrong", &page.wrong));
-    text.push_str(&sample("Right", &page.right));
-    text
 }
 
 impl From<Cancelled> for Interrupted {
@@ -81,30 +85,37 @@ fn with<T>(
 ) -> T {
     let cancel = || control.is_cancelled();
     let mut report = |done: usize, total: usize| {
-        control.report(Progress { done: done as u64, total: Some(total as u64), message: message.to_owned() });
+        control.report(Progress {
+            done: done as u64,
+            total: Some(total as u64),
+            message: message.to_owned(),
+        });
     };
     work(&cancel, &mut report)
 }
 
-impl Program {
-    fn frames(&self, origin: &apt_ide::Origin) -> Vec<OriginFrame> {
-        let tree = self.0.document().tree();
-        let mut frames = Vec::new();
-        let mut next = origin.frame.as_deref();
-        for step in found::origin_steps(origin) {
-            let range = next.map(|frame| found::statement_range(tree, frame.isn, frame.range));
-            frames.push(OriginFrame { kind: step.kind, name: step.name, isn: step.isn, turn: step.turn, range });
-            next = next.and_then(|frame| frame.parent.as_deref());
-        }
-        frames
-    }
+/// The frames of an origin with their places, both innermost first.
+fn frames(steps: Vec<found::OriginStep>, places: Vec<Range<usize>>) -> Vec<OriginFrame> {
+    let frame = |(step, place): (found::OriginStep, Range<usize>)| OriginFrame {
+        kind: step.kind,
+        name: step.name,
+        isn: step.isn,
+        turn: step.turn,
+        range: Some(place),
+    };
+    steps.into_iter().zip(places).map(frame).collect()
+}
 
+impl Program {
     fn diagnostic(&self, one: &found::Diagnostic) -> Diagnostic {
         let tree = self.0.document().tree();
-        let related = |(message, origin): &(String, apt_ide::Origin)| Related {
+        let place = |isn, range| found::statement_range(tree, isn, range);
+        let around = successors(one.origin.frame.as_deref(), |frame| frame.parent.as_deref());
+        let places = around.map(|frame| place(frame.isn, frame.range)).collect();
+        let related = one.related.iter().map(|(message, origin)| Related {
             message: message.clone(),
-            range: found::absolute_range(tree, origin),
-        };
+            range: place(origin.isn, origin.range),
+        });
         Diagnostic {
             code: one.wording.code.to_owned(),
             severity: match one.severity {
@@ -118,8 +129,8 @@ impl Program {
             isn: Some(one.origin.isn),
             apt3: one.wording.apt3,
             range: found::absolute_range(tree, &one.origin),
-            origin: self.frames(&one.origin),
-            related: one.related.iter().map(related).collect(),
+            origin: frames(found::origin_steps(&one.origin), places),
+            related: related.collect(),
             unnecessary: one.unnecessary,
         }
     }
@@ -135,7 +146,12 @@ impl Document for Program {
     }
 
     fn dialect(&self) -> String {
-        self.0.document().detection().to_string()
+        let document = self.0.document();
+        let why = match document.dialect_reason() {
+            DialectReason::Setting => "set",
+            DialectReason::Detected(_) => "detected",
+        };
+        format!("{} ({why})", document.dialect().as_str())
     }
 
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
@@ -143,7 +159,9 @@ impl Document for Program {
             Level::Section1 => apt_ide::Level::Section1,
             Level::Motion => apt_ide::Level::Motion,
         };
-        let all = with(control, "checking", |cancel, progress| self.0.document().diagnostics(level, cancel, progress))?;
+        let all = with(control, "checking", |cancel, progress| {
+            self.0.document().diagnostics(level, cancel, progress)
+        })?;
         Ok(all.iter().map(|one| self.diagnostic(one)).collect())
     }
 
@@ -228,13 +246,19 @@ impl Document for Program {
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion> {
         let expansion = with(control, "expanding", |cancel, _| self.0.expand(at, depth, cancel))?;
         let tree = self.0.document().tree();
-        let line = |(line, origin): (u32, &apt_ide::Origin)| ExpandedLine {
-            line,
-            isn: origin.isn,
-            range: found::absolute_range(tree, origin),
-            stack: self.frames(origin),
-        };
-        Ok(Expansion { text: expansion.text, origins: (0..).zip(&expansion.origins).map(line).collect() })
+        let place = |isn, range| found::statement_range(tree, isn, range);
+        let lines = (0..).zip(&expansion.origins).map(|(line, origin)| {
+            let around = successors(origin.frame.as_deref(), |frame| frame.parent.as_deref());
+            let places = around.map(|frame| place(frame.isn, frame.range)).collect();
+            ExpandedLine {
+                line,
+                isn: origin.isn,
+                range: place(origin.isn, origin.range),
+                stack: frames(found::origin_steps(origin), places),
+            }
+        });
+        let origins = lines.collect();
+        Ok(Expansion { text: expansion.text, origins })
     }
 
     fn canonical_form(&self, offset: usize, control: &Control) -> Answer<Option<CanonicalForm>> {
@@ -248,7 +272,8 @@ impl Document for Program {
     }
 
     fn run(&self, request: &RunRequest, control: &Control) -> Result<Value, Refusal> {
-        let report = with(control, "running", |cancel, progress| self.0.run(request.range.clone(), cancel, progress))?;
+        let report =
+            with(control, "running", |cancel, progress| self.0.run(request.range.clone(), cancel, progress))?;
         let mut report = to_json(&report)?;
         let mut add = |key: &str, value: Value| {
             if let Some(fields) = report.as_object_mut() {
@@ -266,27 +291,33 @@ impl Document for Program {
     }
 
     fn tape(&self, machine: &str, control: &Control) -> Result<Value, Refusal> {
-        let tape = with(control, "making the tape", |cancel, progress| self.0.tape(machine, cancel, progress))
-            .map_err(tape_refusal)?;
+        let tape =
+            with(control, "making the tape", |cancel, progress| self.0.tape(machine, cancel, progress))
+                .map_err(tape_refusal)?;
         let blocks: Vec<_> = tape.blocks.iter().map(|block| block.text.as_str()).collect();
         let origin: Vec<_> = tape.blocks.iter().map(|block| block.isn).collect();
-        let findings: Vec<_> = tape.findings.iter().map(ToString::to_string).collect();
-        Ok(json!({ "machine": machine, "blocks": blocks, "origin": origin, "findings": findings }))
+        let result = with(control, "running", |cancel, progress| self.0.document().run(cancel, progress))?;
+        let found = tape_diagnostics(&tape, &result.origins, self.0.document().settings());
+        let (text, tree) = (self.0.text(), self.0.document().tree());
+        let (file, lines) = (self.0.document().file().unwrap_or("-"), LineIndex::new(&text));
+        let found: Vec<_> =
+            found.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines)).collect();
+        Ok(json!({ "machine": machine, "blocks": blocks, "origin": origin, "diagnostics": to_json(&found)? }))
+    }
+
+    fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
+        with(control, "running", |cancel, progress| {
+            let tape = self.0.tape(machine, cancel, progress).map_err(tape_refusal)?;
+            let result = self.0.document().run(cancel, progress)?;
+            let found = tape_diagnostics(&tape, &result.origins, self.0.document().settings());
+            Ok(found.iter().map(|one| self.diagnostic(one)).collect())
+        })
     }
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {
         with(control, "running", |cancel, progress| match product {
-            Product::ClText => Ok(self.0.cl_text(cancel, progress)?.into_bytes()),
-            Product::Cltape => self.0.cltape(cancel, progress).map_err(tape_refusal),
-            Product::Tape { machine, punch: None } => {
+            Product::Tape { machine } => {
                 Ok(self.0.tape(machine, cancel, progress).map_err(tape_refusal)?.text().into_bytes())
-            }
-            Product::Tape { machine, punch: Some(code) } => {
-                let code = match code {
-                    PunchCode::Eia => apt_ide::run::PunchCode::Eia,
-                    PunchCode::Iso => apt_ide::run::PunchCode::Iso,
-                };
-                self.0.punched(machine, code, cancel, progress).map_err(tape_refusal)
             }
             Product::Picture(kind) => {
                 let scene = self.0.scene(cancel, progress)?;
@@ -309,7 +340,6 @@ fn tape_refusal(error: apt_ide::run::TapeError) -> Refusal {
     match error {
         TapeError::UnknownMachine { name, known } => Refusal::UnknownMachine { name, known },
         TapeError::Cancelled(_) => Refusal::Interrupted,
-        other => Refusal::Impossible(other.to_string()),
     }
 }
 

@@ -220,6 +220,10 @@ impl Document for FakeDocument {
         }
     }
 
+    fn tape_diagnostics(&self, _: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
+        Ok(self.diagnostics(Level::Section1, control)?)
+    }
+
     fn product(&self, _: &Product, _: &Control) -> Result<Vec<u8>, Refusal> {
         Ok(self.text.clone().into_bytes())
     }

@@ -4,6 +4,8 @@
 //! document answers is plain data with byte offsets. Handlers convert in, call one method, convert out.
 
 mod answer;
+mod engine;
+#[cfg(test)]
 pub(crate) mod fake;
 
 use std::ops::Range;
@@ -12,6 +14,7 @@ use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
 pub(crate) use self::answer::*;
+pub(crate) use self::engine::Engine;
 use crate::settings::Values;
 
 /// What makes documents: the language as a whole.
@@ -88,6 +91,9 @@ pub(crate) trait Document: Send + Sync {
 
     /// The tape for a machine, as JSON.
     fn tape(&self, machine: &str, control: &Control) -> Result<serde_json::Value, Refusal>;
+
+    /// What the post-processor finds when it makes the tape for a machine.
+    fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal>;
 
     /// What the run produces, in a form that is written to a file.
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal>;

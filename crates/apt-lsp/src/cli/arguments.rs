@@ -128,10 +128,6 @@ pub(super) enum RunFormat {
     Sarif,
     /// Annotations of GitHub workflows (findings only)
     Github,
-    /// CL text
-    Cl,
-    /// The binary CLTAPE of APT III
-    Cltape,
 }
 
 /// `run`.
@@ -150,15 +146,6 @@ pub(super) struct RunCall {
     pub deny_warnings: bool,
 }
 
-/// Codes of punched tape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Punch {
-    /// EIA RS-244
-    Eia,
-    /// ISO, RS-358
-    Iso,
-}
-
 /// `post`.
 #[derive(Debug, Args)]
 pub(super) struct PostCall {
@@ -173,9 +160,9 @@ pub(super) struct PostCall {
     /// Print the machines there are
     #[arg(long)]
     pub list_machines: bool,
-    /// Write the image of a punched tape
-    #[arg(long, value_enum, value_name = "CODE")]
-    pub punch: Option<Punch>,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
     /// Write to a file instead of standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,

@@ -3,10 +3,11 @@
 use serde_json::Value;
 
 use super::Outcome;
-use super::arguments::{PostCall, ProgramArgument, Punch};
+use super::arguments::{PostCall, ProgramArgument};
 use super::console::Console;
+use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{Language, Product, PunchCode, Refusal};
+use crate::analysis::{Language, Level, Product, Refusal};
 
 /// Makes the tape of a program.
 pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) -> Outcome {
@@ -21,20 +22,27 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
         console.error(&Refusal::NoMachine.to_string());
         return Outcome::Unusable;
     };
-    let punch = call.punch.map(|code| match code {
-        Punch::Eia => PunchCode::Eia,
-        Punch::Iso => PunchCode::Iso,
-    });
     let (control, bar) = console.control(&program.name);
-    let tape = program.document.product(&Product::Tape { machine, punch }, &control);
+    let diagnostics = program.document.diagnostics(Level::Motion, &control).map_err(Refusal::from);
+    let both = diagnostics.and_then(|mut found| {
+        found.extend(program.document.tape_diagnostics(&machine, &control)?);
+        Ok((found, program.document.product(&Product::Tape { machine }, &control)?))
+    });
     bar.finish_and_clear();
-    match tape {
-        Ok(bytes) => console.write(&bytes, call.output.as_deref()),
+    let (diagnostics, tape) = match both {
+        Ok(both) => both,
         Err(refusal) => {
             console.error(&format!("{}: {refusal}", program.name));
-            Outcome::Unusable
+            return Outcome::Unusable;
         }
+    };
+    let written = console.write(&tape, call.output.as_deref());
+    let checked = [Checked { program, diagnostics }];
+    let text = findings::human::text(&checked);
+    if !text.is_empty() {
+        console.tell(text.trim_end());
     }
+    written.max(findings::outcome(&checked, call.deny_warnings))
 }
 
 /// Prints the machines, one per line.

@@ -10,7 +10,7 @@ use super::console::Console;
 use super::findings::{self, Checked};
 use super::listing;
 use super::program::Program;
-use crate::analysis::{Control, Language, Level, Product, Refusal, RunRequest};
+use crate::analysis::{Control, Language, Level, Refusal, RunRequest};
 
 /// Runs a program and prints what was asked for.
 pub(super) fn run(call: &RunCall, console: &Console, language: &dyn Language) -> Outcome {
@@ -50,20 +50,15 @@ fn format_of(output: Option<&Path>) -> RunFormat {
     match ending.to_ascii_lowercase().as_str() {
         "json" => RunFormat::Json,
         "sarif" => RunFormat::Sarif,
-        "cl" | "cls" | "ncl" => RunFormat::Cl,
-        "cltape" | "bin" => RunFormat::Cltape,
         _ => RunFormat::Human,
     }
 }
 
 /// What is written; nothing if only findings are.
 fn product(program: &Program, format: RunFormat, control: &Control) -> Result<Option<Vec<u8>>, Refusal> {
-    let document = &program.document;
     match format {
         RunFormat::Human => Ok(Some(listing::text(&report(program, control)?).into_bytes())),
         RunFormat::Json => Ok(Some(format!("{}\n", report(program, control)?).into_bytes())),
-        RunFormat::Cl => document.product(&Product::ClText, control).map(Some),
-        RunFormat::Cltape => document.product(&Product::Cltape, control).map(Some),
         RunFormat::Sarif | RunFormat::Github => Ok(None),
     }
 }
