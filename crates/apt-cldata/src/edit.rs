@@ -284,7 +284,7 @@ impl Editor {
             }
             EditItem::Index { number, end: true, isn, source } => self.end_index(number, isn, source),
             EditItem::Copy { number, matrix, count, isn, source } => {
-                self.copy(CopyOrder { number, matrix, count, isn, source }, span);
+                self.copy(&CopyOrder { number, matrix, count, isn, source }, span);
             }
         }
     }
@@ -342,14 +342,14 @@ impl Editor {
         ));
     }
 
-    fn copy(&mut self, order: CopyOrder, span: Option<Span>) {
-        let CopyOrder { number, isn, source, .. } = order;
+    fn copy(&mut self, order: &CopyOrder, span: Option<Span>) {
+        let CopyOrder { number, isn, source, .. } = *order;
         match (self.levels.last().and_then(|level| level.number), span) {
             (Some(inner), Some(Span::Copies { last, ordinal })) if inner == number => {
                 if ordinal >= MAXIMUM_COPIES_PER_INDEX {
                     self.error(isn, source, EditErrorKind::TooManyCopies { number });
                 } else {
-                    self.repeat(&order);
+                    self.repeat(order);
                 }
                 self.push(order.statement());
                 if last {

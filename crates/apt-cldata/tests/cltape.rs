@@ -1,5 +1,7 @@
 //! The binary tape against a file that the public APT III port wrote.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at once")]
+
 use apt_cldata::{
     cltape::{is_tape, read_tape, write_tape},
     codes::CodeTable,

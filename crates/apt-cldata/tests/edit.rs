@@ -1,5 +1,7 @@
 //! TRACUT, INDEX and COPY: worked programs and properties.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at once")]
+
 use apt_cldata::{
     edit::{EditErrorKind, EditItem, edit},
     record::{ClKind, ClPoint, ClRecord, ClWord},

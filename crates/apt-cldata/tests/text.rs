@@ -1,5 +1,7 @@
 //! CL text: samples, and writing and reading again.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at once")]
+
 use apt_cldata::{
     record::{ClKind, ClPoint, ClRecord, ClWord, Units},
     text::{ClDialect, ReadErrorKind, TextOptions, detect, read_text, write_text},

@@ -82,7 +82,7 @@ pub(crate) fn fit(
         return Err(f64::INFINITY);
     }
     let worst = flat.iter().map(|point| (distance(*point, middle) - radius).abs()).fold(0.0, f64::max);
-    if !(worst <= limits.tolerance) {
+    if worst > limits.tolerance || worst.is_nan() {
         return Err(worst);
     }
     let angles = swept_angles(&flat, middle).ok_or(f64::INFINITY)?;
@@ -281,14 +281,17 @@ mod tests {
         points.extend((1..20).map(|step| end + Vec3::new(-0.8, 0.6, 0.0) * f64::from(step)));
         let (count, _) = longest(&points, ArcPlane::Xy, None, &limits()).unwrap();
         assert_eq!(count, 20);
-        let uneven: Vec<Vec3> =
-            turned([0.0, 0.0], 5.0, 0.0, 1.0, 20, 0.0).into_iter().map(|p| Vec3::new(p.x, p.y, p.x * p.x)).collect();
+        let uneven: Vec<Vec3> = turned([0.0, 0.0], 5.0, 0.0, 1.0, 20, 0.0)
+            .into_iter()
+            .map(|p| Vec3::new(p.x, p.y, p.x * p.x))
+            .collect();
         assert!(fit(&uneven, ArcPlane::Xy, None, &limits()).is_err());
     }
 
     #[test]
     fn planes_turn_the_right_way() {
-        for (plane, axis) in [(ArcPlane::Xy, Vec3::z()), (ArcPlane::Zx, Vec3::y()), (ArcPlane::Yz, Vec3::x())] {
+        for (plane, axis) in [(ArcPlane::Xy, Vec3::z()), (ArcPlane::Zx, Vec3::y()), (ArcPlane::Yz, Vec3::x())]
+        {
             let [u, v, w] = plane_axes(plane);
             let (mut first, mut second) = (Vec3::zeros(), Vec3::zeros());
             (first[u], second[v]) = (1.0, 1.0);

@@ -285,7 +285,7 @@ impl<'a> Control<'a> {
             block.push_str(&self.machine.block.skip);
         }
         if self.numbering.on && !plain {
-            if self.numbering.count % self.numbering.every == 0 {
+            if self.numbering.count.is_multiple_of(self.numbering.every) {
                 let number = self.numbering.next;
                 if let Some(word) = self.number_text("N", f64::from(number)) {
                     block.push_str(&word);

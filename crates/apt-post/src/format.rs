@@ -70,7 +70,8 @@ impl NumberFormat {
     pub fn scaled(&self, value: f64) -> Result<i64, FormatError> {
         let right = self.decimals();
         let units = round_decimal(value, right)?;
-        let limit = 10_i64.checked_pow(u32::from(self.left) + u32::from(right)).ok_or(FormatError::TooManyDigits)?;
+        let limit =
+            10_i64.checked_pow(u32::from(self.left) + u32::from(right)).ok_or(FormatError::TooManyDigits)?;
         if units.abs() >= limit { Err(FormatError::TooManyDigits) } else { Ok(units) }
     }
 
@@ -193,8 +194,14 @@ mod tests {
     fn half_goes_away_from_zero_and_never_to_minus_zero() {
         let three = format(Style::Point, 5, 3);
         for (value, text) in [
-            (1.0005, "1.001"), (-1.0005, "-1.001"), (18.8026, "18.803"), (0.0004999, "0."), (-0.0004, "0."),
-            (0.0005, ".001"), (9.9995, "10."), (1e-300, "0."),
+            (1.0005, "1.001"),
+            (-1.0005, "-1.001"),
+            (18.8026, "18.803"),
+            (0.0004999, "0."),
+            (-0.0004, "0."),
+            (0.0005, ".001"),
+            (9.9995, "10."),
+            (1e-300, "0."),
         ] {
             assert_eq!(three.text(value).unwrap(), text, "{value}");
         }

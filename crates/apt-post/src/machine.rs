@@ -171,7 +171,13 @@ impl Register {
     /// The format on an inch or a metric tape.
     pub fn format(&self, inch: bool) -> NumberFormat {
         let right = if inch { self.right_inch.unwrap_or(self.right) } else { self.right };
-        NumberFormat { style: self.style, left: self.left, right, least_left: self.least_left, sign: self.sign }
+        NumberFormat {
+            style: self.style,
+            left: self.left,
+            right,
+            least_left: self.least_left,
+            sign: self.sign,
+        }
     }
 }
 
@@ -435,7 +441,11 @@ impl MachineDefinition {
 
 /// The bundled machines, in a fixed order.
 pub fn machines() -> Vec<MachineInfo> {
-    BUNDLED.iter().filter_map(|text| MachineDefinition::from_toml(text).ok()).map(|machine| machine.info()).collect()
+    BUNDLED
+        .iter()
+        .filter_map(|text| MachineDefinition::from_toml(text).ok())
+        .map(|machine| machine.info())
+        .collect()
 }
 
 /// A bundled machine.
@@ -470,13 +480,16 @@ mod tests {
     #[test]
     fn mistakes_name_line_and_key() {
         let text = BUNDLED[0].replace("max_block", "max_blok");
-        let Err(MachineError::Syntax { line: Some(line), message }) = MachineDefinition::from_toml(&text) else {
+        let Err(MachineError::Syntax { line: Some(line), message }) = MachineDefinition::from_toml(&text)
+        else {
             panic!("accepted");
         };
         assert!(text.lines().nth(line).unwrap().starts_with("max_blok"), "{line}");
         assert!(message.contains("max_blok"), "{message}");
         let text = BUNDLED[0].replace("{!Z}", "{!W}");
-        assert!(matches!(MachineDefinition::from_toml(&text), Err(MachineError::UnknownRegister { register, .. }) if register == "W"));
+        assert!(
+            matches!(MachineDefinition::from_toml(&text), Err(MachineError::UnknownRegister { register, .. }) if register == "W")
+        );
         let text = BUNDLED[0].replace("schema = 1", "schema = 7");
         assert_eq!(MachineDefinition::from_toml(&text), Err(MachineError::Schema { found: 7 }));
     }

@@ -37,7 +37,9 @@ pub(crate) fn pieces(word: &str) -> Vec<Piece<'_>> {
 /// The registers that a template names: placeholders of one or two capitals.
 pub(crate) fn register_names(template: &str) -> Vec<String> {
     let named = template.split_whitespace().flat_map(pieces).filter_map(|piece| match piece {
-        Piece::Placeholder { name, .. } if name.len() <= 2 && name.bytes().all(|byte| byte.is_ascii_uppercase()) => {
+        Piece::Placeholder { name, .. }
+            if name.len() <= 2 && name.bytes().all(|byte| byte.is_ascii_uppercase()) =>
+        {
             Some(name.to_owned())
         }
         _ => None,

@@ -170,7 +170,10 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
             }
             "DEPTH" | "FEDTO" | "RAPTO" | "CLEAR" | "STEP" | "INCR" | "DWELL" | "TPI" => {}
             _ => {
-                return Err(PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument: word.clone() });
+                return Err(PostFindingKind::UnknownArgument {
+                    word: arguments.word.clone(),
+                    argument: word.clone(),
+                });
             }
         }
         let Some(number) = next else { return Err(arguments.missing(word)) };
@@ -225,7 +228,8 @@ mod tests {
 
     #[test]
     fn other_couples_and_mistakes() {
-        let deep = order(&["DEEP", "DEPTH", "1.25", "STEP", ".25", "IPM", "5.", "CLEAR", ".1", "DWELL", "2", "REV"]);
+        let deep =
+            order(&["DEEP", "DEPTH", "1.25", "STEP", ".25", "IPM", "5.", "CLEAR", ".1", "DWELL", "2", "REV"]);
         let deep = deep.unwrap();
         assert_eq!((deep.step, deep.dwell), (Some(0.25), Some((2.0, true))));
         let tap = order(&["TAP", "DEPTH", ".4", "TPI", "20", "RTRCTO", "1"]).unwrap();

@@ -1,5 +1,7 @@
 //! The tape in the real interpreter: it runs to its end, and its moves are those of the CL file.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at once")]
+
 mod interpreter;
 
 use apt_cldata::{
@@ -64,7 +66,8 @@ fn follow(calls: &[Call], path: &[(bool, [f64; 3])], on_arc: f64) -> (usize, usi
         match call {
             Call::Traverse(end) | Call::Feed(end) => {
                 skip(&mut at, here);
-                let (rapid, next) = path.get(at).unwrap_or_else(|| panic!("{call:?} after the last position"));
+                let (rapid, next) =
+                    path.get(at).unwrap_or_else(|| panic!("{call:?} after the last position"));
                 assert_eq!(*rapid, matches!(call, Call::Traverse(_)), "{call:?} at position {at}");
                 let approach = *rapid && near([end[0], end[1], 0.0], [next[0], next[1], 0.0], TOLERANCE);
                 if near(*end, *next, TOLERANCE) {
@@ -167,9 +170,10 @@ fn thread_milling_helix_of_two_turns() {
 fn chord_points_outside_the_circle_become_one_arc_with_its_ends_kept() {
     // The vertices stand off the circle by the tolerance, as the arithmetic element leaves them; the ends do not.
     let outside = 0.01_f64;
-    let mut text = "UNITS/MM\nINTOL/0\nOUTTOL/.01\nFROM/0,0,50\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nGOTO/20,0,0\n\
+    let mut text =
+        "UNITS/MM\nINTOL/0\nOUTTOL/.01\nFROM/0,0,50\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nGOTO/20,0,0\n\
                     CIRCLE/0,0,0,0,0,1,20\n"
-        .to_owned();
+            .to_owned();
     for step in 1..30 {
         let (sine, cosine) = (f64::from(step) * 0.05).sin_cos();
         let radius = 20.0 + outside;
@@ -184,7 +188,8 @@ fn chord_points_outside_the_circle_become_one_arc_with_its_ends_kept() {
 #[test]
 fn runs_of_points_are_fitted_when_their_chords_are_fine_enough() {
     let circle = |count: u32, outtol: &str| {
-        let mut text = format!("UNITS/MM\n{outtol}FROM/0,0,50\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nGOTO/20,0,0\n");
+        let mut text =
+            format!("UNITS/MM\n{outtol}FROM/0,0,50\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nGOTO/20,0,0\n");
         for step in 1..=count {
             let (sine, cosine) = (f64::from(step) * 1.2 / f64::from(count)).sin_cos();
             text += &format!("GOTO/{},{},0\n", 20.0 * cosine, 20.0 * sine);
@@ -227,7 +232,14 @@ fn drilling_in_every_cycle() {
             assert_eq!(bottom, 1, "{cycle}: {feeds:?}");
         }
         // Without RTRCTO the tool goes back to where it came from.
-        assert_eq!(calls.iter().filter(|call| matches!(call, Call::Traverse(end) if end[2] == 50.0 && end[0] == 35.0)).count(), 2, "{cycle}");
+        assert_eq!(
+            calls
+                .iter()
+                .filter(|call| matches!(call, Call::Traverse(end) if end[2] == 50.0 && end[0] == 35.0))
+                .count(),
+            2,
+            "{cycle}"
+        );
     }
 }
 
@@ -268,8 +280,13 @@ fn cutter_compensation() {
                 GOTO/-20,-20,-5\nFINI\n";
     let calls = interpret(&tape(text).text(), &[1]);
     // The tool of the table is a quarter inch: 3.175 mm to the left of x = 0.
-    assert!(calls.iter().any(|call| matches!(call, Call::Feed(end) if (end[0] + 3.175).abs() < TOLERANCE)), "{calls:?}");
-    assert!(matches!(calls.iter().rev().find(|call| matches!(call, Call::Feed(_))), Some(Call::Feed(end)) if near(*end, [-20.0, -20.0, -5.0], TOLERANCE)));
+    assert!(
+        calls.iter().any(|call| matches!(call, Call::Feed(end) if (end[0] + 3.175).abs() < TOLERANCE)),
+        "{calls:?}"
+    );
+    assert!(
+        matches!(calls.iter().rev().find(|call| matches!(call, Call::Feed(_))), Some(Call::Feed(end)) if near(*end, [-20.0, -20.0, -5.0], TOLERANCE))
+    );
 }
 
 #[test]
@@ -305,9 +322,18 @@ enum Step {
 fn any_step() -> impl Strategy<Value = Step> {
     prop_oneof![
         (prop::array::uniform3(-400.0..400.0_f64), any::<bool>()).prop_map(|(at, rapid)| Step::Go(at, rapid)),
-        (prop::array::uniform2(-60.0..60.0_f64), 15.0..330.0_f64, any::<bool>(), prop_oneof![Just(0.0), -5.0..5.0_f64])
+        (
+            prop::array::uniform2(-60.0..60.0_f64),
+            15.0..330.0_f64,
+            any::<bool>(),
+            prop_oneof![Just(0.0), -5.0..5.0_f64]
+        )
             .prop_filter("a radius", |(center, ..)| center[0].hypot(center[1]) > 1.0)
-            .prop_map(|(center, sweep, left, rise)| Step::Turn(center, if left { sweep } else { -sweep }, rise)),
+            .prop_map(|(center, sweep, left, rise)| Step::Turn(
+                center,
+                if left { sweep } else { -sweep },
+                rise
+            )),
     ]
 }
 

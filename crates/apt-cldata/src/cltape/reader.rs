@@ -202,7 +202,7 @@ impl Reader<'_> {
     fn motion(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {
         let per_point = if self.multax { 6 } else { 3 };
         let coordinates = words.len().saturating_sub(MOTION_NAME_WORDS);
-        if words.len() < MOTION_NAME_WORDS || coordinates % per_point != 0 {
+        if words.len() < MOTION_NAME_WORDS || !coordinates.is_multiple_of(per_point) {
             return self.wrong_count(words.len());
         }
         let value = |word: &[u8; WORD_BYTES]| f64::from_le_bytes(*word);

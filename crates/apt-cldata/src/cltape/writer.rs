@@ -206,7 +206,7 @@ fn text_words(isn: u32, text: &str) -> Result<Vec<[u8; WORD_BYTES]>, TapeWriteEr
     if length > TEXT_LENGTH {
         return Err(TapeWriteError::TextTooLong { isn, length });
     }
-    let mut characters = vec![b' '; TEXT_LENGTH];
+    let mut characters = [b' '; TEXT_LENGTH];
     characters[blank..length].copy_from_slice(text.as_bytes());
     let pack = |piece: &[u8]| {
         let mut word = [b' '; WORD_BYTES];

@@ -74,7 +74,8 @@ impl Writer<'_> {
                 }
             }
             ClKind::MultipleAxes(on) => {
-                self.statement("MULTAX", &[if *on { "ON" } else { "OFF" }.to_owned()])
+                let state = if *on { "ON" } else { "OFF" };
+                self.statement("MULTAX", &[state.to_owned()]);
             }
             ClKind::Units(units) => {
                 let name = match units {

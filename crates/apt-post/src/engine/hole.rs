@@ -71,7 +71,7 @@ impl Engine<'_> {
         let Some(clearance) = order.clearance.map(|clearance| clearance * scale) else {
             return self.find(arguments.missing("RAPTO"));
         };
-        if !(depth > 0.0) {
+        if depth <= 0.0 || depth.is_nan() {
             let word = arguments.word.clone();
             return self.find(PostFindingKind::BadValue { word, argument: "DEPTH".into(), value: depth });
         }
@@ -101,8 +101,20 @@ impl Engine<'_> {
         };
         let place = self.control.place;
         let word = order.kind;
-        let cycle =
-            Cycle { word, name, depth, clearance, retract, feed, step, dwell, pitch, open: None, holes: 0, place };
+        let cycle = Cycle {
+            word,
+            name,
+            depth,
+            clearance,
+            retract,
+            feed,
+            step,
+            dwell,
+            pitch,
+            open: None,
+            holes: 0,
+            place,
+        };
         self.cycle = Some(cycle);
     }
 
@@ -134,7 +146,7 @@ impl Engine<'_> {
                 return None;
             }
             Some(CycleFeed::Rate(value, mode, unit)) => {
-                if !(value > 0.0) {
+                if value <= 0.0 || value.is_nan() {
                     self.find(PostFindingKind::FeedNotPositive { value });
                     return None;
                 }
@@ -328,7 +340,7 @@ impl Engine<'_> {
         let over = self.position.map_or(level, |position| position.z);
         self.rapid_to(at(over));
         self.rapid_to(at(plane));
-        let gap = self.from_millimeters(PECK_GAP_MM);
+        let gap = self.tape_length(PECK_GAP_MM);
         let step = cycle.step.unwrap_or(cycle.depth + cycle.clearance);
         let passes = (((plane - bottom) / step).ceil() as u32).clamp(1, MOST_PASSES);
         for pass in 1..=passes {

@@ -100,8 +100,9 @@ struct Engine<'a> {
     coolant: bool,
     coolant_code: Option<String>,
     cutter_diameter: Option<f64>,
-    intol: f64,
-    outtol: f64,
+    /// Tolerances of the drive surface, once stated.
+    intol: Option<f64>,
+    outtol: Option<f64>,
     arc_tolerance: Option<f64>,
     run: Vec<RunPoint>,
     circles: Vec<Circle>,
@@ -139,8 +140,8 @@ impl<'a> Engine<'a> {
             coolant: false,
             coolant_code: None,
             cutter_diameter: None,
-            intol: 0.0,
-            outtol: 0.0,
+            intol: None,
+            outtol: None,
             arc_tolerance: None,
             run: Vec::new(),
             circles: Vec::new(),
@@ -243,7 +244,7 @@ impl<'a> Engine<'a> {
     }
 
     /// A length in millimetres as the tape has it.
-    fn from_millimeters(&self, length: f64) -> f64 {
+    fn tape_length(&self, length: f64) -> f64 {
         if self.control.units == Units::Inches { length / MILLIMETERS_PER_INCH } else { length }
     }
 
@@ -260,18 +261,21 @@ impl<'a> Engine<'a> {
     }
 
     fn parameter(&mut self, word: &SmolStr, arguments: &[ClWord]) {
-        let number = arguments.iter().find_map(|argument| match argument {
+        let mut numbers = arguments.iter().filter_map(|argument| match argument {
             ClWord::Number(number) => Some(number.abs() * self.scale),
             ClWord::Word(_) => None,
         });
+        let number = numbers.next();
+        // The part surface's tolerance comes first, then the drive surface's; a missing one repeats the last.
+        let drive = numbers.next().or(number);
         // A run made with one tolerance must not be fitted with another.
         if matches!(word.as_str(), "INTOL" | "OUTTOL" | "TOLER") {
             self.flush();
         }
         match (word.as_str(), number) {
-            ("INTOL", Some(number)) => self.intol = number,
-            ("OUTTOL", Some(number)) => self.outtol = number,
-            ("TOLER", Some(number)) => (self.intol, self.outtol) = (0.0, number),
+            ("INTOL", Some(_)) => self.intol = drive,
+            ("OUTTOL", Some(_)) => self.outtol = drive,
+            ("TOLER", Some(_)) => (self.intol, self.outtol) = (Some(0.0), drive),
             ("CUTTER", Some(number)) => self.cutter_diameter = Some(number),
             _ => {}
         }

@@ -18,6 +18,8 @@ pub(super) const AXES: [&str; 3] = ["X", "Y", "Z"];
 const CENTERS: [&str; 3] = ["I", "J", "K"];
 /// How far the axis of a circle may lean from a machine axis, as the sine of the angle.
 const PLANE_TOLERANCE: f64 = 1e-7;
+/// OUTTOL of a program that states none: .0005 inch.
+const DEFAULT_OUTTOL_MM: f64 = 0.0127;
 
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
@@ -63,7 +65,7 @@ impl Engine<'_> {
     fn check_travel(&mut self, position: Vec3) {
         for (name, value) in AXES.into_iter().zip(position.iter()) {
             let Some(axis) = self.machine.axes.get(name) else { continue };
-            let [least, greatest] = axis.limits_mm.map(|limit| self.from_millimeters(limit));
+            let [least, greatest] = axis.limits_mm.map(|limit| self.tape_length(limit));
             if !(least..=greatest).contains(value) {
                 self.find(PostFindingKind::AxisLimit { axis: name.into(), value: *value, least, greatest });
             }
@@ -111,19 +113,22 @@ impl Engine<'_> {
     /// Points on one circle, or on none.
     fn group(&mut self, points: &[RunPoint]) {
         let positions: Vec<Vec3> = points.iter().map(|point| self.rounded(point.position)).collect();
+        // Where the tool stands, and the run after it; without a start the first point is reached straight anyway.
+        let start = self.position.or(positions.first().copied());
+        let whole: Vec<Vec3> =
+            start.into_iter().map(|start| self.rounded(start)).chain(positions.iter().copied()).collect();
         let mut at = 0;
         let mut arcs = 0;
         let (planes, center) = self.planes(points);
         while let Some(point) = points.get(at) {
             self.control.place = point.place;
             let straight = self.position.is_none() || self.compensation.is_some() || self.approach.is_some();
-            if let (false, Some(start)) = (straight, self.position) {
-                let mut run = vec![start];
-                run.extend_from_slice(&positions[at..]);
+            if !straight {
+                let run = &whole[at..];
                 let limits = self.arc_limits(center.is_some());
                 let best = planes
                     .iter()
-                    .filter_map(|plane| Some((*plane, arc::longest(&run, *plane, center, &limits)?)))
+                    .filter_map(|plane| Some((*plane, arc::longest(run, *plane, center, &limits)?)))
                     .max_by_key(|(_, (count, _))| *count);
                 if let Some((plane, (count, fitted))) = best {
                     self.control.place = points[at + count - 1].place;
@@ -174,16 +179,20 @@ impl Engine<'_> {
 
     fn arc_limits(&self, vouched: bool) -> ArcLimits {
         let rules = &self.machine.arc;
-        let own = self.arc_tolerance.unwrap_or_else(|| self.from_millimeters(rules.tolerance_mm));
-        let band = self.intol + self.outtol;
+        let own = self.arc_tolerance.unwrap_or_else(|| self.tape_length(rules.tolerance_mm));
+        // A circle record comes from the arithmetic element, which has a tolerance also when the program states none.
+        let band = match (self.intol, self.outtol) {
+            (None, None) if vouched => self.tape_length(DEFAULT_OUTTOL_MM),
+            (intol, outtol) => intol.unwrap_or(0.0) + outtol.unwrap_or(0.0),
+        };
         let sweep = rules.split_degrees.to_radians();
         let register = self.machine.registers.get("X");
         let inch = self.control.units == apt_cldata::record::Units::Inches;
         ArcLimits {
             tolerance: if vouched { own + band } else { own },
             chord_tolerance: band,
-            least_radius: self.from_millimeters(rules.min_radius_mm),
-            greatest_radius: self.from_millimeters(rules.max_radius_mm),
+            least_radius: self.tape_length(rules.min_radius_mm),
+            greatest_radius: self.tape_length(rules.max_radius_mm),
             sweep: if vouched { sweep } else { sweep.min(std::f64::consts::PI) },
             helix: rules.helix,
             resolution: register.map_or(f64::EPSILON, |register| register.format(inch).resolution()),
@@ -230,7 +239,8 @@ impl Engine<'_> {
 
     /// A straight move at feed rate to a rounded position.
     pub(super) fn linear_to(&mut self, position: Vec3) {
-        let moves = AXES.into_iter().zip(position.iter()).any(|(name, value)| self.control.changes(name, *value));
+        let moves =
+            AXES.into_iter().zip(position.iter()).any(|(name, value)| self.control.changes(name, *value));
         if !moves {
             self.position = Some(position);
             return;

@@ -17,9 +17,9 @@ const LARGEST_CODE: f64 = 999.9;
 
 /// Words that say nothing to a three-axis mill: statements of the processor, of listings and plots.
 const SILENT: [&str; 31] = [
-    "MACHIN", "TRACUT", "INDEX", "COPY", "CLPRNT", "LPRINT", "PLOT", "OVPLOT", "PPLOT", "PENUP", "PENDWN", "DRAFT",
-    "LEADER", "DISPLY", "REMARK", "TITLES", "LETTER", "TLDATA", "PAINT", "MODE", "AIR", "TMARK", "PLABEL", "NOPOST",
-    "LINTOL", "MCHFIN", "MAXDPM", "MAXVEL", "REGBRK", "DMIS", "BREAK",
+    "MACHIN", "TRACUT", "INDEX", "COPY", "CLPRNT", "LPRINT", "PLOT", "OVPLOT", "PPLOT", "PENUP", "PENDWN",
+    "DRAFT", "LEADER", "DISPLY", "REMARK", "TITLES", "LETTER", "TLDATA", "PAINT", "MODE", "AIR", "TMARK",
+    "PLABEL", "NOPOST", "LINTOL", "MCHFIN", "MAXDPM", "MAXVEL", "REGBRK", "DMIS", "BREAK",
 ];
 /// Words for which a three-axis mill has nothing.
 const NOT_SUPPORTED: [&str; 22] = [
@@ -31,11 +31,11 @@ impl Engine<'_> {
     pub(super) fn text(&mut self, word: &SmolStr, text: &str) {
         let machine = self.machine;
         match word.as_str() {
+            // The first one stands at the start of the tape.
+            "PARTNO" if !std::mem::replace(&mut self.named, true) => {}
             "PARTNO" => {
-                if std::mem::replace(&mut self.named, true) {
-                    self.find(PostFindingKind::Repeated { word: word.clone() });
-                    self.control.remark(&machine.block.comment, text);
-                }
+                self.find(PostFindingKind::Repeated { word: word.clone() });
+                self.control.remark(&machine.block.comment, text);
             }
             "INSERT" => {
                 self.control.push_block(text.trim());
@@ -179,7 +179,7 @@ impl Engine<'_> {
             self.find(PostFindingKind::FeedPerRevolutionWithoutSpindle);
         }
         if let (FeedMode::PerMinute, Some(range)) = (mode, self.machine.limits.feed_mm) {
-            let [least, greatest] = range.map(|limit| self.from_millimeters(limit));
+            let [least, greatest] = range.map(|limit| self.tape_length(limit));
             if !(least..=greatest).contains(&value) {
                 self.find(PostFindingKind::FeedOutOfRange { value, least, greatest });
             }
@@ -227,7 +227,9 @@ impl Engine<'_> {
     }
 
     fn clearance_statement(&mut self, arguments: &Arguments<'_>) {
-        if let Some(argument) = ["YZPLAN", "ZXPLAN", "TOOL", "AVOID"].into_iter().find(|word| arguments.has(word)) {
+        if let Some(argument) =
+            ["YZPLAN", "ZXPLAN", "TOOL", "AVOID"].into_iter().find(|word| arguments.has(word))
+        {
             let word = arguments.word.clone();
             return self.find(PostFindingKind::UnknownArgument { word, argument: argument.into() });
         }
@@ -281,7 +283,9 @@ impl Engine<'_> {
             numbering.on = arguments.has("ON");
             return;
         }
-        let whole = |value: f64| (0.0..=f64::from(self.machine.block.sequence.max)).contains(&value).then_some(value as u32);
+        let whole = |value: f64| {
+            (0.0..=f64::from(self.machine.block.sequence.max)).contains(&value).then_some(value as u32)
+        };
         let Some(start) = arguments.number().and_then(whole) else {
             return self.find(arguments.missing("the number"));
         };

@@ -3,11 +3,7 @@
 use apt_cldata::record::{ClWord, Units};
 
 use super::{Engine, MILLIMETERS_PER_INCH, PendingCompensation, Spindle};
-use crate::{
-    control::Values,
-    finding::PostFindingKind,
-    words::Arguments,
-};
+use crate::{control::Values, finding::PostFindingKind, words::Arguments};
 
 /// Largest tool number that is taken.
 const LARGEST_TOOL: f64 = 99_999.0;
@@ -75,8 +71,8 @@ impl Engine<'_> {
 
     pub(super) fn spindle_statement(&mut self, arguments: &Arguments<'_>) {
         const KNOWN: [&str; 19] = [
-            "RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "OFF", "ORIENT", "LOCK", "MAXRPM", "LOW", "MEDIUM", "HIGH", "AUTO",
-            "RANGE", "RADIUS", "DIAMTR", "BOTH", "NEUTRL",
+            "RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "OFF", "ORIENT", "LOCK", "MAXRPM", "LOW", "MEDIUM",
+            "HIGH", "AUTO", "RANGE", "RADIUS", "DIAMTR", "BOTH", "NEUTRL",
         ];
         if let Some(kind) = arguments.unknown(&KNOWN) {
             return self.find(kind);
@@ -91,7 +87,10 @@ impl Engine<'_> {
         if arguments.has("ORIENT") || arguments.has("LOCK") {
             match &machine.codes.spindle_orient {
                 Some(code) => self.control.code(code),
-                None => self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: "spindle_orient".into() }),
+                None => self.find(PostFindingKind::NoCode {
+                    word: arguments.word.clone(),
+                    name: "spindle_orient".into(),
+                }),
             }
             self.spindle.on = false;
             return;
@@ -140,14 +139,19 @@ impl Engine<'_> {
                 speed?
             }
             Some(value) if surface_speed => {
-                let stated = arguments.after("DIAMTR").or_else(|| arguments.after("RADIUS").map(|radius| radius * 2.0));
+                let stated = arguments
+                    .after("DIAMTR")
+                    .or_else(|| arguments.after("RADIUS").map(|radius| radius * 2.0));
                 let diameter = stated.map(|diameter| diameter * self.scale).or(self.cutter_diameter);
                 let Some(diameter) = diameter.filter(|diameter| *diameter > 0.0) else {
                     self.find(PostFindingKind::NoCutterDiameter);
                     return None;
                 };
-                let millimeters =
-                    if self.control.units == Units::Inches { diameter * MILLIMETERS_PER_INCH } else { diameter };
+                let millimeters = if self.control.units == Units::Inches {
+                    diameter * MILLIMETERS_PER_INCH
+                } else {
+                    diameter
+                };
                 let per_minute = if arguments.has("SFM") {
                     value * INCHES_PER_FOOT * MILLIMETERS_PER_INCH
                 } else {
@@ -157,7 +161,7 @@ impl Engine<'_> {
             }
             Some(value) => value,
         };
-        if !(speed > 0.0) {
+        if speed <= 0.0 || speed.is_nan() {
             let word = arguments.word.clone();
             self.find(PostFindingKind::BadValue { word, argument: "speed".into(), value: speed });
             return None;
@@ -192,7 +196,8 @@ impl Engine<'_> {
             "THRU" => codes.coolant_through.clone(),
             other => {
                 let argument = other.into();
-                return self.find(PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument });
+                return self
+                    .find(PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument });
             }
         };
         let code = match code {

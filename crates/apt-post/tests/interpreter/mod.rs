@@ -12,7 +12,12 @@ pub(crate) enum Call {
     Traverse([f64; 3]),
     Feed([f64; 3]),
     /// End, centre in the plane (the third coordinate is meaningless), turns with sign, third axis.
-    Arc { end: [f64; 3], center: [f64; 3], turns: i32, axis: usize },
+    Arc {
+        end: [f64; 3],
+        center: [f64; 3],
+        turns: i32,
+        axis: usize,
+    },
     FeedRate(f64),
     Tap([f64; 3]),
     Dwell(f64),
@@ -38,7 +43,8 @@ pub(crate) fn interpret(tape: &str, tools: &[u32]) -> Vec<Call> {
 pub(crate) fn run(tape: &str, tools: &[u32]) -> String {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("rs274-{}-{number}", std::process::id()));
+    let folder =
+        PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("rs274-{}-{number}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let table: String = tools.iter().map(|tool| format!("T{tool} P{tool} Z0 D0.25\n")).collect();
     // The parameter file is rewritten by every run, so each starts from an empty one.
@@ -52,7 +58,9 @@ pub(crate) fn run(tape: &str, tools: &[u32]) -> String {
         .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "tape.ngc"])
         .output()
         .unwrap_or_else(|error| {
-            panic!("cannot start `rs274` ({error}): install the Debian package linuxcnc-uspace, which brings it")
+            panic!(
+                "cannot start `rs274` ({error}): install the Debian package linuxcnc-uspace, which brings it"
+            )
         });
     std::fs::remove_dir_all(&folder).unwrap();
     String::from_utf8_lossy(&result.stdout).into_owned() + &String::from_utf8_lossy(&result.stderr)
