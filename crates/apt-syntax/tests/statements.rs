@@ -154,6 +154,8 @@ fn major_words_and_several_statements() {
             ("SYN/PT,POINT", "(SYN/ PT 'POINT)"),
             ("UNITS/MM", "(UNITS/ 'MM)"),
             ("FEDRAT/300,MMPM", "(FEDRAT/ 300 'MMPM)"),
+            ("FEDRAT/FEED,ANGLE", "(FEDRAT/ FEED ANGLE)"),
+            ("CYCLE/DRILL,DEPTH", "(CYCLE/ 'DRILL DEPTH)"),
             ("FINI", "(FINI)"),
         ],
     );

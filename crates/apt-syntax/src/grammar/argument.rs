@@ -15,26 +15,29 @@ pub(super) enum EmptyPositions {
     Always,
 }
 
+/// The major words that take units.
+const MAJORS_WITH_UNITS: [&str; 3] = ["UNITS", "FEDRAT", "SPINDL"];
+
 /// What a list of parameters allows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListRules {
     pub(super) empty: EmptyPositions,
     /// Expressions need no parentheses.
     pub(super) bare_expressions: bool,
-    /// Names that only post-processors know are words.
-    pub(super) soft_words: bool,
+    /// The major word whose unit words (MMPM, INCHES) are words although the dialect does not reserve them.
+    pub(super) units_of: Option<&'static str>,
 }
 
 impl ListRules {
     /// The arguments of a function.
     pub(super) const FUNCTION: ListRules =
-        ListRules { empty: EmptyPositions::Never, bare_expressions: true, soft_words: false };
+        ListRules { empty: EmptyPositions::Never, bare_expressions: true, units_of: None };
     /// The parameters of a definition.
     pub(super) const DEFINITION: ListRules =
-        ListRules { empty: EmptyPositions::AfterCanon, bare_expressions: false, soft_words: false };
+        ListRules { empty: EmptyPositions::AfterCanon, bare_expressions: false, units_of: None };
     /// The coordinates of a nested point.
     const POINT: ListRules =
-        ListRules { empty: EmptyPositions::Never, bare_expressions: true, soft_words: false };
+        ListRules { empty: EmptyPositions::Never, bare_expressions: true, units_of: None };
 }
 
 impl Parser<'_> {
@@ -99,7 +102,7 @@ impl Parser<'_> {
                 Some(word) => Argument::Word(word),
                 None => return self.fail(SyntaxErrorKind::WordRequired),
             },
-            Some(ElementKind::Name) if rules.soft_words && self.soft_word_follows() => self.soft_word()?,
+            Some(ElementKind::Name) if self.soft_word_follows(rules) => self.soft_word()?,
             Some(ElementKind::Name) if self.inclusive_follows() => self.inclusive()?,
             Some(ElementKind::LeftParenthesis) => self.parenthesised_argument(rules)?,
             _ => Argument::Expression(self.scalar(rules)?),
@@ -330,14 +333,18 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the name here is a minor word of later post-processors, such as MMPM.
-    fn soft_word_follows(&self) -> bool {
+    /// Whether the name here is a unit that later systems write with this major word. Other words of later systems may
+    /// as well be names of the program (`CYCLE/DRILL,DEPTH`); only the evaluator knows.
+    fn soft_word_follows(&self, rules: ListRules) -> bool {
+        let Some(major) = rules.units_of.filter(|major| MAJORS_WITH_UNITS.contains(major)) else {
+            return false;
+        };
         let stands_alone = matches!(self.kind(1), None | Some(ElementKind::Comma));
         stands_alone
             && self
                 .element(0)
                 .and_then(|element| crate::vocabulary::lookup(&element.text))
-                .is_some_and(|word| word.class == WordClass::Minor)
+                .is_some_and(|word| word.class == WordClass::Minor && word.used_in.contains(&major))
     }
 
     fn soft_word(&mut self) -> Parsed<Argument> {

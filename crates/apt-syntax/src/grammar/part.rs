@@ -354,8 +354,7 @@ impl Parser<'_> {
             "INDIRV" | "INDIRP" | "SRFVCT" => EmptyPositions::Always,
             _ => EmptyPositions::AfterCanon,
         };
-        let soft_words = matches!(class, WordClass::Postprocessor | WordClass::Transformation);
-        let rules = ListRules { empty, bare_expressions: false, soft_words };
+        let rules = ListRules { empty, bare_expressions: false, units_of: Some(word.word.spelling) };
         let mut arguments = Vec::new();
         if slash {
             self.bump();
@@ -406,8 +405,7 @@ impl Parser<'_> {
         let slash = self.eat(ElementKind::Slash);
         let mut arguments = Vec::new();
         if !self.at_end() {
-            let rules =
-                ListRules { empty: EmptyPositions::Always, bare_expressions: false, soft_words: true };
+            let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, units_of: None };
             arguments = self.parameters(rules)?;
         }
         Ok((Body::UnknownMajor { name, slash, arguments }, SyntaxKind::Major))
@@ -419,7 +417,7 @@ impl Parser<'_> {
             return self.fail(SyntaxErrorKind::BadStatementStart);
         };
         let start = self.element(0).map(|element| element.range.start()).unwrap_or_default();
-        let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, soft_words: false };
+        let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, units_of: None };
         let arguments = self.parameters(rules)?;
         let word = WordUse { word, range: TextRange::empty(start) };
         Ok((Body::Major { word, slash: false, arguments }, SyntaxKind::Major))
@@ -439,7 +437,7 @@ impl Parser<'_> {
         if !self.eat(ElementKind::Slash) {
             return self.fail(SyntaxErrorKind::NoSlash(kind.word.spelling.into()));
         }
-        let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, soft_words: false };
+        let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, units_of: None };
         let arguments = self.parameters(rules)?;
         Ok((Body::Obtain { word, kind, arguments }, SyntaxKind::Obtain))
     }
