@@ -18,6 +18,8 @@ const NEAR_RESOLUTIONS: f64 = 100.0;
 pub(crate) struct ArcLimits {
     /// How far points may be off the arc.
     pub(crate) tolerance: f64,
+    /// How far they may be off it along the third axis, where no circle record vouches for anything.
+    pub(crate) height_tolerance: f64,
     /// How far the arc may leave the chords, for runs that no circle record vouches for.
     pub(crate) chord_tolerance: f64,
     /// Radii.
@@ -186,7 +188,7 @@ fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLi
     }
     let off = |(point, angle): (&Vec3, &f64)| (point[axis] - start - rise * angle / whole).abs();
     let worst = points.iter().zip(angles).map(off).fold(0.0, f64::max);
-    if worst <= limits.tolerance { Ok(()) } else { Err(worst) }
+    if worst <= limits.height_tolerance { Ok(()) } else { Err(worst) }
 }
 
 /// The longest arc from the start of a run: how many points after the start it takes in. Doubling, then halving.
@@ -233,6 +235,7 @@ mod tests {
     fn limits() -> ArcLimits {
         ArcLimits {
             tolerance: 1e-3,
+            height_tolerance: 1e-3,
             chord_tolerance: 0.05,
             least_radius: 0.01,
             greatest_radius: 1e4,

@@ -281,19 +281,28 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// A position on the tape, if the tool stands as the spindle does.
-    fn tape_position(&mut self, point: &ClPoint) -> Option<Vec3> {
-        let axis = point.axis;
-        if point.with_axis && !(axis.z >= SPINDLE_AXIS_COSINE * axis.norm() && axis.z > 0.0) {
+    /// The positions of a motion on the tape, as far as the tool stands as the spindle does; one finding for all that
+    /// it does not.
+    fn tape_positions(&mut self, points: &[ClPoint]) -> Vec<Vec3> {
+        let mut positions = Vec::with_capacity(points.len());
+        let (mut tilted, mut infinite) = (None, false);
+        for point in points {
+            let axis = point.axis;
+            let position = (point.position + self.shift) * self.scale;
+            if point.with_axis && (axis.z <= 0.0 || axis.z < SPINDLE_AXIS_COSINE * axis.norm()) {
+                tilted = tilted.or(Some(axis));
+            } else if position.iter().all(|value| value.is_finite()) {
+                positions.push(position);
+            } else {
+                infinite = true;
+            }
+        }
+        if let Some(axis) = tilted {
             self.find(PostFindingKind::ToolAxis { i: axis.x, j: axis.y, k: axis.z });
-            return None;
         }
-        let position = (point.position + self.shift) * self.scale;
-        if position.iter().all(|value| value.is_finite()) {
-            Some(position)
-        } else {
+        if infinite {
             self.find(PostFindingKind::NotFinite);
-            None
         }
+        positions
     }
 }

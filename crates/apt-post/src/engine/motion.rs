@@ -24,7 +24,7 @@ const DEFAULT_OUTTOL_MM: f64 = 0.0127;
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
         let circle = self.next_circle.take();
-        let positions: Vec<Vec3> = points.iter().filter_map(|point| self.tape_position(point)).collect();
+        let positions = self.tape_positions(points);
         if from {
             self.flush();
             // FROM says where the tool stands; the tape says nothing of it.
@@ -190,6 +190,7 @@ impl Engine<'_> {
         let inch = self.control.units == apt_cldata::record::Units::Inches;
         ArcLimits {
             tolerance: if vouched { own + band } else { own },
+            height_tolerance: own,
             chord_tolerance: band,
             least_radius: self.tape_length(rules.min_radius_mm),
             greatest_radius: self.tape_length(rules.max_radius_mm),
