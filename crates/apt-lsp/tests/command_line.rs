@@ -144,6 +144,12 @@ fn a_run_is_listed_for_people_and_for_programs() {
     for part in ["PROGRAM good.apt", "CUTTER LOCATIONS", "TOTALS"] {
         assert!(ran.stdout.contains(part), "{part} is missing in {}", ran.stdout);
     }
+    let ran = folder.run(&["run", "good.apt", "--format", "cl"]);
+    assert!(ran.stdout.contains("GOTO") && ran.stdout.contains("FINI"), "{ran:?}");
+    folder.run(&["run", "good.apt", "-o", "out.cl"]);
+    assert_eq!(std::fs::read_to_string(folder.0.join("out.cl")).unwrap(), ran.stdout);
+    assert_eq!(folder.run(&["run", "good.apt", "--format", "cltape", "-o", "out.bin"]).code, 0);
+    assert!(std::fs::read(folder.0.join("out.bin")).unwrap().len() > 100);
     let ran = folder.run(&["run", "good.apt", "-o", "out.json"]);
     assert_eq!((ran.code, ran.stdout.as_str()), (0, ""));
     let report: Value = serde_json::from_slice(&std::fs::read(folder.0.join("out.json")).unwrap()).unwrap();
@@ -184,6 +190,29 @@ fn a_reader_who_has_seen_enough_is_no_fault() {
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{told}");
     assert!(!told.contains("panicked"), "{told}");
+}
+
+#[test]
+fn tapes_trees_expansions_and_pictures_are_written() {
+    let folder = Folder::new("products");
+    folder.write("good.apt", GOOD);
+    folder.write("loop.apt", "PARTNO LOOP\nM1=MACRO/A\nGOTO/A,0,0\nTERMAC\nFROM/0,0,0\nCALL/M1,A=7\nFINI\n");
+    let machines = folder.run(&["machines"]).stdout;
+    let machine = machines.split_whitespace().next().unwrap();
+    let ran = folder.run(&["post", "good.apt", "--machine", machine]);
+    assert!(ran.stdout.contains("X1"), "{ran:?}");
+    let ran = folder.run(&["tree", "good.apt"]);
+    assert!(ran.code == 0 && ran.stdout.contains("GOTO"), "{ran:?}");
+    let ran = folder.run(&["expand", "loop.apt"]);
+    assert!(ran.stdout.contains("GOTO/7,0,0") && ran.stdout.contains("in the macro M1"), "{ran:?}");
+    for (name, beginning) in [("out.svg", "<svg"), ("out.html", "<!")] {
+        let ran = folder.run(&["view", "good.apt", "-o", name]);
+        assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{ran:?}");
+        let picture = std::fs::read_to_string(folder.0.join(name)).unwrap();
+        assert!(picture.contains(beginning), "{name}");
+    }
+    let ran = folder.run(&["explain", "apt0101"]);
+    assert!(ran.stdout.contains("APT0101") && ran.stdout.contains("Wrong"), "{ran:?}");
 }
 
 #[test]

@@ -354,6 +354,10 @@ pub(crate) struct RunRequest {
 /// What can be written to a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Product {
+    /// CL text.
+    ClText,
+    /// The binary CLTAPE of APT III.
+    Cltape,
     /// The tape of a machine, as text.
     Tape {
         /// The machine.

@@ -316,6 +316,8 @@ impl Document for Program {
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {
         with(control, "running", |cancel, progress| match product {
+            Product::ClText => Ok(self.0.cl_text(cancel, progress)?.into_bytes()),
+            Product::Cltape => self.0.cl_tape(cancel, progress).map_err(cl_tape_refusal),
             Product::Tape { machine } => {
                 Ok(self.0.tape(machine, cancel, progress).map_err(tape_refusal)?.text().into_bytes())
             }
@@ -333,6 +335,14 @@ impl Document for Program {
 
 fn to_json(value: &impl serde::Serialize) -> Result<Value, Refusal> {
     serde_json::to_value(value).map_err(|error| Refusal::Impossible(error.to_string()))
+}
+
+fn cl_tape_refusal(error: apt_ide::run::ClTapeError) -> Refusal {
+    use apt_ide::run::ClTapeError;
+    match error {
+        ClTapeError::Tape(error) => Refusal::Impossible(error.to_string()),
+        ClTapeError::Cancelled(_) => Refusal::Interrupted,
+    }
 }
 
 fn tape_refusal(error: apt_ide::run::TapeError) -> Refusal {

@@ -128,6 +128,10 @@ pub(super) enum RunFormat {
     Sarif,
     /// Annotations of GitHub workflows (findings only)
     Github,
+    /// CL text
+    Cl,
+    /// The binary CLTAPE of APT III
+    Cltape,
 }
 
 /// `run`.

@@ -96,6 +96,8 @@ fn records(text: &mut String, report: &Value) {
                 format!("{} {}", kind.to_uppercase(), record["surface"].as_str().unwrap_or_default())
             }
             "fini" => "FINI".to_owned(),
+            // Geometry of a surface; its record has no word of its own.
+            "other" => format!("{} = {}", words(&record["surface"]), numbers(&record["words"])),
             _ => list(&record["words"]).iter().map(words).collect::<Vec<_>>().join(" "),
         };
         let _ = writeln!(text, "  {:>5}  {}", words(&record["isn"]), what.trim_end());

@@ -10,7 +10,7 @@ use super::console::Console;
 use super::findings::{self, Checked};
 use super::listing;
 use super::program::Program;
-use crate::analysis::{Control, Language, Level, Refusal, RunRequest};
+use crate::analysis::{Control, Language, Level, Product, Refusal, RunRequest};
 
 /// Runs a program and prints what was asked for.
 pub(super) fn run(call: &RunCall, console: &Console, language: &dyn Language) -> Outcome {
@@ -50,6 +50,8 @@ fn format_of(output: Option<&Path>) -> RunFormat {
     match ending.to_ascii_lowercase().as_str() {
         "json" => RunFormat::Json,
         "sarif" => RunFormat::Sarif,
+        "cl" | "cls" | "ncl" => RunFormat::Cl,
+        "cltape" => RunFormat::Cltape,
         _ => RunFormat::Human,
     }
 }
@@ -59,6 +61,8 @@ fn product(program: &Program, format: RunFormat, control: &Control) -> Result<Op
     match format {
         RunFormat::Human => Ok(Some(listing::text(&report(program, control)?).into_bytes())),
         RunFormat::Json => Ok(Some(format!("{}\n", report(program, control)?).into_bytes())),
+        RunFormat::Cl => program.document.product(&Product::ClText, control).map(Some),
+        RunFormat::Cltape => program.document.product(&Product::Cltape, control).map(Some),
         RunFormat::Sarif | RunFormat::Github => Ok(None),
     }
 }
