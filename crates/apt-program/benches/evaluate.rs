@@ -23,14 +23,18 @@ fn points(lines: usize) -> String {
 #[divan::bench(args = [100_000])]
 fn plain_points(bencher: divan::Bencher<'_, '_>, lines: usize) {
     let tree = tree(&points(lines));
-    bencher.counter(divan::counter::ItemsCount::new(lines)).bench(|| evaluate(&tree, &Options::default(), &|| false));
+    bencher
+        .counter(divan::counter::ItemsCount::new(lines))
+        .bench(|| evaluate(&tree, &Options::default(), &|| false));
 }
 
 #[divan::bench(args = [100_000])]
 fn loop_turns(bencher: divan::Bencher<'_, '_>, turns: usize) {
     let text = format!("I=0\nLOOPST\nA)I=I+1\nGOTO/I,(I*2),0\nIF(I-{turns})A,Z,Z\nZ)LOOPND\nFINI\n");
     let tree = tree(&text);
-    bencher.counter(divan::counter::ItemsCount::new(turns * 3)).bench(|| evaluate(&tree, &Options::default(), &|| false));
+    bencher
+        .counter(divan::counter::ItemsCount::new(turns * 3))
+        .bench(|| evaluate(&tree, &Options::default(), &|| false));
 }
 
 #[divan::bench(args = [100_000])]

@@ -14,7 +14,9 @@ fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
 }
 
 /// Name, program without FINI, and the problems as (statement, APT III number).
-const CASES: &[(&str, &str, &[(u32, u16)])] = &[
+type Case = (&'static str, &'static str, &'static [(u32, u16)]);
+
+const CASES: &[Case] = &[
     ("undefined name", "A=ZZZ", &[(1, 101)]),
     ("three undefined names", "P=POINT/UU,VV,WW", &[(1, 101), (1, 101), (1, 101)]),
     ("poisoned name is silent", "P=POINT/UU,0\nL=LINE/P,P\nL2=LINE/L,L", &[(1, 101)]),
@@ -116,9 +118,11 @@ fn each_mistake_is_reported_at_its_statement_with_its_number() {
     for (name, text, expected) in CASES {
         let program = run(&format!("{text}\nFINI\n"));
         let found = problems(&program);
-        let expected: Vec<(u32, Option<u16>)> = expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
+        let expected: Vec<(u32, Option<u16>)> =
+            expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
         if found != expected {
-            let kinds: Vec<String> = program.findings().map(|finding| format!("{:?}", finding.kind)).collect();
+            let kinds: Vec<String> =
+                program.findings().map(|finding| format!("{:?}", finding.kind)).collect();
             wrong.push_str(&format!("{name}: expected {expected:?}, found {found:?} {kinds:?}\n"));
         }
         assert!(program.is_complete());
@@ -135,9 +139,12 @@ fn a_missing_fini_is_a_warning() {
 #[test]
 fn an_endless_loop_ends_and_says_where_it_went() {
     let program = run("I=0\nLOOPST\nA)I=I+1\nJ=2\nJUMPTO/A\nLOOPND\nGOTO/1,2,3\nFINI\n");
-    let found: Vec<&Finding> = program.findings().filter(|finding| finding.severity == Severity::Error).collect();
+    let found: Vec<&Finding> =
+        program.findings().filter(|finding| finding.severity == Severity::Error).collect();
     let [endless] = found.as_slice() else { panic!("{found:?}") };
-    let apt_program::FindingKind::Endless { changing, statements } = &endless.kind else { panic!("{endless:?}") };
+    let apt_program::FindingKind::Endless { changing, statements } = &endless.kind else {
+        panic!("{endless:?}")
+    };
     assert_eq!(changing.as_slice(), ["I"]);
     assert_eq!(*statements, Options::default().statement_budget);
     let frame = endless.origin.frame.as_ref().expect("a loop turn");
@@ -159,7 +166,8 @@ fn a_finding_in_a_loop_in_a_macro_tells_the_way_there() {
 fn similar_names_are_offered() {
     let program = run("RADIU1=2\nC=CIRCLE/0,0,RADIU2\nFINI\n");
     let kinds: Vec<_> = program.findings().map(|finding| finding.kind.clone()).collect();
-    let expected = apt_program::FindingKind::Undefined { name: "RADIU2".into(), similar: vec!["RADIU1".into()] };
+    let expected =
+        apt_program::FindingKind::Undefined { name: "RADIU2".into(), similar: vec!["RADIU1".into()] };
     assert!(kinds.contains(&expected), "{kinds:?}");
 }
 
@@ -184,7 +192,8 @@ fn every_major_word_of_apt_iii_does_something() {
     for word in majors {
         count += 1;
         let program = run(&format!("{}\nFINI\n", word.spelling));
-        let unknown = program.findings().find(|finding| matches!(finding.kind, FindingKind::NotInDialect { .. }));
+        let unknown =
+            program.findings().find(|finding| matches!(finding.kind, FindingKind::NotInDialect { .. }));
         assert!(unknown.is_none(), "{} is not handled", word.spelling);
     }
     assert!(count > 120, "{count} major words");

@@ -28,7 +28,12 @@ fn assert_same(left: &Program, right: &Program, text: &str) {
     assert_eq!(left.record_count(), right.record_count());
 }
 
-fn edited(tree: &SyntaxTree, start: usize, end: usize, insert: &str) -> (SyntaxTree, apt_syntax::StatementChange) {
+fn edited(
+    tree: &SyntaxTree,
+    start: usize,
+    end: usize,
+    insert: &str,
+) -> (SyntaxTree, apt_syntax::StatementChange) {
     let size = |offset: usize| TextSize::new(u32::try_from(offset).expect("small"));
     tree.edit(TextRange::new(size(start), size(end)), insert)
 }
@@ -84,14 +89,66 @@ fn a_changed_value_reaches_everything_after_it() {
 
 /// Statements that random programs are made of.
 const LINES: &[&str] = &[
-    "A=1", "A=A+1", "B=A*2", "A=ZZ", "B=1/0", "P1=POINT/A,B", "P1=POINT/CANON,1,2,3", "P2=POINT/1,2,3",
-    "L1=LINE/P1,P2", "L1=LINE/XAXIS", "L2=LINE/YAXIS", "C1=CIRCLE/0,0,A", "CANON/ON", "CANON/OFF", "GOTO/P1",
-    "GOTO/A,B,3", "FROM/0,0", "GO/TO,L1", "TLLFT,GOLFT/L1", "GORGT/L2,TO,L1", "TLON,GOFWD/L2", "RAPID",
-    "FEDRAT/A,IPM", "M1=MACRO/X,Y=2", "TERMAC", "X=X+Y", "GOTO/X,Y,0", "CALL/M1,X=A", "CALL/M1,X=3", "LOOPST",
-    "LOOPND", "I=0", "T1)I=I+1", "IF(I-3)T1,T2,T2", "T2)B=I", "JUMPTO/T1", "RESERV/Q,5", "Q(A)=I", "Q(2)=P1",
-    "GODLTA/Q(1)", "M2=MATRIX/TRANSL,A,0,0", "REFSYS/M2", "REFSYS/NOMORE", "ZSURF/0,0,1,A", "TRACUT/M2",
-    "SYN/GG,GOTO", "GG/1,1,1", "OBTAIN,POINT/P1,PX,PY", "TRANTO/T2", "$$ a comment", "", "P=(", "FINI", "PPRINT HI",
-    "GOLFT/L1,TO,L2,T1,TO,C1,T2", "INDEX/1", "COPY/1,SAME,2", "MULTAX", "PT1=PATERN/LINEAR,P1,P2,4", "GOTO/PT1,INVERS",
+    "A=1",
+    "A=A+1",
+    "B=A*2",
+    "A=ZZ",
+    "B=1/0",
+    "P1=POINT/A,B",
+    "P1=POINT/CANON,1,2,3",
+    "P2=POINT/1,2,3",
+    "L1=LINE/P1,P2",
+    "L1=LINE/XAXIS",
+    "L2=LINE/YAXIS",
+    "C1=CIRCLE/0,0,A",
+    "CANON/ON",
+    "CANON/OFF",
+    "GOTO/P1",
+    "GOTO/A,B,3",
+    "FROM/0,0",
+    "GO/TO,L1",
+    "TLLFT,GOLFT/L1",
+    "GORGT/L2,TO,L1",
+    "TLON,GOFWD/L2",
+    "RAPID",
+    "FEDRAT/A,IPM",
+    "M1=MACRO/X,Y=2",
+    "TERMAC",
+    "X=X+Y",
+    "GOTO/X,Y,0",
+    "CALL/M1,X=A",
+    "CALL/M1,X=3",
+    "LOOPST",
+    "LOOPND",
+    "I=0",
+    "T1)I=I+1",
+    "IF(I-3)T1,T2,T2",
+    "T2)B=I",
+    "JUMPTO/T1",
+    "RESERV/Q,5",
+    "Q(A)=I",
+    "Q(2)=P1",
+    "GODLTA/Q(1)",
+    "M2=MATRIX/TRANSL,A,0,0",
+    "REFSYS/M2",
+    "REFSYS/NOMORE",
+    "ZSURF/0,0,1,A",
+    "TRACUT/M2",
+    "SYN/GG,GOTO",
+    "GG/1,1,1",
+    "OBTAIN,POINT/P1,PX,PY",
+    "TRANTO/T2",
+    "$$ a comment",
+    "",
+    "P=(",
+    "FINI",
+    "PPRINT HI",
+    "GOLFT/L1,TO,L2,T1,TO,C1,T2",
+    "INDEX/1",
+    "COPY/1,SAME,2",
+    "MULTAX",
+    "PT1=PATERN/LINEAR,P1,P2,4",
+    "GOTO/PT1,INVERS",
 ];
 
 fn line() -> impl Strategy<Value = &'static str> {

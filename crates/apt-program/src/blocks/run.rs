@@ -51,7 +51,7 @@ pub(crate) struct Activation<'b> {
 
 impl Evaluator<'_> {
     /// Executes a block. Where control goes afterwards is `Next`, or `Abort` when everything is to stop.
-    pub(crate) fn run_block(&mut self, activation: Activation<'_>) -> Flow {
+    pub(crate) fn run_block(&mut self, activation: &Activation<'_>) -> Flow {
         let outer = self.here.clone();
         let depth = outer.depth + u32::from(activation.region == Region::Macro);
         self.here = Here {
@@ -61,7 +61,7 @@ impl Evaluator<'_> {
             region: activation.region,
             depth,
         };
-        let flow = self.run_statements(&activation);
+        let flow = self.run_statements(activation);
         self.here = outer;
         match flow {
             Flow::Abort => Flow::Abort,
@@ -117,7 +117,8 @@ impl Evaluator<'_> {
         index: usize,
         do_loops: &mut Vec<DoLoop>,
     ) -> Flow {
-        self.here.label = statement.statement.label.as_ref().map(|label| super::normalised_label(&label.text));
+        self.here.label =
+            statement.statement.label.as_ref().map(|label| super::normalised_label(&label.text));
         if let Some(part) = statement.statement.parts.first()
             && let Body::Do { label, index: variable, bounds, .. } = &part.body
         {
@@ -243,7 +244,9 @@ impl Evaluator<'_> {
                 return None;
             }
             let innermost = innermost.clone();
-            let crate::expression::Resolved::Scalar(value) = self.resolve(&innermost.index)? else { return None };
+            let crate::expression::Resolved::Scalar(value) = self.resolve(&innermost.index)? else {
+                return None;
+            };
             let next = value + innermost.step;
             let past = if innermost.step > 0.0 { next > innermost.last } else { next < innermost.last };
             if !past {

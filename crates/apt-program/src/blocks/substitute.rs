@@ -27,7 +27,9 @@ impl Bindings {
     /// Whether any element is a variable.
     fn concerns(&self, elements: &[Element]) -> bool {
         !self.values.is_empty()
-            && elements.iter().any(|element| is_replaceable(element) && self.values.contains_key(&element.text))
+            && elements
+                .iter()
+                .any(|element| is_replaceable(element) && self.values.contains_key(&element.text))
     }
 
     /// The statement with the variables replaced; the statement itself if it has none.
@@ -45,7 +47,8 @@ impl Bindings {
         for (index, element) in elements.iter().enumerate() {
             let value = self.values.get(&element.text).filter(|_| is_replaceable(element));
             let next = elements.get(index + 1).map(|next| next.kind);
-            let previous = index.checked_sub(1).and_then(|index| elements.get(index)).map(|element| element.kind);
+            let previous =
+                index.checked_sub(1).and_then(|index| elements.get(index)).map(|element| element.kind);
             let is_formal =
                 is_call && previous == Some(ElementKind::Comma) && next == Some(ElementKind::Equals);
             match value {
@@ -81,12 +84,16 @@ fn splice(
     (previous, next): (Option<ElementKind>, Option<ElementKind>),
     is_value: bool,
 ) {
-    let has_sign = matches!(value.first().map(|element| element.kind), Some(ElementKind::Plus | ElementKind::Minus));
-    let after_operator =
-        matches!(previous, Some(ElementKind::Plus | ElementKind::Minus | ElementKind::Star | ElementKind::Power));
+    let has_sign =
+        matches!(value.first().map(|element| element.kind), Some(ElementKind::Plus | ElementKind::Minus));
+    let after_operator = matches!(
+        previous,
+        Some(ElementKind::Plus | ElementKind::Minus | ElementKind::Star | ElementKind::Power)
+    );
     let binds = is_expression(value) || (has_sign && (after_operator || next == Some(ElementKind::Power)));
     let wrap = binds && !is_value;
-    let placed = |kind: ElementKind, text: &str| Element { kind, text: SmolStr::new(text), range: variable.range };
+    let placed =
+        |kind: ElementKind, text: &str| Element { kind, text: SmolStr::new(text), range: variable.range };
     if wrap {
         into.push(placed(ElementKind::LeftParenthesis, "("));
     }

@@ -95,7 +95,7 @@ impl Evaluator<'_> {
                     let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
                     let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
                     let bindings = Bindings::default();
-                    self.run_block(Activation { block: &block, bindings, region: Region::Loop, frame });
+                    self.run_block(&Activation { block: &block, bindings, region: Region::Loop, frame });
                     return past(next);
                 }
                 Body::Do { label, index: variable, bounds, .. } => {
@@ -130,10 +130,19 @@ impl Evaluator<'_> {
         }
         self.state.repeated += 1;
         if self.state.repeated <= self.options.statement_budget {
-            return !(self.state.repeated.is_multiple_of(BUDGET_SHRINK * BUDGET_SHRINK) && self.is_cancelled());
+            return !(self.state.repeated.is_multiple_of(BUDGET_SHRINK * BUDGET_SHRINK)
+                && self.is_cancelled());
         }
-        let range = top.tree.statement(index).parsed().statement.parts.first().map_or(TextRange::default(), |p| p.range);
-        let finding = FindingKind::Endless { statements: self.options.statement_budget, changing: Vec::new() };
+        let range = top
+            .tree
+            .statement(index)
+            .parsed()
+            .statement
+            .parts
+            .first()
+            .map_or(TextRange::default(), |p| p.range);
+        let finding =
+            FindingKind::Endless { statements: self.options.statement_budget, changing: Vec::new() };
         self.report(finding, range);
         false
     }
@@ -335,7 +344,12 @@ impl Evaluator<'_> {
         let elements: Vec<Element> = if statement.statement.parts.len() == 1 {
             without_label(&statement.elements).to_vec()
         } else {
-            statement.elements.iter().filter(|element| part.range.contains_range(element.range)).cloned().collect()
+            statement
+                .elements
+                .iter()
+                .filter(|element| part.range.contains_range(element.range))
+                .cloned()
+                .collect()
         };
         let origin = self.origin(part.range);
         if let Some(trace) = &mut self.trace {
@@ -375,7 +389,9 @@ fn leaves_line(body: &Body) -> bool {
         Body::Call { section, .. } => section.is_some(),
         Body::ArithmeticIf { .. } | Body::LogicalIf { .. } | Body::Do { .. } | Body::Error => false,
         Body::Jump { word, .. } => word.word.spelling == "TRANTO",
-        Body::Major { word, .. } => !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "INCLUD" | "CONTIN"),
+        Body::Major { word, .. } => {
+            !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "INCLUD" | "CONTIN")
+        }
         _ => true,
     }
 }

@@ -103,7 +103,11 @@ fn expanded_line(line: TracedLine) -> ExpandedLine {
 fn canonical_text(elements: &[Element]) -> String {
     let mut text = String::new();
     for (index, element) in elements.iter().enumerate() {
-        if element.kind == ElementKind::Text && index > 0 && !text.ends_with(['/', ',']) && !element.text.starts_with(' ') {
+        if element.kind == ElementKind::Text
+            && index > 0
+            && !text.ends_with(['/', ','])
+            && !element.text.starts_with(' ')
+        {
             text.push(' ');
         }
         text.push_str(&element.text);

@@ -202,7 +202,7 @@ impl Evaluator<'_> {
             | (Some(Geometry::Plane(a)), Some(Geometry::Plane(b))) => {
                 let scale = a.normal.norm() * b.normal.norm();
                 let sine = a.normal.cross(&b.normal).norm() / scale;
-                if !(sine <= PARALLEL_SINE) {
+                if sine.is_nan() || sine > PARALLEL_SINE {
                     self.report(FindingKind::NotParallel { sine }, range);
                     return None;
                 }
@@ -244,10 +244,15 @@ impl Evaluator<'_> {
             },
         };
         let values = geometry.canonical_values();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a negative index saturates")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a negative index saturates"
+        )]
         let value = (number >= 1.0).then(|| values.get(number as usize - 1).copied()).flatten();
         if value.is_none() {
-            let finding = FindingKind::FunctionDomain { function: SmolStr::new_static("CANF"), value: number };
+            let finding =
+                FindingKind::FunctionDomain { function: SmolStr::new_static("CANF"), value: number };
             self.report(finding, range);
         }
         value

@@ -51,7 +51,9 @@ impl Evaluator<'_> {
                 return Some(Resolved::Geometry { name: name.clone(), stored: stored.clone() });
             }
             Meaning::Poisoned => return None,
-            Meaning::Array(array) => FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent },
+            Meaning::Array(array) => {
+                FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent }
+            }
             Meaning::Macro(_) => FindingKind::MacroAsValue { name: name.clone() },
             Meaning::Label => FindingKind::LabelAsValue { name: name.clone() },
         };
@@ -88,12 +90,20 @@ impl Evaluator<'_> {
         let extent = self.array_extent(reference)?;
         let whole = subscript.trunc();
         if whole >= 1.0 && whole <= f64::from(extent) {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside 1..=extent")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "inside 1..=extent"
+            )]
             return Some(whole as u32);
         }
         let name = reference.name.text.clone();
         let related = self.reservation(&name);
-        self.report_related(FindingKind::SubscriptRange { name, subscript, extent }, reference.range, related);
+        self.report_related(
+            FindingKind::SubscriptRange { name, subscript, extent },
+            reference.range,
+            related,
+        );
         None
     }
 

@@ -38,7 +38,13 @@ pub(super) struct ChunkData {
 
 impl ChunkData {
     /// A chunk of what was put out since `before`.
-    pub(super) fn new(before: State, start: usize, extent: (usize, usize), steps: u64, output: Output) -> Self {
+    pub(super) fn new(
+        before: State,
+        start: usize,
+        extent: (usize, usize),
+        steps: u64,
+        output: Output,
+    ) -> Self {
         Self {
             before,
             start,
@@ -106,6 +112,31 @@ impl Chunk {
     /// How many records it left.
     pub(super) fn record_count(&self) -> usize {
         self.data.records.len()
+    }
+
+    /// Whether it left findings.
+    pub(super) fn has_findings(&self) -> bool {
+        !self.data.findings.is_empty()
+    }
+
+    /// Whether it names labels that Section 2 may go on at.
+    pub(super) fn has_transfers(&self) -> bool {
+        !self.data.transfers.is_empty()
+    }
+
+    /// Names that were used; these do not move.
+    pub(super) fn used(&self) -> &FxHashSet<SmolStr> {
+        &self.data.used
+    }
+
+    /// Names whose meaning changed; these do not move.
+    pub(super) fn touched(&self) -> &FxHashSet<SmolStr> {
+        &self.data.touched
+    }
+
+    /// Labels that records carry; these do not move.
+    pub(super) fn record_labels(&self) -> impl Iterator<Item = &SmolStr> {
+        self.data.records.iter().filter_map(|record| record.label.as_ref())
     }
 
     /// The same chunk after statements before it were inserted or removed.

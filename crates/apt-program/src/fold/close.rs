@@ -15,7 +15,8 @@ use crate::{
 pub(super) fn closing_findings(chunks: &[Chunk], end: &State, complete: bool) -> Vec<Finding> {
     let mut findings: Vec<Finding> = Vec::new();
     let mut by_place: FxHashMap<(u32, u32), Vec<usize>> = FxHashMap::default();
-    for finding in chunks.iter().flat_map(|chunk| chunk.data().findings.iter()) {
+    let reporting = chunks.iter().filter(|chunk| chunk.has_findings());
+    for finding in reporting.flat_map(|chunk| chunk.data().findings.iter()) {
         let place = (finding.origin.isn, u32::from(finding.origin.range.start()));
         let known = by_place.entry(place).or_default();
         if known.iter().any(|index| same_place_and_kind(&findings[*index], finding)) {
@@ -34,14 +35,15 @@ pub(super) fn closing_findings(chunks: &[Chunk], end: &State, complete: bool) ->
 /// TRANTO and labels of check surfaces that no statement carries.
 fn add_unknown_transfers(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
     let mut carried: FxHashSet<SmolStr> = FxHashSet::default();
-    let transfers: Vec<&(SmolStr, Origin)> =
-        chunks.iter().flat_map(|chunk| chunk.data().transfers.iter()).collect();
+    let transfers: Vec<&(SmolStr, Origin)> = chunks
+        .iter()
+        .filter(|chunk| chunk.has_transfers())
+        .flat_map(|chunk| chunk.data().transfers.iter())
+        .collect();
     if transfers.is_empty() {
         return;
     }
-    for record in chunks.iter().flat_map(|chunk| chunk.data().records.iter()) {
-        carried.extend(record.label.clone());
-    }
+    carried.extend(chunks.iter().flat_map(Chunk::record_labels).cloned());
     for (label, origin) in transfers {
         if !carried.contains(label) {
             let kind = if matches!(end.symbol(label).map(|symbol| &symbol.meaning), Some(Meaning::Label)) {
@@ -56,7 +58,7 @@ fn add_unknown_transfers(chunks: &[Chunk], end: &State, findings: &mut Vec<Findi
 
 /// Names that are defined and never used, in the order of their definition.
 fn add_unused(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
-    let used: FxHashSet<&SmolStr> = chunks.iter().flat_map(|chunk| chunk.data().used.iter()).collect();
+    let used: FxHashSet<&SmolStr> = chunks.iter().flat_map(Chunk::used).collect();
     let mut unused: Vec<(&SmolStr, &Origin)> = end
         .symbols
         .iter()

@@ -148,9 +148,9 @@ struct Reuse<'o> {
 impl<'o> Reuse<'o> {
     fn new(old: &'o Old<'o>) -> Self {
         let change = old.change;
-        let by = i64::try_from(change.inserted).unwrap_or(i64::MAX).saturating_sub(
-            i64::try_from(change.removed).unwrap_or(i64::MAX),
-        );
+        let by = i64::try_from(change.inserted)
+            .unwrap_or(i64::MAX)
+            .saturating_sub(i64::try_from(change.removed).unwrap_or(i64::MAX));
         let from = change.first + change.removed;
         let mut independent_from = old.chunks.len();
         while independent_from > 0 && old.chunks[independent_from - 1].read_from() >= from {
@@ -181,7 +181,7 @@ impl<'o> Reuse<'o> {
             let start = chunk.start();
             let passed = start < self.shift.from || self.shift.index(start) < index;
             if passed {
-                self.touched.extend(chunk.data().touched.iter().cloned());
+                self.touched.extend(chunk.touched().iter().cloned());
                 self.candidate += 1;
                 continue;
             }

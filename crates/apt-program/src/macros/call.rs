@@ -51,7 +51,7 @@ impl Evaluator<'_> {
             return Flow::Abort;
         }
         let frame = self.frame(FrameKind::Macro, name.text.clone(), range);
-        self.run_block(Activation { block: &definition.body, bindings, region: Region::Macro, frame })
+        self.run_block(&Activation { block: &definition.body, bindings, region: Region::Macro, frame })
     }
 
     /// Reports a CALL of something that is not a macro.
@@ -64,7 +64,11 @@ impl Evaluator<'_> {
             .filter(|(_, symbol)| matches!(symbol.meaning, Meaning::Macro(_)))
             .map(|(name, _)| name.as_str());
         let similar = similar_names(&name.text, macros);
-        self.report_related(FindingKind::UnknownMacro { name: name.text.clone(), similar }, name.range, related);
+        self.report_related(
+            FindingKind::UnknownMacro { name: name.text.clone(), similar },
+            name.range,
+            related,
+        );
     }
 
     /// The values of the variables; nothing if one is missing or unknown.

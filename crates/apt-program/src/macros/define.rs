@@ -3,12 +3,7 @@
 use apt_syntax::statement::{MacroParameter, Name};
 
 use super::{MacroDefinition, MacroVariable};
-use crate::{
-    blocks::Block,
-    evaluator::Evaluator,
-    finding::FindingKind,
-    symbols::Meaning,
-};
+use crate::{blocks::Block, evaluator::Evaluator, finding::FindingKind, symbols::Meaning};
 
 /// Most macro variables (language reference 1.10).
 const MOST_VARIABLES: usize = 50;

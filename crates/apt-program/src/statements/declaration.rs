@@ -157,7 +157,13 @@ impl Evaluator<'_> {
     }
 
     /// OBTAIN,type/surface,names.
-    pub(crate) fn obtain(&mut self, word: &WordUse, kind: &WordUse, arguments: &[Argument], range: TextRange) {
+    pub(crate) fn obtain(
+        &mut self,
+        word: &WordUse,
+        kind: &WordUse,
+        arguments: &[Argument],
+        range: TextRange,
+    ) {
         let mut items = Vec::with_capacity(1);
         let Some(first) = arguments.first() else {
             let finding = FindingKind::Operand {

@@ -167,7 +167,11 @@ impl Evaluator<'_> {
     }
 
     /// Operands as arguments of a definition.
-    fn definition_arguments(&mut self, kind: GeometryKind, items: &[Item]) -> Option<Vec<definition::Argument>> {
+    fn definition_arguments(
+        &mut self,
+        kind: GeometryKind,
+        items: &[Item],
+    ) -> Option<Vec<definition::Argument>> {
         let mut arguments = Vec::with_capacity(items.len());
         for item in items {
             arguments.push(match &item.operand {
@@ -176,7 +180,9 @@ impl Evaluator<'_> {
                 Operand::Empty => definition::Argument::Empty,
                 Operand::Word(word) => match Modifier::from_word(word.spelling) {
                     Some(modifier) => definition::Argument::Modifier(modifier),
-                    None => return self.unknown_modifier(kind, SmolStr::new_static(word.spelling), item.range),
+                    None => {
+                        return self.unknown_modifier(kind, SmolStr::new_static(word.spelling), item.range);
+                    }
                 },
                 Operand::Text(text) => return self.unknown_modifier(kind, text.clone(), item.range),
             });
@@ -256,7 +262,9 @@ impl Evaluator<'_> {
                 }
             }
             Meaning::Scalar(_) => FindingKind::ScalarToGeometry { name: name.clone() },
-            Meaning::Array(array) => FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent },
+            Meaning::Array(array) => {
+                FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent }
+            }
             other => FindingKind::NotAssignable { name: name.clone(), found: other.found() },
         };
         let warns_only = self.is_apt4() && matches!(finding, FindingKind::Redefined { .. });

@@ -19,7 +19,8 @@ impl Evaluator<'_> {
             self.mark_listed(argument);
         }
         match (major.spelling(), major.arguments.first()) {
-            (_, Some(Argument::Word(word))) if matches!(word.word.spelling, "ON" | "OFF") || self.is_apt4() => {}
+            (_, Some(Argument::Word(word)))
+                if matches!(word.word.spelling, "ON" | "OFF") || self.is_apt4() => {}
             ("READ", Some(_)) => {
                 self.report(FindingKind::NoEffect { word: major.name() }, major.range);
             }
@@ -89,7 +90,8 @@ impl Evaluator<'_> {
             }
             "DEBUG" => {
                 let last = major.arguments.last();
-                let valid = matches!(last, Some(Argument::Word(word)) if matches!(word.word.spelling, "ON" | "OFF"));
+                let valid =
+                    matches!(last, Some(Argument::Word(word)) if matches!(word.word.spelling, "ON" | "OFF"));
                 if !valid {
                     self.wrong_operand(major, Expected::OnOrOff, Found::Nothing, 22, major.range);
                 }

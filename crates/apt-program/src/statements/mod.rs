@@ -177,7 +177,12 @@ impl Evaluator<'_> {
     }
 
     /// Operands of a statement; an empty list is reported with this number and expectation.
-    pub(crate) fn operands_of(&mut self, major: Major<'_>, expected: &'static str, number: u16) -> Option<Items> {
+    pub(crate) fn operands_of(
+        &mut self,
+        major: Major<'_>,
+        expected: &'static str,
+        number: u16,
+    ) -> Option<Items> {
         let items = self.operands(major.arguments)?;
         if items.is_empty() {
             self.wrong_count(major, 0, expected, number);
@@ -187,7 +192,13 @@ impl Evaluator<'_> {
     }
 
     /// Reports a wrong number of operands.
-    pub(crate) fn wrong_count(&mut self, major: Major<'_>, found: usize, expected: &'static str, number: u16) {
+    pub(crate) fn wrong_count(
+        &mut self,
+        major: Major<'_>,
+        found: usize,
+        expected: &'static str,
+        number: u16,
+    ) {
         let finding = FindingKind::OperandCount {
             statement: major.name(),
             found,

@@ -58,7 +58,7 @@ impl Evaluator<'_> {
         let Some(values) = self.scalars_of(major, &items, 129) else { return };
         let [value] = *values.as_slice() else { return self.wrong_count(major, values.len(), "1", 129) };
         let is_step = major.spelling() == "MAXDP";
-        if !(value > 0.0) || (!is_step && value < 1.0) {
+        if value <= 0.0 || (!is_step && value < 1.0) {
             let finding = FindingKind::OperandRange { statement: major.name(), value, number: None };
             return self.report(finding, major.range);
         }

@@ -41,7 +41,13 @@ struct Route {
 
 impl Evaluator<'_> {
     /// Writes the points of a pattern.
-    pub(crate) fn go_to_pattern(&mut self, major: Major<'_>, name: &SmolStr, pattern: &Pattern, items: &[Item]) {
+    pub(crate) fn go_to_pattern(
+        &mut self,
+        major: Major<'_>,
+        name: &SmolStr,
+        pattern: &Pattern,
+        items: &[Item],
+    ) {
         let route = match Route::read(pattern, items, major.range) {
             Ok(route) => route,
             Err(error) => {
@@ -142,23 +148,26 @@ impl Route {
             let mut any = false;
             while let Some((first, last)) = reader.range()? {
                 any = true;
-                let first = self.output_position(first, constant).ok_or_else(|| reader.error(812, Some(first)))?;
-                let last = self.output_position(last, constant).ok_or_else(|| reader.error(812, Some(last)))?;
+                let first =
+                    self.output_position(first, constant).ok_or_else(|| reader.error(812, Some(first)))?;
+                let last =
+                    self.output_position(last, constant).ok_or_else(|| reader.error(812, Some(last)))?;
                 if columns.is_some_and(|column| self.order[first] / column != self.order[last] / column) {
                     return Err(reader.error(837, None));
                 }
-                let passed =
-                    if matches!(operation, Operation::Avoid(_)) { &mut last_avoided } else { &mut last_listed };
+                let passed = if matches!(operation, Operation::Avoid(_)) {
+                    &mut last_avoided
+                } else {
+                    &mut last_listed
+                };
                 if first > last || passed.is_some_and(|passed| first <= passed) {
                     return Err(reader.error(838, None));
                 }
                 *passed = Some(last);
-                for position in first..=last {
-                    match operation {
-                        Operation::Omit => self.visited[position] = false,
-                        Operation::Retain => retained[position] = true,
-                        Operation::Avoid(lift) => self.lift[position] = Some(lift),
-                    }
+                match operation {
+                    Operation::Omit => self.visited[first..=last].fill(false),
+                    Operation::Retain => retained[first..=last].fill(true),
+                    Operation::Avoid(lift) => self.lift[first..=last].fill(Some(lift)),
                 }
             }
             if !any {
@@ -253,7 +262,8 @@ impl Reader<'_> {
             return Ok(Some((first.trunc(), first.trunc())));
         }
         self.position += 1;
-        let last = self.items.get(self.position).and_then(Item::scalar).ok_or_else(|| self.error(836, None))?;
+        let last =
+            self.items.get(self.position).and_then(Item::scalar).ok_or_else(|| self.error(836, None))?;
         self.position += 1;
         Ok(Some((first.trunc(), last.trunc())))
     }

@@ -27,7 +27,8 @@ impl Evaluator<'_> {
         };
         for (value, limit, number) in [(keep, 1.0, 3515), (kind, 3.0, 3516)] {
             if value.fract() != 0.0 || !(0.0..=limit).contains(&value) {
-                let finding = FindingKind::OperandRange { statement: major.name(), value, number: Some(number) };
+                let finding =
+                    FindingKind::OperandRange { statement: major.name(), value, number: Some(number) };
                 return self.report(finding, major.range);
             }
         }

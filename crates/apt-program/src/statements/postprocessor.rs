@@ -131,7 +131,12 @@ impl Evaluator<'_> {
     }
 
     /// Geometry, where the word takes it.
-    fn post_geometry(&mut self, major: Major<'_>, geometry: &Geometry, range: TextRange) -> Option<PostArgument> {
+    fn post_geometry(
+        &mut self,
+        major: Major<'_>,
+        geometry: &Geometry,
+        range: TextRange,
+    ) -> Option<PostArgument> {
         let kind = geometry.kind();
         let takes = takes_geometry(major.spelling());
         let fits = match takes {

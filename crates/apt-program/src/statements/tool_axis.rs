@@ -118,7 +118,8 @@ impl Evaluator<'_> {
         match item.scalar() {
             Some(angle) if angle.abs() <= LARGEST_ANGLE => Some(angle.to_radians()),
             Some(value) => {
-                let finding = FindingKind::OperandRange { statement: major.name(), value, number: Some(number) };
+                let finding =
+                    FindingKind::OperandRange { statement: major.name(), value, number: Some(number) };
                 self.report(finding, item.range);
                 None
             }

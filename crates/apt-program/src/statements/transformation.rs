@@ -67,7 +67,8 @@ impl Evaluator<'_> {
             return self.wrong_operand(major, Expected::Integer, last.found(), 503, last.range);
         };
         if count < 0.0 || count > f64::from(u32::MAX) {
-            let finding = FindingKind::OperandRange { statement: major.name(), value: count, number: Some(9) };
+            let finding =
+                FindingKind::OperandRange { statement: major.name(), value: count, number: Some(9) };
             return self.report(finding, last.range);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "range checked above")]

@@ -65,7 +65,8 @@ pub(crate) struct Symbol {
 }
 
 /// The table. Persistent, so that a checkpoint costs nothing.
-pub(crate) type SymbolTable = imbl::GenericHashMap<SmolStr, Symbol, FxBuildHasher, imbl::shared_ptr::DefaultSharedPtr>;
+pub(crate) type SymbolTable =
+    imbl::GenericHashMap<SmolStr, Symbol, FxBuildHasher, imbl::shared_ptr::DefaultSharedPtr>;
 
 impl Meaning {
     /// What the name is, as evidence of a finding.
@@ -95,10 +96,7 @@ impl Meaning {
 
 /// All names with values, sorted; elements of arrays as `NAME(3)`. Geometry is in the coordinates of `system`, or, if
 /// it cannot be carried there, of the system in which it was defined.
-pub(crate) fn values_of(
-    table: &SymbolTable,
-    system: Option<&Arc<ReferenceSystem>>,
-) -> Vec<(SmolStr, Value)> {
+pub(crate) fn values_of(table: &SymbolTable, system: Option<&Arc<ReferenceSystem>>) -> Vec<(SmolStr, Value)> {
     let seen = |stored: &Stored| {
         Value::Geometry(stored.seen_from(system).unwrap_or_else(|| Arc::clone(&stored.geometry)))
     };

@@ -10,7 +10,9 @@ pub(crate) fn similar_names<'a>(name: &str, candidates: impl Iterator<Item = &'a
     let allowed = name.chars().count().div_ceil(3).min(2);
     let mut near: Vec<(usize, &str)> = candidates
         .filter(|candidate| *candidate != name)
-        .filter_map(|candidate| distance_within(name, candidate, allowed).map(|distance| (distance, candidate)))
+        .filter_map(|candidate| {
+            distance_within(name, candidate, allowed).map(|distance| (distance, candidate))
+        })
         .collect();
     near.sort_unstable();
     near.dedup();
@@ -29,10 +31,8 @@ fn distance_within(left: &str, right: &str, limit: usize) -> Option<usize> {
     for (row, a) in left.iter().enumerate() {
         let mut current = vec![row + 1; right.len() + 1];
         for (column, b) in right.iter().enumerate() {
-            let swap = row > 0
-                && column > 0
-                && left.get(row - 1) == Some(b)
-                && right.get(column - 1) == Some(a);
+            let swap =
+                row > 0 && column > 0 && left.get(row - 1) == Some(b) && right.get(column - 1) == Some(a);
             let mut best = (previous[column] + usize::from(a != b)).min(previous[column + 1] + 1);
             best = best.min(current[column] + 1);
             if swap {

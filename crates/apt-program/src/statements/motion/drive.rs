@@ -1,8 +1,6 @@
 //! GOLFT and its kin with check surfaces, given or implied (language reference 6.6, arelem reference 3.2).
 
-use apt_geometry::motion::{
-    CheckSurface, DriveSide, MotionCommand, NamedSurface, Relation, Turn,
-};
+use apt_geometry::motion::{CheckSurface, DriveSide, MotionCommand, NamedSurface, Relation, Turn};
 use apt_syntax::{
     TextRange,
     statement::{Argument, Expression},
@@ -21,6 +19,9 @@ use crate::{
 
 /// Most check surfaces of one statement.
 const CHECK_SURFACES: usize = 2;
+
+/// A trailing feed rate with its place.
+type Feed = (f64, TextRange);
 
 /// An operand of a directed motion: evaluated, or a name that can only be a label.
 enum DriveItem {
@@ -133,7 +134,7 @@ impl Evaluator<'_> {
         &mut self,
         major: Major<'_>,
         items: &[DriveItem],
-    ) -> Option<(Vec<CheckSurface>, Option<(f64, TextRange)>)> {
+    ) -> Option<(Vec<CheckSurface>, Option<Feed>)> {
         let mut checks: Vec<CheckSurface> = Vec::new();
         let mut relation: Option<Relation> = None;
         let mut occurrence: Option<f64> = None;
@@ -178,7 +179,11 @@ impl Evaluator<'_> {
                     }
                     _ => {
                         let surface = self.surface_operand(major, value)?;
-                        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above; saturates")]
+                        #[expect(
+                            clippy::cast_possible_truncation,
+                            clippy::cast_sign_loss,
+                            reason = "checked above; saturates"
+                        )]
                         let occurrence = occurrence.take().map_or(1, |number| number as u32);
                         let relation = relation.take().unwrap_or(Relation::To);
                         checks.push(CheckSurface { relation, occurrence, surface, label: None });
@@ -198,7 +203,10 @@ impl Evaluator<'_> {
     fn is_numeric_label(&self, checks: &[CheckSurface], number: f64) -> bool {
         let whole = number >= 0.0 && number.fract() == 0.0;
         let first_has_label = checks.first().is_some_and(|check| check.label.is_some());
-        whole && checks.len() == CHECK_SURFACES && first_has_label && checks.last().is_some_and(|c| c.label.is_none())
+        whole
+            && checks.len() == CHECK_SURFACES
+            && first_has_label
+            && checks.last().is_some_and(|c| c.label.is_none())
     }
 
     /// Puts a label to the last check surface.

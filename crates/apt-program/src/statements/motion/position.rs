@@ -31,7 +31,8 @@ impl Evaluator<'_> {
             self.break_pending(FindingKind::ImpliedCheckBroken { word: major.name() }, major.range);
         }
         if let Some(place) = three_numbers(major.arguments) {
-            return self.emit_position(major, Position { place, axis: None, feed: None, name: String::new() });
+            return self
+                .emit_position(major, Position { place, axis: None, feed: None, name: String::new() });
         }
         let Some(items) = self.operands_of(major, "2, 3, 4, 6 or 7 numbers", 129) else { return };
         if let Some((name, pattern)) = items.first().and_then(Item::pattern) {
@@ -93,7 +94,8 @@ impl Evaluator<'_> {
             [x, y, z, i, j, k] => (Vec3::new(x, y, z), Some(Vec3::new(i, j, k)), None),
             [x, y, z, i, j, k, _] => (Vec3::new(x, y, z), Some(Vec3::new(i, j, k)), feed(6)),
             _ => {
-                let expected = if points > 0 { "a point, an axis, a feed rate" } else { "2, 3, 4, 6 or 7 numbers" };
+                let expected =
+                    if points > 0 { "a point, an axis, a feed rate" } else { "2, 3, 4, 6 or 7 numbers" };
                 self.wrong_count(major, values.len(), expected, 129);
                 return None;
             }

@@ -30,14 +30,17 @@ impl Evaluator<'_> {
             match &item.operand {
                 Operand::Word(word) => {
                     let found = relation_of(word.spelling).filter(|_| relation.is_none());
-                    let Some(found) = found.filter(|found| self.start_relation(*found, surfaces.len(), is_go))
+                    let Some(found) =
+                        found.filter(|found| self.start_relation(*found, surfaces.len(), is_go))
                     else {
                         let word = SmolStr::new_static(word.spelling);
                         return self.report(FindingKind::RelationNotHere { word }, item.range);
                     };
                     relation = Some(found);
                 }
-                Operand::Scalar(rate) if index + 1 == items.len() && !surfaces.is_empty() && relation.is_none() => {
+                Operand::Scalar(rate)
+                    if index + 1 == items.len() && !surfaces.is_empty() && relation.is_none() =>
+                {
                     feed = Some((*rate, item.range));
                 }
                 _ => {
@@ -48,7 +51,13 @@ impl Evaluator<'_> {
             }
         }
         if relation.is_some() {
-            return self.wrong_operand(major, Expected::Surface, crate::finding::Found::Nothing, 129, major.range);
+            return self.wrong_operand(
+                major,
+                Expected::Surface,
+                crate::finding::Found::Nothing,
+                129,
+                major.range,
+            );
         }
         let limit = if is_go { GO_SURFACES } else { OFFSET_SURFACES };
         if surfaces.is_empty() || surfaces.len() > limit {
