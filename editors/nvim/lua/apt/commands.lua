@@ -23,7 +23,11 @@ local function ask(bufnr, command, argument, go_on)
     elseif result == nil or result == vim.NIL then
       complain('nothing is known about this place')
     else
-      go_on(result)
+      -- An answer of an unexpected shape is a fault of the server: said in words, not as a stack of this plugin.
+      local ok, problem = pcall(go_on, result)
+      if not ok then
+        complain(('the answer to %s cannot be shown: %s'):format(command, problem))
+      end
     end
   end)
 end
