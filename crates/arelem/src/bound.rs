@@ -100,12 +100,10 @@ fn ring(prepared: &Prepared, role: &Working, other: &Working) -> Option<Ring> {
             let reach = if on { 0.0 } else { tool.profile.arc };
             let (inner, outer) = radii(role, sphere.radius, reach + thickness);
             let center = sphere.center - axis * rise;
-            // Distance of the path's plane from the centre, which the other role may vary within its band.
-            let away = plane.normal.dot(&(prepared.tip - center)).abs();
-            let squared = |r: f64, d: f64| (r * r - d * d).max(0.0).sqrt();
-            let inner = squared(inner, away + other.band());
-            let outer = squared(outer, (away - other.band()).max(0.0));
-            Some(Ring { center, axis: plane.normal, inner, outer })
+            // The path keeps its plane exactly; straying in the plane's own band could gain a little.
+            let away = plane.normal.dot(&(prepared.tip - center));
+            let section = |r: f64| (r * r - away * away).max(0.0).sqrt();
+            Some(Ring { center, axis: plane.normal, inner: section(inner), outer: section(outer) })
         }
         _ => None,
     }

@@ -15,4 +15,7 @@ pub mod sequence;
 mod start_up;
 pub mod verify;
 
+#[cfg(test)]
+mod tests;
+
 pub use error::{MotionFailure, MotionWarning};

@@ -1,6 +1,7 @@
 //! A surface in its role while a motion is computed: the gauge that measures it and the band it must stay in.
 
 use apt_geometry::{
+    Vec3,
     motion::{NamedSurface, PerRole, Relation},
     surface::{Surface, SurfaceError},
 };
@@ -15,6 +16,9 @@ use crate::{
 /// Share of the band kept free between a vertex and the limit it aims at, so that rounding never leaves the band.
 /// It costs half its size in step length.
 pub(crate) const GUARD: f64 = 1e-3;
+/// Place in the band, from the limit that the sag goes to, of the ends of motions on curved surfaces: between the
+/// nominal position and the limit at which vertices lie.
+const REST: f64 = 0.75;
 /// Rounding of a clearance, relative to the size of the coordinates: the slack of all band tests.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
@@ -28,6 +32,8 @@ pub(crate) struct Working {
     pub(crate) inside: f64,
     pub(crate) outside: f64,
     pub(crate) shape: Shape,
+    /// Mean curvature near the tool, turned to its side: where the ends lie when the shape does not tell.
+    pub(crate) lean: f64,
 }
 
 /// How a path bends against a role's surface.
@@ -60,7 +66,7 @@ impl Working {
         let thickness = if on { 0.0 } else { pick(&state.thickness) };
         let gauge = Gauge { surface, on, side: 1.0, thickness };
         let shape = gauge.shape();
-        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape })
+        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0 })
     }
 
     pub(crate) fn set_side(&mut self, side: f64) {
@@ -68,14 +74,31 @@ impl Working {
         self.shape = self.gauge.shape();
     }
 
+    /// Notes how the surface bends near a position; the side must be set.
+    pub(crate) fn look_from(&mut self, tip: &Vec3) {
+        if self.shape == Shape::General {
+            let foot = self.gauge.surface.foot(tip).point;
+            self.lean = self.gauge.side * self.gauge.surface.foot_and_hessian(&foot).1.trace();
+        }
+    }
+
     /// Width of the band.
     pub(crate) fn band(&self) -> f64 {
         self.inside + self.outside
     }
 
-    /// Where the ends of a motion lie: exactly on planes, in the middle of the band on curved surfaces.
+    /// Where the ends of a motion lie: exactly on planes; on curved surfaces inside the band on the side away from the
+    /// sag, because the end of one motion is where the vectors of the next begin.
     pub(crate) fn rest(&self) -> f64 {
-        if self.shape == Shape::Flat { 0.0 } else { 0.5 * (self.outside - self.inside) }
+        let share = match self.shape {
+            Shape::Flat => return 0.0,
+            Shape::Convex => REST,
+            Shape::Concave => 1.0 - REST,
+            Shape::General if self.lean > 0.0 => REST,
+            Shape::General if self.lean < 0.0 => 1.0 - REST,
+            Shape::General => 0.5,
+        };
+        share * self.band() - self.inside
     }
 
     /// Where the vertices between cut vectors lie: at the limit opposite to the sag.

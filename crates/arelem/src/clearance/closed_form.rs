@@ -54,7 +54,7 @@ fn sphere(tool: &Tool, sphere: &Sphere, side: f64, tip: &Vec3) -> Contact {
 }
 
 /// The tool outside a ball, or outside a point when the radius is zero.
-fn ball_outside(tool: &Tool, center: &Vec3, radius: f64, tip: &Vec3) -> Contact {
+pub(super) fn ball_outside(tool: &Tool, center: &Vec3, radius: f64, tip: &Vec3) -> Contact {
     let (along, across, radial) = tool.split(&(center - tip));
     let (distance, point) = tool.profile.distance(across, along);
     let contact = tip + tool.axis * point.height + radial * point.radius;

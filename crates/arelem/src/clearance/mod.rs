@@ -2,6 +2,7 @@
 //! its gradient and the contact points.
 
 mod closed_form;
+mod dual;
 mod search;
 mod tool;
 

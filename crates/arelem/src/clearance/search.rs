@@ -173,9 +173,17 @@ impl Search<'_> {
             None => Vec3::zeros(),
         };
         let mut q = Vector2::new(start.dot(&self.tool.across[0]), start.dot(&self.tool.across[1]));
+        let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
             let p = self.tip + self.tool.across[0] * q.x + self.tool.across[1] * q.y;
             let (foot, hessian) = self.surface.foot_and_hessian(&p);
+            let value = self.side * foot.distance;
+            if value > last.0 && (q - last.1).norm() > ANGLE_RESOLUTION * radius {
+                // Too far: half the step.
+                q = 0.5 * (q + last.1);
+                continue;
+            }
+            last = (value, q);
             self.take(&p, &foot, 0.0);
             let (x, y) = (self.tool.across[0], self.tool.across[1]);
             let gradient = Vector2::new(foot.normal.dot(&x), foot.normal.dot(&y)) * self.side;
@@ -191,38 +199,60 @@ impl Search<'_> {
         }
     }
 
-    /// A conical patch: contact in its interior where the distance falls from an edge inward.
+    /// A conical patch: contact in its interior where the distance falls from both edges inward, looked for at the
+    /// azimuth that faces the surface and at the lowest point of the circle half way.
     fn frustum(&mut self, radius: [f64; 2], height: [f64; 2]) {
         let Some(contact) = self.best.contact else { return };
-        let (_, _, radial) = self.tool.split(&(contact.tool - self.tip));
-        let azimuth = radial.dot(&self.tool.across[1]).atan2(radial.dot(&self.tool.across[0]));
-        let line = self.tool.axis * (height[1] - height[0]) + radial * (radius[1] - radius[0]);
+        let (_, _, facing) = self.tool.split(&-contact.gradient);
+        let facing = facing.dot(&self.tool.across[1]).atan2(facing.dot(&self.tool.across[0]));
+        let step = std::f64::consts::TAU / SCAN as f64;
+        let middle = |k: usize| {
+            let p = self.point(0.5 * (radius[0] + radius[1]), 0.5 * (height[0] + height[1]), step * k as f64);
+            self.side * self.surface.signed_distance(&p)
+        };
+        let mut lowest = (f64::INFINITY, 0);
+        for k in 0..SCAN {
+            let value = middle(k);
+            if value < lowest.0 {
+                lowest = (value, k);
+            }
+        }
+        for azimuth in [facing, step * lowest.1 as f64] {
+            if let Some(t) = self.valley(radius, height, azimuth) {
+                self.inside_frustum(radius, height, Vector2::new(t, azimuth));
+            }
+        }
+    }
+
+    /// Where along a line of the patch the distance is least, if that is inside.
+    fn valley(&self, radius: [f64; 2], height: [f64; 2], azimuth: f64) -> Option<f64> {
+        let line = self.tool.axis * (height[1] - height[0]) + self.direction(azimuth) * (radius[1] - radius[0]);
         let at = |t: f64| {
-            let p = self.point(
-                radius[0] + t * (radius[1] - radius[0]),
-                height[0] + t * (height[1] - height[0]),
-                azimuth,
-            );
+            let rho = radius[0] + t * (radius[1] - radius[0]);
+            let p = self.point(rho, height[0] + t * (height[1] - height[0]), azimuth);
             let foot = self.surface.foot(&p);
             (self.side * foot.distance, self.side * foot.normal.dot(&line))
         };
         let ((v0, s0), (v1, s1)) = (at(0.0), at(1.0));
-        if s0 >= 0.0 || s1 <= 0.0 {
-            return;
-        }
-        // Minimum of the tangents' envelope as a first guess.
-        let t = ((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0);
-        self.inside_frustum(radius, height, Vector2::new(t, azimuth));
+        // The tangents at both ends bound a convex function; where they do not meet inside there is no valley.
+        (s0 < 0.0 && s1 > 0.0).then(|| ((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0))
     }
 
     fn inside_frustum(&mut self, radius: [f64; 2], height: [f64; 2], start: Vector2<f64>) {
         let mut q = start;
+        let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
             let radial = self.direction(q.y);
             let tangent = self.tool.axis.cross(&radial);
             let rho = radius[0] + q.x * (radius[1] - radius[0]);
             let p = self.tip + self.tool.axis * (height[0] + q.x * (height[1] - height[0])) + radial * rho;
             let (foot, hessian) = self.surface.foot_and_hessian(&p);
+            let value = self.side * foot.distance;
+            if value > last.0 && (q - last.1).norm() > ANGLE_RESOLUTION {
+                q = 0.5 * (q + last.1);
+                continue;
+            }
+            last = (value, q);
             self.take(&p, &foot, 0.0);
             let line = self.tool.axis * (height[1] - height[0]) + radial * (radius[1] - radius[0]);
             let around = tangent * rho;

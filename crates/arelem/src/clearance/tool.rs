@@ -85,5 +85,7 @@ fn pieces(profile: &Profile) -> Vec<Piece> {
         pieces
             .push(Piece::Frustum { radius: [upper.radius, top.radius], height: [upper.height, top.height] });
     }
+    // Patches are looked into last: the edges tell where.
+    pieces.sort_by_key(|piece| !matches!(piece, Piece::Ring { .. }));
     pieces
 }

@@ -97,6 +97,7 @@ fn start_check(tool: &Tool, role: &mut Working, tip: &Vec3, size: f64) -> Result
         role.set_side(side);
         let contact = role.gauge.contact(tool, tip);
         if role.holds(contact.clearance, size) {
+            role.look_from(tip);
             return Ok(contact);
         }
         let excess = (-role.inside - contact.clearance).max(contact.clearance - role.outside);

@@ -41,6 +41,7 @@ pub(super) fn assign(work: &mut StartUp<'_>, tip: Option<Vec3>) -> Result<(), Mo
             }
         };
         role.set_side(side);
+        role.look_from(&tip);
     }
     Ok(())
 }

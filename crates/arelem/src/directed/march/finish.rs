@@ -26,6 +26,7 @@ pub(in crate::directed) fn locate(
     }
     let mut check = prepared.checks[event.check].clone();
     check.set_side(event.side);
+    check.look_from(&event.tip);
     let conditions = [
         Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
         Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),

@@ -1,0 +1,112 @@
+//! Clearance to cylinders and cones with the tool outside, whatever the angle between the axes: the greatest support
+//! distance over the one-parameter family of surface normals (arelem reference 5.2). The function is unimodal where it
+//! matters, and its derivative is read off the support point.
+
+use apt_geometry::{
+    Vec3,
+    canonical::Cylinder,
+    surface::{ConeForm, Surface, perpendicular},
+};
+
+use super::{Contact, Tool, closed_form::ball_outside};
+
+/// Scan points over the family of normals.
+const SCAN: u32 = 16;
+/// Bound of the bracketed iteration: bisection alone reaches rounding within it.
+const MAX_ITERATIONS: u32 = 60;
+/// Width of the bracket, radians, that is rounding.
+const RESOLUTION: f64 = 1e-15;
+
+/// Surface normals `n(φ) = fixed + (cos φ · a + sin φ · b)`, with support `n·origin + level` of the solid.
+struct Family {
+    fixed: Vec3,
+    a: Vec3,
+    b: Vec3,
+    origin: Vec3,
+    level: f64,
+}
+
+impl Family {
+    fn normal(&self, angle: f64) -> (Vec3, Vec3) {
+        let (sin, cos) = angle.sin_cos();
+        (self.fixed + self.a * cos + self.b * sin, self.b * cos - self.a * sin)
+    }
+
+    /// Support distance, its derivative, the normal and the tool's contact point.
+    fn sample(&self, tool: &Tool, tip: &Vec3, angle: f64) -> (f64, f64, Vec3, Vec3) {
+        let (normal, turned) = self.normal(angle);
+        let (along, across, radial) = tool.split(&normal);
+        let (support, point) = tool.profile.support(across, -along);
+        let w = tip - self.origin;
+        let contact = tool.axis * point.height - radial * point.radius;
+        (normal.dot(&w) - self.level - support, turned.dot(&(w + contact)), normal, tip + contact)
+    }
+}
+
+/// The clearance for the tool outside a cylinder or cone.
+pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<Contact> {
+    if side < 0.0 {
+        return None;
+    }
+    match surface {
+        Surface::Cylinder(cylinder) => Some(outside_cylinder(tool, cylinder, tip)),
+        Surface::Cone(cone) => Some(outside_cone(tool, cone, tip)),
+        _ => None,
+    }
+}
+
+fn outside_cylinder(tool: &Tool, cylinder: &Cylinder, tip: &Vec3) -> Contact {
+    let a = perpendicular(&cylinder.axis);
+    let b = cylinder.axis.cross(&a);
+    let family = Family { fixed: Vec3::zeros(), a, b, origin: cylinder.point, level: cylinder.radius };
+    greatest(tool, &family, tip)
+}
+
+fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
+    let a = perpendicular(&cone.axis) * cone.cosine;
+    let b = cone.axis.cross(&a);
+    let family = Family { fixed: -cone.axis * cone.sine, a, b, origin: cone.vertex, level: 0.0 };
+    let side = greatest(tool, &family, tip);
+    // Behind the vertex the normals of the vertex's own fan are nearer: then the vertex is the solid.
+    let vertex = ball_outside(tool, &cone.vertex, 0.0, tip);
+    let beyond = vertex.gradient.dot(&cone.axis) <= -cone.sine;
+    if beyond && vertex.clearance >= side.clearance { vertex } else { side }
+}
+
+fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
+    let step = std::f64::consts::TAU / f64::from(SCAN);
+    let mut best = (f64::NEG_INFINITY, 0.0);
+    for k in 0..SCAN {
+        let angle = step * f64::from(k);
+        let value = family.sample(tool, tip, angle).0;
+        if value > best.0 {
+            best = (value, angle);
+        }
+    }
+    let (mut low, mut high) = (best.1 - step, best.1 + step);
+    let (mut slope_low, mut slope_high) =
+        (family.sample(tool, tip, low).1, family.sample(tool, tip, high).1);
+    let mut angle = best.1;
+    for iteration in 0..MAX_ITERATIONS {
+        let slope = family.sample(tool, tip, angle).1;
+        if slope > 0.0 {
+            (low, slope_low) = (angle, slope);
+        } else if slope < 0.0 {
+            (high, slope_high) = (angle, slope);
+        } else {
+            break;
+        }
+        if high - low <= RESOLUTION * (1.0 + angle.abs()) {
+            break;
+        }
+        // Secant where the slope is smooth, every third step bisection for the kinks of straight tool edges.
+        let secant = low + (high - low) * slope_low / (slope_low - slope_high);
+        let next = if iteration % 3 != 2 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
+        if next == angle {
+            break;
+        }
+        angle = next;
+    }
+    let (clearance, _, normal, contact) = family.sample(tool, tip, angle);
+    Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
+}

@@ -1,0 +1,123 @@
+//! Random motions over pairs of surfaces: every point of every cut vector in its bands, the same path for the turned
+//! and shifted program.
+
+use nalgebra::{Rotation3, Unit};
+use proptest::prelude::*;
+
+use super::*;
+
+/// A part surface under a pass in a plane, and the height above it to start from.
+fn part(which: usize) -> Geometry {
+    match which {
+        0 => sphere(0.1, 0.2, -1.0, 4.0),
+        1 => cylinder(v(0.0, 0.0, -1.0), v(1.0, 0.4, 0.1), 3.5),
+        2 => cone(v(0.1, 0.0, 3.0), v(0.1, 0.05, -1.0), 55.0),
+        3 => quadric([1.0, 0.6, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, -2.5]),
+        4 => quadric([1.0 / 16.0, 1.0 / 9.0, 0.25, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        5 => quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]),
+        _ => plane(0.2, -0.1, 1.0, 0.5),
+    }
+}
+
+fn cutters(which: usize) -> Vec<f64> {
+    match which {
+        0 => vec![0.5, 0.25],
+        1 => vec![0.5],
+        2 => vec![0.5, 0.1],
+        _ => vec![1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0],
+    }
+}
+
+struct Pass {
+    part: usize,
+    cutter: usize,
+    angle: f64,
+    offset: f64,
+    inside: f64,
+    outside: f64,
+}
+
+/// Runs the pass with every surface and point turned and shifted.
+fn run(pass: &Pass, rotation: &Rotation3<f64>, shift: &Vec3) -> Result<Program, MotionFailure> {
+    let (sin, cos) = pass.angle.sin_cos();
+    let drive = moved(&plane(-sin, cos, 0.0, pass.offset), rotation, shift);
+    let part = moved(&part(pass.part), rotation, shift);
+    let wall = |d: f64| moved(&plane(cos, sin, 0.0, d), rotation, shift);
+    let mut p = Program::new();
+    p.tolerance(pass.inside, pass.outside).cutter(&cutters(pass.cutter));
+    p.run(&MotionCommand::MaximumPoints(4000));
+    let start_at = v(-sin * pass.offset - 1.5 * cos, cos * pass.offset - 1.5 * sin, 6.0);
+    p.run(&MotionCommand::From {
+        position: rotation * start_at + shift,
+        axis: Some(rotation * Vec3::z()),
+        name: String::new(),
+    });
+    p.attempt(&start(&[(Relation::On, &drive), (Relation::To, &part), (Relation::On, &wall(-1.2))]))?;
+    let ahead = rotation * v(cos, sin, 0.0);
+    p.indirv(ahead.x, ahead.y, ahead.z);
+    p.attempt(&motion(Turn::Forward, &drive, &[(Relation::On, 1, &wall(1.3))]))?;
+    Ok(p)
+}
+
+/// A surface after a rigid motion.
+fn moved(geometry: &Geometry, rotation: &Rotation3<f64>, shift: &Vec3) -> Geometry {
+    match geometry {
+        Geometry::Plane(p) => {
+            let normal = rotation * p.normal;
+            Geometry::Plane(Plane { normal, distance: p.distance + normal.dot(shift) })
+        }
+        Geometry::Sphere(s) => {
+            Geometry::Sphere(Sphere { center: rotation * s.center + shift, radius: s.radius })
+        }
+        Geometry::Cylinder(c) => Geometry::Cylinder(Cylinder {
+            point: rotation * c.point + shift,
+            axis: rotation * c.axis,
+            radius: c.radius,
+        }),
+        Geometry::Cone(c) => {
+            Geometry::Cone(Cone { vertex: rotation * c.vertex + shift, axis: rotation * c.axis, cosine: c.cosine })
+        }
+        Geometry::Quadric(q) => {
+            let [a, b, c, d, f, g, h, l, m, n] = q.coefficients;
+            let square = nalgebra::Matrix3::new(a, h, g, h, b, f, g, f, c);
+            let linear = v(l, m, n);
+            let turned = rotation * square * rotation.transpose();
+            let along = rotation * linear - turned * shift;
+            let constant = d + (turned * shift).dot(shift) - 2.0 * (rotation * linear).dot(shift);
+            quadric([
+                turned[(0, 0)], turned[(1, 1)], turned[(2, 2)], constant,
+                turned[(1, 2)], turned[(0, 2)], turned[(0, 1)], along.x, along.y, along.z,
+            ])
+        }
+        other => other.clone(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+    #[test]
+    fn passes_keep_their_bands_wherever_they_lie(
+        part in 0usize..7, cutter in 0usize..4, angle in -3.0..3.0, offset in -0.8..0.8,
+        inside in 0.0..2e-3, outside in 1e-4..2e-3, turn in 0.0..3.0, tilt in -1.0..1.0,
+    ) {
+        let pass = Pass { part, cutter, angle, offset, inside, outside };
+        let plain = run(&pass, &Rotation3::identity(), &Vec3::zeros());
+        let plain = match plain {
+            Ok(p) => p,
+            Err(failure) => return Err(TestCaseError::fail(format!("{failure:?}"))),
+        };
+        for sequence in &plain.sequences {
+            assert_in_tolerance(sequence);
+        }
+        let rotation = Rotation3::from_axis_angle(&Unit::new_normalize(v(0.3, tilt, 0.8)), turn);
+        let shift = v(1.0, -2.0, 0.5);
+        let turned = match run(&pass, &rotation, &shift) {
+            Ok(p) => p,
+            Err(failure) => return Err(TestCaseError::fail(format!("turned: {failure:?}"))),
+        };
+        let (a, b) = (plain.last(), turned.last());
+        prop_assert!(a.points.len().abs_diff(b.points.len()) <= 1);
+        let end = rotation * plain.tip() + shift;
+        prop_assert!((end - turned.tip()).norm() < 1e-7, "{end} {}", turned.tip());
+    }
+}
