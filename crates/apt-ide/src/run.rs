@@ -2,15 +2,17 @@
 
 use std::ops::Range;
 
-use apt_cldata::{
-    codes::CodeTable,
-    record::{ClKind, ClRecord},
-};
+use apt_cldata::{codes::CodeTable, record::ClKind};
 use apt_geometry::motion::MotionCommand;
 use apt_post::{MachineDefinition, Tape};
 use apt_program::record::RecordKind;
-use apt_run::{pipeline::RunResult, report::Report};
+use apt_run::{
+    pipeline::{Motion, RunResult},
+    report::Report,
+};
 use apt_syntax::vocabulary::{self, WordClass};
+use arelem::section2::Output;
+use rustc_hash::FxHashSet;
 
 use crate::{
     Analysis, Cancel, Cancelled,
@@ -164,7 +166,7 @@ impl Analysis {
         let title = self.document().file().unwrap_or("program").to_owned();
         Ok(Scene {
             title: part_name(&result).unwrap_or(title),
-            segments: segments(&result.records),
+            segments: segments(&result),
             surfaces,
             units: None,
             cutter_diameter,
@@ -211,18 +213,24 @@ fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSu
 }
 
 /// The straight pieces of a path; a path without FROM begins at its first point.
-fn segments(records: &[ClRecord]) -> Vec<Segment> {
+fn segments(result: &RunResult) -> Vec<Segment> {
+    let starts: FxHashSet<u32> =
+        result.motions.iter().filter(|motion| is_start_up(motion)).map(|m| m.origin.isn).collect();
     let mut segments = Vec::new();
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
-    for record in records {
+    for record in &result.records {
         match &record.kind {
             ClKind::Postprocessor { word, .. } if word == "RAPID" => rapid = true,
             ClKind::Motion { from, points, .. } => {
                 for point in points {
                     let to: [f64; 3] = point.position.into();
                     if let (Some(start), false) = (at, *from) {
-                        let kind = if rapid { SegmentKind::Rapid } else { SegmentKind::Feed };
+                        let kind = match (rapid, starts.contains(&record.isn)) {
+                            (true, _) => SegmentKind::Rapid,
+                            (false, true) => SegmentKind::Start,
+                            (false, false) => SegmentKind::Feed,
+                        };
                         segments.push(Segment { from: start, to, kind, isn: record.isn });
                     }
                     at = Some(to);
@@ -233,4 +241,8 @@ fn segments(records: &[ClRecord]) -> Vec<Segment> {
         }
     }
     segments
+}
+
+fn is_start_up(motion: &Motion) -> bool {
+    matches!(&motion.computed.execution.output, Some(Output::Sequence(sequence)) if sequence.start_up)
 }

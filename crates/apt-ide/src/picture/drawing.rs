@@ -209,8 +209,13 @@ fn draw_legend(scene: &Scene, out: &mut String, top: f64) -> f64 {
         "end",
     );
     for (role, title) in [("part", "part surface"), ("drive", "drive surface"), ("check", "check surface")] {
-        let named: Vec<&str> =
-            scene.surfaces.iter().filter(|s| role_class(&s.role) == role).map(|s| s.name.as_str()).collect();
+        let mut named: Vec<&str> = Vec::new();
+        for surface in scene.surfaces.iter().filter(|surface| role_class(&surface.role) == role) {
+            // A name that a loop or macro defines again and again stands once.
+            if !named.contains(&surface.name.as_str()) {
+                named.push(&surface.name);
+            }
+        }
         if named.is_empty() {
             continue;
         }
