@@ -69,7 +69,7 @@ impl<'a> Stepper<'a> {
         let mut bends = self.bends(&curvature);
         let mut length = (self.predict(here, &curvature, &bends) * self.correction).min(cap);
         let mut best: Option<Trial> = None;
-        let (mut shortest_bad, mut lengthenings) = (f64::INFINITY, 0);
+        let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
         let least = 1e-10 * self.prepared.size;
         for _ in 0..MAX_TRIALS {
@@ -102,7 +102,9 @@ impl<'a> Stepper<'a> {
                     break;
                 }
                 bends = self.bends(&trial.curvature);
-                length *= (trial.growth * AIM).clamp(0.3, 0.999);
+                // Where the sag is not quadratic (contact jumps) the prediction is not trusted for long.
+                failures += 1;
+                length *= (trial.growth * AIM).clamp(0.3, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9)));
             }
         }
         let Some(best) = best else {
