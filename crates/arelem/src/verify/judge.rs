@@ -9,7 +9,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
-    clearance::{Clearance, Surface},
+    clearance::{Clearance, Shape, Surface},
     span::{Extremes, Span},
     stop,
     tool::Profile,
@@ -19,6 +19,9 @@ use super::{
 const ROUND_OFF: f64 = 1e-9;
 /// Accuracy of the extremes, relative to the band.
 const BAND_SHARE: f64 = 1e-5;
+/// The same where the shape of the clearance along a vector is not known (saddles, turning axes), at first and when
+/// it would decide.
+const FREE_SHARE: [f64; 2] = [4e-4, 2e-5];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
 /// Sine below which a surface is neither left nor right of the motion.
@@ -233,7 +236,10 @@ impl Judge<'_> {
             return Ok(bound.extent(&found));
         }
         let clearance = bound.clearance();
-        let tolerance = (BAND_SHARE * (bound.intol + bound.outtol)).max(0.1 * guard);
+        let width = bound.intol + bound.outtol;
+        let turns = self.positions.windows(2).any(|p| p[0].axis != p[1].axis);
+        let shares = if turns || clearance.shape() == Shape::Free { FREE_SHARE } else { [BAND_SHARE, 0.0] };
+        let [tolerance, last_tolerance] = shares.map(|s| (s * width).max(0.1 * guard));
         let mut all: Option<Extremes> = None;
         for (vector, pair) in self.positions.windows(2).enumerate() {
             if (self.cancel)() {
@@ -242,9 +248,9 @@ impl Judge<'_> {
             let span = Span { clearance: &clearance, from: pair[0], to: pair[1] };
             let lost = VerifyError::NoDistance { vector };
             let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
-            if bound.excess(&found, guard).is_some() && found.error > 0.1 * guard {
+            if bound.excess(&found, guard).is_some() && found.error > last_tolerance {
                 // Let no error term decide that could be made smaller.
-                found = span.extremes(0.1 * guard).ok_or(lost)?;
+                found = span.extremes(last_tolerance).ok_or(lost)?;
             }
             if let Some((value, excess)) = bound.excess(&found, guard) {
                 self.findings.add(rule, vector, value, excess);

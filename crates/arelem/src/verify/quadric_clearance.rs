@@ -19,6 +19,8 @@ const AZIMUTHS: usize = 16;
 const STEPS: usize = 100;
 /// Shortest part of a straight piece between two readings where the surface is a saddle.
 const LINE_PIECES: f64 = 48.0;
+/// Parts of a patch that are looked at or left out as a whole.
+const PATCH_PIECES: u32 = 16;
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
 const ARC_BUDGET: usize = 400;
 
@@ -127,7 +129,7 @@ impl Search<'_> {
         } else {
             for (a, b) in self.tool.profile.lines() {
                 if a != b {
-                    self.patch(a, b)?;
+                    self.near_patches(a, b)?;
                     if self.proven() {
                         return Some(());
                     }
@@ -269,14 +271,29 @@ impl Search<'_> {
         })
     }
 
+    /// Searches those parts of a patch that could be nearer than the best contact: a part lies in a ball round a point of
+    /// the axis, whose distance is a bound.
+    fn near_patches(&mut self, a: Meridian, b: Meridian) -> Option<()> {
+        let at = |t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+        let mut open: Option<(Meridian, Meridian)> = None;
+        for k in 0..PATCH_PIECES {
+            let ends = [k, k + 1].map(|i| at(f64::from(i) / f64::from(PATCH_PIECES)));
+            let (middle, _) = self.distance(&self.place([0.0, 0.5 * (ends[0][1] + ends[1][1])], 0.0))?;
+            let ball = ends[0][0].max(ends[1][0]).hypot(0.5 * (ends[1][1] - ends[0][1]));
+            if middle - ball < self.best_value() {
+                open = Some((open.map_or(ends[0], |o| o.0), ends[1]));
+            } else if let Some((first, last)) = open.take() {
+                self.patch(first, last)?;
+            }
+        }
+        match open {
+            Some((first, last)) => self.patch(first, last),
+            None => Some(()),
+        }
+    }
+
     /// Candidate on the patch swept by a straight piece of the meridian.
     fn patch(&mut self, a: Meridian, b: Meridian) -> Option<()> {
-        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        let reach = (0.5 * (a[0] - b[0])).hypot(0.5 * (a[1] - b[1]));
-        let (at_axis, _) = self.distance(&self.place([0.0, middle[1]], 0.0))?;
-        if at_axis - middle[0] - reach >= self.best_value() {
-            return Some(());
-        }
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
         let mut least = (f64::INFINITY, 0.0);
         for k in 0..AZIMUTHS {
