@@ -12,6 +12,10 @@ use crate::{
 const MAX_ITERATIONS: u32 = 24;
 /// Pieces into which a vector is cut when the clearance is neither convex nor concave.
 const PIECES: usize = 6;
+/// Misfit between values and slopes, as a share of the band, above which contact may jump in between.
+const JUMP: f64 = 2e-3;
+/// Bound of the halvings where it does.
+const MAX_DEPTH: u32 = 10;
 /// An extreme is known well enough when its bound and its value differ by this share of the band.
 const ENOUGH: f64 = 2e-4;
 
@@ -132,26 +136,34 @@ fn tangents_meet(a: Sample, b: Sample) -> (f64, f64) {
     (x, a.value + a.slope * (x - a.x))
 }
 
-/// Every interior extreme between equally spaced samples.
+/// Every interior extreme between samples that are close enough to tell the course between them.
 fn general(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
-    let mut samples = [a; PIECES + 1];
-    samples[PIECES] = b;
-    for (k, sample) in samples.iter_mut().enumerate().take(PIECES).skip(1) {
-        *sample = line.sample(b.x * k as f64 / PIECES as f64);
+    let mut found = (ends.least, ends.greatest);
+    let mut from = a;
+    for k in 1..=PIECES {
+        let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
+        between(line, from, to, 0, &mut found);
+        from = to;
     }
-    let (mut least, mut greatest) = (ends.least, ends.greatest);
-    for sample in samples {
-        least = least.min(sample.value);
-        greatest = greatest.max(sample.value);
-    }
-    for pair in samples.windows(2) {
-        if (pair[0].slope < 0.0) != (pair[1].slope < 0.0) {
-            let value = turning_value(line, pair[0], pair[1], ENOUGH * line.role.band());
-            least = least.min(value);
-            greatest = greatest.max(value);
-        }
-    }
+    let (least, greatest) = found;
     Extremes { least, greatest, proven: line.role.holds(least, size) && line.role.holds(greatest, size) }
+}
+
+/// Extremes between two samples. Where the values do not fit the slopes, contact jumps from one part of the tool to
+/// another in between, and the stretch is halved.
+fn between(line: &Line<'_>, a: Sample, b: Sample, depth: u32, found: &mut (f64, f64)) {
+    found.0 = found.0.min(a.value).min(b.value);
+    found.1 = found.1.max(a.value).max(b.value);
+    let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
+    if misfit.abs() > JUMP * line.role.band() && depth < MAX_DEPTH {
+        let middle = line.sample(0.5 * (a.x + b.x));
+        between(line, a, middle, depth + 1, found);
+        between(line, middle, b, depth + 1, found);
+    } else if (a.slope < 0.0) != (b.slope < 0.0) {
+        let value = turning_value(line, a, b, ENOUGH * line.role.band());
+        found.0 = found.0.min(value);
+        found.1 = found.1.max(value);
+    }
 }
 
 /// The extreme between two samples whose slopes differ in sign.
