@@ -7,7 +7,7 @@ use super::clearance::{Clearance, Shape};
 /// Evaluations that one extreme may cost; the gap left then is the error term.
 const EVALUATIONS: usize = 60;
 /// Pieces a vector is cut into where nothing is known about the shape of the clearance.
-const FIRST_PIECES: usize = 8;
+const FIRST_PIECES: usize = 4;
 /// Evaluations over one vector of unknown shape.
 const FREE_EVALUATIONS: usize = 4096;
 /// Step of the derivative with respect to the vector parameter when the tool axis turns.
@@ -168,7 +168,12 @@ impl Span<'_> {
             let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
             let surprise = (middle.value - cubic).abs();
             let bend = (a.slope - middle.slope).abs().max((b.slope - middle.slope).abs());
-            let hidden = (0.25 * bend * 0.5 * width + surprise).min(0.5 * length * width);
+            // Where the slope keeps its sign by more than it changes, the extremes are at the ends.
+            let steepness = [a, middle, b].map(|s| s.slope.abs()).into_iter().fold(f64::INFINITY, f64::min);
+            let rises = [a, middle, b].map(|s| s.slope > 0.0);
+            let monotone = rises[0] == rises[1] && rises[1] == rises[2] && steepness > bend;
+            let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
+            let hidden = (bulge + surprise).min(0.5 * length * width);
             if hidden <= tolerance || budget == 0 {
                 found.error = found.error.max(reading + hidden);
             } else {
