@@ -41,7 +41,7 @@ sees 'a hover' '[Rr]adius 2'
 types Escape ':AptExpand' Enter
 sees 'an expansion' 'apt://expansion/bracket.apt'
 types ':wincmd j | normal! G' Enter
-sees 'the turns of the loop' 'GOTO */ *8.*, *3.*, *1'
+sees 'its last lines' '^GOTO */ *9, *9, *1'
 types ':close' Enter ':AptRun' Enter
 sees 'the report of the motion' 'bracket.apt: ([1-9][0-9]*) of \1 motions verified'
 types ':wincmd j | normal! Gzb' Enter

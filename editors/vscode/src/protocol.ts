@@ -51,7 +51,8 @@ export interface ClEntry {
   type: string;
   surface?: string | null;
   words?: (string | number)[] | null;
-  code?: number[] | null;
+  /** Class and subclass of the record; of a post-processor word its own code. */
+  code?: number | number[] | null;
   points?: number[][] | null;
 }
 

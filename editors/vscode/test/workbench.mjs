@@ -69,6 +69,11 @@ export function profile(settings = {}) {
   };
 }
 
+// A stopped test ends what it started: `exit` is not heard of a signal by itself.
+for (const [signal, status] of [['SIGTERM', 143], ['SIGINT', 130]]) {
+  process.on(signal, () => process.exit(status));
+}
+
 /** Runs a program of the host to its end. */
 export async function runHost(args, own) {
   const child = spawn(given('APT_HOST_NODE'), args, {

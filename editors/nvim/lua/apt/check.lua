@@ -36,8 +36,9 @@ end
 
 --- Checks files and folders; `done(err, items)` is called when the list is filled.
 function M.run(paths, done)
-  local command = config.command('--check', '--format', 'json')
+  local command = config.command('--check')
   vim.list_extend(command, paths)
+  vim.list_extend(command, { '--format', 'json' })
   local out, problems = {}, {}
   local job = vim.fn.jobstart(command, {
     stdout_buffered = true,

@@ -12,7 +12,7 @@ local function present(value)
   return value
 end
 
---- The shortest decimals that read back as the same double.
+--- The shortest decimals that read back as the same double, always with a point.
 local function full(value)
   if type(value) ~= 'number' then
     return tostring(value)
@@ -20,15 +20,22 @@ local function full(value)
   for precision = 1, 17 do
     local text = ('%.' .. precision .. 'g'):format(value)
     if tonumber(text) == value then
-      return text
+      -- No exponent where plain decimals do.
+      if text:find('e') and math.abs(value) < 1e17 and math.abs(value) >= 1e-6 then
+        text = ('%.' .. math.max(0, precision - 1 - math.floor(math.log10(math.abs(value)))) .. 'f'):format(value)
+      end
+      return text:find('[.e]') and text or text .. '.0'
     end
   end
   return ('%.17g'):format(value)
 end
 
 local function joined(values)
-  return table.concat(vim.tbl_map(full, values), ', ')
+  return table.concat(vim.tbl_map(full, values), ',')
 end
+
+-- Code of the record that holds the circle of the points behind it.
+local CIRCLE_RECORD = 3000
 
 local function listing()
   local self = { lines = {}, isn = {} }
@@ -39,7 +46,7 @@ local function listing()
   return self
 end
 
---- The APT CL text of one entry of `cl`.
+--- The APT CL text of one entry of `cl`, as `apt-lsp run --format cl` writes it.
 function M.cl_lines(entry)
   local points = present(entry.points) or {}
   if #points > 0 then
@@ -47,18 +54,28 @@ function M.cl_lines(entry)
     return vim.tbl_map(function(point) return verb .. '/' .. joined(point) end, points)
   end
   local words = present(entry.words) or {}
-  if #words > 0 then
-    local major = tostring(words[1])
+  local major = words[1]
+  if type(major) == 'string' then
     local operands = vim.list_slice(words, 2)
     if #operands == 0 then
       return { major }
     end
-    return { major .. (TEXT_WORDS[major] and ' ' or '/') .. joined(operands) }
+    if TEXT_WORDS[major] then
+      return { major .. ' ' .. table.concat(vim.tbl_map(tostring, operands), ' ') }
+    end
+    return { major .. '/' .. joined(operands) }
+  end
+  local code = present(entry.code) or {}
+  if type(code) ~= 'table' then
+    code = { code }
+  end
+  if #words > 0 and code[1] == CIRCLE_RECORD then
+    return { 'CIRCLE/' .. joined(words) }
   end
   if entry.type == 'fini' then
     return { 'FINI' }
   end
-  return { ('$$ %s %s'):format(entry.type, joined(present(entry.code) or {})) }
+  return { ('$$ %s %s'):format(entry.type, joined(vim.list_extend(vim.list_slice(code), words))) }
 end
 
 --- The CL file of a run.

@@ -26,24 +26,40 @@ const TEXT_WORDS = new Set(['PARTNO', 'PPRINT', 'INSERT', 'REMARK', 'TITLES']);
 /** Decimals of lengths in the report; the CL file has them in full. */
 const REPORT_DECIMALS = 6;
 
-/** A CL entry as APT CL text, in full precision. */
+/** Code of the record that holds the circle of the points behind it. */
+const CIRCLE_RECORD = 3000;
+
+/** A value of the CL file: the shortest decimals that read back as the same double, always with a point. */
+function clValue(value: string | number): string {
+  const text = String(value);
+  return typeof value === 'number' && Number.isInteger(value) && !text.includes('e') ? `${text}.0` : text;
+}
+
+const clValues = (values: (string | number)[]): string => values.map(clValue).join(',');
+
+/** A CL entry as the APT CL text that `apt-lsp run --format cl` writes, in full precision. */
 export function clText(entry: ClEntry): string[] {
   const verb = entry.type === 'from' ? 'FROM' : 'GOTO';
-  const points = (entry.points ?? []).map((point) => `${verb}/${point.map(String).join(', ')}`);
+  const points = (entry.points ?? []).map((point) => `${verb}/${clValues(point)}`);
   if (points.length > 0) {
     return points;
   }
-  const [major, ...operands] = entry.words ?? [];
-  if (major !== undefined) {
+  const words = entry.words ?? [];
+  const [major, ...operands] = words;
+  if (typeof major === 'string') {
     if (operands.length === 0) {
-      return [String(major)];
+      return [major];
     }
-    return [TEXT_WORDS.has(String(major)) ? `${major} ${operands.join(' ')}` : `${major}/${operands.join(', ')}`];
+    return [TEXT_WORDS.has(major) ? `${major} ${operands.join(' ')}` : `${major}/${clValues(operands)}`];
+  }
+  const code = typeof entry.code === 'number' ? [entry.code] : (entry.code ?? []);
+  if (words.length > 0 && code[0] === CIRCLE_RECORD) {
+    return [`CIRCLE/${clValues(words)}`];
   }
   if (entry.type === 'fini') {
     return ['FINI'];
   }
-  return [`$$ ${entry.type} ${(entry.code ?? []).join(', ')}`.trimEnd()];
+  return [`$$ ${entry.type} ${clValues([...code, ...words])}`.trimEnd()];
 }
 
 /** The CL file of a run. */

@@ -1,4 +1,5 @@
 import * as assert from 'node:assert';
+import { execFileSync } from 'node:child_process';
 import * as vscode from 'vscode';
 import type { RunResult } from '../../src/protocol';
 
@@ -39,6 +40,13 @@ function lineOf(document: vscode.TextDocument, text: string): number {
   const line = document.getText().split(/\r?\n/).findIndex((candidate) => candidate.includes(text));
   assert.ok(line >= 0, `${text} is in ${document.fileName}`);
   return line;
+}
+
+/** The server in the extension. */
+function serverProgram(): string {
+  const extension = vscode.extensions.getExtension('apt-lsp.apt');
+  assert.ok(extension);
+  return vscode.Uri.joinPath(extension.extensionUri, 'server', 'apt-lsp').fsPath;
 }
 
 /** Where the tool ends: on the circle of the tool centre round C1, at the height of L1. */
@@ -150,9 +158,14 @@ describe('the APT extension in the real extension host', () => {
     await open('bracket.apt');
     await vscode.commands.executeCommand('apt.showClFile');
     const document = await until('the CL file', () => view('cl'));
-    assert.match(document.getText(), /^FROM\/3, -2, 0$/m);
-    assert.match(document.getText(), /^GOTO\/9, 9, 1$/m);
+    assert.match(document.getText(), /^FROM\/3\.0,-2\.0,0\.0$/m);
+    assert.match(document.getText(), /^CIRCLE\/0\.0,0\.0,0\.0,0\.0,0\.0,1\.0,2\.0$/m);
     assert.match(document.getText(), /^FINI$/m);
+    const written = execFileSync(serverProgram(), ['run', bracket.document.fileName, '--format', 'cl'], {
+      encoding: 'utf8',
+      stdio: ['ignore', 'pipe', 'ignore'],
+    });
+    assert.strictEqual(document.getText(), written);
     const line = lineOf(bracket.document, 'GOTO/9,9,1');
     const original = bracket.document.lineAt(line).text;
     const change = async (text: string) => {
@@ -161,9 +174,9 @@ describe('the APT extension in the real extension host', () => {
       assert.ok(await vscode.workspace.applyEdit(edit));
     };
     await change(original.replace('9,9,1', '9,9,5'));
-    await until('the new point', () => /^GOTO\/9, 9, 5$/m.test(document.getText()));
+    await until('the new point', () => /^GOTO\/9\.0,9\.0,5\.0$/m.test(document.getText()));
     await change(original);
-    await until('the old point', () => /^GOTO\/9, 9, 1$/m.test(document.getText()));
+    await until('the old point', () => /^GOTO\/9\.0,9\.0,1\.0$/m.test(document.getText()));
   });
 
   it('shows the control tape of the chosen machine', async () => {
