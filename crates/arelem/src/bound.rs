@@ -66,8 +66,14 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared) -> Option<u32
     path.extend(sequence.points.iter().map(|p| p.tip));
     let part = ring(prepared, &prepared.part, &prepared.drive);
     let drive = ring(prepared, &prepared.drive, &prepared.part);
-    let bounds = [part, drive];
-    bounds.iter().flatten().map(|ring| ring.of_path(&path)).max()
+    let rings = [part, drive].iter().flatten().map(|ring| ring.of_path(&path)).max()?;
+    // The straight way from start to end at MAXDP a vector.
+    let straight = match (path.first(), path.last()) {
+        (Some(first), Some(last)) => (last - first).norm(),
+        _ => 0.0,
+    };
+    let steps = (straight / sequence.maximum_step * (1.0 - 1e-9)).ceil();
+    Some(if steps < f64::from(u32::MAX) { rings.max(steps as u32) } else { rings })
 }
 
 /// The ring to which one role confines the tool end, given the other.

@@ -60,7 +60,7 @@ fn sequence(state: &State, prepared: &Prepared, checks: &[CheckSurface], path: P
         part: Some(prepared.part.role()),
         drive: Some(prepared.drive.role()),
         stop,
-        drive_side: state.drive_side,
+        drive_side: prepared.drive_side,
         start_up: false,
         forward: prepared.tangent,
         maximum_step: state.maximum_step,

@@ -15,6 +15,7 @@ use crate::{
 
 /// What a command made of the tool.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one per statement; a box would only add a step")]
 pub enum Output {
     /// FROM, GOTO, GODLTA: one position.
     Position(ToolPosition),

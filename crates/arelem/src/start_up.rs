@@ -173,14 +173,22 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
     if tangent.is_some() {
         return directed::tangent_start(work, &start);
     }
+    let mut tip = settle(work, guide, &start)?;
+    // How a surface without definite shape bends is known for sure only at the contact.
+    let leans: Vec<bool> = work.roles.iter().map(|r| r.lean > 0.0).collect();
+    work.roles.iter_mut().for_each(|r| r.look_from(&tip));
+    if work.roles.iter().zip(&leans).any(|(r, before)| (r.lean > 0.0) != *before) {
+        tip = settle(work, guide, &tip)?;
+    }
+    Ok(tip)
+}
+
+/// The position where every relation holds, in the guide plane if there is one.
+fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Result<Vec3, MotionFailure> {
     let mut conditions: Vec<Condition<'_>> =
         work.roles.iter().map(|r| Condition::Clearance(&r.gauge, r.rest())).collect();
     conditions.extend(guide.map(|(normal, distance)| Condition::Plane(normal, distance)));
-    if work.roles.len() == 1 && guide.is_none() {
-        // One surface without part surface: the shortest move.
-        return converge(work, &conditions[..1], &start);
-    }
-    converge(work, &conditions, &start)
+    converge(work, &conditions, start)
 }
 
 /// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side.

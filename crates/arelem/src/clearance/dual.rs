@@ -11,7 +11,7 @@ use apt_geometry::{
 use super::{Contact, Tool, closed_form::ball_outside};
 
 /// Scan points over the family of normals.
-const SCAN: u32 = 16;
+const SCAN: usize = 16;
 /// Bound of the bracketed iteration: bisection alone reaches rounding within it.
 const MAX_ITERATIONS: u32 = 60;
 /// Width of the bracket, radians, that is rounding.
@@ -74,19 +74,26 @@ fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
 }
 
 fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
-    let step = std::f64::consts::TAU / f64::from(SCAN);
-    let mut best = (f64::NEG_INFINITY, 0.0);
+    let step = std::f64::consts::TAU / SCAN as f64;
+    let values: [f64; SCAN] = std::array::from_fn(|k| family.sample(tool, tip, step * k as f64).0);
+    let mut best: Option<Contact> = None;
     for k in 0..SCAN {
-        let angle = step * f64::from(k);
-        let value = family.sample(tool, tip, angle).0;
-        if value > best.0 {
-            best = (value, angle);
+        // A slight cut has several candidates; the one with the greatest distance is the way out.
+        if values[k] >= values[(k + 1) % SCAN] && values[k] > values[(k + SCAN - 1) % SCAN] {
+            let contact = refine(tool, family, tip, step * k as f64, step);
+            if best.is_none_or(|found| contact.clearance > found.clearance) {
+                best = Some(contact);
+            }
         }
     }
-    let (mut low, mut high) = (best.1 - step, best.1 + step);
-    let (mut slope_low, mut slope_high) =
-        (family.sample(tool, tip, low).1, family.sample(tool, tip, high).1);
-    let mut angle = best.1;
+    best.unwrap_or_else(|| refine(tool, family, tip, 0.0, step))
+}
+
+/// The greatest distance near a scan point.
+fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Contact {
+    let (mut low, mut high) = (start - step, start + step);
+    let (mut slope_low, mut slope_high) = (family.sample(tool, tip, low).1, family.sample(tool, tip, high).1);
+    let mut angle = start;
     for iteration in 0..MAX_ITERATIONS {
         let slope = family.sample(tool, tip, angle).1;
         if slope > 0.0 {
@@ -101,7 +108,8 @@ fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
         }
         // Secant where the slope is smooth, every third step bisection for the kinks of straight tool edges.
         let secant = low + (high - low) * slope_low / (slope_low - slope_high);
-        let next = if iteration % 3 != 2 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
+        let next =
+            if iteration % 3 != 2 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
         if next == angle {
             break;
         }

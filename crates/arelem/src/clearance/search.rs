@@ -226,7 +226,8 @@ impl Search<'_> {
 
     /// Where along a line of the patch the distance is least, if that is inside.
     fn valley(&self, radius: [f64; 2], height: [f64; 2], azimuth: f64) -> Option<f64> {
-        let line = self.tool.axis * (height[1] - height[0]) + self.direction(azimuth) * (radius[1] - radius[0]);
+        let line =
+            self.tool.axis * (height[1] - height[0]) + self.direction(azimuth) * (radius[1] - radius[0]);
         let at = |t: f64| {
             let rho = radius[0] + t * (radius[1] - radius[0]);
             let p = self.point(rho, height[0] + t * (height[1] - height[0]), azimuth);

@@ -35,6 +35,8 @@ pub(crate) struct Prepared {
     pub(crate) tangent: Vec3,
     /// Size of the coordinates, for rounding.
     pub(crate) size: f64,
+    /// Where the tool is along the drive surface: what the program says, unless it is plainly on the other side.
+    pub(crate) drive_side: DriveSide,
 }
 
 pub(super) fn prepare(
@@ -66,17 +68,21 @@ pub(super) fn prepare(
         }
     }
     let part_contact = start_check(&tool, &mut part, &tip, size)?;
-    let drive_contact = start_check(&tool, &mut drive, &tip, size)?;
+    // A direction that is not defined is the plainer mistake: it is named before a drive surface out of reach.
+    let checked = start_check(&tool, &mut drive, &tip, size);
+    let drive_contact =
+        checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn)?;
     let tangent = line_of_motion(&part_contact, &drive_contact, &wanted, &tip)?;
-    judge_side(state, &tool, &drive_contact, &tangent, warnings);
+    checked?;
+    let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
     let mut working = Vec::with_capacity(checks.len());
     for (index, check) in checks.iter().enumerate() {
         let on =
             check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
         working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
     }
-    Ok(Prepared { tool, tip, part, drive, checks: working, tangent, size })
+    Ok(Prepared { tool, tip, part, drive, checks: working, tangent, size, drive_side })
 }
 
 /// At a tangency the tool stands to the check surface as it does to the surface it is tangent to.
@@ -157,22 +163,24 @@ fn line_of_motion(part: &Contact, drive: &Contact, wanted: &Vec3, tip: &Vec3) ->
     Ok(if cosine > 0.0 { tangent } else { -tangent })
 }
 
-/// Warning 1601: the tool is not where TLLFT or TLRGT says.
+/// Warning 1601: the tool is not where TLLFT or TLRGT says. The motion keeps the side where it is.
 fn judge_side(
     state: &State,
     tool: &Tool,
     drive: &Contact,
     tangent: &Vec3,
     warnings: &mut Vec<MotionWarning>,
-) {
+) -> DriveSide {
     // From the surface to the tool, seen with the axis up: positive when the tool is to the left.
     let sine = tangent.cross(&drive.gradient).dot(&tool.axis);
-    let wrong = match state.drive_side {
-        DriveSide::Left => sine < -SIDE_SINE,
-        DriveSide::Right => sine > SIDE_SINE,
-        DriveSide::On => false,
+    let (wrong, other) = match state.drive_side {
+        DriveSide::Left => (sine < -SIDE_SINE, DriveSide::Right),
+        DriveSide::Right => (sine > SIDE_SINE, DriveSide::Left),
+        DriveSide::On => (false, DriveSide::On),
     };
     if wrong {
         warnings.push(MotionWarning::WrongSideOfDrive { sine });
+        return other;
     }
+    state.drive_side
 }

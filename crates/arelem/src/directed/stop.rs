@@ -65,8 +65,8 @@ impl<'a> Watcher<'a> {
     pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
         let mut watcher =
             Self { prepared, checks, watches: Vec::new(), met: 0, nearest: (f64::INFINITY, prepared.tip, 0) };
-        for index in 0..checks.len() {
-            let value = if is_tangent(checks[index].relation) {
+        for (index, check) in checks.iter().enumerate() {
+            let value = if is_tangent(check.relation) {
                 f64::INFINITY
             } else {
                 watcher.value(index, &prepared.tip).0

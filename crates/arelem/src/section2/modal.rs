@@ -29,9 +29,9 @@ pub(super) fn apply(
         MotionCommand::From { position, axis, .. } => {
             set_axis(state, *axis)?;
             finite(position)?;
-            state.previous = Vec3::zeros();
-            state.tip = Some(*position);
+            // The origin counts as previous position, as it always has: a first direction comes from there.
             state.forward = None;
+            state.move_to(Vec3::zeros(), *position);
             Ok(position_output(state))
         }
         MotionCommand::GoTo { position, axis, .. } => {

@@ -41,7 +41,9 @@ fn circle_full_outside() {
     let full = motion(GoLft, &circle(0.0, 0.0, 2.0), &[(On, 2, &x_axis())]);
     p.side(Left).run(&full).ends(2.25, 0.0, 0.0, EXACT).verified();
     // The start lies in the middle of the ring, the peer needs 151 vectors.
-    assert!(p.last().points.len() <= 151 && Some(p.last().points.len() as u32) <= p.last().minimum.map(|m| m + 1));
+    assert!(
+        p.last().points.len() <= 151 && Some(p.last().points.len() as u32) <= p.last().minimum.map(|m| m + 1)
+    );
 }
 
 #[test]
@@ -60,7 +62,10 @@ fn circle_tolerances() {
         let mut p = Program::new();
         p.tolerance(inside, outside).cutter(&[0.5]).from(5.0, 0.0, 0.0);
         p.go(&[(To, &circle(0.0, 0.0, 2.0))]).ends(2.25, 0.0, 0.0, EXACT);
-        p.side(Left).drive(GoLft, &circle(0.0, 0.0, 2.0), On, &y_axis()).ends(0.0, -2.25, 0.0, EXACT).verified();
+        p.side(Left)
+            .drive(GoLft, &circle(0.0, 0.0, 2.0), On, &y_axis())
+            .ends(0.0, -2.25, 0.0, EXACT)
+            .verified();
         assert!(p.last().points.len() as u32 <= p.last().minimum.expect("a ring") + 1);
     }
 }
@@ -70,7 +75,8 @@ fn circle_to_circle_corner() {
     let (c1, c2) = (circle(0.0, 0.0, 2.0), circle(3.0, 0.0, 2.0));
     let mut p = Program::new();
     p.tolerance(0.002, 0.002).cutter(&[0.5]).from(-4.0, 3.0, 0.0);
-    p.go(&[(To, &c1), (To, &ground()), (On, &line(-1.0, -5.0, -1.0, 5.0))]).ends(-1.0, 2.017352, 0.0, 0.00201);
+    p.go(&[(To, &c1), (To, &ground()), (On, &line(-1.0, -5.0, -1.0, 5.0))])
+        .ends(-1.0, 2.017352, 0.0, 0.00201);
     p.side(Left).drive(GoLft, &c1, To, &c2).ends(1.501201, 1.678125, 0.0, 0.00201);
     p.drive(GoLft, &c2, On, &line(3.0, 0.0, 3.0, 5.0)).ends(3.0, 2.25, 0.0, 0.00201).verified();
 }
@@ -203,7 +209,10 @@ fn conics_inside() {
     let mut p = Program::new();
     p.tolerance(0.001, 0.001).cutter(&[0.5]).from(0.0, 4.0, 0.0);
     p.go(&[(To, &parabola), (To, &ground()), (On, &y_axis())]).ends(0.0, 0.2492, 0.0, 0.00101);
-    p.side(Left).drive(GoLft, &parabola, On, &line(4.0, 0.0, 4.0, 5.0)).ends(4.0, 4.569782, 0.0, 0.00101).verified();
+    p.side(Left)
+        .drive(GoLft, &parabola, On, &line(4.0, 0.0, 4.0, 5.0))
+        .ends(4.0, 4.569782, 0.0, 0.00101)
+        .verified();
     assert!(p.last().points.len() <= 21, "{} vectors", p.last().points.len());
 
     // x²/4 − y²/2.25 = 1.
@@ -211,7 +220,10 @@ fn conics_inside() {
     let mut p = Program::new();
     p.tolerance(0.001, 0.001).cutter(&[0.5]).from(0.0, 0.0, 0.0).indirv(1.0, 0.0, 0.0);
     p.go(&[(To, &hyperbola)]).ends(1.7492, 0.0, 0.0, 0.00101);
-    p.side(Left).drive(GoLft, &hyperbola, On, &line(0.0, 2.0, 5.0, 2.0)).ends(2.969988, 2.0, 0.0, 0.00101).verified();
+    p.side(Left)
+        .drive(GoLft, &hyperbola, On, &line(0.0, 2.0, 5.0, 2.0))
+        .ends(2.969988, 2.0, 0.0, 0.00101)
+        .verified();
     assert!(p.last().points.len() <= 12, "{} vectors", p.last().points.len());
 }
 
@@ -247,8 +259,6 @@ fn failures_have_their_numbers() {
     p.cutter(&[0.5]).from(0.0, 0.25, 0.0);
     let check = line(5.0, 0.0, 5.0, 5.0);
     let forward = motion(Forward, &x_axis(), &[(On, 1, &check)]);
-    p.part_side(PartSide::Offset);
-    p.side(Left);
     assert_eq!(fails(&mut p, &forward), Some(505));
     assert!(matches!(p.attempt(&forward), Ok(Some(Output::Ignored))), "restart mode");
 

@@ -47,7 +47,11 @@ fn planes_in_space() {
 
     let mut p = program(&[0.5, 0.25], 0.0, 0.0005);
     let (floor, wall) = (plane(0.2, 0.1, 1.0, 2.0), plane(1.0, 0.0, 0.1, 4.0));
-    p.from(-1.0, 2.0, 4.0).run(&MotionCommand::Thickness(PerRole { part: 0.1, drive: 0.05, check: [0.2; 2] }));
+    p.from(-1.0, 2.0, 4.0).run(&MotionCommand::Thickness(PerRole {
+        part: 0.1,
+        drive: 0.05,
+        check: [0.2; 2],
+    }));
     p.go(&[(To, &y(0.0)), (To, &floor), (On, &x(0.0))]).ends(0.0, 0.3, 2.078643, EXACT);
     p.side(Left).drive(GoLft, &y(0.0), To, &wall).ends(2.899121, 0.3, 1.498819, EXACT).verified();
 }
@@ -57,8 +61,14 @@ fn part_side_on_and_off() {
     let floor = plane(0.2, 0.1, 1.0, 2.0);
     for (relation, side, height) in [(To, PartSide::Offset, 2.006174), (On, PartSide::On, 2.0)] {
         let mut p = program(&[0.5, 0.25], 0.0, 0.0005);
-        p.from(-1.0, 2.0, 4.0).go(&[(On, &y(0.0)), (relation, &floor), (On, &x(0.0))]).ends(0.0, 0.0, height, EXACT);
-        p.part_side(side).side(TlOn).drive(GoLft, &y(0.0), On, &x(4.0)).ends(4.0, 0.0, height - 0.8, EXACT).verified();
+        p.from(-1.0, 2.0, 4.0)
+            .go(&[(On, &y(0.0)), (relation, &floor), (On, &x(0.0))])
+            .ends(0.0, 0.0, height, EXACT);
+        p.part_side(side)
+            .side(TlOn)
+            .drive(GoLft, &y(0.0), On, &x(4.0))
+            .ends(4.0, 0.0, height - 0.8, EXACT)
+            .verified();
     }
 }
 
@@ -211,13 +221,21 @@ fn quadrics() {
 fn inside_a_sphere_and_tool_end_on_it() {
     let bowl = sphere(0.0, 0.0, 5.0, 5.0);
     let mut p = program(&[0.5, 0.25], 0.001, 0.001);
-    p.from(-2.0, 0.0, 3.0).go(&[(On, &y(0.0)), (To, &bowl), (On, &x(-2.0))]).indirv(1.0, 0.0, -0.2).side(TlOn);
+    p.from(-2.0, 0.0, 3.0)
+        .go(&[(On, &y(0.0)), (To, &bowl), (On, &x(-2.0))])
+        .indirv(1.0, 0.0, -0.2)
+        .side(TlOn);
     p.drive(Forward, &y(0.0), On, &x(2.0)).verified();
 
     let ball = sphere(0.0, 0.0, 0.0, 5.0);
     let mut p = program(&[0.5, 0.25], 0.001, 0.001);
-    p.from(-3.0, 0.0, 7.0).go(&[(On, &y(1.0)), (On, &ball), (On, &x(-2.0))]).ends(-2.0, 1.0, 4.473292, TOLERANCE);
-    p.part_side(PartSide::On).side(TlOn).drive(GoRgt, &y(1.0), On, &x(3.0)).ends(3.0, 1.0, 3.874019, TOLERANCE);
+    p.from(-3.0, 0.0, 7.0)
+        .go(&[(On, &y(1.0)), (On, &ball), (On, &x(-2.0))])
+        .ends(-2.0, 1.0, 4.473292, TOLERANCE);
+    p.part_side(PartSide::On)
+        .side(TlOn)
+        .drive(GoRgt, &y(1.0), On, &x(3.0))
+        .ends(3.0, 1.0, 3.874019, TOLERANCE);
     p.verified();
 }
 
@@ -225,7 +243,8 @@ fn inside_a_sphere_and_tool_end_on_it() {
 fn thickness_on_curved_surfaces() {
     let ball = sphere(0.0, 0.0, 0.0, 5.0);
     let mut p = program(&[0.5, 0.25], 0.001, 0.001);
-    p.run(&MotionCommand::Thickness(PerRole { part: 0.1, drive: 0.05, check: [0.0; 2] })).from(-3.0, 0.0, 7.0);
+    p.run(&MotionCommand::Thickness(PerRole { part: 0.1, drive: 0.05, check: [0.0; 2] }))
+        .from(-3.0, 0.0, 7.0);
     p.go(&[(To, &y(1.0)), (To, &ball), (On, &x(-2.0))]).ends(-2.0, 0.7, 4.663394, TOLERANCE).side(Right);
     p.drive(GoRgt, &y(1.0), On, &x(3.0)).ends(3.0, 0.7, 4.12505, TOLERANCE).verified();
 }
@@ -241,7 +260,8 @@ fn tilted_axis() {
     let axis = MotionCommand::ToolAxis(apt_geometry::motion::ToolAxis::Fixed(v(0.2, 0.0, 1.0)));
     let mut p = program(&[0.75, 0.2], 0.001, 0.001);
     p.from(-2.0, 0.0, 7.0).run(&axis);
-    p.go(&[(On, &y(0.0)), (To, &sphere(0.0, 0.0, 0.0, 5.0)), (On, &x(-1.0))]).ends(-1.0, 0.0, 4.978782, TOLERANCE);
+    p.go(&[(On, &y(0.0)), (To, &sphere(0.0, 0.0, 0.0, 5.0)), (On, &x(-1.0))])
+        .ends(-1.0, 0.0, 4.978782, TOLERANCE);
     p.side(TlOn).drive(Forward, &y(0.0), On, &x(2.0)).ends(2.0, 0.0, 4.62346, TOLERANCE).verified();
     assert!(p.last().points.len() <= 12, "{}", p.last().points.len());
 }

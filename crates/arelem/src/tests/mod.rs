@@ -120,7 +120,13 @@ impl Program {
         self.run(&command)
     }
 
-    pub(crate) fn drive(&mut self, turn: Turn, drive: &Geometry, relation: Relation, check: &Geometry) -> &mut Self {
+    pub(crate) fn drive(
+        &mut self,
+        turn: Turn,
+        drive: &Geometry,
+        relation: Relation,
+        check: &Geometry,
+    ) -> &mut Self {
         let command = motion(turn, drive, &[(relation, 1, check)]);
         self.run(&command)
     }
@@ -225,7 +231,8 @@ pub(crate) fn assert_in_tolerance(sequence: &CutSequence) {
         let tool = Tool::new(sequence.cutter, sequence.start.axis);
         let clearance = gauge(&stop.role).contact(&tool, &last.tip).clearance;
         assert!(
-            clearance >= -stop.role.inside_tolerance - 1e-10 && clearance <= stop.role.outside_tolerance + 1e-10,
+            clearance >= -stop.role.inside_tolerance - 1e-10
+                && clearance <= stop.role.outside_tolerance + 1e-10,
             "stop {:?} {:?} at {clearance}",
             stop.role.surface.geometry,
             stop.role.relation,

@@ -74,9 +74,11 @@ fn moved(geometry: &Geometry, rotation: &Rotation3<f64>, shift: &Vec3) -> Geomet
             axis: rotation * c.axis,
             radius: c.radius,
         }),
-        Geometry::Cone(c) => {
-            Geometry::Cone(Cone { vertex: rotation * c.vertex + shift, axis: rotation * c.axis, cosine: c.cosine })
-        }
+        Geometry::Cone(c) => Geometry::Cone(Cone {
+            vertex: rotation * c.vertex + shift,
+            axis: rotation * c.axis,
+            cosine: c.cosine,
+        }),
         Geometry::Quadric(q) => {
             let [a, b, c, d, f, g, h, l, m, n] = q.coefficients;
             let square = nalgebra::Matrix3::new(a, h, g, h, b, f, g, f, c);
@@ -85,8 +87,16 @@ fn moved(geometry: &Geometry, rotation: &Rotation3<f64>, shift: &Vec3) -> Geomet
             let along = rotation * linear - turned * shift;
             let constant = d + (turned * shift).dot(shift) - 2.0 * (rotation * linear).dot(shift);
             quadric([
-                turned[(0, 0)], turned[(1, 1)], turned[(2, 2)], constant,
-                turned[(1, 2)], turned[(0, 2)], turned[(0, 1)], along.x, along.y, along.z,
+                turned[(0, 0)],
+                turned[(1, 1)],
+                turned[(2, 2)],
+                constant,
+                turned[(1, 2)],
+                turned[(0, 2)],
+                turned[(0, 1)],
+                along.x,
+                along.y,
+                along.z,
             ])
         }
         other => other.clone(),

@@ -21,13 +21,18 @@ fn surface(geometry: &Geometry) -> apt_geometry::surface::Surface {
 
 #[test]
 fn w22_three_surfaces() {
-    let tool = Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
-    let gauge = |geometry: Geometry, on: bool| Gauge { surface: surface(&geometry), on, side: 1.0, thickness: 0.0 };
+    let tool =
+        Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
+    let gauge =
+        |geometry: Geometry, on: bool| Gauge { surface: surface(&geometry), on, side: 1.0, thickness: 0.0 };
     let part = gauge(sphere(0.0, 0.0, 0.0, 2.0), false);
     let drive = gauge(cylinder(Vec3::zeros(), Vec3::z(), 0.8), false);
     let check = gauge(plane(1.0, 0.0, 0.0, 0.3), true);
-    let conditions =
-        [Condition::Clearance(&part, 0.0), Condition::Clearance(&drive, 0.0), Condition::Clearance(&check, 0.0)];
+    let conditions = [
+        Condition::Clearance(&part, 0.0),
+        Condition::Clearance(&drive, 0.0),
+        Condition::Clearance(&check, 0.0),
+    ];
     let tip = position::solve(&tool, &conditions, &v(0.5, 1.2, 2.5)).expect("a position").tip;
     near(tip.x, 0.3);
     near(tip.y, 1.006230590);
@@ -92,15 +97,21 @@ fn w32_turns() {
 #[test]
 fn w33_start_on_a_cone() {
     let cn = cone(v(0.0, 0.0, 3.0), -Vec3::z(), 30.0);
-    let tool = Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
-    let gauge = |geometry: &Geometry| Gauge { surface: surface(geometry), on: false, side: 1.0, thickness: 0.0 };
+    let tool =
+        Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
+    let gauge =
+        |geometry: &Geometry| Gauge { surface: surface(geometry), on: false, side: 1.0, thickness: 0.0 };
     let (drive, part) = (gauge(&cn), gauge(&ground()));
     for (aim, expected) in [(0.0, 1.876388375), (0.0009, 1.877427605)] {
         let conditions = [Condition::Clearance(&drive, aim), Condition::Clearance(&part, 0.0)];
         near(position::solve(&tool, &conditions, &v(4.0, 0.0, 1.0)).expect("a position").tip.x, expected);
     }
     let mut p = Program::new();
-    p.tolerance(0.0, 0.001).cutter(&[0.5, 0.25]).from(4.0, 0.0, 1.0).go(&[(To, &cn), (To, &ground())]).verified();
+    p.tolerance(0.0, 0.001)
+        .cutter(&[0.5, 0.25])
+        .from(4.0, 0.0, 1.0)
+        .go(&[(To, &cn), (To, &ground())])
+        .verified();
 }
 
 #[test]
@@ -123,9 +134,14 @@ fn counts(p: &Program) -> (u32, u32) {
 #[test]
 fn fewest_vectors_on_circles() {
     // Tool .5: circle paths of radius R ± .25.
-    for (radius, outside, tolerance) in
-        [(2.25, true, 1e-3), (1.75, false, 1e-3), (2.25, true, 1e-4), (2.25, true, 1e-2), (504.75, true, 1e-2), (5004.75, true, 1e-2)]
-    {
+    for (radius, outside, tolerance) in [
+        (2.25, true, 1e-3),
+        (1.75, false, 1e-3),
+        (2.25, true, 1e-4),
+        (2.25, true, 1e-2),
+        (504.75, true, 1e-2),
+        (5004.75, true, 1e-2),
+    ] {
         for iterate in [false, true] {
             let c1 = circle(0.0, 0.0, radius);
             let mut p = Program::new();
@@ -138,7 +154,10 @@ fn fewest_vectors_on_circles() {
             }
             p.drive(GoLft, &c1, On, &line(0.0, 0.0, 0.0, 1.0)).verified();
             let (count, least) = counts(&p);
-            assert!(count <= least + 1, "radius {radius}, {tolerance}, iterate {iterate}: {count} over {least}");
+            assert!(
+                count <= least + 1,
+                "radius {radius}, {tolerance}, iterate {iterate}: {count} over {least}"
+            );
         }
     }
 }
