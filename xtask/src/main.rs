@@ -43,7 +43,7 @@ enum Task {
     /// Build the VS Code extension with the release binary in it.
     PackageVscode {
         /// Where the .vsix goes.
-        #[arg(long, default_value = "editors/vscode/apt.vsix")]
+        #[arg(long, default_value = "editors/vscode/apt-lsp.vsix")]
         output: PathBuf,
     },
     /// Run everything: format, lints, tests, documentation, generated files, both editors.
