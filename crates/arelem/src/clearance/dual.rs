@@ -69,8 +69,31 @@ fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
     let side = greatest(tool, &family, tip);
     // Behind the vertex the normals of the vertex's own fan are nearer: then the vertex is the solid.
     let vertex = ball_outside(tool, &cone.vertex, 0.0, tip);
-    let beyond = vertex.gradient.dot(&cone.axis) <= -cone.sine;
-    if beyond && vertex.clearance >= side.clearance { vertex } else { side }
+    let in_fan = |normal: &Vec3| normal.dot(&cone.axis) <= -cone.sine;
+    let mut best = side;
+    if in_fan(&vertex.gradient) && vertex.clearance > best.clearance {
+        best = vertex;
+    }
+    if vertex.clearance < 0.0 {
+        // The vertex is inside the tool: the way out through each straight face counts, not only the shortest.
+        let toward = tool.split(&(cone.vertex - tip)).2;
+        let (sa, ca) = tool.cutter.alpha.sin_cos();
+        let (sb, cb) = tool.cutter.beta.sin_cos();
+        for normal in [tool.axis * ca - toward * sa, tool.axis * sb - toward * cb] {
+            let depth = normal.dot(&(tip - cone.vertex)) - support(tool, &normal);
+            if in_fan(&normal) && depth > best.clearance {
+                let contact = cone.vertex + normal * depth;
+                best = Contact { clearance: depth, gradient: normal, tool: contact, surface: cone.vertex };
+            }
+        }
+    }
+    best
+}
+
+/// Support of the tool against a normal.
+fn support(tool: &Tool, normal: &Vec3) -> f64 {
+    let (along, across, _) = tool.split(normal);
+    tool.profile.support(across, -along).0
 }
 
 fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
