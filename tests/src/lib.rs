@@ -1,6 +1,7 @@
 //! What the oracle, corpus and end-to-end tests share: running a program and comparing reports.
 
 pub mod oracle;
+pub mod runs;
 
 use std::path::{Path, PathBuf};
 

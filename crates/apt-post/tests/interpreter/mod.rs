@@ -1,10 +1,14 @@
 //! Runs a tape through the stand-alone interpreter of LinuxCNC and reads its canonical calls.
 
+mod follow;
+
 use std::{
     path::PathBuf,
     process::Command,
     sync::atomic::{AtomicU32, Ordering},
 };
+
+pub(crate) use follow::{TOLERANCE, follow, near};
 
 /// A canonical call that says something about the path.
 #[derive(Debug, Clone, PartialEq)]
