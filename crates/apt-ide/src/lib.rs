@@ -4,8 +4,10 @@
 //! own; the run report comes from `apt-run` as it is.
 
 pub mod completion;
+pub mod dialect;
 pub mod expansion;
 pub mod folding;
+pub mod format;
 pub mod hover;
 pub mod lens;
 pub mod navigation;
@@ -14,6 +16,7 @@ pub mod picture;
 pub mod regions;
 pub mod run;
 pub mod search;
+pub mod tape;
 pub mod tokens;
 
 use std::{

@@ -1,16 +1,14 @@
-//! Run motion: the report of a run, the tape, and the scene for viewers.
+//! Run motion: the report of a run and the scene for viewers.
 
 use std::ops::Range;
 
-use apt_cldata::{codes::CodeTable, record::ClKind};
+use apt_cldata::record::ClKind;
 use apt_geometry::motion::MotionCommand;
-use apt_post::{MachineDefinition, Tape};
 use apt_program::record::RecordKind;
 use apt_run::{
     pipeline::{Motion, RunResult},
     report::Report,
 };
-use apt_syntax::vocabulary::{self, WordClass};
 use arelem::section2::Output;
 use rustc_hash::FxHashSet;
 
@@ -18,50 +16,6 @@ use crate::{
     Analysis, Cancel, Cancelled,
     picture::{Scene, SceneSurface, Segment, SegmentKind},
 };
-
-/// Why a tape cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TapeError {
-    /// There is no machine of this name.
-    #[error("there is no machine {name}; there are {}", known.join(", "))]
-    UnknownMachine {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        known: Vec<String>,
-    },
-    /// The run was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-/// Why a binary CLTAPE cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ClTapeError {
-    /// A record does not fit the tape.
-    #[error(transparent)]
-    Tape(#[from] apt_cldata::cltape::TapeWriteError),
-    /// The run was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-/// The machines that come with the program.
-pub fn machines() -> Vec<apt_post::MachineInfo> {
-    apt_post::machines()
-}
-
-/// The definition of a machine that comes with the program.
-///
-/// # Errors
-///
-/// [`TapeError::UnknownMachine`].
-pub fn machine(name: &str) -> Result<MachineDefinition, TapeError> {
-    apt_post::machine(name).map_err(|_| TapeError::UnknownMachine {
-        name: name.to_owned(),
-        known: machines().into_iter().map(|machine| machine.name).collect(),
-    })
-}
 
 impl Analysis {
     /// Runs the program and reports it, or only the statements that a byte range touches.
@@ -84,50 +38,6 @@ impl Analysis {
         let (first, _) = self.statement_at(range.start)?;
         let (last, _) = self.statement_at(range.end.max(range.start + 1) - 1)?;
         Some(first.isn()..=last.isn())
-    }
-
-    /// The control tape for a machine.
-    ///
-    /// # Errors
-    ///
-    /// [`TapeError`] when there is no such machine or the run was cancelled.
-    pub fn tape(
-        &self,
-        machine_name: &str,
-        cancel: Cancel<'_>,
-        progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<Tape, TapeError> {
-        let machine = machine(machine_name)?;
-        let result = self.document().run(cancel, progress)?;
-        Ok(apt_post::post(&result.records, &machine, &apt_post::PostOptions::default()))
-    }
-
-    /// The CL file as APT text (`GOTO/…`).
-    ///
-    /// # Errors
-    ///
-    /// [`Cancelled`] when `cancel` said so before the end.
-    pub fn cl_text(
-        &self,
-        cancel: Cancel<'_>,
-        progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<String, Cancelled> {
-        let result = self.document().run(cancel, progress)?;
-        Ok(apt_cldata::text::write_text(&result.records, &apt_cldata::text::TextOptions::default()))
-    }
-
-    /// The CL file as the binary CLTAPE of APT III.
-    ///
-    /// # Errors
-    ///
-    /// [`ClTapeError`] when the run was cancelled or a record does not fit the tape.
-    pub fn cl_tape(
-        &self,
-        cancel: Cancel<'_>,
-        progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<Vec<u8>, ClTapeError> {
-        let result = self.document().run(cancel, progress)?;
-        Ok(apt_cldata::cltape::write_tape(&result.records, &code_table())?)
     }
 
     /// The path and the surfaces for a picture.
@@ -172,27 +82,6 @@ impl Analysis {
             cutter_diameter,
         })
     }
-}
-
-/// The codes of the vocabulary for binary CL records.
-fn code_table() -> CodeTable {
-    let mut table = CodeTable::new();
-    for word in vocabulary::words() {
-        let Some(code) = word.code else { continue };
-        match word.class {
-            WordClass::Postprocessor
-            | WordClass::PostprocessorBare
-            | WordClass::Text
-            | WordClass::Transformation => {
-                table.major(word.spelling, code);
-            }
-            WordClass::Minor => {
-                table.minor(word.spelling, code);
-            }
-            _ => {}
-        }
-    }
-    table
 }
 
 fn part_name(result: &RunResult) -> Option<String> {

@@ -17,15 +17,15 @@ pub(crate) fn read_file(path: &Path) -> std::io::Result<Source> {
     std::fs::read(path).map(decode)
 }
 
-/// Reads standard input to its end.
-pub(crate) fn read_standard_input() -> std::io::Result<Source> {
+/// The bytes of standard input, to its end.
+pub(crate) fn read_standard_input() -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     std::io::stdin().lock().read_to_end(&mut bytes)?;
-    Ok(decode(bytes))
+    Ok(bytes)
 }
 
 /// Any bytes are a program: what is no UTF-8 comes from the time before it.
-fn decode(bytes: Vec<u8>) -> Source {
+pub(crate) fn decode(bytes: Vec<u8>) -> Source {
     const BYTE_ORDER_MARK: char = '\u{feff}';
     match String::from_utf8(bytes) {
         Ok(text) => match text.strip_prefix(BYTE_ORDER_MARK) {

@@ -7,7 +7,8 @@ use std::ops::Range;
 
 use apt_program::symbols::Value;
 use apt_syntax::{
-    statement::ElementKind,
+    TextSize,
+    statement::{Element, ElementKind},
     vocabulary::{Word, WordClass, lookup},
 };
 
@@ -33,10 +34,7 @@ impl Analysis {
     pub fn hover(&self, offset: usize, cancel: Cancel<'_>) -> Result<Option<Hover>, Cancelled> {
         let Some((view, relative)) = self.statement_at(offset) else { return Ok(None) };
         let parsed = view.parsed();
-        let Some(element) = parsed.elements.iter().find(|element| element.range.contains_inclusive(relative))
-        else {
-            return Ok(None);
-        };
+        let Some(element) = element_at(&parsed.elements, relative) else { return Ok(None) };
         let range = absolute(&view, element.range);
         let markdown = match element.kind {
             ElementKind::Word => match lookup(&element.text) {
@@ -119,6 +117,13 @@ impl Analysis {
         });
         Ok(local.map(|region| format!("variable `{}` of macro `{}`", at.name, region.name)))
     }
+}
+
+/// The element at an offset; at the border of two the one that begins there, unless it is punctuation.
+pub(crate) fn element_at(elements: &[Element], offset: TextSize) -> Option<&Element> {
+    let speaks = |element: &&Element| matches!(element.kind, ElementKind::Word | ElementKind::Name | ElementKind::Number);
+    let inside = elements.iter().find(|element| element.range.contains(offset)).filter(speaks);
+    inside.or_else(|| elements.iter().filter(speaks).find(|element| element.range.contains_inclusive(offset)))
 }
 
 /// A word's page: forms and help.

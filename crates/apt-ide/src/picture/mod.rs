@@ -6,6 +6,7 @@
 mod drawing;
 mod page;
 mod panel;
+mod pixels;
 mod projection;
 mod wireframe;
 
@@ -13,6 +14,8 @@ mod wireframe;
 mod tests;
 
 use serde::Serialize;
+
+pub use pixels::PixelError;
 
 /// All there is to show: the path of the tool end and the surfaces in use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -73,4 +76,13 @@ pub fn svg(scene: &Scene) -> String {
 /// The picture as a stand-alone page with a viewer that turns, moves and scales it and tells the statement of each piece.
 pub fn html(scene: &Scene) -> String {
     page::build(scene)
+}
+
+/// The picture as a PNG image, twice the size of the drawing in pixels.
+///
+/// # Errors
+///
+/// [`PixelError`] when the image cannot be made.
+pub fn png(scene: &Scene) -> Result<Vec<u8>, PixelError> {
+    pixels::render(&svg(scene))
 }

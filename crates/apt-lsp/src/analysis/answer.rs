@@ -1,7 +1,19 @@
 //! What documents answer: plain data, public fields, no protocol types.
+//!
+//! Most of it is what `apt-ide` answers, under one roof here; only what carries places of other statements has a
+//! form of its own, in which they are byte ranges.
 
 use std::ops::Range;
 
+pub(crate) use apt_ide::completion::{Completion, CompletionKind};
+pub(crate) use apt_ide::folding::{Fold, FoldKind};
+pub(crate) use apt_ide::hover::{CanonicalForm, Hover};
+pub(crate) use apt_ide::lens::Lens;
+pub(crate) use apt_ide::navigation::Occurrence;
+pub(crate) use apt_ide::outline::{OutlineEntry, OutlineKind};
+pub(crate) use apt_ide::tape::{MachineInfo, TapeCode};
+pub(crate) use apt_ide::tokens::{Token, TokenClass};
+pub(crate) use apt_ide::{Level, Severity};
 use thiserror::Error;
 
 /// The answer to a question that can be interrupted.
@@ -60,40 +72,6 @@ pub(crate) struct TextEdit {
     pub text: String,
 }
 
-/// How deep the checks go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Level {
-    /// Sections 0 and 1: syntax, names, geometry.
-    Section1,
-    /// Motion and its verification too.
-    Motion,
-}
-
-/// How bad a finding is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Severity {
-    /// The program does not do what it says.
-    Error,
-    /// The program probably does not do what is meant.
-    Warning,
-    /// Worth knowing.
-    Information,
-    /// Could be better.
-    Hint,
-}
-
-impl Severity {
-    /// The name used in JSON.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Error => "error",
-            Self::Warning => "warning",
-            Self::Information => "information",
-            Self::Hint => "hint",
-        }
-    }
-}
-
 /// One finding.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Diagnostic {
@@ -144,167 +122,6 @@ pub(crate) struct Related {
     pub range: Range<usize>,
 }
 
-/// An explanation.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Hover {
-    /// What is explained.
-    pub range: Range<usize>,
-    /// The explanation.
-    pub markdown: String,
-}
-
-/// What a completion stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum CompletionKind {
-    /// A surface, point, vector or matrix of the program.
-    Name,
-    /// A number of the program.
-    Scalar,
-    /// A macro of the program.
-    Macro,
-    /// A modifier.
-    Modifier,
-    /// A type of geometry.
-    Type,
-    /// A function of arithmetic.
-    Function,
-    /// A word that begins a statement.
-    Statement,
-    /// A word for the post-processor.
-    Postprocessor,
-}
-
-/// Something that could be written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Completion {
-    /// What is shown and written.
-    pub label: String,
-    /// What it is.
-    pub kind: CompletionKind,
-    /// One line about it; may be empty.
-    pub detail: String,
-    /// More, as Markdown; may be empty.
-    pub documentation: String,
-}
-
-/// A place where a name stands.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Occurrence {
-    /// Where.
-    pub range: Range<usize>,
-    /// True where the name gets a value.
-    pub defines: bool,
-}
-
-/// What an entry of the outline stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum OutlineKind {
-    /// The part, named by PARTNO.
-    Part,
-    /// A macro.
-    Macro,
-    /// A loop.
-    Loop,
-    /// A surface, point, vector or matrix.
-    Geometry,
-    /// A number.
-    Scalar,
-    /// A table of subscripted names.
-    Array,
-    /// A tool that is loaded.
-    Tool,
-}
-
-/// An entry of the outline.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct OutlineEntry {
-    /// The name.
-    pub name: String,
-    /// One line about it; may be empty.
-    pub detail: String,
-    /// What it is.
-    pub kind: OutlineKind,
-    /// All of it.
-    pub range: Range<usize>,
-    /// Its name.
-    pub focus: Range<usize>,
-    /// What is inside.
-    pub children: Vec<OutlineEntry>,
-}
-
-/// What a fold holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FoldKind {
-    /// A macro or a loop.
-    Region,
-    /// Remarks.
-    Comment,
-    /// A statement over several lines.
-    Statement,
-}
-
-/// Something that can be folded away.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Fold {
-    /// What it holds.
-    pub kind: FoldKind,
-    /// All of it.
-    pub range: Range<usize>,
-}
-
-/// Class of a word, for colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TokenClass {
-    /// A word that begins a statement.
-    Keyword,
-    /// A modifier.
-    Modifier,
-    /// A type of geometry.
-    Type,
-    /// A function of arithmetic.
-    Function,
-    /// A word for the post-processor.
-    Postprocessor,
-    /// The name of a macro.
-    Macro,
-    /// A parameter of a macro.
-    Parameter,
-    /// The name of a surface or a number.
-    Variable,
-    /// A label.
-    Label,
-    /// A number.
-    Number,
-    /// Raw text after PARTNO and the like, and quoted text.
-    String,
-    /// An operator or sign.
-    Operator,
-    /// A remark.
-    Comment,
-}
-
-/// A word with its class.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Token {
-    /// Where; may span lines.
-    pub range: Range<usize>,
-    /// Its class.
-    pub class: TokenClass,
-    /// True where the name gets its meaning.
-    pub definition: bool,
-}
-
-/// A place that can be run on its own.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Lens {
-    /// Where it is shown.
-    pub range: Range<usize>,
-    /// What it says.
-    pub title: String,
-    /// What is run; the whole program without one.
-    pub run: Option<Range<usize>>,
-}
-
 /// A program with macros and loops unrolled.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Expansion {
@@ -327,19 +144,6 @@ pub(crate) struct ExpandedLine {
     pub stack: Vec<OriginFrame>,
 }
 
-/// A canonical form.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct CanonicalForm {
-    /// Name of the surface; empty for a nested definition.
-    pub name: String,
-    /// Its type word.
-    pub kind: String,
-    /// The numbers.
-    pub canonical: Vec<f64>,
-    /// The numbers with their meaning.
-    pub text: String,
-}
-
 /// What is to be run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct RunRequest {
@@ -358,10 +162,12 @@ pub(crate) enum Product {
     ClText,
     /// The binary CLTAPE of APT III.
     Cltape,
-    /// The tape of a machine, as text.
+    /// The tape of a machine: as text, or as the image that a punch makes of it.
     Tape {
         /// The machine.
         machine: String,
+        /// The code of a punched image.
+        punch: Option<TapeCode>,
     },
     /// A picture of the path.
     Picture(PictureKind),
@@ -374,15 +180,6 @@ pub(crate) enum PictureKind {
     Html,
     /// A drawing.
     Svg,
-}
-
-/// A machine a tape can be made for.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub(crate) struct MachineInfo {
-    /// Short name, for `--machine`.
-    pub name: String,
-    /// What it is.
-    pub title: String,
-    /// Its control.
-    pub control: String,
+    /// The drawing as pixels.
+    Png,
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use apt_ide::{Analysis, Cancelled};
-use apt_run::catalogue::tape_diagnostics;
+use apt_ide::dialect::describe;
 use apt_run::diagnostic as found;
 use apt_run::document::DialectReason;
 use apt_run::position::LineIndex;
@@ -42,8 +42,11 @@ impl Language for Engine {
     }
 
     fn machines(&self) -> Vec<MachineInfo> {
-        let all = apt_ide::run::machines().into_iter();
-        all.map(|one| MachineInfo { name: one.name, title: one.title, control: one.control }).collect()
+        apt_ide::tape::machines()
+    }
+
+    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>> {
+        Some(apt_ide::tape::text_of_cl_tape(bytes)?.map_err(|error| error.to_string()))
     }
 
     fn explain(&self, code: &str) -> Option<String> {
@@ -107,6 +110,11 @@ fn frames(steps: Vec<found::OriginStep>, places: Vec<Range<usize>>) -> Vec<Origi
 }
 
 impl Program {
+    fn control_tape(&self, machine: &str, control: &Control) -> Result<apt_ide::tape::ControlTape, Refusal> {
+        with(control, "making the tape", |cancel, progress| self.0.tape(machine, cancel, progress))
+            .map_err(tape_refusal)
+    }
+
     fn diagnostic(&self, one: &found::Diagnostic) -> Diagnostic {
         let tree = self.0.document().tree();
         let place = |isn, range| found::statement_range(tree, isn, range);
@@ -118,12 +126,7 @@ impl Program {
         });
         Diagnostic {
             code: one.wording.code.to_owned(),
-            severity: match one.severity {
-                found::Severity::Error => Severity::Error,
-                found::Severity::Warning => Severity::Warning,
-                found::Severity::Information => Severity::Information,
-                found::Severity::Hint => Severity::Hint,
-            },
+            severity: one.severity,
             message: one.wording.message.clone(),
             hint: one.wording.hint.clone(),
             isn: Some(one.origin.isn),
@@ -146,19 +149,10 @@ impl Document for Program {
     }
 
     fn dialect(&self) -> String {
-        let document = self.0.document();
-        let why = match document.dialect_reason() {
-            DialectReason::Setting => "set",
-            DialectReason::Detected(_) => "detected",
-        };
-        format!("{} ({why})", document.dialect().as_str())
+        describe(self.0.document())
     }
 
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
-        let level = match level {
-            Level::Section1 => apt_ide::Level::Section1,
-            Level::Motion => apt_ide::Level::Motion,
-        };
         let all = with(control, "checking", |cancel, progress| {
             self.0.document().diagnostics(level, cancel, progress)
         })?;
@@ -166,28 +160,11 @@ impl Document for Program {
     }
 
     fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>> {
-        let hover = with(control, "", |cancel, _| self.0.hover(offset, cancel))?;
-        Ok(hover.map(|hover| Hover { range: hover.range, markdown: hover.markdown }))
+        Ok(with(control, "", |cancel, _| self.0.hover(offset, cancel))?)
     }
 
     fn completions(&self, offset: usize) -> Vec<Completion> {
-        use apt_ide::completion::CompletionKind as Kind;
-        let convert = |one: apt_ide::completion::Completion| Completion {
-            label: one.label,
-            kind: match one.kind {
-                Kind::Name => CompletionKind::Name,
-                Kind::Scalar => CompletionKind::Scalar,
-                Kind::Macro => CompletionKind::Macro,
-                Kind::Modifier => CompletionKind::Modifier,
-                Kind::Type => CompletionKind::Type,
-                Kind::Function => CompletionKind::Function,
-                Kind::Statement => CompletionKind::Statement,
-                Kind::Postprocessor => CompletionKind::Postprocessor,
-            },
-            detail: one.detail,
-            documentation: one.documentation,
-        };
-        self.0.completions(offset).into_iter().map(convert).collect()
+        self.0.completions(offset)
     }
 
     fn definitions(&self, offset: usize) -> Vec<Range<usize>> {
@@ -195,8 +172,7 @@ impl Document for Program {
     }
 
     fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
-        let all = self.0.occurrences(offset).into_iter();
-        all.map(|one| Occurrence { range: one.range, defines: one.defines }).collect()
+        self.0.occurrences(offset)
     }
 
     fn renamable(&self, offset: usize) -> Option<Range<usize>> {
@@ -209,34 +185,19 @@ impl Document for Program {
     }
 
     fn outline(&self) -> Vec<OutlineEntry> {
-        self.0.outline().into_iter().map(outline_entry).collect()
+        self.0.outline()
     }
 
     fn folds(&self) -> Vec<Fold> {
-        use apt_ide::folding::FoldKind as Kind;
-        let convert = |one: apt_ide::folding::Fold| Fold {
-            kind: match one.kind {
-                Kind::Region => FoldKind::Region,
-                Kind::Comment => FoldKind::Comment,
-                Kind::Statement => FoldKind::Statement,
-            },
-            range: one.range,
-        };
-        self.0.folds().into_iter().map(convert).collect()
+        self.0.folds()
     }
 
     fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
-        let convert = |one: apt_ide::tokens::Token| Token {
-            range: one.range,
-            class: token_class(one.class),
-            definition: one.definition,
-        };
-        self.0.tokens(range).into_iter().map(convert).collect()
+        self.0.tokens(range)
     }
 
     fn lenses(&self) -> Vec<Lens> {
-        let all = self.0.lenses().into_iter();
-        all.map(|lens| Lens { range: lens.range, title: lens.title, run: lens.run }).collect()
+        self.0.lenses()
     }
 
     fn syntax_tree(&self) -> String {
@@ -262,13 +223,7 @@ impl Document for Program {
     }
 
     fn canonical_form(&self, offset: usize, control: &Control) -> Answer<Option<CanonicalForm>> {
-        let form = with(control, "", |cancel, _| self.0.canonical_form(offset, cancel))?;
-        Ok(form.map(|form| CanonicalForm {
-            name: form.name,
-            kind: form.kind,
-            canonical: form.canonical,
-            text: form.text,
-        }))
+        Ok(with(control, "", |cancel, _| self.0.canonical_form(offset, cancel))?)
     }
 
     fn run(&self, request: &RunRequest, control: &Control) -> Result<Value, Refusal> {
@@ -291,43 +246,41 @@ impl Document for Program {
     }
 
     fn tape(&self, machine: &str, control: &Control) -> Result<Value, Refusal> {
-        let tape =
-            with(control, "making the tape", |cancel, progress| self.0.tape(machine, cancel, progress))
-                .map_err(tape_refusal)?;
-        let blocks: Vec<_> = tape.blocks.iter().map(|block| block.text.as_str()).collect();
-        let origin: Vec<_> = tape.blocks.iter().map(|block| block.isn).collect();
-        let result = with(control, "running", |cancel, progress| self.0.document().run(cancel, progress))?;
-        let found = tape_diagnostics(&tape, &result.origins, self.0.document().settings());
+        let made = self.control_tape(machine, control)?;
+        let blocks: Vec<_> = made.tape.blocks.iter().map(|block| block.text.as_str()).collect();
+        let origin: Vec<_> = made.tape.blocks.iter().map(|block| block.isn).collect();
         let (text, tree) = (self.0.text(), self.0.document().tree());
         let (file, lines) = (self.0.document().file().unwrap_or("-"), LineIndex::new(&text));
         let found: Vec<_> =
-            found.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines)).collect();
+            made.diagnostics.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines)).collect();
         Ok(json!({ "machine": machine, "blocks": blocks, "origin": origin, "diagnostics": to_json(&found)? }))
     }
 
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
-        with(control, "running", |cancel, progress| {
-            let tape = self.0.tape(machine, cancel, progress).map_err(tape_refusal)?;
-            let result = self.0.document().run(cancel, progress)?;
-            let found = tape_diagnostics(&tape, &result.origins, self.0.document().settings());
-            Ok(found.iter().map(|one| self.diagnostic(one)).collect())
-        })
+        let made = self.control_tape(machine, control)?;
+        Ok(made.diagnostics.iter().map(|one| self.diagnostic(one)).collect())
     }
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {
         with(control, "running", |cancel, progress| match product {
             Product::ClText => Ok(self.0.cl_text(cancel, progress)?.into_bytes()),
             Product::Cltape => self.0.cl_tape(cancel, progress).map_err(cl_tape_refusal),
-            Product::Tape { machine } => {
-                Ok(self.0.tape(machine, cancel, progress).map_err(tape_refusal)?.text().into_bytes())
+            Product::Tape { machine, punch } => {
+                let tape = self.0.tape(machine, cancel, progress).map_err(tape_refusal)?.tape;
+                match punch {
+                    None => Ok(tape.text().into_bytes()),
+                    Some(code) => apt_ide::tape::punch(&tape, *code)
+                        .map_err(|error| Refusal::Impossible(error.to_string())),
+                }
             }
             Product::Picture(kind) => {
                 let scene = self.0.scene(cancel, progress)?;
-                Ok(match kind {
-                    PictureKind::Html => apt_ide::picture::html(&scene),
-                    PictureKind::Svg => apt_ide::picture::svg(&scene),
+                match kind {
+                    PictureKind::Html => Ok(apt_ide::picture::html(&scene).into_bytes()),
+                    PictureKind::Svg => Ok(apt_ide::picture::svg(&scene).into_bytes()),
+                    PictureKind::Png => apt_ide::picture::png(&scene)
+                        .map_err(|error| Refusal::Impossible(error.to_string())),
                 }
-                .into_bytes())
             }
         })
     }
@@ -337,57 +290,18 @@ fn to_json(value: &impl serde::Serialize) -> Result<Value, Refusal> {
     serde_json::to_value(value).map_err(|error| Refusal::Impossible(error.to_string()))
 }
 
-fn cl_tape_refusal(error: apt_ide::run::ClTapeError) -> Refusal {
-    use apt_ide::run::ClTapeError;
+fn cl_tape_refusal(error: apt_ide::tape::ClTapeError) -> Refusal {
+    use apt_ide::tape::ClTapeError;
     match error {
         ClTapeError::Tape(error) => Refusal::Impossible(error.to_string()),
         ClTapeError::Cancelled(_) => Refusal::Interrupted,
     }
 }
 
-fn tape_refusal(error: apt_ide::run::TapeError) -> Refusal {
-    use apt_ide::run::TapeError;
+fn tape_refusal(error: apt_ide::tape::TapeError) -> Refusal {
+    use apt_ide::tape::TapeError;
     match error {
         TapeError::UnknownMachine { name, known } => Refusal::UnknownMachine { name, known },
         TapeError::Cancelled(_) => Refusal::Interrupted,
-    }
-}
-
-fn outline_entry(entry: apt_ide::outline::OutlineEntry) -> OutlineEntry {
-    use apt_ide::outline::OutlineKind as Kind;
-    OutlineEntry {
-        name: entry.name,
-        detail: entry.detail,
-        kind: match entry.kind {
-            Kind::Part => OutlineKind::Part,
-            Kind::Macro => OutlineKind::Macro,
-            Kind::Loop => OutlineKind::Loop,
-            Kind::Geometry => OutlineKind::Geometry,
-            Kind::Scalar => OutlineKind::Scalar,
-            Kind::Array => OutlineKind::Array,
-            Kind::Tool => OutlineKind::Tool,
-        },
-        range: entry.range,
-        focus: entry.focus,
-        children: entry.children.into_iter().map(outline_entry).collect(),
-    }
-}
-
-fn token_class(class: apt_ide::tokens::TokenClass) -> TokenClass {
-    use apt_ide::tokens::TokenClass as Class;
-    match class {
-        Class::Keyword => TokenClass::Keyword,
-        Class::Modifier => TokenClass::Modifier,
-        Class::Type => TokenClass::Type,
-        Class::Function => TokenClass::Function,
-        Class::Postprocessor => TokenClass::Postprocessor,
-        Class::Macro => TokenClass::Macro,
-        Class::Parameter => TokenClass::Parameter,
-        Class::Variable => TokenClass::Variable,
-        Class::Label => TokenClass::Label,
-        Class::Number => TokenClass::Number,
-        Class::String => TokenClass::String,
-        Class::Operator => TokenClass::Operator,
-        Class::Comment => TokenClass::Comment,
     }
 }

@@ -42,6 +42,10 @@ impl Language for FakeLanguage {
         vec![MachineInfo { name: "toy".into(), title: "A toy".into(), control: "none".into() }]
     }
 
+    fn text_of_binary(&self, _: &[u8]) -> Option<Result<String, String>> {
+        None
+    }
+
     fn explain(&self, code: &str) -> Option<String> {
         (code == "APT0001").then(|| "# APT0001\n\nThe word BAD stands in the program.\n".to_owned())
     }
@@ -203,6 +207,7 @@ impl Document for FakeDocument {
             name,
             kind: "POINT".into(),
             canonical: vec![0.0; 3],
+            meaning: ["x", "y", "z"].map(str::to_owned).to_vec(),
             text: "the origin".into(),
         }))
     }

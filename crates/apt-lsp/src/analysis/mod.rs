@@ -29,6 +29,10 @@ pub(crate) trait Language: Send + Sync + 'static {
     /// The machines a tape can be made for.
     fn machines(&self) -> Vec<MachineInfo>;
 
+    /// The program that bytes in a binary form say as text, or why they cannot be read; nothing for bytes of no form
+    /// that is known.
+    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>>;
+
     /// The page of a diagnostic code, as Markdown.
     fn explain(&self, code: &str) -> Option<String>;
 
@@ -92,7 +96,7 @@ pub(crate) trait Document: Send + Sync {
     /// The tape for a machine, as JSON.
     fn tape(&self, machine: &str, control: &Control) -> Result<serde_json::Value, Refusal>;
 
-    /// What the post-processor finds when it makes the tape for a machine.
+    /// Everything found on the way to the tape of a machine: in the program, and by the post-processor.
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal>;
 
     /// What the run produces, in a form that is written to a file.

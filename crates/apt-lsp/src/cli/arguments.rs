@@ -164,12 +164,24 @@ pub(super) struct PostCall {
     /// Print the machines there are
     #[arg(long)]
     pub list_machines: bool,
+    /// Write the image of the punched tape in this code instead of text
+    #[arg(long, value_enum, value_name = "CODE")]
+    pub punch: Option<Punch>,
     /// Warnings count as findings in the exit code
     #[arg(long)]
     pub deny_warnings: bool,
     /// Write to a file instead of standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+}
+
+/// Codes of punched tape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Punch {
+    /// EIA RS-244, odd parity
+    Eia,
+    /// ISO 840 (ASCII), even parity
+    Iso,
 }
 
 /// `expand`.
@@ -209,7 +221,7 @@ impl Place {
 pub(super) struct ViewCall {
     #[command(flatten)]
     pub program: ProgramArgument,
-    /// The page or picture; its name ends with .html or .svg
+    /// The page or picture; its name ends with .html, .svg or .png
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 }

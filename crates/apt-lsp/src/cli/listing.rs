@@ -54,33 +54,86 @@ fn symbols(text: &mut String, report: &Value) {
     }
 }
 
+/// A table with the columns as wide as their widest entry; the flags tell which are set to the right.
+fn table(text: &mut String, header: &[(&str, bool)], rows: &[Vec<String>]) {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
+        cells.chain([header[column].0.chars().count()]).max().unwrap_or_default()
+    };
+    let widths: Vec<usize> = (0..header.len()).map(width).collect();
+    let head: Vec<String> = header.iter().map(|(name, _)| (*name).to_owned()).collect();
+    for row in std::iter::once(&head).chain(rows) {
+        let mut line = String::new();
+        for ((cell, width), (_, right)) in row.iter().zip(&widths).zip(header) {
+            let _ = if *right { write!(line, "  {cell:>width$}") } else { write!(line, "  {cell:<width$}") };
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+}
+
+/// Longer statements are cut, so that the figures stay in sight (characters).
+const LONGEST_STATEMENT: usize = 44;
+
 fn motions(text: &mut String, report: &Value) {
     let motions = list(&report["motions"]);
     if motions.is_empty() {
         return;
     }
     text.push_str("\nMOTIONS\n");
-    for motion in motions {
-        let verified = if motion["verified"] == true { "verified" } else { "NOT VERIFIED" };
-        let _ = writeln!(
-            text,
-            "  {:>5}  {:<36} {:>6} cut vectors  {verified}{}{}",
+    let header = [
+        ("isn", true),
+        ("statement", false),
+        ("cut vectors", true),
+        ("at least", true),
+        ("ms", true),
+        ("proof", false),
+        ("part surface", false),
+        ("drive surface", false),
+        ("check surface", false),
+    ];
+    let row = |motion: &Value| {
+        let milliseconds =
+            motion["seconds"].as_f64().map_or_else(|| "-".to_owned(), |time| format!("{:.2}", time * 1e3));
+        vec![
             words(&motion["isn"]),
-            words(&motion["statement"]),
+            shortened(&words(&motion["statement"])),
             words(&motion["cut_vectors"]),
-            clearance("part", &motion["part"]),
-            clearance("drive", &motion["drive"]),
-        );
-    }
+            words(&motion["minimum"]),
+            milliseconds,
+            if motion["verified"] == true { "verified" } else { "NOT VERIFIED" }.to_owned(),
+            clearance(&motion["part"]),
+            clearance(&motion["drive"]),
+            clearance(&motion["check"]),
+        ]
+    };
+    table(text, &header, &motions.iter().map(row).collect::<Vec<_>>());
+    let sum: u64 = motions.iter().filter_map(|motion| motion["cut_vectors"].as_u64()).sum();
+    let doubtful = motions.iter().filter(|motion| motion["verified"] != true).count();
+    let proof = match doubtful {
+        0 => "all verified".to_owned(),
+        some => format!("{some} NOT VERIFIED"),
+    };
+    let _ = writeln!(text, "  {}, {}, {proof}", count(motions.len() as u64, "motion"), count(sum, "cut vector"));
 }
 
-fn clearance(name: &str, extremes: &Value) -> String {
-    if extremes.is_null() {
-        return String::new();
+fn count(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+fn shortened(statement: &str) -> String {
+    if statement.chars().count() <= LONGEST_STATEMENT {
+        return statement.to_owned();
     }
-    let end =
-        |end: &str| extremes[end].as_f64().map_or_else(|| "-".to_owned(), |value| format!("{value:+.6}"));
-    format!("  {name} {}..{}", end("min"), end("max"))
+    let kept: String = statement.chars().take(LONGEST_STATEMENT - 1).collect();
+    format!("{kept}…")
+}
+
+/// The least and the greatest signed clearance over the whole of every cut vector.
+fn clearance(extremes: &Value) -> String {
+    let end = |end: &str| {
+        extremes[end].as_f64().map_or_else(|| "-".to_owned(), |value| format!("{:+.DECIMALS$}", value + 0.0))
+    };
+    if extremes.is_null() { "-".to_owned() } else { format!("{} … {}", end("min"), end("max")) }
 }
 
 fn records(text: &mut String, report: &Value) {
@@ -97,7 +150,7 @@ fn records(text: &mut String, report: &Value) {
             }
             "fini" => "FINI".to_owned(),
             // Geometry of a surface; its record has no word of its own.
-            "other" => format!("{} = {}", words(&record["surface"]), numbers(&record["words"])),
+            "other" => format!("{} {}", surface_title(record), numbers(&record["words"])).trim().to_owned(),
             _ => list(&record["words"]).iter().map(words).collect::<Vec<_>>().join(" "),
         };
         let _ = writeln!(text, "  {:>5}  {}", words(&record["isn"]), what.trim_end());
@@ -109,6 +162,19 @@ fn records(text: &mut String, report: &Value) {
             }
             text.push('\n');
         }
+    }
+}
+
+/// Class and subclass of the record that a circle or cylinder leaves before the motion along it.
+const CIRCLE_RECORD: [u64; 2] = [3000, 2];
+
+/// `CIRCLE C1 =` for the record of a surface.
+fn surface_title(record: &Value) -> String {
+    let class: Vec<u64> = list(&record["code"]).iter().filter_map(Value::as_u64).collect();
+    let kind = if class == CIRCLE_RECORD { "CIRCLE" } else { "SURFACE" };
+    match record["surface"].as_str() {
+        Some(name) => format!("{kind} {name} ="),
+        None => format!("{kind} ="),
     }
 }
 
@@ -139,13 +205,18 @@ mod tests {
             "program": "A.apt",
             "symbols": { "C1": { "type": "CIRCLE", "canonical": [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.5] } },
             "motions": [{
-                "isn": 4, "statement": "GOLFT/C1,PAST,L1", "cut_vectors": 2, "verified": true,
-                "part": { "min": -0.0001, "max": 0.0005 }, "drive": null,
+                "isn": 4, "statement": "GOLFT/C1,PAST,L1", "cut_vectors": 2, "verified": true, "minimum": 2,
+                "part": { "min": -0.0001, "max": 0.0005 }, "drive": null, "seconds": 0.00125,
+            }, {
+                "isn": 104, "statement": "GOLFT/(CIRCLE/CENTER,(POINT/1,2,3),RADIUS,4.5),PAST,L1",
+                "cut_vectors": 1, "verified": false, "minimum": null,
+                "check": { "min": -0.0, "max": 0.0 },
             }],
             "cl": [
                 { "isn": 2, "type": "postprocessor", "words": ["SPINDL", 800.0, "CLW"] },
                 { "isn": 3, "type": "from", "points": [[0.0, 0.0, 1.0]] },
                 { "isn": 4, "type": "go", "surface": "C1", "points": [[1.25, 0.0, 0.0], [-2.0, 0.0, 0.0]] },
+                { "isn": 4, "type": "other", "surface": "C1", "code": [3000, 2], "words": [0.0, 1.5] },
                 { "isn": 5, "type": "fini" },
             ],
             "totals": {
@@ -160,7 +231,10 @@ mod tests {
               C1           CIRCLE   0, 0, 0, 0, 0, 1, 2.5
 
             MOTIONS
-                  4  GOLFT/C1,PAST,L1                          2 cut vectors  verified  part -0.000100..+0.000500
+              isn  statement                                     cut vectors  at least    ms  proof         part surface           drive surface  check surface
+                4  GOLFT/C1,PAST,L1                                        2         2  1.25  verified      -0.000100 … +0.000500  -              -
+              104  GOLFT/(CIRCLE/CENTER,(POINT/1,2,3),RADIUS,4…            1         -     -  NOT VERIFIED  -                      -              +0.000000 … +0.000000
+              2 motions, 3 cut vectors, 1 NOT VERIFIED
 
             CUTTER LOCATIONS
                   2  SPINDL 800 CLW
@@ -169,6 +243,7 @@ mod tests {
                   4  GO C1
                          1.250000      0.000000      0.000000
                         -2.000000      0.000000      0.000000
+                  4  CIRCLE C1 = 0, 1.5
                   5  FINI
 
             TOTALS

@@ -3,11 +3,11 @@
 use serde_json::Value;
 
 use super::Outcome;
-use super::arguments::{PostCall, ProgramArgument};
+use super::arguments::{PostCall, ProgramArgument, Punch};
 use super::console::Console;
 use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{Language, Level, Product, Refusal};
+use crate::analysis::{Language, Product, Refusal, TapeCode};
 
 /// Makes the tape of a program.
 pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) -> Outcome {
@@ -23,11 +23,9 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
         return Outcome::Unusable;
     };
     let (control, bar) = console.control(&program.name);
-    let diagnostics = program.document.diagnostics(Level::Motion, &control).map_err(Refusal::from);
-    let both = diagnostics.and_then(|mut found| {
-        found.extend(program.document.tape_diagnostics(&machine, &control)?);
-        Ok((found, program.document.product(&Product::Tape { machine }, &control)?))
-    });
+    let found = program.document.tape_diagnostics(&machine, &control);
+    let product = Product::Tape { machine, punch: call.punch.map(code) };
+    let both = found.and_then(|found| Ok((found, program.document.product(&product, &control)?)));
     bar.finish_and_clear();
     let (diagnostics, tape) = match both {
         Ok(both) => both,
@@ -43,6 +41,13 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
         console.tell(text.trim_end());
     }
     written.max(findings::outcome(&checked, call.deny_warnings))
+}
+
+fn code(punch: Punch) -> TapeCode {
+    match punch {
+        Punch::Eia => TapeCode::Eia,
+        Punch::Iso => TapeCode::Iso,
+    }
 }
 
 /// Prints the machines, one per line.

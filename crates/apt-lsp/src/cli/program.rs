@@ -12,7 +12,7 @@ use super::console::Console;
 use crate::analysis::{Document, Language};
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
-use crate::source;
+use crate::source::{self, Source};
 
 /// Endings of files that are programs when a folder is walked.
 const ENDINGS: [&str; 9] = ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
@@ -53,14 +53,21 @@ impl Program {
     ) -> Option<Self> {
         let from_standard_input = path.as_os_str() == STANDARD_INPUT;
         let name = if from_standard_input { "<stdin>".to_owned() } else { path.display().to_string() };
-        let read = if from_standard_input { source::read_standard_input() } else { source::read_file(path) };
-        let source = match read {
-            Ok(source) => source,
+        let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
+        let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
+            let binary = language.text_of_binary(&bytes).transpose()?;
+            Ok(binary.map_or_else(|| (source::decode(bytes), false), |text| (Source { text, utf8: true }, true)))
+        });
+        let (source, binary) = match understood {
+            Ok(both) => both,
             Err(error) => {
                 console.error(&format!("{name}: {error}"));
                 return None;
             }
         };
+        if binary {
+            console.note(&format!("{name}: a binary CLTAPE; places are those of its text form"));
+        }
         if !source.utf8 {
             console.note(&format!("{name}: not UTF-8; read as Latin-1"));
         }

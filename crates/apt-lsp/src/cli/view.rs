@@ -11,7 +11,7 @@ use crate::analysis::{Language, PictureKind, Product};
 /// Draws the path of a program.
 pub(super) fn view(call: &ViewCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(kind) = kind_of(&call.output) else {
-        console.error(&format!("{}: the name does not end with .html or .svg", call.output.display()));
+        console.error(&format!("{}: the name does not end with .html, .svg or .png", call.output.display()));
         return Outcome::Unusable;
     };
     let Some(program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
@@ -31,6 +31,7 @@ fn kind_of(output: &Path) -> Option<PictureKind> {
     match output.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "html" | "htm" => Some(PictureKind::Html),
         "svg" => Some(PictureKind::Svg),
+        "png" => Some(PictureKind::Png),
         _ => None,
     }
 }

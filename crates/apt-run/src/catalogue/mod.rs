@@ -4,6 +4,7 @@
 //! 04xx labels, loops and macros, 05xx motion statements, 06xx the arithmetic element, 07xx path transformations,
 //! 08xx post-processor statements and tape, 09xx the program as a whole. A code is never given a new meaning.
 
+mod cutter_locations;
 mod definitions;
 mod motion;
 mod names;
@@ -12,6 +13,7 @@ mod postprocessor;
 mod program;
 mod syntax;
 
+use apt_cldata::text::ReadError;
 use apt_geometry::canonical::GeometryKind;
 use apt_post::{PostFinding, Tape};
 use apt_program::{
@@ -113,6 +115,22 @@ pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) ->
     in_order(tape.findings.iter().map(of_post).collect(), settings)
 }
 
+/// What the reader of a CL file says, with the severities of the settings. `origins` has the statement of every line.
+pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
+    let of_line = |error: &ReadError| {
+        let (text, severity) = cutter_locations::word(error);
+        let unknown = || Origin { isn: error.isn.max(1), range: TextRange::default(), frame: None };
+        Diagnostic {
+            wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
+            severity,
+            origin: origins.get(error.line as usize).cloned().unwrap_or_else(unknown),
+            related: Vec::new(),
+            unnecessary: false,
+        }
+    };
+    in_order(errors.iter().map(of_line).collect(), settings)
+}
+
 /// Applies the severities of the settings and sorts by place.
 fn in_order(mut list: Vec<Diagnostic>, settings: &Settings) -> Vec<Diagnostic> {
     list.retain_mut(|diagnostic| match settings.severity.get(diagnostic.wording.code) {
@@ -159,5 +177,53 @@ fn number(value: f64) -> String {
         format!("{value:.6e}")
     } else {
         rounded.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_as_people_write_them() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (2.0, "2"),
+            (100.0, "100"),
+            (-0.25, "-0.25"),
+            (1.0 / 3.0, "0.333333333"),
+            (0.000_01, "1.000000e-5"),
+            (-0.000_1, "-0.0001"),
+            (2e12, "2.000000e12"),
+            (0.1 + 0.2, "0.3"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value), text, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn types_get_their_article() {
+        assert_eq!(a_kind(GeometryKind::Line), "a LINE");
+        assert_eq!(a_kind(GeometryKind::Ellipse), "an ELLIPS");
+        assert_eq!(a_kind(GeometryKind::TabulatedCylinder), "a TABCYL");
+    }
+
+    #[test]
+    fn similar_names_are_offered_as_a_question() {
+        let names = ["P1", "P2", "P3"].map(SmolStr::new_static);
+        assert_eq!(similar(&[]), None);
+        assert_eq!(similar(&names[..1]).as_deref(), Some("did you mean P1?"));
+        assert_eq!(similar(&names[..2]).as_deref(), Some("did you mean P1 or P2?"));
+        assert_eq!(similar(&names).as_deref(), Some("did you mean one of P1, P2, P3?"));
+    }
+
+    #[test]
+    fn a_hint_gives_way_to_a_better_one_only() {
+        let text = say("APT0101", "x").hint("general").maybe(None);
+        assert_eq!(text.hint.as_deref(), Some("general"));
+        let text = say("APT0101", "x").hint("general").maybe(Some("special".to_owned()));
+        assert_eq!(text.hint.as_deref(), Some("special"));
     }
 }

@@ -25,7 +25,7 @@ fn diagnostic(program: &Program, found: &Diagnostic) -> Value {
     );
     json!({
         "code": found.code,
-        "severity": found.severity.name(),
+        "severity": found.severity,
         "message": found.message,
         "isn": found.isn,
         "apt3": found.apt3,

@@ -1,0 +1,248 @@
+//! The control tape: of a program, which is run first, or of the text of a CL file, which is read.
+
+use apt_cldata::{codes::CodeTable, record::ClRecord, text::read_text};
+use apt_post::{MachineDefinition, PostOptions, Tape};
+use apt_run::{
+    catalogue,
+    diagnostic::Diagnostic,
+    document::Level,
+    settings::{Settings, Units},
+};
+use apt_program::Origin;
+use apt_syntax::{
+    TextRange, TextSize,
+    dialect::DialectName,
+    vocabulary::{self, WordClass},
+};
+
+pub use apt_post::{
+    MachineInfo,
+    punch::{Code as TapeCode, PunchError},
+};
+
+use crate::{Analysis, Cancel, Cancelled};
+
+/// Why a tape cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TapeError {
+    /// There is no machine of this name.
+    #[error("there is no machine {name}; there are {}", known.join(", "))]
+    UnknownMachine {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Why a binary CLTAPE cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ClTapeError {
+    /// A record does not fit the tape.
+    #[error(transparent)]
+    Tape(#[from] apt_cldata::cltape::TapeWriteError),
+    /// The run was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A control tape with everything found on the way to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlTape {
+    /// The tape; its blocks name the statements they come from.
+    pub tape: Tape,
+    /// What was found in the program or CL file, and then by the post-processor.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The machines that come with the program.
+pub fn machines() -> Vec<MachineInfo> {
+    apt_post::machines()
+}
+
+/// The definition of a machine that comes with the program.
+///
+/// # Errors
+///
+/// [`TapeError::UnknownMachine`].
+pub fn machine(name: &str) -> Result<MachineDefinition, TapeError> {
+    apt_post::machine(name).map_err(|_| TapeError::UnknownMachine {
+        name: name.to_owned(),
+        known: machines().into_iter().map(|machine| machine.name).collect(),
+    })
+}
+
+/// The image of a tape as a punch makes it.
+///
+/// # Errors
+///
+/// The first character that the code lacks.
+pub fn punch(tape: &Tape, code: TapeCode) -> Result<Vec<u8>, PunchError> {
+    apt_post::punch::punch(&tape.text(), code)
+}
+
+/// The records that a tape is made of, with their origins.
+struct Source {
+    records: Vec<ClRecord>,
+    origins: Vec<Origin>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Analysis {
+    /// The control tape for a machine. The text of a CL file (dialect `cl`) is read as it stands; any other program
+    /// is run.
+    ///
+    /// # Errors
+    ///
+    /// [`TapeError`] when there is no such machine or the run was cancelled.
+    pub fn tape(
+        &self,
+        machine_name: &str,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<ControlTape, TapeError> {
+        let machine = machine(machine_name)?;
+        let settings = self.document().settings();
+        let source = match self.document().dialect() {
+            DialectName::Cl => self.read_cutter_locations(cancel)?,
+            _ => self.run_to_cutter_locations(cancel, progress)?,
+        };
+        let tape = apt_post::post(&source.records, &machine, &options(settings));
+        if cancel() {
+            return Err(Cancelled.into());
+        }
+        let mut diagnostics = source.diagnostics;
+        diagnostics.extend(catalogue::tape_diagnostics(&tape, &source.origins, settings));
+        Ok(ControlTape { tape, diagnostics })
+    }
+
+    fn run_to_cutter_locations(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Source, Cancelled> {
+        let diagnostics = self.document().diagnostics(Level::Motion, cancel, progress)?;
+        let result = self.document().run(cancel, progress)?;
+        Ok(Source { records: result.records.clone(), origins: result.origins.clone(), diagnostics })
+    }
+
+    /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
+    fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
+        let text = self.text();
+        let (mut records, errors) = read_text(&text);
+        if cancel() {
+            return Err(Cancelled);
+        }
+        let origins = self.origins_of_lines(&text);
+        for record in &mut records {
+            if let Some(origin) = origins.get(record.source as usize) {
+                record.isn = origin.isn;
+            }
+        }
+        let diagnostics = catalogue::read_diagnostics(&errors, &origins, self.document().settings());
+        Ok(Source { records, origins, diagnostics })
+    }
+
+    /// For every line of the text, the statement that it begins or goes on with.
+    fn origins_of_lines(&self, text: &str) -> Vec<Origin> {
+        let tree = self.document().tree();
+        let mut origins = Vec::new();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let view = tree.statement(tree.statement_at(TextSize::new(start)));
+            let length = view.text().trim_end().len() as u32;
+            let range = TextRange::new(TextSize::new(0), TextSize::new(length));
+            origins.push(Origin { isn: view.isn(), range, frame: None });
+            start += line.len() as u32;
+        }
+        origins
+    }
+
+    /// The CL file as APT text (`GOTO/…`).
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn cl_text(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<String, Cancelled> {
+        let result = self.document().run(cancel, progress)?;
+        Ok(apt_cldata::text::write_text(&result.records, &apt_cldata::text::TextOptions::default()))
+    }
+
+    /// The CL file as the binary CLTAPE of APT III.
+    ///
+    /// # Errors
+    ///
+    /// [`ClTapeError`] when the run was cancelled or a record does not fit the tape.
+    pub fn cl_tape(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<u8>, ClTapeError> {
+        let result = self.document().run(cancel, progress)?;
+        Ok(apt_cldata::cltape::write_tape(&result.records, &code_table())?)
+    }
+}
+
+/// The unit of a program that does not say it is that of the settings.
+fn options(settings: &Settings) -> PostOptions {
+    let default_units = match settings.units {
+        Units::Inch => apt_cldata::record::Units::Inches,
+        Units::Mm => apt_cldata::record::Units::Millimeters,
+    };
+    PostOptions { default_units, ..PostOptions::default() }
+}
+
+/// The text of a binary CLTAPE: a CL file that says the same. `None` for bytes that are none.
+///
+/// # Errors
+///
+/// Why bytes that begin like a tape cannot be read.
+pub fn text_of_cl_tape(bytes: &[u8]) -> Option<Result<String, apt_cldata::cltape::TapeReadError>> {
+    use apt_cldata::{cltape, text};
+    cltape::is_tape(bytes).then(|| {
+        let contents = cltape::read_tape(bytes, &code_table())?;
+        // What the tape has and CL text has not is told as remarks, so that nothing is lost in silence.
+        let mut out = text::write_text(&contents.records, &text::TextOptions::default());
+        for note in &contents.notes {
+            out.push_str(&format!("$$ NOT READ: {}\n", note_text(note)));
+        }
+        Ok(out)
+    })
+}
+
+fn note_text(note: &apt_cldata::cltape::TapeNote) -> String {
+    use apt_cldata::cltape::TapeNote as Note;
+    match note {
+        Note::Skipped { serial, class, subclass } => format!("RECORD {serial} OF CLASS {class} {subclass}"),
+        Note::UnknownCode { serial, code } => format!("CODE {code} IN RECORD {serial}"),
+        Note::WrongCount { serial, count } => format!("RECORD {serial} WITH {count} WORDS"),
+    }
+}
+
+/// The codes of the vocabulary for binary CL records.
+fn code_table() -> CodeTable {
+    let mut table = CodeTable::new();
+    for word in vocabulary::words() {
+        let Some(code) = word.code else { continue };
+        match word.class {
+            WordClass::Postprocessor
+            | WordClass::PostprocessorBare
+            | WordClass::Text
+            | WordClass::Transformation => {
+                table.major(word.spelling, code);
+            }
+            WordClass::Minor => {
+                table.minor(word.spelling, code);
+            }
+            _ => {}
+        }
+    }
+    table
+}
