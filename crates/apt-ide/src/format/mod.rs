@@ -1,0 +1,220 @@
+//! The formatter: gives statements one look and never another meaning.
+//!
+//! Every statement is laid out on the records that its author chose: letters, blanks, labels and the indentation of macro
+//! bodies and loops follow the style, elements stay in their order. What comes out is read again before it is offered:
+//! if its elements, comments or sequence fields are not those of before, the statement stays as it is and the reason is
+//! told. Statements are neither made nor removed, as their numbers name places in listings; blank lines stay.
+//!
+//! `$$ apt-lsp: format off` and `$$ apt-lsp: format on` enclose what is left alone.
+
+mod align;
+mod edits;
+mod line;
+mod options;
+mod record;
+mod structure;
+mod verify;
+mod wrap;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use apt_syntax::{Dialect, SyntaxTree, record::Layout, tree::StatementView};
+
+pub use options::{FormatOptions, LAST_STATEMENT_COLUMN, LetterCase};
+
+use line::Line;
+use record::Division;
+
+/// One replacement: bytes of the old text, and what takes their place.
+pub type Edit = (Range<usize>, String);
+
+/// Why a statement stays as it is although it is not between marks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum KeptReason {
+    /// It has a character that belongs to no element, or a malformed number.
+    #[error("a character does not belong to the language")]
+    IllegalCharacter,
+    /// A sequence number stands before it (PostWorks).
+    #[error("a sequence number stands before the statement")]
+    SequenceNumber,
+    /// It shares its line with another statement.
+    #[error("another statement stands on the same line")]
+    SharedLine,
+    /// In its new form it would not fit before the sequence field.
+    #[error("the statement would reach column {}", LAST_STATEMENT_COLUMN + 1)]
+    TooLong,
+    /// In its new form it would be read otherwise.
+    #[error("the statement would be read otherwise")]
+    ReadOtherwise,
+    /// The new lines would change whether columns 73-80 of the file count as sequence fields.
+    #[error("columns 73-80 of the file would be read otherwise")]
+    SequenceFields,
+}
+
+/// A statement that stays as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kept {
+    /// The index of the statement.
+    pub statement: usize,
+    /// Why.
+    pub reason: KeptReason,
+}
+
+/// What formatting a program would do.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Plan {
+    /// The edits in order of the text; they do not overlap.
+    pub edits: Vec<Edit>,
+    /// Statements that could not be given the style.
+    pub kept: Vec<Kept>,
+}
+
+/// The edits that give a program the style, in order and without overlap; empty if it has it.
+pub fn format(tree: &SyntaxTree, options: &FormatOptions) -> Vec<Edit> {
+    plan(tree, options).edits
+}
+
+/// The edits of the statements that a range (bytes) touches.
+pub fn format_range(tree: &SyntaxTree, range: Range<usize>, options: &FormatOptions) -> Vec<Edit> {
+    if tree.statement_count() == 0 {
+        return Vec::new();
+    }
+    let at = |offset: usize| {
+        tree.statement_at(apt_syntax::TextSize::new(u32::try_from(offset).unwrap_or(u32::MAX)))
+    };
+    // A selection of whole lines ends at the start of the next one, which does not belong to it.
+    let last = at(if range.end > range.start { range.end - 1 } else { range.end });
+    plan_of(tree, at(range.start)..=last, options).edits
+}
+
+/// The text in the style. For every text of a dialect the result of a second call is that of the first.
+pub fn format_text(text: &str, dialect: Dialect, options: &FormatOptions) -> String {
+    let tree = SyntaxTree::parse(text, dialect);
+    applied(text, &format(&tree, options))
+}
+
+/// A text with edits in order of the text applied to it.
+pub fn applied(text: &str, edits: &[Edit]) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut end = 0;
+    for (range, insert) in edits {
+        out.push_str(text.get(end..range.start).unwrap_or(""));
+        out.push_str(insert);
+        end = range.end;
+    }
+    out.push_str(text.get(end..).unwrap_or(""));
+    out
+}
+
+/// What formatting the whole program would do, with what it has to leave.
+pub fn plan(tree: &SyntaxTree, options: &FormatOptions) -> Plan {
+    plan_of(tree, 0..=tree.statement_count(), options)
+}
+
+/// A statement with its new lines, none for one that stays.
+struct Laid {
+    view: StatementView,
+    lines: Vec<Line>,
+}
+
+fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: &FormatOptions) -> Plan {
+    let layout = tree.layout();
+    let mut plan = Plan::default();
+    let mut shared = false;
+    let mut all = Vec::with_capacity(tree.statement_count());
+    for (view, place) in tree.statements().zip(structure::places(tree)) {
+        let text = view.text();
+        let begins_inside_line = std::mem::replace(&mut shared, !text.ends_with(['\n', '\r']));
+        let laid = match (place.off, begins_inside_line) {
+            (true, _) => Ok(Vec::new()),
+            (false, true) => Err(KeptReason::SharedLine),
+            (false, false) => laid_out(text, place.depth, options, &layout),
+        };
+        let lines = laid.unwrap_or_else(|reason| {
+            if wanted.contains(&view.index) {
+                plan.kept.push(Kept { statement: view.index, reason });
+            }
+            Vec::new()
+        });
+        all.push(Laid { view, lines });
+    }
+    for (view, new) in written(&all, options, &layout) {
+        if wanted.contains(&view.index) {
+            plan.edits.extend(edits::between(view.text(), &new, usize::from(view.start)));
+        }
+    }
+    if !reads_the_same(tree, &plan.edits) {
+        let statement = *wanted.start();
+        return Plan {
+            edits: Vec::new(),
+            kept: vec![Kept { statement, reason: KeptReason::SequenceFields }],
+        };
+    }
+    plan
+}
+
+/// The lines of a statement; none if it is to stay as it is.
+fn laid_out(
+    text: &str,
+    depth: usize,
+    options: &FormatOptions,
+    layout: &Layout,
+) -> Result<Vec<Line>, KeptReason> {
+    let records = match record::divide(text, layout) {
+        Division::Records(records) => records,
+        Division::Verbatim => return Ok(Vec::new()),
+        Division::Kept(reason) => return Err(reason),
+    };
+    let lines = line::lines(&records, depth, options, layout);
+    if lines.iter().any(|line| line.length(line.own_column()) > line.limit(layout)) {
+        return Err(KeptReason::TooLong);
+    }
+    let mut new = String::with_capacity(text.len());
+    for line in &lines {
+        line.write(line.own_column(), &mut new);
+    }
+    if new == text || verify::same_statement(text, &new, layout) {
+        Ok(lines)
+    } else {
+        Err(KeptReason::ReadOtherwise)
+    }
+}
+
+/// The new texts of the statements that have new lines.
+fn written<'a>(
+    all: &'a [Laid],
+    options: &FormatOptions,
+    layout: &Layout,
+) -> Vec<(&'a StatementView, String)> {
+    // A statement that stays divides its neighbours, as an empty line does.
+    let lines = all.iter().flat_map(|laid| {
+        let none = laid.lines.is_empty().then_some(None);
+        laid.lines.iter().map(Some).chain(none)
+    });
+    let mut columns = align::columns(lines, options.align_comments, layout).into_iter();
+    let mut texts = Vec::new();
+    for laid in all {
+        if laid.lines.is_empty() {
+            columns.next();
+            continue;
+        }
+        let mut text = String::with_capacity(laid.view.text().len());
+        for line in &laid.lines {
+            line.write(columns.next().unwrap_or_else(|| line.own_column()), &mut text);
+        }
+        texts.push((&laid.view, text));
+    }
+    texts
+}
+
+/// Whether the edited text has as many statements and the same columns as before.
+fn reads_the_same(tree: &SyntaxTree, edits: &[Edit]) -> bool {
+    if edits.is_empty() {
+        return true;
+    }
+    let new = SyntaxTree::parse(&applied(&tree.text(), edits), tree.dialect());
+    new.statement_count() == tree.statement_count() && new.sequence_field() == tree.sequence_field()
+}
