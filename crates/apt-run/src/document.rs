@@ -17,6 +17,7 @@ use apt_syntax::{
 use crate::{
     Cancel, Cancelled, catalogue,
     diagnostic::Diagnostic,
+    include::FolderResolver,
     memo::MotionMemo,
     pipeline::{RunResult, run},
     report::{Report, ReportInput, report},
@@ -151,7 +152,7 @@ impl Document {
         if let Some(program) = self.program.get() {
             return Ok(Arc::clone(program));
         }
-        let options = Options::from(&*self.settings);
+        let options = self.options();
         let program = match &self.basis {
             Some(basis) => basis.program.update(&self.tree, &basis.change, &options, &cancel),
             None => evaluate(&self.tree, &options, &cancel),
@@ -160,6 +161,13 @@ impl Document {
             return Err(Cancelled);
         }
         Ok(Arc::clone(self.program.get_or_init(|| Arc::new(program))))
+    }
+
+    /// The settings as Section 1 takes them, with the folders that INCLUD searches.
+    fn options(&self) -> Options {
+        let dialect = self.tree.dialect();
+        let resolver = FolderResolver::new(self.file(), &self.settings.include, dialect);
+        Options { include: Some(resolver), ..Options::from(&*self.settings) }
     }
 
     /// Sections 1 to 3. `progress` gets the number of records done and to do.

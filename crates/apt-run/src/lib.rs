@@ -6,6 +6,7 @@
 pub mod catalogue;
 pub mod diagnostic;
 pub mod document;
+mod include;
 pub mod memo;
 pub mod pipeline;
 pub mod position;

@@ -138,3 +138,73 @@ fn content_hash(state: &State, command: &MotionCommand) -> u64 {
     let _ = write!(sink, "{state:?}{command:?}");
     sink.0.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use arelem::section2::execute;
+
+    use super::*;
+
+    fn ask(memo: &MotionMemo, state: &State, limit: u32) -> Arc<ComputedMotion> {
+        let command = MotionCommand::MaximumPoints(limit);
+        let compute = || Some((execute(state, &command, &|| false), None, 0.0));
+        memo.get_or_compute(state, &command, compute).unwrap()
+    }
+
+    #[test]
+    fn the_same_command_in_the_same_state_is_computed_once() {
+        let (memo, state) = (MotionMemo::default(), State::new(1.0));
+        memo.begin_run();
+        let first = ask(&memo, &state, 5);
+        let second = ask(&memo.clone(), &state.clone(), 5);
+        assert!(Arc::ptr_eq(&first, &second));
+        assert_eq!(memo.counters(), MemoCounters { reused: 1, computed: 1 });
+    }
+
+    #[test]
+    fn another_command_and_another_state_are_computed_anew() {
+        let (memo, state) = (MotionMemo::default(), State::new(1.0));
+        memo.begin_run();
+        let first = ask(&memo, &state, 5);
+        let other = ask(&memo, &state, 6);
+        assert!(!Arc::ptr_eq(&first, &other));
+        let later = ask(&memo, &first.execution.state, 5);
+        assert!(!Arc::ptr_eq(&first, &later));
+        assert_eq!(memo.counters(), MemoCounters { reused: 0, computed: 3 });
+    }
+
+    #[test]
+    fn what_was_cancelled_is_not_remembered() {
+        let (memo, state) = (MotionMemo::default(), State::new(1.0));
+        memo.begin_run();
+        let command = MotionCommand::MaximumPoints(5);
+        assert!(memo.get_or_compute(&state, &command, || None).is_none());
+        assert_eq!(memo.counters(), MemoCounters::default());
+        ask(&memo, &state, 5);
+        assert_eq!(memo.counters(), MemoCounters { reused: 0, computed: 1 });
+    }
+
+    #[test]
+    fn a_motion_is_forgotten_when_no_run_uses_it() {
+        let (memo, state) = (MotionMemo::default(), State::new(1.0));
+        memo.begin_run();
+        ask(&memo, &state, 5);
+        ask(&memo, &state, 6);
+        for _ in 0..RUNS_KEPT {
+            memo.begin_run();
+            ask(&memo, &state, 5);
+        }
+        let before = memo.counters();
+        ask(&memo, &state, 6);
+        assert_eq!(memo.counters().reused, before.reused + 1, "still there after {RUNS_KEPT} runs");
+        for _ in 0..=RUNS_KEPT {
+            memo.begin_run();
+            ask(&memo, &state, 5);
+        }
+        let before = memo.counters();
+        ask(&memo, &state, 6);
+        assert_eq!(memo.counters().computed, before.computed + 1, "forgotten");
+        ask(&memo, &state, 5);
+        assert_eq!(memo.counters().reused, before.reused + 1, "kept, because every run used it");
+    }
+}

@@ -75,12 +75,7 @@ fn of_program(finding: &Finding) -> Diagnostic {
     let related =
         finding.related.iter().map(|(kind, origin)| (related(*kind).to_owned(), origin.clone())).collect();
     Diagnostic {
-        wording: Wording {
-            code: text.code,
-            message: text.message,
-            hint: text.hint,
-            apt3: finding.kind.apt3(),
-        },
+        wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: finding.number },
         severity,
         origin: finding.origin.clone(),
         related,
@@ -169,8 +164,10 @@ fn a_kind(kind: GeometryKind) -> String {
     format!("{article} {word}")
 }
 
-/// A number in a message: nine significant digits at most.
+/// A number in a message: nine decimals at most, with an exponent where these would show little or nothing.
 fn number(value: f64) -> String {
+    // The sum turns -0 into 0.
+    let value = value + 0.0;
     let text = format!("{value:.9}");
     let rounded = text.trim_end_matches('0').trim_end_matches('.');
     if value != 0.0 && (value.abs() < 1e-4 || value.abs() >= 1e12) {

@@ -192,21 +192,21 @@ fn path(failure: &Failure) -> Text {
         Failure::NeverMet { relation: wanted, nearest, at, .. } => say(
             "APT0641",
             format!(
-                "the check surface is never met: the nearest approach to {} is {} at {}",
+                "the surface to stop at is never met: the nearest approach to {} is {} at {}",
                 relation(*wanted),
                 number(*nearest),
                 place(at)
             ),
         )
-        .hint("check the direction word and the check surface"),
+        .hint("check the direction and the surface"),
         Failure::NoneAhead { relation: wanted, found, .. } => {
             let there = match found {
                 0 => "there is no such position elsewhere".to_owned(),
                 1 => "there is one position elsewhere".to_owned(),
                 _ => format!("there are {found} positions elsewhere"),
             };
-            say("APT0642", format!("there is no position {} the check surface ahead", relation(*wanted)))
-                .hint(format!("{there}; the direction word may be wrong, or TO and PAST exchanged"))
+            say("APT0642", format!("ahead there is no position {} the surface to stop at", relation(*wanted)))
+                .hint(format!("{there}; the direction may be wrong, or TO and PAST exchanged"))
         }
         Failure::NotTangent { gap, .. } => say(
             "APT0643",
@@ -370,7 +370,20 @@ fn unverified(evidence: &Evidence) -> Text {
 }
 
 fn not_judged(error: &VerifyError) -> Text {
-    say("APT0681", "the verifier could not judge this motion").hint(error.to_string())
+    let why = match error {
+        VerifyError::Cancelled => "the verification was cancelled".to_owned(),
+        VerifyError::Unsupported { kind } => format!("it has no method for {}", a_kind(*kind)),
+        VerifyError::Degenerate { kind } => {
+            format!("the canonical form of {} describes no surface", a_kind(*kind))
+        }
+        VerifyError::Cutter => "the numbers of the cutter describe no convex tool".to_owned(),
+        VerifyError::NotFinite => "a number of the path is too large, or not a number".to_owned(),
+        VerifyError::NoDistance { vector } => {
+            format!("no distance to a surface is found on cut vector {}", vector + 1)
+        }
+        VerifyError::Empty => "the path has no positions".to_owned(),
+    };
+    say("APT0681", "the verifier could not judge this motion").hint(why)
 }
 
 fn edit(kind: &EditErrorKind) -> Text {

@@ -1,4 +1,5 @@
-//! The page of each code: what it means, a wrong and a right sample. The text is in `pages.toml`.
+//! The page of each code: what it means, a wrong and a right sample. The texts are in the folder `pages`, one file for
+//! each group of codes.
 
 use std::sync::LazyLock;
 
@@ -31,9 +32,24 @@ struct File {
     page: Vec<Page>,
 }
 
+/// The files, in the order of their codes.
+const FILES: [&str; 10] = [
+    include_str!("pages/syntax.toml"),
+    include_str!("pages/names.toml"),
+    include_str!("pages/definitions.toml"),
+    include_str!("pages/blocks.toml"),
+    include_str!("pages/motion.toml"),
+    include_str!("pages/element.toml"),
+    include_str!("pages/path.toml"),
+    include_str!("pages/reading.toml"),
+    include_str!("pages/tape.toml"),
+    include_str!("pages/program.toml"),
+];
+
 static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {
-    // The file is part of the program and a test reads it; a reader of a broken file would see no pages.
-    toml::from_str::<File>(include_str!("pages.toml")).map(|file| file.page).unwrap_or_default()
+    // The files are part of the program and a test reads them; a reader of a broken file would miss its pages.
+    let read = |text: &&str| toml::from_str::<File>(text).map(|file| file.page).unwrap_or_default();
+    FILES.iter().flat_map(read).collect()
 });
 
 /// All pages, in order of their codes.

@@ -186,8 +186,8 @@ fn whole(kind: &Kind) -> Text {
         Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
         Kind::Unreachable => say("APT0903", "this statement is never reached"),
         Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),
-        Kind::NotInDialect { word } => say("APT0905", format!("{word} is not part of this dialect"))
-            .hint("set the dialect in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),
+        Kind::NotInDialect { word } => say("APT0905", format!("{word} is not supported in this dialect"))
+            .hint("another dialect is set in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),
         Kind::IncludeNotFound { name } => say("APT0906", format!("{name} cannot be found"))
             .hint("the setting include lists the folders that are searched"),
         // The other groups have taken the rest.

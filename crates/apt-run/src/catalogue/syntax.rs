@@ -48,7 +48,7 @@ fn lexical(kind: &Kind) -> Option<Text> {
 fn statement(kind: &Kind) -> Option<Text> {
     Some(match kind {
         Kind::BadStatementStart => say("APT0010", "a statement begins with a name or a word of the language")
-            .hint("perhaps the line before should end with $ to be continued"),
+            .hint("perhaps the line before should end with $ to be continued; in a macro, a variable that stands for a number cannot be given another value"),
         Kind::TooManyElements { count, limit } => {
             say("APT0011", format!("the statement has {count} elements; this dialect takes {limit}"))
                 .hint("split the statement")
@@ -110,6 +110,9 @@ fn list(kind: &Kind) -> Text {
         Kind::EmptyPosition => say("APT0042", "there is nothing between these commas"),
         Kind::UnexpectedMark(mark) => say("APT0043", format!("{mark} cannot stand here")),
         Kind::MissingParameters => say("APT0044", "parameters are missing after the slash"),
+        Kind::UnknownFunction(name) => say("APT0046", format!("there is no function {name}")).hint(
+            "an array takes one subscript; later functions such as MAXF exist in the dialects free and apt4",
+        ),
         Kind::BadInclusiveSubscript => say("APT0045", "the inclusive subscript is badly formed")
             .hint("its forms are (a,THRU,b), (ALL), (a,THRU,ALL), with INCR or DECR and a step at the end"),
         Kind::MacroForm => say("APT0050", "a macro begins with name=MACRO/variables"),

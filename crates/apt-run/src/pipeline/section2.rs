@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use apt_cldata::{
     edit::EditItem,
-    record::{ClKind, ClPoint, ClRecord, ClWord},
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
 };
 use apt_geometry::{
     canonical::Geometry,
@@ -12,6 +12,7 @@ use apt_geometry::{
 };
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use arelem::{
+    error::MotionWarning,
     section2::{Execution, Output, State, execute},
     sequence::{CutSequence, ToolPosition},
     verify::{Evidence, VerifyError, verify},
@@ -86,6 +87,11 @@ impl<'a> Section2<'a> {
         let source = self.source(&record.origin);
         match &record.kind {
             RecordKind::Motion(command) => return self.command(command, &record.origin, source),
+            RecordKind::Postprocessor { word, arguments, .. } if units(word, arguments).is_some() => {
+                if let Some(units) = units(word, arguments) {
+                    self.push(record.origin.isn, source, ClKind::Units(units));
+                }
+            }
             RecordKind::Postprocessor { word, code, arguments } => {
                 let arguments = arguments.iter().flat_map(cl_words).collect();
                 let kind = ClKind::Postprocessor { word: word.clone(), code: Some(*code), arguments };
@@ -129,6 +135,8 @@ impl<'a> Section2<'a> {
                     ClKind::Control { word: word.clone(), code: *code, arguments },
                 );
             }
+            // Section 1 has said why there is no motion here.
+            RecordKind::Gap => {}
             RecordKind::Transfer(label) => self.transfer = Some((label.clone(), record.origin.clone())),
             RecordKind::End => {
                 self.pending_transfer();
@@ -179,7 +187,9 @@ impl<'a> Section2<'a> {
 
     fn take(&mut self, execution: Execution, command: &MotionCommand, origin: &Origin, source: u32) {
         self.state = execution.state;
-        let warnings = execution.warnings.into_iter().map(RunFindingKind::Warning);
+        // Section 1 has told of a negative tolerance, where the statement stands.
+        let is_news = |warning: &MotionWarning| !matches!(warning, MotionWarning::NegativeTolerance { .. });
+        let warnings = execution.warnings.into_iter().filter(is_news).map(RunFindingKind::Warning);
         let failure = execution.failure.map(RunFindingKind::Failure);
         for kind in warnings.chain(failure) {
             self.output.findings.push(RunFinding { kind, origin: origin.clone() });
@@ -336,6 +346,18 @@ fn control(word: &str, code: [u16; 2], numbers: &[f64]) -> ClKind {
 
 fn per_role(values: &PerRole) -> [f64; 4] {
     [values.part, values.drive, values.check[0], values.check[1]]
+}
+
+/// The unit that UNITS/… names, where a CL file has a record for it.
+fn units(word: &str, arguments: &[PostArgument]) -> Option<Units> {
+    match (word, arguments) {
+        ("UNITS", [PostArgument::Word(unit, _)]) => match unit.as_str() {
+            "MM" => Some(Units::Millimeters),
+            "INCH" | "INCHES" | "IN" => Some(Units::Inches),
+            _ => None,
+        },
+        _ => None,
+    }
 }
 
 /// A canonical form goes into the record as its numbers.

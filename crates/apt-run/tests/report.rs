@@ -1,0 +1,128 @@
+//! The JSON of a run has the shape that scripts and editors rely on.
+
+use std::{collections::BTreeSet, sync::Arc};
+
+use apt_run::{document::Document, settings::Settings};
+use serde_json::{Value, json};
+
+const PROGRAM: &str = "\
+PARTNO SAMPLE
+CUTTER/.5
+OUTTOL/.001
+C1=CIRCLE/0,0,2
+L1=LINE/XAXIS
+A=-0.
+HOLE=MACRO/X
+GOTO/X,P9,0
+TERMAC
+SPINDL/1000,CLW
+MULTAX/ON
+MULTAX/OFF
+FROM/5,-.5,0
+GO/TO,C1
+TLLFT,GOLFT/C1,$
+ON,L1
+CALL/HOLE,X=1
+FINI
+";
+
+fn report(text: &str, statements: Option<std::ops::RangeInclusive<u32>>) -> Value {
+    let settings = Settings { dialect: Some("free".to_owned()), ..Settings::default() };
+    let document = Document::new(text, Some("sample.apt".to_owned()), &Arc::new(settings));
+    let report = document.report(&|| false, &mut |_, _| {}, statements).unwrap();
+    serde_json::to_value(report).unwrap()
+}
+
+fn keys(value: &Value) -> BTreeSet<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn the_report_has_its_fixed_fields() {
+    let value = report(PROGRAM, None);
+    assert!(
+        keys(&value)
+            .is_superset(&["program", "ok", "diagnostics", "symbols", "cl", "motions", "totals"].into())
+    );
+    assert_eq!(value["program"], json!("sample.apt"));
+    assert_eq!(value["ok"], json!(false));
+    let totals = ["points", "length", "cut_length", "rapid_length", "time_minutes", "box"];
+    assert_eq!(keys(&value["totals"]), totals.into());
+    assert!(value["totals"]["box"][0].as_array().unwrap().len() == 3);
+    assert_eq!(report("A=1\nFINI\n", None)["totals"]["box"], Value::Null, "no path, no box");
+}
+
+#[test]
+fn a_diagnostic_says_where_it_is_and_how_it_came_there() {
+    let value = report(PROGRAM, None);
+    let errors: Vec<&Value> = value["diagnostics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|diagnostic| diagnostic["severity"] == "error")
+        .collect();
+    let [error] = errors.as_slice() else { panic!("{errors:?}") };
+    let fields = ["code", "severity", "message", "isn", "apt3", "file", "range", "origin", "related", "hint"];
+    assert_eq!(keys(error), fields.into());
+    assert_eq!(error["code"], "APT0101");
+    assert_eq!(error["isn"], 8);
+    assert_eq!(error["apt3"], 101);
+    assert_eq!(error["file"], "sample.apt");
+    let place = json!({ "start": { "line": 7, "character": 7 }, "end": { "line": 7, "character": 9 } });
+    assert_eq!(error["range"], place);
+    assert_eq!(error["origin"], json!([{ "kind": "macro", "name": "HOLE", "isn": 16, "turn": 1 }]));
+}
+
+#[test]
+fn symbols_and_numbers_are_canonical() {
+    let value = report(PROGRAM, None);
+    assert_eq!(value["symbols"]["C1"]["type"], "CIRCLE");
+    assert_eq!(value["symbols"]["C1"]["canonical"], json!([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0]));
+    assert_eq!(value["symbols"]["A"]["canonical"], json!([0.0]));
+    assert!(!value.to_string().contains("-0.0,") && !value.to_string().contains("-0.0]"), "{value}");
+}
+
+#[test]
+fn cl_records_have_their_types() {
+    let value = report(PROGRAM, None);
+    let list = value["cl"].as_array().unwrap();
+    let types: BTreeSet<&str> = list.iter().map(|entry| entry["type"].as_str().unwrap()).collect();
+    assert_eq!(types, ["postprocessor", "control", "mode", "from", "go", "other", "fini"].into());
+    for entry in list {
+        let allowed = ["isn", "type", "surface", "words", "code", "points"].into();
+        assert!(keys(entry).is_subset(&allowed), "{entry}");
+    }
+    let spindle = list.iter().find(|entry| entry["words"][0] == "SPINDL").unwrap();
+    assert_eq!(spindle["words"], json!(["SPINDL", 1000.0, "CLW"]));
+    let cutter = list.iter().find(|entry| entry["words"][0] == "CUTTER").unwrap();
+    assert_eq!((&cutter["type"], &cutter["code"]), (&json!("control"), &json!([6000, 6])));
+    assert_eq!(list.last().unwrap()["type"], "fini");
+}
+
+#[test]
+fn motions_are_proven_and_within_their_band() {
+    let value = report(PROGRAM, None);
+    let motions = value["motions"].as_array().unwrap();
+    assert_eq!(motions.len(), 2, "GO and GOLFT");
+    let motion = &motions[1];
+    let fields =
+        ["isn", "statement", "cut_vectors", "minimum", "part", "drive", "check", "verified", "seconds"];
+    assert_eq!(keys(motion), fields.into());
+    assert_eq!(motion["isn"], 15);
+    assert_eq!(motion["statement"], "TLLFT,GOLFT/C1,ON,L1", "continued lines are joined");
+    assert_eq!(motion["verified"], true);
+    assert!(motion["cut_vectors"].as_u64().unwrap() >= motion["minimum"].as_u64().unwrap_or(1));
+    let drive = &motion["drive"];
+    assert_eq!(keys(drive), ["min", "max", "intol", "outtol"].into());
+    let number = |name: &str| drive[name].as_f64().unwrap();
+    assert!(number("min") >= -number("intol") - 1e-9 && number("max") <= number("outtol") + 1e-9, "{drive}");
+}
+
+#[test]
+fn a_range_of_statements_restricts_path_and_motions() {
+    let value = report(PROGRAM, Some(14..=14));
+    assert_eq!(value["motions"].as_array().unwrap().len(), 1);
+    assert!(value["cl"].as_array().unwrap().iter().all(|entry| entry["isn"] == 14));
+    assert!(!value["cl"].as_array().unwrap().is_empty());
+    assert_eq!(keys(&value["symbols"]), keys(&report(PROGRAM, None)["symbols"]), "symbols stay");
+}
