@@ -17,6 +17,9 @@ const MAX_ITERATIONS: u32 = 60;
 /// Width of the bracket, radians, that is rounding.
 const RESOLUTION: f64 = 1e-15;
 
+/// Slope, relative to the size of the lengths, that is rounding.
+const SLOPE_RESOLUTION: f64 = 1e-14;
+
 /// Surface normals `n(φ) = fixed + (cos φ · a + sin φ · b)`, with support `n·origin + level` of the solid.
 struct Family {
     fixed: Vec3,
@@ -116,23 +119,26 @@ fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
 fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Contact {
     let (mut low, mut high) = (start - step, start + step);
     let (mut slope_low, mut slope_high) = (family.sample(tool, tip, low).1, family.sample(tool, tip, high).1);
-    let mut angle = start;
+    let resolution = SLOPE_RESOLUTION * (tool.radius() + (tip - family.origin).norm());
+    let (mut angle, mut last) = (start, 0.0);
     for iteration in 0..MAX_ITERATIONS {
         let slope = family.sample(tool, tip, angle).1;
+        if slope.abs() <= resolution || high - low <= RESOLUTION * (1.0 + angle.abs()) {
+            break;
+        }
+        // The Illinois rule: an end that stays twice is weighed half, so that both ends move.
         if slope > 0.0 {
             (low, slope_low) = (angle, slope);
-        } else if slope < 0.0 {
-            (high, slope_high) = (angle, slope);
+            slope_high *= if last > 0.0 { 0.5 } else { 1.0 };
         } else {
-            break;
+            (high, slope_high) = (angle, slope);
+            slope_low *= if last < 0.0 { 0.5 } else { 1.0 };
         }
-        if high - low <= RESOLUTION * (1.0 + angle.abs()) {
-            break;
-        }
-        // Secant where the slope is smooth, every third step bisection for the kinks of straight tool edges.
+        last = slope;
+        // Every fourth step bisects, for the kinks of straight tool edges.
         let secant = low + (high - low) * slope_low / (slope_low - slope_high);
         let next =
-            if iteration % 3 != 2 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
+            if iteration % 4 != 3 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
         if next == angle {
             break;
         }

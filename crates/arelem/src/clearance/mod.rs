@@ -3,6 +3,7 @@
 
 mod closed_form;
 mod dual;
+mod matched;
 mod search;
 mod tool;
 
@@ -83,6 +84,7 @@ impl Gauge {
 /// Distance between the tool body and the surface, with the tool on the given side.
 pub(crate) fn offset_contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
     closed_form::contact(tool, surface, side, tip)
+        .or_else(|| matched::contact(tool, surface, side, tip))
         .or_else(|| dual::contact(tool, surface, side, tip))
         .unwrap_or_else(|| search::contact(tool, surface, side, tip))
 }

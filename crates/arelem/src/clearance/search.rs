@@ -217,15 +217,19 @@ impl Search<'_> {
                 lowest = (value, k);
             }
         }
-        for azimuth in [facing, step * lowest.1 as f64] {
-            if let Some(t) = self.valley(radius, height, azimuth) {
+        let across = step * lowest.1 as f64;
+        for azimuth in [facing, across] {
+            for t in self.valleys(radius, height, azimuth).into_iter().flatten() {
                 self.inside_frustum(radius, height, Vector2::new(t, azimuth));
             }
         }
+        if lowest.0 < self.best.value {
+            self.inside_frustum(radius, height, Vector2::new(0.5, across));
+        }
     }
 
-    /// Where along a line of the patch the distance is least, if that is inside.
-    fn valley(&self, radius: [f64; 2], height: [f64; 2], azimuth: f64) -> Option<f64> {
+    /// Where along a line of the patch to look for least distances inside.
+    fn valleys(&self, radius: [f64; 2], height: [f64; 2], azimuth: f64) -> [Option<f64>; 2] {
         let line =
             self.tool.axis * (height[1] - height[0]) + self.direction(azimuth) * (radius[1] - radius[0]);
         let at = |t: f64| {
@@ -235,8 +239,12 @@ impl Search<'_> {
             (self.side * foot.distance, self.side * foot.normal.dot(&line))
         };
         let ((v0, s0), (v1, s1)) = (at(0.0), at(1.0));
-        // The tangents at both ends bound a convex function; where they do not meet inside there is no valley.
-        (s0 < 0.0 && s1 > 0.0).then(|| ((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0))
+        if s0 < 0.0 && s1 > 0.0 {
+            // The tangents at both ends meet near the valley.
+            return [Some(((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0)), None];
+        }
+        // Otherwise there may be one behind a ridge, downhill from an end.
+        [(s0 < 0.0).then_some(0.0), (s1 > 0.0).then_some(1.0)]
     }
 
     fn inside_frustum(&mut self, radius: [f64; 2], height: [f64; 2], start: Vector2<f64>) {

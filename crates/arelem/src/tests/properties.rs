@@ -104,7 +104,7 @@ fn moved(geometry: &Geometry, rotation: &Rotation3<f64>, shift: &Vec3) -> Geomet
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn passes_keep_their_bands_wherever_they_lie(
         part in 0usize..7, cutter in 0usize..4, angle in -3.0..3.0, offset in -0.8..0.8,
