@@ -30,6 +30,10 @@ pub struct ComputedMotion {
     pub seconds: f64,
 }
 
+/// What computing a motion gives: the engine's answer, the verifier's if there was something to verify, and the time
+/// taken in seconds.
+pub type Computation = (Execution, Option<Result<Evidence, VerifyError>>, f64);
+
 /// How often the memo had the answer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct MemoCounters {
@@ -84,7 +88,7 @@ impl MotionMemo {
         &self,
         state: &State,
         command: &MotionCommand,
-        compute: impl FnOnce() -> Option<(Execution, Option<Result<Evidence, VerifyError>>, f64)>,
+        compute: impl FnOnce() -> Option<Computation>,
     ) -> Option<Arc<ComputedMotion>> {
         let key = content_hash(state, command);
         if let Some(found) = self.find(key, state, command) {

@@ -1,6 +1,8 @@
 //! Sections 1 to 3 in order: transfers, output off and on, what is passed over after an error, cancellation, the memo
 //! over edits.
 
+#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
 use std::{
     cell::Cell,
     sync::{

@@ -1,5 +1,7 @@
 //! The JSON of a run has the shape that scripts and editors rely on.
 
+#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
 use std::{collections::BTreeSet, sync::Arc};
 
 use apt_run::{document::Document, settings::Settings};

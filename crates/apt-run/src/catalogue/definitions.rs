@@ -30,9 +30,11 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
         }
         Kind::OperandRange { statement, value, .. } => {
             say("APT0322", format!("{statement} cannot take the value {}", number(*value)))
+                .hint("check the sign and the unit of the value")
         }
         Kind::Doubtful { statement, value } => {
             say("APT0323", format!("{} is a doubtful value for {statement}", number(*value)))
+                .hint("a tolerance is a distance and has no sign; a negative one is taken as zero")
         }
         Kind::ObtainType { name, expected, found } => {
             say("APT0330", format!("{name} is {}, not {}", a_kind(*found), a_kind(*expected)))
@@ -48,7 +50,8 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
             say("APT0333", format!("REFSYS needs a matrix, not {}", found(what)))
                 .hint("REFSYS/NOMORE returns to the base system")
         }
-        Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system"),
+        Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system")
+            .hint("its rows depend on each other; check for a row of zeros"),
         _ => return None,
     })
 }
@@ -98,8 +101,18 @@ fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
         DefinitionError::Special { number, position } => {
             let place =
                 position.map(|position| format!(" at parameter {}", position + 1)).unwrap_or_default();
-            say("APT0308", format!("the definition breaks a rule of {type_word}{place}"))
-                .hint(format!("it is diagnostic {number} of APT III"))
+            let rule = match number {
+                83 => "each value of a canonical form must be a number",
+                154 => "the pattern has no point with this number",
+                701 => "the two end points of a curve are too close together",
+                702 => "the third point or vector must not lie along the end points",
+                800 => "a count of points cannot be negative",
+                801 => "only LINEAR patterns can be repeated by PARLEL",
+                802 => "the pattern would have too many points",
+                1001 => "there are too few points for this kind of curve, or too many",
+                _ => "a limit of this form is exceeded",
+            };
+            say("APT0308", format!("the definition of {type_word} breaks a rule{place}: {rule}"))
         }
     }
 }
@@ -109,7 +122,7 @@ fn forms(kind: GeometryKind) -> Option<String> {
     /// More would not be read.
     const SHOWN: usize = 4;
     let all = formats(kind);
-    let mut lines: Vec<_> = all.iter().take(SHOWN).map(|format| format.help.to_owned()).collect();
+    let mut lines: Vec<_> = all.iter().take(SHOWN).map(|format| format.help.replace(';', ",")).collect();
     if all.len() > SHOWN {
         lines.push(format!("and {} more forms", all.len() - SHOWN));
     }

@@ -22,7 +22,11 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
         RunFindingKind::Unverified(evidence) => (unverified(evidence), Severity::Error, None),
         RunFindingKind::NotJudged(error) => (not_judged(error), Severity::Warning, error.apt3()),
         RunFindingKind::Skipped { statements, last } => {
-            let text = say("APT0690", format!("{statements} motion statements, up to statement {last}, were not computed"))
+            let what = match statements {
+                1 => "this motion statement was".to_owned(),
+                _ => format!("{statements} motion statements, up to statement {last}, were"),
+            };
+            let text = say("APT0690", format!("{what} not computed"))
                 .hint("after an error motion goes on at a FROM, or where GOTO is followed by a statement that gives a direction");
             (text, Severity::Information, None)
         }
@@ -62,8 +66,13 @@ fn relation(relation: Relation) -> &'static str {
     }
 }
 
+/// Smallest coordinate that is shown as another number than zero, in program units: far below any tolerance.
+const COORDINATE_SHOWN: f64 = 1e-9;
+
 fn place(at: &Vec3) -> String {
-    format!("({}, {}, {})", number(at.x), number(at.y), number(at.z))
+    // Rounding leaves traces of 1e-13 where a coordinate is meant to be zero.
+    let coordinate = |value: f64| number(if value.abs() < COORDINATE_SHOWN { 0.0 } else { value });
+    format!("({}, {}, {})", coordinate(at.x), coordinate(at.y), coordinate(at.z))
 }
 
 fn failure_text(failure: &Failure) -> Text {
@@ -154,10 +163,10 @@ fn start(failure: &Failure) -> Option<Text> {
         Failure::OutOfToleranceAtStart { role: name, clearance, inside, outside, contact } => say(
             "APT0625",
             format!(
-                "at the start of the cut the tool is {} from the {}, outside the tolerance −{} to {}",
+                "at the start of the cut the tool is {} from the {}, and {} to {} is allowed",
                 number(*clearance),
                 role(*name),
-                number(*inside),
+                number(-inside),
                 number(*outside)
             ),
         )
@@ -172,7 +181,7 @@ fn start(failure: &Failure) -> Option<Text> {
         Failure::DirectionUndetermined { angle, tangent, .. } => say(
             "APT0627",
             format!(
-                "the direction word does not decide: it is within {}° of a right angle to the path, which runs along {}",
+                "the direction word does not decide, for it points across the path: the path runs along {1}, and a right angle is only {0}° away",
                 number(angle.to_degrees()),
                 place(tangent)
             ),
@@ -188,7 +197,8 @@ fn path(failure: &Failure) -> Text {
         Failure::TangentSurfaces { tip } => say(
             "APT0640",
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
-        ),
+        )
+        .hint("choose a drive surface that stands on the part surface"),
         Failure::NeverMet { relation: wanted, nearest, at, .. } => say(
             "APT0641",
             format!(

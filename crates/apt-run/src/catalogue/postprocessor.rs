@@ -2,7 +2,7 @@
 
 use apt_post::{PostFindingKind as Kind, Severity as PostSeverity};
 
-use super::{Text, say};
+use super::{Text, number, say};
 use crate::diagnostic::Severity;
 
 /// The words and the severity of a finding of Section 4.
@@ -12,9 +12,56 @@ pub(super) fn word(kind: &Kind) -> (Text, Severity) {
         PostSeverity::Warning => Severity::Warning,
         PostSeverity::Error => Severity::Error,
     };
-    let mut text = say(code(kind), kind.to_string());
+    let mut text = say(code(kind), measured(kind).unwrap_or_else(|| kind.to_string()));
     text.hint = hint(kind).map(str::to_owned);
     (text, severity)
+}
+
+/// Messages with measured values, which are rounded for people.
+fn measured(kind: &Kind) -> Option<String> {
+    let outside = |what: &str, value: f64, least: f64, greatest: f64| {
+        format!("{what} {} is outside {} to {}", number(value), number(least), number(greatest))
+    };
+    Some(match kind {
+        Kind::FeedNotPositive { value } => format!("the feed rate {} is not positive", number(*value)),
+        Kind::FeedOutOfRange { value, least, greatest } => {
+            outside("the feed rate", *value, *least, *greatest)
+        }
+        Kind::SpindleOutOfRange { value, least, greatest } => {
+            outside("the spindle speed", *value, *least, *greatest)
+        }
+        Kind::AxisLimit { axis, value, least, greatest } => {
+            format!("{}, the travel of the machine", outside(axis, *value, *least, *greatest))
+        }
+        Kind::DigitLimit { axis, value } => {
+            format!("{axis} {} has more digits than the control takes", number(*value))
+        }
+        Kind::ToolAxis { i, j, k } => format!(
+            "the tool axis ({}, {}, {}) is not that of the spindle; the move is left out",
+            number(*i),
+            number(*j),
+            number(*k)
+        ),
+        Kind::BadValue { word, argument, value } => {
+            format!("{word}: {argument} {} is out of range; the statement is left out", number(*value))
+        }
+        Kind::TapFeed { feed, pitch, speed } => format!(
+            "the feed {} of the tap does not fit the pitch {} at {} turns per minute",
+            number(*feed),
+            number(*pitch),
+            number(*speed)
+        ),
+        Kind::StepNotLessThanDepth { step, depth } => format!(
+            "STEP {} is not less than the depth {}, so the hole is drilled in one pass",
+            number(*step),
+            number(*depth)
+        ),
+        Kind::ArcAsChords { deviation } if deviation.is_finite() => {
+            format!("the circle is made of chords: an arc would be {} off", number(*deviation))
+        }
+        Kind::ArcAsChords { .. } => "the circle is made of chords: the control has no such arc".to_owned(),
+        _ => return None,
+    })
 }
 
 fn code(kind: &Kind) -> &'static str {
@@ -73,6 +120,27 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         Kind::AxisLimit { .. } => "shift the part by ORIGIN or TRANS, or choose a larger machine",
         Kind::CycleWithoutPosition => "give a GOTO before CYCLE",
         Kind::NoClearance => "give CLEARP first",
+        Kind::FeedNotPositive { .. } => "give a feed rate above zero; a pause is made by DELAY",
+        Kind::FeedOutOfRange { .. } => "check the unit of the rate: IPM, MMPM, IPR or MMPR",
+        Kind::FeedPerRevolutionWithoutSpindle => "give SPINDL with a speed before",
+        Kind::UnitsChanged => "give UNITS once, before the first motion",
+        Kind::SpindleOutOfRange { .. } => "the nearest speed of the machine is used",
+        Kind::NoSpindleSpeed => "give the speed, as in SPINDL/1000,CLW",
+        Kind::NoCutterDiameter => "give CUTTER before, or the diameter after DIAMTR",
+        Kind::NotSupported { .. } => "choose another machine, or remove the word",
+        Kind::NoCode { .. } => "add the code to the definition of the machine",
+        Kind::ToolChangeWhile { .. } => "it is switched off first; SPINDL/OFF before the change says so",
+        Kind::TapFeed { .. } => "pitch times speed is used; correct FEDRAT or TPI",
+        Kind::StepNotLessThanDepth { .. } => "use a smaller STEP, or the plain cycle",
+        Kind::CycleWithoutPoints => "give the positions of the holes after CYCLE",
+        Kind::ArcAsChords { .. } | Kind::ArcNotInPlane => "the points keep the tolerance of the program",
+        Kind::CompensationOnArc => "let the path enter and leave the contour by a line",
+        Kind::CompensationUnused => "give CUTCOM before the motion that approaches or leaves the contour",
+        Kind::NoRetract => "give RETRCT before, or a GOTO down to the part",
+        Kind::MotionAfterEnd => "move END to the end; STOP waits for the operator",
+        Kind::NoFini => "check whether the file is complete",
+        Kind::RapidUnused => "RAPID holds for the next motion only",
+        Kind::Character { .. } => "it is written as a question mark; use the characters of ASCII",
         _ => return None,
     })
 }

@@ -39,11 +39,14 @@ fn jump(kind: &Kind) -> Option<Text> {
         }
         Kind::JumpOutsideRegion => say("APT0404", "IF and JUMPTO work inside loops and macros only")
             .hint("put the statements between LOOPST and LOOPND"),
-        Kind::UnknownTransfer { name } => say("APT0405", format!("no statement carries the label {name}")),
+        Kind::UnknownTransfer { name } => {
+            say("APT0405", format!("no statement of the path carries the label {name}"))
+                .hint("put the label before a motion or post-processor statement")
+        }
         Kind::NestedLoop => say("APT0406", "LOOPST cannot stand inside a loop").hint(
             "one pair of LOOPST and LOOPND may hold several counters, or put the inner loop into a macro",
         ),
-        Kind::LoopEndAlone => say("APT0407", "LOOPND without LOOPST"),
+        Kind::LoopEndAlone => say("APT0407", "LOOPND without LOOPST").hint("add LOOPST, or remove LOOPND"),
         Kind::LoopInMacro => say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
             .hint("IF and JUMPTO work in a macro without them"),
         Kind::LoopNotClosed => say("APT0409", "this loop is never closed").hint("add LOOPND"),
@@ -51,7 +54,7 @@ fn jump(kind: &Kind) -> Option<Text> {
             let text =
                 say("APT0410", format!("{statements} statements were executed and no end is in sight"));
             match changing.as_slice() {
-                [] => text.hint("nothing changes from one turn to the next"),
+                [] => text.hint("check how the loop ends; the setting budget.statements allows more"),
                 names => text.hint(format!(
                     "{} changed in the last turn; the setting budget.statements allows more",
                     names.join(", ")
@@ -68,7 +71,8 @@ fn macro_call(kind: &Kind) -> Option<Text> {
         Kind::MacroNotClosed { name } => {
             say("APT0421", format!("the macro {name} is never closed")).hint("add TERMAC")
         }
-        Kind::MacroEndAlone => say("APT0422", "TERMAC without MACRO"),
+        Kind::MacroEndAlone => say("APT0422", "TERMAC without MACRO")
+            .hint("the statement that begins the macro may have a mistake"),
         Kind::EndInRegion => {
             say("APT0423", "FINI stands inside a loop or macro").hint("TERMAC or LOOPND is missing before it")
         }
@@ -103,7 +107,11 @@ fn macro_call(kind: &Kind) -> Option<Text> {
         }
         Kind::RoutineNotAvailable { name } => say("APT0434", format!("the routine {name} is not available")),
         Kind::SynonymPairs { found } => {
-            say("APT0440", format!("SYN takes pairs, and there are {found} operands"))
+            let operands = if *found == 1 { "is 1 operand" } else { "are {} operands" };
+            say(
+                "APT0440",
+                format!("SYN takes pairs, and there {}", operands.replace("{}", &found.to_string())),
+            )
         }
         Kind::SynonymInRegion => say("APT0441", "SYN cannot stand in a loop or macro"),
         Kind::SynonymCount { limit } => say("APT0442", format!("there are more than {limit} synonyms")),
@@ -134,7 +142,8 @@ fn motion(kind: &Kind) -> Option<Text> {
         ),
         Kind::ImpliedCheckOpen => say("APT0504", "FINI comes while a motion waits for its check surface")
             .hint("write the check surface in the last motion statement"),
-        Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and one takes none"),
+        Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and one takes none")
+            .hint("the form is GOLFT/ds,TO,cs1,label1,TO,cs2,label2"),
         Kind::SurfaceCount { found, limit } => {
             say("APT0506", format!("there are {found} surfaces; at most {limit} can stand here"))
         }
@@ -182,7 +191,9 @@ fn postprocessor(kind: &Kind) -> Option<Text> {
 
 fn whole(kind: &Kind) -> Text {
     match kind {
-        Kind::EndMissing => say("APT0901", "the program does not end with FINI"),
+        Kind::EndMissing => {
+            say("APT0901", "the program does not end with FINI").hint("add FINI on a line of its own")
+        }
         Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
         Kind::Unreachable => say("APT0903", "this statement is never reached"),
         Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),

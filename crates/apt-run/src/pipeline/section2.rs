@@ -20,7 +20,11 @@ use arelem::{
 use smol_str::SmolStr;
 
 use super::{Motion, RunFinding, RunFindingKind};
-use crate::{Cancel, Cancelled, memo::MotionMemo, settings::Settings};
+use crate::{
+    Cancel, Cancelled,
+    memo::{Computation, MotionMemo},
+    settings::Settings,
+};
 
 /// Class and subclass of the control records on the CL file (language reference 3.2).
 mod code {
@@ -325,11 +329,7 @@ fn is_costly(command: &MotionCommand) -> bool {
 }
 
 /// Computes and verifies; `None` when cancelled on the way.
-fn compute(
-    state: &State,
-    command: &MotionCommand,
-    cancel: Cancel<'_>,
-) -> Option<(Execution, Option<Result<Evidence, VerifyError>>, f64)> {
+fn compute(state: &State, command: &MotionCommand, cancel: Cancel<'_>) -> Option<Computation> {
     let begin = Instant::now();
     let execution = execute(state, command, &cancel);
     let evidence = match &execution.output {
