@@ -106,6 +106,9 @@ pub enum RecordKind {
     },
     /// TRANTO/label.
     Transfer(SmolStr),
+    /// A motion, or a parameter that motions depend on, that could not be evaluated: Section 1 has reported why.
+    /// What follows is not known to stand where the program wants it.
+    Gap,
     /// FINI.
     End,
 }

@@ -1,16 +1,19 @@
 //! Mistakes and the findings they give: statement number and APT III number (language reference 9.5).
 
-use apt_program::{Finding, Options, Program, Severity, evaluate};
+use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(text, Dialect::named(DialectName::Free));
-    evaluate(&tree, &Options::default(), &|| false)
+    run_as(text, DialectName::Free)
+}
+
+fn run_as(text: &str, dialect: DialectName) -> Program {
+    evaluate(&SyntaxTree::parse(text, Dialect::named(dialect)), &Options::default(), &|| false)
 }
 
 fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
     let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.kind.apt3())).collect()
+    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
 }
 
 /// Name, program without FINI, and the problems as (statement, APT III number).
@@ -36,7 +39,10 @@ const CASES: &[Case] = &[
     ("subscript zero", "RESERV/A,3\nA(0)=1", &[(2, 104)]),
     ("subscript missing", "RESERV/A,3\nA=1", &[(2, 105)]),
     ("not reserved", "A(1)=3", &[(1, 108)]),
-    ("unknown function", "A=INTF(3)", &[(1, 108)]),
+    ("unknown function", "A=NOSUCHF(3)", &[(1, 108)]),
+    ("missing comma in a long name", "P=POINT/RADIUS SIZE", &[(1, 1)]),
+    ("missing comma in a short name", "P=POINT/A B", &[(1, 101)]),
+    ("word of another dialect", "DO/A,I=1,3", &[(1, 82)]),
     ("mixed array", "RESERV/A,3\nA(1)=1\nA(2)=POINT/1,2", &[(3, 106)]),
     ("mixed order of RESERV", "RESERV/A,3,4,B", &[(1, 255)]),
     ("RESERV of a used name", "A=1\nRESERV/A,3", &[(2, 256)]),
@@ -94,6 +100,40 @@ const CASES: &[Case] = &[
     ("unknown macro", "CALL/NOSUCH", &[(1, 233)]),
     ("unknown macro variable", "M=MACRO/A\nTERMAC\nCALL/M,A=1,B=2", &[(3, 228)]),
     ("macro variable without value", "M=MACRO/A\nTERMAC\nCALL/M", &[(3, 230)]),
+    ("inclusive subscript after CANON", "RESERV/A,3\nP=POINT/CANON,A(ALL)", &[(2, 103)]),
+    ("inclusive subscript in a function", "RESERV/A,3\nB=ABSF(A(ALL))", &[(2, 103)]),
+    ("inclusive subscript of a tolerance", "RESERV/A,3\nINTOL/A(ALL)", &[(2, 103)]),
+    ("step of an inclusive subscript", "RESERV/A,3\nA(1)=1\nP=POINT/A(ALL,INCR,0)", &[(3, 109)]),
+    ("two types in DOTF", "V=VECTOR/1,0,0\nP=POINT/1,2\nA=DOTF(V,P)", &[(3, 80)]),
+    ("line and plane in DISTF", "L=LINE/XAXIS\nP=PLANE/1,0,0,1\nA=DISTF(L,P)", &[(3, 80)]),
+    ("number in LNTHF", "A=LNTHF(3)", &[(1, 66)]),
+    ("geometry in an IF", "P=POINT/1,2\nLOOPST\nIF(P)A,A,A\nA)LOOPND", &[(3, 402)]),
+    ("segment not found", "READ/2,SEG", &[(1, 31)]),
+    ("two segments", "READ/2,SEG,TWO", &[(1, 34)]),
+    ("segment in a loop", "LOOPST\nREAD/2,SEG\nLOOPND", &[(2, 37)]),
+    ("library without the macro", "LIBRY/NIX", &[(1, 31)]),
+    ("macro as value", "M=MACRO\nTERMAC\nA=M+1", &[(3, 211)]),
+    ("macro assigned", "M=MACRO\nTERMAC\nM=1", &[(3, 211)]),
+    ("label assigned", "M)A=1\nM=1", &[(2, 251)]),
+    ("subscripted label", "M)A=1\nB=M(1)", &[(2, 108)]),
+    ("extent of RESERV", "RESERV/A,0", &[(1, 255)]),
+    ("half a pair of RESERV", "RESERV/A", &[(1, 255)]),
+    ("OBTAIN of a large surface", "P=PATERN/LINEAR,(1,1),(2,2),5\nOBTAIN,PATERN/P,A", &[(2, 157)]),
+    ("OBTAIN of a number", "A=1\nOBTAIN,POINT/A,X", &[(2, 152)]),
+    ("unnamed nested pattern", "GOTO/(PATERN/LINEAR,(1,1),(2,2),5)", &[(1, 820)]),
+    ("pattern of one point", "P=PATERN/LINEAR,(1,1)", &[(1, 800)]),
+    ("two words of SYN", "SYN/GOLFT,GORGT", &[(1, 355)]),
+    ("check surfaces without labels", "L=LINE/XAXIS\nGOLFT/L,TO,L,TO,L", &[(2, 132)]),
+    ("label of a statement without motion", "TRANTO/A\nA)B=1", &[(1, 456)]),
+    (
+        "ten MACHIN",
+        "MACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\n\
+      MACHIN/A\nMACHIN/A",
+        &[(10, 504)],
+    ),
+    ("PTONLY", "PTONLY/7", &[(1, 553)]),
+    ("DEBUG", "DEBUG/7", &[(1, 22)]),
+    ("second PSIS operand", "P=PLANE/0,0,1,0\nPSIS/P,P", &[(2, 576)]),
     ("macro value expression", "M=MACRO/A\nB=A\nTERMAC\nCALL/M,A=3+4", &[(4, 235)]),
     ("assignment to a number", "M=MACRO/A\nA=9\nTERMAC\nCALL/M,A=4", &[(2, 5)]),
     ("recursion", "M=MACRO\nCALL/M\nTERMAC\nCALL/M", &[(2, 231)]),
@@ -112,11 +152,20 @@ const CASES: &[Case] = &[
     ("PRINT number", "PRINT/7", &[(1, 326)]),
 ];
 
+/// Where cards differ from free form.
+const CARDS: &[Case] = &[
+    ("unknown function", "A=INTF(3)", &[(1, 108)]),
+    ("function of two", "A=MAXF(1,2)", &[(1, 108)]),
+    ("long name", "LONGNAME=3", &[(1, 1)]),
+];
+
 #[test]
 fn each_mistake_is_reported_at_its_statement_with_its_number() {
+    let free = CASES.iter().map(|case| (case, DialectName::Free));
+    let cards = CARDS.iter().map(|case| (case, DialectName::Apt3));
     let mut wrong = String::new();
-    for (name, text, expected) in CASES {
-        let program = run(&format!("{text}\nFINI\n"));
+    for ((name, text, expected), dialect) in free.chain(cards) {
+        let program = run_as(&format!("{text}\nFINI\n"), dialect);
         let found = problems(&program);
         let expected: Vec<(u32, Option<u16>)> =
             expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
@@ -128,6 +177,83 @@ fn each_mistake_is_reported_at_its_statement_with_its_number() {
         assert!(program.is_complete());
     }
     assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// The statements with a finding of a kind.
+fn places(program: &Program, wanted: fn(&FindingKind) -> bool) -> Vec<u32> {
+    program.findings().filter(|finding| wanted(&finding.kind)).map(|finding| finding.origin.isn).collect()
+}
+
+#[test]
+fn statements_that_are_never_reached_are_found() {
+    let unreachable = |text: &str| places(&run(text), |kind| matches!(kind, FindingKind::Unreachable));
+    assert_eq!(unreachable("LOOPST\nA)B=1\nJUMPTO/C\n\nD=2\nE=3\nC)LOOPND\nFINI\n"), [5]);
+    assert_eq!(unreachable("M=MACRO\nIF(1)A,B,B\nC=1\nA)C=2\nB)TERMAC\nFINI\n"), [3]);
+    assert_eq!(unreachable("LOOPST\nA)B=1\nJUMPTO/C\nC)D=1\nIF(D)E,E,E\nE)LOOPND\nFINI\n"), []);
+    assert_eq!(unreachable("LOOPST\nA)B=1\nJUMPTO/B\nREMARK\nB)C=1\nIF(0)B,D,D\nD)LOOPND\nFINI\n"), []);
+}
+
+#[test]
+fn statements_after_fini_are_a_hint() {
+    let after = |text: &str| places(&run(text), |kind| matches!(kind, FindingKind::AfterEnd));
+    assert_eq!(after("A=1\nFINI\n\n$$ the end\nB=2\nC=3\n"), [5]);
+    assert_eq!(after("A=1\nFINI\n\n$$ the end\n"), []);
+}
+
+#[test]
+fn names_that_nobody_reads_are_told_only_of_programs_that_move() {
+    let unused = |text: &str| {
+        let program = run(text);
+        let name = |finding: &Finding| match &finding.kind {
+            FindingKind::Unused { name } => Some(name.to_string()),
+            _ => None,
+        };
+        program.findings().filter_map(name).collect::<Vec<_>>()
+    };
+    assert_eq!(unused("A=1\nP=POINT/1,2\nFINI\n"), [""; 0]);
+    assert_eq!(unused("A=1\nP=POINT/1,2\nFROM/0,0\nFINI\n"), ["A", "P"]);
+    assert_eq!(unused("A=1\nP=POINT/1,2\nFROM/P\nPRINT/3,A\nFINI\n"), [""; 0]);
+    assert_eq!(unused("A=1\nB=2\nFROM/0,0\nPRINT/3,ALL\nFINI\n"), [""; 0]);
+    assert_eq!(unused("A=1\nB=2\nFROM/0,0\nPUNCH/2,A,B\nFINI\n"), [""; 0]);
+    assert_eq!(unused("M=MACRO\nTERMAC\nA)FROM/0,0\nFINI\n"), [""; 0], "no values");
+}
+
+#[test]
+fn longer_names_and_later_functions_are_taken_in_free_form() {
+    let text = "RADIUS1=MAXF(1,2,MINF(7,3))\nRESERV/INTF,3\nINTF(2)=8\nB=INTF(2)\nC=MODF(7,4)+TANF(45)\n\
+                D=ASINF(1)+ACOSF(1)\nE=SINHF(-0)\nFINI\n";
+    let program = run(text);
+    assert_eq!(problems(&program), []);
+    let value = |name: &str| {
+        let values = program.symbols();
+        let found = values.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone());
+        match found {
+            Some(apt_program::Value::Scalar(value)) => value,
+            other => panic!("{name} is {other:?}"),
+        }
+    };
+    assert_eq!([value("RADIUS1"), value("B")], [3.0, 8.0]);
+    assert!((value("C") - 4.0).abs() < 1e-12 && (value("D") - 90.0).abs() < 1e-12 && value("E") == 0.0);
+}
+
+/// Where motions are missing: `isn` of each gap.
+fn gaps(text: &str) -> Vec<u32> {
+    let program = run(text);
+    let gaps = program.records().filter(|record| record.kind == RecordKind::Gap);
+    gaps.map(|record| record.origin.isn).collect()
+}
+
+#[test]
+fn a_gap_stands_where_a_motion_is_missing() {
+    assert_eq!(gaps("FROM/0,0\nGOTO/NIX,1\nGOTO/1,1\nFINI\n"), [2]);
+    assert_eq!(gaps("A=4/0\nGOTO/A,1\nFINI\n"), [2], "unknown values are silent, not forgotten");
+    assert_eq!(gaps("GOTO/1,,2\nFINI\n"), [1], "syntax errors");
+    assert_eq!(gaps("L=LINE/XAXIS\nGOLFT/L\nGOTO/1,1,1\nFINI\n"), [2], "no check surface");
+    assert_eq!(gaps("CALL/NIX\nFINI\n"), [1]);
+    assert_eq!(gaps("M=MACRO/A\nGOTO/A,1\nTERMAC\nCALL/M\nFINI\n"), [4]);
+    assert_eq!(gaps("M=MACRO/A\nB=A\nTERMAC\nCALL/M\nFINI\n"), [], "a macro without motion");
+    assert_eq!(gaps("LOOPST\nA)GOTO/1,1\nJUMPTO/A\nLOOPND\nFINI\n"), [2], "an endless loop");
+    assert_eq!(gaps("A=NIX\nSPINDL/A\nGOTO/1,1\nFINI\n"), [], "nothing moves there");
 }
 
 #[test]

@@ -3,6 +3,8 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
+use crate::dialect::DialectName;
+
 /// A syntax error with its place relative to the start of the statement.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{kind}")]
@@ -106,6 +108,14 @@ pub enum SyntaxErrorKind {
     NameWithoutEquals {
         /// The name.
         name: SmolStr,
+    },
+    /// A statement that begins with a word of another dialect.
+    #[error("{word} belongs to the dialect {dialect}")]
+    NotInDialect {
+        /// The word.
+        word: SmolStr,
+        /// A dialect that has it.
+        dialect: DialectName,
     },
     /// A word that cannot begin a statement or cannot stand in this place.
     #[error("word {0} is not allowed here")]
@@ -255,7 +265,7 @@ impl SyntaxErrorKind {
             Kind::WordNotAllowed(_) => 76,
             Kind::EmptyParentheses | Kind::UnexpectedMark(_) | Kind::ConditionMissing => 78,
             Kind::WordRequired => 81,
-            Kind::NameWithoutEquals { .. } => 82,
+            Kind::NameWithoutEquals { .. } | Kind::NotInDialect { .. } => 82,
             Kind::UnknownFunction(_) => 108,
             Kind::BadInclusiveSubscript => 109,
             Kind::MissingParameters => 129,
@@ -282,6 +292,19 @@ impl SyntaxErrorKind {
     /// Whether the statement can be used all the same: the fault is reported as a warning.
     pub fn is_warning(&self) -> bool {
         matches!(self, SyntaxErrorKind::RunsIntoSequenceField)
+    }
+
+    /// Whether the fault is one of characters and single elements: it stays when other elements are replaced.
+    pub fn is_lexical(&self) -> bool {
+        matches!(
+            self,
+            SyntaxErrorKind::NameTooLong { .. }
+                | SyntaxErrorKind::NumberTooLong { .. }
+                | SyntaxErrorKind::IllegalCharacter(_)
+                | SyntaxErrorKind::UnclosedText
+                | SyntaxErrorKind::MisplacedDecimalPoint
+                | SyntaxErrorKind::RunsIntoSequenceField
+        )
     }
 
     /// Whether the statement still has a meaning although the fault is an error: only its spelling is beyond a limit.

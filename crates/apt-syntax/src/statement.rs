@@ -316,7 +316,6 @@ pub enum Condition {
     Relation { operator: RelationOperator, left: Expression, right: Expression },
     And(Box<Condition>, Box<Condition>),
     Or(Box<Condition>, Box<Condition>),
-    Not(Box<Condition>),
 }
 
 /// A relation of a logical condition.

@@ -25,7 +25,8 @@ fn numbers_of_apt_iii() {
     check(
         Free,
         &[
-            ("LONGNAME=3", &[1]),
+            ("LONG NAME=3", &[1]),
+            ("LONGNAME=3", &[]),
             ("A=12345678901234567890", &[2]),
             ("A=1.E999", &[4]),
             ("=3", &[5]),
@@ -66,7 +67,10 @@ fn numbers_of_apt_iii() {
             ("NOSUCH/3", &[82]),
             ("A1", &[82]),
             ("A(1)", &[82]),
-            ("A=MAXF(1,2)", &[108]),
+            ("A=MAXF(1,2)", &[]),
+            ("A=NOSUCH(1,2)", &[108]),
+            ("DO/A,I=1,3", &[82]),
+            ("SCON/INIT,ALL", &[82]),
             ("PRINT/3,A(1,THRU)", &[109]),
             ("P=POINT/", &[129]),
             ("OBTAIN,L1,A", &[153]),
@@ -97,10 +101,20 @@ fn numbers_of_apt_iii() {
 #[test]
 fn other_dialects() {
     check(Apt4, &[("Z=3$\nPOINT/1,2", &[7]), ("W=3)", &[9]), ("R=ABSF(-3", &[10]), ("IF(A.EQ.1)", &[11])]);
+    check(Apt4, &[("LONGNAME=3", &[1]), ("IF(.NOT.A.EQ.1)B=2", &[20])]);
     check(Free, &[("IF(A.EQ.1)B=2", &[20])]);
+    check(Apt3, &[("LONGNAME=3", &[1]), ("A=MAXF(1,2)", &[108])]);
     let many = format!("GOTO/{}1", "1,".repeat(300));
     check(Apt3, &[(&many.replace("1,", "1,$\n"), &[13])]);
     check(Free, &[(&many, &[])]);
+}
+
+#[test]
+fn apt4_cuts_long_names() {
+    let parsed = parse("LONGNAMES=LONGNAM+1", Apt4);
+    assert!(!parsed.is_broken());
+    assert_eq!((parsed.elements[0].text.as_str(), parsed.elements[2].text.as_str()), ("LONGNA", "LONGNA"));
+    assert_eq!(parsed.errors.len(), 2);
 }
 
 #[test]

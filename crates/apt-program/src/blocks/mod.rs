@@ -5,8 +5,13 @@ mod substitute;
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use apt_syntax::{ParsedStatement, statement::Body};
+use apt_syntax::{
+    ParsedStatement, TextRange,
+    statement::{Body, Element, ElementKind, Part},
+};
 use smol_str::SmolStr;
+
+use crate::statements::leaves_motion;
 
 pub(crate) use run::{Activation, DoLoop};
 pub(crate) use substitute::Bindings;
@@ -53,6 +58,25 @@ impl Block {
         self.labels.keys().map(SmolStr::as_str)
     }
 
+    /// Whether a statement of the block moves the tool.
+    pub(crate) fn moves(&self) -> bool {
+        self.statements.iter().any(|statement| says_motion(&statement.elements))
+    }
+
+    /// Statements without label after one that always jumps: they are never reached.
+    pub(crate) fn unreachable(&self) -> Vec<(u32, TextRange)> {
+        let mut found = Vec::new();
+        let mut after_jump = false;
+        for (index, statement) in self.statements.iter().enumerate() {
+            let Some(part) = statement.statement.parts.first() else { continue };
+            if after_jump && statement.statement.label.is_none() && wants_to_be_reached(part) {
+                found.push((self.isn(index), part.range));
+            }
+            after_jump = always_jumps(statement);
+        }
+        found
+    }
+
     /// The statement number of a statement.
     pub(crate) fn isn(&self, index: usize) -> u32 {
         self.first_isn.saturating_add(u32::try_from(index).unwrap_or(u32::MAX))
@@ -66,6 +90,31 @@ pub(crate) fn normalised_label(label: &str) -> SmolStr {
         return SmolStr::new(if trimmed.is_empty() && !label.is_empty() { "0" } else { trimmed });
     }
     SmolStr::new(label)
+}
+
+/// Whether the words of a statement say that the tool moves.
+pub(crate) fn says_motion(elements: &[Element]) -> bool {
+    elements.iter().any(|element| element.kind == ElementKind::Word && leaves_motion(&element.text))
+}
+
+/// Whether a statement always leads somewhere else than to the next one.
+pub(crate) fn always_jumps(statement: &ParsedStatement) -> bool {
+    match statement.statement.parts.last().map(|part| &part.body) {
+        Some(Body::Jump { word, .. }) => word.word.spelling == "JUMPTO",
+        Some(Body::ArithmeticIf { .. }) => true,
+        _ => false,
+    }
+}
+
+/// Whether a statement does something that is missed when it is never reached.
+pub(crate) fn wants_to_be_reached(part: &Part) -> bool {
+    match &part.body {
+        Body::Text { .. } | Body::Macro { .. } | Body::Error => false,
+        Body::Major { word, .. } => {
+            !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "FINI" | "CONTIN")
+        }
+        _ => true,
+    }
 }
 
 /// The word of a statement that is a single major word, such as LOOPND.

@@ -168,6 +168,9 @@ impl Evaluator<'_> {
         if self.pending.as_ref().is_some_and(|pending| pending.record >= self.output.records.len()) {
             self.pending = None;
         }
+        if activation.block.moves() {
+            self.gap(range);
+        }
     }
 
     /// Names whose values differ from the value they had before the last turn.

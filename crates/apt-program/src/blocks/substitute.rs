@@ -37,7 +37,7 @@ impl Bindings {
         if !self.concerns(&statement.elements) {
             return Arc::clone(statement);
         }
-        Arc::new(parse_elements(&self.replaced(&statement.elements), dialect))
+        reparsed(statement, &self.replaced(&statement.elements), dialect)
     }
 
     /// The elements with the variables replaced, at the places where the variables stood.
@@ -149,6 +149,17 @@ impl State {
                 _ => element.clone(),
             })
             .collect();
-        Arc::new(parse_elements(&elements, dialect))
+        reparsed(statement, &elements, dialect)
     }
+}
+
+/// A statement whose elements were replaced. What the lexer said of the original still holds.
+fn reparsed(original: &ParsedStatement, elements: &[Element], dialect: &Dialect) -> Arc<ParsedStatement> {
+    let mut parsed = parse_elements(elements, dialect);
+    for error in original.errors.iter().filter(|error| error.kind.is_lexical()) {
+        parsed.errors.retain(|other| other.range != error.range);
+        parsed.errors.push(error.clone());
+    }
+    parsed.errors.sort_by_key(|error| error.range.start());
+    Arc::new(parsed)
 }

@@ -60,6 +60,10 @@ pub(crate) struct Evaluator<'a> {
     pub(crate) budget: Budget,
     /// Errors reported so far, to notice errors inside a region.
     pub(crate) errors: u64,
+    /// Values asked for that an error elsewhere has made unknown.
+    pub(crate) unknown_values: u64,
+    /// How many definitions are around the operand being evaluated.
+    pub(crate) definition_depth: u32,
     /// Set once the work is cancelled.
     pub(crate) cancelled: bool,
     /// Collects executed statements for an expansion.
@@ -85,6 +89,8 @@ impl<'a> Evaluator<'a> {
             pending: None,
             budget: Budget::new(options.statement_budget),
             errors: 0,
+            unknown_values: 0,
+            definition_depth: 0,
             cancelled: false,
             trace: None,
         }
@@ -125,23 +131,38 @@ impl<'a> Evaluator<'a> {
         range: TextRange,
         related: Vec<(RelatedKind, Origin)>,
     ) {
-        let severity = kind.severity();
-        self.report_as(kind, severity, range, related);
+        let mut finding = self.finding(kind, range);
+        finding.related = related;
+        self.add(finding);
     }
 
-    /// Reports a finding with a severity that differs from the usual one.
-    pub(crate) fn report_as(
-        &mut self,
-        kind: FindingKind,
-        severity: Severity,
-        range: TextRange,
-        related: Vec<(RelatedKind, Origin)>,
-    ) {
-        if severity == Severity::Error {
+    /// A finding at `range` of the statement being executed.
+    pub(crate) fn finding(&self, kind: FindingKind, range: TextRange) -> Finding {
+        Finding::new(kind, self.dialect_name, self.origin(range))
+    }
+
+    /// Reports a finding that has another number in APT4 where it is found.
+    pub(crate) fn report_apt4(&mut self, kind: FindingKind, number: u16, range: TextRange) {
+        let mut finding = self.finding(kind, range);
+        if self.is_apt4() {
+            finding.number = Some(number);
+        }
+        self.add(finding);
+    }
+
+    /// Reports a finding at another statement, which is not executed now.
+    pub(crate) fn report_at(&mut self, isn: u32, kind: FindingKind, range: TextRange) {
+        let here = std::mem::replace(&mut self.here.isn, isn);
+        self.report(kind, range);
+        self.here.isn = here;
+    }
+
+    /// Adds a finding, and counts it if it is an error.
+    pub(crate) fn add(&mut self, finding: Finding) {
+        if finding.severity == Severity::Error {
             self.errors += 1;
         }
-        let origin = self.origin(range);
-        self.output.add_finding(Finding { kind, severity, origin, related });
+        self.output.add_finding(finding);
     }
 
     /// Writes a record that comes from `range` of the statement being executed.

@@ -25,6 +25,8 @@ pub(crate) struct Output {
     pub(crate) touched: FxHashSet<SmolStr>,
     /// Names that were used.
     pub(crate) used: FxHashSet<SmolStr>,
+    /// A PRINT or PUNCH has listed all names.
+    pub(crate) lists_all: bool,
     /// Labels that TRANTO and check surfaces name, for a check at the end.
     pub(crate) transfers: Vec<(SmolStr, Origin)>,
 }

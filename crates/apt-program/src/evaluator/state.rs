@@ -26,6 +26,8 @@ pub(crate) struct State {
     pub(crate) drive_side: DriveSide,
     /// Plain MULTAX was given: the other forms are ignored from then on.
     pub(crate) axes_for_good: bool,
+    /// MULTAX is on.
+    pub(crate) axes_on: bool,
     /// MACHIN statements so far.
     pub(crate) machines: u32,
     /// Budgets exhausted so far; each one makes the next smaller.
@@ -60,6 +62,7 @@ impl Default for State {
             canon: false,
             drive_side: DriveSide::On,
             axes_for_good: false,
+            axes_on: false,
             machines: 0,
             exhausted: 0,
             repeated: 0,
@@ -80,6 +83,7 @@ impl State {
             && self.canon == other.canon
             && self.drive_side == other.drive_side
             && self.axes_for_good == other.axes_for_good
+            && self.axes_on == other.axes_on
             && self.machines == other.machines
             && self.exhausted == other.exhausted
             && self.repeated == other.repeated

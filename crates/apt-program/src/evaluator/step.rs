@@ -113,10 +113,40 @@ impl Evaluator<'_> {
                 Some(next) => StepEnd { next, read_to: index + 1, read_from: index.min(next) },
                 None => past(index + 1),
             },
-            Flow::Jump(label) => self.top_level_jump(top, index, &label),
+            Flow::Jump(label) => {
+                if self.dialect.branch_anywhere && blocks::always_jumps(&statement) {
+                    self.report_unreachable(top.tree, index);
+                }
+                self.top_level_jump(top, index, &label)
+            }
             Flow::Abort | Flow::Leave => past(index + 1),
-            Flow::End => StepEnd { next: count, read_to: index + 1, read_from: index },
+            Flow::End => {
+                let read_to = self.report_after_end(top.tree, index);
+                StepEnd { next: count, read_to, read_from: index }
+            }
         }
+    }
+
+    /// A statement without label after one that always jumps is never reached.
+    fn report_unreachable(&mut self, tree: &SyntaxTree, jump: usize) {
+        let Some((index, next)) = next_statement(tree, jump) else { return };
+        let Some(part) = next.statement.parts.first() else { return };
+        if next.statement.label.is_none() && blocks::wants_to_be_reached(part) {
+            let isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
+            self.report_at(isn, FindingKind::Unreachable, part.range);
+        }
+    }
+
+    /// The first statement after FINI gets a finding. Returns one more than the highest statement index that was read.
+    fn report_after_end(&mut self, tree: &SyntaxTree, end: usize) -> usize {
+        if self.here.frame.is_some() || self.is_cl() {
+            return end + 1;
+        }
+        let Some((index, next)) = next_statement(tree, end) else { return tree.statement_count() };
+        let range = next.statement.parts.first().map_or(TextRange::default(), |part| part.range);
+        let isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
+        self.report_at(isn, FindingKind::AfterEnd, range);
+        index + 1
     }
 
     /// Counts statements executed again at the top level; gives up when there are too many.
@@ -152,6 +182,9 @@ impl Evaluator<'_> {
         self.open_statement(statement);
         for part in &statement.statement.parts {
             self.trace_part(statement, part);
+            if matches!(part.body, Body::Error) && blocks::says_motion(&statement.elements) {
+                self.gap(part.range);
+            }
             match self.execute_part(part) {
                 Flow::Next => {}
                 other => return other,
@@ -228,6 +261,9 @@ impl Evaluator<'_> {
             self.push_to_block(&mut block, index, original, view.content_hash());
             index += 1;
             if word == Some(closing) {
+                for (isn, range) in block.unreachable() {
+                    self.report_at(isn, FindingKind::Unreachable, range);
+                }
                 return (block, index);
             }
         }
@@ -245,9 +281,8 @@ impl Evaluator<'_> {
         if !block.push(statement, hash)
             && let Some(label) = label
         {
-            let header = std::mem::replace(&mut self.here.isn, u32::try_from(index + 1).unwrap_or(u32::MAX));
-            self.report(FindingKind::DuplicateLabel { name: label.text.clone() }, label.range);
-            self.here.isn = header;
+            let isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
+            self.report_at(isn, FindingKind::DuplicateLabel { name: label.text.clone() }, label.range);
         }
     }
 
@@ -371,6 +406,13 @@ impl Evaluator<'_> {
         self.emit(RecordKind::End, range);
         self.state.ended = true;
     }
+}
+
+/// The next statement that is not blank or a comment, with its index.
+fn next_statement(tree: &SyntaxTree, index: usize) -> Option<(usize, Arc<ParsedStatement>)> {
+    (index + 1..tree.statement_count())
+        .map(|next| (next, tree.statement(next).parsed()))
+        .find(|(_, next)| !next.statement.parts.is_empty())
 }
 
 /// The name after INCLUD/.

@@ -25,7 +25,6 @@ impl Evaluator<'_> {
                 let right = self.condition(right);
                 Some(left? || right?)
             }
-            Condition::Not(inner) => self.condition(inner).map(|value| !value),
         }
     }
 }

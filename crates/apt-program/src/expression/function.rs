@@ -8,13 +8,20 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use super::{Item, Operand};
-use crate::{evaluator::Evaluator, finding::FindingKind};
+use crate::{
+    evaluator::Evaluator,
+    finding::{FindingKind, Severity},
+};
 
 /// Lines and planes count as parallel up to this sine (language reference 2.6).
 const PARALLEL_SINE: f64 = 1e-8;
 
 /// A point this near to the centre has no direction from it, in part-program units (language reference 2.6).
 const CENTER_DISTANCE: f64 = 1e-6;
+
+/// APT4: PARMF without an intersection before it, CLDATF without CL data.
+const APT4_NO_INTERSECTION: u16 = 42;
+const APT4_NO_CL_DATA: u16 = 93;
 
 /// A function of one number.
 type OneNumber = fn(f64) -> Option<f64>;
@@ -31,9 +38,7 @@ const ONE_NUMBER: &[(&str, OneNumber)] = &[
     ("COTANF", |x| ratio(degrees_sine(90.0 - x), degrees_sine(x))),
     ("ATANF", |x| Some(x.atan().to_degrees())),
     ("ARSINF", |x| (x.abs() <= 1.0).then(|| x.asin().to_degrees())),
-    ("ASINF", |x| (x.abs() <= 1.0).then(|| x.asin().to_degrees())),
     ("ARCOSF", |x| (x.abs() <= 1.0).then(|| x.acos().to_degrees())),
-    ("ACOSF", |x| (x.abs() <= 1.0).then(|| x.acos().to_degrees())),
     ("SINB", |x| Some(x.sin())),
     ("COSB", |x| Some(x.cos())),
     ("TANB", |x| Some(x.tan())),
@@ -60,6 +65,16 @@ pub(crate) fn degrees_sine(degrees: f64) -> f64 {
     turned.to_radians().sin()
 }
 
+/// The value with which APT4 goes on after an argument outside the domain: the logarithm of the absolute value, and 0
+/// for the inverse functions.
+fn apt4_substitute(name: &str, value: f64, compute: OneNumber) -> Option<f64> {
+    match name {
+        "LOGF" | "LOG10F" => compute(value.abs()),
+        "ARSINF" | "ARCOSF" | "ARSINB" | "ARCOSB" => Some(0.0),
+        _ => None,
+    }
+}
+
 /// A quotient, if its denominator is not zero.
 fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
     (denominator != 0.0).then(|| numerator / denominator)
@@ -67,12 +82,13 @@ fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
 
 impl Evaluator<'_> {
     /// The value of a function.
-    pub(super) fn function(
+    pub(crate) fn function(
         &mut self,
         function: &WordUse,
         arguments: &[Argument],
         range: TextRange,
     ) -> Option<f64> {
+        self.refuse_inclusive(arguments)?;
         let items = self.operands(arguments)?;
         let name = function.word.spelling;
         let value = match name {
@@ -91,6 +107,7 @@ impl Evaluator<'_> {
             "DISTF" => self.distance(&items, range)?,
             "NUMF" => self.pattern_count(&items, range)?,
             "CANF" => self.canonical_number(&items, range)?,
+            "PARMF" | "CLDATF" => return self.not_available(name, range),
             _ => self.one_number(name, &items, range)?,
         };
         self.finite(value, range)
@@ -106,8 +123,21 @@ impl Evaluator<'_> {
         let result = compute(value);
         if result.is_none() {
             self.report(FindingKind::FunctionDomain { function: SmolStr::new_static(name), value }, range);
+            if self.is_apt4() {
+                return apt4_substitute(name, value, *compute);
+            }
         }
         result
+    }
+
+    /// Functions of results that are not kept: the parameters of the last intersection, the CL file.
+    fn not_available(&mut self, name: &'static str, range: TextRange) -> Option<f64> {
+        let mut finding =
+            self.finding(FindingKind::RoutineNotAvailable { name: SmolStr::new_static(name) }, range);
+        finding.severity = Severity::Error;
+        finding.number = Some(if name == "PARMF" { APT4_NO_INTERSECTION } else { APT4_NO_CL_DATA });
+        self.add(finding);
+        None
     }
 
     /// SQRTF: of a negative number the root of the absolute value, with a finding.
@@ -154,8 +184,28 @@ impl Evaluator<'_> {
 
     /// DOTF of two vectors or points.
     fn scalar_product(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
+        if let [a, b] = items
+            && !self.is_apt4()
+        {
+            self.refuse_mixed("DOTF", a, b, range)?;
+        }
         let [a, b] = self.directions::<2>("DOTF", items, range)?;
         Some(a.dot(&b))
+    }
+
+    /// Reports two arguments of different types where they must be of one; nothing if they are.
+    fn refuse_mixed(&mut self, name: &'static str, a: &Item, b: &Item, range: TextRange) -> Option<()> {
+        let (Some(first), Some(second)) =
+            (a.geometry().map(Geometry::kind), b.geometry().map(Geometry::kind))
+        else {
+            return Some(());
+        };
+        if first == second {
+            return Some(());
+        }
+        let function = SmolStr::new_static(name);
+        self.report(FindingKind::FunctionMixed { function, first, second }, range);
+        None
     }
 
     /// SPATF: the triple product.
@@ -215,6 +265,11 @@ impl Evaluator<'_> {
                 if self.is_apt4() =>
             {
                 Some(plane.signed_distance(point).abs())
+            }
+            (Some(Geometry::Line(_)), Some(Geometry::Plane(_)))
+            | (Some(Geometry::Plane(_)), Some(Geometry::Line(_))) => {
+                self.refuse_mixed("DISTF", first, second, range)?;
+                None
             }
             _ => self.wrong_kind("DISTF", first, second),
         }

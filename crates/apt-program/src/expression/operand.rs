@@ -149,6 +149,17 @@ impl Evaluator<'_> {
         complete.then_some(items)
     }
 
+    /// Reports inclusive subscripts in a list that takes none; nothing if there are some.
+    pub(crate) fn refuse_inclusive(&mut self, arguments: &[Argument]) -> Option<()> {
+        let inclusive = arguments.iter().find_map(|argument| match argument {
+            Argument::Inclusive { name, range, .. } => Some((name.text.clone(), *range)),
+            _ => None,
+        });
+        let Some((name, range)) = inclusive else { return Some(()) };
+        self.report(FindingKind::InclusiveNotHere { name }, range);
+        None
+    }
+
     /// Evaluates one parameter; an inclusive subscript gives several operands.
     pub(crate) fn operand(&mut self, argument: &Argument, items: &mut Items) -> Option<()> {
         let range = argument.range();
@@ -238,7 +249,10 @@ impl Evaluator<'_> {
         self.mark_used(&key);
         let extent = match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.extent,
-            Some(Meaning::Poisoned) => return None,
+            Some(Meaning::Poisoned) => {
+                self.unknown_values += 1;
+                return None;
+            }
             _ => {
                 self.report(FindingKind::NotReserved { name: name.text.clone() }, range);
                 return None;
@@ -297,7 +311,10 @@ impl Evaluator<'_> {
                 let geometry = stored.seen_from(self.state.system.as_ref())?;
                 Operand::Geometry { name: element_name, geometry }
             }
-            Some(ArrayElement::Poisoned) => return None,
+            Some(ArrayElement::Poisoned) => {
+                self.unknown_values += 1;
+                return None;
+            }
             None => {
                 self.report(FindingKind::Undefined { name: element_name, similar: Vec::new() }, range);
                 return None;

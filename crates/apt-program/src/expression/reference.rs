@@ -1,6 +1,9 @@
 //! Names and subscripts: what a reference stands for.
 
-use apt_syntax::statement::{Expression, Reference};
+use apt_syntax::{
+    statement::{Argument, Expression, Reference, WordUse},
+    vocabulary,
+};
 use smol_str::{SmolStr, format_smolstr};
 
 use crate::{
@@ -8,6 +11,15 @@ use crate::{
     finding::{FindingKind, RelatedKind},
     symbols::{ARRAY_KEY_SUFFIX, ArrayElement, Meaning, Stored, similar_names},
 };
+
+/// APT4: a subscript on a name that is defined but not reserved.
+const APT4_UNRESERVED: u16 = 1013;
+/// APT4: an element of an array of which none is defined.
+const APT4_EMPTY_ARRAY: u16 = 1014;
+/// APT4: a name without value makes a statement that it does not understand.
+const APT4_UNDEFINED: u16 = 1007;
+/// APT4: no form of a definition, or one of its parameters is not defined.
+const APT4_UNDEFINED_PARAMETER: u16 = 2001;
 
 /// What a reference stands for.
 #[derive(Debug, Clone)]
@@ -28,6 +40,11 @@ impl Evaluator<'_> {
     pub(crate) fn resolve(&mut self, reference: &Reference) -> Option<Resolved> {
         match &reference.subscript {
             Some(subscript) => {
+                if let Some(function) = self.later_function(reference) {
+                    let argument = Argument::Expression((**subscript).clone());
+                    let value = self.function(&function, &[argument], reference.range);
+                    return value.map(Resolved::Scalar);
+                }
                 let subscript = self.scalar(subscript);
                 let index = self.element_index(reference, subscript?)?;
                 self.resolve_element(reference, index)
@@ -36,12 +53,21 @@ impl Evaluator<'_> {
         }
     }
 
+    /// The function of later systems that this is, in a dialect that has them, unless an array has its name.
+    fn later_function(&self, reference: &Reference) -> Option<WordUse> {
+        if !self.dialect.later_functions || self.state.symbol(&reference.name.text).is_some() {
+            return None;
+        }
+        let word = vocabulary::later_function(&reference.name.text)?;
+        Some(WordUse { word, range: reference.name.range })
+    }
+
     /// A name without subscript.
     fn resolve_name(&mut self, reference: &Reference) -> Option<Resolved> {
         let name = &reference.name.text;
         self.mark_used(name);
         let Some(symbol) = self.state.symbol(name) else {
-            self.report_undefined(name.clone(), reference);
+            self.report_undefined(name.clone(), reference, APT4_UNDEFINED);
             return None;
         };
         let origin = symbol.origin.clone();
@@ -50,7 +76,10 @@ impl Evaluator<'_> {
             Meaning::Geometry(stored) => {
                 return Some(Resolved::Geometry { name: name.clone(), stored: stored.clone() });
             }
-            Meaning::Poisoned => return None,
+            Meaning::Poisoned => {
+                self.unknown_values += 1;
+                return None;
+            }
             Meaning::Array(array) => {
                 FindingKind::SubscriptMissing { name: name.clone(), extent: array.extent }
             }
@@ -72,12 +101,22 @@ impl Evaluator<'_> {
         match element {
             Some(ArrayElement::Scalar(value)) => Some(Resolved::Scalar(value)),
             Some(ArrayElement::Geometry(stored)) => Some(Resolved::Geometry { name, stored }),
-            Some(ArrayElement::Poisoned) => None,
+            Some(ArrayElement::Poisoned) => {
+                self.unknown_values += 1;
+                None
+            }
             None => {
-                self.report_undefined(name, reference);
+                let number = if self.array_is_empty(&key) { APT4_EMPTY_ARRAY } else { APT4_UNDEFINED };
+                self.report_undefined(name, reference, number);
                 None
             }
         }
+    }
+
+    /// Whether no element of a reserved array is defined.
+    fn array_is_empty(&self, key: &str) -> bool {
+        let meaning = self.state.symbol(key).map(|symbol| &symbol.meaning);
+        matches!(meaning, Some(Meaning::Array(array)) if array.holds_geometry.is_none())
     }
 
     /// The key of an array in the symbol table: in APT4 `P1` and `P1(1)` are distinct.
@@ -113,11 +152,20 @@ impl Evaluator<'_> {
         self.mark_used(&key);
         match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => Some(array.extent),
-            Some(Meaning::Poisoned) => None,
+            Some(Meaning::Poisoned) => {
+                self.unknown_values += 1;
+                None
+            }
             Some(_) | None => {
                 let name = reference.name.text.clone();
                 let related = self.definition_of(&name);
-                self.report_related(FindingKind::NotReserved { name }, reference.range, related);
+                let exists = !related.is_empty();
+                let mut finding = self.finding(FindingKind::NotReserved { name }, reference.range);
+                finding.related = related;
+                if exists && self.is_apt4() {
+                    finding.number = Some(APT4_UNRESERVED);
+                }
+                self.add(finding);
                 None
             }
         }
@@ -137,14 +185,19 @@ impl Evaluator<'_> {
     }
 
     /// Reports an undefined name with names like it; once for each place.
-    fn report_undefined(&mut self, name: SmolStr, reference: &Reference) {
+    fn report_undefined(&mut self, name: SmolStr, reference: &Reference, apt4_number: u16) {
         if self.output.has_finding_at(self.here.isn, reference.range) {
             self.errors += 1;
             return;
         }
         let names = self.state.symbols.keys().map(|key| key.trim_end_matches(ARRAY_KEY_SUFFIX));
         let similar = similar_names(&name, names);
-        self.report(FindingKind::Undefined { name, similar }, reference.range);
+        let mut finding = self.finding(FindingKind::Undefined { name, similar }, reference.range);
+        if self.is_apt4() {
+            let in_definition = self.definition_depth > 0 && apt4_number == APT4_UNDEFINED;
+            finding.number = Some(if in_definition { APT4_UNDEFINED_PARAMETER } else { apt4_number });
+        }
+        self.add(finding);
     }
 
     /// Notes that a name was used.

@@ -1,10 +1,16 @@
-//! APT III numbers and severities of findings.
+//! Numbers and severities of findings, as the dialects have them.
 
-use apt_geometry::definition::DefinitionError;
+use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
+use apt_syntax::{dialect::DialectName, error::SyntaxErrorKind};
 
 use super::{FindingKind, Found, Severity};
 
 impl FindingKind {
+    /// The diagnostic number in a dialect: that of APT4, or that of APT III for all others.
+    pub fn number(&self, dialect: DialectName) -> Option<u16> {
+        if dialect == DialectName::Apt4 { self.apt4() } else { self.apt3() }
+    }
+
     /// The APT III diagnostic number, where one exists.
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
@@ -32,8 +38,13 @@ impl FindingKind {
             Self::NegativePower { .. } => 68,
             Self::FunctionCount { .. } => 65,
             Self::FunctionKind { .. } => 66,
+            Self::FunctionMixed { .. } => 80,
             Self::FunctionDomain { .. } | Self::NotParallel { .. } | Self::AngleOfCenter => 66,
             Self::NegativeRoot { .. } => 67,
+            Self::Definition {
+                kind: GeometryKind::Pattern,
+                error: DefinitionError::UnknownFormat { .. },
+            } => 800,
             Self::Definition { error, .. } => return definition_number(error),
             Self::DefinitionWord { .. } | Self::UnknownType { .. } => 1000,
             Self::UnnamedPattern => 820,
@@ -97,25 +108,111 @@ impl FindingKind {
             | Self::Endless { .. }
             | Self::ZeroStep
             | Self::NotInDialect { .. }
+            | Self::AxisDropped { .. }
             | Self::NoEffect { .. }
             | Self::AfterEnd
             | Self::Unreachable => return None,
         })
     }
 
+    /// The APT4 diagnostic number, where one is known (language reference 10.4). 1007 is its general number for a
+    /// statement that it does not understand, 2001 for operands that fit no form.
+    pub fn apt4(&self) -> Option<u16> {
+        Some(match self {
+            Self::Syntax(kind) => return syntax_number(kind),
+            Self::Undefined { .. }
+            | Self::LabelAsValue { .. }
+            | Self::MacroAsValue { .. }
+            | Self::GeometryAsScalar { .. }
+            | Self::NotAssignable { .. }
+            | Self::LabelIsName { .. }
+            | Self::NotInDialect { .. }
+            | Self::IncludeNotFound { .. }
+            | Self::InclusiveForm { .. }
+            | Self::SynonymPairs { .. } => 1007,
+            Self::Redefined { .. } => 50,
+            Self::ScalarToGeometry { .. } | Self::RedefinedAsOtherKind { .. } => 1001,
+            Self::GeometryToScalar { .. } | Self::SubscriptMissing { .. } | Self::MixedArray { .. } => 1012,
+            Self::NotReserved { .. } => 1111,
+            Self::ReserveForm | Self::ReserveExtent { .. } => 2027,
+            Self::FunctionDomain { function, value } => return domain_number(function, *value),
+            Self::NegativeRoot { .. } => 20,
+            Self::NotParallel { .. } => 62,
+            Self::Definition { error, .. } => match error {
+                DefinitionError::UnknownFormat { .. } | DefinitionError::WrongModifier { .. } => 2001,
+                DefinitionError::CanonicalCount { .. } => 2032,
+                _ => return None,
+            },
+            Self::DefinitionWord { .. } | Self::UnknownType { .. } => 2001,
+            Self::Operand { statement, found, .. } => match (statement.as_str(), found) {
+                ("PRINT" | "PUNCH", _) => 2031,
+                ("ZSURF", Found::Scalar) => 2029,
+                _ => 2001,
+            },
+            Self::OperandCount { .. } => 2001,
+            Self::OperandRange { statement, .. } if statement == "PRINT" => 2031,
+            Self::ObtainType { .. } => 1050,
+            Self::DuplicateLabel { .. } => 1003,
+            Self::UnknownMacro { .. } => 72,
+            Self::UnknownMacroVariable { .. } => 1020,
+            Self::MacroVariableMissing { .. } | Self::MacroValueMissing { .. } => 2055,
+            Self::AxisDropped { .. } => 22300,
+            Self::Unreachable => 1009,
+            _ => return None,
+        })
+    }
+
     /// How bad this is unless the project says otherwise.
     pub fn severity(&self) -> Severity {
         match self {
-            Self::Unused { .. } | Self::AfterEnd => Severity::Hint,
+            Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
             Self::EndMissing
             | Self::Doubtful { .. }
             | Self::NoEffect { .. }
-            | Self::WordBecomesName { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
+            | Self::AxisDropped { .. }
             | Self::Unreachable => Severity::Warning,
+            Self::Syntax(kind) if kind.is_warning() => Severity::Warning,
             _ => Severity::Error,
         }
+    }
+
+    /// How bad this is in a dialect: APT4 goes on after a name that is too long, after a redefinition and after a
+    /// PRINT that it does not know.
+    pub fn severity_in(&self, dialect: DialectName) -> Severity {
+        let mild = match self {
+            Self::Syntax(SyntaxErrorKind::NameTooLong { .. }) | Self::Redefined { .. } => true,
+            Self::Operand { statement, .. } | Self::OperandRange { statement, .. } => {
+                matches!(statement.as_str(), "PRINT" | "PUNCH")
+            }
+            _ => false,
+        };
+        if mild && dialect == DialectName::Apt4 { Severity::Warning } else { self.severity() }
+    }
+}
+
+/// The APT4 number of a syntax error.
+fn syntax_number(kind: &SyntaxErrorKind) -> Option<u16> {
+    match kind {
+        SyntaxErrorKind::NameTooLong { .. } => Some(16),
+        SyntaxErrorKind::MissingParameters => Some(2001),
+        SyntaxErrorKind::UnknownFunction(_) => Some(1111),
+        SyntaxErrorKind::TooManyElements { .. } => Some(1028),
+        SyntaxErrorKind::RunsIntoSequenceField => None,
+        _ => Some(1007),
+    }
+}
+
+/// The APT4 number of a function argument outside the domain.
+fn domain_number(function: &str, value: f64) -> Option<u16> {
+    match function {
+        "LOGF" | "LOG10F" if value == 0.0 => Some(37),
+        "LOGF" | "LOG10F" | "SQRTF" => Some(20),
+        "ARSINF" | "ARCOSF" | "ARSINB" | "ARCOSB" => Some(38),
+        "CANF" if value < 1.0 => Some(41),
+        "CANF" => Some(40),
+        _ => None,
     }
 }
 

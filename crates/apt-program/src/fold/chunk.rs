@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use apt_geometry::motion::MotionCommand;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -9,7 +10,7 @@ use super::shift::Shift;
 use crate::{
     evaluator::{Output, State},
     finding::Finding,
-    record::{Origin, Record},
+    record::{Origin, Record, RecordKind},
     symbols::DefinitionEvent,
 };
 
@@ -34,6 +35,10 @@ pub(super) struct ChunkData {
     pub(super) touched: FxHashSet<SmolStr>,
     /// Names that were used.
     pub(super) used: FxHashSet<SmolStr>,
+    /// A statement has listed all names.
+    pub(super) lists_all: bool,
+    /// A record moves the tool.
+    pub(super) moves: bool,
 }
 
 impl ChunkData {
@@ -51,6 +56,8 @@ impl ChunkData {
             read_from: extent.0,
             read_to: extent.1,
             steps,
+            moves: output.records.iter().any(|record| moves_the_tool(&record.kind)),
+            lists_all: output.lists_all,
             records: output.records,
             findings: output.findings,
             definitions: output.definitions,
@@ -58,6 +65,24 @@ impl ChunkData {
             touched: output.touched,
             used: output.used,
         }
+    }
+}
+
+/// Whether a record moves the tool, or would if its statement had no error.
+fn moves_the_tool(kind: &RecordKind) -> bool {
+    match kind {
+        RecordKind::Gap => true,
+        RecordKind::Motion(command) => matches!(
+            **command,
+            MotionCommand::From { .. }
+                | MotionCommand::GoTo { .. }
+                | MotionCommand::GoDelta(_)
+                | MotionCommand::Start(_)
+                | MotionCommand::Offset(_)
+                | MotionCommand::Drive { .. }
+                | MotionCommand::Pocket(_)
+        ),
+        _ => false,
     }
 }
 
@@ -127,6 +152,16 @@ impl Chunk {
     /// Names that were used; these do not move.
     pub(super) fn used(&self) -> &FxHashSet<SmolStr> {
         &self.data.used
+    }
+
+    /// Whether a statement has listed all names.
+    pub(super) fn lists_all(&self) -> bool {
+        self.data.lists_all
+    }
+
+    /// Whether a record moves the tool.
+    pub(super) fn moves(&self) -> bool {
+        self.data.moves
     }
 
     /// Names whose meaning changed; these do not move.

@@ -1,5 +1,6 @@
 //! Findings of the program as a whole: unused names, transfers that lead nowhere.
 
+use apt_syntax::dialect::DialectName;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -12,7 +13,12 @@ use crate::{
 };
 
 /// The findings of all chunks, each once, and those that need the whole program.
-pub(super) fn closing_findings(chunks: &[Chunk], end: &State, complete: bool) -> Vec<Finding> {
+pub(super) fn closing_findings(
+    chunks: &[Chunk],
+    end: &State,
+    dialect: DialectName,
+    complete: bool,
+) -> Vec<Finding> {
     let mut findings: Vec<Finding> = Vec::new();
     let mut by_place: FxHashMap<(u32, u32), Vec<usize>> = FxHashMap::default();
     let reporting = chunks.iter().filter(|chunk| chunk.has_findings());
@@ -26,14 +32,16 @@ pub(super) fn closing_findings(chunks: &[Chunk], end: &State, complete: bool) ->
         findings.push(finding.clone());
     }
     if complete {
-        add_unknown_transfers(chunks, end, &mut findings);
-        add_unused(chunks, end, &mut findings);
+        add_unknown_transfers(chunks, end, dialect, &mut findings);
+        if chunks.iter().any(Chunk::moves) && !chunks.iter().any(Chunk::lists_all) {
+            add_unused(chunks, end, dialect, &mut findings);
+        }
     }
     findings
 }
 
 /// TRANTO and labels of check surfaces that no statement carries.
-fn add_unknown_transfers(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
+fn add_unknown_transfers(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mut Vec<Finding>) {
     let mut carried: FxHashSet<SmolStr> = FxHashSet::default();
     let transfers: Vec<&(SmolStr, Origin)> = chunks
         .iter()
@@ -51,19 +59,20 @@ fn add_unknown_transfers(chunks: &[Chunk], end: &State, findings: &mut Vec<Findi
             } else {
                 FindingKind::UnknownLabel { name: label.clone(), similar: Vec::new() }
             };
-            push(findings, kind, origin.clone());
+            push(findings, kind, dialect, origin);
         }
     }
 }
 
-/// Names that are defined and never used, in the order of their definition.
-fn add_unused(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
+/// Names of numbers and geometry that nobody reads, in the order of their definition.
+fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mut Vec<Finding>) {
     let used: FxHashSet<&SmolStr> = chunks.iter().flat_map(Chunk::used).collect();
     let mut unused: Vec<(&SmolStr, &Origin)> = end
         .symbols
         .iter()
         .filter(|(name, symbol)| {
-            let has_value = !matches!(symbol.meaning, Meaning::Label | Meaning::Poisoned);
+            let has_value =
+                matches!(symbol.meaning, Meaning::Scalar(_) | Meaning::Geometry(_) | Meaning::Array(_));
             has_value && !used.contains(name)
         })
         .map(|(name, symbol)| (name, &symbol.origin))
@@ -71,11 +80,11 @@ fn add_unused(chunks: &[Chunk], end: &State, findings: &mut Vec<Finding>) {
     unused.sort_by_key(|(name, origin)| (origin.isn, origin.range.start(), (*name).clone()));
     for (name, origin) in unused {
         let name = SmolStr::new(name.trim_end_matches(ARRAY_KEY_SUFFIX));
-        push(findings, FindingKind::Unused { name }, origin.clone());
+        push(findings, FindingKind::Unused { name }, dialect, origin);
     }
 }
 
-/// Adds a finding with its usual severity.
-fn push(findings: &mut Vec<Finding>, kind: FindingKind, origin: Origin) {
-    findings.push(Finding { severity: kind.severity(), kind, origin, related: Vec::new() });
+/// Adds a finding.
+fn push(findings: &mut Vec<Finding>, kind: FindingKind, dialect: DialectName, origin: &Origin) {
+    findings.push(Finding::new(kind, dialect, origin.clone()));
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use apt_syntax::{StatementChange, SyntaxTree};
+use apt_syntax::{StatementChange, SyntaxTree, dialect::DialectName};
 use smol_str::SmolStr;
 
 use super::{
@@ -43,7 +43,7 @@ impl Program {
     /// Evaluates a program from its first statement.
     pub(crate) fn evaluate(tree: &SyntaxTree, options: &Options, cancel: &dyn Fn() -> bool) -> Program {
         let outcome = evaluate_from(tree, options, cancel, (0, State::default()), None);
-        Program::assemble(Vec::new(), outcome, None)
+        Program::assemble(Vec::new(), outcome, None, tree.dialect().name)
     }
 
     /// Evaluates after an edit: from the checkpoint before the first changed statement until the state is what it was
@@ -69,11 +69,12 @@ impl Program {
         };
         let old = Old { chunks: &self.chunks, first: kept, change };
         let outcome = evaluate_from(tree, options, cancel, start, Some(&old));
-        Program::assemble(self.chunks[..kept.min(self.chunks.len())].to_vec(), outcome, Some(self))
+        let kept = self.chunks[..kept.min(self.chunks.len())].to_vec();
+        Program::assemble(kept, outcome, Some(self), tree.dialect().name)
     }
 
     /// Puts kept, new and reused chunks together.
-    fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>) -> Program {
+    fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>, dialect: DialectName) -> Program {
         let mut reused: u64 = kept.iter().map(Chunk::steps).sum();
         let mut chunks = kept;
         chunks.extend(outcome.chunks);
@@ -94,7 +95,7 @@ impl Program {
                 (end, true)
             }
         };
-        let findings = Arc::new(closing_findings(&chunks, &end, complete));
+        let findings = Arc::new(closing_findings(&chunks, &end, dialect, complete));
         let statistics = Statistics {
             evaluated_statements: outcome.steps,
             reused_statements: reused,

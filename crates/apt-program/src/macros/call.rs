@@ -34,16 +34,25 @@ impl Evaluator<'_> {
         let definition = match self.state.symbol(&name.text) {
             Some(symbol) => match &symbol.meaning {
                 Meaning::Macro(definition) => Some((Arc::clone(definition), symbol.origin.clone())),
-                Meaning::Poisoned => return Flow::Next,
+                Meaning::Poisoned => {
+                    self.gap(range);
+                    return Flow::Next;
+                }
                 _ => None,
             },
             None => None,
         };
         let Some((definition, origin)) = definition else {
             self.report_unknown_macro(name);
+            self.gap(range);
             return Flow::Next;
         };
-        let Some(bindings) = self.bind(&definition, name, arguments, &origin) else { return Flow::Next };
+        let Some(bindings) = self.bind(&definition, name, arguments, &origin) else {
+            if definition.body.moves() {
+                self.gap(range);
+            }
+            return Flow::Next;
+        };
         let limit = self.macro_depth();
         if self.here.depth >= limit {
             let related = vec![(RelatedKind::Macro, origin)];

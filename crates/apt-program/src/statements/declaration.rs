@@ -97,6 +97,10 @@ impl Evaluator<'_> {
             return self.report(FindingKind::ReserveForm, major.range);
         }
         let name_first = plain_name(&major.arguments[0]).is_some();
+        if !name_first && self.is_apt4() {
+            // APT4 knows one order only.
+            return self.report(FindingKind::ReserveForm, major.arguments[0].range());
+        }
         for pair in major.arguments.chunks(2) {
             let [first, second] = pair else {
                 return self.report(FindingKind::ReserveForm, major.range);

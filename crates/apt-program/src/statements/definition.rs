@@ -15,7 +15,7 @@ use smol_str::SmolStr;
 use crate::{
     evaluator::{Evaluator, Synonym},
     expression::{Item, Operand, Resolved},
-    finding::{FindingKind, Found, RelatedKind, Severity},
+    finding::{FindingKind, Found, RelatedKind},
     record::Origin,
     symbols::{ArrayElement, DefinitionEvent, Meaning, Stored, Symbol, Value},
 };
@@ -128,7 +128,12 @@ impl Evaluator<'_> {
     /// Evaluates a definition. Mistakes are reported at the definition.
     fn define(&mut self, definition: &Definition, target: Option<&Reference>) -> Option<Arc<Geometry>> {
         let word = definition.kind.word.spelling;
+        if has_canon(definition) {
+            self.refuse_inclusive(&definition.arguments)?;
+        }
+        self.definition_depth += 1;
         let items = self.operands(&definition.arguments);
+        self.definition_depth -= 1;
         let Some(kind) = GeometryKind::from_word(word) else {
             let finding = FindingKind::UnknownType { word: SmolStr::new_static(word) };
             self.report(finding, definition.kind.range);
@@ -267,10 +272,12 @@ impl Evaluator<'_> {
             }
             other => FindingKind::NotAssignable { name: name.clone(), found: other.found() },
         };
-        let warns_only = self.is_apt4() && matches!(finding, FindingKind::Redefined { .. });
-        let severity = if warns_only { Severity::Warning } else { finding.severity() };
         let related = vec![(RelatedKind::Definition, symbol.origin.clone())];
-        self.report_as(finding, severity, range, related);
+        let warns_only = self.is_apt4() && matches!(finding, FindingKind::Redefined { .. });
+        // APT4 looks at the order of the text: a statement that a loop executes again is no redefinition.
+        if !warns_only || symbol.origin.isn < self.here.isn {
+            self.report_related(finding, range, related);
+        }
         warns_only
     }
 

@@ -2,15 +2,25 @@
 
 use super::Major;
 use crate::{
-    evaluator::Evaluator,
+    evaluator::{Evaluator, Region},
     expression::Operand,
     finding::{Expected, FindingKind, Found},
 };
-use apt_syntax::statement::{Argument, Expression};
+use apt_syntax::{
+    statement::{Argument, Expression},
+    vocabulary::WordClass,
+};
 
 /// Largest first number of PRINT and PUNCH.
 const LARGEST_PRINT: f64 = 4.0;
 const LARGEST_PUNCH: f64 = 3.0;
+/// First numbers that PRINT takes in APT4 (language reference 10.4).
+const APT4_PRINT_NUMBERS: [f64; 3] = [0.0, 2.0, 3.0];
+/// The first number of a READ that puts in a segment of statements.
+const READ_SEGMENT: f64 = 2.0;
+/// APT III: READ/2 inside a loop or macro, READ/2 with too many operands (language reference 9.2).
+const READ_IN_REGION: u16 = 37;
+const READ_COUNT: u16 = 34;
 
 impl Evaluator<'_> {
     /// PRINT, PUNCH and READ: the form is checked, names count as used; undefined items are no error.
@@ -18,13 +28,15 @@ impl Evaluator<'_> {
         for argument in major.arguments {
             self.mark_listed(argument);
         }
-        match (major.spelling(), major.arguments.first()) {
-            (_, Some(Argument::Word(word)))
-                if matches!(word.word.spelling, "ON" | "OFF") || self.is_apt4() => {}
-            ("READ", Some(_)) => {
-                self.report(FindingKind::NoEffect { word: major.name() }, major.range);
+        match (major.spelling(), major.arguments) {
+            ("READ", [Argument::Expression(first), name, rest @ ..]) if matches!(first, Expression::Number { value, .. } if *value == READ_SEGMENT) =>
+            {
+                self.read_segment(major, name, rest);
             }
-            (_, Some(Argument::Expression(first))) => {
+            ("READ", [_, ..]) => self.report(FindingKind::NoEffect { word: major.name() }, major.range),
+            ("PRINT", arguments) if self.is_apt4() => self.apt4_listing(major, arguments),
+            (_, [Argument::Word(word), ..]) if matches!(word.word.spelling, "ON" | "OFF") => {}
+            (_, [Argument::Expression(first), ..]) => {
                 let largest = if major.spelling() == "PUNCH" { LARGEST_PUNCH } else { LARGEST_PRINT };
                 if let Some(value) = self.scalar(first)
                     && !(0.0..=largest).contains(&value)
@@ -34,10 +46,45 @@ impl Evaluator<'_> {
                     self.report(finding, first.range());
                 }
             }
-            (_, other) => {
-                let found = if other.is_none() { Found::Nothing } else { Found::Text };
+            (_, arguments) => {
+                let found = if arguments.is_empty() { Found::Nothing } else { Found::Text };
                 self.wrong_operand(major, Expected::Integer, found, 326, major.range);
             }
+        }
+    }
+
+    /// PRINT in APT4: 0, 2 or 3 with a list, ON, OFF, or the switch of a part of the system.
+    fn apt4_listing(&mut self, major: Major<'_>, arguments: &[Argument]) {
+        match arguments {
+            [Argument::Word(word), ..] if matches!(word.word.spelling, "ON" | "OFF") => {}
+            [Argument::Word(word), Argument::Word(switch)]
+                if word.word.class == WordClass::SystemFlag
+                    && matches!(switch.word.spelling, "ON" | "OFF") => {}
+            [Argument::Expression(Expression::Number { value, .. }), ..]
+                if APT4_PRINT_NUMBERS.contains(value) => {}
+            [Argument::Expression(Expression::Number { value, range }), ..] => {
+                let finding =
+                    FindingKind::OperandRange { statement: major.name(), value: *value, number: Some(326) };
+                self.report(finding, *range);
+            }
+            _ => self.wrong_operand(major, Expected::Integer, Found::Text, 326, major.range),
+        }
+    }
+
+    /// READ/2,name: puts in a stored segment of statements, which is looked for as an included file is.
+    fn read_segment(&mut self, major: Major<'_>, name: &Argument, rest: &[Argument]) {
+        if self.here.region != Region::Top {
+            return self.wrong_operand(major, Expected::Nothing, Found::Text, READ_IN_REGION, major.range);
+        }
+        if !rest.is_empty() {
+            return self.wrong_count(major, rest.len() + 2, "2 and one name", READ_COUNT);
+        }
+        match name {
+            Argument::Expression(Expression::Reference(reference)) if reference.subscript.is_none() => {
+                let name = reference.name.text.clone();
+                self.report(FindingKind::IncludeNotFound { name }, reference.range);
+            }
+            other => self.wrong_operand(major, Expected::Name, Found::Scalar, 156, other.range()),
         }
     }
 
@@ -53,6 +100,7 @@ impl Evaluator<'_> {
                 let key = self.array_key(&name.text);
                 self.mark_used(&key);
             }
+            Argument::Word(word) if word.word.spelling == "ALL" => self.output.lists_all = true,
             Argument::Nested { .. } => {
                 let mut items = Vec::new();
                 self.operand(argument, &mut items);

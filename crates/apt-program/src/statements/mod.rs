@@ -13,7 +13,7 @@ mod transformation;
 
 use apt_syntax::{
     TextRange,
-    statement::{Argument, Body, Name, Part, WordUse},
+    statement::{Argument, Body, Expression, Name, Part, WordUse},
     vocabulary::WordClass,
 };
 use smol_str::SmolStr;
@@ -50,6 +50,31 @@ impl Major<'_> {
     }
 }
 
+/// APT III: the condition of an IF is no number (language reference 9.2).
+const CONDITION_NOT_SCALAR: u16 = 402;
+
+/// Whether a statement with this word moves the tool, or decides how it moves.
+pub(crate) fn leaves_motion(word: &str) -> bool {
+    matches!(
+        word,
+        "FROM"
+            | "GOTO"
+            | "GODLTA"
+            | "GO"
+            | "OFFSET"
+            | "GOLFT"
+            | "GORGT"
+            | "GOFWD"
+            | "GOBACK"
+            | "GOUP"
+            | "GODOWN"
+            | "POCKET"
+            | "PSIS"
+            | "TLAXIS"
+            | "CUTTER"
+    )
+}
+
 impl Evaluator<'_> {
     /// Executes one part of a statement. MACRO and LOOPST at the top level are handled before this.
     pub(crate) fn execute_part(&mut self, part: &Part) -> Flow {
@@ -62,15 +87,23 @@ impl Evaluator<'_> {
                 return self.call(name, arguments, section.as_ref(), part.range);
             }
             Body::ArithmeticIf { condition, labels, .. } => {
-                if let Some(value) = self.scalar(condition) {
+                if let Some(value) = self.deciding_value(condition) {
                     let index = if value < 0.0 { 0 } else { 1 + usize::from(value > 0.0) };
                     return Flow::Jump(labels[index].clone());
                 }
             }
             Body::LogicalIf { condition, then, .. } => {
-                if self.condition(condition) == Some(true) {
-                    return self.execute_part(then);
-                }
+                return match self.condition(condition) {
+                    Some(true) => self.execute_part(then),
+                    Some(false) => Flow::Next,
+                    None => {
+                        if matches!(&then.body, Body::Major { word, .. } if leaves_motion(word.word.spelling))
+                        {
+                            self.gap(part.range);
+                        }
+                        Flow::Next
+                    }
+                };
             }
             Body::Do { word, .. } => {
                 self.report(FindingKind::NotInDialect { word: SmolStr::new_static("DO") }, word.range);
@@ -86,6 +119,24 @@ impl Evaluator<'_> {
         Flow::Next
     }
 
+    /// The number that decides a branch; geometry by its name is told apart from geometry in an expression.
+    fn deciding_value(&mut self, condition: &Expression) -> Option<f64> {
+        let reference = Self::plain_reference(condition);
+        let name = reference.filter(|reference| reference.subscript.is_none()).map(|one| &one.name.text);
+        if let (Some(name), Some(reference)) = (name, reference)
+            && let Found::Geometry(kind) = self.found_name(name)
+        {
+            let mut finding =
+                self.finding(FindingKind::GeometryAsScalar { name: name.clone(), kind }, reference.range);
+            if !self.is_apt4() {
+                finding.number = Some(CONDITION_NOT_SCALAR);
+            }
+            self.add(finding);
+            return None;
+        }
+        self.scalar(condition)
+    }
+
     /// JUMPTO and TRANTO.
     fn jump_statement(&mut self, word: &WordUse, label: &Name, range: TextRange) -> Flow {
         if word.word.spelling != "TRANTO" {
@@ -98,8 +149,39 @@ impl Evaluator<'_> {
         Flow::Next
     }
 
-    /// Any other major word.
+    /// Any other major word. Where a motion is missing because of an error, a gap takes its place.
     fn major(&mut self, major: Major<'_>) -> Flow {
+        let records = self.output.records.len();
+        let failures = self.errors + self.unknown_values;
+        let flow = self.major_word(major);
+        let failed = self.errors + self.unknown_values > failures;
+        if failed && leaves_motion(major.spelling()) {
+            let new = self.output.records.get(records..).unwrap_or_default();
+            if !new.iter().any(|record| matches!(record.kind, RecordKind::Motion(_))) {
+                self.gap(major.range);
+            }
+        }
+        flow
+    }
+
+    /// Notes that a motion is missing here.
+    pub(crate) fn gap(&mut self, range: TextRange) {
+        self.emit(RecordKind::Gap, range);
+    }
+
+    /// What a major word does.
+    fn major_word(&mut self, major: Major<'_>) -> Flow {
+        let counts = matches!(
+            major.word.word.class,
+            WordClass::Motion
+                | WordClass::PathParameter
+                | WordClass::PathControl
+                | WordClass::ToolPosition
+                | WordClass::Transformation
+        );
+        if counts && major.spelling() != "GOTO" && self.refuse_inclusive(major.arguments).is_none() {
+            return Flow::Next;
+        }
         match major.spelling() {
             "GOTO" | "FROM" => self.go_to(major),
             "GODLTA" => self.go_delta(major),

@@ -84,12 +84,15 @@ impl Evaluator<'_> {
             ("GOUGCK", Some(["OFF"])) => MotionCommand::GougeCheck(false),
             ("MULTAX", Some([])) => {
                 self.state.axes_for_good = true;
+                self.state.axes_on = true;
                 MotionCommand::MultipleAxes(None)
             }
             // After plain MULTAX the other forms have no effect (language reference 6.9).
             ("MULTAX", Some(["ON" | "OFF"])) if self.state.axes_for_good => return,
-            ("MULTAX", Some(["ON"])) => MotionCommand::MultipleAxes(Some(true)),
-            ("MULTAX", Some(["OFF"])) => MotionCommand::MultipleAxes(Some(false)),
+            ("MULTAX", Some([switch @ ("ON" | "OFF")])) => {
+                self.state.axes_on = *switch == "ON";
+                MotionCommand::MultipleAxes(Some(self.state.axes_on))
+            }
             ("MULTAX" | "GOUGCK", _) => {
                 let found = items.first().map_or(Found::Nothing, |item| item.found());
                 return self.wrong_operand(major, Expected::OnOrOff, found, 132, major.range);

@@ -61,13 +61,14 @@ impl Evaluator<'_> {
         if bare && (major.slash || !major.arguments.is_empty()) {
             return self.report(FindingKind::PostBare { word: major.name() }, major.range);
         }
-        let Some(items) = self.post_operands(major.arguments) else { return };
+        let takes_any_word = self.is_apt4() && major.spelling() == "UNITS";
+        let Some(items) = self.post_operands(major.arguments, takes_any_word) else { return };
         self.emit_post(major, &items, Vec::with_capacity(items.len()));
     }
 
     /// A word that nobody knows, in a CL file: its parameters go through as they are.
     pub(crate) fn unknown_word(&mut self, name: &Name, arguments: &[Argument], range: TextRange) {
-        let Some(items) = self.post_operands(arguments) else { return };
+        let Some(items) = self.post_operands(arguments, true) else { return };
         let arguments = items
             .into_iter()
             .map(|item| match item.operand {
@@ -83,9 +84,9 @@ impl Evaluator<'_> {
         self.emit(RecordKind::Postprocessor { word: name.text.clone(), code: NO_CODE, arguments }, range);
     }
 
-    /// Operands; in CL files a name without value is text.
-    fn post_operands(&mut self, arguments: &[Argument]) -> Option<Items> {
-        if !self.is_cl() {
+    /// Operands; in CL files, and after UNITS in APT4, a name without value is text.
+    fn post_operands(&mut self, arguments: &[Argument], takes_any_word: bool) -> Option<Items> {
+        if !self.is_cl() && !takes_any_word {
             return self.operands(arguments);
         }
         let mut items = Vec::with_capacity(arguments.len());
@@ -166,7 +167,7 @@ impl Evaluator<'_> {
         if self.state.machines > MOST_MACHINES {
             return self.report(FindingKind::MachineCount { limit: MOST_MACHINES }, major.range);
         }
-        let Some(items) = self.post_operands(&major.arguments[1..]) else { return };
+        let Some(items) = self.post_operands(&major.arguments[1..], false) else { return };
         self.emit_post(major, &items, vec![PostArgument::Text(name)]);
     }
 }

@@ -87,6 +87,17 @@ pub enum SignRule {
     WeakerThanPower,
 }
 
+/// What becomes of a name with more characters than [`Dialect::name_length`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LongNames {
+    /// It is an error (language reference 1.8).
+    Refused,
+    /// It is cut, with a warning (language reference 10.4).
+    Cut,
+    /// It is taken as it is. Only when blanks divide it, it is an error: more likely a comma is missing.
+    Taken,
+}
+
 /// The switches of a dialect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Dialect {
@@ -96,6 +107,8 @@ pub struct Dialect {
     pub sequence_field: SequenceFieldRule,
     /// The most characters of a name; none for no limit.
     pub name_length: Option<u16>,
+    /// What becomes of longer names.
+    pub long_names: LongNames,
     /// The most significant digits of a number; none for no limit.
     pub number_digits: Option<u16>,
     /// The most elements of a statement; none for no limit.
@@ -118,6 +131,8 @@ pub struct Dialect {
     pub bare_points: bool,
     /// `X=Y=4` and `A(I=I+1)`.
     pub chained_assignment: bool,
+    /// Functions of later systems (INTF, MAXF) are functions where no array has their name.
+    pub later_functions: bool,
     /// A vocabulary word becomes a name by assignment.
     pub words_as_names: bool,
     /// `IF(a.LT.b)statement`.
@@ -142,7 +157,9 @@ impl Dialect {
     /// The switches of a named dialect.
     pub const fn named(name: DialectName) -> Dialect {
         match name {
-            DialectName::Free => Dialect::APT_III,
+            DialectName::Free => {
+                Dialect { long_names: LongNames::Taken, later_functions: true, ..Dialect::APT_III }
+            }
             DialectName::Apt3 => Dialect {
                 name: DialectName::Apt3,
                 sequence_field: SequenceFieldRule::Always,
@@ -151,6 +168,7 @@ impl Dialect {
             },
             DialectName::Apt4 => Dialect {
                 name: DialectName::Apt4,
+                long_names: LongNames::Cut,
                 number_digits: None,
                 signs: SignRule::WeakerThanPower,
                 bare_expressions: true,
@@ -186,6 +204,7 @@ impl Dialect {
         name: DialectName::Free,
         sequence_field: SequenceFieldRule::WhenPresent,
         name_length: Some(6),
+        long_names: LongNames::Refused,
         number_digits: Some(16),
         statement_elements: None,
         text_words_anywhere: false,
@@ -197,6 +216,7 @@ impl Dialect {
         bare_expressions: false,
         bare_points: false,
         chained_assignment: false,
+        later_functions: false,
         words_as_names: false,
         logical_if: false,
         do_loops: false,

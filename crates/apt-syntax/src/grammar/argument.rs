@@ -153,7 +153,7 @@ impl Parser<'_> {
         if self.nested_definition_follows() {
             return self.nested(Self::nested_definition);
         }
-        if !self.point_follows() {
+        if !self.comma_in_parenthesis(self.position) {
             let operand = self.primary()?;
             if rules.bare_expressions || self.dialect.bare_expressions {
                 return Ok(Argument::Expression(self.expression_from(first, operand)?));
@@ -171,10 +171,10 @@ impl Parser<'_> {
         Ok(Argument::Point { coordinates, range: self.range_from(first) })
     }
 
-    /// Whether a comma stands inside the parenthesis that opens here, on its own level.
-    fn point_follows(&self) -> bool {
+    /// Whether a comma stands inside the parenthesis that opens at an element, on its own level.
+    pub(super) fn comma_in_parenthesis(&self, open: usize) -> bool {
         let mut depth = 0_u32;
-        for element in self.elements.iter().skip(self.position) {
+        for element in self.elements.iter().skip(open) {
             match element.kind {
                 ElementKind::LeftParenthesis => depth += 1,
                 ElementKind::RightParenthesis if depth <= 1 => return false,

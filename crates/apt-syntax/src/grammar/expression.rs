@@ -6,8 +6,8 @@ use crate::dialect::SignRule;
 use crate::error::SyntaxErrorKind;
 use crate::kind::SyntaxKind;
 use crate::lexer::number_value;
-use crate::statement::{ElementKind, Expression, Name, Operator, Reference};
-use crate::vocabulary::WordClass;
+use crate::statement::{ElementKind, Expression, Name, Operator, Reference, WordUse};
+use crate::vocabulary::{self, Word, WordClass};
 
 /// A production that gives an expression.
 type Production<'a> = fn(&mut Parser<'a>) -> Parsed<Expression>;
@@ -170,7 +170,10 @@ impl<'a> Parser<'a> {
                 };
                 Ok(Expression::Number { value, range: element.range })
             }
-            ElementKind::Name => Ok(Expression::Reference(self.reference()?)),
+            ElementKind::Name => match self.later_function() {
+                Some(function) => self.function_call(function),
+                None => Ok(Expression::Reference(self.reference()?)),
+            },
             ElementKind::LeftParenthesis => self.parenthesised(),
             ElementKind::Word => self.function_or_word(),
             ElementKind::Plus
@@ -188,7 +191,6 @@ impl<'a> Parser<'a> {
     }
 
     fn function_or_word(&mut self) -> Parsed<Expression> {
-        let first = self.position;
         let Some(word) = self.word_at(0) else { return self.fail(SyntaxErrorKind::OperandMissing) };
         if word.class != WordClass::Function {
             if self.dialect.words_as_names {
@@ -205,7 +207,27 @@ impl<'a> Parser<'a> {
             }
             return self.fail(SyntaxErrorKind::FunctionWithoutParentheses(word.spelling.into()));
         }
-        let Some(function) = self.word_use() else { return self.fail(SyntaxErrorKind::OperandMissing) };
+        match self.word_at(0) {
+            Some(word) => self.function_call(word),
+            None => self.fail(SyntaxErrorKind::OperandMissing),
+        }
+    }
+
+    /// The function of later systems that begins here, where the dialect has them: a name with several arguments can
+    /// be no array. With one argument only the evaluator can tell.
+    fn later_function(&self) -> Option<&'static Word> {
+        if !self.dialect.later_functions || self.kind(1) != Some(ElementKind::LeftParenthesis) {
+            return None;
+        }
+        let word = vocabulary::later_function(&self.element(0)?.text)?;
+        self.comma_in_parenthesis(self.position + 1).then_some(word)
+    }
+
+    /// `F(a,b)`, at the name of the function.
+    fn function_call(&mut self, word: &'static Word) -> Parsed<Expression> {
+        let first = self.position;
+        let range = self.bump().map(|element| element.range).unwrap_or_default();
+        let function = WordUse { word, range };
         self.bump();
         if self.at(ElementKind::RightParenthesis) {
             return self.fail(SyntaxErrorKind::EmptyParentheses);

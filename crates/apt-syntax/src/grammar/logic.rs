@@ -266,22 +266,19 @@ impl Parser<'_> {
         })
     }
 
-    /// `negation { .AND. negation }`
+    /// `part { .AND. part }`
     fn conjunction(&mut self) -> Parsed<Condition> {
-        let mut left = self.negation()?;
+        let mut left = self.condition_part()?;
         while self.eat_relation(".AND.") {
             self.count_operator()?;
-            let right = self.negation()?;
+            let right = self.condition_part()?;
             left = Condition::And(Box::new(left), Box::new(right));
         }
         Ok(left)
     }
 
-    /// `[.NOT.] ( (condition) | relation )`
-    fn negation(&mut self) -> Parsed<Condition> {
-        if self.eat_relation(".NOT.") {
-            return Ok(Condition::Not(Box::new(self.nested(Self::negation)?)));
-        }
+    /// `(condition)` or a relation. No dialect has `.NOT.` (language reference 10.4).
+    fn condition_part(&mut self) -> Parsed<Condition> {
         if self.at(ElementKind::LeftParenthesis) && self.relation_in_parenthesis(self.position) {
             self.bump();
             let condition = self.condition()?;

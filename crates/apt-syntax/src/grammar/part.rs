@@ -256,7 +256,11 @@ impl Parser<'_> {
             return self.unknown_major();
         }
         let name = self.spelling();
-        self.fail(SyntaxErrorKind::NameWithoutEquals { name })
+        let foreign = vocabulary::lookup(&name).filter(|word| word.class.begins_statements());
+        match foreign.and_then(|word| word.dialects.first()) {
+            Some(dialect) => self.fail(SyntaxErrorKind::NotInDialect { word: name, dialect: *dialect }),
+            None => self.fail(SyntaxErrorKind::NameWithoutEquals { name }),
+        }
     }
 
     // Assignments and definitions.

@@ -10,6 +10,7 @@ mod significant;
 use rowan::TextRange;
 use smol_str::SmolStr;
 
+use crate::dialect::LongNames;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
 use crate::record::{Layout, statement_form};
@@ -172,11 +173,24 @@ impl Lexer<'_> {
             self.push_text(ElementKind::Word, start, spelling);
             return;
         }
-        if let Some(limit) = dialect.name_length.filter(|limit| spelling.len() > usize::from(*limit)) {
-            let pieces = self.pieces(start);
-            self.error(SyntaxErrorKind::NameTooLong { name: spelling.clone(), limit, pieces }, start);
+        let name = match dialect.name_length.filter(|limit| spelling.len() > usize::from(*limit)) {
+            Some(limit) => self.long_name(spelling, limit, start),
+            None => spelling,
+        };
+        self.push_text(ElementKind::Name, start, name);
+    }
+
+    /// A name with more characters than the limit, as the dialect wants it.
+    fn long_name(&mut self, spelling: SmolStr, limit: u16, start: usize) -> SmolStr {
+        let rule = self.layout.dialect.long_names;
+        let pieces = self.pieces(start);
+        if rule == LongNames::Taken && pieces.is_empty() {
+            return spelling;
         }
-        self.push_text(ElementKind::Name, start, spelling);
+        // Names consist of ASCII letters and digits.
+        let cut = spelling.get(..usize::from(limit)).map(SmolStr::new);
+        self.error(SyntaxErrorKind::NameTooLong { name: spelling.clone(), limit, pieces }, start);
+        if rule == LongNames::Cut { cut.unwrap_or(spelling) } else { spelling }
     }
 
     /// How many characters belong to the name or the digits that begin here.

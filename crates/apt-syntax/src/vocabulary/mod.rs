@@ -109,6 +109,16 @@ pub fn lookup(spelling: &str) -> Option<&'static Word> {
     words.get(index)
 }
 
+/// The function that later systems know by this spelling, whether or not the dialect reserves it.
+pub fn later_function(spelling: &str) -> Option<&'static Word> {
+    let spelling = match spelling {
+        "ACOSF" => "ARCOSF",
+        "ASINF" => "ARSINF",
+        other => other,
+    };
+    lookup(spelling).filter(|word| word.class == WordClass::Function)
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
@@ -139,6 +149,16 @@ mod tests {
         }
         assert_eq!(lookup("NOSUCH"), None);
         assert_eq!(lookup("goto"), None, "spellings are upper case");
+    }
+
+    #[test]
+    fn functions_of_later_systems_have_several_spellings() {
+        let spelling = |name| later_function(name).map(|word| word.spelling);
+        assert_eq!(spelling("ACOSF"), Some("ARCOSF"));
+        assert_eq!(spelling("ASINF"), Some("ARSINF"));
+        assert_eq!(spelling("MAXF"), Some("MAXF"));
+        assert_eq!(spelling("POINT"), None);
+        assert_eq!(spelling("NOSUCH"), None);
     }
 
     #[test]

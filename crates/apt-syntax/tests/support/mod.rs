@@ -151,6 +151,5 @@ fn condition(when: &Condition) -> String {
         }
         Condition::And(left, right) => format!("(and {} {})", condition(left), condition(right)),
         Condition::Or(left, right) => format!("(or {} {})", condition(left), condition(right)),
-        Condition::Not(inner) => format!("(not {})", condition(inner)),
     }
 }

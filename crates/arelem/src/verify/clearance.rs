@@ -11,6 +11,8 @@ use super::{
     pencil::Pencil,
     quadric::{Convexity, PrincipalQuadric},
     quadric_clearance,
+    ruling::Ruling,
+    ruling_clearance,
     tool::{Profile, Tool},
 };
 
@@ -25,6 +27,8 @@ pub(super) enum Surface {
     Pencil(Pencil),
     /// Quadric with principal axes.
     Quadric(Box<PrincipalQuadric>),
+    /// Tabulated cylinder.
+    Ruling(Box<Ruling>),
 }
 
 /// How the clearance varies along a straight move with a fixed tool axis.
@@ -94,6 +98,9 @@ impl Surface {
             | Geometry::GeneralConic(q)
             | Geometry::LoftConic(q)
             | Geometry::Quadric(q) => Self::of_quadric(q).ok_or_else(degenerate),
+            Geometry::TabulatedCylinder(surface) => {
+                Ruling::of(surface).map(|r| Self::Ruling(Box::new(r))).ok_or_else(degenerate)
+            }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
         }
     }
@@ -109,6 +116,7 @@ impl Surface {
             Self::Sphere(center, radius) => center.norm() + radius,
             Self::Pencil(pencil) => pencil.origin.norm() + pencil.radius,
             Self::Quadric(_) => 0.0,
+            Self::Ruling(ruling) => ruling.size,
         }
     }
 
@@ -123,6 +131,7 @@ impl Surface {
             }
             Self::Pencil(pencil) => Some(pencil.point_distance(x)),
             Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal)),
+            Self::Ruling(ruling) => ruling_clearance::point_distance(ruling, x),
         }
     }
 
@@ -144,6 +153,7 @@ impl Surface {
                 | (Convexity::Outer | Convexity::OuterPair, true) => Shape::Concave,
                 _ => Shape::Free,
             },
+            Self::Ruling(_) => Shape::Free,
         }
     }
 }
@@ -190,6 +200,7 @@ impl Clearance<'_> {
                     if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
                 Some(Reading { value: found.value, normal: found.normal, error: found.error })
             }
+            Surface::Ruling(ruling) => ruling_clearance::at(ruling, self.side, tip, &tool),
             Surface::Quadric(quadric) => quadric_clearance::at(quadric, self.side, tip, &tool),
         }
     }

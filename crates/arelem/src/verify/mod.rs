@@ -9,8 +9,11 @@ mod judge;
 mod pencil;
 mod quadric;
 mod quadric_clearance;
+mod ruling;
+mod ruling_clearance;
 mod span;
 mod stop;
+mod strip;
 mod tool;
 
 #[cfg(test)]

@@ -10,8 +10,34 @@ const EVALUATIONS: usize = 60;
 const FIRST_PIECES: usize = 4;
 /// Evaluations over one vector of unknown shape.
 const FREE_EVALUATIONS: usize = 4096;
+/// Sine below which two opposite axes leave the plane open in which the axis turns.
+const OPPOSITE: f64 = 1e-9;
 /// Step of the derivative with respect to the vector parameter when the tool axis turns.
 const TURN_STEP: f64 = 1e-5;
+
+/// Where the tool is between two positions of a vector, `t` from 0 to 1: the tool end goes straight and evenly, the axis
+/// turns evenly in the plane of both axes. A machine that moves otherwise between them is not judged. None for opposite axes.
+pub(super) fn between(from: &ToolPosition, to: &ToolPosition, t: f64) -> Option<ToolPosition> {
+    let tip = from.tip + (to.tip - from.tip) * t;
+    if from.axis == to.axis {
+        return Some(ToolPosition { tip, axis: from.axis });
+    }
+    let cosine = from.axis.dot(&to.axis);
+    let across = to.axis - from.axis * cosine;
+    let sine = across.norm();
+    if sine <= OPPOSITE {
+        return (cosine > 0.0)
+            .then_some(ToolPosition { tip, axis: if t < 0.5 { from.axis } else { to.axis } });
+    }
+    let (s, c) = (t * sine.atan2(cosine)).sin_cos();
+    let axis = from.axis * c + across * (s / sine);
+    Some(ToolPosition { tip, axis: axis / axis.norm() })
+}
+
+/// The angle that the axis turns through on a vector, radians.
+pub(super) fn turning(from: &ToolPosition, to: &ToolPosition) -> f64 {
+    from.axis.cross(&to.axis).norm().atan2(from.axis.dot(&to.axis))
+}
 
 /// Least and greatest clearance found, and how far beyond them the true ones could be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,22 +78,13 @@ impl Span<'_> {
         self.from.axis != self.to.axis
     }
 
-    fn place(&self, t: f64) -> ToolPosition {
-        let tip = self.from.tip + (self.to.tip - self.from.tip) * t;
-        if !self.turns() {
-            return ToolPosition { tip, axis: self.from.axis };
-        }
-        let axis = self.from.axis * (1.0 - t) + self.to.axis * t;
-        ToolPosition { tip, axis: axis / axis.norm() }
-    }
-
     fn value(&self, t: f64) -> Option<f64> {
-        let place = self.place(t);
+        let place = between(&self.from, &self.to, t)?;
         self.clearance.at(&place.tip, &place.axis).map(|r| r.value)
     }
 
     fn sample(&self, t: f64) -> Option<Sample> {
-        let place = self.place(t);
+        let place = between(&self.from, &self.to, t)?;
         let reading = self.clearance.at(&place.tip, &place.axis)?;
         let slope = if self.turns() {
             let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
@@ -138,11 +155,8 @@ impl Span<'_> {
     /// Subdivision until second differences say that no piece hides more than `tolerance`; a piece shorter than that cannot
     /// hide more, because clearance changes by no more than the tool moves.
     fn free(&self, first: Sample, last: Sample, tolerance: f64) -> Option<Extremes> {
-        let swing = if self.turns() {
-            (self.to.axis - self.from.axis).norm() * self.clearance.profile.reach()
-        } else {
-            0.0
-        };
+        let swing =
+            if self.turns() { turning(&self.from, &self.to) * self.clearance.profile.reach() } else { 0.0 };
         let length = (self.to.tip - self.from.tip).norm() + swing;
         let mut found =
             Extremes { min: first.value.min(last.value), max: first.value.max(last.value), error: 0.0 };

@@ -9,6 +9,7 @@ use apt_geometry::motion::Relation;
 use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::clearance::{Clearance, Surface};
+use super::span::{between, turning};
 use super::tool::Profile;
 
 /// Steps of the replay over the whole sequence; the shortest step is the path length divided by this.
@@ -98,14 +99,12 @@ fn walk(
     for pair in positions.windows(2) {
         let (from, to) = (pair[0], pair[1]);
         let move_length = (to.tip - from.tip).norm();
-        let turn = (to.axis - from.axis).norm();
+        let turn = turning(&from, &to);
         // With a turning axis the tool moves more than its end; then every vector is looked at closely.
         let mut at = if turn > 0.0 { 0.0 } else { safe };
         while at < move_length {
             let t = at / move_length;
-            let axis = from.axis * (1.0 - t) + to.axis * t;
-            let place = ToolPosition { tip: from.tip + (to.tip - from.tip) * t, axis: axis / axis.norm() };
-            let value = measure(&place)?;
+            let value = measure(&between(&from, &to, t)?)?;
             let seen = if value > band {
                 Some(State::Clear)
             } else if value < -band {

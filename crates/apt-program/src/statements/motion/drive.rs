@@ -20,6 +20,9 @@ use crate::{
 /// Most check surfaces of one statement.
 const CHECK_SURFACES: usize = 2;
 
+/// APT4: a word that cannot stand before a check surface or its label.
+const APT4_CHECK_RELATION: u16 = 2022;
+
 /// A trailing feed rate with its place.
 type Feed = (f64, TextRange);
 
@@ -32,6 +35,11 @@ enum DriveItem {
 impl Evaluator<'_> {
     /// A directed motion statement.
     pub(crate) fn directed_motion(&mut self, major: Major<'_>) {
+        if let Some(range) = transfer_word(major.arguments) {
+            self.drop_pending();
+            let finding = FindingKind::RelationNotHere { word: SmolStr::new_static("TRANTO") };
+            return self.report_apt4(finding, APT4_CHECK_RELATION, range);
+        }
         let Some(items) = self.drive_items(major.arguments) else {
             // The drive surface is not known, so a motion that waits for it is given up without another message.
             self.drop_pending();
@@ -78,10 +86,8 @@ impl Evaluator<'_> {
 
     /// Gives up a waiting motion whose check surface is the victim of another mistake.
     fn drop_pending(&mut self) {
-        if let Some(pending) = self.pending.take()
-            && pending.record < self.output.records.len()
-        {
-            self.output.records.remove(pending.record);
+        if let Some(pending) = self.pending.take() {
+            self.give_up(&pending);
         }
     }
 
@@ -150,7 +156,8 @@ impl Evaluator<'_> {
                     Operand::Word(word) => {
                         let Some(found) = relation_of(word.spelling).filter(|_| relation.is_none()) else {
                             let word = SmolStr::new_static(word.spelling);
-                            self.report(FindingKind::RelationNotHere { word }, value.range);
+                            let finding = FindingKind::RelationNotHere { word };
+                            self.report_apt4(finding, APT4_CHECK_RELATION, value.range);
                             return None;
                         };
                         relation = Some(found);
@@ -237,6 +244,14 @@ impl Evaluator<'_> {
         }
         Some(())
     }
+}
+
+/// Where TRANTO stands: some systems write it between a check surface and its label.
+fn transfer_word(arguments: &[Argument]) -> Option<TextRange> {
+    arguments.iter().find_map(|argument| match argument {
+        Argument::Word(word) if word.word.spelling == "TRANTO" => Some(word.range),
+        _ => None,
+    })
 }
 
 /// Whether INTOF comes next.

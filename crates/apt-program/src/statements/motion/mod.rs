@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 
 use super::Major;
 use crate::{
-    evaluator::Evaluator,
+    evaluator::{Evaluator, PendingDrive},
     expression::Item,
     finding::{Expected, FindingKind, RelatedKind},
     record::{PostArgument, RecordKind},
@@ -95,9 +95,14 @@ impl Evaluator<'_> {
     /// A motion that waits for its check surface cannot get one any more: it is reported and given up.
     pub(crate) fn break_pending(&mut self, finding: FindingKind, range: TextRange) {
         let Some(pending) = self.pending.take() else { return };
-        self.report_related(finding, range, vec![(RelatedKind::WaitingMotion, pending.origin)]);
-        if pending.record < self.output.records.len() {
-            self.output.records.remove(pending.record);
+        self.report_related(finding, range, vec![(RelatedKind::WaitingMotion, pending.origin.clone())]);
+        self.give_up(&pending);
+    }
+
+    /// A gap takes the place of a motion that gets no check surface.
+    fn give_up(&mut self, pending: &PendingDrive) {
+        if let Some(record) = self.output.records.get_mut(pending.record) {
+            record.kind = RecordKind::Gap;
         }
     }
 }

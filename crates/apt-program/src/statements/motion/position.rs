@@ -53,7 +53,11 @@ impl Evaluator<'_> {
         if let Some((rate, range)) = position.feed {
             self.feed(rate, range);
         }
-        let Position { place, axis, name, .. } = position;
+        let Position { place, mut axis, name, .. } = position;
+        if axis.is_some() && self.is_apt4() && !self.state.axes_on {
+            self.report(FindingKind::AxisDropped { word: major.name() }, major.range);
+            axis = None;
+        }
         let command = if major.spelling() == "FROM" {
             MotionCommand::From { position: place, axis, name }
         } else {

@@ -12,6 +12,8 @@ use crate::{
 
 /// Most surfaces of a GO statement.
 const GO_SURFACES: usize = 3;
+/// APT4: a modifier that GO does not take.
+const APT4_START_RELATION: u16 = 2006;
 /// Most surfaces of an OFFSET statement.
 const OFFSET_SURFACES: usize = 2;
 
@@ -34,7 +36,8 @@ impl Evaluator<'_> {
                         found.filter(|found| self.start_relation(*found, surfaces.len(), is_go))
                     else {
                         let word = SmolStr::new_static(word.spelling);
-                        return self.report(FindingKind::RelationNotHere { word }, item.range);
+                        let finding = FindingKind::RelationNotHere { word };
+                        return self.report_apt4(finding, APT4_START_RELATION, item.range);
                     };
                     relation = Some(found);
                 }
@@ -74,7 +77,8 @@ impl Evaluator<'_> {
     fn start_relation(&self, relation: Relation, before: usize, is_go: bool) -> bool {
         match relation {
             Relation::To | Relation::On | Relation::Past => true,
-            Relation::TangentToDrive => is_go && before == 2,
+            // APT4 refuses TANTO in every place.
+            Relation::TangentToDrive => is_go && before == 2 && !self.is_apt4(),
             Relation::TangentToPart => false,
         }
     }

@@ -12,7 +12,7 @@ use super::{
     cone, cutter, cylinder, plane, quadric, sphere,
 };
 
-fn clearance(
+pub(super) fn clearance(
     cutter: &Cutter,
     geometry: &Geometry,
     side: f64,
@@ -84,7 +84,7 @@ fn a_pin_inside_the_tool_is_deep_penetration() {
 }
 
 /// Points all over the tool's boundary.
-fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
+pub(super) fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
     let profile = Profile::of(tool).unwrap();
     let mut meridian = Vec::new();
     for (a, b) in profile.lines() {
@@ -113,7 +113,7 @@ fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
     all
 }
 
-fn tools() -> impl Strategy<Value = Cutter> {
+pub(super) fn tools() -> impl Strategy<Value = Cutter> {
     prop_oneof![
         Just(cutter(&[0.5, 0.25])),
         Just(cutter(&[0.5, 0.0])),
@@ -123,7 +123,7 @@ fn tools() -> impl Strategy<Value = Cutter> {
     ]
 }
 
-fn direction() -> impl Strategy<Value = [f64; 3]> {
+pub(super) fn direction() -> impl Strategy<Value = [f64; 3]> {
     (-1.0..1.0, -1.0..1.0, 0.2..1.0).prop_map(|(x, y, z)| [x, y, z])
 }
 

@@ -3,10 +3,14 @@
 mod clearances;
 mod mutations;
 mod paths;
+mod rulings;
+mod turning;
+
+use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    canonical::{Cone, Cylinder, Geometry, Interval, Plane, Quadric, Sphere, TabulatedCylinder},
     cutter::Cutter,
     motion::{NamedSurface, Relation},
 };
@@ -61,6 +65,28 @@ pub(super) fn cone(vertex: [f64; 3], axis: [f64; 3], half_angle: f64) -> Geometr
 
 pub(super) fn quadric(coefficients: [f64; 10]) -> Geometry {
     Geometry::Quadric(Quadric { coefficients })
+}
+
+/// A tabulated cylinder through points with slopes dv/du, extensions of length 10 at both ends.
+pub(super) fn tabulated(axes: [Vec3; 3], nodes: &[[f64; 3]]) -> Geometry {
+    let mut intervals = Vec::new();
+    let reach = |slope: f64| 10.0 / slope.hypot(1.0);
+    let straight =
+        |u: f64, v: f64| Interval { u, v, a: 0.0, b: 0.0, length: 10.0, maximum: 0.0, minimum: 0.0 };
+    let [u, v, slope] = nodes[0];
+    intervals.push(straight(u - reach(slope), v - slope * reach(slope)));
+    for pair in nodes.windows(2) {
+        let ([u, v, before], [u2, v2, after]) = (pair[0], pair[1]);
+        let length = (u2 - u).hypot(v2 - v);
+        let turn = (v2 - v).atan2(u2 - u);
+        let [s1, s2] = [before, after].map(|s| (s.atan() - turn).tan());
+        let (a, b) = ((s1 + s2) / (length * length), -(2.0 * s1 + s2) / length);
+        intervals.push(Interval { u, v, a, b, length, maximum: 0.0, minimum: 0.0 });
+    }
+    let [u, v, slope] = nodes[nodes.len() - 1];
+    intervals.push(straight(u, v));
+    let last = [u + reach(slope), v + slope * reach(slope)];
+    Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, kind: 0.0, intervals, last }))
 }
 
 pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64, outtol: f64) -> Role {

@@ -33,7 +33,7 @@ fn at(tip: Vec3) -> ToolPosition {
     ToolPosition { tip, axis: Vec3::z() }
 }
 
-fn sequence(
+pub(super) fn sequence(
     tips: &[Vec3],
     cutter: Cutter,
     part: Role,
@@ -69,14 +69,14 @@ fn ring(radius: f64, inner: f64, turn: f64, place: impl Fn(f64, f64) -> Vec3) ->
 }
 
 /// The plane through the last position across the last vector.
-fn end_plane(tips: &[Vec3], normal: Vec3) -> Role {
+pub(super) fn end_plane(tips: &[Vec3], normal: Vec3) -> Role {
     let end = tips[tips.len() - 1];
     let before = tips[tips.len() - 2];
     let side = (normal.dot(&(before - end))).signum();
     role(plane(normal.into(), normal.dot(&end)), Relation::On, side, BAND.0, BAND.1)
 }
 
-fn floor() -> Role {
+pub(super) fn floor() -> Role {
     role(plane([0.0, 0.0, 1.0], 0.0), Relation::To, 1.0, BAND.0, BAND.1)
 }
 

@@ -1,0 +1,180 @@
+//! The APT4 dialect: its numbers, and statement forms that it takes (language reference 10.4).
+
+use apt_program::{Finding, Options, Program, RecordKind, Severity, Value, evaluate};
+use apt_syntax::{Dialect, DialectName, SyntaxTree};
+
+fn run(text: &str) -> Program {
+    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt4));
+    evaluate(&tree, &Options::default(), &|| false)
+}
+
+fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
+    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
+    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
+}
+
+fn scalar(program: &Program, name: &str) -> Option<f64> {
+    program.symbols().iter().find(|(known, _)| known == name).and_then(|(_, value)| match value {
+        Value::Scalar(value) => Some(*value),
+        Value::Geometry(_) => None,
+    })
+}
+
+/// Statements, and the findings as (statement, APT4 number).
+const MISTAKES: &[(&str, &[(u32, u16)])] = &[
+    ("X=Y+1", &[(1, 1007)]),
+    ("Z=3 $ text\nPOINT/1,2", &[(1, 1007)]),
+    ("W=3)", &[(1, 1007)]),
+    ("R=ABSF(-3", &[(1, 1007)]),
+    ("RESERV/2,A,3,B", &[(1, 2027)]),
+    ("RESERV/A,B", &[(1, 2027)]),
+    ("U=ACOSF(.5)", &[(1, 1111)]),
+    ("U=ASINF(.5)", &[(1, 1111)]),
+    ("U=NIX(1,2)", &[(1, 1111)]),
+    ("A(1)=3", &[(1, 1111)]),
+    ("Q=3\nT=Q(1)", &[(2, 1013)]),
+    ("RESERV/A,3\nT=A(1)", &[(2, 1014)]),
+    ("RESERV/A,3\nA(1)=1\nT=A(2)", &[(3, 1007)]),
+    ("P=POINT/1,2\nP=5", &[(2, 1012)]),
+    ("P=5\nP=POINT/1,2", &[(2, 1001)]),
+    ("RESERV/A,3\nA(1)=1\nA(2)=POINT/1,2", &[(3, 1012)]),
+    ("RESERV/A,3\nA=1\nB=A(1)", &[(3, 1014)]),
+    ("P=POINT/1,2\nX=P+1", &[(2, 1007)]),
+    ("C=CIRCLE/(1,2),3", &[(1, 2001)]),
+    ("P=POINT/UU,VV", &[(1, 2001), (1, 2001)]),
+    ("P=POINT/CANON,1,2", &[(1, 2032)]),
+    ("P=POINT/", &[(1, 2001)]),
+    ("P=POINT/1,2\nP=POINT/3,4", &[(2, 50)]),
+    ("A1=SQRTF(-4)", &[(1, 20)]),
+    ("A1=LOGF(-2)", &[(1, 20)]),
+    ("A1=LOGF(0)", &[(1, 37)]),
+    ("A1=ARSINF(2)", &[(1, 38)]),
+    ("A1=ARCOSF(-2)", &[(1, 38)]),
+    ("A=LINE/0,0,1,1\nB=LINE/0,0,1,2\nD=DISTF(A,B)", &[(3, 62)]),
+    ("P=POINT/1,2\nA=CANF(4,P)", &[(2, 40)]),
+    ("P=POINT/1,2\nA=CANF(0,P)", &[(2, 41)]),
+    ("A=PARMF(1)", &[(1, 42)]),
+    ("A=CLDATF(1)", &[(1, 93)]),
+    ("A)X=1\nA)X=2", &[(2, 1003)]),
+    ("A=1\nA)X=2", &[(2, 1007)]),
+    ("JUMPTO/A\nX=1\nA)X=2", &[(2, 1009)]),
+    ("IF(1)A,A,A\n$$ remark\nX=1\nA)X=2", &[(3, 1009)]),
+    ("IF(1)A,B\nA)X=1\nB)X=1", &[(1, 1007)]),
+    ("A=1\nIF(.NOT.A.EQ.1)A=2", &[(2, 1007)]),
+    ("A=1\nIF(A.EQ.1)THEN", &[(2, 1007)]),
+    ("DO/A,I=1,THRU,3\nA)X=1", &[(1, 1007)]),
+    ("M=MACRO/N\nX=N\nTERMAC\nCALL/M", &[(4, 2055)]),
+    ("M=MACRO/N\nX=N\nTERMAC\nCALL/M,K=1,N=2", &[(4, 1020)]),
+    ("M=MACRO/N\nN=1\nTERMAC\nCALL/M,N=2", &[(2, 1007)]),
+    ("CALL/NIX", &[(1, 72)]),
+    ("OBTAIN,LINE/(POINT/1,2),A", &[(1, 1050)]),
+    ("PRINT/4,ALL", &[(1, 2031)]),
+    ("PRINT/1", &[(1, 2031)]),
+    ("PRINT/AVMSG,ON", &[(1, 2031)]),
+    ("ZSURF/3", &[(1, 2029)]),
+    ("LIBRY/NIX", &[(1, 1007)]),
+    ("TOOLONGNAME=3", &[(1, 16)]),
+    ("L=LINE/XAXIS\nGO/TO,L,TO,L,TANTO,L", &[(2, 2006)]),
+    ("L=LINE/XAXIS\nGOFWD/L,TO,L,TRANTO,A\nA)X=1", &[(2, 2022)]),
+    ("FROM/0,0,5\nGOTO/1,2,3,0,0,1", &[(2, 22300)]),
+    ("MULTAX/ON\nFROM/0,0,5\nMULTAX/OFF\nGOTO/1,2,3,0,0,1", &[(4, 22300)]),
+];
+
+#[test]
+fn mistakes_get_the_numbers_of_apt4() {
+    let mut wrong = String::new();
+    for (text, expected) in MISTAKES {
+        let program = run(text);
+        let expected: Vec<_> = expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
+        if problems(&program) != expected {
+            let findings: Vec<_> = program.findings().collect();
+            wrong.push_str(&format!("{text:?}: expected {expected:?}, found {findings:?}\n"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Statements that are accepted without error and warning, and the numbers that they leave.
+const ACCEPTED: &[(&str, &[(&str, f64)])] = &[
+    ("X=3\nIF(X.GT.2)JUMPTO/L1\nL1)X=5", &[("X", 5.0)]),
+    ("X=3\nDO/L1,I=1,3\nL1)X=X+I", &[("X", 9.0), ("I", 3.0)]),
+    ("S=0\nDO/L1,I=5,1\nL1)S=S+1", &[("S", 1.0), ("I", 5.0)]),
+    ("LOOPND", &[]),
+    ("X=-3**2", &[("X", -9.0)]),
+    ("X=2**3**2", &[("X", 64.0)]),
+    ("X=2/3/4", &[("X", 2.0 / 3.0 / 4.0)]),
+    ("X=ATAN2F(1,1)", &[("X", 45.0)]),
+    ("X=INTF(2.7)", &[("X", 2.0)]),
+    ("X=MAXF(1,2)", &[("X", 2.0)]),
+    ("X=--5\nY=2*-3\nZ=1/-2", &[("X", 5.0), ("Y", -6.0), ("Z", -0.5)]),
+    ("R=(W=3)+1\nX=Y=Z=4", &[("R", 4.0), ("W", 3.0), ("X", 4.0), ("Y", 4.0), ("Z", 4.0)]),
+    ("V=VECTOR/1,0,0\nU=VECTOR/0,1,0\nX=DOTF(V,U)\nY=ANGLF(V,U)", &[("X", 0.0), ("Y", 90.0)]),
+    ("P=POINT/3,4\nV=VECTOR/1,0,0\nX=DOTF(P,V)\nY=LNTHF(P)", &[("X", 3.0), ("Y", 5.0)]),
+    (
+        "RESERV/A,9\nI=0\nA(I=I+1)=POINT/1,2,3\nA(I=I+1)=POINT/4,5,6\nX=CANF(2,A(2))\nPRINT/3,A(1,THRU,2)",
+        &[("I", 2.0), ("X", 5.0)],
+    ),
+    ("P1=POINT/1,2\nRESERV/P,2\nP(1)=P1\nX=CANF(1,P(1))", &[("X", 1.0)]),
+    ("TO=4\nPOINT=3\nX=TO/POINT", &[("X", 4.0 / 3.0)]),
+    ("DO/L1,I=1,3\nP=POINT/I,0\nL1)X=CANF(1,P)", &[("X", 3.0)]),
+    ("P=POINT/1,2\nCANON/ON\nP=POINT/3,4", &[]),
+    ("UNITS/FATHOM", &[]),
+    ("PRINT/0", &[]),
+    ("PRINT/SSPRT,ON\nPRINT/AVPRT,OFF\nPRINT/ON", &[]),
+    ("1X=6\nY=1X+1", &[("Y", 7.0)]),
+    ("LOOPST\nLOOPST\nX=1\nLOOPND\nLOOPND", &[("X", 1.0)]),
+    ("SYN/S,SQRTF,P,POINT\nX=S(9)\nA=P/1,2", &[("X", 3.0)]),
+    ("M=MACRO/A,B=2\nX=A*B\nTERMAC\nCALL/M,A=3+4", &[("X", 14.0)]),
+    ("N=MACRO/A,R\nR=A*2\nTERMAC\nM=MACRO/K\nCALL/N,A=K,R=W\nTERMAC\nCALL/M,K=4", &[("W", 8.0)]),
+];
+
+#[test]
+fn forms_of_apt4_are_taken() {
+    let mut wrong = String::new();
+    for (text, values) in ACCEPTED {
+        let program = run(text);
+        if !problems(&program).is_empty() {
+            wrong.push_str(&format!("{text:?}: {:?}\n", program.findings().collect::<Vec<_>>()));
+        }
+        for (name, expected) in *values {
+            match scalar(&program, name) {
+                Some(found) if (found - expected).abs() < 1e-12 => {}
+                found => wrong.push_str(&format!("{text:?}: {name} is {found:?}, expected {expected}\n")),
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn functions_go_on_after_an_argument_outside_their_domain() {
+    let program = run("A=SQRTF(-4)\nB=LOGF(-1)\nC=ARSINF(2)\nD=7");
+    assert_eq!(scalar(&program, "A"), Some(2.0));
+    assert_eq!(scalar(&program, "B"), Some(0.0));
+    assert_eq!(scalar(&program, "C"), Some(0.0));
+    assert_eq!(scalar(&program, "D"), Some(7.0));
+}
+
+#[test]
+fn names_with_the_same_first_six_characters_are_one() {
+    let program = run("RADIUSA=3\nX=RADIUSB+1");
+    assert_eq!(scalar(&program, "X"), Some(4.0));
+    assert_eq!(problems(&program), [(1, Some(16)), (2, Some(16))]);
+}
+
+#[test]
+fn a_macro_variable_can_be_the_verb_and_an_axis_is_dropped_without_multax() {
+    let program =
+        run("V=MACRO/W,P\nW/P\nTERMAC\nFROM/0,0,5\nCALL/V,W=GOTO,P=(POINT/2,0,0)\nGOTO/1,2,3,0,0,1");
+    let axes: Vec<bool> = program
+        .records()
+        .filter_map(|record| match &record.kind {
+            RecordKind::Motion(command) => match &**command {
+                apt_geometry::motion::MotionCommand::GoTo { axis, .. } => Some(axis.is_some()),
+                _ => None,
+            },
+            _ => None,
+        })
+        .collect();
+    assert_eq!(axes, [false, false]);
+}

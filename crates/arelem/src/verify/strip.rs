@@ -1,0 +1,180 @@
+//! Strips of surface, cubic one way and straight the other, and their nearest point to the tool.
+//!
+//! The distance of a point to a convex tool is a convex function, so at any place of a strip a half-space that holds the
+//! tool bounds the distance of every other place: by the least height of the control points over it. That makes a
+//! branch and bound whose gap shrinks with the square of the cell.
+
+use apt_geometry::Vec3;
+
+use super::tool::Tool;
+
+/// Cells that one search may look at; what is left then goes into the gap.
+const CELL_BUDGET: usize = 20_000;
+/// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction.
+const SURE_DIRECTION: f64 = 1e-8;
+
+/// Control points of a cubic.
+pub(super) type Cubic = [Vec3; 4];
+
+/// Two cubics with the same parameter, joined by straight lines.
+#[derive(Debug, Clone)]
+pub(super) struct Strip {
+    pub(super) edges: [Cubic; 2],
+    /// Index of the curve piece it was made of.
+    pub(super) piece: usize,
+}
+
+/// The place of a strip that is nearest to the tool, or deepest in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touch {
+    /// Distance to the tool; negative inside.
+    pub(super) value: f64,
+    /// How much less the true least value could be.
+    pub(super) gap: f64,
+    /// Unit normal of the tool there, outward.
+    pub(super) outward: Vec3,
+    /// The place.
+    pub(super) point: Vec3,
+    /// Piece of the curve, and the parameter 0 … 1 on it.
+    pub(super) piece: usize,
+    pub(super) along: f64,
+}
+
+/// A part of a strip.
+#[derive(Debug, Clone)]
+struct Cell {
+    edges: [Cubic; 2],
+    piece: usize,
+    /// First parameter and width, along the piece.
+    along: [f64; 2],
+    /// No place of the cell is nearer.
+    lower: f64,
+    /// The direction to halve it in.
+    halve_along: bool,
+    /// Distance of its middle.
+    value: f64,
+}
+
+pub(super) fn lerp(a: &Vec3, b: &Vec3, t: f64) -> Vec3 {
+    a + (b - a) * t
+}
+
+/// The two halves of a cubic.
+fn halves(c: &Cubic) -> [Cubic; 2] {
+    let middle = |a: &Vec3, b: &Vec3| (a + b) * 0.5;
+    let (ab, bc, cd) = (middle(&c[0], &c[1]), middle(&c[1], &c[2]), middle(&c[2], &c[3]));
+    let (abc, bcd) = (middle(&ab, &bc), middle(&bc, &cd));
+    let all = middle(&abc, &bcd);
+    [[c[0], ab, abc, all], [all, bcd, cd, c[3]]]
+}
+
+/// The place of a cubic at a parameter.
+pub(super) fn place(c: &Cubic, t: f64) -> Vec3 {
+    let (ab, bc, cd) = (lerp(&c[0], &c[1], t), lerp(&c[1], &c[2], t), lerp(&c[2], &c[3], t));
+    lerp(&lerp(&ab, &bc, t), &lerp(&bc, &cd, t), t)
+}
+
+/// A third of the derivative of a cubic at a parameter.
+pub(super) fn tangent(c: &Cubic, t: f64) -> Vec3 {
+    let (ab, bc, cd) = (c[1] - c[0], c[2] - c[1], c[3] - c[2]);
+    lerp(&lerp(&ab, &bc, t), &lerp(&bc, &cd, t), t)
+}
+
+struct Search<'a> {
+    tip: Vec3,
+    tool: &'a Tool<'a>,
+    sure: f64,
+    best: Option<Touch>,
+}
+
+impl Search<'_> {
+    /// Distance of a place and the outward normal of a half-space that holds the tool.
+    fn measure(&self, x: &Vec3, surface_normal: &Vec3) -> (f64, Vec3) {
+        let w = x - self.tip;
+        let (distance, q) = self.tool.signed_distance(&w);
+        let away = w - q;
+        let size = away.norm();
+        if size > self.sure {
+            return (distance, away * (distance.signum() / size));
+        }
+        // On the tool's boundary: of the two normals of the surface the one that leaves the tool behind.
+        let height = |n: &Vec3| n.dot(&w) - self.tool.support(n).0;
+        let opposite = -surface_normal;
+        (distance, if height(surface_normal) >= height(&opposite) { *surface_normal } else { opposite })
+    }
+
+    fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2]) -> Cell {
+        let middles = [place(&edges[0], 0.5), place(&edges[1], 0.5)];
+        let x = (middles[0] + middles[1]) * 0.5;
+        let run = tangent(&edges[0], 0.5) + tangent(&edges[1], 0.5);
+        let normal = run.cross(&(middles[1] - middles[0]));
+        let size = normal.norm();
+        let normal = if size > 0.0 { normal / size } else { self.tool.axis };
+        let (value, outward) = self.measure(&x, &normal);
+        let base = outward.dot(&self.tip) + self.tool.support(&outward).0;
+        let heights = edges.map(|e| e.map(|p| outward.dot(&p) - base));
+        let mut lower = f64::INFINITY;
+        let mut spread = [0.0f64; 2];
+        for edge in &heights {
+            let (low, high) =
+                edge.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+            lower = lower.min(low);
+            spread[0] = spread[0].max(high - low);
+        }
+        for (first, second) in heights[0].iter().zip(&heights[1]) {
+            spread[1] = spread[1].max((first - second).abs());
+        }
+        if self.best.is_none_or(|b| value < b.value) {
+            self.best =
+                Some(Touch { value, gap: 0.0, outward, point: x, piece, along: along[0] + 0.5 * along[1] });
+        }
+        Cell { edges, piece, along, lower, halve_along: spread[0] >= spread[1], value }
+    }
+
+    fn split(&mut self, cell: &Cell) -> [Cell; 2] {
+        let [a, b] = &cell.edges;
+        if cell.halve_along {
+            let half = 0.5 * cell.along[1];
+            let ([a0, a1], [b0, b1]) = (halves(a), halves(b));
+            [
+                self.cell([a0, b0], cell.piece, [cell.along[0], half]),
+                self.cell([a1, b1], cell.piece, [cell.along[0] + half, half]),
+            ]
+        } else {
+            let middle: Cubic = std::array::from_fn(|i| (a[i] + b[i]) * 0.5);
+            [self.cell([*a, middle], cell.piece, cell.along), self.cell([middle, *b], cell.piece, cell.along)]
+        }
+    }
+}
+
+/// The place of the strips nearest to a tool with its end at `tip`, to within `resolution`; None without strips or where
+/// a number is not finite.
+pub(super) fn nearest(strips: &[Strip], tip: &Vec3, tool: &Tool<'_>, resolution: f64) -> Option<Touch> {
+    let mut search =
+        Search { tip: *tip, tool, sure: SURE_DIRECTION * tool.profile.reach() + resolution, best: None };
+    let mut open: Vec<Cell> = strips.iter().map(|s| search.cell(s.edges, s.piece, [0.0, 1.0])).collect();
+    // The nearest last, because it is taken first.
+    open.sort_by(|a, b| b.value.total_cmp(&a.value));
+    let mut lowest = f64::INFINITY;
+    let mut budget = CELL_BUDGET;
+    while let Some(cell) = open.pop() {
+        let best = search.best?.value;
+        if cell.lower >= best - resolution {
+            continue;
+        }
+        if budget == 0 {
+            lowest = lowest.min(cell.lower);
+            continue;
+        }
+        budget -= 1;
+        let [first, second] = search.split(&cell);
+        if first.value < second.value {
+            open.extend([second, first]);
+        } else {
+            open.extend([first, second]);
+        }
+    }
+    let mut touch = search.best?;
+    touch.gap = resolution.max(touch.value - lowest);
+    (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)
+}
