@@ -28,7 +28,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Make everything that is made from the vocabulary: Rust table, TextMate grammar, Vim syntax.
+    /// Make everything that is made from the vocabulary: Rust table, TextMate grammar, Vim syntax, page of the language.
     Codegen {
         /// Write nothing; fail when a generated file is stale.
         #[arg(long)]

@@ -1,5 +1,6 @@
 //! Everything that is made from the vocabulary file.
 
+mod language;
 mod textmate;
 mod vim;
 mod words;
@@ -31,6 +32,7 @@ fn generate(source: &str) -> Outcome<Vec<Generated>> {
             text: textmate::grammar(&vocabulary),
         },
         Generated { path: layout::nvim().join("syntax/apt.vim"), text: vim::syntax(&vocabulary) },
+        Generated { path: layout::root().join("docs/language.md"), text: language::page(source)? },
     ])
 }
 

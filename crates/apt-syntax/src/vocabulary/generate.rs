@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use serde::Deserialize;
 
-use super::WordClass;
+use super::{WordClass, WordStatus};
 use crate::dialect::DialectName;
 
 /// What is wrong with the data file.
@@ -33,6 +33,7 @@ struct File {
 struct Entry {
     spelling: String,
     class: WordClass,
+    status: WordStatus,
     code: Option<u16>,
     record: Option<(u16, u16)>,
     #[serde(default)]
@@ -61,7 +62,7 @@ pub fn generate_rust(toml: &str) -> Result<String, GenerateError> {
         }
     }
     let mut out = String::from(
-        "// Made from vocabulary.toml by `cargo xtask codegen`; do not edit.\n\nuse super::{Word, WordClass};\nuse crate::dialect::DialectName;\n\n",
+        "// Made from vocabulary.toml by `cargo xtask codegen`; do not edit.\n\nuse super::{Word, WordClass, WordStatus};\nuse crate::dialect::DialectName;\n\n",
     );
     out.push_str("/// All words, sorted by spelling.\npub(super) const WORDS: &[Word] = &[\n");
     for entry in words.values() {
@@ -77,9 +78,10 @@ fn write_entry(out: &mut String, entry: &Entry) {
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
-        "    Word {{ spelling: {:?}, class: WordClass::{:?}, code: {:?}, record: {:?}, forms: &{:?}, used_in: &{:?}, dialects: &[{}], help: {:?} }},",
+        "    Word {{ spelling: {:?}, class: WordClass::{:?}, status: WordStatus::{:?}, code: {:?}, record: {:?}, forms: &{:?}, used_in: &{:?}, dialects: &[{}], help: {:?} }},",
         entry.spelling,
         entry.class,
+        entry.status,
         entry.code,
         entry.record,
         entry.forms,
@@ -95,9 +97,9 @@ mod tests {
 
     #[test]
     fn faults_of_the_data_file_are_told() {
-        let twice = "[[word]]\nspelling='A'\nclass='minor'\nhelp='x'\n[[word]]\nspelling='A'\nclass='minor'\nhelp='y'\n";
+        let twice = "[[word]]\nspelling='A'\nclass='minor'\nstatus='parsed'\nhelp='x'\n[[word]]\nspelling='A'\nclass='minor'\nstatus='parsed'\nhelp='y'\n";
         assert!(matches!(generate_rust(twice), Err(GenerateError::Twice(word)) if word == "A"));
-        let case = "[[word]]\nspelling='a'\nclass='minor'\nhelp='x'\n";
+        let case = "[[word]]\nspelling='a'\nclass='minor'\nstatus='parsed'\nhelp='x'\n";
         assert!(matches!(generate_rust(case), Err(GenerateError::Case(_))));
         assert!(matches!(generate_rust("[[word]]\nspelling='A'\n"), Err(GenerateError::Toml(_))));
     }

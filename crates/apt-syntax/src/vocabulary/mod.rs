@@ -19,6 +19,8 @@ pub struct Word {
     pub spelling: &'static str,
     /// What kind of word it is.
     pub class: WordClass,
+    /// What this program does with it.
+    pub status: WordStatus,
     /// The integer code: of minor words the code on CL records, of post-processor words the subclass, of types the
     /// surface number, of functions their number.
     pub code: Option<u16>,
@@ -76,6 +78,44 @@ pub enum WordClass {
     PostprocessorBare,
     /// Minor word.
     Minor,
+}
+
+/// What this program does with a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WordStatus {
+    /// The grammar knows it; its use is reported as not available.
+    Parsed,
+    /// Its form is checked; it has no effect.
+    Checked,
+    /// Sections 1 and 2 do what it says.
+    Evaluated,
+    /// The post-processor acts on it.
+    OnTape,
+    /// It stands on the CL file, for machine definitions and other post-processors.
+    PassedThrough,
+}
+
+impl WordStatus {
+    /// All statuses, in the order in which a page explains them.
+    pub const ALL: [WordStatus; 5] = [
+        WordStatus::Evaluated,
+        WordStatus::OnTape,
+        WordStatus::PassedThrough,
+        WordStatus::Checked,
+        WordStatus::Parsed,
+    ];
+
+    /// The status in words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            WordStatus::Parsed => "parsed",
+            WordStatus::Checked => "checked",
+            WordStatus::Evaluated => "evaluated",
+            WordStatus::OnTape => "on tape",
+            WordStatus::PassedThrough => "passed through",
+        }
+    }
 }
 
 impl WordClass {
