@@ -29,10 +29,10 @@ impl Evaluator<'_> {
             self.mark_listed(argument);
         }
         match (major.spelling(), major.arguments) {
-            ("READ", [Argument::Expression(first), name, rest @ ..]) if matches!(first, Expression::Number { value, .. } if *value == READ_SEGMENT) =>
-            {
-                self.read_segment(major, name, rest);
-            }
+            (
+                "READ",
+                [Argument::Expression(Expression::Number { value: READ_SEGMENT, .. }), name, rest @ ..],
+            ) => self.read_segment(major, name, rest),
             ("READ", [_, ..]) => self.report(FindingKind::NoEffect { word: major.name() }, major.range),
             ("PRINT", arguments) if self.is_apt4() => self.apt4_listing(major, arguments),
             (_, [Argument::Word(word), ..]) if matches!(word.word.spelling, "ON" | "OFF") => {}

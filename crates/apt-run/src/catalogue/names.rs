@@ -115,6 +115,9 @@ fn arithmetic(kind: &Kind) -> Option<Text> {
         Kind::FunctionKind { function, found: what } => {
             say("APT0205", format!("{function} cannot take {}", found(what)))
         }
+        Kind::FunctionMixed { function, first, second } => {
+            say("APT0205", format!("{function} cannot take {} with {}", a_kind(*first), a_kind(*second)))
+        }
         Kind::FunctionDomain { function, value } => {
             say("APT0206", format!("{function} of {} does not exist", number(*value)))
         }

@@ -160,6 +160,8 @@ fn motion(kind: &Kind) -> Option<Text> {
                 },
             )
         }
+        Kind::AxisDropped { word } => say("APT0511", format!("the axis of this {word} is dropped"))
+            .hint("write MULTAX before it, so that tool axes count"),
         Kind::PocketNumbers => say("APT0509", "POCKET begins with eight numbers"),
         Kind::PocketPoints { found } => say("APT0510", format!("POCKET takes 3 to 20 points, not {found}")),
         _ => return None,

@@ -66,6 +66,12 @@ fn statement(kind: &Kind) -> Option<Text> {
                 "a statement is `name = value`, or begins with a word of the language; check the spelling",
             )
         }
+        Kind::NotInDialect { word, dialect } => {
+            say("APT0905", format!("{word} is not part of this dialect")).hint(format!(
+                "the dialect {dialect} has it: set `dialect = \"{dialect}\"` in apt-lsp.toml, or begin the file \
+                 with `$$ apt-lsp: dialect={dialect}`"
+            ))
+        }
         Kind::WordNotAllowed(word) => say("APT0018", format!("the word {word} cannot stand here")),
         Kind::NoSlash(word) => {
             say("APT0019", format!("{word} is a word of the language and cannot be used as a name"))
