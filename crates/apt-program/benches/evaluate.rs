@@ -28,6 +28,28 @@ fn plain_points(bencher: divan::Bencher<'_, '_>, lines: usize) {
         .bench(|| evaluate(&tree, &Options::default(), &|| false));
 }
 
+/// Statements of every sort with names of their own, as in a long program: ten for each feature.
+fn features(count: usize) -> String {
+    let mut text = String::from("PARTNO FEATURES\nCANON/ON\n");
+    for n in 0..count {
+        text.push_str(&format!(
+            "X{n}={n}*.25+SQRTF(2)\nP{n}=POINT/X{n},{n}\nQ{n}=POINT/(X{n}+3),4,1\nL{n}=LINE/P{n},Q{n}\n\
+             C{n}=CIRCLE/CENTER,P{n},RADIUS,2.5\nI{n}=POINT/XLARGE,INTOF,L{n},C{n}\n\
+             PL=PLANE/P{n},Q{n},(POINT/0,0,9)\nV=VECTOR/P{n},Q{n}\nGOTO/I{n}\nSPINDL/X{n},CLW\n"
+        ));
+    }
+    text.push_str("FINI\n");
+    text
+}
+
+#[divan::bench(args = [100_000])]
+fn mixed_geometry(bencher: divan::Bencher<'_, '_>, statements: usize) {
+    let tree = tree(&features(statements / 10));
+    bencher
+        .counter(divan::counter::ItemsCount::new(statements))
+        .bench(|| evaluate(&tree, &Options::default(), &|| false));
+}
+
 #[divan::bench(args = [100_000])]
 fn loop_turns(bencher: divan::Bencher<'_, '_>, turns: usize) {
     let text = format!("I=0\nLOOPST\nA)I=I+1\nGOTO/I,(I*2),0\nIF(I-{turns})A,Z,Z\nZ)LOOPND\nFINI\n");
