@@ -7,6 +7,8 @@ use apt_geometry::{
     motion::Relation,
 };
 
+use crate::pocket::PocketFailure;
+
 /// Which surface of a motion is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RoleName {
@@ -74,9 +76,9 @@ pub enum MotionFailure {
     /// The axis mode is not supported.
     #[error("tool axis mode not supported")]
     AxisModeUnsupported,
-    /// POCKET is not supported.
-    #[error("POCKET not supported")]
-    PocketUnsupported,
+    /// POCKET gives no path (3501 to 3519).
+    #[error(transparent)]
+    Pocket(#[from] PocketFailure),
     /// This kind of geometry cannot be a surface here.
     #[error("{kind:?} cannot be a {role:?} surface")]
     SurfaceUnsupported {
@@ -268,9 +270,9 @@ impl MotionFailure {
             | Self::NotFinite
             | Self::NoPosition
             | Self::AxisModeUnsupported
-            | Self::PocketUnsupported
             | Self::NoTolerance { .. } => return None,
             Self::Cutter(error) => return error.apt3(),
+            Self::Pocket(failure) => return failure.apt3(),
             Self::NoCutter { start_up: true } => 311,
             Self::NoCutter { start_up: false } => 312,
             Self::ZeroAxis => 3,

@@ -8,6 +8,7 @@ pub mod clearance;
 mod directed;
 pub mod error;
 mod plane_curve;
+pub mod pocket;
 mod position;
 mod role;
 pub mod section2;

@@ -10,6 +10,7 @@ pub(crate) use self::modal::required_position;
 pub use self::{restart::Restart, state::State};
 use crate::{
     error::{MotionFailure, MotionWarning},
+    pocket::PocketPath,
     sequence::{CutSequence, ToolPosition},
 };
 
@@ -21,6 +22,8 @@ pub enum Output {
     Position(ToolPosition),
     /// GO, OFFSET and the directed motions.
     Sequence(CutSequence),
+    /// POCKET.
+    Pocket(PocketPath),
     /// Restart mode skipped the command.
     Ignored,
 }

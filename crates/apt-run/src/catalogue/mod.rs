@@ -9,6 +9,7 @@ mod definitions;
 mod motion;
 mod names;
 mod pages;
+mod pocket;
 mod postprocessor;
 mod program;
 mod syntax;

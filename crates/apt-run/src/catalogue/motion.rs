@@ -11,7 +11,7 @@ use arelem::{
     verify::{Evidence, Rule, VerifyError},
 };
 
-use super::{Text, a_kind, number, say};
+use super::{Text, a_kind, number, pocket, say};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 
 /// The words, the severity and the APT III number of a finding of Sections 2 and 3.
@@ -78,6 +78,7 @@ fn place(at: &Vec3) -> String {
 fn failure_text(failure: &Failure) -> Text {
     match failure {
         Failure::Cutter(error) => cutter(error),
+        Failure::Pocket(failure) => pocket::text(failure),
         _ => setting(failure).or_else(|| start(failure)).unwrap_or_else(|| path(failure)),
     }
 }
@@ -103,7 +104,6 @@ fn setting(failure: &Failure) -> Option<Text> {
             say("APT0606", "this tool axis mode cannot be computed yet; only a fixed axis can")
                 .hint("TLAXIS/i,j,k fixes the axis")
         }
-        Failure::PocketUnsupported => say("APT0607", "POCKET cannot be computed yet"),
         Failure::SurfaceUnsupported { role: name, kind } => {
             say("APT0608", format!("{} cannot be a {}", a_kind(*kind), role(*name)))
         }
@@ -371,6 +371,7 @@ fn unverified(evidence: &Evidence) -> Text {
                 Rule::Side => "the tool changes the side of a surface",
                 Rule::Progress => "the tool moves back",
                 Rule::StepLength => "a cut vector is longer than MAXDP",
+                Rule::Cleared => "a part of the pocket is not cleared",
                 #[expect(unreachable_patterns, reason = "a new rule of the verifier still gets a sentence")]
                 _ => "a rule is broken",
             };
@@ -392,6 +393,7 @@ fn not_judged(error: &VerifyError) -> Text {
             format!("no distance to a surface is found on cut vector {}", vector + 1)
         }
         VerifyError::Empty => "the path has no positions".to_owned(),
+        VerifyError::Effort { limit } => format!("it gave up after {limit} steps"),
     };
     say("APT0681", "the verifier could not judge this motion").hint(why)
 }

@@ -13,9 +13,10 @@ use apt_geometry::{
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use arelem::{
     error::MotionWarning,
+    pocket::PocketPath,
     section2::{Execution, Output, State, execute},
     sequence::{CutSequence, ToolPosition},
-    verify::{Evidence, VerifyError, verify},
+    verify::{Evidence, VerifyError, verify, verify_pocket},
 };
 use smol_str::SmolStr;
 
@@ -33,7 +34,13 @@ mod code {
     pub(super) const INTOL: [u16; 2] = [6000, 4];
     pub(super) const OUTTOL: [u16; 2] = [6000, 5];
     pub(super) const CUTTER: [u16; 2] = [6000, 6];
+    /// The post-processor word FEDRAT.
+    pub(super) const FEDRAT: u16 = 1009;
 }
+
+/// Positions in a CL record of POCKET, without and with tool axis: the buffer of Section 2 holds 240 numbers and is
+/// written when less than four positions are free.
+const POCKET_RECORD: [usize; 2] = [77, 39];
 
 /// Everything Section 2 leaves behind.
 pub(super) struct SectionTwoOutput {
@@ -166,7 +173,7 @@ impl<'a> Section2<'a> {
             };
             let computed = computed.ok_or(Cancelled)?;
             self.judge(&computed.evidence, origin);
-            if matches!(computed.execution.output, Some(Output::Sequence(_))) {
+            if matches!(computed.execution.output, Some(Output::Sequence(_) | Output::Pocket(_))) {
                 self.output.motions.push(Motion { origin: origin.clone(), computed: computed.clone() });
             }
             computed.execution.clone()
@@ -213,6 +220,10 @@ impl<'a> Section2<'a> {
                 self.end_of_skipping();
                 self.sequence(command, &sequence, origin, source);
             }
+            Some(Output::Pocket(path)) => {
+                self.end_of_skipping();
+                self.pocket(&path, origin.isn, source);
+            }
             Some(Output::Ignored) => {
                 let (_, count, last) = self.skipped.get_or_insert_with(|| (origin.clone(), 0, origin.isn));
                 *count += 1;
@@ -228,7 +239,6 @@ impl<'a> Section2<'a> {
             MotionCommand::Start(surfaces) | MotionCommand::Offset(surfaces) => {
                 surfaces.first().map_or("", |first| first.surface.name.as_str())
             }
-            MotionCommand::Pocket(_) => "POCKET",
             _ => "",
         };
         if let MotionCommand::Drive { drive, checks, .. } = command {
@@ -252,6 +262,28 @@ impl<'a> Section2<'a> {
         }
         self.tool = sequence.points.last().copied().or(self.tool);
         self.positions(origin.isn, source, false, name, &sequence.points);
+    }
+
+    /// A pocket: its feeds as FEDRAT, and its positions in records that are full from the outside.
+    fn pocket(&mut self, path: &PocketPath, isn: u32, source: u32) {
+        self.tool = path.positions().next_back().copied().or(self.tool);
+        if !self.output_on {
+            return;
+        }
+        let most = POCKET_RECORD[usize::from(self.with_axis)];
+        let mut left = path.positions().count();
+        for pass in &path.passes {
+            let word = SmolStr::new_static("FEDRAT");
+            let arguments = vec![ClWord::Number(pass.feed)];
+            self.push(isn, source, ClKind::Postprocessor { word, code: Some(code::FEDRAT), arguments });
+            let mut points = pass.points.as_slice();
+            while !points.is_empty() {
+                let (record, rest) = points.split_at(((left - 1) % most + 1).min(points.len()));
+                self.positions(isn, source, false, "POCKET", record);
+                left -= record.len();
+                points = rest;
+            }
+        }
     }
 
     fn positions(&mut self, isn: u32, source: u32, from: bool, name: &str, positions: &[ToolPosition]) {
@@ -334,6 +366,7 @@ fn compute(state: &State, command: &MotionCommand, cancel: Cancel<'_>) -> Option
     let execution = execute(state, command, &cancel);
     let evidence = match &execution.output {
         Some(Output::Sequence(sequence)) if !cancel() => Some(verify(sequence, &cancel)),
+        Some(Output::Pocket(path)) if !cancel() => Some(verify_pocket(path, &cancel)),
         _ => None,
     };
     (!cancel()).then(|| (execution, evidence, begin.elapsed().as_secs_f64()))

@@ -184,16 +184,17 @@ fn words(word: &str, arguments: &[ClWord]) -> Vec<Value> {
 
 fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
     let computed = &motion.computed;
-    let sequence = match &computed.execution.output {
-        Some(arelem::section2::Output::Sequence(sequence)) => Some(sequence),
-        _ => None,
+    let (cut_vectors, minimum) = match &computed.execution.output {
+        Some(arelem::section2::Output::Sequence(sequence)) => (sequence.points.len(), sequence.minimum),
+        Some(arelem::section2::Output::Pocket(path)) => (path.positions().count(), None),
+        _ => (0, None),
     };
     let evidence = computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
     MotionEntry {
         isn: motion.origin.isn,
         statement: statement_text(tree, motion.origin.isn),
-        cut_vectors: sequence.map_or(0, |sequence| sequence.points.len()),
-        minimum: sequence.and_then(|sequence| sequence.minimum),
+        cut_vectors,
+        minimum,
         part: evidence.and_then(|evidence| evidence.part),
         drive: evidence.and_then(|evidence| evidence.drive),
         check: evidence.and_then(|evidence| evidence.check),

@@ -11,6 +11,7 @@ use super::{Output, State};
 use crate::{
     directed,
     error::{MotionFailure, MotionWarning},
+    pocket,
     sequence::{CutSequence, ToolPosition},
     start_up,
 };
@@ -77,7 +78,14 @@ pub(super) fn apply(
             let sequence = directed::run(state, *turn, drive, checks, warnings, cancel)?;
             Ok(Some(finish(state, sequence)))
         }
-        MotionCommand::Pocket(_) => Err(MotionFailure::PocketUnsupported),
+        MotionCommand::Pocket(pocket) => {
+            let path = pocket::clear(state, pocket, cancel)?;
+            let ends: Vec<Vec3> = path.positions().rev().take(2).map(|position| position.tip).collect();
+            if let Some(last) = ends.first() {
+                state.move_to(ends.get(1).copied().unwrap_or(state.previous), *last);
+            }
+            Ok(Some(Output::Pocket(path)))
+        }
         _ => set_modal(state, command, warnings).map(|()| None),
     }
 }

@@ -7,6 +7,7 @@
 mod clearance;
 mod judge;
 mod pencil;
+mod pocket;
 mod quadric;
 mod quadric_clearance;
 mod ruling;
@@ -23,6 +24,7 @@ use apt_geometry::canonical::GeometryKind;
 use serde::Serialize;
 
 pub use judge::verify;
+pub use pocket::verify_pocket;
 
 /// Extreme signed clearances of one role over the whole of every cut vector, and the band they must lie in.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -76,6 +78,7 @@ pub enum Rule {
     Side,
     Progress,
     StepLength,
+    Cleared,
 }
 
 /// Why a sequence could not be judged. None of these says that it is wrong.
@@ -111,6 +114,12 @@ pub enum VerifyError {
     /// The sequence has no positions.
     #[error("a sequence without positions")]
     Empty,
+    /// The proof was given up after this many steps.
+    #[error("no proof after {limit} steps")]
+    Effort {
+        /// The bound.
+        limit: usize,
+    },
 }
 
 impl VerifyError {
