@@ -152,7 +152,7 @@ impl<'a> Walk<'a> {
                 }
             }
             MotionCommand::From { .. } | MotionCommand::GoTo { .. } | MotionCommand::GoDelta(_) => {
-                self.moved()
+                self.moved();
             }
             _ => {}
         }
