@@ -43,6 +43,8 @@ const MISTAKES: &[(&str, &[(u32, u16)])] = &[
     ("C=CIRCLE/(1,2),3", &[(1, 2001)]),
     ("P=POINT/UU,VV", &[(1, 2001), (1, 2001)]),
     ("P=POINT/CANON,1,2", &[(1, 2032)]),
+    ("P=POINT/1,2\nQ=POINT/P,CANON,,4,5", &[(2, 2032)]),
+    ("OBTAIN/POINT/(POINT/1,2),A", &[(1, 1007)]),
     ("P=POINT/", &[(1, 2001)]),
     ("P=POINT/1,2\nP=POINT/3,4", &[(2, 50)]),
     ("A1=SQRTF(-4)", &[(1, 20)]),

@@ -149,6 +149,15 @@ const LINES: &[&str] = &[
     "MULTAX",
     "PT1=PATERN/LINEAR,P1,P2,4",
     "GOTO/PT1,INVERS",
+    "DO/T2,J=1,2",
+    "IF(A.GT.1)JUMPTO/T2",
+    "IF(A.GT.1)GOTO/A,1",
+    "MULTAX/OFF",
+    "GOTO/1,2,3,0,0,1",
+    "TO=4",
+    "LONGNAME=ACOSF(.5)",
+    "PRINT/3,ALL",
+    "CALL/M1",
 ];
 
 fn line() -> impl Strategy<Value = &'static str> {
@@ -162,10 +171,11 @@ proptest! {
     fn update_equals_evaluation_from_scratch(
         lines in prop::collection::vec(line(), 1..60),
         repeat in 1_usize..8,
+        dialect in prop::sample::select(&[DialectName::Free, DialectName::Apt4][..]),
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..3, prop::collection::vec(line(), 0..3)), 1..6),
     ) {
         let mut current: Vec<&str> = lines.iter().copied().cycle().take(lines.len() * repeat).collect();
-        let mut tree = parse(&(current.join("\n") + "\n"));
+        let mut tree = SyntaxTree::parse(&(current.join("\n") + "\n"), Dialect::named(dialect));
         let mut program = run(&tree);
         for (place, removed, inserted) in edits {
             let first = place.index(current.len().max(1)).min(current.len());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     canonical::{Geometry, GeometryKind, Plane},
-    definition::{self, DefinitionContext, Modifier},
+    definition::{self, DefinitionContext, DefinitionError, Modifier},
 };
 use apt_syntax::{
     TextRange,
@@ -152,6 +152,9 @@ impl Evaluator<'_> {
             );
             return None;
         }
+        if self.is_apt4() && has_canon(definition) {
+            self.refuse_skipped(kind, &items, definition.range)?;
+        }
         let arguments = self.definition_arguments(kind, &items)?;
         let Some(z_surface) = self.z_plane() else {
             self.report(FindingKind::VerticalZSurface, definition.range);
@@ -169,6 +172,18 @@ impl Evaluator<'_> {
                 None
             }
         }
+    }
+
+    /// APT4 wants all numbers after CANON; nothing if one is skipped.
+    fn refuse_skipped(&mut self, kind: GeometryKind, items: &[Item], range: TextRange) -> Option<()> {
+        let given = items.iter().filter(|item| item.scalar().is_some()).count();
+        let skipped = items.iter().filter(|item| matches!(item.operand, Operand::Empty)).count();
+        if skipped == 0 {
+            return Some(());
+        }
+        let error = DefinitionError::CanonicalCount { expected: given + skipped, found: given };
+        self.report(FindingKind::Definition { kind, error }, range);
+        None
     }
 
     /// Operands as arguments of a definition.

@@ -141,6 +141,8 @@ pub struct Dialect {
     pub do_loops: bool,
     /// Macro values may be expressions, subscripted names and nested definitions.
     pub macro_value_expressions: bool,
+    /// A slash may stand after OBTAIN instead of the comma.
+    pub obtain_slash: bool,
     /// IF and JUMPTO also outside of loops and macros.
     pub branch_anywhere: bool,
     /// `GOTO` may be left out before a line of numbers.
@@ -168,6 +170,7 @@ impl Dialect {
             },
             DialectName::Apt4 => Dialect {
                 name: DialectName::Apt4,
+                obtain_slash: false,
                 long_names: LongNames::Cut,
                 number_digits: None,
                 signs: SignRule::WeakerThanPower,
@@ -221,6 +224,7 @@ impl Dialect {
         logical_if: false,
         do_loops: false,
         macro_value_expressions: false,
+        obtain_slash: true,
         branch_anywhere: false,
         implicit_goto: false,
         unknown_majors: false,

@@ -430,9 +430,11 @@ impl Parser<'_> {
     /// `OBTAIN,type/surface,names` or `OBTAIN/type/surface,names`
     fn obtain(&mut self) -> Parsed<Production> {
         let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
-        if !self.eat(ElementKind::Comma) && !self.eat(ElementKind::Slash) {
+        let slash = self.dialect.obtain_slash && self.at(ElementKind::Slash);
+        if !slash && !self.at(ElementKind::Comma) {
             return self.fail(SyntaxErrorKind::NoSlash(word.word.spelling.into()));
         }
+        self.bump();
         let is_type = self.word_at(0).is_some_and(|kind| kind.class == WordClass::GeometricType);
         let kind = match self.word_use() {
             Some(kind) if is_type => kind,
