@@ -240,12 +240,14 @@ impl Judge<'_> {
         let turns = self.positions.windows(2).any(|p| p[0].axis != p[1].axis);
         let shares = if turns || clearance.shape() == Shape::Free { FREE_SHARE } else { [BAND_SHARE, 0.0] };
         let [tolerance, last_tolerance] = shares.map(|s| (s * width).max(0.1 * guard));
+        // A whole band outside is out of tolerance whatever else there is on the vector.
+        let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
         let mut all: Option<Extremes> = None;
         for (vector, pair) in self.positions.windows(2).enumerate() {
             if (self.cancel)() {
                 return Err(VerifyError::Cancelled);
             }
-            let span = Span { clearance: &clearance, from: pair[0], to: pair[1] };
+            let span = Span { clearance: &clearance, from: pair[0], to: pair[1], beyond };
             let lost = VerifyError::NoDistance { vector };
             let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
             if bound.excess(&found, guard).is_some() && found.error > last_tolerance {

@@ -14,15 +14,15 @@ use super::{
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
-const RESOLUTION: f64 = 1e-11;
+const RESOLUTION: f64 = 2e-11;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
 /// Azimuths at which an edge of the tool is looked at before its deepest place is closed in.
 const AZIMUTHS: usize = 24;
 /// Steps of the golden section that closes it in.
-const GOLDEN_STEPS: usize = 40;
-/// Depth, relative to the reach of the tool, up to which it is proven; deeper is no question of tolerance.
-const PROVEN_DEPTH: f64 = 0.05;
+const GOLDEN_STEPS: usize = 32;
+/// Depth, relative to the radius of the tool, up to which it is proven; deeper is no question of tolerance.
+const PROVEN_DEPTH: f64 = 0.1;
 /// Translations tried in the proof of a depth, each four times longer.
 const PROOF_STEPS: usize = 14;
 
@@ -34,7 +34,7 @@ fn resolution(ruling: &Ruling, tip: &Vec3, reach: f64) -> f64 {
 pub(super) fn point_distance(ruling: &Ruling, x: &Vec3) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
     let tool = Tool { profile: &profile, axis: ruling.axis };
-    let touch = nearest(&ruling.strips(x, 0.0), x, &tool, resolution(ruling, x, 0.0))?;
+    let touch = nearest(&ruling.strips(x, 0.0), x, &tool, resolution(ruling, x, 0.0), 0.0)?;
     let natural = ruling.natural(&touch)?;
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
@@ -52,6 +52,8 @@ struct Bodies<'a> {
     tool: &'a Tool<'a>,
     reach: f64,
     resolution: f64,
+    /// Depth up to which a violation is measured exactly.
+    deep: f64,
 }
 
 /// The clearance; None beyond the end of a curve.
@@ -66,7 +68,8 @@ pub(super) fn at(ruling: &Ruling, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
         });
     }
     let reach = tool.profile.reach();
-    let bodies = Bodies { ruling, side, tool, reach, resolution: resolution(ruling, tip, reach) };
+    let deep = PROVEN_DEPTH * tool.profile.widest();
+    let bodies = Bodies { ruling, side, tool, reach, resolution: resolution(ruling, tip, reach), deep };
     let touch = bodies.touch(tip)?;
     let clear = bodies.is_on_side(&touch)?;
     if touch.value >= 0.0 && clear {
@@ -77,7 +80,7 @@ pub(super) fn at(ruling: &Ruling, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
 
 impl Bodies<'_> {
     fn touch(&self, tip: &Vec3) -> Option<Touch> {
-        nearest(&self.ruling.strips(tip, 2.0 * self.reach), tip, self.tool, self.resolution)
+        nearest(&self.ruling.strips(tip, 2.0 * self.reach), tip, self.tool, self.resolution, self.deep)
     }
 
     /// Whether the tool is on its side of the surface where it is nearest.
@@ -91,8 +94,7 @@ impl Bodies<'_> {
             self.edge(tip, p, &mut deepest)?;
         }
         let (depth, normal) = deepest;
-        let error =
-            if depth <= PROVEN_DEPTH * self.reach { self.unproven(tip, depth, &normal)? } else { 0.0 };
+        let error = if depth <= self.deep { self.unproven(tip, depth, &normal)? } else { 0.0 };
         Some(Reading { value: -depth, normal, error })
     }
 
@@ -128,7 +130,7 @@ impl Bodies<'_> {
         }
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
         let mut best: Option<(f64, f64)> = None;
-        let mut known = f64::NEG_INFINITY;
+        let mut known = f64::INFINITY;
         for k in 0..AZIMUTHS {
             let phi = step * k as f64;
             // Depth changes no faster than the place moves; between two samples lies half a step more.

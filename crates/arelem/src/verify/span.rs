@@ -71,6 +71,8 @@ pub(super) struct Span<'a> {
     pub(super) clearance: &'a Clearance<'a>,
     pub(super) from: ToolPosition,
     pub(super) to: ToolPosition,
+    /// A clearance beyond these decides by itself: the search need not go on.
+    pub(super) beyond: [f64; 2],
 }
 
 impl Span<'_> {
@@ -188,6 +190,9 @@ impl Span<'_> {
             let monotone = rises[0] == rises[1] && rises[1] == rises[2] && steepness > bend;
             let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
             let hidden = (bulge + surprise).min(0.5 * length * width);
+            if found.min < self.beyond[0] || found.max > self.beyond[1] {
+                return Some(found);
+            }
             if hidden <= tolerance || budget == 0 {
                 found.error = found.error.max(reading + hidden);
             } else {

@@ -13,6 +13,9 @@ const CELL_BUDGET: usize = 20_000;
 /// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction.
 const SURE_DIRECTION: f64 = 1e-8;
 
+/// How far a place on the tool's boundary is moved off it to find the boundary's normal, relative to the tool.
+const NUDGE: f64 = 1e-3;
+
 /// Control points of a cubic.
 pub(super) type Cubic = [Vec3; 4];
 
@@ -97,10 +100,22 @@ impl Search<'_> {
         if size > self.sure {
             return (distance, away * (distance.signum() / size));
         }
-        // On the tool's boundary: of the two normals of the surface the one that leaves the tool behind.
-        let height = |n: &Vec3| n.dot(&w) - self.tool.support(n).0;
-        let opposite = -surface_normal;
-        (distance, if height(surface_normal) >= height(&opposite) { *surface_normal } else { opposite })
+        // On the tool's boundary: the normal where a place a little off it is projected to. Of the two sides of the
+        // surface the one that leaves the tool behind.
+        let nudge = NUDGE * self.tool.profile.reach();
+        let mut best = (f64::NEG_INFINITY, *surface_normal);
+        for sense in [nudge, -nudge] {
+            let off = w + surface_normal * sense;
+            let (beyond, q) = self.tool.signed_distance(&off);
+            let size = (off - q).norm();
+            let n =
+                if beyond > 0.0 && size > 0.0 { (off - q) / size } else { *surface_normal * sense.signum() };
+            let height = n.dot(&w) - self.tool.support(&n).0;
+            if height > best.0 {
+                best = (height, n);
+            }
+        }
+        (distance, best.1)
     }
 
     fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2]) -> Cell {
@@ -148,8 +163,14 @@ impl Search<'_> {
 }
 
 /// The place of the strips nearest to a tool with its end at `tip`, to within `resolution`; None without strips or where
-/// a number is not finite.
-pub(super) fn nearest(strips: &[Strip], tip: &Vec3, tool: &Tool<'_>, resolution: f64) -> Option<Touch> {
+/// a number is not finite. A place deeper in the tool than `deep` ends the search.
+pub(super) fn nearest(
+    strips: &[Strip],
+    tip: &Vec3,
+    tool: &Tool<'_>,
+    resolution: f64,
+    deep: f64,
+) -> Option<Touch> {
     let mut search =
         Search { tip: *tip, tool, sure: SURE_DIRECTION * tool.profile.reach() + resolution, best: None };
     let mut open: Vec<Cell> = strips.iter().map(|s| search.cell(s.edges, s.piece, [0.0, 1.0])).collect();
@@ -159,6 +180,9 @@ pub(super) fn nearest(strips: &[Strip], tip: &Vec3, tool: &Tool<'_>, resolution:
     let mut budget = CELL_BUDGET;
     while let Some(cell) = open.pop() {
         let best = search.best?.value;
+        if best < -deep {
+            break;
+        }
         if cell.lower >= best - resolution {
             continue;
         }

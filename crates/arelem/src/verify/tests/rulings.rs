@@ -20,6 +20,11 @@ const UPRIGHT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0
 /// The rulings along y, as NOY makes them.
 const LYING: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
+/// Samples of each piece of the wave.
+const STEPS: u32 = 100;
+/// Depth in diameters up to which violations are measured exactly.
+const DEEP: f64 = 0.04;
+
 fn frame(rows: [[f64; 3]; 3]) -> [Vec3; 3] {
     rows.map(Vec3::from)
 }
@@ -35,8 +40,8 @@ fn dense_wave(height: f64) -> Vec<([f64; 2], [f64; 2])> {
     let nodes = wave_nodes(height);
     let mut all = Vec::new();
     let mut ray = |from: [f64; 3], sense: f64| {
-        for k in 0..2000 {
-            let x = sense * f64::from(k) * 0.005;
+        for k in 0..400 {
+            let x = sense * f64::from(k) * 0.02;
             let size = from[2].hypot(1.0);
             all.push(([from[0] + x / size, from[1] + x * from[2] / size], [-from[2] / size, 1.0 / size]));
         }
@@ -50,8 +55,8 @@ fn dense_wave(height: f64) -> Vec<([f64; 2], [f64; 2])> {
         let (c, s) = (du / length, dv / length);
         let [s1, s2] = [before, after].map(|m| (m * c - s) / (c + m * s));
         let (a, b) = ((s1 + s2) / (length * length), -(2.0 * s1 + s2) / length);
-        for k in 0..=400 {
-            let x = length * f64::from(k) / 400.0;
+        for k in 0..=STEPS {
+            let x = length * f64::from(k) / f64::from(STEPS);
             let y = x * (x - length) * (a * (x + length) + b);
             let slope = 3.0 * a * x * x + 2.0 * b * x - length * (a * length + b);
             let size = slope.hypot(1.0);
@@ -114,7 +119,7 @@ fn a_corner_of_the_directrix_is_touched_in_its_fan() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
     fn a_straight_directrix_is_a_plane(
@@ -133,8 +138,12 @@ proptest! {
         let tip = [tip.0, tip.1, tip.2];
         let (value, gradient, error) = clearance(&tool, &surface, side, tip, axis);
         let (wanted, ..) = clearance(&tool, &flat, side, tip, axis);
+        if wanted < -DEEP * tool.diameter {
+            prop_assert!(value < -0.9 * DEEP * tool.diameter, "{value} plane {wanted}");
+            return Ok(());
+        }
         prop_assert!((value - wanted).abs() < 1e-8, "{value} plane {wanted}");
-        prop_assert!(error < 1e-8 && (gradient - normal * side).norm() < 1e-5, "{error} {gradient}");
+        prop_assert!(error < 1e-8 && (gradient - normal * side).norm() < 1e-4, "{error} {gradient}");
     }
 
     #[test]
@@ -156,11 +165,11 @@ proptest! {
         let curve = dense_wave(height);
         let sampled = samples(&tool, tip, unit)
             .iter()
-            .step_by(3)
+            .step_by(7)
             .map(|x| side * dense_distance(&curve, &axes, x))
             .fold(f64::INFINITY, f64::min);
         prop_assert!((gradient.norm() - 1.0).abs() < 1e-9);
-        prop_assert!(value <= sampled + 2e-3, "value {value} ± {error} sampled {sampled}");
+        prop_assert!(value <= sampled.max(-0.9 * DEEP * tool.diameter) + 2e-3, "value {value} ± {error} sampled {sampled}");
         if sampled > 0.0 {
             prop_assert!(sampled - value < 3e-2 && error < 1e-8, "value {value} ± {error} sampled {sampled}");
         }
@@ -198,12 +207,12 @@ fn along_wave(lying: bool) -> CutSequence {
     let surface = tabulated(axes, &wave_nodes(0.6));
     let (numbers, center) =
         if lying { ([0.5, 0.25], -Vec3::z() * 0.25) } else { ([0.5, 0.1], Vec3::zeros()) };
-    let mut curve: Vec<_> = dense_wave(0.6).into_iter().skip(4000).collect();
-    curve.retain(|(p, _)| p[0].abs() < 2.8);
+    let mut curve: Vec<_> = dense_wave(0.6).into_iter().skip(800).collect();
+    curve.retain(|(p, _)| p[0].abs() < 1.7);
     // Lying, v points along x and u up: the tool must come from above, so the wave is turned to z = v there.
     let tips: Vec<Vec3> = curve
         .iter()
-        .step_by(20)
+        .step_by(10)
         .map(|(p, n)| {
             let (q, m) = (axes[0] * p[0] + axes[1] * p[1], axes[0] * n[0] + axes[1] * n[1]);
             q + m * 0.2502 + center
@@ -227,9 +236,9 @@ fn over_wave() -> CutSequence {
     let surface = tabulated(axes, &wave_nodes(0.6));
     let tips: Vec<Vec3> = dense_wave(0.6)
         .into_iter()
-        .skip(4000)
-        .filter(|(p, _)| p[0].abs() < 2.8)
-        .step_by(20)
+        .skip(800)
+        .filter(|(p, _)| p[0].abs() < 1.7)
+        .step_by(10)
         .map(|(p, n)| Vec3::new(p[0] + 0.2502 * n[0], 0.0, p[1] + 0.2502 * n[1] - 0.25))
         .collect();
     sequence.start.tip = tips[0];
@@ -262,7 +271,7 @@ fn sequences_along_and_over_a_wave_are_proven_and_broken_ones_are_not() {
             }
         }
         let mut dropped = sequence.clone();
-        dropped.points.drain(20..40);
+        dropped.points.drain(10..20);
         assert!(rules(&dropped).contains(&rule), "{rule:?} with a long chord");
         let mut turned = sequence.clone();
         let role = if rule == Rule::DriveBand { &mut turned.drive } else { &mut turned.part };
