@@ -3,6 +3,7 @@
 //! Offsets are bytes from the start of the text. Nothing here knows a protocol, a line number or a JSON shape of its
 //! own; the run report comes from `apt-run` as it is.
 
+mod carry;
 pub mod completion;
 pub mod dialect;
 pub mod expansion;
@@ -10,7 +11,6 @@ pub mod folding;
 pub mod format;
 pub mod hover;
 pub mod lens;
-pub mod lint;
 pub mod navigation;
 pub mod outline;
 pub mod picture;
@@ -19,12 +19,15 @@ pub mod run;
 pub mod search;
 pub mod tape;
 pub mod tokens;
+mod turn;
 
 use std::{
     ops::Range,
     sync::{Arc, OnceLock},
 };
 
+use apt_program::Program;
+use apt_run::pipeline::RunResult;
 pub use apt_run::{
     Cancel, Cancelled,
     catalogue::explain,
@@ -38,7 +41,12 @@ use apt_syntax::{TextRange, TextSize, tree::StatementView};
 #[derive(Debug, Clone)]
 pub struct Analysis {
     document: Arc<Document>,
+    marks: Arc<OnceLock<regions::Marks>>,
     regions: Arc<OnceLock<Vec<regions::Region>>>,
+    evaluating: Arc<turn::Turn>,
+    running: Arc<turn::Turn>,
+    /// The evaluation of the last version before this one that was evaluated.
+    before: Option<Arc<Program>>,
 }
 
 impl Analysis {
@@ -48,12 +56,31 @@ impl Analysis {
     }
 
     fn of(document: Document) -> Self {
-        Self { document: Arc::new(document), regions: Arc::default() }
+        Self {
+            document: Arc::new(document),
+            marks: Arc::default(),
+            regions: Arc::default(),
+            evaluating: Arc::default(),
+            running: Arc::default(),
+            before: None,
+        }
     }
 
     /// The next version: `range` (bytes) replaced by `insert`. Only the touched statements are parsed again.
     pub fn edit(&self, range: Range<usize>, insert: &str) -> Self {
-        Self::of(self.document.edit(range, insert))
+        let length = usize::from(self.document.tree().len());
+        let range = range.start.min(length)..range.end.clamp(range.start.min(length), length);
+        let mut next = Self::of(self.document.edit(range.clone(), insert));
+        next.before = self.known_program().cloned();
+        let new = Arc::clone(&next.document);
+        let new = new.tree();
+        if let Some(marks) = self.marks.get()
+            && let Some(carried) = carry::Carried::between(self.document.tree(), new, &range, insert.len())
+        {
+            // The cell is fresh: nobody can have filled it.
+            let _ = next.marks.set(marks.carried(&carried, new));
+        }
+        next
     }
 
     /// The program under analysis.
@@ -68,7 +95,60 @@ impl Analysis {
 
     /// Macro bodies and loops.
     pub fn regions(&self) -> &[regions::Region] {
-        self.regions.get_or_init(|| regions::find(self.document.tree()))
+        let tree = self.document.tree();
+        self.regions.get_or_init(|| self.marks.get_or_init(|| regions::Marks::find(tree)).regions(tree))
+    }
+
+    /// What is known of the program without any work: its evaluation, or that of the last version that has one.
+    pub fn known_program(&self) -> Option<&Arc<Program>> {
+        self.document.evaluated().or(self.before.as_ref())
+    }
+
+    /// Section 1. Whoever asks while it is computed waits for the result.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn program(&self, cancel: Cancel<'_>) -> Result<Arc<Program>, Cancelled> {
+        if let Some(program) = self.document.evaluated() {
+            return Ok(Arc::clone(program));
+        }
+        let _turn = self.evaluating.wait(cancel)?;
+        self.document.program(cancel)
+    }
+
+    /// Sections 1 to 3. `progress` gets the number of records done and to do. Whoever asks while it is computed waits
+    /// for the result.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn result(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Arc<RunResult>, Cancelled> {
+        self.program(cancel)?;
+        let _turn = self.running.wait(cancel)?;
+        self.document.run(cancel, progress)
+    }
+
+    /// The diagnostics up to a level, in order of their place.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn diagnostics(
+        &self,
+        level: Level,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<Diagnostic>, Cancelled> {
+        match level {
+            Level::Section1 => drop(self.program(cancel)?),
+            Level::Motion => drop(self.result(cancel, progress)?),
+        }
+        self.document.diagnostics(level, cancel, progress)
     }
 
     /// The syntax tree as text.

@@ -75,7 +75,7 @@ impl Analysis {
         if element.kind == ElementKind::Number && !label {
             return None;
         }
-        let scope = self.scope(view.index, &element.text, label);
+        let scope = self.element_scope(view.index, &parsed, index, label);
         Some(NameAt { name: element.text.clone(), range: absolute(&view, element.range), scope, label })
     }
 
@@ -129,16 +129,13 @@ impl Analysis {
         let tree = self.document().tree();
         let mut found = Vec::new();
         for index in statements_with(tree, name) {
-            if scope.statements.is_some_and(|(first, last)| !(first..=last).contains(&index)) {
-                continue;
-            }
             let view = tree.statement(index);
             let parsed = view.parsed();
             for (at, element) in parsed.elements.iter().enumerate() {
                 let same = element.text == name && is_label(&parsed, at) == label;
                 if same
                     && (label || element.kind == ElementKind::Name)
-                    && self.scope(index, name, label) == *scope
+                    && self.element_scope(index, &parsed, at, label) == *scope
                 {
                     found.push(Occurrence {
                         range: absolute(&view, element.range),
@@ -148,6 +145,26 @@ impl Analysis {
             }
         }
         found
+    }
+
+    /// Where the name at an element means the same. In a CALL, what stands before `=` is a variable of the macro.
+    fn element_scope(&self, statement: usize, parsed: &ParsedStatement, index: usize, label: bool) -> Scope {
+        let element = &parsed.elements[index];
+        let called = parsed.statement.parts.iter().find_map(|part| match &part.body {
+            Body::Call { name, arguments, .. } => {
+                arguments.iter().any(|argument| argument.name.range == element.range).then_some(&name.text)
+            }
+            _ => None,
+        });
+        let region = called.and_then(|called| {
+            let named = |region: &&Region| region.name == *called && region.variables.contains(&element.text);
+            let before = self.regions().iter().rfind(|region| named(region) && region.first < statement);
+            before.or_else(|| self.regions().iter().find(named))
+        });
+        match region {
+            Some(region) => Scope { statements: Some((region.first, region.last)) },
+            None => self.scope(statement, &element.text, label),
+        }
     }
 
     /// Labels are local to their loop or macro, macro variables to their macro.

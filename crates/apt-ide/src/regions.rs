@@ -1,9 +1,11 @@
 //! Macro bodies and loop regions: where labels and macro variables are local.
 
+use std::ops::Range;
+
 use apt_syntax::{statement::Body, tree::SyntaxTree};
 use smol_str::SmolStr;
 
-use crate::search::statements_with;
+use crate::{carry::Carried, search::contains};
 
 /// The kind of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +37,8 @@ impl Region {
     }
 }
 
+/// A statement that opens or closes a region.
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum Mark {
     Macro(SmolStr, Vec<SmolStr>),
     Loop,
@@ -42,38 +46,58 @@ enum Mark {
     EndLoop,
 }
 
-/// All regions, in order of their opening statements.
-pub fn find(tree: &SyntaxTree) -> Vec<Region> {
-    let mut candidates: Vec<usize> =
-        ["MACRO", "TERMAC", "LOOPST", "LOOPND"].iter().flat_map(|word| statements_with(tree, word)).collect();
-    candidates.sort_unstable();
-    candidates.dedup();
-    let end = tree.statement_count().saturating_sub(1);
-    let mut regions: Vec<Region> = Vec::new();
-    let mut open: Vec<usize> = Vec::new();
-    for index in candidates {
-        match mark(tree, index) {
-            Some(Mark::Macro(name, variables)) => {
-                open.push(regions.len());
-                regions.push(Region { kind: RegionKind::Macro, name, first: index, last: end, variables });
-            }
-            Some(Mark::Loop) => {
-                open.push(regions.len());
-                let name = SmolStr::default();
-                regions.push(Region {
-                    kind: RegionKind::Loop,
-                    name,
-                    first: index,
-                    last: end,
-                    variables: Vec::new(),
-                });
-            }
-            Some(Mark::EndMacro) => close(&mut regions, &mut open, RegionKind::Macro, index),
-            Some(Mark::EndLoop) => close(&mut regions, &mut open, RegionKind::Loop, index),
-            None => {}
-        }
+/// The statements that open or close regions, in order; after an edit only the statements that it touched are looked
+/// at again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Marks(Vec<(usize, Mark)>);
+
+impl Marks {
+    /// Finds the marks of a program.
+    pub(crate) fn find(tree: &SyntaxTree) -> Self {
+        Self(Self::among(tree, 0..tree.statement_count()).collect())
     }
-    regions
+
+    /// The marks of the next version.
+    pub(crate) fn carried(&self, carried: &Carried, new: &SyntaxTree) -> Self {
+        let moved = |(index, mark): &(usize, Mark)| Some((carried.index(*index)?, mark.clone()));
+        let (before, behind): (Vec<_>, Vec<_>) =
+            self.0.iter().filter_map(moved).partition(|(index, _)| *index < carried.first);
+        Self(before.into_iter().chain(Self::among(new, carried.changed())).chain(behind).collect())
+    }
+
+    fn among(tree: &SyntaxTree, statements: Range<usize>) -> impl Iterator<Item = (usize, Mark)> {
+        const WORDS: [&str; 4] = ["MACRO", "TERMAC", "LOOPST", "LOOPND"];
+        statements.filter_map(move |index| {
+            let view = tree.statement(index);
+            let text = view.text().as_bytes();
+            let may_mark = WORDS.iter().any(|word| contains(text, word.as_bytes()));
+            Some((index, may_mark.then(|| mark(tree, index)).flatten()?))
+        })
+    }
+
+    /// All regions, in order of their opening statements.
+    pub(crate) fn regions(&self, tree: &SyntaxTree) -> Vec<Region> {
+        let end = tree.statement_count().saturating_sub(1);
+        let mut regions: Vec<Region> = Vec::new();
+        let mut open: Vec<usize> = Vec::new();
+        for (index, mark) in &self.0 {
+            let (kind, name, variables) = match mark {
+                Mark::Macro(name, variables) => (RegionKind::Macro, name.clone(), variables.clone()),
+                Mark::Loop => (RegionKind::Loop, SmolStr::default(), Vec::new()),
+                Mark::EndMacro => {
+                    close(&mut regions, &mut open, RegionKind::Macro, *index);
+                    continue;
+                }
+                Mark::EndLoop => {
+                    close(&mut regions, &mut open, RegionKind::Loop, *index);
+                    continue;
+                }
+            };
+            open.push(regions.len());
+            regions.push(Region { kind, name, first: *index, last: end, variables });
+        }
+        regions
+    }
 }
 
 /// Closes the innermost open region of the kind.

@@ -30,6 +30,7 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Report, Cancelled> {
         let statements = range.and_then(|range| self.statements_of(range));
+        self.result(cancel, progress)?;
         self.document().report(cancel, progress, statements)
     }
 
@@ -50,8 +51,8 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Scene, Cancelled> {
-        let result = self.document().run(cancel, progress)?;
-        let program = self.document().program(cancel)?;
+        let result = self.result(cancel, progress)?;
+        let program = self.program(cancel)?;
         let mut surfaces = Vec::new();
         let mut cutter_diameter = None;
         for record in program.records() {

@@ -9,7 +9,8 @@ pub fn statements_with(tree: &SyntaxTree, word: &str) -> Vec<usize> {
     tree.statements().filter(|view| contains(view.text().as_bytes(), word)).map(|view| view.index).collect()
 }
 
-fn contains(text: &[u8], word: &[u8]) -> bool {
+/// Whether a text contains a word, blanks, letter case and continuations ignored.
+pub(crate) fn contains(text: &[u8], word: &[u8]) -> bool {
     let Some(&first) = word.first() else { return false };
     (0..text.len()).any(|at| text[at].to_ascii_uppercase() == first && starts_with(&text[at..], word))
 }

@@ -2,13 +2,13 @@
 
 use apt_cldata::{codes::CodeTable, record::ClRecord, text::read_text};
 use apt_post::{MachineDefinition, PostOptions, Tape};
+use apt_program::Origin;
 use apt_run::{
     catalogue,
     diagnostic::Diagnostic,
     document::Level,
     settings::{Settings, Units},
 };
-use apt_program::Origin;
 use apt_syntax::{
     TextRange, TextSize,
     dialect::DialectName,
@@ -124,8 +124,8 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Source, Cancelled> {
-        let diagnostics = self.document().diagnostics(Level::Motion, cancel, progress)?;
-        let result = self.document().run(cancel, progress)?;
+        let diagnostics = self.diagnostics(Level::Motion, cancel, progress)?;
+        let result = self.result(cancel, progress)?;
         Ok(Source { records: result.records.clone(), origins: result.origins.clone(), diagnostics })
     }
 
@@ -171,7 +171,7 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<String, Cancelled> {
-        let result = self.document().run(cancel, progress)?;
+        let result = self.result(cancel, progress)?;
         Ok(apt_cldata::text::write_text(&result.records, &apt_cldata::text::TextOptions::default()))
     }
 
@@ -185,7 +185,7 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Vec<u8>, ClTapeError> {
-        let result = self.document().run(cancel, progress)?;
+        let result = self.result(cancel, progress)?;
         Ok(apt_cldata::cltape::write_tape(&result.records, &code_table())?)
     }
 }

@@ -1,13 +1,17 @@
 //! Completion: the words and names that can stand at a place.
 
+mod definition;
+
 use apt_program::symbols::Value;
 use apt_syntax::{
-    statement::ElementKind,
+    statement::{Element, ElementKind},
     vocabulary::{Word, WordClass, words},
 };
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 use crate::Analysis;
+use definition::Next;
 
 /// The kind of a completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,91 +40,177 @@ pub struct Completion {
     pub documentation: String,
 }
 
-/// The most proposals of one answer.
-const GREATEST_COMPLETIONS: usize = 1_000;
+/// The most names of one answer; the nearest to the place are chosen.
+const GREATEST_NAMES: usize = 500;
 
 /// Where in a statement the cursor is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum Place {
     /// At the start: a verb or a new name.
     Start,
     /// After `=`: a type, MACRO, an expression.
     Value,
+    /// The name of a macro after CALL.
+    Macro,
+    /// A variable in a CALL of this macro.
+    Variable(SmolStr),
+    /// A parameter of a definition, by its forms.
+    Definition(Next),
     /// In a parameter list or expression.
     Parameter,
 }
 
 impl Analysis {
-    /// What can be written at an offset. Names come from the last evaluation, if there is one, so that typing never
-    /// waits for it.
+    /// What can be written at an offset: all that begins with what stands there already. Names come from the last
+    /// evaluation of this program, perhaps of a version before this one, so that typing never waits for it.
     pub fn completions(&self, offset: usize) -> Vec<Completion> {
         let Some((view, relative)) = self.statement_at(offset) else { return Vec::new() };
         let parsed = view.parsed();
-        let comment = view.text().find("$$").is_some_and(|at| at < usize::from(relative));
+        let comment = parsed.comments.iter().any(|range| range.start() < relative && relative <= range.end());
         if comment || parsed.elements.iter().any(|element| element.kind == ElementKind::Text) {
             return Vec::new();
         }
-        let before: Vec<_> =
-            parsed.elements.iter().filter(|element| element.range.end() < relative).collect();
-        let first = parsed
-            .elements
+        let spelled = |element: &&Element| matches!(element.kind, ElementKind::Word | ElementKind::Name);
+        let begun =
+            parsed.elements.iter().filter(spelled).find(|element| {
+                element.range.start() < relative && element.range.contains_inclusive(relative)
+            });
+        let begun_at = begun.map_or(relative, |element| element.range.start());
+        let length = usize::from(relative - begun_at);
+        // Blanks inside of what is typed are not counted in its spelling; the whole of it is as good then.
+        let prefix = begun.map_or("", |element| element.text.get(..length).unwrap_or(&element.text));
+        let before: Vec<&Element> =
+            parsed.elements.iter().filter(|element| element.range.end() <= begun_at).collect();
+        let verb = parsed.elements.iter().find(|element| element.kind == ElementKind::Word);
+        let place = self.place(&before);
+        let mut items: Vec<Completion> = words()
             .iter()
-            .find(|element| element.kind == ElementKind::Word)
-            .map(|one| one.text.as_str());
-        let place = match before.last().map(|element| element.kind) {
-            None => Place::Start,
-            Some(ElementKind::RightParenthesis) if before.len() == 2 => Place::Start,
-            Some(ElementKind::Equals) => Place::Value,
-            _ => Place::Parameter,
-        };
-        let mut items: Vec<Completion> =
-            words().iter().filter(|word| fits(word, place, first)).map(word_completion).collect();
-        if place != Place::Start {
-            items.extend(self.names());
-        }
-        items.sort_by(|a, b| (a.kind, &a.label).cmp(&(b.kind, &b.label)));
-        items.truncate(GREATEST_COMPLETIONS);
+            .filter(|word| word.spelling.starts_with(prefix) && word.is_in(self.document().dialect()))
+            .filter(|word| fits(word, &place, verb.map(|verb| verb.text.as_str())))
+            .map(word_completion)
+            .collect();
+        items.extend(self.names(&place, prefix, view.isn()));
+        items.sort_by(|a, b| (rank(a, &place), &a.label).cmp(&(rank(b, &place), &b.label)));
+        items.dedup();
         items
     }
 
-    fn names(&self) -> Vec<Completion> {
-        let mut items = Vec::new();
-        if let Some(program) = self.document().evaluated() {
-            let mut seen = FxHashSet::default();
-            for (name, value) in program.symbols() {
-                let stem = name.split('(').next().unwrap_or(&name).to_owned();
-                if !seen.insert(stem.clone()) || items.len() >= GREATEST_COMPLETIONS {
-                    continue;
-                }
-                let (kind, detail) = match value {
-                    Value::Scalar(number) => (CompletionKind::Scalar, format!("{number}")),
-                    Value::Geometry(geometry) => (CompletionKind::Name, geometry.kind().word().to_owned()),
-                };
-                items.push(Completion { label: stem, kind, detail, documentation: String::new() });
+    /// Where the end of `before` is in its statement.
+    fn place(&self, before: &[&Element]) -> Place {
+        let spelling = |index: usize| before.get(index).map(|element| element.text.as_str());
+        let labelled = before.len() >= 2 && before[1].kind == ElementKind::RightParenthesis;
+        let begin = if labelled { 2 } else { 0 };
+        let Some(last) = before.get(begin..).and_then(<[_]>::last) else { return Place::Start };
+        if spelling(begin) == Some("CALL") && spelling(begin + 1) == Some("/") {
+            match (last.kind, before.get(begin + 2)) {
+                (ElementKind::Slash, _) => return Place::Macro,
+                (ElementKind::Comma, Some(name)) => return Place::Variable(name.text.clone()),
+                _ => {}
             }
         }
-        for region in self.regions() {
-            if !region.name.is_empty() {
+        if last.kind == ElementKind::Equals {
+            return Place::Value;
+        }
+        let kind_of = |name: &str| self.kind_of(name);
+        definition::next(before, kind_of).map_or(Place::Parameter, Place::Definition)
+    }
+
+    fn kind_of(&self, name: &str) -> Option<apt_geometry::canonical::GeometryKind> {
+        let program = self.known_program()?;
+        let event = program.definitions().filter(|event| event.name == name).last()?;
+        match &event.value {
+            Value::Geometry(geometry) => Some(geometry.kind()),
+            Value::Scalar(_) => None,
+        }
+    }
+
+    fn names(&self, place: &Place, prefix: &str, isn: u32) -> Vec<Completion> {
+        match place {
+            Place::Start => Vec::new(),
+            Place::Macro => self.macros(prefix),
+            Place::Variable(name) => self.variables(name, prefix),
+            Place::Definition(next) => self.values(prefix, isn, |value| next.takes(value)),
+            Place::Value | Place::Parameter => self.values(prefix, isn, |_| true),
+        }
+    }
+
+    /// Names with a value, the nearest to a statement first if there are too many.
+    fn values(&self, prefix: &str, isn: u32, wanted: impl Fn(&Value) -> bool) -> Vec<Completion> {
+        let Some(program) = self.known_program() else { return Vec::new() };
+        let mut last: FxHashMap<&SmolStr, (u32, &Value, bool)> = FxHashMap::default();
+        for event in program.definitions() {
+            if event.name.starts_with(prefix) {
+                let distance = event.origin.isn.abs_diff(isn);
+                last.insert(&event.name, (distance, &event.value, event.subscript.is_some()));
+            }
+        }
+        let mut found: Vec<_> = last.into_iter().filter(|(_, (_, value, _))| wanted(value)).collect();
+        if found.len() > GREATEST_NAMES {
+            found.select_nth_unstable_by_key(GREATEST_NAMES, |(name, (distance, ..))| (*distance, *name));
+            found.truncate(GREATEST_NAMES);
+        }
+        let item = |(name, (_, value, subscripted)): (&SmolStr, (u32, &Value, bool))| {
+            let (kind, detail) = match value {
+                _ if subscripted => (CompletionKind::Name, "subscripted".to_owned()),
+                Value::Scalar(number) => (CompletionKind::Scalar, crate::hover::number(*number)),
+                Value::Geometry(geometry) => (CompletionKind::Name, geometry.kind().word().to_owned()),
+            };
+            plain(name, kind, detail)
+        };
+        found.into_iter().map(item).collect()
+    }
+
+    fn macros(&self, prefix: &str) -> Vec<Completion> {
+        let named = self.regions().iter().filter(|region| !region.name.is_empty());
+        let begun = named.filter(|region| region.name.starts_with(prefix));
+        begun
+            .map(|region| {
                 let detail = format!("MACRO/{}", region.variables.join(","));
-                items.push(Completion {
-                    label: region.name.to_string(),
-                    kind: CompletionKind::Macro,
-                    detail,
-                    documentation: String::new(),
-                });
-            }
-        }
-        items
+                plain(&region.name, CompletionKind::Macro, detail)
+            })
+            .collect()
+    }
+
+    fn variables(&self, name: &str, prefix: &str) -> Vec<Completion> {
+        let Some(region) = self.regions().iter().rfind(|region| region.name == name) else {
+            return Vec::new();
+        };
+        let begun = region.variables.iter().filter(|variable| variable.starts_with(prefix));
+        begun.map(|one| plain(one, CompletionKind::Scalar, format!("variable of {name}"))).collect()
     }
 }
 
-fn fits(word: &Word, place: Place, verb: Option<&str>) -> bool {
+fn plain(label: &str, kind: CompletionKind, detail: String) -> Completion {
+    Completion { label: label.to_owned(), kind, detail, documentation: String::new() }
+}
+
+/// The order of the list: what the forms ask for comes first, words of definitions in the order of the forms.
+fn rank(item: &Completion, place: &Place) -> (usize, CompletionKind) {
+    match place {
+        Place::Definition(next) => {
+            let at = next.modifiers.iter().position(|word| *word == item.label);
+            (
+                at.map_or(if item.kind == CompletionKind::Modifier { usize::MAX } else { 0 }, |at| at + 1),
+                item.kind,
+            )
+        }
+        _ => (0, item.kind),
+    }
+}
+
+fn fits(word: &Word, place: &Place, verb: Option<&str>) -> bool {
     use WordClass as Class;
     match place {
         Place::Start => !matches!(word.class, Class::Minor | Class::GeometricType | Class::Function),
         Place::Value => {
             matches!(word.class, Class::GeometricType | Class::Function) || word.spelling == "MACRO"
         }
+        Place::Macro | Place::Variable(_) => false,
+        Place::Definition(next) => match word.class {
+            Class::Function => next.scalar,
+            Class::Minor => next.modifiers.contains(&word.spelling),
+            _ => false,
+        },
         Place::Parameter => match word.class {
             Class::GeometricType | Class::Function => true,
             Class::Minor => verb.is_none_or(|verb| used_in(word, verb)),

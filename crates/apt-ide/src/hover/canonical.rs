@@ -60,7 +60,9 @@ pub fn number(value: f64) -> String {
     const DIGITS: i32 = 9;
     let magnitude = value.abs().log10().floor() as i32;
     if !(-6..15).contains(&magnitude) {
-        return format!("{value:e}");
+        let text = format!("{value:.*e}", DIGITS as usize - 1);
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'));
     }
     let decimals = (DIGITS - 1 - magnitude).max(0) as usize;
     let text = format!("{value:.decimals$}");
@@ -199,6 +201,7 @@ mod tests {
         assert_eq!(number(-0.0), "0");
         assert_eq!(number(123456.0), "123456");
         assert_eq!(number(1e-9), "1e-9");
+        assert_eq!(number(-8.881784197001252e-16), "-8.8817842e-16");
         assert_eq!(number(100.0), "100");
     }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 use apt_program::symbols::Value;
 use apt_syntax::{
     TextSize,
-    statement::{Element, ElementKind},
+    statement::{Body, Element, ElementKind},
     vocabulary::{Word, WordClass, lookup},
 };
 
@@ -78,7 +78,7 @@ impl Analysis {
         isn: u32,
         cancel: Cancel<'_>,
     ) -> Result<Option<(String, Value)>, Cancelled> {
-        let program = self.document().program(cancel)?;
+        let program = self.program(cancel)?;
         let mut found = None;
         for event in program.definitions().filter(|event| event.name == name) {
             if event.origin.isn > isn && found.is_some() {
@@ -103,25 +103,87 @@ impl Analysis {
         if at.label {
             return Ok(Some(format!("label `{}`", at.name)));
         }
-        if let Some((name, value)) = self.value_at(&at.name, isn, cancel)? {
-            return Ok(Some(CanonicalForm::new(&name, &value).markdown()));
+        if at.scope.statements.is_none()
+            && let Some((name, value)) = self.value_at(&at.name, isn, cancel)?
+        {
+            let mut markdown = CanonicalForm::new(&name, &value).markdown();
+            markdown.push_str(&self.turns_markdown(&at.name, isn, cancel)?);
+            return Ok(Some(markdown));
         }
         let region = self.regions().iter().find(|region| region.name == at.name);
         if let Some(region) = region {
             let count = region.last.saturating_sub(region.first + 1);
             let header = format!("{}=MACRO/{}", region.name, region.variables.join(","));
-            return Ok(Some(format!("```apt\n{header}\n```\nmacro of {count} statements")));
+            let plural = if count == 1 { "" } else { "s" };
+            return Ok(Some(format!("```apt\n{header}\n```\nmacro of {count} statement{plural}")));
         }
         let local = self.regions().iter().rfind(|region| {
             region.variables.contains(&at.name) && at.scope.statements == Some((region.first, region.last))
         });
-        Ok(local.map(|region| format!("variable `{}` of macro `{}`", at.name, region.name)))
+        Ok(local.map(|region| {
+            format!(
+                "variable `{}` of macro `{}`{}",
+                at.name,
+                region.name,
+                self.calls_markdown(region, &at.name)
+            )
+        }))
+    }
+
+    /// How a name changed, if its statement was executed several times in a loop or in calls of a macro.
+    fn turns_markdown(&self, name: &str, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
+        let program = self.program(cancel)?;
+        let here = || program.definitions().filter(|event| event.name == name && event.origin.isn == isn);
+        let (count, first) = (here().count(), here().next());
+        Ok(match first {
+            Some(first) if count > 1 => {
+                let form = CanonicalForm::new(name, &first.value);
+                format!("\n\nthe last of {count} times; the first: {}", form.text)
+            }
+            _ => String::new(),
+        })
+    }
+
+    /// What the calls of a macro give to a variable, in the order of the text.
+    fn calls_markdown(&self, region: &crate::regions::Region, variable: &str) -> String {
+        /// More of them would not be read.
+        const GREATEST_CALLS: usize = 8;
+        let tree = self.document().tree();
+        let mut text = String::new();
+        let mut calls = 0;
+        for index in crate::search::statements_with(tree, &region.name) {
+            let view = tree.statement(index);
+            for part in &view.parsed().statement.parts {
+                let Body::Call { name, arguments, .. } = &part.body else { continue };
+                if name.text != region.name {
+                    continue;
+                }
+                calls += 1;
+                let given = arguments.iter().find(|argument| argument.name.text == variable);
+                let value = given.and_then(|argument| {
+                    let range = usize::from(argument.name.range.end())..usize::from(part.range.end());
+                    let rest = view.text().get(range)?.trim_start().strip_prefix('=')?;
+                    Some(first_argument(rest).to_owned())
+                });
+                if calls <= GREATEST_CALLS {
+                    let value = value.as_deref().unwrap_or("(default)");
+                    text.push_str(&format!("\n- `{value}` at statement {}", view.isn()));
+                }
+            }
+        }
+        match calls {
+            0 => ", which is never called".to_owned(),
+            _ if calls > GREATEST_CALLS => format!(":\n{text}\n- … {} more calls", calls - GREATEST_CALLS),
+            _ => format!(":\n{text}"),
+        }
     }
 }
 
 /// The element at an offset; at the border of two the one that begins there, unless it is punctuation.
 pub(crate) fn element_at(elements: &[Element], offset: TextSize) -> Option<&Element> {
-    let speaks = |element: &&Element| matches!(element.kind, ElementKind::Word | ElementKind::Name | ElementKind::Number);
+    let speaks = |element: &&Element| {
+        matches!(element.kind, ElementKind::Word | ElementKind::Name | ElementKind::Number)
+    };
     let inside = elements.iter().find(|element| element.range.contains(offset)).filter(speaks);
     inside.or_else(|| elements.iter().filter(speaks).find(|element| element.range.contains_inclusive(offset)))
 }
@@ -158,4 +220,14 @@ fn class_title(class: WordClass) -> &'static str {
         WordClass::Postprocessor | WordClass::PostprocessorBare => "post-processor word, code",
         WordClass::Minor => "modifier, code",
     }
+}
+
+/// What stands before the next comma outside of parentheses.
+fn first_argument(text: &str) -> &str {
+    let mut depth = 0_i32;
+    let end = text.find(|c| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        c == ',' && depth == 0
+    });
+    text[..end.unwrap_or(text.len())].trim()
 }

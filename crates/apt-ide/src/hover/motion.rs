@@ -11,7 +11,7 @@ const POSITIONS_SHOWN: usize = 4;
 impl Analysis {
     /// The result of the motion statement with this number; empty if it gave none.
     pub(super) fn motion_markdown(&self, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
-        let result = self.document().run(cancel, &mut |_, _| {})?;
+        let result = self.result(cancel, &mut |_, _| {})?;
         let mut text = String::new();
         let turns = result.motions.iter().filter(|motion| motion.origin.isn == isn);
         let count = turns.clone().count();

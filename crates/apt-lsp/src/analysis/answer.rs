@@ -97,6 +97,15 @@ pub(crate) struct Diagnostic {
     pub unnecessary: bool,
 }
 
+/// The gravest findings of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Worst {
+    /// The findings, ordered by place.
+    pub diagnostics: Vec<Diagnostic>,
+    /// How many others there are.
+    pub left_out: usize,
+}
+
 /// One level of macro call, loop turn or include.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct OriginFrame {

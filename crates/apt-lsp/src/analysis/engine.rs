@@ -7,8 +7,8 @@ use std::iter::successors;
 use std::ops::Range;
 use std::sync::Arc;
 
-use apt_ide::{Analysis, Cancelled};
 use apt_ide::dialect::describe;
+use apt_ide::{Analysis, Cancelled};
 use apt_run::diagnostic as found;
 use apt_run::document::DialectReason;
 use apt_run::position::LineIndex;
@@ -153,10 +153,20 @@ impl Document for Program {
     }
 
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
-        let all = with(control, "checking", |cancel, progress| {
-            self.0.document().diagnostics(level, cancel, progress)
-        })?;
+        let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
         Ok(all.iter().map(|one| self.diagnostic(one)).collect())
+    }
+
+    fn worst_diagnostics(&self, level: Level, most: usize, control: &Control) -> Answer<Worst> {
+        let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
+        let mut chosen: Vec<usize> = (0..all.len()).collect();
+        if all.len() > most {
+            chosen.sort_by_key(|&index| (std::cmp::Reverse(all[index].severity), index));
+            chosen.truncate(most);
+            chosen.sort_unstable();
+        }
+        let diagnostics: Vec<_> = chosen.into_iter().map(|index| self.diagnostic(&all[index])).collect();
+        Ok(Worst { left_out: all.len() - diagnostics.len(), diagnostics })
     }
 
     fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>> {
@@ -278,8 +288,9 @@ impl Document for Program {
                 match kind {
                     PictureKind::Html => Ok(apt_ide::picture::html(&scene).into_bytes()),
                     PictureKind::Svg => Ok(apt_ide::picture::svg(&scene).into_bytes()),
-                    PictureKind::Png => apt_ide::picture::png(&scene)
-                        .map_err(|error| Refusal::Impossible(error.to_string())),
+                    PictureKind::Png => {
+                        apt_ide::picture::png(&scene).map_err(|error| Refusal::Impossible(error.to_string()))
+                    }
                 }
             }
         })

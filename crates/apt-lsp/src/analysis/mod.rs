@@ -51,6 +51,14 @@ pub(crate) trait Document: Send + Sync {
     /// Everything found up to a level, ordered by place.
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>>;
 
+    /// The gravest of what is found up to a level, ordered by place, at most `most` of them.
+    fn worst_diagnostics(&self, level: Level, most: usize, control: &Control) -> Answer<Worst> {
+        let mut diagnostics = self.diagnostics(level, control)?;
+        let left_out = diagnostics.len().saturating_sub(most);
+        diagnostics.truncate(most);
+        Ok(Worst { diagnostics, left_out })
+    }
+
     /// What stands at an offset, explained.
     fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>>;
 

@@ -113,7 +113,8 @@ fn motions(text: &mut String, report: &Value) {
         0 => "all verified".to_owned(),
         some => format!("{some} NOT VERIFIED"),
     };
-    let _ = writeln!(text, "  {}, {}, {proof}", count(motions.len() as u64, "motion"), count(sum, "cut vector"));
+    let _ =
+        writeln!(text, "  {}, {}, {proof}", count(motions.len() as u64, "motion"), count(sum, "cut vector"));
 }
 
 fn count(number: u64, what: &str) -> String {

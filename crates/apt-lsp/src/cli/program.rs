@@ -56,7 +56,8 @@ impl Program {
         let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
         let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
             let binary = language.text_of_binary(&bytes).transpose()?;
-            Ok(binary.map_or_else(|| (source::decode(bytes), false), |text| (Source { text, utf8: true }, true)))
+            Ok(binary
+                .map_or_else(|| (source::decode(bytes), false), |text| (Source { text, utf8: true }, true)))
         });
         let (source, binary) = match understood {
             Ok(both) => both,

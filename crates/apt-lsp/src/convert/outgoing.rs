@@ -36,6 +36,16 @@ pub(crate) fn diagnostic(index: &TextIndex, uri: &Uri, found: &Diagnostic) -> ls
     }
 }
 
+/// Tells at the top of a document how many findings are not shown.
+pub(crate) fn left_out(count: usize) -> lsp::Diagnostic {
+    lsp::Diagnostic {
+        severity: Some(lsp::DiagnosticSeverity::INFORMATION),
+        source: Some(SOURCE.to_owned()),
+        message: format!("{count} more findings are not shown; `apt-lsp --check` lists all"),
+        ..lsp::Diagnostic::default()
+    }
+}
+
 fn related_information(
     index: &TextIndex,
     uri: &Uri,

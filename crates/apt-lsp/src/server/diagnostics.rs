@@ -92,8 +92,16 @@ pub(super) fn wants_motion(snapshot: &Snapshot) -> bool {
     snapshot.settings.motion.unwrap_or(true)
 }
 
-/// The findings of a snapshot.
+/// Findings shown of one document. Nobody reads more, and editors show no more.
+const MOST_SHOWN: usize = 1_000;
+
+/// The findings of a snapshot: the gravest, and how many there are besides.
 pub(super) fn findings(snapshot: &Snapshot, level: Level, control: &Control) -> Answer<Vec<lsp::Diagnostic>> {
-    let found = snapshot.document.diagnostics(level, control)?;
-    Ok(found.iter().map(|found| outgoing::diagnostic(&snapshot.index, &snapshot.uri, found)).collect())
+    let found = snapshot.document.worst_diagnostics(level, MOST_SHOWN, control)?;
+    let convert = |found| outgoing::diagnostic(&snapshot.index, &snapshot.uri, found);
+    let mut shown: Vec<_> = found.diagnostics.iter().map(convert).collect();
+    if found.left_out > 0 {
+        shown.push(outgoing::left_out(found.left_out));
+    }
+    Ok(shown)
 }

@@ -33,6 +33,10 @@ const CONCURRENT_REQUESTS: usize = 256;
 /// Bytes between the framing and the service before the reader waits.
 const PIPE_SIZE: usize = 1 << 16;
 
+/// Threads for work on snapshots, and for the two standard streams. Each has memory of its own that it keeps, so few
+/// are better than many; work that nobody wants any more ends soon and gives its thread back.
+const WORKERS: usize = 10;
+
 /// How the conversation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ending {
@@ -44,7 +48,9 @@ pub(crate) enum Ending {
 
 /// Runs the server on standard input and output, and ends the process.
 pub(crate) fn run(language: Arc<dyn Language>) -> ExitCode {
-    let runtime = match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
+    let mut builder = tokio::runtime::Builder::new_multi_thread();
+    builder.enable_all().max_blocking_threads(WORKERS);
+    let runtime = match builder.build() {
         Ok(runtime) => runtime,
         Err(error) => {
             lifetime::complain(&format!("cannot start: {error}"));

@@ -1,0 +1,114 @@
+//! Completion: what is proposed at each kind of place.
+
+mod support;
+
+use apt_ide::completion::CompletionKind;
+use expect_test::{Expect, expect};
+
+use support::{marked, never};
+
+/// The labels proposed at the mark, after an evaluation.
+fn labels(text: &str) -> Vec<String> {
+    let (analysis, offset) = marked(text);
+    analysis.program(&never).unwrap();
+    analysis.completions(offset).into_iter().map(|item| item.label).collect()
+}
+
+fn check(text: &str, expected: Expect) {
+    expected.assert_eq(&labels(text).join(" "));
+}
+
+const NAMES: &str =
+    "P1=POINT/1,2\nP2=POINT/3,4\nL1=LINE/P1,P2\nC1=CIRCLE/0,0,5\nA=2\nM1=MACRO/DX,DY\nTERMAC\n";
+
+#[test]
+fn a_statement_begins_with_a_verb() {
+    let all = labels("$0\n");
+    for word in ["GOLFT", "PARTNO", "FEDRAT", "CALL", "FINI"] {
+        assert!(all.contains(&word.to_owned()), "{word}");
+    }
+    for word in ["POINT", "ATANGL", "SINF"] {
+        assert!(!all.contains(&word.to_owned()), "{word}");
+    }
+    check("GOL$0\n", expect!["GOLFT"]);
+    check("A) GOL$0\n", expect!["GOLFT"]);
+}
+
+#[test]
+fn a_value_is_a_type_a_function_a_macro_or_a_name() {
+    let all = labels(&format!("{NAMES}X=$0\nFINI\n"));
+    for word in ["POINT", "SINF", "MACRO", "P1", "A"] {
+        assert!(all.contains(&word.to_owned()), "{word}");
+    }
+    assert!(!all.contains(&"GOLFT".to_owned()));
+}
+
+#[test]
+fn parameters_of_a_definition_follow_its_forms() {
+    check(
+        &format!("{NAMES}X=LINE/$0\nFINI\n"),
+        expect![
+            "P1 P2 A ABSF ANGLF ATAN2F ATANF COSF DISTF DOTF EXPF LNTHF LOG10F LOGF NUMF SINF SQRTF TANF RIGHT LEFT XAXIS YAXIS PARLEL INTOF SLOPE ATANGL"
+        ],
+    );
+    check(
+        &format!("{NAMES}X=LINE/P1,$0\nFINI\n"),
+        expect!["P1 P2 RIGHT LEFT ATANGL SLOPE PARLEL PERPTO TANTO"],
+    );
+    check(&format!("{NAMES}X=LINE/P1,ATANGL,A,$0\nFINI\n"), expect!["L1 XAXIS YAXIS"]);
+    check(&format!("{NAMES}X=LINE/P1,AT$0\nFINI\n"), expect!["ATANGL"]);
+    check(
+        &format!("{NAMES}X=LINE/(POINT/1,2),$0\nFINI\n"),
+        expect!["P1 P2 RIGHT LEFT ATANGL SLOPE PARLEL PERPTO TANTO"],
+    );
+    check(
+        &format!("{NAMES}X=POINT/$0\nFINI\n"),
+        expect![
+            "C1 A ABSF ANGLF ATAN2F ATANF COSF DISTF DOTF EXPF LNTHF LOG10F LOGF NUMF SINF SQRTF TANF INTOF XLARGE XSMALL YLARGE YSMALL CENTER RTHETA THETAR"
+        ],
+    );
+    check(&format!("{NAMES}X=POINT/INTOF,$0\nFINI\n"), expect!["L1"]);
+    check(&format!("{NAMES}X=CIRCLE/CENTER,P1,$0\nFINI\n"), expect!["P1 P2 RADIUS TANTO LARGE SMALL"]);
+}
+
+#[test]
+fn a_call_takes_macros_and_their_variables() {
+    check(&format!("{NAMES}CALL/$0\nFINI\n"), expect!["M1"]);
+    check(&format!("{NAMES}CALL/M1,$0\nFINI\n"), expect!["DX DY"]);
+    check(&format!("{NAMES}CALL/M1,DX=1,DY$0\nFINI\n"), expect!["DY"]);
+}
+
+#[test]
+fn modifiers_are_those_of_the_verb() {
+    let all = labels("GOLFT/L1,$0\n");
+    assert!(all.contains(&"PAST".to_owned()) && !all.contains(&"CLW".to_owned()), "{all:?}");
+    let all = labels("SPINDL/100,$0\n");
+    assert!(all.contains(&"CLW".to_owned()) && !all.contains(&"PAST".to_owned()), "{all:?}");
+}
+
+#[test]
+fn nothing_is_proposed_in_comments_and_text() {
+    for text in ["$$ GO$0\n", "P1=POINT/1,2 $$ GO$0\n", "PARTNO GO$0\n"] {
+        assert_eq!(labels(text), Vec::<String>::new(), "{text:?}");
+    }
+}
+
+#[test]
+fn names_are_known_while_an_edit_is_not_evaluated_yet() {
+    let (analysis, offset) = marked(&format!("{NAMES}X=LINE/$0\nFINI\n"));
+    analysis.program(&never).unwrap();
+    let edited = analysis.edit(offset..offset, "P");
+    assert!(edited.document().evaluated().is_none());
+    let items = edited.completions(offset + 1);
+    let names: Vec<_> = items.iter().filter(|item| item.kind == CompletionKind::Name).collect();
+    assert_eq!(names.iter().map(|item| item.label.as_str()).collect::<Vec<_>>(), ["P1", "P2"]);
+    assert!(edited.document().evaluated().is_none(), "completion has evaluated");
+}
+
+#[test]
+fn the_nearest_names_are_chosen_from_very_many() {
+    let many: String = (0..2_000).map(|n| format!("P{n}=POINT/{n},0\n")).collect();
+    let all = labels(&format!("{many}X=LINE/P$0\nFINI\n"));
+    assert!(all.contains(&"P1999".to_owned()) && !all.contains(&"P7".to_owned()));
+    assert!(all.len() < 600, "{}", all.len());
+}

@@ -1,0 +1,211 @@
+//! Hovers: words, names of every type, results of motions.
+
+mod support;
+
+use std::sync::Arc;
+
+use apt_ide::{Analysis, Settings};
+use apt_syntax::vocabulary::words;
+use expect_test::{Expect, expect};
+
+use support::{analysis, marked, never};
+
+fn check(text: &str, expected: Expect) {
+    let (analysis, offset) = marked(text);
+    let hover = analysis.hover(offset, &never).unwrap();
+    expected.assert_eq(&hover.map_or("nothing".to_owned(), |hover| hover.markdown + "\n"));
+}
+
+#[test]
+fn every_word_of_the_vocabulary_has_a_hover() {
+    for word in words() {
+        let dialect = word.dialects.first().map(|dialect| dialect.as_str().to_owned());
+        let settings = Arc::new(Settings { dialect, ..Settings::default() });
+        let text = format!("{}/1\n", word.spelling);
+        let hover = Analysis::new(&text, None, &settings).hover(1, &never).unwrap();
+        let hover = hover.unwrap_or_else(|| panic!("{} has no hover", word.spelling));
+        assert_eq!(hover.range, 0..word.spelling.len(), "{}", word.spelling);
+        assert!(hover.markdown.contains(word.help), "{}: {}", word.spelling, hover.markdown);
+    }
+}
+
+const GEOMETRY: &str = "\
+PARTNO KINDS
+P1=POINT/1,2,3
+V1=VECTOR/3,4,0
+L1=LINE/0,0,0,3,4,0
+PL1=PLANE/0,0,1,5
+C1=CIRCLE/1,2,5
+CY1=CYLNDR/0,0,0,0,0,1,2
+SP1=SPHERE/0,0,0,4
+CO1=CONE/(POINT/0,0,0),(VECTOR/0,0,1),30
+M1=MATRIX/TRANSL,1,2,3
+E1=ELLIPS/CENTER,(POINT/0,0,0),3,2,0
+H1=HYPERB/CENTER,(POINT/0,0,0),3,2,0
+G1=GCONIC/1,0,1,0,0,-4
+Q1=QADRIC/1,1,1,0,0,0,0,0,0,-4
+A=2.5
+RESERV/T,3
+T(2)=POINT/7,8,9
+FINI
+";
+
+#[test]
+fn names_of_every_type_tell_their_canonical_form() {
+    let program = analysis(GEOMETRY);
+    let mut all = String::new();
+    for line in GEOMETRY.lines().filter(|line| line.contains('=')) {
+        let offset = GEOMETRY.find(&format!("\n{line}")).unwrap() + 1;
+        let hover = program.hover(offset, &never).unwrap().unwrap_or_else(|| panic!("nothing about {line}"));
+        let form = program.canonical_form(offset, &never).unwrap().unwrap();
+        assert!(hover.markdown.contains(&form.text), "{line}: {}", hover.markdown);
+        assert_eq!(form.canonical.len(), form.meaning.len(), "{line}");
+        all.push_str(&format!("{} {}: {}\n", form.name, form.kind, form.text));
+    }
+    expect![[r#"
+        P1 POINT: point (1, 2, 3)
+        V1 VECTOR: vector (3, 4, 0) of length 5
+        L1 LINE: line 0.8·x − 0.6·y = 0, at 53.1301024° to the x axis
+        PL1 PLANE: plane z = 5
+        C1 CIRCLE: circle of radius 5 about (1, 2)
+        CY1 CYLNDR: cylinder of radius 2 about the axis through (0, 0, 0) along (0, 0, 1)
+        SP1 SPHERE: sphere of radius 4 about (0, 0, 0)
+        CO1 CONE: cone with vertex (0, 0, 0), opening along (0, 0, 1), half angle 30°
+        M1 MATRIX: matrix, by rows; the fourth column is the shift
+        E1 ELLIPS: ellipse (a cylinder parallel to z)
+        H1 HYPERB: hyperbola (a cylinder parallel to z)
+        G1 GCONIC: conic (a cylinder parallel to z)
+        Q1 QADRIC: quadric Ax²+By²+Cz²+D+2Fyz+2Gxz+2Hxy+2Px+2Qy+2Rz = 0
+        A SCALAR: 2.5
+        T(2) POINT: point (7, 8, 9)
+    "#]]
+    .assert_eq(&all);
+}
+
+#[test]
+fn a_circle_has_a_table_of_its_numbers() {
+    check(
+        "C1=CIRCLE/1,2,5\nGOFWD/C$01\nFINI\n",
+        expect![[r#"
+        ```apt
+        C1=CIRCLE
+        ```
+        circle of radius 5 about (1, 2)
+
+        | | canonical |
+        |---|---|
+        | centre x | 1 |
+        | centre y | 2 |
+        | centre z | 0 |
+        | axis i | 0 |
+        | axis j | 0 |
+        | axis k | 1 |
+        | radius | 5 |
+
+    "#]],
+    );
+}
+
+#[test]
+fn a_motion_tells_its_cut_vectors_and_the_proof() {
+    check(
+        "PARTNO M\nCUTTER/1\nINTOL/0.01\nOUTTOL/0.01\nC1=CIRCLE/0,0,5\nL1=LINE/0,0,1,0\nFROM/8,-3,0\nGO/TO,C1\n\
+         INDIRV/0,1,0\nTLRGT,GOF$0WD/C1,PAST,L1\nFINI\n",
+        expect![[r#"
+            **3 cut vectors** (no fewer than 3 are possible) — verified
+
+            | surface | clearance | allowed |
+            |---|---|---|
+            | part | 0 … 0 | -0.01 … 0.01 |
+            | drive | -0.00929576455 … 0.00999 | -0.01 … 0.01 |
+            | check | 8.8817842e-16 … 8.8817842e-16 | -0.01 … 0.01 |
+
+            `GOTO/5.38085115,-1.1859303,0`  
+            `GOTO/5.50288027,-0.279818663,0`  
+            `GOTO/5.47722558,0.5,0`  
+
+            ---
+            ```apt
+            GOFWD/ds
+            GOFWD/ds,[{TO|ON|PAST|TANTO|DSTAN|PSTAN},][n,INTOF,]cs[,feed]
+            GOFWD/ds,[mod,]cs1,label1,[mod,]cs2,label2
+            ```
+            Keep the present direction and move along the drive surface; after an implied check surface the passage is tangent.
+        "#]],
+    );
+}
+
+#[test]
+fn words_are_explained_inside_of_other_statements() {
+    check(
+        "P1=POINT/1,2\nL1=LINE/P1,ATAN$0GL,30\nFINI\n",
+        expect![[r#"
+        **ATANGL** At an angle, in degrees, to an axis, a line, a plane or a surface normal.
+
+        modifier, code 1
+    "#]],
+    );
+}
+
+#[test]
+fn a_name_in_a_loop_tells_its_first_and_last_value() {
+    check(
+        "LOOPST\nA=1\nB) A$0=A+1\nIF(A-5)B,C,C\nC) LOOPND\nFINI\n",
+        expect![[r#"
+        ```apt
+        A=5
+        ```
+        scalar
+
+        the last of 4 times; the first: 2
+    "#]],
+    );
+}
+
+#[test]
+fn a_macro_and_its_variables_tell_what_they_get() {
+    let text =
+        "M1=MACRO/DX,DY=2\nGODLTA/DX,DY,0\nTERMAC\nFROM/0,0,0\nCALL/M1,DX=7,DY=1\nCALL/M1,DX=8\nFINI\n";
+    check(
+        &text.replacen("M1=", "M$01=", 1),
+        expect![[r#"
+            ```apt
+            M1=MACRO/DX,DY
+            ```
+            macro of 1 statement
+        "#]],
+    );
+    check(
+        &text.replacen("GODLTA/DX", "GODLTA/D$0X", 1),
+        expect![[r#"
+            variable `DX` of macro `M1`:
+
+            - `7` at statement 5
+            - `8` at statement 6
+        "#]],
+    );
+    check(
+        &text.replacen("GODLTA/DX,DY", "GODLTA/DX,D$0Y", 1),
+        expect![[r#"
+            variable `DY` of macro `M1`:
+
+            - `1` at statement 5
+            - `(default)` at statement 6
+        "#]],
+    );
+}
+
+#[test]
+fn there_is_nothing_to_say_about_blanks_comments_and_text() {
+    for text in ["P1=POINT/1,2 $0  $$ X\n", "$$ P1$0\n", "PARTNO P$0ART\n", "P1=POINT/1$02,2\n", "$0"] {
+        let (analysis, offset) = marked(text);
+        assert_eq!(analysis.hover(offset, &never).unwrap(), None, "{text:?}");
+    }
+}
+
+#[test]
+fn a_cancelled_hover_is_no_answer() {
+    let (analysis, offset) = marked("P1=POINT/1,2\nL1=LINE/P$01,ATANGL,30\nFINI\n");
+    assert!(analysis.hover(offset, &|| true).is_err());
+    assert!(analysis.hover(offset, &never).unwrap().is_some());
+}

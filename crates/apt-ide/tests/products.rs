@@ -1,0 +1,162 @@
+//! Expansions, runs of parts, tapes, CL files, pictures.
+
+mod support;
+
+use apt_ide::{Cancelled, Level, picture, tape};
+use expect_test::{Expect, expect};
+
+use support::{analysis, marked, never, silent};
+
+const NESTED: &str = "\
+M1=MACRO/X
+GOTO/X,0,0
+CALL/M2,Y=X
+TERMAC
+M2=MACRO/Y
+GODLTA/0,Y,0
+TERMAC
+FROM/0,0,0
+CALL/M1,X=5
+LOOPST
+A=1
+B) GODLTA/0,0,A
+A=A+1
+IF(A-2)B,B,C
+C) LOOPND
+FINI
+";
+
+fn check_expansion(text: &str, depth: Option<u32>, expected: Expect) {
+    let (analysis, offset) = if text.contains("$0") { marked(text) } else { (analysis(text), usize::MAX) };
+    let at = text.contains("$0").then_some(offset);
+    let expansion = analysis.expand(at, depth, &never).unwrap();
+    assert_eq!(expansion.text.lines().count(), expansion.origins.len());
+    let mut shown = String::new();
+    for (line, origin) in expansion.text.lines().zip(&expansion.origins) {
+        let frames = apt_run::diagnostic::origin_steps(origin);
+        let stack: Vec<String> =
+            frames.iter().map(|frame| format!("{}{}#{}", frame.kind, frame.name, frame.turn)).collect();
+        shown.push_str(format!("{:>2} {line:<18} {}", origin.isn, stack.join(" < ")).trim_end());
+        shown.push('\n');
+    }
+    expected.assert_eq(&shown);
+}
+
+#[test]
+fn macros_and_loops_are_unrolled() {
+    check_expansion(
+        NESTED,
+        None,
+        expect![[r#"
+         8 FROM/0,0,0
+         2 GOTO/5,0,0         macroM1#1
+         6 GODLTA/0,5,0       macroM2#1 < macroM1#1
+        11 A=1                loop#1
+        12 GODLTA/0,0,A       loop#1
+        13 A=A+1              loop#1
+        12 GODLTA/0,0,A       loop#2
+        13 A=A+1              loop#2
+        16 FINI
+    "#]],
+    );
+}
+
+#[test]
+fn an_expansion_can_be_of_one_statement_and_of_some_levels() {
+    check_expansion(
+        &NESTED.replace("CALL/M1,X", "CA$0LL/M1,X"),
+        None,
+        expect![[r#"
+             2 GOTO/5,0,0         macroM1#1
+             6 GODLTA/0,5,0       macroM2#1 < macroM1#1
+        "#]],
+    );
+    let whole = analysis(NESTED);
+    let deepest = |depth| {
+        let origins = whole.expand(None, depth, &never).unwrap().origins;
+        origins.iter().map(|origin| apt_run::diagnostic::origin_steps(origin).len()).max()
+    };
+    assert_eq!((deepest(Some(0)), deepest(Some(1)), deepest(None)), (Some(0), Some(1), Some(2)));
+}
+
+#[test]
+fn a_run_of_a_range_reports_its_statements() {
+    let text = "PARTNO R\nFROM/0,0,0\nGOTO/1,0,0\nGOTO/2,0,0\nFINI\n";
+    let program = analysis(text);
+    let at = text.find("GOTO/2").unwrap();
+    let part = program.run(Some(at..at + 3), &never, &mut silent).unwrap();
+    assert_eq!(part.cl.iter().map(|entry| entry.isn).collect::<Vec<_>>(), [4]);
+    let whole = program.run(None, &never, &mut silent).unwrap();
+    assert_eq!(whole.totals.points, 3);
+    assert_eq!(program.run(None, &|| true, &mut silent).err(), None, "what is known needs no work");
+    assert_eq!(analysis(text).run(None, &|| true, &mut silent).err(), Some(Cancelled));
+}
+
+#[test]
+fn many_who_ask_share_one_computation() {
+    let text =
+        "CUTTER/1\nC1=CIRCLE/0,0,5\nL1=LINE/0,0,1,0\nFROM/8,-3,0\nGO/TO,C1\nTLRGT,GOLFT/C1,PAST,L1\nFINI\n";
+    let program = analysis(text);
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| program.diagnostics(Level::Motion, &never, &mut silent).unwrap());
+        }
+    });
+    let counters = program.document().memo().counters();
+    assert_eq!((counters.computed, counters.reused), (2, 0), "{counters:?}");
+}
+
+#[test]
+fn a_cl_file_is_posted_as_it_stands() {
+    let text = "$$ apt-lsp: dialect=cl\nPARTNO/CL\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/10\nGOTO/0,0,1\nGOTO/1,$\n0,0\nnonsense here\nGOTO/2,0,0\nFINI\n";
+    let program = analysis(text);
+    let made = program.tape("linuxcnc-mill3", &never, &mut silent).unwrap();
+    let block = made.tape.blocks.iter().find(|block| block.text.contains("X2")).unwrap();
+    assert_eq!(block.isn, 9, "statements are numbered as in the text: {made:?}");
+    let found: Vec<_> = made.diagnostics.iter().map(|one| (one.wording.code, one.origin.isn)).collect();
+    assert!(found.contains(&("APT0810", 8)), "{found:?}");
+}
+
+#[test]
+fn a_cl_tape_is_the_text_it_was_made_from() {
+    let program = analysis("PARTNO T\nUNITS/INCHES\nSPINDL/1000,CLW\nFROM/0,0,1\nGOTO/1,2.125,1\nFINI\n");
+    let bytes = program.cl_tape(&never, &mut silent).unwrap();
+    let text = tape::text_of_cl_tape(&bytes).unwrap().unwrap();
+    let direct = program.cl_text(&never, &mut silent).unwrap();
+    let positions = |text: &str| {
+        text.lines()
+            .filter(|line| line.contains("GOTO") || line.contains("FROM"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(positions(&text), positions(&direct));
+    assert!(tape::text_of_cl_tape(b"PARTNO T\n").is_none());
+    assert!(tape::text_of_cl_tape(&bytes[..bytes.len() - 7]).unwrap().is_err());
+}
+
+#[test]
+fn a_tape_is_punched_in_both_codes() {
+    let program = analysis("PARTNO T\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/10\nFROM/0,0,1\nGOTO/1,2,1\nFINI\n");
+    let tape = program.tape("fanuc-mill3", &never, &mut silent).unwrap().tape;
+    for code in [tape::TapeCode::Eia, tape::TapeCode::Iso] {
+        match tape::punch(&tape, code) {
+            Ok(image) => assert_eq!(apt_post::punch::decode(&image, code).unwrap(), tape.text()),
+            Err(error) => assert!(tape.text().contains(error.character), "{error}"),
+        }
+    }
+}
+
+#[test]
+fn an_unknown_machine_is_told_with_those_there_are() {
+    let error = analysis("FINI\n").tape("nonsense", &never, &mut silent).unwrap_err();
+    assert!(error.to_string().contains("linuxcnc-mill3"), "{error}");
+}
+
+#[test]
+fn a_picture_is_made_of_pixels_without_any_font() {
+    let program = analysis("FROM/0,0,0\nGOTO/1,0,0\nGOTO/1,1,0\nFINI\n");
+    let scene = program.scene(&never, &mut silent).unwrap();
+    let image = picture::png(&scene).unwrap();
+    assert!(image.starts_with(b"\x89PNG\r\n\x1a\n"));
+    assert!(image.len() > 5_000, "{} bytes are an empty picture", image.len());
+}

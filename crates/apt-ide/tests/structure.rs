@@ -1,0 +1,169 @@
+//! Outline, folds, lenses, colours, and what of it an edit keeps.
+
+mod support;
+
+use apt_ide::{Analysis, outline::OutlineEntry, tokens::TokenClass};
+use apt_syntax::vocabulary::{WordClass, words};
+use expect_test::expect;
+
+use support::analysis;
+
+const PROGRAM: &str = "\
+PARTNO BRACKET
+$$ first remark
+$$ second remark
+P1=POINT/1,2,$
+   3
+M1=MACRO/DX,DY=2
+LOOPST
+A) GODLTA/DX,DY,0
+JUMPTO/A
+LOOPND
+TERMAC
+RESERV/T,3
+T(1)=7
+LOADTL/1
+FROM/0,0,0
+GO/TO,P1
+CALL/M1,DX=1
+FINI
+";
+
+fn outline(entries: &[OutlineEntry], depth: usize, text: &str, out: &mut String) {
+    for entry in entries {
+        let indent = "  ".repeat(depth);
+        let lines = text[entry.range.clone()].trim_end().lines().count();
+        assert!(entry.range.start <= entry.focus.start && entry.focus.end <= entry.range.end, "{entry:?}");
+        out.push_str(&format!("{indent}{:?} {} {} ({lines} lines)\n", entry.kind, entry.name, entry.detail));
+        outline(&entry.children, depth + 1, text, out);
+    }
+}
+
+#[test]
+fn the_outline_nests_macros_and_loops() {
+    let mut shown = String::new();
+    outline(&analysis(PROGRAM).outline(), 0, PROGRAM, &mut shown);
+    expect![[r#"
+        Part BRACKET PARTNO (1 lines)
+        Geometry P1 POINT (2 lines)
+        Macro M1 MACRO (6 lines)
+          Loop LOOPST  (4 lines)
+        Array RESERV  (1 lines)
+        Scalar T  (1 lines)
+        Tool LOADTL  (1 lines)
+    "#]]
+    .assert_eq(&shown);
+}
+
+#[test]
+fn regions_remarks_and_continued_statements_fold() {
+    let lines = |offset: usize| PROGRAM[..offset].matches('\n').count();
+    let folds: Vec<String> = analysis(PROGRAM)
+        .folds()
+        .iter()
+        .map(|fold| format!("{:?} {}-{}", fold.kind, lines(fold.range.start), lines(fold.range.end)))
+        .collect();
+    expect![[r#"
+        Comment 1-3
+        Statement 3-5
+        Region 5-11
+        Region 6-10"#]]
+    .assert_eq(&folds.join("\n"));
+}
+
+#[test]
+fn lenses_run_the_program_and_each_start() {
+    let lenses: Vec<String> = analysis(PROGRAM)
+        .lenses()
+        .iter()
+        .map(|lens| {
+            format!("{} | {:?}", PROGRAM[lens.range.clone()].trim_end(), (&lens.title, lens.run.is_some()))
+        })
+        .collect();
+    expect![[r#"
+        PARTNO BRACKET | ("Run motion", false)
+        GO/TO,P1 | ("Run GO", true)
+        CALL/M1,DX=1 | ("Run CALL", true)"#]]
+    .assert_eq(&lenses.join("\n"));
+}
+
+#[test]
+fn tokens_cover_words_names_numbers_and_comments() {
+    let tokens: Vec<String> = analysis(PROGRAM)
+        .tokens(None)
+        .iter()
+        .filter(|token| token.class != TokenClass::Operator)
+        .map(|token| {
+            let star = if token.definition { "*" } else { "" };
+            format!("{}:{:?}{star}", &PROGRAM[token.range.clone()], token.class)
+        })
+        .collect();
+    expect!["PARTNO:Postprocessor  BRACKET:String $$ first remark:Comment $$ second remark:Comment P1:Variable* POINT:Type 1:Number 2:Number 3:Number M1:Macro* MACRO:Keyword DX:Parameter DY:Parameter 2:Number LOOPST:Keyword A:Label* GODLTA:Keyword DX:Parameter DY:Parameter 0:Number JUMPTO:Keyword A:Label LOOPND:Keyword TERMAC:Keyword RESERV:Keyword T:Variable 3:Number T:Variable* 1:Number 7:Number LOADTL:Postprocessor 1:Number FROM:Keyword 0:Number 0:Number 0:Number GO:Keyword TO:Modifier P1:Variable CALL:Keyword M1:Macro DX:Parameter 1:Number FINI:Keyword"].assert_eq(&tokens.join(" "));
+}
+
+#[test]
+fn tokens_of_a_range_are_those_of_the_whole() {
+    let program = analysis(PROGRAM);
+    let all = program.tokens(None);
+    for line in PROGRAM.split_inclusive('\n') {
+        let start = line.as_ptr() as usize - PROGRAM.as_ptr() as usize;
+        let range = start..start + line.len() - 1;
+        let part = program.tokens(Some(range.clone()));
+        let inside: Vec<_> =
+            all.iter().filter(|one| one.range.start >= range.start && one.range.end <= range.end).collect();
+        assert!(inside.iter().all(|one| part.contains(one)), "{line:?}");
+        assert!(part.iter().all(|one| all.contains(one)), "{line:?}");
+    }
+}
+
+/// The scopes of the TextMate grammar that go with a class; the grammar is made from the same vocabulary.
+#[test]
+fn words_have_the_class_that_the_grammar_of_the_editors_gives_them() {
+    for word in words() {
+        let text = format!("{}/1\n", word.spelling);
+        let settings = apt_ide::Settings {
+            dialect: word.dialects.first().map(|dialect| dialect.as_str().to_owned()),
+            ..Default::default()
+        };
+        let program = Analysis::new(&text, None, &std::sync::Arc::new(settings));
+        let token = &program.tokens(None)[0];
+        let expected = match word.class {
+            WordClass::Minor => TokenClass::Modifier,
+            WordClass::GeometricType => TokenClass::Type,
+            WordClass::Function => TokenClass::Function,
+            WordClass::Postprocessor | WordClass::PostprocessorBare | WordClass::Text => {
+                TokenClass::Postprocessor
+            }
+            _ => TokenClass::Keyword,
+        };
+        assert_eq!(
+            (token.class, token.range.clone()),
+            (expected, 0..word.spelling.len()),
+            "{}",
+            word.spelling
+        );
+    }
+}
+
+#[test]
+fn regions_after_edits_are_those_of_a_fresh_program() {
+    let text = "M1=MACRO/A\nP=POINT/A,1\nLOOPST\nB) A=A+1\nJUMPTO/B\nLOOPND\nTERMAC\nCALL/M1,A=1\nFINI\n";
+    let edits: [(&str, &str); 8] = [
+        ("TERMAC", "TERMA"),
+        ("TERMA\n", "TERMAC\n"),
+        ("LOOPST\n", ""),
+        ("P=POINT", "LOOPST\nP=POINT"),
+        ("MACRO/A", "MACRO/A,$\nC"),
+        ("M1=MACRO", "$$ M1=MACRO"),
+        ("$$ M1", "M1"),
+        ("FINI", "M2=MACRO\nTERMAC\nFINI"),
+    ];
+    let mut program = analysis(text);
+    for (from, to) in edits {
+        assert!(!program.regions().is_empty() || program.text().starts_with("$$"));
+        let at = program.text().find(from).unwrap();
+        program = program.edit(at..at + from.len(), to);
+        let fresh = analysis(&program.text());
+        assert_eq!(program.regions(), fresh.regions(), "{}", program.text());
+    }
+}
