@@ -87,6 +87,18 @@ fn a_changed_value_reaches_everything_after_it() {
     assert!(updated.statistics().evaluated_statements > 900);
 }
 
+#[test]
+fn findings_of_a_loop_do_not_depend_on_where_checkpoints_are() {
+    // The first turn finds Q not reserved, later turns find its element undefined at the same place.
+    let filler = "A=1\n".repeat(12);
+    let text = format!("T1)I=1\nGODLTA/Q(1)\n{filler}RESERV/Q,5\n{filler}I=0\n{filler}IF(I-3)T1,T2,T2\n");
+    let tree = SyntaxTree::parse(&text, Dialect::named(DialectName::Apt4));
+    let program = run(&tree);
+    let at = text.find("I=0").expect("the line");
+    let (tree, change) = edited(&tree, at, at, "");
+    assert_same(&program.update(&tree, &change, &options(), &|| false), &run(&tree), &text);
+}
+
 /// Statements that random programs are made of.
 const LINES: &[&str] = &[
     "A=1",

@@ -66,6 +66,8 @@ pub(crate) struct Evaluator<'a> {
     pub(crate) definition_depth: u32,
     /// Set once the work is cancelled.
     pub(crate) cancelled: bool,
+    /// Set once a file was asked for: its content is not part of any state.
+    pub(crate) asked_for_files: bool,
     /// Collects executed statements for an expansion.
     pub(crate) trace: Option<Trace>,
 }
@@ -92,6 +94,7 @@ impl<'a> Evaluator<'a> {
             unknown_values: 0,
             definition_depth: 0,
             cancelled: false,
+            asked_for_files: false,
             trace: None,
         }
     }

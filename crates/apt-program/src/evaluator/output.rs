@@ -4,7 +4,7 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use crate::{
-    finding::Finding,
+    finding::{Finding, FindingKind},
     record::{Origin, Record},
     symbols::DefinitionEvent,
 };
@@ -40,9 +40,14 @@ impl Output {
         }
     }
 
-    /// Whether a finding was made for this part of this statement.
-    pub(crate) fn has_finding_at(&self, isn: u32, range: apt_syntax::TextRange) -> bool {
-        self.findings.iter().any(|finding| finding.origin.isn == isn && finding.origin.range == range)
+    /// Whether the name at this place was already said to be undefined or misspelt. Only findings that every execution
+    /// of the statement makes count: others depend on where the checkpoints are.
+    pub(crate) fn has_name_finding_at(&self, isn: u32, range: apt_syntax::TextRange) -> bool {
+        self.findings.iter().any(|finding| {
+            finding.origin.isn == isn
+                && finding.origin.range == range
+                && matches!(finding.kind, FindingKind::Undefined { .. } | FindingKind::Syntax(_))
+        })
     }
 }
 

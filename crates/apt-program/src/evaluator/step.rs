@@ -342,6 +342,7 @@ impl Evaluator<'_> {
             self.wrong_count(major, major.arguments.len(), "a file name", 129);
             return Flow::Next;
         };
+        self.asked_for_files = true;
         let tree = self.options.include.as_ref().and_then(|resolver| resolver.resolve(&name));
         let Some(tree) = tree else {
             self.report(FindingKind::IncludeNotFound { name }, major.range);

@@ -186,7 +186,7 @@ impl Evaluator<'_> {
 
     /// Reports an undefined name with names like it; once for each place.
     fn report_undefined(&mut self, name: SmolStr, reference: &Reference, apt4_number: u16) {
-        if self.output.has_finding_at(self.here.isn, reference.range) {
+        if self.output.has_name_finding_at(self.here.isn, reference.range) {
             self.errors += 1;
             return;
         }

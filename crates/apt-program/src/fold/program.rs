@@ -24,6 +24,8 @@ pub struct Program {
     chunks: Vec<Chunk>,
     end: Arc<State>,
     complete: bool,
+    /// A statement asked for a file, which may change without any edit of the program.
+    asked_for_files: bool,
     findings: Arc<Vec<Finding>>,
     statistics: Statistics,
 }
@@ -55,7 +57,7 @@ impl Program {
         options: &Options,
         cancel: &dyn Fn() -> bool,
     ) -> Program {
-        if !self.complete || options.include.is_some() {
+        if !self.complete || self.asked_for_files {
             // Included files may have changed too.
             return Program::evaluate(tree, options, cancel);
         }
@@ -101,7 +103,8 @@ impl Program {
             reused_statements: reused,
             checkpoints: chunks.len(),
         };
-        Program { chunks, end, complete, findings, statistics }
+        let asked_for_files = outcome.asked_for_files;
+        Program { chunks, end, complete, asked_for_files, findings, statistics }
     }
 
     /// An evaluation that gave nothing.
@@ -110,6 +113,7 @@ impl Program {
             chunks: Vec::new(),
             end: Arc::new(State::default()),
             complete: false,
+            asked_for_files: false,
             findings: Arc::new(Vec::new()),
             statistics: Statistics::default(),
         }

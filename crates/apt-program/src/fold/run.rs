@@ -35,6 +35,8 @@ pub(crate) struct Outcome {
     pub(super) end: End,
     /// Top-level statements executed.
     pub(super) steps: u64,
+    /// One of them asked for a file.
+    pub(super) asked_for_files: bool,
 }
 
 /// How an evaluation ended.
@@ -57,7 +59,7 @@ pub(crate) fn evaluate_from(
 ) -> Outcome {
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, start.1);
     let mut top = TopLevel::new(tree);
-    let mut outcome = Outcome { chunks: Vec::new(), end: End::Cancelled, steps: 0 };
+    let mut outcome = Outcome { chunks: Vec::new(), end: End::Cancelled, steps: 0, asked_for_files: false };
     let mut reuse = old.map(Reuse::new);
     let mut index = start.0;
     let count = tree.statement_count();
@@ -80,6 +82,7 @@ pub(crate) fn evaluate_from(
             return outcome;
         }
         outcome.steps += chunk.steps;
+        outcome.asked_for_files |= evaluator.asked_for_files;
         if let Some(reuse) = &mut reuse {
             reuse.touched.extend(chunk.touched.iter().cloned());
         }
