@@ -14,7 +14,7 @@ use proptest::prelude::*;
 const BLOCK: usize = 256;
 
 /// Evaluation keeps a checkpoint at least this often, statements.
-const CHECKPOINT: u64 = 64;
+const CHECKPOINT: u64 = 128;
 
 fn place(text: &str, needle: &str) -> usize {
     text.find(needle).unwrap_or_else(|| panic!("{needle} is not in the program"))
@@ -66,8 +66,14 @@ fn only_touched_statements_are_parsed_again() {
 
 #[test]
 fn evaluation_restarts_at_the_changed_statement_and_stops_where_nothing_differs() {
+    for dialect in ["free", "apt3", "apt4", "cl"] {
+        restarts_at_the_changed_statement(dialect);
+    }
+}
+
+fn restarts_at_the_changed_statement(dialect: &str) {
     let text = straight_program(20_000);
-    let first = analysis(&text, "free");
+    let first = analysis(&text, dialect);
     let program = first.document().program(&|| false).unwrap();
     let statements = first.document().tree().statement_count() as u64;
     assert_eq!(program.statistics().reused_statements, 0);
@@ -75,8 +81,11 @@ fn evaluation_restarts_at_the_changed_statement_and_stops_where_nothing_differs(
     for needle in ["GOTO/5,", "GOTO/9999,", "GOTO/19990,"] {
         let edited = replace(&first, needle, "GOTO/3,");
         let statistics = edited.document().program(&|| false).unwrap().statistics();
-        assert!(statistics.evaluated_statements <= 2 * CHECKPOINT, "{needle}: {statistics:?}");
-        assert!(statistics.reused_statements + 2 * CHECKPOINT >= statements, "{needle}: {statistics:?}");
+        assert!(statistics.evaluated_statements <= 2 * CHECKPOINT, "{dialect}, {needle}: {statistics:?}");
+        assert!(
+            statistics.reused_statements + 2 * CHECKPOINT >= statements,
+            "{dialect}, {needle}: {statistics:?}"
+        );
     }
 }
 
@@ -91,6 +100,24 @@ fn a_change_that_everything_depends_on_is_carried_to_the_end() {
     assert!(statistics.evaluated_statements >= 2_000, "{statistics:?}");
     let last = report(&edited).unwrap();
     assert_eq!(apt_tests::runs::path_of(&last).last().unwrap().at, [2.0, 1999.0, 0.0]);
+}
+
+#[test]
+fn an_included_file_is_read_again_and_costs_nothing_where_there_is_none() {
+    let folder =
+        std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("include-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let write = |text: &str| std::fs::write(folder.join("shape.apt"), text).unwrap();
+    let file = folder.join("main.apt").to_string_lossy().into_owned();
+    write("A=1\n");
+    let settings = apt_tests::runs::settings("free");
+    let first = Analysis::new("PARTNO\nINCLUD/SHAPE\nGOTO/A,0,0\nGOTO/0,0,0\nFINI\n", Some(file), &settings);
+    let at = |analysis: &Analysis| apt_tests::runs::path_of(&report(analysis).unwrap())[0].at[0];
+    assert_eq!(at(&first), 1.0);
+    write("A=2\n");
+    let edited = replace(&first, "GOTO/0,0,0", "GOTO/0,0,1");
+    assert_eq!(at(&edited), 2.0, "the file has changed before the edit");
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 const CONTOUR: &str = "PARTNO CONTOUR\nCUTTER/.5\nINTOL/.001\nOUTTOL/.001\n$$ geometry\nL1=LINE/0,0,5,0\n\
