@@ -222,3 +222,39 @@ fn machines_and_pages_are_printed() {
     assert!(!list.stdout.is_empty());
     assert_eq!(run(&["post", "--list-machines"]).stdout, list.stdout);
 }
+
+const CL: &str = "PARTNO/CL\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/10\nGOTO/0,0,1\nGOTO/1,0,0\nFINI\n";
+
+#[test]
+fn cl_files_and_binary_tapes_are_posted_as_they_stand() {
+    let folder = Folder::new("cl");
+    folder.write("good.cls", CL);
+    folder.write("bad.cls", CL.replace("GOTO/1,0,0", "GOTO/1,0"));
+    let ran = folder.run(&["post", "good.cls", "--machine", "linuxcnc-mill3"]);
+    assert!(ran.code == 0 && ran.stdout.contains("X1"), "{ran:?}");
+    assert!(ran.stderr.contains("dialect cl (the file name ends with .cls)"), "{ran:?}");
+    let bad = folder.run(&["post", "bad.cls", "--machine", "linuxcnc-mill3"]);
+    assert!(bad.code == 1 && bad.stderr.contains("APT0813") && bad.stderr.contains("bad.cls:6:"), "{bad:?}");
+    assert_eq!(folder.run(&["run", "good.cls", "--format", "cltape", "-o", "good.tap"]).code, 0);
+    let tape = folder.run(&["post", "good.tap", "--dialect", "cl", "--machine", "linuxcnc-mill3"]);
+    assert!(tape.stderr.contains("binary CLTAPE"), "{tape:?}");
+    assert_eq!((tape.code, tape.stdout), (0, ran.stdout));
+}
+
+#[test]
+fn tapes_are_punched_and_pictures_are_images() {
+    let folder = Folder::new("punch");
+    folder.write("good.apt", GOOD);
+    for (code, parity) in [("eia", 1), ("iso", 0)] {
+        let name = format!("{code}.tape");
+        let ran = folder.run(&["post", "good.apt", "--machine", "fanuc-mill3", "--punch", code, "-o", &name]);
+        assert!(ran.code < 2 && ran.stdout.is_empty(), "{ran:?}");
+        let image = std::fs::read(folder.0.join(&name)).unwrap();
+        let rows: Vec<u8> = image.into_iter().filter(|row| *row != 0).collect();
+        assert!(rows.len() > 20, "{code}: {} rows", rows.len());
+        assert!(rows.iter().all(|row| row.count_ones() % 2 == parity), "{code}");
+    }
+    assert_eq!(folder.run(&["post", "good.apt", "--machine", "fanuc-mill3", "--punch", "morse"]).code, 2);
+    assert_eq!(folder.run(&["view", "good.apt", "-o", "path.png"]).code, 0);
+    assert!(std::fs::read(folder.0.join("path.png")).unwrap().starts_with(b"\x89PNG"));
+}

@@ -71,7 +71,7 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
         })),
         hover_provider: Some(lsp::HoverProviderCapability::Simple(true)),
         completion_provider: Some(lsp::CompletionOptions {
-            trigger_characters: Some(vec!["/".to_owned(), ",".to_owned()]),
+            trigger_characters: Some(["/", ",", "="].map(str::to_owned).to_vec()),
             ..lsp::CompletionOptions::default()
         }),
         definition_provider: Some(lsp::OneOf::Left(true)),
@@ -139,7 +139,8 @@ mod tests {
               "completionProvider": {
                 "triggerCharacters": [
                   "/",
-                  ","
+                  ",",
+                  "="
                 ]
               },
               "definitionProvider": true,

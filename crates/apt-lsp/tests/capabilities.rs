@@ -1,0 +1,230 @@
+//! Every capability that the server announces, asked for over the standard streams of the real binary.
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use support::Server;
+
+const URI: &str = "file:///nowhere/part.apt";
+
+const PART: &str = "\
+PARTNO ALL
+$$ one
+$$ two
+P1=POINT/1,2,0
+M1=MACRO/DX,DY=2
+GODLTA/DX,DY,0
+TERMAC
+FROM/P1
+CALL/M1,DX=3
+GOTO/5,5,5
+FINI
+";
+
+fn place(line: usize, character: usize) -> Value {
+    json!({ "textDocument": { "uri": URI }, "position": { "line": line, "character": character } })
+}
+
+fn whole() -> Value {
+    json!({ "textDocument": { "uri": URI } })
+}
+
+fn lines(places: &Value) -> Vec<u64> {
+    let all = places.as_array().unwrap().iter();
+    all.map(|one| one["range"]["start"]["line"].as_u64().unwrap()).collect()
+}
+
+/// One question for each announced provider, with a check of its answer.
+type Probe = (&'static str, fn(&mut Server));
+
+const PROBES: [Probe; 14] = [
+    ("textDocumentSync", |server| {
+        server.change(URI, 2, 9, 5, 6, "7");
+        assert!(server.tree(URI).contains("\"7\""));
+    }),
+    ("hoverProvider", |server| {
+        let answer = server.ask("textDocument/hover", place(3, 1)).unwrap();
+        assert!(answer["contents"]["value"].as_str().unwrap().contains("point (1, 2, 0)"), "{answer}");
+    }),
+    ("completionProvider", |server| {
+        let answer = server.ask("textDocument/completion", place(8, 5)).unwrap();
+        let labels: Vec<_> = answer.as_array().unwrap().iter().map(|item| item["label"].clone()).collect();
+        assert_eq!(labels, ["M1"]);
+    }),
+    ("definitionProvider", |server| {
+        assert_eq!(lines(&server.ask("textDocument/definition", place(7, 6)).unwrap()), [3]);
+    }),
+    ("referencesProvider", |server| {
+        let mut params = place(7, 6);
+        params["context"] = json!({ "includeDeclaration": true });
+        assert_eq!(lines(&server.ask("textDocument/references", params.clone()).unwrap()), [3, 7]);
+        params["context"] = json!({ "includeDeclaration": false });
+        assert_eq!(lines(&server.ask("textDocument/references", params).unwrap()), [7]);
+    }),
+    ("documentHighlightProvider", |server| {
+        let answer = server.ask("textDocument/documentHighlight", place(5, 8)).unwrap();
+        assert_eq!(lines(&answer), [4, 5, 8]);
+    }),
+    ("documentSymbolProvider", |server| {
+        let answer = server.ask("textDocument/documentSymbol", whole()).unwrap();
+        let names: Vec<_> = answer.as_array().unwrap().iter().map(|one| one["name"].clone()).collect();
+        assert_eq!(names, ["ALL", "P1", "M1"]);
+    }),
+    ("codeLensProvider", |server| {
+        let answer = server.ask("textDocument/codeLens", whole()).unwrap();
+        assert_eq!(lines(&answer), [0, 8]);
+        assert_eq!(answer[0]["command"]["command"], "apt.runMotion");
+    }),
+    ("renameProvider", |server| {
+        let range = server.ask("textDocument/prepareRename", place(5, 8)).unwrap();
+        assert_eq!(range["start"]["character"], 7);
+        let mut params = place(5, 8);
+        params["newName"] = json!("SHIFT1");
+        let answer = server.ask("textDocument/rename", params.clone()).unwrap();
+        assert_eq!(lines(&answer["changes"][URI]), [4, 5, 8]);
+        params["newName"] = json!("GOTO");
+        assert_eq!(server.ask("textDocument/rename", params).unwrap_err()["code"], -32803);
+    }),
+    ("foldingRangeProvider", |server| {
+        let answer = server.ask("textDocument/foldingRange", whole()).unwrap();
+        let folds: Vec<_> = answer
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| (one["startLine"].as_u64(), one["endLine"].as_u64()))
+            .collect();
+        assert_eq!(folds, [(Some(1), Some(2)), (Some(4), Some(6))]);
+    }),
+    ("semanticTokensProvider", |server| {
+        let full = server.ask("textDocument/semanticTokens/full", whole()).unwrap();
+        assert!(full["data"].as_array().unwrap().len() > 5 * 20);
+        let mut params = whole();
+        params["previousResultId"] = full["resultId"].clone();
+        let delta = server.ask("textDocument/semanticTokens/full/delta", params).unwrap();
+        assert_eq!(delta["edits"], json!([]));
+        let mut params = whole();
+        params["range"] =
+            json!({ "start": { "line": 3, "character": 0 }, "end": { "line": 3, "character": 5 } });
+        let part = server.ask("textDocument/semanticTokens/range", params).unwrap();
+        assert_eq!(part["data"][0], 3, "the first token is on line 3: {part}");
+    }),
+    ("diagnosticProvider", |server| {
+        let answer = server.ask("textDocument/diagnostic", whole()).unwrap();
+        assert_eq!((&answer["kind"], &answer["items"]), (&json!("full"), &json!([])));
+        let mut params = whole();
+        params["previousResultId"] = answer["resultId"].clone();
+        assert_eq!(server.ask("textDocument/diagnostic", params).unwrap()["kind"], "unchanged");
+    }),
+    ("executeCommandProvider", |server| {
+        let mut ask = |command: &str, argument: Value| {
+            let params = json!({ "command": command, "arguments": [argument] });
+            server.ask("workspace/executeCommand", params).unwrap()
+        };
+        let run = ask("apt.runMotion", json!({ "uri": URI, "machine": "linuxcnc-mill3", "scene": true }));
+        assert_eq!((&run["ok"], &run["totals"]["points"]), (&json!(true), &json!(3)));
+        assert_eq!(
+            run["tape"]["blocks"].as_array().unwrap().len(),
+            run["tape"]["origin"].as_array().unwrap().len()
+        );
+        assert_eq!(run["scene"]["segments"].as_array().unwrap().len(), 2);
+        let expansion = ask("apt.expand", json!({ "uri": URI }));
+        assert!(expansion["text"].as_str().unwrap().contains("GODLTA/3,2,0"), "{expansion}");
+        let position = json!({ "line": 3, "character": 1 });
+        let form = ask("apt.canonicalForm", json!({ "uri": URI, "position": position }));
+        assert_eq!((&form["name"], &form["canonical"]), (&json!("P1"), &json!([1.0, 2.0, 0.0])));
+        let tape = ask("apt.post", json!({ "uri": URI, "machine": "linuxcnc-mill3" }));
+        assert_eq!(tape["blocks"], run["tape"]["blocks"]);
+        assert!(ask("apt.syntaxTree", json!({ "uri": URI }))["text"].as_str().unwrap().contains("PARTNO"));
+        assert!(
+            ask("apt.machines", json!({}))
+                .as_array()
+                .unwrap()
+                .iter()
+                .any(|one| one["name"] == "linuxcnc-mill3")
+        );
+    }),
+    ("positionEncoding", |server| {
+        server.open("file:///nowhere/wide.apt", "PPRINT 😀\nP1=POINT/1,2\nPPRINT 😀\nFINI\n");
+        let params = json!({ "textDocument": { "uri": "file:///nowhere/wide.apt" } });
+        let tokens = server.ask("textDocument/semanticTokens/full", params).unwrap();
+        let lengths: Vec<_> =
+            tokens["data"].as_array().unwrap().chunks(5).map(|one| one[2].clone()).collect();
+        assert!(lengths.contains(&json!(5)), "` 😀` is five bytes in UTF-8: {lengths:?}");
+    }),
+];
+
+#[test]
+fn everything_announced_is_answered() {
+    let client = json!({
+        "general": { "positionEncodings": ["utf-8", "utf-16"] },
+        "textDocument": {
+            "diagnostic": {},
+            "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
+            "rename": { "prepareSupport": true },
+        },
+    });
+    let mut server = Server::start(&[]);
+    let answer = server.ask("initialize", json!({ "processId": null, "capabilities": client })).unwrap();
+    server.tell("initialized", json!({}));
+    let announced: BTreeSet<_> = answer["capabilities"].as_object().unwrap().keys().cloned().collect();
+    let probed: BTreeSet<_> = PROBES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(announced, probed, "each announced capability has a probe, and no other");
+    server.open(URI, PART);
+    for (_, probe) in PROBES {
+        probe(&mut server);
+    }
+}
+
+/// Starts a run, waits until it is under way, cancels it, and tells what came of it.
+fn cancelled(program: &str, under_way: impl Fn(&Value) -> bool) -> Result<Value, Value> {
+    // A client that pulls, so that nothing else computes.
+    let mut server = Server::initialized(&json!({ "textDocument": { "diagnostic": {} } }));
+    server.open(URI, program);
+    let run = server.begin("apt/runMotion", json!({ "uri": URI, "workDoneToken": "run" }));
+    server.wait(|message| message["method"] == "$/progress" && under_way(&message["params"]["value"]));
+    let asked = Instant::now();
+    server.tell("$/cancelRequest", json!({ "id": run }));
+    let answer = server.answer(run);
+    // For the reader of the output; a busy machine must not fail the test.
+    eprintln!("answered {:?} after the cancel", asked.elapsed());
+    assert!(!server.tree(URI).is_empty(), "the server goes on");
+    answer
+}
+
+#[test]
+fn a_cancel_stops_a_long_evaluation() {
+    let program = "PARTNO LOOP\nLOOPST\nA) B=1\nJUMPTO/A\nLOOPND\nFINI\n";
+    let answer = cancelled(program, |progress| progress["kind"] == "begin");
+    assert_eq!(answer.unwrap_err()["code"], -32800);
+}
+
+#[test]
+fn a_cancel_stops_a_long_motion() {
+    // Every turn moves along another section of the ball: nothing can be taken from the memo.
+    let program = "\
+PARTNO BALL
+INTOL/.00001
+OUTTOL/.00001
+CUTTER/.5,.25
+DOME=SPHERE/0,0,0,2
+Y=-1
+LOOPST
+A) CUT=PLANE/0,1,0,Y
+FROM/-3,Y,0
+GO/ON,CUT,TO,DOME,ON,(PLANE/1,0,0,-1.2)
+INDIRV/1,0,0
+TLON,GOFWD/CUT,ON,(PLANE/1,0,0,1.2)
+Y=Y+.0001
+IF(Y-1)A,B,B
+B) LOOPND
+FINI
+";
+    let answer = cancelled(program, |progress| {
+        progress["percentage"].as_u64().is_some_and(|done| done < 50) || progress["kind"] == "report"
+    });
+    assert_eq!(answer.unwrap_err()["code"], -32800);
+}
