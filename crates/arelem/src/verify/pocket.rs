@@ -3,9 +3,12 @@
 //!
 //! Seen along the tool axis the walls are straight lines and the tool is a disc. Two statements are exact up to
 //! round-off: no gouge (a vector is inside a convex area if its ends are) and the finishing pass. What is cleared is
-//! the union of the strips around the vectors; that it holds the whole area is proven by halving triangles until each
-//! lies in one strip. Strips are widened by the tolerance, which bounds the error: a proof means that no point is
-//! farther from a strip than the tolerance, a refusal names a point that is farther than half of it.
+//! the union of the strips around the vectors; that it holds the whole area is proven by taking strips out of it until
+//! every piece that is left lies in one strip. Strips are widened by the tolerance, which bounds the error: a proof
+//! means that no point is farther from a strip than the tolerance, a refusal names a point that is out of every strip
+//! or a piece smaller than the tolerance at the edge of all.
+
+use std::rc::Rc;
 
 use apt_geometry::Vec3;
 
@@ -19,8 +22,12 @@ const ROUND_OFF: f64 = 1e-9;
 /// Least tolerance of the cleared area, relative to the effective radius: offsets made to clear exactly would
 /// otherwise be at the mercy of round-off.
 const LEAST_TOLERANCE: f64 = 1e-6;
-/// Triangles that are looked at before the proof is given up.
-const MOST_TRIANGLES: usize = 4_000_000;
+/// A piece thinner than this part of the tolerance is round-off.
+const SLIVER: f64 = 1e-6;
+/// A strip is taken out of a piece if it holds more than this share of it; otherwise the piece is halved.
+const LEAST_SHARE: f64 = 1e-3;
+/// Pieces that are looked at before the proof is given up.
+const MOST_PARTS: usize = 4_000_000;
 
 /// A wall seen along the tool axis: the half plane `inward · x >= offset` for the tool centre.
 struct Wall {
@@ -193,13 +200,61 @@ fn finishing_fault(area: &[Vec2], flat: &[Vec2], guard: f64) -> Option<f64> {
 /// How much more round-off a corner may have than a side.
 const CORNER_ROUND_OFF: f64 = 1e3;
 
-/// A triangle and the strips that come near it.
-struct Cell {
-    corners: [Vec2; 3],
-    near: Vec<usize>,
+/// What the tool clears on one vector: everything within reach of a straight line.
+struct Strip {
+    from: Vec2,
+    to: Vec2,
+    along: Vec2,
+    length: f64,
 }
 
-/// A point of the area that is in no strip: the nearest vector and how far from its strip the point is.
+impl Strip {
+    fn of(from: Vec2, to: Vec2) -> Self {
+        let length = (to - from).norm();
+        let along = if length > 0.0 { (to - from) / length } else { Vec2::x() };
+        Self { from, to, along, length }
+    }
+
+    fn distance(&self, point: &Vec2) -> f64 {
+        let share = self.along.dot(&(point - self.from)).clamp(0.0, self.length);
+        (point - (self.from + self.along * share)).norm()
+    }
+
+    fn across(&self) -> Vec2 {
+        Vec2::new(-self.along.y, self.along.x)
+    }
+
+    /// False if the area is surely out of reach.
+    fn comes_near(&self, area: &[Vec2], reach: f64) -> bool {
+        let range = |direction: Vec2| {
+            let heights = area.iter().map(|point| direction.dot(&(point - self.from)));
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)))
+        };
+        let (low, high) = range(self.across());
+        let (first, last) = range(self.along);
+        low <= reach && high >= -reach && first <= self.length + reach && last >= -reach
+    }
+
+    /// The half planes `direction · x >= offset` around the straight part of the strip.
+    fn bounds(&self, reach: f64) -> [(Vec2, f64); 4] {
+        let across = self.across();
+        let bound = |direction: Vec2, through: Vec2, back: f64| (direction, direction.dot(&through) - back);
+        [
+            bound(across, self.from, reach),
+            bound(-across, self.from, reach),
+            bound(self.along, self.from, 0.0),
+            bound(-self.along, self.to, 0.0),
+        ]
+    }
+}
+
+/// A convex part of the area and the strips that come near what it was cut from.
+struct Part {
+    corners: Vec<Vec2>,
+    near: Rc<Vec<usize>>,
+}
+
+/// A point of the area that is in no strip: the nearest vector and how far from what it clears the point is.
 fn uncleared(
     path: &PocketPath,
     area: &[Vec2],
@@ -209,46 +264,93 @@ fn uncleared(
     let radius = cleared_radius(path);
     let tolerance = path.tolerance.max(LEAST_TOLERANCE * path.cutter.radius());
     let reach = radius + tolerance;
-    let strip = |k: usize| (flat[k.saturating_sub(1)], flat[k]);
-    let distance = |point: &Vec2, k: usize| {
-        let (from, to) = strip(k);
-        to_segment(point, &from, &to)
-    };
-    let all: Vec<usize> = (0..flat.len()).collect();
-    let fan = area.windows(2).skip(1).map(|pair| [area[0], pair[0], pair[1]]);
-    let mut cells: Vec<Cell> = fan.map(|corners| Cell { corners, near: all.clone() }).collect();
+    let strips: Vec<Strip> = (0..flat.len()).map(|k| Strip::of(flat[k.saturating_sub(1)], flat[k])).collect();
+    let mut parts = vec![Part { corners: area.to_vec(), near: Rc::new((0..strips.len()).collect()) }];
     let mut looked_at = 0;
-    while let Some(cell) = cells.pop() {
+    while let Some(part) = parts.pop() {
         looked_at += 1;
-        if looked_at > MOST_TRIANGLES {
-            return Err(VerifyError::Effort { limit: MOST_TRIANGLES });
+        if looked_at > MOST_PARTS {
+            return Err(VerifyError::Effort { limit: MOST_PARTS });
         }
         if cancel() {
             return Err(VerifyError::Cancelled);
         }
-        let middle = cell.corners.iter().sum::<Vec2>() / 3.0;
-        let extent = cell.corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
-        let (mut nearest, mut least, mut near) = (0, f64::INFINITY, Vec::new());
-        for &k in &cell.near {
-            let away = distance(&middle, k);
-            if away < least {
-                (nearest, least) = (k, away);
-            }
-            if away <= reach + extent {
-                near.push(k);
-            }
-        }
-        if least > reach - 0.5 * tolerance && (least > reach || extent <= 0.5 * tolerance) {
-            return Ok(Some((nearest, least - radius)));
-        }
-        // A strip is convex: it holds the triangle if it holds its corners.
-        let held = |k: &usize| cell.corners.iter().all(|corner| distance(corner, *k) <= reach);
-        if near.iter().any(held) {
+        let corners = &part.corners;
+        let middle = corners.iter().sum::<Vec2>() / corners.len() as f64;
+        let extent = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+        let is_near = |k: &&usize| strips[**k].comes_near(corners, reach);
+        let near: Vec<usize> = part.near.iter().filter(is_near).copied().collect();
+        let away = near.iter().map(|&k| (k, strips[k].distance(&middle)));
+        let nearest = away.min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((nearest, least)) = nearest.filter(|(_, least)| *least <= reach) else {
+            // No strip reaches the middle; name the nearest of all.
+            let away = strips.iter().map(|strip| strip.distance(&middle)).enumerate();
+            return Ok(away.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, least)| (k, least - radius)));
+        };
+        if size(corners) <= SLIVER * tolerance * extent {
+            // Left by round-off of a cut: the pieces beside it stand for it.
             continue;
         }
-        cells.extend(halves(&cell.corners).map(|corners| Cell { corners, near: near.clone() }));
+        // A strip is convex: it holds the part if it holds its corners.
+        if near.iter().any(|&k| corners.iter().all(|corner| strips[k].distance(corner) <= reach)) {
+            continue;
+        }
+        if extent <= 0.5 * tolerance {
+            return Ok(Some((nearest, least - radius)));
+        }
+        let near = Rc::new(near);
+        let rest =
+            outside(corners, &strips[nearest].bounds(reach)).unwrap_or_else(|| halves(corners, &middle));
+        parts.extend(rest.into_iter().map(|corners| Part { corners, near: Rc::clone(&near) }));
     }
     Ok(None)
+}
+
+/// What is left of a convex polygon when the intersection of half planes is taken out, in convex pieces; nothing if
+/// too little would be taken out.
+fn outside(corners: &[Vec2], bounds: &[(Vec2, f64)]) -> Option<Vec<Vec<Vec2>>> {
+    let mut inside = corners.to_vec();
+    let mut pieces = Vec::new();
+    for (direction, offset) in bounds {
+        let [kept, cut] = split(&inside, direction, *offset);
+        if kept.len() < 3 {
+            return None;
+        }
+        if cut.len() >= 3 {
+            pieces.push(cut);
+        }
+        inside = kept;
+    }
+    (size(&inside) > LEAST_SHARE * size(corners)).then_some(pieces)
+}
+
+/// Area of a convex polygon.
+fn size(corners: &[Vec2]) -> f64 {
+    let Some(first) = corners.first() else { return 0.0 };
+    let doubled: f64 = corners.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum();
+    0.5 * doubled.abs()
+}
+
+/// Cuts a convex polygon across its longest extent from the middle.
+fn halves(corners: &[Vec2], middle: &Vec2) -> Vec<Vec<Vec2>> {
+    let farthest = corners.iter().max_by(|a, b| (*a - middle).norm().total_cmp(&(*b - middle).norm()));
+    let direction = farthest.map_or_else(Vec2::x, |corner| corner - middle).normalize();
+    let [a, b] = split(corners, &direction, direction.dot(middle));
+    [a, b].into_iter().filter(|piece| piece.len() >= 3).collect()
+}
+
+/// The pieces of a convex polygon where `direction · x >= offset` and where not; the cut belongs to both.
+fn split(corners: &[Vec2], direction: &Vec2, offset: f64) -> [Vec<Vec2>; 2] {
+    let mut pieces = [Vec::with_capacity(corners.len() + 1), Vec::with_capacity(corners.len() + 1)];
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let [start, end] = [from, to].map(|point| direction.dot(point) - offset);
+        pieces[usize::from(start < 0.0)].push(*from);
+        if (start < 0.0) != (end < 0.0) {
+            let crossing = from + (to - from) * (start / (start - end));
+            pieces.iter_mut().for_each(|piece| piece.push(crossing));
+        }
+    }
+    pieces
 }
 
 /// What the tool clears around its centre: its flat end, and where that is smaller the radius the programmer takes
@@ -257,20 +359,4 @@ fn cleared_radius(path: &PocketPath) -> f64 {
     let pointed = path.cutter.alpha.abs() > ROUND_OFF;
     let flat_end = if pointed { 0.0 } else { path.cutter.corner_offset.max(0.0) };
     path.effective_radius.max(flat_end).min(path.cutter.radius())
-}
-
-/// Halves a triangle across its longest side.
-fn halves(corners: &[Vec2; 3]) -> [[Vec2; 3]; 2] {
-    let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).norm_squared();
-    let longest = (0..3).max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or(0);
-    let [a, b, c] = [longest, (longest + 1) % 3, (longest + 2) % 3].map(|k| corners[k]);
-    let middle = (a + b) * 0.5;
-    [[a, middle, c], [middle, b, c]]
-}
-
-fn to_segment(point: &Vec2, from: &Vec2, to: &Vec2) -> f64 {
-    let run = to - from;
-    let squared = run.norm_squared();
-    let share = if squared > 0.0 { ((point - from).dot(&run) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (point - (from + run * share)).norm()
 }
