@@ -219,3 +219,17 @@ fn settings_change_and_silence_findings() {
     assert_eq!(list.len(), 1);
     assert_eq!(list[0].severity, apt_run::diagnostic::Severity::Error);
 }
+
+#[test]
+fn a_motion_that_section_1_gave_up_brings_no_findings_with_it() {
+    let text = "CUTTER/.5\nL1=LINE/0,0,5,0\nL2=LINE/5,0,5,5\nFROM/-2,-2,1\nGO/TO,LX\nTLRGT,GORGT/L1,PAST,L2\n\
+                GOLFT/L2,PAST,L1\nFROM/-2,-2,1\nGO/TO,L1\nTLRGT,GORGT/L1,PAST,L2\nFINI\n";
+    let document = document(text);
+    assert_eq!(codes(&document), [("APT0101", 5), ("APT0690", 6)]);
+    let ends = ends(&run(&document));
+    assert_eq!(
+        ends.iter().map(|(isn, _)| *isn).collect::<Vec<_>>(),
+        [4, 8, 9, 10],
+        "motion goes on at the FROM"
+    );
+}

@@ -14,7 +14,7 @@ use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use arelem::{
     error::MotionWarning,
     pocket::PocketPath,
-    section2::{Execution, Output, State, execute},
+    section2::{Execution, Output, Restart, State, execute},
     sequence::{CutSequence, ToolPosition},
     verify::{Evidence, VerifyError, verify, verify_pocket},
 };
@@ -146,8 +146,11 @@ impl<'a> Section2<'a> {
                     ClKind::Control { word: word.clone(), code: *code, arguments },
                 );
             }
-            // Section 1 has said why there is no motion here.
-            RecordKind::Gap => {}
+            // Section 1 has said why there is no motion here: what follows from it is passed over as after a failure.
+            RecordKind::Gap => {
+                self.state.restart = Restart::Waiting;
+                self.state.forward = None;
+            }
             RecordKind::Transfer(label) => self.transfer = Some((label.clone(), record.origin.clone())),
             RecordKind::End => {
                 self.pending_transfer();
