@@ -139,7 +139,9 @@ fn symbols(expected: &Value, ours: &Value, problems: &mut Vec<String>) {
 /// The true values of symbols that the peer gets wrong.
 fn true_values(quirk: &Value, ours: &Value, problems: &mut Vec<String>) {
     for (name, value) in quirk["true"].as_object().into_iter().flatten() {
-        let (Some(wanted), found) = (value.as_f64(), numbers(&ours["symbols"][name]["canonical"])) else { continue };
+        let (Some(wanted), found) = (value.as_f64(), numbers(&ours["symbols"][name]["canonical"])) else {
+            continue;
+        };
         if !close(&[wanted], &found, EXACT) {
             problems.push(format!("symbol {name} is {found:?}, truly {wanted}"));
         }

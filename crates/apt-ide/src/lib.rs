@@ -11,6 +11,7 @@ pub mod folding;
 pub mod format;
 pub mod hover;
 pub mod lens;
+pub mod lint;
 pub mod navigation;
 pub mod outline;
 pub mod picture;
