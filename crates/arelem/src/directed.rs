@@ -7,7 +7,10 @@ mod prepare;
 mod proof;
 mod stop;
 
-use apt_geometry::motion::{CheckSurface, NamedSurface, Relation, Turn};
+use apt_geometry::{
+    Vec3,
+    motion::{CheckSurface, NamedSurface, Relation, Turn},
+};
 
 pub(crate) use self::prepare::Prepared;
 use crate::{
@@ -20,7 +23,7 @@ use crate::{
 
 /// Where a motion ended, and by what.
 pub(crate) struct Path {
-    pub(crate) points: Vec<apt_geometry::Vec3>,
+    pub(crate) points: Vec<Vec3>,
     pub(crate) check: usize,
     pub(crate) check_side: f64,
 }
@@ -42,20 +45,26 @@ pub(crate) fn run(
         Some(path) => path,
         None => march::run(state, &prepared, checks, cancel)?,
     };
-    Ok(sequence(state, &prepared, checks, path))
+    sequence(state, &prepared, checks, path)
 }
 
-fn sequence(state: &State, prepared: &Prepared, checks: &[CheckSurface], path: Path) -> CutSequence {
-    let axis = prepared.tool.axis;
-    let at = |tip| ToolPosition { tip, axis };
+fn sequence(
+    state: &State,
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    path: Path,
+) -> Result<CutSequence, MotionFailure> {
+    let at = |tip: Vec3| -> Result<ToolPosition, MotionFailure> {
+        Ok(ToolPosition { tip, axis: prepared.attitude.tool_at(&tip)?.axis })
+    };
     let stop = checks.get(path.check).zip(prepared.checks.get(path.check)).map(|(check, working)| {
         let mut role = Working::role(working);
         role.side = path.check_side;
         Stop { role, occurrence: check.occurrence.max(1), index: path.check }
     });
     let mut sequence = CutSequence {
-        start: at(prepared.tip),
-        points: path.points.into_iter().map(at).collect(),
+        start: ToolPosition { tip: prepared.tip, axis: prepared.tool.axis },
+        points: path.points.into_iter().map(at).collect::<Result<_, _>>()?,
         cutter: prepared.tool.cutter,
         part: Some(prepared.part.role()),
         drive: Some(prepared.drive.role()),
@@ -66,8 +75,10 @@ fn sequence(state: &State, prepared: &Prepared, checks: &[CheckSurface], path: P
         maximum_step: state.maximum_step,
         minimum: None,
     };
-    sequence.minimum = bound::minimum(&sequence, prepared);
-    sequence
+    if !prepared.attitude.turns() {
+        sequence.minimum = bound::minimum(&sequence, prepared);
+    }
+    Ok(sequence)
 }
 
 /// True for the relations that stop at a tangency.

@@ -43,6 +43,54 @@ pub struct ContactPoints {
     pub surface: Vec3,
 }
 
+/// Why a law gives no tool axis. Angles in radians.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum AxisFailure {
+    /// PARLEL with a surface that has no rulings (852).
+    #[error("the controlling surface is not ruled")]
+    NotRuled,
+    /// The two angles of ATANGL with CUTANG exclude each other (859).
+    #[error("angles {alpha} to the normal and {beta} to the direction of motion exclude each other")]
+    ImpossibleAngles {
+        /// Angle to the normal.
+        alpha: f64,
+        /// Lead angle.
+        beta: f64,
+    },
+    /// The plane across the vector of ATANGL is tangent to the controlling surface (854).
+    #[error("the plane of the axis is tangent to the controlling surface")]
+    NoPlane,
+    /// The normal does not give a direction (855).
+    #[error("no normal")]
+    NoNormal,
+    /// The sign of an angle cannot be told: the two surfaces are tangent, or nothing is ahead (861).
+    #[error("the sign of the angle cannot be resolved")]
+    SignUnresolved,
+    /// A surface that the mode needs takes no part in the motion (850).
+    #[error("a surface that the axis depends on takes no part")]
+    NoSurface,
+    /// The contact moves more than the axis that follows it: the surface is too hollow for the tool (855).
+    #[error("the axis does not settle; it still changes by {change}")]
+    NotSettled {
+        /// Last change of the unit axis.
+        change: f64,
+    },
+}
+
+impl AxisFailure {
+    /// The APT III diagnostic number.
+    pub fn apt3(&self) -> u16 {
+        match self {
+            Self::NotRuled => 852,
+            Self::ImpossibleAngles { .. } => 859,
+            Self::NoPlane => 854,
+            Self::NoNormal | Self::NotSettled { .. } => 855,
+            Self::SignUnresolved => 861,
+            Self::NoSurface => 850,
+        }
+    }
+}
+
 /// Why a command to Section 2 gives no motion. Lengths in program units, angles in radians.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionFailure {
@@ -73,9 +121,14 @@ pub enum MotionFailure {
         /// The APT III number.
         number: u16,
     },
-    /// The axis mode is not supported.
-    #[error("tool axis mode not supported")]
-    AxisModeUnsupported,
+    /// The axis mode gives no axis here (852 to 861).
+    #[error("no tool axis: {cause}")]
+    AxisUndetermined {
+        /// Why.
+        cause: AxisFailure,
+        /// Tool end.
+        tip: Vec3,
+    },
     /// POCKET gives no path (3501 to 3519).
     #[error(transparent)]
     Pocket(#[from] PocketFailure),
@@ -266,12 +319,9 @@ impl MotionFailure {
     /// The APT III diagnostic number.
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
-            Self::Cancelled
-            | Self::NotFinite
-            | Self::NoPosition
-            | Self::AxisModeUnsupported
-            | Self::NoTolerance { .. } => return None,
+            Self::Cancelled | Self::NotFinite | Self::NoPosition | Self::NoTolerance { .. } => return None,
             Self::Cutter(error) => return error.apt3(),
+            Self::AxisUndetermined { cause, .. } => cause.apt3(),
             Self::Pocket(failure) => return failure.apt3(),
             Self::NoCutter { start_up: true } => 311,
             Self::NoCutter { start_up: false } => 312,

@@ -3,6 +3,7 @@
 //! Deterministic and free of global state: [`execute`](section2::execute) is a function of the modal state and one
 //! command. Sources: Galbiati & Trumpy 1970 (routines DDST … ARLM3), Trumpy 1970 (command level), re-derived.
 
+mod attitude;
 pub mod bound;
 pub mod clearance;
 mod directed;

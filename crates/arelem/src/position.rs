@@ -4,7 +4,10 @@
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-use crate::clearance::{Contact, Gauge, Tool};
+use crate::{
+    attitude::Attitude,
+    clearance::{Contact, Gauge, Tool},
+};
 
 /// Bound of the iteration.
 const MAX_ITERATIONS: u32 = 60;
@@ -71,17 +74,21 @@ pub(crate) fn size(tool: &Tool, tip: &Vec3) -> f64 {
 }
 
 /// Finds the position nearest to `start`, in the sense of successive shortest corrections.
-pub(crate) fn solve(tool: &Tool, conditions: &[Condition<'_>], start: &Vec3) -> Result<Solution, Unsolved> {
+pub(crate) fn solve(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+) -> Result<Solution, Unsolved> {
     let mut tip = *start;
-    let mut rows = evaluate(tool, conditions, &tip);
+    let mut rows = evaluate(attitude, conditions, &tip);
     for iteration in 0..MAX_ITERATIONS {
         let (worst, row) = rows.greatest();
-        let scale = size(tool, &tip);
+        let scale = size(attitude.tool(), &tip);
         if worst <= RESOLUTION * scale {
             return Ok(Solution { tip });
         }
         let step = correction(&rows);
-        let Some((next, next_rows)) = improve(tool, conditions, &tip, &rows, &step) else {
+        let Some((next, next_rows)) = improve(attitude, conditions, &tip, &rows, &step) else {
             return if worst <= ACCEPTABLE * scale {
                 Ok(Solution { tip })
             } else {
@@ -92,7 +99,7 @@ pub(crate) fn solve(tool: &Tool, conditions: &[Condition<'_>], start: &Vec3) -> 
         rows = next_rows;
     }
     let (residual, row) = rows.greatest();
-    if residual <= ACCEPTABLE * size(tool, &tip) {
+    if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
         return Ok(Solution { tip });
     }
     Err(Unsolved { residual, row, tip, iterations: MAX_ITERATIONS })
@@ -100,7 +107,7 @@ pub(crate) fn solve(tool: &Tool, conditions: &[Condition<'_>], start: &Vec3) -> 
 
 /// The first of the step and its halves that reduces the greatest residual.
 fn improve(
-    tool: &Tool,
+    attitude: &Attitude,
     conditions: &[Condition<'_>],
     tip: &Vec3,
     rows: &Rows,
@@ -110,7 +117,7 @@ fn improve(
     let mut share = 1.0;
     for _ in 0..=MAX_HALVINGS {
         let next = tip + step * share;
-        let next_rows = evaluate(tool, conditions, &next);
+        let next_rows = evaluate(attitude, conditions, &next);
         if next_rows.greatest().0 < worst {
             return Some((next, next_rows));
         }
@@ -119,12 +126,17 @@ fn improve(
     None
 }
 
-fn evaluate(tool: &Tool, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
+/// Residuals and their gradients. Where the axis is not determined the residuals are not numbers, and no step goes there.
+fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
     let mut rows = Rows { residual: [0.0; 3], normal: [Vec3::zeros(); 3], count: conditions.len().min(3) };
+    let Ok(posture) = attitude.posture(tip) else {
+        rows.residual = [f64::NAN; 3];
+        return rows;
+    };
     for (k, condition) in conditions.iter().take(3).enumerate() {
         (rows.residual[k], rows.normal[k]) = match condition {
             Condition::Clearance(gauge, target) => {
-                let Contact { clearance, gradient, .. } = gauge.contact(tool, tip);
+                let Contact { clearance, gradient, .. } = posture.contact(gauge, tip);
                 (clearance - target, gradient)
             }
             Condition::Plane(normal, distance) => (normal.dot(tip) - distance, *normal),
@@ -139,11 +151,11 @@ fn correction(rows: &Rows) -> Vec3 {
     let [ra, rb, rc] = rows.residual;
     match rows.count {
         0 => Vec3::zeros(),
-        1 => -a * ra,
+        1 => -a * (ra / a.norm_squared()),
         2 => {
-            let cosine = a.dot(&b);
-            let damping = if 1.0 - cosine * cosine < DEPENDENT { DAMPING } else { 0.0 };
-            let gram = Matrix2::new(1.0 + damping, cosine, cosine, 1.0 + damping);
+            let (aa, ab, bb) = (a.norm_squared(), a.dot(&b), b.norm_squared());
+            let damping = if aa * bb - ab * ab < DEPENDENT * aa * bb { DAMPING } else { 0.0 };
+            let gram = Matrix2::new(aa + damping, ab, ab, bb + damping);
             match gram.try_inverse() {
                 Some(inverse) => {
                     let x = inverse * Vector2::new(ra, rb);

@@ -82,6 +82,23 @@ impl Working {
         }
     }
 
+    /// Notes how the surface bends along a direction near a position.
+    pub(crate) fn look_along(&mut self, tip: &Vec3, direction: &Vec3) {
+        if self.shape == Shape::General {
+            let foot = self.gauge.surface.foot(tip).point;
+            let hessian = self.gauge.surface.foot_and_hessian(&foot).1;
+            self.lean = self.gauge.side * direction.dot(&(hessian * direction));
+        }
+    }
+
+    /// The clearance changes with a turning axis too, unless the tool end alone counts.
+    pub(crate) fn turn_freely(&mut self, tip: &Vec3) {
+        if !self.gauge.on {
+            self.shape = Shape::General;
+            self.look_from(tip);
+        }
+    }
+
     /// Width of the band.
     pub(crate) fn band(&self) -> f64 {
         self.inside + self.outside

@@ -6,11 +6,12 @@ mod side;
 
 use apt_geometry::{
     Vec3,
-    motion::{PartSide, Relation, StartSurface},
+    motion::{PartSide, Relation, StartSurface, ToolAxis},
     surface::{RootSelection, Surface},
 };
 
 use crate::{
+    attitude::{Attitude, Law},
     clearance::{Shape, Tool},
     error::{MotionFailure, RoleName},
     position::{self, Condition},
@@ -23,6 +24,8 @@ use crate::{
 pub(crate) struct StartUp<'a> {
     pub(crate) state: &'a State,
     pub(crate) tool: Tool,
+    /// How the axis follows the surfaces, once their sides are known.
+    pub(crate) attitude: Attitude,
     pub(crate) tip: Vec3,
     /// Drive, part, check, as far as they take part.
     pub(crate) roles: Vec<Working>,
@@ -48,7 +51,7 @@ pub(crate) fn start(
         Some(tip) => tip,
         None => in_space(&mut work)?,
     };
-    Ok(work.sequence(tip))
+    work.sequence(tip)
 }
 
 /// OFFSET (class 7000/2): pierce the drive surface along the direction given, stand off along its normal, then move
@@ -68,6 +71,7 @@ pub(crate) fn offset(
     let Some(direction) = state.directions[0] else { return Err(MotionFailure::OffsetWithoutDirection) };
     let direction = directed::unit_direction(&direction, &work.tip)?;
     side::assign(&mut work, None)?;
+    follow_surfaces(&mut work, &direction)?;
     let drive = &work.roles[0];
     let along =
         drive.gauge.surface.directed_distance(&work.tip, &direction, RootSelection::Ahead).map_err(|_| {
@@ -77,18 +81,19 @@ pub(crate) fn offset(
     // The tool end goes from the pierce point along the normal until the relation holds.
     let rest = drive.rest();
     let normal = drive.gauge.surface.foot(&pierce).normal;
-    let line = along_line(&work.tool, drive, &pierce, &normal, rest)?;
+    let line = along_line(&work.attitude, drive, &pierce, &normal, rest)?;
     let mut tip = line;
     if let Some(part) = work.roles.get(1) {
-        tip = along_line(&work.tool, part, &tip, &work.tool.axis, part.rest())
+        let axis = work.attitude.tool_at(&tip)?.axis;
+        tip = along_line(&work.attitude, part, &tip, &axis, part.rest())
             .map_err(|_| MotionFailure::PartNotReached)?;
     }
-    Ok(work.sequence(tip))
+    work.sequence(tip)
 }
 
 /// The position on a straight line where a clearance has a value.
 fn along_line(
-    tool: &Tool,
+    attitude: &Attitude,
     role: &Working,
     from: &Vec3,
     direction: &Vec3,
@@ -100,7 +105,7 @@ fn along_line(
         Condition::Plane(u, u.dot(from)),
         Condition::Plane(v, v.dot(from)),
     ];
-    position::solve(tool, &conditions, from).map(|s| s.tip).map_err(|unsolved| {
+    position::solve(attitude, &conditions, from).map(|s| s.tip).map_err(|unsolved| {
         MotionFailure::StartUpDiverges {
             residual: unsolved.residual,
             role: role.name,
@@ -121,9 +126,6 @@ impl<'a> StartUp<'a> {
     fn new(state: &'a State, surfaces: &[StartSurface]) -> Result<Self, MotionFailure> {
         let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: true })?;
         let ToolPosition { tip, axis } = required_position(state)?;
-        if !matches!(state.axis_mode, apt_geometry::motion::ToolAxis::Fixed(_)) {
-            return Err(MotionFailure::AxisModeUnsupported);
-        }
         let names = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
         let mut roles = Vec::with_capacity(3);
         for (start, name) in surfaces.iter().zip(names) {
@@ -135,14 +137,16 @@ impl<'a> StartUp<'a> {
             let relation = if on { Relation::On } else { Relation::To };
             roles.push(Working::new(state, RoleName::Part, &state.part, relation, on)?);
         }
-        Ok(Self { state, tool: Tool::new(cutter, axis), tip, roles })
+        let tool = Tool::new(cutter, axis);
+        let attitude = Attitude::fixed(tool.clone());
+        Ok(Self { state, tool, attitude, tip, roles })
     }
 
-    fn sequence(&self, tip: Vec3) -> CutSequence {
-        let axis = self.tool.axis;
+    fn sequence(&self, tip: Vec3) -> Result<CutSequence, MotionFailure> {
+        let axis = self.attitude.tool_at(&tip)?.axis;
         let role = |name: RoleName| self.roles.iter().find(|r| r.name == name).map(Working::role);
-        CutSequence {
-            start: ToolPosition { tip: self.tip, axis },
+        Ok(CutSequence {
+            start: ToolPosition { tip: self.tip, axis: self.tool.axis },
             points: vec![ToolPosition { tip, axis }],
             cutter: self.tool.cutter,
             part: role(RoleName::Part),
@@ -153,7 +157,7 @@ impl<'a> StartUp<'a> {
             forward: Vec3::zeros(),
             maximum_step: self.state.maximum_step,
             minimum: Some(1),
-        }
+        })
     }
 }
 
@@ -171,9 +175,17 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         .iter()
         .position(|r| matches!(r.relation, Relation::TangentToDrive | Relation::TangentToPart));
     if tangent.is_some() {
+        follow_surfaces(work, &(start - original))?;
         return directed::tangent_start(work, &start);
     }
-    let mut tip = settle(work, guide, &start)?;
+    let mut tip = if is_following(work) {
+        // The sense of the move, where the law needs it, is that of the move with the present axis.
+        let first = settle(work, guide, &start).unwrap_or(start);
+        follow_surfaces(work, &(first - original))?;
+        settle(work, guide, &first).or_else(|_| settle(work, guide, &start))?
+    } else {
+        settle(work, guide, &start)?
+    };
     // How a surface without definite shape bends is known for sure only at the contact.
     let leans: Vec<bool> = work.roles.iter().map(|r| r.lean > 0.0).collect();
     work.roles.iter_mut().for_each(|r| r.look_from(&tip));
@@ -181,6 +193,30 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         tip = settle(work, guide, &tip)?;
     }
     Ok(tip)
+}
+
+fn is_following(work: &StartUp<'_>) -> bool {
+    !matches!(work.state.axis_mode, ToolAxis::Fixed(_) | ToolAxis::Keep)
+}
+
+/// Lets the axis follow the surfaces, whose sides are known, for a move `ahead`. A part surface that takes no part in the
+/// start-up (NOPS) still guides the axis.
+fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3) -> Result<(), MotionFailure> {
+    if !is_following(work) {
+        return Ok(());
+    }
+    let (state, tip) = (work.state, work.tip);
+    let mut modal = Working::new(state, RoleName::Part, &state.part, Relation::To, false)?;
+    let observed = modal.gauge.surface.signed_distance(&work.tool.observer(&tip));
+    modal.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
+    let find = |name: RoleName| work.roles.iter().find(|r| r.name == name).map(|r| &r.gauge);
+    let part = find(RoleName::Part).unwrap_or(&modal.gauge);
+    let law = Law::new(&state.axis_mode, Some(part), find(RoleName::Drive), (&work.tool, &tip, ahead))
+        .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip })?;
+    if let Some(law) = law {
+        work.attitude = Attitude::following(&work.tool, law);
+    }
+    Ok(())
 }
 
 /// The position where every relation holds, in the guide plane if there is one.
@@ -197,14 +233,14 @@ pub(crate) fn converge(
     conditions: &[Condition<'_>],
     start: &Vec3,
 ) -> Result<Vec3, MotionFailure> {
-    let first = match position::solve(&work.tool, conditions, start) {
+    let first = match position::solve(&work.attitude, conditions, start) {
         Ok(solution) => return Ok(solution.tip),
         Err(unsolved) => unsolved,
     };
     let mut begin = Vec::with_capacity(conditions.len());
     for condition in conditions {
         begin.push(match condition {
-            Condition::Clearance(gauge, _) => gauge.contact(&work.tool, start).clearance,
+            Condition::Clearance(gauge, _) => work.attitude.posture(start)?.contact(gauge, start).clearance,
             Condition::Plane(normal, _) => normal.dot(start),
         });
     }
@@ -219,7 +255,7 @@ pub(crate) fn converge(
                 Condition::Plane(normal, to) => Condition::Plane(*normal, from + (to - from) * share),
             })
             .collect();
-        match position::solve(&work.tool, &staged, &tip) {
+        match position::solve(&work.attitude, &staged, &tip) {
             Ok(solution) => tip = solution.tip,
             Err(unsolved) if step == HOMOTOPY_STEPS => {
                 let role = work.roles.get(unsolved.row).map_or(RoleName::Drive, |r| r.name);

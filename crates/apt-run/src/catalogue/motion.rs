@@ -7,7 +7,7 @@ use apt_geometry::{
     motion::Relation,
 };
 use arelem::{
-    error::{Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
+    error::{AxisFailure, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
     verify::{Evidence, Rule, VerifyError},
 };
 
@@ -83,6 +83,29 @@ fn failure_text(failure: &Failure) -> Text {
     }
 }
 
+/// Why TLAXIS gives no axis at a place.
+fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
+    let degrees = |angle: &f64| number(angle.to_degrees());
+    let what = match cause {
+        AxisFailure::NotRuled => "the surface that PARLEL names has no rulings".to_owned(),
+        AxisFailure::ImpossibleAngles { alpha, beta } => format!(
+            "no axis is at {} degrees to the normal and leads by {} degrees",
+            degrees(alpha),
+            degrees(beta)
+        ),
+        AxisFailure::NoPlane => {
+            "the vector of ATANGL is normal to the surface that guides the axis".to_owned()
+        }
+        AxisFailure::NoNormal => "the surface that guides the axis has no normal here".to_owned(),
+        AxisFailure::SignUnresolved => "to which side ATANGL tilts the axis is not settled here".to_owned(),
+        AxisFailure::NoSurface => "a surface that TLAXIS needs takes no part in this motion".to_owned(),
+        AxisFailure::NotSettled { .. } => {
+            "the surface that guides the axis is too hollow for this tool".to_owned()
+        }
+    };
+    say("APT0606", format!("{what}, with the tool end at {}", place(tip))).hint("TLAXIS/i,j,k fixes the axis")
+}
+
 /// Failures of what must be said before a motion.
 fn setting(failure: &Failure) -> Option<Text> {
     Some(match failure {
@@ -100,10 +123,7 @@ fn setting(failure: &Failure) -> Option<Text> {
             };
             say("APT0605", what).hint("a direction needs a vector that is not zero")
         }
-        Failure::AxisModeUnsupported => {
-            say("APT0606", "this tool axis mode cannot be computed yet; only a fixed axis can")
-                .hint("TLAXIS/i,j,k fixes the axis")
-        }
+        Failure::AxisUndetermined { cause, tip } => axis(cause, tip),
         Failure::SurfaceUnsupported { role: name, kind } => {
             say("APT0608", format!("{} cannot be a {}", a_kind(*kind), role(*name)))
         }

@@ -38,6 +38,12 @@ impl Tool {
         Self { cutter, axis, profile, across: [x, axis.cross(&x)], pieces: pieces(&profile) }
     }
 
+    /// The same cutter with another unit axis.
+    pub(crate) fn turned(&self, axis: Vec3) -> Self {
+        let x = perpendicular(&axis);
+        Self { axis, across: [x, axis.cross(&x)], ..self.clone() }
+    }
+
     /// Greatest distance of the body from its axis.
     pub fn radius(&self) -> f64 {
         self.profile.greatest_radius()

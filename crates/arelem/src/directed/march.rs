@@ -11,6 +11,7 @@ use apt_geometry::{Vec3, motion::CheckSurface};
 use self::step::Stepper;
 use super::{Path, Prepared, stop::Watcher};
 use crate::{
+    attitude::Sweep,
     clearance::{Contact, Shape},
     error::{Iteration, MotionFailure},
     section2::State,
@@ -20,6 +21,7 @@ use crate::{
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) tip: Vec3,
+    pub(super) axis: Vec3,
     pub(super) part: Contact,
     pub(super) drive: Contact,
     pub(super) tangent: Vec3,
@@ -27,10 +29,28 @@ pub(super) struct Vertex {
 
 impl Vertex {
     /// The contacts at a position; the tangent continues a given sense.
-    pub(super) fn at(prepared: &Prepared, tip: Vec3, sense: &Vec3) -> Self {
-        let part = prepared.part.gauge.contact(&prepared.tool, &tip);
-        let drive = prepared.drive.gauge.contact(&prepared.tool, &tip);
-        Self { tip, part, drive, tangent: tangent(&part, &drive, sense) }
+    pub(super) fn at(prepared: &Prepared, tip: Vec3, sense: &Vec3) -> Result<Self, MotionFailure> {
+        let posture = prepared.attitude.posture(&tip)?;
+        let part = posture.contact(&prepared.part.gauge, &tip);
+        let drive = posture.contact(&prepared.drive.gauge, &tip);
+        let axis = posture.tool.axis;
+        Ok(Self { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
+    }
+
+    /// Where the motion begins, with the axis that the tool has there: the first vector turns it if need be.
+    fn start(prepared: &Prepared) -> Result<Self, MotionFailure> {
+        let mut vertex = Self::at(prepared, prepared.tip, &prepared.tangent)?;
+        if prepared.attitude.turns() {
+            vertex.axis = prepared.tool.axis;
+            vertex.part.clearance = prepared.part.gauge.contact(&prepared.tool, &prepared.tip).clearance;
+            vertex.drive.clearance = prepared.drive.gauge.contact(&prepared.tool, &prepared.tip).clearance;
+        }
+        Ok(vertex)
+    }
+
+    /// The straight move to another position.
+    pub(super) fn sweep<'a>(&self, prepared: &'a Prepared, to: &Self) -> Sweep<'a> {
+        Sweep::new(&prepared.tool, (&self.tip, &self.axis), (&to.tip, &to.axis))
     }
 }
 
@@ -57,7 +77,8 @@ pub(super) fn run(
     checks: &[CheckSurface],
     cancel: &dyn Fn() -> bool,
 ) -> Result<Path, MotionFailure> {
-    if prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat {
+    let flat = prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat;
+    if flat && !prepared.attitude.turns() {
         return straight::run(prepared, checks, cancel);
     }
     let mut march = March {
@@ -86,7 +107,7 @@ struct March<'a> {
 
 impl March<'_> {
     fn run(&mut self, cancel: &dyn Fn() -> bool) -> Result<Path, MotionFailure> {
-        let mut here = Vertex::at(self.prepared, self.prepared.tip, &self.prepared.tangent);
+        let mut here = Vertex::start(self.prepared)?;
         let start = here;
         let mut cap = self.state.maximum_step;
         let mut finals = 0;
@@ -95,7 +116,7 @@ impl March<'_> {
                 return Err(MotionFailure::Cancelled);
             }
             let next = self.stepper.advance(&here, cap)?;
-            let event = match self.watcher.scan(&here.tip, &next.tip) {
+            let event = match self.watcher.scan(&here.sweep(self.prepared, &next)) {
                 Some(event) => Some(event),
                 None => self.tangency.scan(&here, &next)?,
             };
@@ -106,8 +127,8 @@ impl March<'_> {
                 cap = self.state.maximum_step;
                 continue;
             };
-            let end = finish::locate(self.prepared, self.checks, &event)?;
-            if self.accept(&here, &end.tip) {
+            let end = finish::locate(self.prepared, self.checks, &event, &next.tangent)?;
+            if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
                 return Ok(self.path(&end));
             }
@@ -141,16 +162,16 @@ impl March<'_> {
     }
 
     /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.
-    fn accept(&self, here: &Vertex, end: &Vec3) -> bool {
+    fn accept(&self, here: &Vertex, end: &Vec3) -> Result<bool, MotionFailure> {
         let delta = end - here.tip;
         if delta.dot(&here.tangent) < 0.0 && !self.points.is_empty() {
-            return false;
+            return Ok(false);
         }
         if delta.norm() > self.state.maximum_step * (1.0 + 1e-9) {
-            return false;
+            return Ok(false);
         }
-        let end = Vertex::at(self.prepared, *end, &here.tangent);
-        self.stepper.proven(here, &end)
+        let end = Vertex::at(self.prepared, *end, &here.tangent)?;
+        Ok(self.stepper.proven(here, &end))
     }
 
     /// On a closed path: a whole turn without a single position means that there is none.

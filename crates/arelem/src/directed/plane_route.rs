@@ -136,6 +136,7 @@ fn eligible(state: &State, prepared: &Prepared, check: &CheckSurface) -> Option<
     let axis = &prepared.tool.axis;
     let Surface::Plane(part) = &prepared.part.gauge.surface else { return None };
     let applies = !state.force_iteration
+        && !prepared.attitude.turns()
         && axis.z.abs() >= VERTICAL
         && prepared.tool.cutter.beta == 0.0
         && part.normal.dot(axis).abs() > LEAST_PART_COSINE
@@ -361,7 +362,8 @@ fn chords(
     let outer = outer.max(start).max(radius);
     let half = |r: f64| (inner / r).clamp(0.0, 1.0).acos();
     let longest = (0.5 * state.maximum_step / outer).clamp(0.0, 1.0).asin().max(f64::MIN_POSITIVE);
-    let (first, last, step) = (half(start), half(radius), half(outer).min(longest));
+    // The vectors at both ends reach from a vertex as far as half a vector, so they too are held to the longest.
+    let [first, last, step] = [start, radius, outer].map(|r| half(r).min(longest));
     if step <= 0.0 {
         return Err(MotionFailure::NoAdmissibleVector {
             role: prepared.drive.name,

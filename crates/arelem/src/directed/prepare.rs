@@ -2,10 +2,11 @@
 
 use apt_geometry::{
     Vec3,
-    motion::{CheckSurface, DriveSide, NamedSurface, PartSide, Relation, ToolAxis, Turn},
+    motion::{CheckSurface, DriveSide, NamedSurface, PartSide, Relation, Turn},
 };
 
 use crate::{
+    attitude::{Attitude, Law},
     clearance::{Contact, Tool},
     error::{ContactPoints, MotionFailure, MotionWarning, RoleName},
     position,
@@ -19,13 +20,18 @@ const UNDETERMINED: f64 = 0.0349;
 const TANGENT_SINE: f64 = 1e-6;
 /// |cos| to the tool axis above which the last move says nothing about the forward direction.
 const ALONG_AXIS_COSINE: f64 = 0.997;
+/// Distance between unit axes below which they are the same.
+const SAME_AXIS: f64 = 1e-12;
 /// Sine below which the side of the drive surface is not judged.
 const SIDE_SINE: f64 = 0.05;
 
 /// A directed motion ready to go.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
+    /// The tool as it stands at the start.
     pub(crate) tool: Tool,
+    /// How its axis goes on from there.
+    pub(crate) attitude: Attitude,
     pub(crate) tip: Vec3,
     pub(crate) part: Working,
     pub(crate) drive: Working,
@@ -47,9 +53,6 @@ pub(super) fn prepare(
     warnings: &mut Vec<MotionWarning>,
 ) -> Result<Prepared, MotionFailure> {
     let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: false })?;
-    if !matches!(state.axis_mode, ToolAxis::Fixed(_)) {
-        return Err(MotionFailure::AxisModeUnsupported);
-    }
     let position = required_position(state)?;
     let (tool, tip) = (Tool::new(cutter, position.axis), position.tip);
     let size = position::size(&tool, &tip);
@@ -82,7 +85,31 @@ pub(super) fn prepare(
             check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
         working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
     }
-    Ok(Prepared { tool, tip, part, drive, checks: working, tangent, size, drive_side })
+    let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
+    if attitude.turns() {
+        part.turn_freely(&tip);
+        drive.turn_freely(&tip);
+    }
+    Ok(Prepared { tool, attitude, tip, part, drive, checks: working, tangent, size, drive_side })
+}
+
+/// The axis along the motion: fixed if it is everywhere what it is now.
+fn attitude(
+    state: &State,
+    tool: &Tool,
+    (part, drive): (&Working, &Working),
+    tip: &Vec3,
+    wanted: &Vec3,
+) -> Result<Attitude, MotionFailure> {
+    let law = Law::new(&state.axis_mode, Some(&part.gauge), Some(&drive.gauge), (tool, tip, wanted))
+        .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip: *tip })?;
+    let Some(law) = law else { return Ok(Attitude::fixed(tool.clone())) };
+    let constant = law.is_constant();
+    let axis = law.axis(tool, tip).map_err(|cause| MotionFailure::AxisUndetermined { cause, tip: *tip })?;
+    if constant && (axis - tool.axis).norm() <= SAME_AXIS {
+        return Ok(Attitude::fixed(tool.clone()));
+    }
+    Ok(Attitude::following(tool, law))
 }
 
 /// At a tangency the tool stands to the check surface as it does to the surface it is tangent to.

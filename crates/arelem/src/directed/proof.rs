@@ -4,7 +4,8 @@
 use apt_geometry::Vec3;
 
 use crate::{
-    clearance::{Contact, Shape, Tool},
+    attitude::Sweep,
+    clearance::{Contact, Shape},
     role::Working,
 };
 
@@ -37,47 +38,46 @@ struct Sample {
 
 /// A clearance along a straight line.
 struct Line<'a> {
-    tool: &'a Tool,
+    sweep: &'a Sweep<'a>,
     role: &'a Working,
-    from: Vec3,
-    direction: Vec3,
     /// −1 turns a concave clearance into a convex one.
     sign: f64,
 }
 
 impl Line<'_> {
     fn sample(&self, x: f64) -> Sample {
-        let contact = self.role.gauge.contact(self.tool, &(self.from + self.direction * x));
-        self.known(x, &contact)
+        let (tip, tool) = self.sweep.at(x);
+        let contact = self.role.gauge.contact(&tool, &tip);
+        self.known(x, &contact, &tip)
     }
 
-    fn known(&self, x: f64, contact: &Contact) -> Sample {
-        Sample {
-            x,
-            value: self.sign * contact.clearance,
-            slope: self.sign * contact.gradient.dot(&self.direction),
-        }
+    fn known(&self, x: f64, contact: &Contact, tip: &Vec3) -> Sample {
+        Sample { x, value: self.sign * contact.clearance, slope: self.sign * self.sweep.slope(contact, tip) }
     }
 }
 
 /// Least and greatest clearance over the straight move between two positions with known contacts.
 pub(crate) fn extremes(
-    tool: &Tool,
+    sweep: &Sweep<'_>,
     role: &Working,
     from: (&Vec3, &Contact),
     to: (&Vec3, &Contact),
     size: f64,
 ) -> Extremes {
     let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
-    let delta = to.0 - from.0;
-    let length = delta.norm();
+    let length = sweep.length;
     let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
+    if length > 0.0 && sweep.turns() && !role.gauge.on {
+        // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
+        let line = Line { sweep, role, sign: 1.0 };
+        return general(&line, line.sample(0.0), line.sample(length), ends, size);
+    }
     if role.shape == Shape::Flat || length <= 0.0 {
         return ends;
     }
     let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
-    let line = Line { tool, role, from: *from.0, direction: delta / length, sign };
-    let (a, b) = (line.known(0.0, from.1), line.known(length, to.1));
+    let line = Line { sweep, role, sign };
+    let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
     match role.shape {
         Shape::Flat => ends,
         Shape::Convex => {

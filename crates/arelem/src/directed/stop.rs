@@ -7,7 +7,11 @@ use apt_geometry::{
 };
 
 use super::{Prepared, is_tangent};
-use crate::{clearance::separation, role::Working};
+use crate::{
+    attitude::Sweep,
+    clearance::{Tool, separation},
+    role::Working,
+};
 
 /// Bound of the steps along one cut vector; beyond it steps are a fixed share of the vector.
 const MAX_STEPS: u32 = 4000;
@@ -69,7 +73,7 @@ impl<'a> Watcher<'a> {
             let value = if is_tangent(check.relation) {
                 f64::INFINITY
             } else {
-                watcher.value(index, &prepared.tip).0
+                watcher.value(index, &prepared.tool, &prepared.tip).0
             };
             let working = &prepared.checks[index];
             let band = working.inside.max(working.outside) + 1e-9 * prepared.size;
@@ -90,18 +94,25 @@ impl<'a> Watcher<'a> {
     }
 
     /// The function whose sign changes at a position, and the side of the surface.
-    fn value(&self, index: usize, tip: &Vec3) -> (f64, f64) {
+    fn value(&self, index: usize, tool: &Tool, tip: &Vec3) -> (f64, f64) {
         let working = self.working(index);
         if working.gauge.on {
             let distance = working.gauge.surface.signed_distance(tip);
             return (distance, if distance < 0.0 { -1.0 } else { 1.0 });
         }
-        let (contact, side) = separation(&self.prepared.tool, &working.gauge.surface, tip);
+        let (contact, side) = separation(tool, &working.gauge.surface, tip);
         (contact.clearance - working.gauge.thickness - working.rest(), side)
     }
 
+    /// The function at a distance from the start of a vector.
+    fn value_at(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> (f64, f64) {
+        let (tip, tool) = sweep.at(x);
+        self.value(index, &tool, &tip)
+    }
+
     /// The first stop on a straight vector; without one the vector counts as travelled.
-    pub(super) fn scan(&mut self, from: &Vec3, to: &Vec3) -> Option<Event> {
+    pub(super) fn scan(&mut self, sweep: &Sweep<'_>) -> Option<Event> {
+        let (from, to) = (sweep.at(0.0).0, sweep.at(sweep.length).0);
         let mut first: Option<Event> = None;
         let mut after = Vec::new();
         for index in 0..self.checks.len() {
@@ -110,10 +121,10 @@ impl<'a> Watcher<'a> {
             }
             let watch = self.watches[index];
             let (quiet, radius) = watch.quiet;
-            if (from - quiet).norm() < radius && (to - quiet).norm() < radius {
+            if !sweep.turns() && (from - quiet).norm() < radius && (to - quiet).norm() < radius {
                 continue;
             }
-            let (event, next) = self.follow(index, watch, from, to);
+            let (event, next) = self.follow(index, watch, sweep);
             if let Some(event) = event
                 && first.is_none_or(|best| event.x < best.x)
             {
@@ -130,39 +141,37 @@ impl<'a> Watcher<'a> {
         first
     }
 
-    fn follow(&mut self, index: usize, watch: Watch, from: &Vec3, to: &Vec3) -> (Option<Event>, Watch) {
-        let length = (to - from).norm();
+    fn follow(&mut self, index: usize, watch: Watch, sweep: &Sweep<'_>) -> (Option<Event>, Watch) {
+        let (length, stretch) = (sweep.length, sweep.stretch());
         let working = self.working(index);
         let (band, size) = (working.inside.max(working.outside), self.prepared.size);
         let least = (LEAST_STEP * working.band()).max(1e-10 * size);
         let relation = self.checks[index].relation;
         let wanted = self.checks[index].occurrence.max(1);
-        let direction = if length > 0.0 { (to - from) / length } else { Vec3::zeros() };
         let mut watch = watch;
-        let (mut x, mut value) = (0.0, self.value(index, from).0);
-        self.note(index, value, from);
+        let (mut x, mut value) = (0.0, self.value_at(index, sweep, 0.0).0);
+        self.note(index, value, &sweep.at(0.0).0);
         for step in 0..MAX_STEPS {
             if x >= length {
                 break;
             }
             let floor = if step < FINE_STEPS { least } else { least.max(length / 64.0) };
-            let next_x = (x + value.abs().max(floor)).min(length);
-            let tip = from + direction * next_x;
-            let (next, side) = self.value(index, &tip);
+            let next_x = (x + value.abs().max(floor) / stretch).min(length);
+            let (tip, tool) = sweep.at(next_x);
+            let (next, side) = self.value(index, &tool, &tip);
             self.note(index, next, &tip);
             let label =
                 transition(&mut watch.status, next, band + 1e-9 * size, working_on(self.working(index)));
             if let Some(label) = label {
                 watch.count += u32::from(label == relation);
                 if label == relation && watch.count >= wanted {
-                    let (at, side) =
-                        self.bracket(index, from, &direction, [x, next_x], value > 0.0, (label, side));
-                    return (Some(Event { check: index, tip: from + direction * at, x: at, side }), watch);
+                    let (at, side) = self.bracket(index, sweep, [x, next_x], value > 0.0, (label, side));
+                    return (Some(Event { check: index, tip: sweep.at(at).0, x: at, side }), watch);
                 }
             }
             (x, value) = (next_x, next);
         }
-        watch.quiet = (*to, value.abs());
+        watch.quiet = (sweep.at(length).0, value.abs());
         (None, watch)
     }
 
@@ -177,21 +186,20 @@ impl<'a> Watcher<'a> {
     fn bracket(
         &self,
         index: usize,
-        from: &Vec3,
-        direction: &Vec3,
+        sweep: &Sweep<'_>,
         [low, high]: [f64; 2],
         positive: bool,
         (label, after): (Relation, f64),
     ) -> (f64, f64) {
         let (mut low, mut high) = (low, high);
-        let mut before = self.value(index, &(from + direction * low)).1;
+        let mut before = self.value_at(index, sweep, low).1;
         let mut beyond = after;
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
             }
-            let (value, side) = self.value(index, &(from + direction * middle));
+            let (value, side) = self.value_at(index, sweep, middle);
             if (value > 0.0) == positive {
                 (low, before) = (middle, side);
             } else {

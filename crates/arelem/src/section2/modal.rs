@@ -157,6 +157,7 @@ fn finish(state: &mut State, sequence: CutSequence) -> Output {
     if let Some(last) = sequence.points.last() {
         let before = if count >= 2 { sequence.points.get(count - 2) } else { None };
         let previous = before.unwrap_or(&sequence.start).tip;
+        state.axis = last.axis;
         state.move_to(previous, last.tip);
     }
     state.clear_one_shot();

@@ -103,12 +103,15 @@ pub(super) fn tangent_start(work: &StartUp<'_>, start: &Vec3) -> Result<Vec3, Mo
     };
     // Fixed point: the tangency plane through the tool end's foot, normal to the common tangent direction.
     for _ in 0..TANGENCY_ITERATIONS {
-        let drive = work.roles[0].gauge.contact(&work.tool, &tip).gradient;
-        let part = work.roles.get(1).map_or(work.tool.axis, |r| r.gauge.contact(&work.tool, &tip).gradient);
+        let posture = work.attitude.posture(&tip)?;
+        let drive = posture.contact(&work.roles[0].gauge, &tip).gradient;
+        let part = work.roles.get(1).map_or(posture.tool.axis, |r| posture.contact(&r.gauge, &tip).gradient);
         let tangent = drive.cross(&part).try_normalize(1e-9).ok_or(MotionFailure::TangentSurfaces { tip })?;
-        let slope = |tip: &Vec3| check.gauge.contact(&work.tool, tip).gradient.dot(&tangent);
+        let slope = |tip: &Vec3| -> Result<f64, MotionFailure> {
+            Ok(work.attitude.posture(tip)?.contact(&check.gauge, tip).gradient.dot(&tangent))
+        };
         let reach = 1e-4 * position::size(&work.tool, &tip);
-        let (here, ahead) = (slope(&tip), slope(&(tip + tangent * reach)));
+        let (here, ahead) = (slope(&tip)?, slope(&(tip + tangent * reach))?);
         let rate = (ahead - here) / reach;
         if here.abs() <= 1e-12 {
             break;
@@ -116,7 +119,7 @@ pub(super) fn tangent_start(work: &StartUp<'_>, start: &Vec3) -> Result<Vec3, Mo
         if rate.abs() <= f64::MIN_POSITIVE {
             return Err(MotionFailure::NotTangent {
                 check: 0,
-                gap: check.gauge.contact(&work.tool, &tip).clearance,
+                gap: posture.contact(&check.gauge, &tip).clearance,
             });
         }
         let moved = tip - tangent * (here / rate);
@@ -127,7 +130,7 @@ pub(super) fn tangent_start(work: &StartUp<'_>, start: &Vec3) -> Result<Vec3, Mo
             break;
         }
     }
-    let gap = check.gauge.contact(&work.tool, &tip).clearance;
+    let gap = work.attitude.posture(&tip)?.contact(&check.gauge, &tip).clearance;
     if gap.abs() > check.band() + work.roles[0].band() {
         return Err(MotionFailure::NotTangent { check: 0, gap });
     }

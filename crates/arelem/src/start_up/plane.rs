@@ -44,6 +44,7 @@ fn eligible(work: &StartUp<'_>) -> Option<Curve> {
     let state = work.state;
     let axis = work.tool.axis;
     let plain = axis.z.abs() >= VERTICAL
+        && !super::is_following(work)
         && work.tool.cutter.beta == 0.0
         && !state.force_iteration
         && state.surface_vectors.iter().all(Option::is_none)

@@ -5,7 +5,10 @@ use Relation::{On, Past, TangentToDrive as Tanto, To};
 use Turn::{Forward, Left as GoLft, Right as GoRgt};
 
 use super::*;
-use crate::position::{self, Condition};
+use crate::{
+    attitude::Attitude,
+    position::{self, Condition},
+};
 
 fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1.1e-9, "found {found}, expected {expected}");
@@ -33,7 +36,9 @@ fn w22_three_surfaces() {
         Condition::Clearance(&drive, 0.0),
         Condition::Clearance(&check, 0.0),
     ];
-    let tip = position::solve(&tool, &conditions, &v(0.5, 1.2, 2.5)).expect("a position").tip;
+    let tip = position::solve(&Attitude::fixed(tool.clone()), &conditions, &v(0.5, 1.2, 2.5))
+        .expect("a position")
+        .tip;
     near(tip.x, 0.3);
     near(tip.y, 1.006230590);
     near(tip.z, 1.739974874);
@@ -104,7 +109,13 @@ fn w33_start_on_a_cone() {
     let (drive, part) = (gauge(&cn), gauge(&ground()));
     for (aim, expected) in [(0.0, 1.876388375), (0.0009, 1.877427605)] {
         let conditions = [Condition::Clearance(&drive, aim), Condition::Clearance(&part, 0.0)];
-        near(position::solve(&tool, &conditions, &v(4.0, 0.0, 1.0)).expect("a position").tip.x, expected);
+        near(
+            position::solve(&Attitude::fixed(tool.clone()), &conditions, &v(4.0, 0.0, 1.0))
+                .expect("a position")
+                .tip
+                .x,
+            expected,
+        );
     }
     let mut p = Program::new();
     p.tolerance(0.0, 0.001)

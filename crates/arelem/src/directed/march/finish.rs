@@ -20,6 +20,7 @@ pub(in crate::directed) fn locate(
     prepared: &Prepared,
     checks: &[CheckSurface],
     event: &Event,
+    tangent: &Vec3,
 ) -> Result<End, MotionFailure> {
     if is_tangent(checks[event.check].relation) {
         return Ok(End { tip: event.tip, check: event.check, side: event.side });
@@ -27,12 +28,16 @@ pub(in crate::directed) fn locate(
     let mut check = prepared.checks[event.check].clone();
     check.set_side(event.side);
     check.look_from(&event.tip);
+    // How a surface without definite shape bends at the end, not at the start, tells where the end lies.
+    let (mut part, mut drive) = (prepared.part.clone(), prepared.drive.clone());
+    part.look_along(&event.tip, tangent);
+    drive.look_along(&event.tip, tangent);
     let conditions = [
-        Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
-        Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),
+        Condition::Clearance(&part.gauge, part.rest()),
+        Condition::Clearance(&drive.gauge, drive.rest()),
         Condition::Clearance(&check.gauge, check.rest()),
     ];
-    match position::solve(&prepared.tool, &conditions, &event.tip) {
+    match position::solve(&prepared.attitude, &conditions, &event.tip) {
         Ok(solution) => Ok(End { tip: solution.tip, check: event.check, side: event.side }),
         Err(unsolved) => Err(MotionFailure::IterationLimit {
             iteration: Iteration::ThreeSurfaces,

@@ -64,7 +64,7 @@ impl<'a> Stepper<'a> {
         let cap = cap.min(self.maximum);
         let curvature = match self.curvature {
             Some(known) => known,
-            None => self.probe(here),
+            None => self.probe(here)?,
         };
         let mut bends = self.bends(&curvature);
         let mut length = (self.predict(here, &curvature, &bends) * self.correction).min(cap);
@@ -128,20 +128,21 @@ impl<'a> Stepper<'a> {
     }
 
     fn extremes(&self, from: &Vertex, to: &Vertex) -> [Extremes; 2] {
-        let Prepared { tool, part, drive, size, .. } = self.prepared;
+        let Prepared { part, drive, size, .. } = self.prepared;
+        let sweep = from.sweep(self.prepared, to);
         [
-            proof::extremes(tool, part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
-            proof::extremes(tool, drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
+            proof::extremes(&sweep, part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
+            proof::extremes(&sweep, drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
         ]
     }
 
     /// Curvature from the change of the slopes over a short way.
-    fn probe(&self, here: &Vertex) -> [f64; 2] {
+    fn probe(&self, here: &Vertex) -> Result<[f64; 2], MotionFailure> {
         let reach = PROBE * self.prepared.size;
-        let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent);
-        let behind = Vertex::at(self.prepared, here.tip - here.tangent * reach, &here.tangent);
+        let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent)?;
+        let behind = Vertex::at(self.prepared, here.tip - here.tangent * reach, &here.tangent)?;
         let rate = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&here.tangent) / (2.0 * reach);
-        [rate(&behind.part, &ahead.part), rate(&behind.drive, &ahead.drive)]
+        Ok([rate(&behind.part, &ahead.part), rate(&behind.drive, &ahead.drive)])
     }
 
     fn bends(&self, curvature: &[f64; 2]) -> [Bend; 2] {
@@ -178,19 +179,19 @@ impl<'a> Stepper<'a> {
 
     /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
     fn attempt(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2]) -> Option<Trial> {
-        let Prepared { tool, part, drive, .. } = self.prepared;
+        let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions = [
             Condition::Clearance(&part.gauge, part.vertex(bends[0])),
             Condition::Clearance(&drive.gauge, drive.vertex(bends[1])),
         ];
-        let tip = position::solve(tool, &conditions, &(here.tip + here.tangent * length)).ok()?.tip;
+        let tip = position::solve(attitude, &conditions, &(here.tip + here.tangent * length)).ok()?.tip;
         let chord = tip - here.tip;
         let reached = chord.norm();
         if reached > cap * (1.0 + 1e-9) {
             // The correction made it longer than allowed: try again a little shorter.
             return self.shorter(here, length * (cap / reached) * (1.0 - 1e-6), cap, bends, length);
         }
-        let vertex = Vertex::at(self.prepared, tip, &here.tangent);
+        let vertex = Vertex::at(self.prepared, tip, &here.tangent).ok()?;
         self.judge(here, vertex, chord, reached)
     }
 

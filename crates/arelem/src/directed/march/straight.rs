@@ -16,7 +16,7 @@ pub(super) fn run(
     checks: &[CheckSurface],
     cancel: &dyn Fn() -> bool,
 ) -> Result<Path, MotionFailure> {
-    let here = Vertex::at(prepared, prepared.tip, &prepared.tangent);
+    let here = Vertex::at(prepared, prepared.tip, &prepared.tangent)?;
     let mut watcher = Watcher::new(prepared, checks);
     let mut tangency = tangency::Watch::new(prepared, checks);
     let mut from = here;
@@ -27,13 +27,13 @@ pub(super) fn run(
         if cancel() {
             return Err(MotionFailure::Cancelled);
         }
-        let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent);
-        let event = match watcher.scan(&from.tip, &to.tip) {
+        let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent)?;
+        let event = match watcher.scan(&from.sweep(prepared, &to)) {
             Some(event) => Some(event),
             None => tangency.scan(&from, &to)?,
         };
         if let Some(event) = event {
-            let end = finish::locate(prepared, checks, &event)?;
+            let end = finish::locate(prepared, checks, &event, &here.tangent)?;
             return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side });
         }
         travelled += length;

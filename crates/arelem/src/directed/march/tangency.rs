@@ -38,12 +38,12 @@ impl<'a> Watch<'a> {
             if !is_tangent(self.checks[index].relation) {
                 continue;
             }
-            let (before, after) = (self.slope(index, from), self.slope(index, to));
+            let (before, after) = (self.slope(index, from)?, self.slope(index, to)?);
             if before == 0.0 || (before > 0.0) == (after > 0.0) {
                 continue;
             }
             let vertex = self.parallel(index, from, to, before > 0.0)?;
-            let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip);
+            let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
             let working = &self.prepared.checks[index];
             let band = working.band() + self.prepared.drive.band() + self.prepared.part.band();
             if contact.clearance.abs() > band + 1e-9 * self.prepared.size {
@@ -71,9 +71,9 @@ impl<'a> Watch<'a> {
     }
 
     /// How fast the tool moves away from the check surface.
-    fn slope(&self, index: usize, vertex: &Vertex) -> f64 {
-        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip);
-        (contact.gradient * side).dot(&vertex.tangent)
+    fn slope(&self, index: usize, vertex: &Vertex) -> Result<f64, MotionFailure> {
+        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
+        Ok((contact.gradient * side).dot(&vertex.tangent))
     }
 
     /// The position on both surfaces where the path is parallel to the check surface.
@@ -84,21 +84,21 @@ impl<'a> Watch<'a> {
         to: &Vertex,
         positive: bool,
     ) -> Result<Vertex, MotionFailure> {
-        let Prepared { tool, part, drive, .. } = self.prepared;
+        let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions = [
             Condition::Clearance(&part.gauge, part.rest()),
             Condition::Clearance(&drive.gauge, drive.rest()),
         ];
         let at = |share: f64| -> Result<Vertex, MotionFailure> {
             let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;
-            let solved = position::solve(tool, &conditions, &on_chord).map_err(|unsolved| {
+            let solved = position::solve(attitude, &conditions, &on_chord).map_err(|unsolved| {
                 MotionFailure::IterationLimit {
                     iteration: Iteration::TwoSurfaces,
                     limit: unsolved.iterations,
                     tip: unsolved.tip,
                 }
             })?;
-            Ok(Vertex::at(self.prepared, solved.tip, &from.tangent))
+            Vertex::at(self.prepared, solved.tip, &from.tangent)
         };
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..MAX_ITERATIONS {
@@ -106,7 +106,7 @@ impl<'a> Watch<'a> {
             if middle <= low || middle >= high {
                 break;
             }
-            if (self.slope(index, &at(middle)?) > 0.0) == positive {
+            if (self.slope(index, &at(middle)?)? > 0.0) == positive {
                 low = middle;
             } else {
                 high = middle;
@@ -117,11 +117,12 @@ impl<'a> Watch<'a> {
 }
 
 /// Contact with the check surface on the side where the tool touches it more nearly.
-fn nearer(prepared: &Prepared, check: &Working, tip: &Vec3) -> (Contact, f64) {
+fn nearer(prepared: &Prepared, check: &Working, tip: &Vec3) -> Result<(Contact, f64), MotionFailure> {
+    let posture = prepared.attitude.posture(tip)?;
     let mut gauge = check.gauge.clone();
     gauge.side = 1.0;
-    let above = gauge.contact(&prepared.tool, tip);
+    let above = posture.contact(&gauge, tip);
     gauge.side = -1.0;
-    let below = gauge.contact(&prepared.tool, tip);
-    if above.clearance.abs() <= below.clearance.abs() { (above, 1.0) } else { (below, -1.0) }
+    let below = posture.contact(&gauge, tip);
+    Ok(if above.clearance.abs() <= below.clearance.abs() { (above, 1.0) } else { (below, -1.0) })
 }

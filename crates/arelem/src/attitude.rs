@@ -1,0 +1,175 @@
+//! The tool axis along a path: fixed, or a function of the tool end that follows the part or drive surface (TLAXIS with
+//! NORMPS, NORMDS and ATANGL, language reference 6.9).
+//!
+//! The axis depends on the position alone. That makes every clearance a function of the tool end again; its gradient gets
+//! a share from the turning tool: a point of the tool at `q` from the tool end moves by `(A × dA) × q`.
+
+use std::borrow::Cow;
+
+use apt_geometry::Vec3;
+use nalgebra::Matrix3;
+
+pub(crate) use self::law::Law;
+use crate::{
+    clearance::{Contact, Gauge, Tool},
+    error::{AxisFailure, MotionFailure},
+};
+
+mod law;
+
+/// Step of the derivative of the axis, relative to the size of the coordinates.
+const DERIVATIVE_STEP: f64 = 1e-5;
+
+/// How the axis is controlled during one motion.
+#[derive(Debug, Clone)]
+pub(crate) struct Attitude {
+    /// The tool at the start of the motion, all along it if there is no law.
+    tool: Tool,
+    law: Option<Law>,
+}
+
+/// The tool at a position, and how fast its axis turns when the position changes.
+pub(crate) struct Posture<'a> {
+    pub(crate) tool: Cow<'a, Tool>,
+    rate: Option<Matrix3<f64>>,
+}
+
+impl Attitude {
+    pub(crate) fn fixed(tool: Tool) -> Self {
+        Self { tool, law: None }
+    }
+
+    /// An axis that follows a law.
+    pub(crate) fn following(tool: &Tool, law: Law) -> Self {
+        Self { tool: tool.clone(), law: Some(law) }
+    }
+
+    /// The cutter, whatever its axis.
+    pub(crate) fn tool(&self) -> &Tool {
+        &self.tool
+    }
+
+    /// True if the axis changes along the path.
+    pub(crate) fn turns(&self) -> bool {
+        self.law.is_some()
+    }
+
+    /// The tool at a position.
+    pub(crate) fn tool_at(&self, tip: &Vec3) -> Result<Cow<'_, Tool>, MotionFailure> {
+        match &self.law {
+            None => Ok(Cow::Borrowed(&self.tool)),
+            Some(law) => law
+                .axis(&self.tool, tip)
+                .map(|axis| Cow::Owned(self.tool.turned(axis)))
+                .map_err(|cause| undetermined(cause, tip)),
+        }
+    }
+
+    /// The tool at a position with the rate of its axis.
+    pub(crate) fn posture(&self, tip: &Vec3) -> Result<Posture<'_>, MotionFailure> {
+        let tool = self.tool_at(tip)?;
+        let rate = self.law.as_ref().and_then(|law| self.rate(law, tip));
+        Ok(Posture { tool, rate })
+    }
+
+    /// Derivatives of the axis by the coordinates of the tool end, as columns; `None` at the brink of the law's domain.
+    fn rate(&self, law: &Law, tip: &Vec3) -> Option<Matrix3<f64>> {
+        let step = DERIVATIVE_STEP * crate::position::size(&self.tool, tip);
+        let mut columns = [Vec3::zeros(); 3];
+        for (k, column) in columns.iter_mut().enumerate() {
+            let mut reach = Vec3::zeros();
+            reach[k] = step;
+            let ahead = law.axis(&self.tool, &(tip + reach)).ok()?;
+            let behind = law.axis(&self.tool, &(tip - reach)).ok()?;
+            *column = (ahead - behind) / (2.0 * step);
+        }
+        Some(Matrix3::from_columns(&columns))
+    }
+}
+
+impl Posture<'_> {
+    /// The contact with a surface; the gradient takes the turning of the axis into account and is then no unit vector.
+    pub(crate) fn contact(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
+        let mut contact = gauge.contact(&self.tool, tip);
+        if let Some(rate) = &self.rate
+            && !gauge.on
+        {
+            let arm = contact.tool - tip;
+            contact.gradient += rate.transpose() * arm.cross(&contact.gradient).cross(&self.tool.axis);
+        }
+        contact
+    }
+}
+
+fn undetermined(cause: AxisFailure, tip: &Vec3) -> MotionFailure {
+    MotionFailure::AxisUndetermined { cause, tip: *tip }
+}
+
+/// A straight move of the tool end during which the axis turns evenly in the plane of its ends: what a machine does
+/// between two positions, and what the verifier assumes.
+pub(crate) struct Sweep<'a> {
+    tool: &'a Tool,
+    from: Vec3,
+    /// Unit direction; zero for a move without length.
+    pub(crate) direction: Vec3,
+    pub(crate) length: f64,
+    axis: Vec3,
+    /// Unit vector about which the axis turns, and by which angle.
+    turn: Option<(Vec3, f64)>,
+}
+
+/// Sine between two axes below which the tool does not turn.
+const NO_TURN: f64 = 1e-14;
+
+impl<'a> Sweep<'a> {
+    /// From one tool end and axis to another.
+    pub(crate) fn new(tool: &'a Tool, from: (&Vec3, &Vec3), to: (&Vec3, &Vec3)) -> Self {
+        let delta = to.0 - from.0;
+        let length = delta.norm();
+        let direction = if length > 0.0 { delta / length } else { Vec3::zeros() };
+        let normal = from.1.cross(to.1);
+        let sine = normal.norm();
+        let turn = (sine > NO_TURN).then(|| (normal / sine, sine.atan2(from.1.dot(to.1))));
+        Self { tool, from: *from.0, direction, length, axis: *from.1, turn }
+    }
+
+    pub(crate) fn turns(&self) -> bool {
+        self.turn.is_some()
+    }
+
+    /// The tool end and the tool at a distance from the start.
+    pub(crate) fn at(&self, x: f64) -> (Vec3, Cow<'_, Tool>) {
+        let tip = self.from + self.direction * x;
+        match self.turn {
+            None if self.axis == self.tool.axis => (tip, Cow::Borrowed(self.tool)),
+            None => (tip, Cow::Owned(self.tool.turned(self.axis))),
+            Some((about, angle)) => {
+                let share = if self.length > 0.0 { x / self.length } else { 1.0 };
+                let (sin, cos) = (angle * share).sin_cos();
+                let axis = (self.axis * cos + about.cross(&self.axis) * sin).normalize();
+                (tip, Cow::Owned(self.tool.turned(axis)))
+            }
+        }
+    }
+
+    /// How fast a clearance changes per unit of distance.
+    pub(crate) fn slope(&self, contact: &Contact, tip: &Vec3) -> f64 {
+        let straight = contact.gradient.dot(&self.direction);
+        match self.turn {
+            Some((about, angle)) if self.length > 0.0 => {
+                straight + about.dot(&(contact.tool - tip).cross(&contact.gradient)) * angle / self.length
+            }
+            _ => straight,
+        }
+    }
+
+    /// Greatest distance that a point of the tool moves per unit of distance of the tool end.
+    pub(crate) fn stretch(&self) -> f64 {
+        match self.turn {
+            Some((_, angle)) if self.length > 0.0 => {
+                1.0 + angle * (self.tool.cutter.height + self.tool.radius()) / self.length
+            }
+            _ => 1.0,
+        }
+    }
+}

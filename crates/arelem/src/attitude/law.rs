@@ -1,0 +1,212 @@
+//! The law that an axis follows: angles to the normal of the controlling surface.
+
+use apt_geometry::{
+    Vec3,
+    motion::{AxisAngle, ToolAxis},
+    surface::Surface,
+};
+
+use crate::{
+    clearance::{Gauge, Tool},
+    error::AxisFailure,
+};
+
+/// Bound of the iteration for the normal at the contact.
+const MAX_ITERATIONS: u32 = 80;
+/// A change of the axis below this ends it.
+const RESOLUTION: f64 = 1e-15;
+/// The change that rounding may leave.
+const ACCEPTABLE: f64 = 1e-11;
+/// |cos| between axis and normal above which an axis ON a surface keeps to its side of it.
+const LEAST_COSINE: f64 = 0.05;
+/// Sine between two directions below which they span no plane.
+const SAME_DIRECTION: f64 = 1e-6;
+/// Sine of the angle between drive normal and four-axis plane below which alpha is a lead angle.
+const LEAD_SINE: f64 = 1e-3;
+/// Angles below this (radians) are zero.
+const ZERO_ANGLE: f64 = 1e-12;
+
+/// A surface whose normal counts, with the sign that turns the natural normal.
+#[derive(Debug, Clone)]
+struct Directed {
+    surface: Surface,
+    sign: f64,
+}
+
+impl Directed {
+    fn normal(&self, p: &Vec3) -> Vec3 {
+        self.surface.foot(p).normal * self.sign
+    }
+}
+
+/// How the axis stands to the normal.
+#[derive(Debug, Clone, Copy)]
+enum Mode {
+    Normal,
+    /// Towards the other surface's normal by an angle with this cosine and sine.
+    Tilted {
+        cosine: f64,
+        sine: f64,
+    },
+    /// In the plane across a unit vector, turned about that vector by an angle with this cosine and sine.
+    Across {
+        vector: Vec3,
+        cosine: f64,
+        sine: f64,
+    },
+    /// Components along the normal, along the direction of motion, towards the other surface's normal; the sense of
+    /// the direction of motion against the product of the two normals.
+    Lead {
+        along: f64,
+        ahead: f64,
+        aside: f64,
+        sense: f64,
+    },
+}
+
+/// The axis as a function of the tool end.
+#[derive(Debug, Clone)]
+pub(crate) struct Law {
+    base: Directed,
+    other: Option<Directed>,
+    mode: Mode,
+}
+
+impl Law {
+    /// The law of a mode for a motion at `tip` towards `ahead`, for a tool with its present axis. `None` for a fixed axis.
+    ///
+    /// The axis points to the side where the tool is; where the tool end is ON the controlling surface, to the side
+    /// where the axis is. A positive angle tilts it towards the side where the tool is of the other surface, or along
+    /// that surface's own normal if the tool end is ON it.
+    pub(crate) fn new(
+        mode: &ToolAxis,
+        part: Option<&Gauge>,
+        drive: Option<&Gauge>,
+        (tool, tip, ahead): (&Tool, &Vec3, &Vec3),
+    ) -> Result<Option<Self>, AxisFailure> {
+        let controlled_by_part = match mode {
+            ToolAxis::Fixed(_) | ToolAxis::Keep => return Ok(None),
+            ToolAxis::Parallel { .. } => return Err(AxisFailure::NotRuled),
+            ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } => *part,
+        };
+        let (base, other) = if controlled_by_part { (part, drive) } else { (drive, part) };
+        let base = base.ok_or(AxisFailure::NoSurface)?;
+        let cosine = base.surface.foot(tip).normal.dot(&tool.axis);
+        let sign = if base.on && cosine.abs() > LEAST_COSINE { cosine.signum() } else { base.side };
+        let base = Directed { surface: base.surface.clone(), sign };
+        let other = other.map(|gauge| Directed {
+            surface: gauge.surface.clone(),
+            sign: if gauge.on { 1.0 } else { gauge.side },
+        });
+        let mut law = Self { base, other, mode: Mode::Normal };
+        if let ToolAxis::AtAngle { angle, mode, .. } = mode {
+            law.mode = law.angles(*angle, mode, tip, ahead)?;
+        }
+        Ok(Some(law))
+    }
+
+    fn angles(&self, angle: f64, mode: &AxisAngle, tip: &Vec3, ahead: &Vec3) -> Result<Mode, AxisFailure> {
+        let (sine, cosine) = angle.sin_cos();
+        Ok(match mode {
+            AxisAngle::Plain if angle.abs() <= ZERO_ANGLE => Mode::Normal,
+            AxisAngle::Plain => Mode::Tilted { cosine, sine },
+            AxisAngle::PerpendicularTo(vector) => {
+                let vector = vector.try_normalize(0.0).ok_or(AxisFailure::NoPlane)?;
+                let flat = in_plane(&self.base.normal(tip), &vector)?;
+                let turning = vector.cross(&flat);
+                let aside = self.other.as_ref().map_or(0.0, |other| other.normal(tip).dot(&turning));
+                // Where the drive surface lies across the plane alpha leads (+) or lags.
+                let towards = if aside.abs() > LEAD_SINE { aside } else { ahead.dot(&turning) };
+                if towards == 0.0 && angle.abs() > ZERO_ANGLE {
+                    return Err(AxisFailure::SignUnresolved);
+                }
+                Mode::Across { vector, cosine, sine: if towards < 0.0 { -sine } else { sine } }
+            }
+            AxisAngle::Lead(lead) => {
+                let rest = 1.0 - cosine * cosine - lead.sin() * lead.sin();
+                if rest < -ZERO_ANGLE {
+                    return Err(AxisFailure::ImpossibleAngles { alpha: angle, beta: *lead });
+                }
+                let (tangent, _) = self.frame(&self.base.normal(tip), tip)?;
+                let forward = tangent.dot(ahead);
+                if forward == 0.0 && *lead != 0.0 {
+                    return Err(AxisFailure::SignUnresolved);
+                }
+                let aside = rest.max(0.0).sqrt().copysign(angle);
+                Mode::Lead {
+                    along: cosine,
+                    ahead: lead.sin(),
+                    aside,
+                    sense: if forward < 0.0 { -1.0 } else { 1.0 },
+                }
+            }
+        })
+    }
+
+    /// True if every surface that counts is a plane.
+    pub(crate) fn is_constant(&self) -> bool {
+        let plane = |directed: &Directed| matches!(directed.surface, Surface::Plane(_));
+        let alone = matches!(self.mode, Mode::Normal | Mode::Across { .. });
+        plane(&self.base) && (alone || self.other.as_ref().is_some_and(plane))
+    }
+
+    /// The unit axis of a tool with its end at `tip`.
+    pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+        let mut normal = self.base.normal(tip);
+        let mut axis = self.towards(&normal, tip)?;
+        if matches!(self.mode, Mode::Normal) {
+            return Ok(axis);
+        }
+        // The angles hold at the contact, which moves with the axis.
+        let mut change = f64::INFINITY;
+        for _ in 0..MAX_ITERATIONS {
+            normal = self.base.normal(&corner(tool, tip, &axis, &normal));
+            let next = self.towards(&normal, tip)?;
+            change = (next - axis).norm();
+            axis = next;
+            if change <= RESOLUTION {
+                break;
+            }
+        }
+        if change <= ACCEPTABLE { Ok(axis) } else { Err(AxisFailure::NotSettled { change }) }
+    }
+
+    fn towards(&self, normal: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+        let axis = match self.mode {
+            Mode::Normal => *normal,
+            Mode::Tilted { cosine, sine } => {
+                let (_, aside) = self.frame(normal, tip)?;
+                normal * cosine + aside * sine
+            }
+            Mode::Across { vector, cosine, sine } => {
+                let flat = in_plane(normal, &vector)?;
+                flat * cosine + vector.cross(&flat) * sine
+            }
+            Mode::Lead { along, ahead, aside, sense } => {
+                let (tangent, across) = self.frame(normal, tip)?;
+                normal * along + tangent * (ahead * sense) + across * aside
+            }
+        };
+        axis.try_normalize(0.0).ok_or(AxisFailure::NoNormal)
+    }
+
+    /// Unit vectors across the normal: along the line of motion and towards the other surface's normal.
+    fn frame(&self, normal: &Vec3, tip: &Vec3) -> Result<(Vec3, Vec3), AxisFailure> {
+        let other = self.other.as_ref().ok_or(AxisFailure::NoSurface)?.normal(tip);
+        let tangent =
+            normal.cross(&other).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::SignUnresolved)?;
+        Ok((tangent, tangent.cross(normal)))
+    }
+}
+
+/// The part of a normal in the plane across a unit vector, as a unit vector.
+fn in_plane(normal: &Vec3, vector: &Vec3) -> Result<Vec3, AxisFailure> {
+    (normal - vector * normal.dot(vector)).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::NoPlane)
+}
+
+/// The point of the corner circle that faces a surface with this normal: contact lies on the same normal.
+fn corner(tool: &Tool, tip: &Vec3, axis: &Vec3, normal: &Vec3) -> Vec3 {
+    let center = tool.profile.center;
+    let radial = (normal - axis * normal.dot(axis)).try_normalize(SAME_DIRECTION).unwrap_or_else(Vec3::zeros);
+    tip + axis * center.height - radial * center.radius.max(0.0)
+}
