@@ -1,0 +1,61 @@
+//! Every motion of every good program is proven to lie within its tolerances.
+
+use apt_tests::runs::{analysis, examples, oracle_programs, path_of, read, report, title};
+use serde_json::Value;
+
+/// Rounding of a clearance, program units.
+const ROUNDING: f64 = 1e-9;
+
+/// What is wrong with the extremes of one role.
+fn outside(motion: &Value, role: &str) -> Option<String> {
+    let extent = motion[role].as_object()?;
+    let number = |key: &str| extent[key].as_f64().unwrap();
+    let within = -number("intol") - ROUNDING <= number("min") && number("max") <= number("outtol") + ROUNDING;
+    (!within).then(|| format!("{} {role}: {extent:?}", motion["isn"]))
+}
+
+#[test]
+fn all_motions_are_verified_inside_their_band() {
+    let mut wrong = Vec::new();
+    let (mut motions, mut vectors) = (0, 0);
+    let oracle = oracle_programs().into_iter().filter(|(dialect, _)| *dialect != "apt3");
+    let examples = examples().into_iter().map(|path| ("free", path));
+    for (dialect, path) in oracle.chain(examples) {
+        let report = report(&analysis(&read(&path), dialect)).unwrap();
+        for motion in report["motions"].as_array().unwrap() {
+            motions += 1;
+            vectors += motion["cut_vectors"].as_u64().unwrap();
+            let mut told: Vec<String> =
+                ["part", "drive", "check"].iter().filter_map(|role| outside(motion, role)).collect();
+            if motion["verified"] != true {
+                told.push(format!("{} is not verified", motion["isn"]));
+            }
+            wrong.extend(told.into_iter().map(|what| format!("{} at {what}", title(&path))));
+        }
+    }
+    println!("{motions} motions with {vectors} cut vectors");
+    assert!(motions > 200, "{motions} motions");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_cut_vector_on_a_curve_is_longer_than_maxdp() {
+    let circle = "CUTTER/50\nINTOL/.1\nOUTTOL/.2\nC1=CIRCLE/0,0,200\nFROM/500,0,0\nGO/TO,C1\nTLLFT,GOLFT/C1,ON,(LINE/YAXIS)\n";
+    let sphere = "CUTTER/50,25\nINTOL/.1\nOUTTOL/.2\nS=SPHERE/0,0,-200,200\nD=PLANE/0,1,0,0\nFROM/-300,0,100\n\
+                  GO/ON,D,TO,S,ON,(PLANE/1,0,0,-100)\nINDIRV/1,0,0\nTLON,GOFWD/D,ON,(PLANE/1,0,0,100)\n";
+    for program in [circle, sphere] {
+        for (longest, statement) in [(10.0, ""), (7.0, "MAXDP/7\n"), (3.0, "MAXDP/3\n"), (40.0, "MAXDP/40\n")]
+        {
+            let report = report(&analysis(&format!("{statement}{program}FINI\n"), "free")).unwrap();
+            assert_eq!(report["ok"], true, "{statement}{program}{}", report["diagnostics"]);
+            let isn = report["motions"].as_array().unwrap().last().unwrap()["isn"].as_u64().unwrap();
+            let path = path_of(&report);
+            let first = path.iter().position(|location| location.isn == isn).unwrap();
+            for pair in path[first - 1..].windows(2) {
+                let squares = (0..3).map(|axis| (pair[0].at[axis] - pair[1].at[axis]).powi(2));
+                let length = squares.sum::<f64>().sqrt();
+                assert!(length <= longest + ROUNDING, "{length} with {statement}{program}");
+            }
+        }
+    }
+}
