@@ -223,3 +223,85 @@ proptest! {
         prop_assert!(expansion.lines.len() < 1_000_000);
     }
 }
+
+/// A program of `parts` parts with 500 statements each; each begins with a definition and ends with a use of it.
+fn program_in_parts(parts: usize) -> String {
+    let mut text = String::from("PARTNO PARTS\nA=1\n");
+    for part in 0..parts {
+        text.push_str(&format!("N{part}=POINT/{part},A\n"));
+        (0..498).for_each(|line| text.push_str(&format!("GOTO/{line},{part},0\n")));
+        text.push_str(&format!("GOTO/N{part}\n"));
+    }
+    text.push_str("GOTO/N0\nFINI\n");
+    text
+}
+
+#[test]
+fn only_what_uses_a_changed_name_is_evaluated_again() {
+    let text = program_in_parts(20);
+    let tree = parse(&text);
+    let program = run(&tree);
+    // N0 is used 500 statements behind and at the end; what is between is taken over.
+    for (from, to) in
+        [("N0=POINT/0", "N0=POINT/7"), ("N0=POINT", "N9=POINT"), ("N0=POINT", "$$ one\nN0=POINT")]
+    {
+        let at = text.find(from).expect("the line");
+        let (tree, change) = edited(&tree, at, at + from.len(), to);
+        let updated = program.update(&tree, &change, &options(), &|| false);
+        assert_same(&updated, &run(&tree), to);
+        assert!(updated.statistics().evaluated_statements <= 1_800, "{to}: {:?}", updated.statistics());
+        // What was taken over is as good as new: an edit behind, and one that takes everything back.
+        let again = tree.text().find("N15=POINT/15").expect("the line");
+        let (tree, change) = edited(&tree, again, again + 3, "N16");
+        let behind = updated.update(&tree, &change, &options(), &|| false);
+        assert_same(&behind, &run(&tree), to);
+        let (tree, change) = edited(&tree, 0, usize::from(tree.len()), &text);
+        assert_same(&behind.update(&tree, &change, &options(), &|| false), &program, "taken back");
+    }
+}
+
+#[test]
+fn a_name_that_comes_and_goes_changes_suggestions_far_behind() {
+    let text = program_in_parts(4).replace("GOTO/N3\n", "GOTO/N33\n");
+    let tree = parse(&text);
+    let program = run(&tree);
+    let at = text.find("N0=POINT").expect("the line");
+    let (tree, change) = edited(&tree, at, at + 2, "N34");
+    let updated = program.update(&tree, &change, &options(), &|| false);
+    assert_same(&updated, &run(&tree), "a name like the misspelt one");
+}
+
+/// Random statements far from each other.
+fn sparse_program(lines: &[(usize, usize)]) -> String {
+    let mut text = String::new();
+    for (line, fillers) in lines {
+        text.push_str(LINES[*line % LINES.len()]);
+        text.push('\n');
+        (0..*fillers).for_each(|number| text.push_str(&format!("SPINDL/{number}\n")));
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn edits_of_long_programs_one_after_the_other_equal_evaluation_from_scratch(
+        lines in prop::collection::vec((0_usize..1_000, 0_usize..150), 4..24),
+        edits in prop::collection::vec((0.0_f64..1.0, 0_usize..4, 0_usize..1_000), 1..6),
+    ) {
+        let mut tree = parse(&sparse_program(&lines));
+        let mut program = run(&tree);
+        for (place, removed, line) in edits {
+            let count = tree.statement_count();
+            let first = ((count as f64 * place) as usize).min(count.saturating_sub(1));
+            let start = usize::from(tree.statement(first).range().start());
+            let end = usize::from(tree.statement((first + removed).min(count)).range().start());
+            let insert = if line % 5 == 0 { String::new() } else { format!("{}\n", LINES[line % LINES.len()]) };
+            let (next, change) = edited(&tree, start, end, &insert);
+            program = program.update(&next, &change, &options(), &|| false);
+            tree = next;
+            assert_same(&program, &run(&tree), &tree.text());
+        }
+    }
+}

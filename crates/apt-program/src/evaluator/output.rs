@@ -1,5 +1,7 @@
 //! What a stretch of the program leaves behind.
 
+use std::cell::RefCell;
+
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -25,6 +27,11 @@ pub(crate) struct Output {
     pub(crate) touched: FxHashSet<SmolStr>,
     /// Names that were used.
     pub(crate) used: FxHashSet<SmolStr>,
+    /// Names whose meaning, or its absence, had an effect: whoever looks a name up is entered, readers of a shared
+    /// state included.
+    pub(crate) looked_up: RefCell<FxHashSet<SmolStr>>,
+    /// The names there are had an effect: suggestions for a misspelt one were looked for.
+    pub(crate) looked_at_all: bool,
     /// A PRINT or PUNCH has listed all names.
     pub(crate) lists_all: bool,
     /// Labels that TRANTO and check surfaces name, for a check at the end.

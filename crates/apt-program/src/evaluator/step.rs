@@ -199,7 +199,7 @@ impl Evaluator<'_> {
             self.report(FindingKind::Syntax(error.kind.clone()), error.range);
         }
         if let Some(name) = &statement.spoiled
-            && self.state.symbol(&name.text).is_none()
+            && self.look_up(&name.text).is_none()
         {
             let origin = self.origin(name.range);
             self.set_symbol(name.text.clone(), Meaning::Poisoned, origin);
@@ -220,7 +220,7 @@ impl Evaluator<'_> {
             self.state.open_checks.remove(&text);
         }
         let origin = self.origin(label.range);
-        let existing = self.state.symbol(&text).map(|symbol| (symbol.meaning.clone(), symbol.origin.clone()));
+        let existing = self.look_up(&text).map(|symbol| (symbol.meaning.clone(), symbol.origin.clone()));
         match existing {
             None => self.set_symbol(text, Meaning::Label, origin),
             Some((Meaning::Label, first)) if first.isn != origin.isn || first.frame != origin.frame => {

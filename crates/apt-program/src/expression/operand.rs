@@ -247,7 +247,7 @@ impl Evaluator<'_> {
     ) -> Option<()> {
         let key = self.array_key(&name.text);
         self.mark_used(&key);
-        let extent = match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
+        let extent = match self.look_up(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.extent,
             Some(Meaning::Poisoned) => {
                 self.unknown_values += 1;
@@ -300,7 +300,7 @@ impl Evaluator<'_> {
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside 1..=extent")]
         let index = at as u32;
-        let element = match self.state.symbol(key).map(|symbol| &symbol.meaning) {
+        let element = match self.look_up(key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.get(index).cloned(),
             _ => None,
         };

@@ -9,7 +9,7 @@ use smol_str::{SmolStr, format_smolstr};
 use crate::{
     evaluator::Evaluator,
     finding::{FindingKind, RelatedKind},
-    symbols::{ARRAY_KEY_SUFFIX, ArrayElement, Meaning, Stored, similar_names},
+    symbols::{ARRAY_KEY_SUFFIX, ArrayElement, Meaning, Stored, Symbol, similar_names},
 };
 
 /// APT4: a subscript on a name that is defined but not reserved.
@@ -55,7 +55,7 @@ impl Evaluator<'_> {
 
     /// The function of later systems that this is, in a dialect that has them, unless an array has its name.
     fn later_function(&self, reference: &Reference) -> Option<WordUse> {
-        if !self.dialect.later_functions || self.state.symbol(&reference.name.text).is_some() {
+        if !self.dialect.later_functions || self.look_up(&reference.name.text).is_some() {
             return None;
         }
         let word = vocabulary::later_function(&reference.name.text)?;
@@ -66,7 +66,7 @@ impl Evaluator<'_> {
     fn resolve_name(&mut self, reference: &Reference) -> Option<Resolved> {
         let name = &reference.name.text;
         self.mark_used(name);
-        let Some(symbol) = self.state.symbol(name) else {
+        let Some(symbol) = self.look_up(name) else {
             self.report_undefined(name.clone(), reference, APT4_UNDEFINED);
             return None;
         };
@@ -94,7 +94,7 @@ impl Evaluator<'_> {
     fn resolve_element(&mut self, reference: &Reference, index: u32) -> Option<Resolved> {
         let key = self.array_key(&reference.name.text);
         let name = format_smolstr!("{}({index})", reference.name.text);
-        let element = match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
+        let element = match self.look_up(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.get(index).cloned(),
             _ => None,
         };
@@ -115,7 +115,7 @@ impl Evaluator<'_> {
 
     /// Whether no element of a reserved array is defined.
     fn array_is_empty(&self, key: &str) -> bool {
-        let meaning = self.state.symbol(key).map(|symbol| &symbol.meaning);
+        let meaning = self.look_up(key).map(|symbol| &symbol.meaning);
         matches!(meaning, Some(Meaning::Array(array)) if array.holds_geometry.is_none())
     }
 
@@ -150,7 +150,7 @@ impl Evaluator<'_> {
     pub(crate) fn array_extent(&mut self, reference: &Reference) -> Option<u32> {
         let key = self.array_key(&reference.name.text);
         self.mark_used(&key);
-        match self.state.symbol(&key).map(|symbol| &symbol.meaning) {
+        match self.look_up(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => Some(array.extent),
             Some(Meaning::Poisoned) => {
                 self.unknown_values += 1;
@@ -174,13 +174,13 @@ impl Evaluator<'_> {
     /// The RESERV of an array, as a related place.
     fn reservation(&self, name: &SmolStr) -> Vec<(RelatedKind, crate::record::Origin)> {
         let key = self.array_key(name);
-        let symbol = self.state.symbol(&key);
+        let symbol = self.look_up(&key);
         symbol.map(|symbol| (RelatedKind::Reservation, symbol.origin.clone())).into_iter().collect()
     }
 
     /// The definition of a name, as a related place.
     pub(crate) fn definition_of(&self, name: &str) -> Vec<(RelatedKind, crate::record::Origin)> {
-        let symbol = self.state.symbol(name);
+        let symbol = self.look_up(name);
         symbol.map(|symbol| (RelatedKind::Definition, symbol.origin.clone())).into_iter().collect()
     }
 
@@ -190,6 +190,7 @@ impl Evaluator<'_> {
             self.errors += 1;
             return;
         }
+        self.output.looked_at_all = true;
         let names = self.state.symbols.keys().map(|key| key.trim_end_matches(ARRAY_KEY_SUFFIX));
         let similar = similar_names(&name, names);
         let mut finding = self.finding(FindingKind::Undefined { name, similar }, reference.range);
@@ -198,6 +199,17 @@ impl Evaluator<'_> {
             finding.number = Some(if in_definition { APT4_UNDEFINED_PARAMETER } else { apt4_number });
         }
         self.add(finding);
+    }
+
+    /// The meaning of a name. That somebody asked is noted: after an edit, what follows from the answer is evaluated again
+    /// if the answer is another one.
+    pub(crate) fn look_up(&self, name: &str) -> Option<&Symbol> {
+        let mut looked_up = self.output.looked_up.borrow_mut();
+        if !looked_up.contains(name) {
+            looked_up.insert(SmolStr::new(name));
+        }
+        drop(looked_up);
+        self.state.symbol(name)
     }
 
     /// Notes that a name was used.

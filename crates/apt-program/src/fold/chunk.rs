@@ -6,19 +6,17 @@ use apt_geometry::motion::MotionCommand;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use super::shift::Shift;
+use super::{patch::Patch, shift::Shift};
 use crate::{
     evaluator::{Output, State},
     finding::Finding,
     record::{Origin, Record, RecordKind},
-    symbols::DefinitionEvent,
+    symbols::{DefinitionEvent, Symbol},
 };
 
 /// What a chunk of statements left behind.
 #[derive(Debug, Clone)]
 pub(super) struct ChunkData {
-    /// The state before its first statement.
-    pub(super) before: State,
     /// Index of the statement it begins with.
     pub(super) start: usize,
     /// The lowest statement index that was read.
@@ -35,6 +33,10 @@ pub(super) struct ChunkData {
     pub(super) touched: FxHashSet<SmolStr>,
     /// Names that were used.
     pub(super) used: FxHashSet<SmolStr>,
+    /// Names whose meaning, or its absence, had an effect.
+    pub(super) looked_up: FxHashSet<SmolStr>,
+    /// All names there are had an effect.
+    pub(super) looked_at_all: bool,
     /// A statement has listed all names.
     pub(super) lists_all: bool,
     /// A record moves the tool.
@@ -42,21 +44,16 @@ pub(super) struct ChunkData {
 }
 
 impl ChunkData {
-    /// A chunk of what was put out since `before`.
-    pub(super) fn new(
-        before: State,
-        start: usize,
-        extent: (usize, usize),
-        steps: u64,
-        output: Output,
-    ) -> Self {
+    /// A chunk of what was put out by statements from `start` on.
+    pub(super) fn new(start: usize, extent: (usize, usize), steps: u64, output: Output) -> Self {
         Self {
-            before,
             start,
             read_from: extent.0,
             read_to: extent.1,
             steps,
             moves: output.records.iter().any(|record| moves_the_tool(&record.kind)),
+            looked_up: output.looked_up.into_inner(),
+            looked_at_all: output.looked_at_all,
             lists_all: output.lists_all,
             records: output.records,
             findings: output.findings,
@@ -89,18 +86,66 @@ fn moves_the_tool(kind: &RecordKind) -> bool {
 /// A chunk that may have moved: the shift of statement numbers is made when somebody looks.
 #[derive(Debug, Clone)]
 pub(super) struct Chunk {
+    /// The state before its first statement, as it was before `before_shifts` and `patch`.
+    before: Arc<State>,
+    before_shifts: Vec<Shift>,
+    /// Names that have another meaning before this chunk, which has no effect in it.
+    patch: Patch,
     data: Arc<ChunkData>,
     shifts: Vec<Shift>,
     shifted: Arc<OnceLock<Arc<ChunkData>>>,
 }
 
 impl Chunk {
-    /// A fresh chunk.
-    pub(super) fn new(data: ChunkData) -> Self {
-        Self { data: Arc::new(data), shifts: Vec::new(), shifted: Arc::new(OnceLock::new()) }
+    /// A fresh chunk with the state before its first statement.
+    pub(super) fn new(before: State, data: ChunkData) -> Self {
+        Self {
+            before: Arc::new(before),
+            before_shifts: Vec::new(),
+            patch: Patch::default(),
+            data: Arc::new(data),
+            shifts: Vec::new(),
+            shifted: Arc::new(OnceLock::new()),
+        }
     }
 
-    /// The chunk with all shifts made.
+    /// The state before its first statement.
+    pub(super) fn before(&self) -> State {
+        let mut state = (*self.before).clone();
+        self.before_shifts.iter().for_each(|shift| shift.state(&mut state));
+        self.patch.apply(&mut state);
+        state
+    }
+
+    /// The state before its first statement without the symbols, for comparison of all else.
+    pub(super) fn modal_before(&self) -> &State {
+        &self.before
+    }
+
+    /// The state's `reached`, in present indices.
+    pub(super) fn reached(&self) -> usize {
+        self.before_shifts.iter().fold(self.before.reached, |index, shift| shift.index(index))
+    }
+
+    /// What a name means before its first statement.
+    pub(super) fn symbol_before(&self, name: &SmolStr) -> Option<Symbol> {
+        if let Some(symbol) = self.patch.symbol(name) {
+            return symbol.cloned();
+        }
+        let mut symbol = self.before.symbol(name)?.clone();
+        self.before_shifts.iter().for_each(|shift| shift.symbol(&mut symbol));
+        Some(symbol)
+    }
+
+    /// Whether another meaning of one of these names could change what the chunk left behind.
+    pub(super) fn depends_on(&self, names: &[SmolStr]) -> bool {
+        let data = &self.data;
+        let matters =
+            |name| data.looked_up.contains(name) || data.touched.contains(name) || data.used.contains(name);
+        !names.is_empty() && (data.looked_at_all || data.lists_all || names.iter().any(matters))
+    }
+
+    /// The chunk with all shifts made, but for the state before it.
     pub(super) fn data(&self) -> &Arc<ChunkData> {
         if self.shifts.is_empty() {
             return &self.data;
@@ -174,17 +219,22 @@ impl Chunk {
         self.data.records.iter().filter_map(|record| record.label.as_ref())
     }
 
-    /// The same chunk after statements before it were inserted or removed.
-    pub(super) fn moved(&self, shift: Shift) -> Chunk {
-        if shift.is_nothing() {
-            return self.clone();
+    /// The same chunk after statements before it were inserted or removed, and after names that it does not depend on
+    /// got another meaning.
+    pub(super) fn moved(&self, shift: Shift, patch: &Patch) -> Chunk {
+        let mut chunk = self.clone();
+        if !shift.is_nothing() {
+            // What was already worked out is the new base, so that shifts do not pile up.
+            if let Some(shifted) = self.shifted.get() {
+                chunk.data = Arc::clone(shifted);
+                chunk.shifts.clear();
+            }
+            shift.append_to(&mut chunk.shifts);
+            shift.append_to(&mut chunk.before_shifts);
+            chunk.shifted = Arc::new(OnceLock::new());
+            chunk.patch = chunk.patch.moved(shift);
         }
-        // What was already worked out is the new base, so that shifts do not pile up.
-        let (data, mut shifts) = match self.shifted.get() {
-            Some(shifted) => (Arc::clone(shifted), Vec::new()),
-            None => (Arc::clone(&self.data), self.shifts.clone()),
-        };
-        shifts.push(shift);
-        Chunk { data, shifts, shifted: Arc::new(OnceLock::new()) }
+        chunk.patch = chunk.patch.then(patch);
+        chunk
     }
 }

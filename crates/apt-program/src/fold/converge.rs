@@ -3,19 +3,39 @@
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use super::shift::Shift;
+use super::{chunk::Chunk, shift::Shift};
 use crate::{
     evaluator::State,
     symbols::{Meaning, Symbol},
 };
 
-/// Whether `new` equals `old` moved by `shift`, given that they can differ in `names` only.
+/// Most names that may differ where an old evaluation takes over.
+const MOST_DIFFERENT: usize = 256;
+
+/// The names in which `new` differs from the state before an old chunk moved by `shift`, in alphabetic order, given that
+/// they can differ in `names` only. `None` when they differ in more than the meaning of some names.
 ///
 /// Both evaluations started from one state; so only names that one of them touched since can differ.
-pub(super) fn same_state(new: &State, old: &State, shift: Shift, names: &FxHashSet<SmolStr>) -> bool {
-    new.same_modal_values(old)
-        && new.reached == shift.index(old.reached)
-        && names.iter().all(|name| same_symbol(new.symbol(name), old.symbol(name), shift))
+pub(super) fn differing(
+    new: &State,
+    old: &Chunk,
+    shift: Shift,
+    names: &FxHashSet<SmolStr>,
+) -> Option<Vec<SmolStr>> {
+    if !new.same_modal_values(old.modal_before()) || new.reached != shift.index(old.reached()) {
+        return None;
+    }
+    let mut different = Vec::new();
+    for name in names {
+        if !same_symbol(new.symbol(name), old.symbol_before(name).as_ref(), shift) {
+            different.push(name.clone());
+            if different.len() > MOST_DIFFERENT {
+                return None;
+            }
+        }
+    }
+    different.sort_unstable();
+    Some(different)
 }
 
 /// Whether two symbols mean the same and come from the same place.

@@ -3,6 +3,7 @@
 mod chunk;
 mod close;
 mod converge;
+mod patch;
 mod program;
 mod run;
 mod shift;

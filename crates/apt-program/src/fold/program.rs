@@ -66,7 +66,7 @@ impl Program {
         let kept = self.chunks.iter().take_while(|chunk| chunk.read_to() <= change.first).count();
         let kept = if kept == self.chunks.len() { kept.saturating_sub(1) } else { kept };
         let start = match self.chunks.get(kept) {
-            Some(chunk) => (chunk.start().min(change.first), chunk.data().before.clone()),
+            Some(chunk) => (chunk.start().min(change.first), chunk.before()),
             None => (0, State::default()),
         };
         let old = Old { chunks: &self.chunks, first: kept, change };
@@ -77,24 +77,25 @@ impl Program {
 
     /// Puts kept, new and reused chunks together.
     fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>, dialect: DialectName) -> Program {
-        let mut reused: u64 = kept.iter().map(Chunk::steps).sum();
+        let mut reused: u64 = outcome.reused + kept.iter().map(Chunk::steps).sum::<u64>();
         let mut chunks = kept;
         chunks.extend(outcome.chunks);
         let (end, complete) = match outcome.end {
             End::Complete(state) => (Arc::new(*state), true),
             End::Cancelled => (Arc::new(State::default()), false),
-            End::Converged(first, shift) => {
+            End::Converged(first, shift, patch) => {
                 let Some(old) = old else { return Program::assemble_nothing() };
                 for chunk in &old.chunks[first..] {
                     reused += chunk.steps();
-                    chunks.push(chunk.moved(shift));
+                    chunks.push(chunk.moved(shift, &patch));
                 }
-                // The states agree at the seam, and what follows is the same: so does the end.
-                let mut end = Arc::clone(&old.end);
+                // The states agree at the seam but for names that nothing behind it changes: so do they at the end.
+                let mut end = (*old.end).clone();
                 if !shift.is_nothing() {
-                    shift.state(Arc::make_mut(&mut end));
+                    shift.state(&mut end);
                 }
-                (end, true)
+                patch.apply(&mut end);
+                (Arc::new(end), true)
             }
         };
         let findings = Arc::new(closing_findings(&chunks, &end, dialect, complete));

@@ -6,7 +6,8 @@ use smol_str::SmolStr;
 
 use super::{
     chunk::{Chunk, ChunkData},
-    converge::same_state,
+    converge::differing,
+    patch::Patch,
     shift::Shift,
 };
 use crate::{
@@ -35,6 +36,8 @@ pub(crate) struct Outcome {
     pub(super) end: End,
     /// Top-level statements executed.
     pub(super) steps: u64,
+    /// Top-level statements of old chunks among `chunks`.
+    pub(super) reused: u64,
     /// One of them asked for a file.
     pub(super) asked_for_files: bool,
 }
@@ -43,8 +46,9 @@ pub(crate) struct Outcome {
 pub(crate) enum End {
     /// At the end of the program.
     Complete(Box<State>),
-    /// In the state of an old chunk: the rest is that of the old evaluation, moved.
-    Converged(usize, Shift),
+    /// In the state of an old chunk, but for names that do not matter any more: the rest is that of the old evaluation,
+    /// moved.
+    Converged(usize, Shift, Patch),
     /// Cancelled.
     Cancelled,
 }
@@ -59,7 +63,8 @@ pub(crate) fn evaluate_from(
 ) -> Outcome {
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, start.1);
     let mut top = TopLevel::new(tree);
-    let mut outcome = Outcome { chunks: Vec::new(), end: End::Cancelled, steps: 0, asked_for_files: false };
+    let mut outcome =
+        Outcome { chunks: Vec::new(), end: End::Cancelled, steps: 0, reused: 0, asked_for_files: false };
     let mut reuse = old.map(Reuse::new);
     let mut index = start.0;
     let count = tree.statement_count();
@@ -68,15 +73,31 @@ pub(crate) fn evaluate_from(
             return outcome;
         }
         if let Some(reuse) = &mut reuse
-            && let Some((chunk, shift)) = reuse.converged(index, &evaluator.state)
+            && let Some(takeover) = reuse.takeover(index, &evaluator.state)
         {
-            outcome.end = End::Converged(chunk, shift);
-            return outcome;
+            let Takeover { first, until, patch } = takeover;
+            let Some(next) = reuse.old.chunks.get(until) else {
+                outcome.end = End::Converged(first, reuse.shift, patch);
+                return outcome;
+            };
+            for chunk in &reuse.old.chunks[first..until] {
+                outcome.reused += chunk.steps();
+                outcome.chunks.push(chunk.moved(reuse.shift, &patch));
+            }
+            let mut state = next.before();
+            if !reuse.shift.is_nothing() {
+                reuse.shift.state(&mut state);
+            }
+            patch.apply(&mut state);
+            evaluator.state = state;
+            index = reuse.shift.index(next.start());
+            reuse.candidate = until;
         }
         if index >= count || evaluator.state.ended {
             break;
         }
         let until = reuse.as_ref().and_then(|reuse| reuse.next_boundary(index));
+        let before = evaluator.state.clone();
         let (chunk, next) = run_chunk(&mut evaluator, &mut top, index, until);
         if evaluator.cancelled {
             return outcome;
@@ -86,7 +107,7 @@ pub(crate) fn evaluate_from(
         if let Some(reuse) = &mut reuse {
             reuse.touched.extend(chunk.touched.iter().cloned());
         }
-        outcome.chunks.push(Chunk::new(chunk));
+        outcome.chunks.push(Chunk::new(before, chunk));
         index = next;
     }
     close(&mut evaluator, tree, &mut outcome);
@@ -101,7 +122,8 @@ fn close(evaluator: &mut Evaluator<'_>, tree: &SyntaxTree, outcome: &mut Outcome
     evaluator.close_program(tree);
     let output = std::mem::take(&mut evaluator.output);
     if !output.findings.is_empty() || !output.records.is_empty() {
-        outcome.chunks.push(Chunk::new(ChunkData::new(before, count, (0, count), 0, output)));
+        let data = ChunkData::new(count, (0, count), 0, output);
+        outcome.chunks.push(Chunk::new(before, data));
     }
 }
 
@@ -113,7 +135,6 @@ fn run_chunk(
     start: usize,
     until: Option<usize>,
 ) -> (ChunkData, usize) {
-    let before = evaluator.state.clone();
     let count = top.tree.statement_count();
     let mut index = start;
     let mut steps = 0;
@@ -133,7 +154,20 @@ fn run_chunk(
         }
     }
     let output: Output = std::mem::take(&mut evaluator.output);
-    (ChunkData::new(before, start, (read_from, read_to), steps, output), index)
+    (ChunkData::new(start, (read_from, read_to), steps, output), index)
+}
+
+/// Chunks that have moved are taken over in the middle of a program if there are at least this many.
+const LEAST_MOVED_STRETCH: usize = 16;
+
+/// Old chunks that can be taken over.
+struct Takeover {
+    /// The first of them.
+    first: usize,
+    /// The first one behind that cannot; the number of chunks if there is none.
+    until: usize,
+    /// The names that mean something else than in the old evaluation.
+    patch: Patch,
 }
 
 /// Looks for a statement where the old evaluation can take over.
@@ -178,8 +212,9 @@ impl<'o> Reuse<'o> {
             .find(|start| *start > index)
     }
 
-    /// The old chunk that begins here in the same state.
-    fn converged(&mut self, index: usize, state: &State) -> Option<(usize, Shift)> {
+    /// The old chunks that can be taken over from here on: one begins here, in the same state but for names on which they
+    /// do not depend.
+    fn takeover(&mut self, index: usize, state: &State) -> Option<Takeover> {
         while let Some(chunk) = self.old.chunks.get(self.candidate) {
             let start = chunk.start();
             let passed = start < self.shift.from || self.shift.index(start) < index;
@@ -188,9 +223,16 @@ impl<'o> Reuse<'o> {
                 self.candidate += 1;
                 continue;
             }
-            let here = self.shift.index(start) == index && self.candidate >= self.independent_from;
-            let same = here && same_state(state, &chunk.data().before, self.shift, &self.touched);
-            return same.then_some((self.candidate, self.shift));
+            if self.shift.index(start) != index || self.candidate < self.independent_from {
+                return None;
+            }
+            let names = differing(state, chunk, self.shift, &self.touched)?;
+            let (first, count) = (self.candidate, self.old.chunks.len());
+            let until = (first..count).find(|at| self.old.chunks[*at].depends_on(&names)).unwrap_or(count);
+            // The state behind is moved name by name, which a short stretch is not worth.
+            let worthwhile = until == count
+                || until > first && (self.shift.is_nothing() || until - first >= LEAST_MOVED_STRETCH);
+            return worthwhile.then(|| Takeover { first, until, patch: Patch::of(state, &names) });
         }
         None
     }

@@ -7,7 +7,7 @@ use crate::{
     evaluator::State,
     macros::MacroDefinition,
     record::{Frame, Origin},
-    symbols::Meaning,
+    symbols::{Meaning, Symbol},
 };
 
 /// Statements from `from` on have moved by `by`.
@@ -23,6 +23,23 @@ impl Shift {
     /// Whether nothing moves.
     pub(super) fn is_nothing(&self) -> bool {
         self.by == 0
+    }
+
+    /// Adds it to shifts that were made before; as one with the last of them where both together move what one would.
+    pub(super) fn append_to(&self, shifts: &mut Vec<Shift>) {
+        let joined = shifts.last().and_then(|last| last.joined_with(self));
+        match (joined, shifts.last_mut()) {
+            (Some(joined), Some(last)) => *last = joined,
+            _ => shifts.push(*self),
+        }
+    }
+
+    /// The one shift that has the effect of this one and then a later one, if there is one: what this one moved, and
+    /// nothing else, is moved by the later one.
+    fn joined_with(&self, later: &Shift) -> Option<Shift> {
+        let moved_to = self.index(self.from);
+        let by = self.by.checked_add(later.by)?;
+        (self.from.min(moved_to)..=moved_to).contains(&later.from).then_some(Shift { from: self.from, by })
     }
 
     /// The new index of a statement, or of the place after one.
@@ -63,7 +80,7 @@ impl Shift {
         Arc::new(moved)
     }
 
-    /// Everything in a chunk.
+    /// Everything in a chunk but the state before it, which is moved when an evaluation begins there.
     pub(super) fn chunk(&self, data: &mut ChunkData) {
         data.start = self.index(data.start);
         data.read_from = self.index(data.read_from);
@@ -83,7 +100,6 @@ impl Shift {
         for (_, origin) in &mut data.transfers {
             self.origin(origin);
         }
-        self.state(&mut data.before);
     }
 
     /// The symbols of a state.
@@ -92,13 +108,18 @@ impl Shift {
         let names: Vec<_> = state.symbols.keys().cloned().collect();
         for name in names {
             if let Some(symbol) = state.symbols.get_mut(&name) {
-                self.origin(&mut symbol.origin);
-                if let Meaning::Macro(definition) = &symbol.meaning {
-                    let mut moved: MacroDefinition = (**definition).clone();
-                    moved.body.first_isn = self.isn(moved.body.first_isn);
-                    symbol.meaning = Meaning::Macro(Arc::new(moved));
-                }
+                self.symbol(symbol);
             }
+        }
+    }
+
+    /// A symbol with its place.
+    pub(super) fn symbol(&self, symbol: &mut Symbol) {
+        self.origin(&mut symbol.origin);
+        if let Meaning::Macro(definition) = &symbol.meaning {
+            let mut moved: MacroDefinition = (**definition).clone();
+            moved.body.first_isn = self.isn(moved.body.first_isn);
+            symbol.meaning = Meaning::Macro(Arc::new(moved));
         }
     }
 }
@@ -106,4 +127,32 @@ impl Shift {
 /// Whether a frame is an included file, or stands in one.
 fn is_included(frame: &Frame) -> bool {
     frame.kind == crate::record::FrameKind::Include || frame.parent.as_deref().is_some_and(is_included)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_shifts_move_what_both_would() {
+        for (from, by) in [(5, 3), (5, 1), (5, -2), (7, -3)] {
+            let first = Shift { from, by };
+            for later in (0..12).flat_map(|from| [-2, 1, 4].map(|by| Shift { from, by })) {
+                let Some(joined) = first.joined_with(&later) else { continue };
+                // Statements that a shift removed have no new index.
+                let removed = |shift: &Shift, index: usize| {
+                    shift.by < 0 && index < shift.from && index >= shift.index(shift.from)
+                };
+                for index in (0..40).filter(|index| !removed(&first, *index)) {
+                    let between = first.index(index);
+                    if !removed(&later, between) {
+                        assert_eq!(joined.index(index), later.index(between), "{first:?} {later:?} {index}");
+                    }
+                }
+            }
+        }
+        let mut shifts = Vec::new();
+        (0..100).for_each(|at| Shift { from: 10 + at, by: 1 }.append_to(&mut shifts));
+        assert_eq!(shifts, [Shift { from: 10, by: 100 }]);
+    }
 }

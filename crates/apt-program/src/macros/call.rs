@@ -31,7 +31,7 @@ impl Evaluator<'_> {
             return Flow::Next;
         }
         self.mark_used(&name.text);
-        let definition = match self.state.symbol(&name.text) {
+        let definition = match self.look_up(&name.text) {
             Some(symbol) => match &symbol.meaning {
                 Meaning::Macro(definition) => Some((Arc::clone(definition), symbol.origin.clone())),
                 Meaning::Poisoned => {
@@ -66,6 +66,7 @@ impl Evaluator<'_> {
     /// Reports a CALL of something that is not a macro.
     fn report_unknown_macro(&mut self, name: &Name) {
         let related = self.definition_of(&name.text);
+        self.output.looked_at_all = true;
         let macros = self
             .state
             .symbols

@@ -24,7 +24,7 @@ impl Evaluator<'_> {
             variables.push(MacroVariable { name: text, default: parameter.value.clone() });
         }
         self.report_body_syntax(&body, &variables);
-        if self.state.symbol(&name.text).is_some() {
+        if self.look_up(&name.text).is_some() {
             let related = self.definition_of(&name.text);
             let finding = FindingKind::MacroNameUsed { name: name.text.clone() };
             return self.report_related(finding, name.range, related);

@@ -119,7 +119,7 @@ impl Evaluator<'_> {
             return self.report(FindingKind::ReserveExtent { extent }, name.range);
         }
         let key = self.array_key(&name.text);
-        if self.state.symbol(&key).is_some() {
+        if self.look_up(&key).is_some() {
             let related = self.definition_of(&key);
             let finding = FindingKind::ReserveUsed { name: name.text.clone() };
             return self.report_related(finding, name.range, related);
@@ -147,7 +147,7 @@ impl Evaluator<'_> {
                 self.report(finding, first.range().cover(second.range()));
                 continue;
             };
-            if old.word.spelling == "SYN" || self.state.symbol(&new.text).is_some() {
+            if old.word.spelling == "SYN" || self.look_up(&new.text).is_some() {
                 let finding = FindingKind::SynonymKind { first: spelled(first), second: spelled(second) };
                 self.report(finding, first.range().cover(second.range()));
                 continue;
@@ -183,7 +183,7 @@ impl Evaluator<'_> {
         let Some(values) = source.and_then(|item| self.obtain_values(kind, item, first.range())) else {
             for target in targets {
                 if let Argument::Expression(Expression::Reference(reference)) = target
-                    && self.state.symbol(&reference.name.text).is_none()
+                    && self.look_up(&reference.name.text).is_none()
                     && reference.subscript.is_none()
                 {
                     self.assign_scalar(reference, None);

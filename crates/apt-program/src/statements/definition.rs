@@ -39,7 +39,7 @@ impl Evaluator<'_> {
     /// `Q=P` copies geometry in APT4.
     fn copy_geometry(&mut self, target: &Reference, value: &Expression) -> Option<()> {
         let source = Self::plain_reference(value)?;
-        let is_geometry = match self.state.symbol(&source.name.text).map(|symbol| &symbol.meaning) {
+        let is_geometry = match self.look_up(&source.name.text).map(|symbol| &symbol.meaning) {
             Some(Meaning::Geometry(_)) => true,
             _ => source.subscript.is_some() && self.holds_geometry(source),
         };
@@ -56,7 +56,7 @@ impl Evaluator<'_> {
     fn holds_geometry(&self, reference: &Reference) -> bool {
         let key = self.array_key(&reference.name.text);
         matches!(
-            self.state.symbol(&key).map(|symbol| &symbol.meaning),
+            self.look_up(&key).map(|symbol| &symbol.meaning),
             Some(Meaning::Array(array)) if array.holds_geometry == Some(true)
         )
     }
@@ -69,7 +69,7 @@ impl Evaluator<'_> {
             return;
         }
         let name = &target.reference.name.text;
-        if let Some(symbol) = self.state.symbol(name) {
+        if let Some(symbol) = self.look_up(name) {
             let finding = match &symbol.meaning {
                 Meaning::Scalar(_) | Meaning::Poisoned => None,
                 Meaning::Geometry(stored) => {
@@ -244,7 +244,7 @@ impl Evaluator<'_> {
         }
         let name = target.reference.name.text.clone();
         let range = target.reference.range;
-        let existing = self.state.symbol(&name).cloned();
+        let existing = self.look_up(&name).cloned();
         if let Some(symbol) = &existing
             && !self.may_redefine(&name, symbol, stored.as_ref(), canon, range)
         {
@@ -305,7 +305,7 @@ impl Evaluator<'_> {
         canon: bool,
     ) -> bool {
         let key = self.array_key(&target.reference.name.text);
-        let Some(symbol) = self.state.symbol(&key).cloned() else { return false };
+        let Some(symbol) = self.look_up(&key).cloned() else { return false };
         let Meaning::Array(array) = &symbol.meaning else { return false };
         let Some(ArrayElement::Geometry(old)) = array.get(index) else { return true };
         let name = smol_str::format_smolstr!("{}({index})", target.reference.name.text);
@@ -317,7 +317,7 @@ impl Evaluator<'_> {
     fn assign_element(&mut self, target: &Target<'_>, index: u32, element: ArrayElement) {
         let name = &target.reference.name.text;
         let key = self.array_key(name);
-        let Some(symbol) = self.state.symbol(&key) else { return };
+        let Some(symbol) = self.look_up(&key) else { return };
         let Meaning::Array(array) = &symbol.meaning else { return };
         let reserved = symbol.origin.clone();
         let is_geometry = matches!(element, ArrayElement::Geometry(_));
@@ -387,7 +387,7 @@ impl Evaluator<'_> {
 
     /// What a name is, as evidence.
     pub(crate) fn found_name(&self, name: &str) -> Found {
-        self.state.symbol(name).map_or(Found::Nothing, |symbol| symbol.meaning.found())
+        self.look_up(name).map_or(Found::Nothing, |symbol| symbol.meaning.found())
     }
 }
 

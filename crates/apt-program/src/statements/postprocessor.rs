@@ -93,7 +93,7 @@ impl Evaluator<'_> {
         let mut complete = true;
         for argument in arguments {
             if let Argument::Expression(Expression::Reference(reference)) = argument
-                && self.state.symbol(&reference.name.text).is_none()
+                && self.look_up(&reference.name.text).is_none()
             {
                 let operand = Operand::Text(reference.name.text.clone());
                 items.push(Item { operand, range: reference.range });

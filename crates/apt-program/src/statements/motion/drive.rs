@@ -132,7 +132,7 @@ impl Evaluator<'_> {
     fn may_be_label(&self, name: &str, index: usize, arguments: &[Argument]) -> bool {
         let after_surface = !matches!(arguments.get(index - 1), Some(Argument::Word(_)) | None);
         after_surface
-            && matches!(self.state.symbol(name).map(|symbol| &symbol.meaning), None | Some(Meaning::Label))
+            && matches!(self.look_up(name).map(|symbol| &symbol.meaning), None | Some(Meaning::Label))
     }
 
     /// `[mod,] [n,INTOF,] cs [,label]` once or twice, and a trailing feed rate.
