@@ -82,9 +82,10 @@ impl Working {
         }
     }
 
-    /// Notes how the surface bends along a direction near a position.
+    /// Notes how the surface bends along a direction near a position. ON keeps the bend of the start: its band belongs
+    /// to the side that the motion began on.
     pub(crate) fn look_along(&mut self, tip: &Vec3, direction: &Vec3) {
-        if self.shape == Shape::General {
+        if self.shape == Shape::General && !self.gauge.on {
             let foot = self.gauge.surface.foot(tip).point;
             let hessian = self.gauge.surface.foot_and_hessian(&foot).1;
             self.lean = self.gauge.side * direction.dot(&(hessian * direction));
