@@ -359,7 +359,8 @@ fn chords(
         (start - above + guard, start + below - guard)
     };
     let inner = inner.clamp(0.0, start.min(radius));
-    let outer = outer.max(start).max(radius);
+    // A vector of the greatest length that touches the inner circle ends here; vertices farther out would only add to it.
+    let outer = outer.min(inner.hypot(0.5 * state.maximum_step)).max(start).max(radius);
     let half = |r: f64| (inner / r).clamp(0.0, 1.0).acos();
     let longest = (0.5 * state.maximum_step / outer).clamp(0.0, 1.0).asin().max(f64::MIN_POSITIVE);
     // The vectors at both ends reach from a vertex as far as half a vector, so they too are held to the longest.
