@@ -3,6 +3,7 @@
 mod corpus_plane;
 mod corpus_space;
 mod properties;
+mod turning;
 mod worked;
 
 use apt_geometry::{
