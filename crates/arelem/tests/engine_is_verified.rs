@@ -1,11 +1,13 @@
 //! Random motions through the engine, judged by the verifier: what the engine delivers must be proven, whatever the pair of
 //! surfaces, the side and the cutter.
 
+mod support;
+
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    canonical::{Cylinder, Geometry, Quadric},
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
         Turn,
@@ -15,53 +17,7 @@ use arelem::{
     section2::{Output, State, execute},
     verify::verify,
 };
-
-/// A small generator of its own (splitmix64), so that the motions are the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ x >> 31) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn pick<T: Clone>(&mut self, from: &[T]) -> T {
-        let index = (self.next() * from.len() as f64) as usize;
-        from[index.min(from.len() - 1)].clone()
-    }
-}
-
-fn named(name: &str, geometry: Geometry) -> NamedSurface {
-    NamedSurface { name: name.to_owned(), geometry }
-}
-
-fn plane(x: f64, y: f64, z: f64, distance: f64) -> Geometry {
-    let normal = Vec3::new(x, y, z);
-    Geometry::Plane(Plane { normal: normal.normalize(), distance: distance / normal.norm() })
-}
-
-fn sphere(height: f64, radius: f64) -> Geometry {
-    Geometry::Sphere(Sphere { center: Vec3::new(0.0, 0.0, height), radius })
-}
-
-fn cylinder(height: f64, axis: Vec3, radius: f64) -> Geometry {
-    Geometry::Cylinder(Cylinder { point: Vec3::new(0.0, 0.0, height), axis: axis.normalize(), radius })
-}
-
-fn cone(height: f64, axis: Vec3, cosine: f64) -> Geometry {
-    Geometry::Cone(Cone { vertex: Vec3::new(0.0, 0.0, height), axis, cosine })
-}
-
-fn quadric(coefficients: [f64; 10]) -> Geometry {
-    Geometry::Quadric(Quadric { coefficients })
-}
+use support::{Random, cone, cylinder, named, plane, quadric, sphere};
 
 fn start(relation: Relation, surface: &NamedSurface) -> StartSurface {
     StartSurface { relation, surface: surface.clone() }
@@ -99,7 +55,7 @@ fn settings(random: &mut Random) -> (&'static str, Vec<MotionCommand>) {
         ("ball", vec![0.5, 0.25]),
         ("flat", vec![0.5]),
         ("bull nose", vec![0.75, 0.125]),
-        ("seven", vec![0.6, 0.1, 0.2, 0.1, 0.0, 5.0, 4.0]),
+        ("seven", vec![0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]),
     ]);
     let (inside, outside) = random.pick(&[(0.0, 0.001), (0.001, 0.001), (0.0005, 0.0), (0.01, 0.005)]);
     let mut commands = vec![

@@ -19,12 +19,18 @@ const RESOLUTION: f64 = 2e-11;
 const PARALLEL: f64 = 1e-13;
 /// Azimuths at which an edge of the tool is looked at before its deepest place is closed in.
 const AZIMUTHS: usize = 24;
-/// Steps of the golden section that closes it in.
-const GOLDEN_STEPS: usize = 32;
+/// The angle between two of them.
+const SECTOR: f64 = std::f64::consts::TAU / AZIMUTHS as f64;
+/// Steps of the secant that closes it in.
+const CLOSING_STEPS: usize = 40;
+/// Sine of the slope of an edge, or width in radians, at which it has closed in.
+const LEVEL: f64 = 1e-10;
 /// Depth, relative to the radius of the tool, up to which it is proven; deeper is no question of tolerance.
 const PROVEN_DEPTH: f64 = 0.1;
 /// Translations tried in the proof of a depth, each four times longer.
 const PROOF_STEPS: usize = 14;
+/// The same for a depth that need not be the greatest yet.
+const QUICK_PROOF_STEPS: usize = 4;
 
 fn resolution(ruling: &Ruling, tip: &Vec3, reach: f64) -> f64 {
     RESOLUTION * (ruling.size.max(tip.norm()) + reach)
@@ -90,12 +96,33 @@ impl Bodies<'_> {
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
         let mut deepest = (-touch.value, -touch.outward);
-        for p in self.edges() {
-            self.edge(tip, p, &mut deepest)?;
+        let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
+        // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
+        // the tool, then that of the tool's edges under the surface near there, then all round.
+        let shallow = touch.value <= 0.0 && deepest.0 <= self.deep;
+        if shallow && let Some(error) = self.unproven(tip, &deepest, QUICK_PROOF_STEPS)? {
+            return Some(depth_of(&deepest, error));
         }
-        let (depth, normal) = deepest;
-        let error = if depth <= self.deep { self.unproven(tip, depth, &normal)? } else { 0.0 };
-        Some(Reading { value: -depth, normal, error })
+        let contact = touch.point - tip;
+        let across = contact - self.tool.axis * self.tool.axis.dot(&contact);
+        if shallow && across.norm() > 0.0 {
+            let circle = Circle::of(tip, self.tool, across / across.norm());
+            for p in self.edges() {
+                self.deepest_near(&circle, p, [-0.5 * SECTOR, 0.5 * SECTOR], &mut deepest)?;
+            }
+            if let Some(error) = self.unproven(tip, &deepest, QUICK_PROOF_STEPS)? {
+                return Some(depth_of(&deepest, error));
+            }
+        }
+        let circle = Circle::of(tip, self.tool, perpendicular(&self.tool.axis));
+        for p in self.edges() {
+            self.edge(&circle, p, &mut deepest)?;
+        }
+        if deepest.0 > self.deep {
+            return Some(depth_of(&deepest, 0.0));
+        }
+        let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
+        Some(depth_of(&deepest, error))
     }
 
     /// Places of the meridian that can be under the surface without the surface being as deep in the tool.
@@ -109,76 +136,117 @@ impl Bodies<'_> {
         edges
     }
 
+    /// Depth of a place under the surface, and the direction out.
+    fn depth(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+        let (distance, normal) = point_distance(self.ruling, x)?;
+        Some((-self.side * distance, normal * self.side))
+    }
+
     /// Deepest place of an edge circle under the surface, if it is deeper than `deepest`.
-    fn edge(&self, tip: &Vec3, p: Meridian, deepest: &mut (f64, Vec3)) -> Option<()> {
-        let first = perpendicular(&self.tool.axis);
-        let second = self.tool.axis.cross(&first);
-        let place = |phi: f64| {
-            let (s, c) = phi.sin_cos();
-            tip + (first * c + second * s) * p[0] + self.tool.axis * p[1]
-        };
-        let depth = |x: &Vec3| -> Option<(f64, Vec3)> {
-            let (distance, normal) = point_distance(self.ruling, x)?;
-            Some((-self.side * distance, normal * self.side))
-        };
+    fn edge(&self, circle: &Circle, p: Meridian, deepest: &mut (f64, Vec3)) -> Option<()> {
         if p[0] <= 0.0 {
-            let found = depth(&place(0.0))?;
-            if found.0 > deepest.0 {
-                *deepest = found;
-            }
-            return Some(());
+            return self.deepest_near(circle, p, [0.0, 0.0], deepest);
         }
-        let step = std::f64::consts::TAU / AZIMUTHS as f64;
         let mut best: Option<(f64, f64)> = None;
         let mut known = f64::INFINITY;
         for k in 0..AZIMUTHS {
-            let phi = step * k as f64;
+            let phi = SECTOR * k as f64;
             // Depth changes no faster than the place moves; between two samples lies half a step more.
-            known += step * p[0];
-            if known + 0.5 * step * p[0] <= deepest.0 {
+            known += SECTOR * p[0];
+            if known + 0.5 * SECTOR * p[0] <= deepest.0 {
                 continue;
             }
-            known = depth(&place(phi))?.0;
+            known = self.depth(&circle.place(p, phi))?.0;
             if best.is_none_or(|b| known > b.1) {
                 best = Some((phi, known));
             }
         }
-        let Some((middle, value)) = best else { return Some(()) };
-        if value + step * p[0] <= deepest.0 {
+        match best {
+            Some((phi, value)) if value + SECTOR * p[0] > deepest.0 => {
+                self.deepest_near(circle, p, [phi - SECTOR, phi + SECTOR], deepest)
+            }
+            _ => Some(()),
+        }
+    }
+
+    /// Closes in on the deepest place of an edge circle between two azimuths.
+    fn deepest_near(
+        &self,
+        circle: &Circle,
+        p: Meridian,
+        [mut low, mut high]: [f64; 2],
+        deepest: &mut (f64, Vec3),
+    ) -> Option<()> {
+        let read = |phi: f64| -> Option<(f64, f64, Vec3)> {
+            let (depth, out) = self.depth(&circle.place(p, phi))?;
+            Some((depth, -p[0] * out.dot(&circle.radial_rate(phi)), out))
+        };
+        let middle = read(0.5 * (low + high))?;
+        if middle.0 > deepest.0 {
+            *deepest = (middle.0, middle.2);
+        }
+        // The places of the range are not farther from its middle than half its arc.
+        if p[0] <= 0.0 || middle.0 + 0.5 * (high - low) * p[0] <= deepest.0 {
             return Some(());
         }
-        let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut low, mut high) = (middle - step, middle + step);
-        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
-        let mut depths = [depth(&place(inner[0]))?.0, depth(&place(inner[1]))?.0];
-        for _ in 0..GOLDEN_STEPS {
-            if depths[0] >= depths[1] {
-                high = inner[1];
-                inner = [high - golden * (high - low), inner[0]];
-                depths = [depth(&place(inner[0]))?.0, depths[0]];
-            } else {
-                low = inner[0];
-                inner = [inner[1], low + golden * (high - low)];
-                depths = [depths[1], depth(&place(inner[1]))?.0];
-            }
+        let mut rates = [read(low)?.1, read(high)?.1];
+        if rates[0] <= 0.0 || rates[1] >= 0.0 {
+            return Some(());
         }
-        let found = depth(&place(0.5 * (low + high)))?;
-        if found.0 > deepest.0 {
-            *deepest = found;
+        for turn in 0..CLOSING_STEPS {
+            let secant = low - rates[0] * (high - low) / (rates[1] - rates[0]);
+            let phi =
+                if turn % 3 == 2 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
+            let (depth, rate, out) = read(phi)?;
+            if depth > deepest.0 {
+                *deepest = (depth, out);
+            }
+            if rate.abs() <= LEVEL * p[0] || high - low <= LEVEL {
+                break;
+            }
+            if rate > 0.0 {
+                (low, rates[0]) = (phi, rate);
+            } else {
+                (high, rates[1]) = (phi, rate);
+            }
         }
         Some(())
     }
 
-    /// How much farther than `depth` the tool must be moved along `normal` until it is clear for certain.
-    fn unproven(&self, tip: &Vec3, depth: f64, normal: &Vec3) -> Option<f64> {
+    /// How much farther than the depth found the tool must be moved out until it is clear for certain; None where none of
+    /// the translations tried frees it.
+    fn unproven(&self, tip: &Vec3, deepest: &(f64, Vec3), steps: usize) -> Option<Option<f64>> {
         let mut more = 4.0 * self.resolution;
-        for _ in 0..PROOF_STEPS {
-            let touch = self.touch(&(tip + normal * (depth + more)))?;
+        for _ in 0..steps {
+            let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
             if touch.value >= touch.gap && self.is_on_side(&touch)? {
-                return Some(more);
+                return Some(Some(more));
             }
             more *= 4.0;
         }
-        Some(more)
+        Some(None)
+    }
+}
+
+/// The edge circles of a tool in a place.
+struct Circle {
+    tip: Vec3,
+    axis: Vec3,
+    across: [Vec3; 2],
+}
+
+impl Circle {
+    fn of(tip: &Vec3, tool: &Tool<'_>, first: Vec3) -> Self {
+        Self { tip: *tip, axis: tool.axis, across: [first, tool.axis.cross(&first)] }
+    }
+
+    fn place(&self, p: Meridian, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        self.tip + (self.across[0] * c + self.across[1] * s) * p[0] + self.axis * p[1]
+    }
+
+    fn radial_rate(&self, phi: f64) -> Vec3 {
+        let (s, c) = phi.sin_cos();
+        self.across[1] * c - self.across[0] * s
     }
 }

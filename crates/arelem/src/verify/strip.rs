@@ -91,42 +91,31 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Distance of a place and the outward normal of a half-space that holds the tool.
+    /// Distance of a place, and the direction in which the tool is left behind fastest.
     fn measure(&self, x: &Vec3, surface_normal: &Vec3) -> (f64, Vec3) {
         let w = x - self.tip;
         let (distance, q) = self.tool.signed_distance(&w);
         let away = w - q;
         let size = away.norm();
-        if size > self.sure {
-            return (distance, away * (distance.signum() / size));
-        }
-        // On the tool's boundary: the normal where a place a little off it is projected to. Of the two sides of the
-        // surface the one that leaves the tool behind.
-        let nudge = NUDGE * self.tool.profile.reach();
-        let mut best = (f64::NEG_INFINITY, *surface_normal);
-        for sense in [nudge, -nudge] {
-            let off = w + surface_normal * sense;
-            let (beyond, q) = self.tool.signed_distance(&off);
-            let size = (off - q).norm();
-            let n =
-                if beyond > 0.0 && size > 0.0 { (off - q) / size } else { *surface_normal * sense.signum() };
-            let height = n.dot(&w) - self.tool.support(&n).0;
-            if height > best.0 {
-                best = (height, n);
-            }
-        }
-        (distance, best.1)
+        (distance, if size > 0.0 { away * (distance.signum() / size) } else { *surface_normal })
     }
 
-    fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2]) -> Cell {
-        let middles = [place(&edges[0], 0.5), place(&edges[1], 0.5)];
-        let x = (middles[0] + middles[1]) * 0.5;
-        let run = tangent(&edges[0], 0.5) + tangent(&edges[1], 0.5);
-        let normal = run.cross(&(middles[1] - middles[0]));
-        let size = normal.norm();
-        let normal = if size > 0.0 { normal / size } else { self.tool.axis };
-        let (value, outward) = self.measure(&x, &normal);
-        let base = outward.dot(&self.tip) + self.tool.support(&outward).0;
+    /// Normals of half-spaces that hold the tool, for a place so near to its boundary that the difference of two points is
+    /// no direction: where a place a little off it is projected to, on both sides of the surface.
+    fn beside(&self, x: &Vec3, surface_normal: &Vec3) -> [Vec3; 2] {
+        let nudge = NUDGE * self.tool.profile.reach();
+        [nudge, -nudge].map(|sense| {
+            let off = x - self.tip + surface_normal * sense;
+            let (beyond, q) = self.tool.signed_distance(&off);
+            let size = (off - q).norm();
+            if beyond > 0.0 && size > 0.0 { (off - q) / size } else { *surface_normal * sense.signum() }
+        })
+    }
+
+    /// The least height of a patch over the half-space with an outward normal that holds the tool, and how much the height
+    /// varies along and across.
+    fn bound(&self, edges: &[Cubic; 2], outward: &Vec3) -> (f64, [f64; 2]) {
+        let base = outward.dot(&self.tip) + self.tool.support(outward).0;
         let heights = edges.map(|e| e.map(|p| outward.dot(&p) - base));
         let mut lower = f64::INFINITY;
         let mut spread = [0.0f64; 2];
@@ -138,6 +127,34 @@ impl Search<'_> {
         }
         for (first, second) in heights[0].iter().zip(&heights[1]) {
             spread[1] = spread[1].max((first - second).abs());
+        }
+        (lower, spread)
+    }
+
+    fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2]) -> Cell {
+        let middles = [place(&edges[0], 0.5), place(&edges[1], 0.5)];
+        let x = (middles[0] + middles[1]) * 0.5;
+        let run = tangent(&edges[0], 0.5) + tangent(&edges[1], 0.5);
+        let normal = run.cross(&(middles[1] - middles[0]));
+        let size = normal.norm();
+        let normal = if size > 0.0 { normal / size } else { self.tool.axis };
+        let (value, mut outward) = self.measure(&x, &normal);
+        let (mut lower, spread) = self.bound(&edges, &outward);
+        if self.best.is_none_or(|b| lower < b.value) {
+            if value.abs() <= self.sure {
+                let height = |n: &Vec3| n.dot(&(x - self.tip)) - self.tool.support(n).0;
+                for level in self.beside(&x, &normal) {
+                    lower = lower.max(self.bound(&edges, &level).0);
+                    if height(&level) >= height(&outward) {
+                        outward = level;
+                    }
+                }
+            }
+            // At a sharp edge of the tool the nearest place says little about the places beside it, but the half-space
+            // along the surface does.
+            for level in [normal, -normal] {
+                lower = lower.max(self.bound(&edges, &level).0);
+            }
         }
         if self.best.is_none_or(|b| value < b.value) {
             self.best =
