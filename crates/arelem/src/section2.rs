@@ -10,8 +10,7 @@ pub(crate) use self::modal::required_position;
 pub use self::{restart::Restart, state::State};
 use crate::{
     error::{MotionFailure, MotionWarning},
-    pocket::PocketPath,
-    sequence::{CutSequence, ToolPosition},
+    sequence::{CutSequence, PocketPath, ToolPosition},
 };
 
 /// What a command made of the tool.

@@ -70,3 +70,38 @@ pub struct CutSequence {
     /// The number of cut vectors that no sequence within tolerance can beat, where a bound is known.
     pub minimum: Option<u32>,
 }
+
+/// Positions that are cut with one feed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PocketPass {
+    /// The feed as the statement gives it.
+    pub feed: f64,
+    /// The positions, in order; empty if there is nothing to cut with this feed.
+    pub points: Vec<ToolPosition>,
+}
+
+/// A pocket: the path in the order of cutting, and what is needed to judge it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PocketPath {
+    /// The first position with the plunge feed, the general passes, and the finishing pass along the sides.
+    pub passes: [PocketPass; 3],
+    /// The points of the statement, on the plane of the pocket.
+    pub boundary: Vec<Vec3>,
+    /// The boundary is the wall of the pocket; otherwise the tool centre runs on it.
+    pub walls: bool,
+    /// Unit tool axis.
+    pub axis: Vec3,
+    /// The cutter in force.
+    pub cutter: apt_geometry::cutter::Cutter,
+    /// What the tool clears around its centre on the bottom.
+    pub effective_radius: f64,
+    /// How far from the cleared area a point of the bottom may be: the greater of INTOL and OUTTOL of the part surface.
+    pub tolerance: f64,
+}
+
+impl PocketPath {
+    /// All positions in the order of cutting.
+    pub fn positions(&self) -> impl DoubleEndedIterator<Item = &ToolPosition> + Clone {
+        self.passes.iter().flat_map(|pass| &pass.points)
+    }
+}

@@ -13,9 +13,8 @@ use apt_geometry::{
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use arelem::{
     error::MotionWarning,
-    pocket::PocketPath,
     section2::{Execution, Output, Restart, State, execute},
-    sequence::{CutSequence, ToolPosition},
+    sequence::{CutSequence, PocketPath, ToolPosition},
     verify::{Evidence, VerifyError, verify, verify_pocket},
 };
 use smol_str::SmolStr;

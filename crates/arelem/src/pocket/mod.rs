@@ -11,11 +11,15 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
-use apt_geometry::{Vec3, cutter::Cutter, motion::Pocket};
+use apt_geometry::motion::Pocket;
 
 pub use self::failure::{CornerFault, PocketFailure};
 use self::{outline::Outline, passes::Offsets};
-use crate::{error::MotionFailure, section2::State, sequence::ToolPosition};
+use crate::{
+    error::MotionFailure,
+    section2::State,
+    sequence::{PocketPass, PocketPath, ToolPosition},
+};
 
 /// Numbers of a POCKET statement whose sign is checked, in the order of the statement.
 const EFFECTIVE_RADIUS: usize = 0;
@@ -24,41 +28,6 @@ const FINISH_OFFSET: usize = 2;
 const PLUNGE_FEED: usize = 3;
 const GENERAL_FEED: usize = 4;
 const FINISH_FEED: usize = 5;
-
-/// Positions that are cut with one feed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PocketPass {
-    /// The feed as the statement gives it.
-    pub feed: f64,
-    /// The positions, in order; empty if there is nothing to cut with this feed.
-    pub points: Vec<ToolPosition>,
-}
-
-/// A pocket: the path in the order of cutting, and what is needed to judge it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PocketPath {
-    /// The first position with the plunge feed, the general passes, and the finishing pass along the sides.
-    pub passes: [PocketPass; 3],
-    /// The points of the statement, on the plane of the pocket.
-    pub boundary: Vec<Vec3>,
-    /// The boundary is the wall of the pocket; otherwise the tool centre runs on it.
-    pub walls: bool,
-    /// Unit tool axis.
-    pub axis: Vec3,
-    /// The cutter in force.
-    pub cutter: Cutter,
-    /// What the tool clears around its centre on the bottom.
-    pub effective_radius: f64,
-    /// How far from the cleared area a point of the bottom may be: the greater of INTOL and OUTTOL of the part surface.
-    pub tolerance: f64,
-}
-
-impl PocketPath {
-    /// All positions in the order of cutting.
-    pub fn positions(&self) -> impl DoubleEndedIterator<Item = &ToolPosition> + Clone {
-        self.passes.iter().flat_map(|pass| &pass.points)
-    }
-}
 
 /// Computes a pocket from the modal state (tool axis, cutter, part surface) and the statement. `cancel` is polled
 /// once per pass.

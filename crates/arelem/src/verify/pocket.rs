@@ -13,7 +13,7 @@ use std::rc::Rc;
 use apt_geometry::Vec3;
 
 use super::{Evidence, Extent, Rule, VerifyError, Violation};
-use crate::pocket::PocketPath;
+use crate::sequence::PocketPath;
 
 type Vec2 = nalgebra::Vector2<f64>;
 
