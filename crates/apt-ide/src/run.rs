@@ -59,7 +59,7 @@ impl Analysis {
             let RecordKind::Motion(command) = &record.kind else { continue };
             match &**command {
                 MotionCommand::Cutter(numbers) => {
-                    cutter_diameter = numbers.first().copied().or(cutter_diameter)
+                    cutter_diameter = numbers.first().copied().or(cutter_diameter);
                 }
                 MotionCommand::Start(list) | MotionCommand::Offset(list) => {
                     for (role, start) in ["drive", "part", "check"].iter().zip(list) {

@@ -1,5 +1,11 @@
 //! Completion: what is proposed at each kind of place.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::needless_pass_by_value,
+    reason = "tests fail where something is missing, and say what they expect in place"
+)]
+
 mod support;
 
 use apt_ide::completion::CompletionKind;

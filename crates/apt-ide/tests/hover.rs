@@ -1,5 +1,11 @@
 //! Hovers: words, names of every type, results of motions.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::needless_pass_by_value,
+    reason = "tests fail where something is missing, and say what they expect in place"
+)]
+
 mod support;
 
 use std::sync::Arc;

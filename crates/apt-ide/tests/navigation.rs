@@ -1,5 +1,11 @@
 //! Definitions, references and renaming of names, labels and variables of macros.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::needless_pass_by_value,
+    reason = "tests fail where something is missing, and say what they expect in place"
+)]
+
 mod support;
 
 use apt_ide::navigation::RenameError;

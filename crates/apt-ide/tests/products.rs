@@ -1,5 +1,11 @@
 //! Expansions, runs of parts, tapes, CL files, pictures.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::needless_pass_by_value,
+    reason = "tests fail where something is missing, and say what they expect in place"
+)]
+
 mod support;
 
 use apt_ide::{Cancelled, Level, picture, tape};
@@ -36,7 +42,7 @@ fn check_expansion(text: &str, depth: Option<u32>, expected: Expect) {
         let frames = apt_run::diagnostic::origin_steps(origin);
         let stack: Vec<String> =
             frames.iter().map(|frame| format!("{}{}#{}", frame.kind, frame.name, frame.turn)).collect();
-        shown.push_str(format!("{:>2} {line:<18} {}", origin.isn, stack.join(" < ")).trim_end());
+        shown.push_str(format!("{:<2} {line:<18} {}", origin.isn, stack.join(" < ")).trim_end());
         shown.push('\n');
     }
     expected.assert_eq(&shown);
@@ -48,16 +54,16 @@ fn macros_and_loops_are_unrolled() {
         NESTED,
         None,
         expect![[r#"
-         8 FROM/0,0,0
-         2 GOTO/5,0,0         macroM1#1
-         6 GODLTA/0,5,0       macroM2#1 < macroM1#1
-        11 A=1                loop#1
-        12 GODLTA/0,0,A       loop#1
-        13 A=A+1              loop#1
-        12 GODLTA/0,0,A       loop#2
-        13 A=A+1              loop#2
-        16 FINI
-    "#]],
+            8  FROM/0,0,0
+            2  GOTO/5,0,0         macroM1#1
+            6  GODLTA/0,5,0       macroM2#1 < macroM1#1
+            11 A=1                loop#1
+            12 GODLTA/0,0,A       loop#1
+            13 A=A+1              loop#1
+            12 GODLTA/0,0,A       loop#2
+            13 A=A+1              loop#2
+            16 FINI
+        "#]],
     );
 }
 
@@ -67,8 +73,8 @@ fn an_expansion_can_be_of_one_statement_and_of_some_levels() {
         &NESTED.replace("CALL/M1,X", "CA$0LL/M1,X"),
         None,
         expect![[r#"
-             2 GOTO/5,0,0         macroM1#1
-             6 GODLTA/0,5,0       macroM2#1 < macroM1#1
+            2  GOTO/5,0,0         macroM1#1
+            6  GODLTA/0,5,0       macroM2#1 < macroM1#1
         "#]],
     );
     let whole = analysis(NESTED);

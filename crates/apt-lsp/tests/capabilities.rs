@@ -1,5 +1,11 @@
 //! Every capability that the server announces, asked for over the standard streams of the real binary.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "tests fail where something is missing, and tell times"
+)]
+
 mod support;
 
 use std::collections::BTreeSet;

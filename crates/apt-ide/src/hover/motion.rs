@@ -13,9 +13,9 @@ impl Analysis {
     pub(super) fn motion_markdown(&self, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
         let result = self.result(cancel, &mut |_, _| {})?;
         let mut text = String::new();
-        let turns = result.motions.iter().filter(|motion| motion.origin.isn == isn);
+        let mut turns = result.motions.iter().filter(|motion| motion.origin.isn == isn);
         let count = turns.clone().count();
-        let Some(motion) = turns.last() else { return Ok(text) };
+        let Some(motion) = turns.next_back() else { return Ok(text) };
         let Some(Output::Sequence(sequence)) = &motion.computed.execution.output else { return Ok(text) };
         let vectors = sequence.points.len();
         let plural = if vectors == 1 { "" } else { "s" };
