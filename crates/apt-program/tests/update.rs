@@ -283,7 +283,7 @@ fn sparse_program(lines: &[(usize, usize)]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
     fn edits_of_long_programs_one_after_the_other_equal_evaluation_from_scratch(

@@ -93,6 +93,6 @@ impl State {
 
     /// The meaning of a name.
     pub(crate) fn symbol(&self, name: &str) -> Option<&Symbol> {
-        self.symbols.get(name)
+        self.symbols.get(name).map(|symbol| &**symbol)
     }
 }

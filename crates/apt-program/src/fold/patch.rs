@@ -30,7 +30,7 @@ impl Patch {
     pub(super) fn apply(&self, state: &mut State) {
         for (name, symbol) in self.0.iter().flat_map(|meanings| meanings.iter()) {
             match symbol {
-                Some(symbol) => drop(state.symbols.insert(name.clone(), symbol.clone())),
+                Some(symbol) => drop(state.symbols.insert(name.clone(), Arc::new(symbol.clone()))),
                 None => drop(state.symbols.remove(name)),
             }
         }

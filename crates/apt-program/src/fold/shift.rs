@@ -108,7 +108,7 @@ impl Shift {
         let names: Vec<_> = state.symbols.keys().cloned().collect();
         for name in names {
             if let Some(symbol) = state.symbols.get_mut(&name) {
-                self.symbol(symbol);
+                self.symbol(Arc::make_mut(symbol));
             }
         }
     }

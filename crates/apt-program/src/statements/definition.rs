@@ -377,7 +377,7 @@ impl Evaluator<'_> {
         if !self.output.touched.contains(&name) {
             self.output.touched.insert(name.clone());
         }
-        self.state.symbols.insert(name, Symbol { meaning, origin });
+        self.state.symbols.insert(name, Arc::new(Symbol { meaning, origin }));
     }
 
     /// Writes a definition to the log.

@@ -64,9 +64,10 @@ pub(crate) struct Symbol {
     pub(crate) origin: Origin,
 }
 
-/// The table. Persistent, so that a checkpoint costs nothing.
+/// The table. Persistent, so that a checkpoint costs little: the copies of its nodes that checkpoints keep are small,
+/// because symbols stand outside of them.
 pub(crate) type SymbolTable =
-    imbl::GenericHashMap<SmolStr, Symbol, FxBuildHasher, imbl::shared_ptr::DefaultSharedPtr>;
+    imbl::GenericHashMap<SmolStr, Arc<Symbol>, FxBuildHasher, imbl::shared_ptr::DefaultSharedPtr>;
 
 impl Meaning {
     /// What the name is, as evidence of a finding.
