@@ -277,11 +277,16 @@ fn describe(pairs: &BTreeMap<String, Tally>) -> String {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the refusals of every pair are to be read with --nocapture")]
 fn curved_pairs_are_proven_and_seldom_refused() {
     let mut random = Random(19_700_101);
     let mut pairs: BTreeMap<String, Tally> = BTreeMap::new();
     let mut turn = 0;
     for (part_index, drive_index) in (0..7).flat_map(|p| (0..6).map(move |d| (p, d))) {
+        // The tabulated cylinders are the slowest by far: every second pair of theirs.
+        if (part_index == 6 || drive_index == 5) && (part_index + drive_index) % 2 == 0 {
+            continue;
+        }
         let (part_name, part, up) = parts(&mut random).swap_remove(part_index);
         let (drive_name, drive, side) = drives(&mut random).swap_remove(drive_index);
         let (cutter_name, cutter) = CUTTERS[turn % CUTTERS.len()];

@@ -18,7 +18,11 @@ const AZIMUTHS: usize = 16;
 /// Steps of a safeguarded secant search; bisection alone reaches round-off in fewer.
 const STEPS: usize = 100;
 /// Shortest part of a straight piece between two readings where the surface is a saddle.
-const LINE_PIECES: f64 = 48.0;
+const LINE_PIECES: f64 = 16.0;
+/// Width of the azimuth, radians, at which a trough has closed in: the distance is then off by its square.
+const AZIMUTH_WIDTH: f64 = 1e-7;
+/// The same where the normal at the contact proves it: the proof is off by the width times the length of the patch.
+const PROVING_WIDTH: f64 = 1e-9;
 /// Parts of a patch that are looked at or left out as a whole.
 const PATCH_PIECES: u32 = 16;
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
@@ -292,39 +296,68 @@ impl Search<'_> {
         }
     }
 
-    /// Candidate on the patch swept by a straight piece of the meridian.
+    /// Candidates on the patch swept by a straight piece of the meridian: every trough over the azimuth that could hold
+    /// the nearest place is closed in.
     fn patch(&mut self, a: Meridian, b: Meridian) -> Option<()> {
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
-        let mut least = (f64::INFINITY, 0.0);
-        for k in 0..AZIMUTHS {
+        let mut lines = [OnLine { t: 0.0, value: 0.0, rate: 0.0 }; AZIMUTHS];
+        for (k, line) in lines.iter_mut().enumerate() {
             let phi = step * k as f64;
-            let (value, point) = self.on_line(a, b, phi)?;
-            if value < least.0 {
-                least = (value, phi);
-            }
-            self.offer_point(&point)?;
+            *line = self.on_line(a, b, phi)?;
+            self.offer_on_line(a, b, phi, line.t)?;
         }
-        // Golden section over the azimuth in the two sectors round the least sample.
+        // Between two samples the place moves no farther than half a step at the wider end.
+        let reach = 0.5 * step * a[0].max(b[0]);
+        for k in 0..AZIMUTHS {
+            let (before, here, after) =
+                (lines[(k + AZIMUTHS - 1) % AZIMUTHS], lines[k], lines[(k + 1) % AZIMUTHS]);
+            let trough = here.value <= before.value && here.value <= after.value;
+            if trough && here.value - reach < self.best_value() {
+                let phi = step * k as f64;
+                self.close_in(a, b, phi - step, phi + step)?;
+            }
+        }
+        Some(())
+    }
+
+    /// Golden section over the azimuth for the least distance on a patch.
+    fn close_in(&mut self, a: Meridian, b: Meridian, mut low: f64, mut high: f64) -> Option<()> {
+        let width = if self.shape == Shape::Convex { PROVING_WIDTH } else { AZIMUTH_WIDTH };
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut low, mut high) = (least.1 - step, least.1 + step);
         let mut inner = [high - golden * (high - low), low + golden * (high - low)];
-        let mut values = [self.on_line(a, b, inner[0])?.0, self.on_line(a, b, inner[1])?.0];
+        let mut lines = [self.on_line(a, b, inner[0])?, self.on_line(a, b, inner[1])?];
         for _ in 0..STEPS {
-            if high - low <= 1e-9 {
+            // What is left between the limits cannot be nearer than the best place, or lies on an edge, which is a circle
+            // of its own.
+            let left = high - low;
+            let least = lines[0].value.min(lines[1].value);
+            let hopeless = least - left * a[0].max(b[0]) >= self.best_value();
+            let edge = lines[0].t == lines[1].t && lines.iter().all(|l| l.is_steady_end(2.0 * left * length));
+            if hopeless || edge {
+                return Some(());
+            }
+            if high - low <= width {
                 break;
             }
-            if values[0] <= values[1] {
+            if lines[0].value <= lines[1].value {
                 high = inner[1];
                 inner = [high - golden * (high - low), inner[0]];
-                values = [self.on_line(a, b, inner[0])?.0, values[0]];
+                lines = [self.on_line(a, b, inner[0])?, lines[0]];
             } else {
                 low = inner[0];
                 inner = [inner[1], low + golden * (high - low)];
-                values = [values[1], self.on_line(a, b, inner[1])?.0];
+                lines = [lines[1], self.on_line(a, b, inner[1])?];
             }
         }
-        let (_, point) = self.on_line(a, b, 0.5 * (low + high))?;
-        self.offer_point(&point)
+        let phi = 0.5 * (low + high);
+        let line = self.on_line(a, b, phi)?;
+        self.offer_on_line(a, b, phi, line.t)
+    }
+
+    fn offer_on_line(&mut self, a: Meridian, b: Meridian, phi: f64, t: f64) -> Option<()> {
+        let (start, end) = (self.place(a, phi), self.place(b, phi));
+        self.offer_point(&(start + (end - start) * t))
     }
 
     fn offer_point(&mut self, point: &Vec3) -> Option<()> {
@@ -333,12 +366,12 @@ impl Search<'_> {
         Some(())
     }
 
-    /// Least distance on the straight line of the patch at one azimuth, and where.
-    fn on_line(&self, a: Meridian, b: Meridian, phi: f64) -> Option<(f64, Vec3)> {
+    /// The least distance on the straight line of the patch at one azimuth.
+    fn on_line(&self, a: Meridian, b: Meridian, phi: f64) -> Option<OnLine> {
         let (start, end) = (self.place(a, phi), self.place(b, phi));
         let line = Line { search: self, start, along: end - start };
         let (first, last) = (line.read(0.0)?, line.read(1.0)?);
-        let mut best = if first.value <= last.value { (first.value, start) } else { (last.value, end) };
+        let mut best = if first.value <= last.value { first } else { last };
         if self.shape == Shape::Convex {
             line.trough(first, last, &mut best)?;
             return Some(best);
@@ -347,11 +380,11 @@ impl Search<'_> {
         let length = line.along.norm();
         let mut from = first;
         while from.t < 1.0 {
-            let clear = (from.value - best.0.min(self.best_value())) / length;
+            let clear = (from.value - best.value.min(self.best_value())) / length;
             let t = (from.t + clear.max(1.0 / LINE_PIECES)).min(1.0);
             let to = if t < 1.0 { line.read(t)? } else { last };
-            if to.value < best.0 {
-                best = (to.value, start + line.along * to.t);
+            if to.value < best.value {
+                best = to;
             }
             line.trough(from, to, &mut best)?;
             from = to;
@@ -368,6 +401,14 @@ struct OnLine {
     rate: f64,
 }
 
+impl OnLine {
+    /// Whether it is at an end of its line towards which the distance falls by more than `rate`, so that it stays there
+    /// when the azimuth changes a little.
+    fn is_steady_end(&self, rate: f64) -> bool {
+        (self.t <= 0.0 && self.rate > rate) || (self.t >= 1.0 && self.rate < -rate)
+    }
+}
+
 struct Line<'a> {
     search: &'a Search<'a>,
     start: Vec3,
@@ -381,7 +422,7 @@ impl Line<'_> {
     }
 
     /// Lowers `best` to the least value between two readings, if the slope changes from − to + between them.
-    fn trough(&self, mut low: OnLine, mut high: OnLine, best: &mut (f64, Vec3)) -> Option<()> {
+    fn trough(&self, mut low: OnLine, mut high: OnLine, best: &mut OnLine) -> Option<()> {
         if low.rate >= 0.0 || high.rate <= 0.0 {
             return Some(());
         }
@@ -393,8 +434,8 @@ impl Line<'_> {
                 secant
             };
             let middle = self.read(t)?;
-            if middle.value < best.0 {
-                *best = (middle.value, self.start + self.along * t);
+            if middle.value < best.value {
+                *best = middle;
             }
             if high.t - low.t <= 1e-11 || middle.rate.abs() <= 1e-12 * self.along.norm() {
                 break;
