@@ -277,7 +277,6 @@ fn describe(pairs: &BTreeMap<String, Tally>) -> String {
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "the refusals of every pair are to be read with --nocapture")]
 fn curved_pairs_are_proven_and_seldom_refused() {
     let mut random = Random(19_700_101);
     let mut pairs: BTreeMap<String, Tally> = BTreeMap::new();
