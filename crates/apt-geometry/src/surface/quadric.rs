@@ -147,8 +147,9 @@ impl PrincipalQuadric {
     fn multiplier(&self, y: &Vec3, lowest: f64, highest: f64) -> f64 {
         let (mut low, mut high) = (lowest, highest);
         let mut x = 0.0;
+        let smallest_step = f64::EPSILON * y.norm();
         for _ in 0..MAX_ITERATIONS {
-            let (_, value, slope) = self.at(y, x);
+            let (q, value, slope) = self.at(y, x);
             if value == 0.0 {
                 return x;
             }
@@ -168,7 +169,11 @@ impl PrincipalQuadric {
             } else {
                 high - 2.0 * (high.abs() + 1.0 / self.square.amax().max(f64::MIN_POSITIVE))
             };
-            let done = (next - x).abs() <= 4.0 * f64::EPSILON * x.abs();
+            // A step of Newton that moves the point by less than its own rounding ends the search, too: on the surface
+            // the multiplier is zero and has no size to compare with.
+            let moved = (next - x).abs() * (self.square.component_mul(&q) + self.linear).norm();
+            let done =
+                (next - x).abs() <= 4.0 * f64::EPSILON * x.abs() || next == newton && moved <= smallest_step;
             x = next;
             if done {
                 break;

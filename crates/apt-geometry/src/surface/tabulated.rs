@@ -94,13 +94,19 @@ impl Cubic {
         dx.hypot(dy)
     }
 
+    /// Half the derivative of the squared distance to the point of a parameter.
+    fn gradient(&self, local: Vec2, s: f64) -> f64 {
+        let [h, h1, _] = self.height(s);
+        (s - local.x) + (h - local.y) * h1
+    }
+
     /// Parameter of the nearest point near a starting value, between limits.
     fn nearest_from(&self, local: Vec2, from: f64, limits: [f64; 2]) -> f64 {
         let [mut low, mut high] = limits;
         let mut s = from;
         for _ in 0..MAX_ITERATIONS {
             let [h, h1, h2] = self.height(s);
-            let gradient = (s - local.x) + (h - local.y) * h1;
+            let gradient = self.gradient(local, s);
             if gradient > 0.0 {
                 high = s;
             } else {
@@ -139,7 +145,15 @@ impl Cubic {
         for k in 0..STARTS {
             let left = low + (high - low) * f64::from(k) / f64::from(STARTS);
             let right = low + (high - low) * f64::from(k + 1) / f64::from(STARTS);
-            take(self.nearest_from(local, 0.5 * (left + right), [left, right]));
+            let middle = 0.5 * (left + right);
+            let [a, b, c] = [left, middle, right].map(|s| self.gradient(local, s));
+            // A nearest point lies where the distance stops falling; elsewhere there is nothing to be found.
+            if a <= 0.0 && b >= 0.0 {
+                take(self.nearest_from(local, 0.5 * (left + middle), [left, middle]));
+            }
+            if b <= 0.0 && c >= 0.0 {
+                take(self.nearest_from(local, 0.5 * (middle + right), [middle, right]));
+            }
         }
         best
     }
