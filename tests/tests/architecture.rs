@@ -31,7 +31,7 @@ const BELONGS_TO: [(&str, &[&str]); 6] = [
 ];
 
 fn dependencies() -> BTreeMap<String, Vec<String>> {
-    let metadata = MetadataCommand::new().no_deps().exec().unwrap();
+    let metadata = MetadataCommand::new().no_deps().exec().expect("cargo metadata works");
     let normal = |package: &cargo_metadata::Package| {
         let used = package.dependencies.iter().filter(|dependency| dependency.kind == DependencyKind::Normal);
         used.map(|dependency| dependency.name.clone()).collect()

@@ -186,7 +186,8 @@ fn the_schema_refuses_what_the_standard_refuses() {
         |log| log["runs"][0]["tool"] = Value::Null,
         |log| log["runs"][0]["results"][0]["level"] = "fatal".into(),
         |log| {
-            log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["region"]["startLine"] = 0.into()
+            log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["region"]["startLine"] =
+                0.into();
         },
         |log| log["runs"][0]["results"][0]["colour"] = "red".into(),
     ];

@@ -24,8 +24,10 @@ fn styles() -> [FormatOptions; 4] {
     ]
 }
 
-/// What a text says: the elements of every statement, and the comments behind them.
-fn meaning(text: &str, layout: &Layout) -> Vec<(Vec<(ElementKind, String)>, Vec<String>)> {
+/// What a statement says: its elements, and the comments behind them.
+type Meaning = (Vec<(ElementKind, String)>, Vec<String>);
+
+fn meaning(text: &str, layout: &Layout) -> Vec<Meaning> {
     let tree = SyntaxTree::parse(text, layout.dialect);
     assert_eq!(tree.sequence_field(), layout.sequence_field, "{text:?}");
     let of = |view: apt_syntax::StatementView| {
@@ -98,7 +100,9 @@ fn evaluated(text: &str, dialect: DialectName) -> Program {
 }
 
 /// Records, values and findings without their places.
-fn results(program: &Program) -> (Vec<(u32, Option<String>, RecordKind)>, Vec<(String, Value)>, Vec<String>) {
+type Results = (Vec<(u32, Option<String>, RecordKind)>, Vec<(String, Value)>, Vec<String>);
+
+fn results(program: &Program) -> Results {
     let records = program.records().map(|record| {
         (record.origin.isn, record.label.as_ref().map(ToString::to_string), record.kind.clone())
     });

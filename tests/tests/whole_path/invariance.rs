@@ -216,7 +216,10 @@ fn moves_along(name: &str, program: fn(&Frame) -> String, frame: &Frame, units: 
     }
 }
 
-const PROGRAMS: [(&str, fn(&Frame) -> String); 4] =
+/// A program written in a frame.
+type Written = fn(&Frame) -> String;
+
+const PROGRAMS: [(&str, Written); 4] =
     [("contour", contour), ("domes", domes), ("cone", cone), ("points", points)];
 
 #[test]
