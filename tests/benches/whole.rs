@@ -38,6 +38,7 @@ fn program(bencher: Bencher<'_, '_>, path: &str) {
 /// The motion of each program: what is timed is the whole run, items are cut vectors.
 fn motion(bencher: Bencher<'_, '_>, text: &str) {
     let result = analysis(text, "free").document().run(&|| false, &mut |_, _| {}).unwrap();
+    assert_eq!(result.findings.len(), 0, "only whole paths are measured");
     let vectors = result.totals.points;
     bencher
         .counter(ItemsCount::new(vectors))
@@ -48,7 +49,7 @@ fn motion(bencher: Bencher<'_, '_>, text: &str) {
 fn cut_vectors_round_a_circle(bencher: Bencher<'_, '_>) {
     motion(
         bencher,
-        "CUTTER/.5\nINTOL/.00001\nOUTTOL/.00001\nC1=CIRCLE/0,0,2\nL1=LINE/XAXIS\nFROM/5,0,1\nGO/TO,C1\n\
+        "NUMPTS/2000\nCUTTER/.5\nINTOL/.00001\nOUTTOL/.00001\nC1=CIRCLE/0,0,2\nL1=LINE/XAXIS\nFROM/5,0,1\nGO/TO,C1\n\
          TLLFT,GOLFT/C1,ON,2,INTOF,L1\nFINI\n",
     );
 }
