@@ -5,7 +5,7 @@
 //!
 //! The way of a statement: [`evaluator`] takes it from the tree and opens macros and loops ([`macros`], [`blocks`]),
 //! [`statements`] does what it says with operands from [`expression`], names live in [`symbols`]. [`fold`] cuts the
-//! program into chunks with checkpoints, so that an edit costs what it touches. [`expand`] shows what was executed.
+//! program into chunks with checkpoints, so that an edit costs what it touches. [`mod@expand`] shows what was executed.
 
 mod blocks;
 mod evaluator;
