@@ -130,6 +130,7 @@ impl March<'_> {
             let end = finish::locate(self.prepared, self.checks, &event, &next.tangent)?;
             if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
+                self.straighten_end(&start)?;
                 return Ok(self.path(&end));
             }
             finals += 1;
@@ -172,6 +173,25 @@ impl March<'_> {
         }
         let end = Vertex::at(self.prepared, *end, &here.tangent)?;
         Ok(self.stepper.proven(here, &end))
+    }
+
+    /// Leaves out vertices before the end that one straight move can bridge: on a straight stretch the search for the
+    /// longest vector looks beyond the stop, where the path may turn, and cuts the stretch into pieces.
+    fn straighten_end(&mut self, start: &Vertex) -> Result<(), MotionFailure> {
+        let Some(&end) = self.points.last() else { return Ok(()) };
+        let end = Vertex::at(self.prepared, end, &self.prepared.tangent)?;
+        while let Some(between) = self.points.len().checked_sub(2) {
+            let from = match between.checked_sub(1) {
+                Some(before) => Vertex::at(self.prepared, self.points[before], &self.prepared.tangent)?,
+                None => *start,
+            };
+            let long = (end.tip - from.tip).norm() > self.state.maximum_step * (1.0 + 1e-9);
+            if long || !self.stepper.proven(&from, &end) {
+                break;
+            }
+            self.points.remove(between);
+        }
+        Ok(())
     }
 
     /// On a closed path: a whole turn without a single position means that there is none.
