@@ -22,6 +22,12 @@ pub struct Ring {
 }
 
 impl Ring {
+    /// Length of the longest chord in the ring, tangent to the inner circle between two points of the outer one
+    /// (Galbiati & Trumpy, DELTA).
+    pub fn longest_chord(&self) -> f64 {
+        2.0 * ((self.outer - self.inner) * (self.outer + self.inner)).max(0.0).sqrt()
+    }
+
     /// Least number of chords that turn by `angle` (radians) between the radii `start` and `end`, all inside the ring.
     pub fn least_chords(&self, angle: f64, start: f64, end: f64) -> u32 {
         let half = |r: f64| (self.inner / r.clamp(self.inner, self.outer)).clamp(0.0, 1.0).acos();

@@ -23,6 +23,48 @@ fn surface(geometry: &Geometry) -> apt_geometry::surface::Surface {
 }
 
 #[test]
+fn w21_curvature_of_a_circle() {
+    let circle = surface(&circle(0.0, 0.0, 3.0));
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    let (foot, second) = circle.foot_and_hessian(&(v(cosine, sine, 0.0) * 3.0));
+    let tangent = v(-sine, cosine, 0.0);
+    let radius = 1.0 / tangent.dot(&(second * tangent));
+    near(radius, 3.0);
+    near((foot.point - foot.normal * radius).norm(), 0.0);
+}
+
+#[test]
+fn w24_admissible_lengths() {
+    for (radius, length) in [(2.501, 0.141435498), (1.5, 0.109526253)] {
+        let ring = crate::bound::Ring {
+            center: Vec3::zeros(),
+            axis: Vec3::z(),
+            inner: radius - 0.001,
+            outer: radius,
+        };
+        near(ring.longest_chord(), length);
+    }
+}
+
+#[test]
+fn w25_worst_point_of_a_chord() {
+    let circle = surface(&circle(0.0, 0.0, 2.5));
+    let at = |angle: f64| v(angle.cos(), angle.sin(), 0.0) * 2.5009;
+    let (from, to) = (at(0.0), at(0.0565));
+    let depth = |share: f64| circle.signed_distance(&(from + (to - from) * share));
+    let worst = (0..=1000).map(|step| depth(f64::from(step) / 1000.0)).fold(f64::INFINITY, f64::min);
+    near(worst, -0.000097871);
+}
+
+#[test]
+fn w26_distance_to_the_check_surface_along_the_path() {
+    let (normal, along) = (v(1.0, 0.0, 0.1).normalize(), v(1.0, 0.2, 0.0).normalize());
+    let tangent_plane = surface(&plane(normal.x, normal.y, normal.z, 1.0));
+    let ahead = apt_geometry::surface::RootSelection::Ahead;
+    near(tangent_plane.directed_distance(&Vec3::zeros(), &along, ahead).expect("a distance"), 1.024890238);
+}
+
+#[test]
 fn w22_three_surfaces() {
     let tool =
         Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
