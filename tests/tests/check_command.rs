@@ -117,7 +117,6 @@ fn nothing_is_told_about_good_programs() {
             .unwrap()
             .iter()
             .flat_map(|file| file["diagnostics"].as_array().unwrap())
-            .filter(|one| one["severity"] == "error" || one["severity"] == "warning")
             .collect();
         assert_eq!(told, Vec::<&Value>::new());
         assert_eq!(report["files"].as_array().unwrap().len(), paths.len());

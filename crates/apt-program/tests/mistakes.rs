@@ -213,6 +213,11 @@ fn names_that_nobody_reads_are_told_only_of_programs_that_move() {
     assert_eq!(unused("A=1\nP=POINT/1,2\nFINI\n"), [""; 0]);
     assert_eq!(unused("A=1\nP=POINT/1,2\nFROM/0,0\nFINI\n"), ["A", "P"]);
     assert_eq!(unused("A=1\nP=POINT/1,2\nFROM/P\nPRINT/3,A\nFINI\n"), [""; 0]);
+    assert_eq!(
+        unused("PS=PLANE/0,0,1,0\nQ=PLANE/0,0,1,1\nFROM/0,0\nFINI\n"),
+        ["Q"],
+        "PS is the implied part surface"
+    );
     assert_eq!(unused("A=1\nB=2\nFROM/0,0\nPRINT/3,ALL\nFINI\n"), [""; 0]);
     assert_eq!(unused("A=1\nB=2\nFROM/0,0\nPUNCH/2,A,B\nFINI\n"), [""; 0]);
     assert_eq!(unused("M=MACRO\nTERMAC\nA)FROM/0,0\nFINI\n"), [""; 0], "no values");

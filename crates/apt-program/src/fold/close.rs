@@ -1,5 +1,6 @@
 //! Findings of the program as a whole: unused names, transfers that lead nowhere.
 
+use apt_geometry::canonical::{Geometry, Plane};
 use apt_syntax::dialect::DialectName;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -73,7 +74,7 @@ fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mu
         .filter(|(name, symbol)| {
             let has_value =
                 matches!(symbol.meaning, Meaning::Scalar(_) | Meaning::Geometry(_) | Meaning::Array(_));
-            has_value && !used.contains(name)
+            has_value && !used.contains(name) && !names_implied_part_surface(&symbol.meaning)
         })
         .map(|(name, symbol)| (name, &symbol.origin))
         .collect();
@@ -82,6 +83,13 @@ fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mu
         let name = SmolStr::new(name.trim_end_matches(ARRAY_KEY_SUFFIX));
         push(findings, FindingKind::Unused { name }, dialect, origin);
     }
+}
+
+/// The xy-plane is the part surface as long as no other is named: a name for it says what the motions run on, so that it
+/// is not unused even when no statement reads it.
+fn names_implied_part_surface(meaning: &Meaning) -> bool {
+    matches!(meaning, Meaning::Geometry(stored)
+        if matches!(*stored.geometry, Geometry::Plane(plane) if plane == Plane::horizontal()))
 }
 
 /// Adds a finding.
