@@ -28,6 +28,17 @@ pub struct Wording {
     pub apt3: Option<u16>,
 }
 
+/// A change of the program that settles a finding.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Fix {
+    /// What it does, as a command: "Replace P9 by P8".
+    pub title: String,
+    /// The edits: bytes of the whole text, ascending, without overlap, and what takes their place.
+    pub edits: Vec<(std::ops::Range<usize>, String)>,
+    /// Whether it is certainly what was meant, so that an editor may apply it without a question.
+    pub preferred: bool,
+}
+
 /// One finding about a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostic {
@@ -41,6 +52,8 @@ pub struct Diagnostic {
     pub related: Vec<(String, Origin)>,
     /// The place is code without effect: editors may fade it.
     pub unnecessary: bool,
+    /// Changes that settle it, the likeliest first. They concern the text of the program itself, never an included file.
+    pub fixes: Vec<Fix>,
 }
 
 /// One level of macro call, loop turn or inclusion, as the interfaces have it.

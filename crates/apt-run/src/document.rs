@@ -204,7 +204,7 @@ impl Document {
             Level::Section1 => None,
             Level::Motion => Some(self.run(cancel, progress)?),
         };
-        Ok(catalogue::diagnostics(&program, result.as_deref(), &self.settings))
+        Ok(catalogue::diagnostics(&self.tree, &program, result.as_deref(), &self.settings))
     }
 
     /// The report of a run, of the whole program or of some statements.
@@ -220,7 +220,7 @@ impl Document {
     ) -> Result<Report, Cancelled> {
         let program = self.program(cancel)?;
         let result = self.run(cancel, progress)?;
-        let diagnostics = catalogue::diagnostics(&program, Some(&result), &self.settings);
+        let diagnostics = catalogue::diagnostics(&self.tree, &program, Some(&result), &self.settings);
         Ok(report(&ReportInput {
             file: self.file.as_deref().unwrap_or("-"),
             text: &self.tree.text(),

@@ -21,7 +21,7 @@ use apt_program::{
     Origin, Program,
     finding::{Finding, RelatedKind, Severity as ProgramSeverity},
 };
-use apt_syntax::TextRange;
+use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
 pub use pages::{Page, explain, pages};
@@ -59,9 +59,14 @@ impl Text {
 }
 
 /// All diagnostics of a program and perhaps its run, in order of their place, with the severities of the settings.
-pub fn diagnostics(program: &Program, result: Option<&RunResult>, settings: &Settings) -> Vec<Diagnostic> {
+pub fn diagnostics(
+    tree: &SyntaxTree,
+    program: &Program,
+    result: Option<&RunResult>,
+    settings: &Settings,
+) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
-    list.extend(result.into_iter().flat_map(|result| &result.findings).map(of_run));
+    list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
     in_order(list, settings)
 }
 
@@ -81,10 +86,11 @@ fn of_program(finding: &Finding) -> Diagnostic {
         origin: finding.origin.clone(),
         related,
         unnecessary: program::is_unnecessary(&finding.kind),
+        fixes: Vec::new(),
     }
 }
 
-fn of_run(finding: &RunFinding) -> Diagnostic {
+fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
     let (text, severity, apt3) = motion::word(&finding.kind);
     Diagnostic {
         wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3 },
@@ -92,6 +98,7 @@ fn of_run(finding: &RunFinding) -> Diagnostic {
         origin: finding.origin.clone(),
         related: Vec::new(),
         unnecessary: false,
+        fixes: Vec::new(),
     }
 }
 
@@ -106,6 +113,7 @@ pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) ->
             origin: origins.get(finding.source as usize).cloned().unwrap_or_else(unknown),
             related: Vec::new(),
             unnecessary: false,
+            fixes: Vec::new(),
         }
     };
     in_order(tape.findings.iter().map(of_post).collect(), settings)
@@ -122,6 +130,7 @@ pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Set
             origin: origins.get(error.line as usize).cloned().unwrap_or_else(unknown),
             related: Vec::new(),
             unnecessary: false,
+            fixes: Vec::new(),
         }
     };
     in_order(errors.iter().map(of_line).collect(), settings)
