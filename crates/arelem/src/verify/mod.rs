@@ -16,6 +16,7 @@ mod span;
 mod stop;
 mod strip;
 mod tool;
+mod vertex;
 
 #[cfg(test)]
 mod tests;

@@ -77,7 +77,7 @@ impl Pencil {
         (rho * self.cosine - along * self.sine - self.radius, out * self.cosine - self.axis * self.sine)
     }
 
-    /// Clearance of a tool outside: the greatest distance that a tangent plane leaves.
+    /// Clearance of a tool outside: the greatest distance that a tangent plane, or one through the vertex, leaves.
     pub(super) fn outside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
         let w = tip - self.origin;
         if self.sine <= 0.0 && tool.axis.cross(&self.axis).norm() <= 1e-14 {
@@ -91,18 +91,7 @@ impl Pencil {
             (n.dot(&w) - self.radius - reach, self.normal_rate(phi).dot(&(w + p)))
         };
         let mut best = self.search(&plane, &w);
-        if self.sine > 0.0 {
-            let (distance, q) = tool.signed_distance(&-w);
-            let away = w + q;
-            let size = away.norm();
-            if distance > 0.0
-                && size > 0.0
-                && away.dot(&self.axis) <= -self.sine * size
-                && distance > best.value
-            {
-                best = Found { value: distance, normal: away / size, error: 0.0 };
-            }
-        }
+        self.raise_by_vertex(&w, tool, &mut best);
         best
     }
 
@@ -138,8 +127,8 @@ impl Pencil {
         }
     }
 
-    /// Clearance of a tool inside: the least distance that a tangent plane leaves (also for what sticks out through the
-    /// vertex of a cone, where the vertex itself is farther). Branch and bound: on an arc of planes
+    /// Clearance of a tool inside: the least distance that a tangent plane leaves; what sticks out through the vertex of a
+    /// cone is measured from the vertex. Branch and bound: on an arc of planes
     /// `f(φ) ≤ λ₁f(φ₁) + λ₂f(φ₂) + (λ₁+λ₂−1)·sin α·max T·(p−V)`, because E(φ) = λ₁E₁ + λ₂E₂.
     pub(super) fn inside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
         let w = tip - self.origin;
@@ -160,6 +149,7 @@ impl Pencil {
         };
         let scale = w.norm() + tool.profile.reach() + self.radius;
         let error = self.prove_crest(&plane, &mut best, ahead, 1e-12 * scale);
+        self.raise_by_poking(&w, tool, &mut best);
         Found { value: self.radius - best.value, normal: -best.normal, error: best.error + error }
     }
 

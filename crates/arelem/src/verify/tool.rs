@@ -266,4 +266,36 @@ impl Tool<'_> {
         let (distance, q) = self.profile.farthest(p);
         (distance, out * q[0] + self.axis * q[1])
     }
+
+    /// Outward directions of the body, unit, among which is each that is stationary in how far a point (from the tool end)
+    /// stands out over the body in it: away from edges and corner, and across the straight parts.
+    pub(super) fn outward_at(&self, w: &Vec3) -> impl Iterator<Item = Vec3> {
+        let (p, out) = self.split(w);
+        let straight = self.profile.lines().map(|(a, b)| [b[1] - a[1], a[0] - b[0]]);
+        let round = self.knots().map(|q| sub(p, q));
+        let ends = [[0.0, 1.0], [0.0, -1.0]];
+        self.directions(straight.into_iter().chain(round).chain(ends), out)
+    }
+
+    /// Unit directions from a point (from the tool end) among which is each to a place of the body that is farther than those
+    /// beside it.
+    pub(super) fn away_from(&self, w: &Vec3) -> impl Iterator<Item = Vec3> {
+        let (p, out) = self.split(w);
+        let both = self.knots().into_iter().flat_map(move |q| [sub(q, p), sub([-q[0], q[1]], p)]);
+        self.directions(both, out)
+    }
+
+    /// Tool end, edges and centre of the corner arc.
+    fn knots(&self) -> [Meridian; 5] {
+        let [lower, upper, top] = self.profile.edges();
+        [[0.0; 2], lower, upper, top, self.profile.center]
+    }
+
+    fn directions(&self, meridians: impl Iterator<Item = Meridian>, out: Vec3) -> impl Iterator<Item = Vec3> {
+        let axis = self.axis;
+        meridians.filter_map(move |m| {
+            let size = dot(m, m).sqrt();
+            (size > 0.0).then(|| (out * m[0] + axis * m[1]) / size)
+        })
+    }
 }

@@ -5,6 +5,7 @@ mod mutations;
 mod paths;
 mod rulings;
 mod turning;
+mod vertices;
 
 use std::sync::Arc;
 
