@@ -105,6 +105,24 @@ pub(crate) fn solve(
     Err(Unsolved { residual, row, tip, iterations: MAX_ITERATIONS })
 }
 
+/// Where a number of corrections lead, each made in full whether it helps or not; the last place that has coordinates.
+pub(crate) fn corrected(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    corrections: u32,
+) -> Vec3 {
+    let mut tip = *start;
+    for _ in 0..corrections {
+        let next = tip + correction(&evaluate(attitude, conditions, &tip));
+        if !next.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        tip = next;
+    }
+    tip
+}
+
 /// The first of the step and its halves that reduces the greatest residual.
 fn improve(
     attitude: &Attitude,

@@ -7,7 +7,10 @@ mod state;
 use apt_geometry::motion::MotionCommand;
 
 pub(crate) use self::modal::required_position;
-pub use self::{restart::Restart, state::State};
+pub use self::{
+    restart::Restart,
+    state::{StartUpRule, State},
+};
 use crate::{
     error::{MotionFailure, MotionWarning},
     sequence::{CutSequence, PocketPath, ToolPosition},

@@ -3,6 +3,8 @@
 mod directed;
 mod plane;
 mod side;
+#[cfg(test)]
+mod tests;
 
 use apt_geometry::{
     Vec3,
@@ -16,7 +18,7 @@ use crate::{
     error::{MotionFailure, RoleName},
     position::{self, Condition},
     role::Working,
-    section2::{State, required_position},
+    section2::{StartUpRule, State, required_position},
     sequence::{CutSequence, Stop, ToolPosition},
 };
 
@@ -47,7 +49,11 @@ pub(crate) fn start(
         return Err(MotionFailure::Cancelled);
     }
     let mut work = StartUp::new(state, surfaces)?;
-    let tip = match plane::solve(&mut work)? {
+    let closed = match state.start_up {
+        StartUpRule::Apt3 => plane::solve(&mut work)?,
+        StartUpRule::Apt4 => None,
+    };
+    let tip = match closed {
         Some(tip) => tip,
         None => in_space(&mut work)?,
     };
@@ -164,12 +170,14 @@ impl<'a> StartUp<'a> {
 /// The general route: interim moves along the directions given, sides, then the shortest way to the position.
 fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
     let original = work.tip;
+    if let Some(direction) = directed::only_direction(work)? {
+        side::assign(work, None)?;
+        follow_surfaces(work, &direction)?;
+        return directed::along(work, &direction);
+    }
     let start = directed::interim(work)?;
     side::assign(work, Some(start))?;
-    let mut guide = None;
-    if work.roles.len() < 3 {
-        guide = directed::guide_plane(work, &original);
-    }
+    let guide = directed::guide(work, &original, &start);
     let tangent = work
         .roles
         .iter()
@@ -219,12 +227,21 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3) -> Result<(), MotionFai
     Ok(())
 }
 
-/// The position where every relation holds, in the guide plane if there is one.
+/// The position where every relation holds, in the guide plane if there is one; where there is no position in it, by the
+/// shortest way.
 fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Result<Vec3, MotionFailure> {
-    let mut conditions: Vec<Condition<'_>> =
+    let free: Vec<Condition<'_>> =
         work.roles.iter().map(|r| Condition::Clearance(&r.gauge, r.rest())).collect();
-    conditions.extend(guide.map(|(normal, distance)| Condition::Plane(normal, distance)));
-    converge(work, &conditions, start)
+    let Some(guide) = guide else { return converge(work, &free, start) };
+    let mut guided = free.clone();
+    guided.push(Condition::Plane(guide.0, guide.1));
+    match converge(work, &guided, start) {
+        Err(MotionFailure::StartUpDiverges { .. }) => match work.state.start_up {
+            StartUpRule::Apt3 => converge(work, &free, start),
+            StartUpRule::Apt4 => converge(work, &free, &directed::searched(work, guide, start)),
+        },
+        found => found,
+    }
 }
 
 /// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side.

@@ -93,7 +93,7 @@ pub fn run(
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<RunResult, Cancelled> {
     memo.begin_run();
-    let mut section2 = section2::Section2::new(settings, memo, cancel);
+    let mut section2 = section2::Section2::new(settings, tree.dialect().name, memo, cancel);
     let total = program.record_count();
     for (done, record) in program.records().enumerate() {
         if done % 64 == 0 {
@@ -105,17 +105,20 @@ pub fn run(
         section2.record(record)?;
     }
     let output = section2.finish();
-    let (records, edit_errors) = apt_cldata::edit::edit(output.items);
+    let (mut records, edit_errors) = apt_cldata::edit::edit(output.items);
     let mut findings = output.findings;
     findings.extend(edit_errors.into_iter().map(|error| {
         let origin = output.origins.get(error.source as usize).cloned();
-        let origin = origin.unwrap_or(Origin {
-            isn: tree.statement_count() as u32,
-            range: Default::default(),
-            frame: None,
-        });
+        let origin =
+            origin.unwrap_or_else(|| Origin::in_program(tree.statement_count() as u32, Default::default()));
         RunFinding { kind: RunFindingKind::Edit(error), origin }
     }));
+    for record in &mut records {
+        // What an included file does is done by the statement of the program that includes or calls it.
+        if let Some(origin) = output.origins.get(record.source as usize).filter(|one| one.source.is_some()) {
+            record.isn = origin.place_in_program().0;
+        }
+    }
     let totals = totals(&records);
     Ok(RunResult { records, origins: output.origins, motions: output.motions, findings, totals })
 }

@@ -11,9 +11,10 @@ use apt_geometry::{
     motion::{MotionCommand, PerRole},
 };
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
+use apt_syntax::dialect::DialectName;
 use arelem::{
     error::MotionWarning,
-    section2::{Execution, Output, Restart, State, execute},
+    section2::{Execution, Output, Restart, StartUpRule, State, execute},
     sequence::{CutSequence, PocketPath, ToolPosition},
     verify::{Evidence, VerifyError, verify, verify_pocket},
 };
@@ -65,7 +66,12 @@ pub(super) struct Section2<'a> {
 }
 
 impl<'a> Section2<'a> {
-    pub(super) fn new(settings: &Settings, memo: &'a MotionMemo, cancel: Cancel<'a>) -> Self {
+    pub(super) fn new(
+        settings: &Settings,
+        dialect: DialectName,
+        memo: &'a MotionMemo,
+        cancel: Cancel<'a>,
+    ) -> Self {
         let output = SectionTwoOutput {
             items: Vec::new(),
             origins: Vec::new(),
@@ -75,7 +81,7 @@ impl<'a> Section2<'a> {
         Self {
             memo,
             cancel,
-            state: State::new(settings.units.per_inch()),
+            state: State { start_up: start_up_rule(dialect), ..State::new(settings.units.per_inch()) },
             output,
             transfer: None,
             skipped: None,
@@ -348,6 +354,14 @@ impl<'a> Section2<'a> {
                 .findings
                 .push(RunFinding { kind: RunFindingKind::Skipped { statements, last }, origin });
         }
+    }
+}
+
+/// The rule for start-up motions that a dialect has.
+fn start_up_rule(dialect: DialectName) -> StartUpRule {
+    match dialect {
+        DialectName::Apt4 => StartUpRule::Apt4,
+        _ => StartUpRule::Apt3,
     }
 }
 

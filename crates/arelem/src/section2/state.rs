@@ -21,11 +21,26 @@ const ALONG_AXIS_COSINE: f64 = 0.997;
 /// The same limit as a sine.
 pub(super) const ALONG_AXIS_SINE: f64 = 0.0774;
 
+/// How a start-up motion finds its position where the dialects of APT differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StartUpRule {
+    /// APT III: before the general route comes one in closed form, which goes along the direction given (or across the
+    /// drive surface) first and then along the tool axis to the part plane; a direction that misses is error 714.
+    #[default]
+    Apt3,
+    /// APT4: the general route alone, which takes the shortest corrections; where a direction misses its surface, the tool
+    /// moves along it by the greatest distance from the surfaces, and starts up from where the search in the direction's
+    /// plane leaves it.
+    Apt4,
+}
+
 /// Everything that a command can depend on besides its own contents. Plain data: compare or hash it as it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Program units per inch: 1 for inches, 25.4 for millimetres. Scales the defaults.
     pub units: f64,
+    /// The rule of the dialect for start-up motions.
+    pub start_up: StartUpRule,
     /// Tool end, once a FROM or GOTO gave it.
     pub tip: Option<Vec3>,
     /// Previous tool end, for the direction of the last motion; the origin after FROM.
@@ -80,6 +95,7 @@ impl State {
         let plane = Plane { normal: Vec3::z(), distance: 0.0 };
         Self {
             units,
+            start_up: StartUpRule::default(),
             tip: None,
             previous: Vec3::zeros(),
             axis: Vec3::z(),

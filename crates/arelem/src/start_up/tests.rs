@@ -1,0 +1,109 @@
+//! Start-up motions: the rules of the dialects, and what a direction decides.
+
+use Relation::{On, Past, To};
+use apt_geometry::motion::{Direction, MotionCommand, NamedSurface, Relation};
+
+use crate::{
+    MotionFailure,
+    section2::StartUpRule,
+    tests::{Program, circle, line, plane, sphere, start, v},
+};
+
+/// The peers print seven digits.
+const PRINTED: f64 = 2e-6;
+/// Default OUTTOL: how far from the peer a position on a curved surface may be.
+const BAND: f64 = 5.1e-4;
+
+fn program(rule: StartUpRule) -> Program {
+    let mut p = Program::new();
+    p.state.start_up = rule;
+    p
+}
+
+fn towards(p: &mut Program, x: f64, y: f64, z: f64) {
+    p.run(&MotionCommand::Direction([Some(Direction::Point(v(x, y, z))), None, None]));
+}
+
+#[test]
+fn a_direction_that_misses_is_an_error_in_apt3_and_a_detour_in_apt4() {
+    let c = circle(8.0, 0.0, 3.0);
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[1.0]).from(-3.0, 0.0, 0.0);
+    towards(&mut p, 8.0, 9.0, 0.0);
+    assert_eq!(p.attempt(&start(&[(To, &c)])).expect_err("misses").apt3(), Some(714));
+
+    let mut p = program(StartUpRule::Apt4);
+    p.cutter(&[1.0]).from(-3.0, 0.0, 0.0);
+    towards(&mut p, 8.0, 9.0, 0.0);
+    p.go(&[(To, &c)]).ends(5.442_449_5, 2.389_997, 0.0, BAND).verified();
+    p.from(-3.0, 0.0, 0.0).indirv(1.0, 0.0, 0.0).go(&[(To, &c)]).ends(4.5, 0.0, 0.0, BAND).verified();
+    p.from(-3.0, 0.0, 0.0).indirv(1.0, 0.0, 0.0).go(&[(Past, &c)]).ends(5.5, 0.0, 0.0, BAND).verified();
+}
+
+#[test]
+fn a_canted_part_plane_is_met_by_the_shortest_way_in_apt4_and_along_the_axis_in_apt3() {
+    let canted = plane(-2.0 / 104_f64.sqrt(), 0.0, 10.0 / 104_f64.sqrt(), 0.0);
+    let wall = line(0.0, 0.0, 10.0, 0.0);
+    for (rule, x, z) in [
+        // Across the line to y = -.5 first, then down the axis: the edge of the tool touches at x + .5.
+        (StartUpRule::Apt3, -3.0, -0.5),
+        (StartUpRule::Apt4, -1.942_307_7, -0.288_461_5),
+    ] {
+        let mut p = program(rule);
+        p.cutter(&[1.0]).from(-3.0, -3.0, 5.0);
+        p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: canted.clone() }));
+        p.go(&[(To, &wall)]).ends(x, -0.5, z, PRINTED).verified();
+    }
+}
+
+#[test]
+fn one_direction_keeps_the_move_in_its_plane() {
+    let (boss, floor) = (circle(5.0, 1.0, 2.0), plane(0.0, 0.0, 1.0, 0.0));
+    let mut p = program(StartUpRule::Apt4);
+    p.cutter(&[0.5]).from(0.0, 0.0, 3.0).indirv(1.0, 0.0, 0.0);
+    p.go(&[(To, &boss), (To, &floor)]).verified();
+    assert!(p.tip().y.abs() < 1e-9, "left the plane of the direction: {:?}", p.tip());
+    // Without a direction the shortest way bends towards the centre.
+    let mut p = program(StartUpRule::Apt4);
+    p.cutter(&[0.5]).from(0.0, 0.0, 3.0).go(&[(To, &boss), (To, &floor)]).verified();
+    assert!(p.tip().y > 0.1, "{:?}", p.tip());
+    // Both planes: also in APT III, where the part plane is canted so that the general route is taken.
+    let (wall, canted) = (plane(0.8, 0.0, 0.6, 4.0), plane(0.0, -0.6, 0.8, 0.0));
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[0.5, 0.25]).from(0.0, 0.0, 3.0).indirv(1.0, 0.5, 0.0);
+    p.go(&[(To, &wall), (To, &canted)]).verified();
+    let moved = p.tip() - v(0.0, 0.0, 3.0);
+    // The common tangent of the two planes, less its part along the direction.
+    let across = v(-0.36, 0.64, 0.48);
+    let normal = across - v(1.0, 0.5, 0.0) * (across.dot(&v(1.0, 0.5, 0.0)) / 1.25);
+    assert!(moved.dot(&normal).abs() < 1e-9, "left the plane of the direction: {moved:?}");
+}
+
+#[test]
+fn without_part_surface_the_move_is_made_along_the_direction() {
+    let ball = sphere(5.0, 1.0, 0.5, 2.0);
+    for (relation, sign) in [(To, -1.0), (On, -1.0)] {
+        let mut p = program(StartUpRule::Apt3);
+        p.cutter(&[0.5, 0.25]).from(0.0, 0.0, 0.0).run(&MotionCommand::NoPartSurface);
+        p.indirv(4.0, 1.0, 0.0).go(&[(relation, &ball)]).verified();
+        let tip = p.tip();
+        assert!((tip.y - tip.x / 4.0).abs() < 1e-9 && tip.z.abs() < 1e-9, "off the ray: {tip:?}");
+        assert!((tip - v(5.0, 1.0, 0.5)).dot(&v(4.0, 1.0, 0.0)) * sign > 0.0, "on the far side: {tip:?}");
+    }
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[0.5, 0.25]).from(0.0, 0.0, 0.0).run(&MotionCommand::NoPartSurface);
+    p.indirv(0.0, 1.0, 0.0);
+    let failure = p.attempt(&start(&[(To, &ball)])).expect_err("the ray misses");
+    assert!(matches!(failure, MotionFailure::NotReachedAlong { .. }), "{failure:?}");
+}
+
+#[test]
+fn the_move_of_apt4_stops_at_the_first_of_the_surfaces() {
+    // On the way to the far wall the near wall is met first; the tool must not cross it before the sides are settled.
+    let (far, near) = (line(9.0, -5.0, 9.0, 5.0), line(4.0, -5.0, 12.0, 5.0));
+    let mut p = program(StartUpRule::Apt4);
+    p.cutter(&[1.0]).from(0.0, 0.0, 0.0).indirv(1.0, 0.0, 0.0);
+    p.go(&[(To, &far), (To, &plane(0.0, 0.0, 1.0, 0.0)), (To, &near)]).verified();
+    let above = |x: f64, y: f64| (y + 5.0) * 8.0 - (x - 4.0) * 10.0;
+    assert!(above(p.tip().x, p.tip().y) > 0.0, "the tool crossed the near wall: {:?}", p.tip());
+}
