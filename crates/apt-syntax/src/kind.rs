@@ -1,9 +1,21 @@
 //! The kinds of tokens and nodes of the tree.
 
-/// What a token or node is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u16)]
-pub enum SyntaxKind {
+/// Makes the enumeration of kinds and the table of all of them, which is at the index of their number, from one list.
+macro_rules! syntax_kinds {
+    ($($(#[$doc:meta])* $kind:ident,)*) => {
+        /// What a token or node is.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u16)]
+        pub enum SyntaxKind {
+            $($(#[$doc])* $kind,)*
+        }
+
+        /// All kinds, at the index of their number.
+        const ALL: &[SyntaxKind] = &[$(SyntaxKind::$kind,)*];
+    };
+}
+
+syntax_kinds! {
     // Tokens without meaning for the statement.
     /// Blanks and tabs.
     Whitespace,
@@ -108,63 +120,6 @@ pub enum SyntaxKind {
     /// What could not be read.
     Error,
 }
-
-/// All kinds, at the index of their number.
-const ALL: &[SyntaxKind] = {
-    use SyntaxKind::*;
-    &[
-        Whitespace,
-        LineEnd,
-        Comment,
-        Continuation,
-        SequenceField,
-        Name,
-        Word,
-        Number,
-        Comma,
-        Slash,
-        Equals,
-        LeftParenthesis,
-        RightParenthesis,
-        Plus,
-        Minus,
-        Star,
-        Power,
-        Text,
-        Relation,
-        Bad,
-        Semicolon,
-        Root,
-        Statement,
-        Split,
-        Label,
-        TextStatement,
-        Assignment,
-        Definition,
-        MacroHeader,
-        MacroParameter,
-        Call,
-        If,
-        Do,
-        Jump,
-        Major,
-        Obtain,
-        DefinitionBody,
-        ParameterList,
-        Nested,
-        NestedPoint,
-        Inclusive,
-        Reference,
-        Subscript,
-        Signed,
-        Binary,
-        FunctionCall,
-        Parenthesised,
-        NestedAssignment,
-        Condition,
-        Error,
-    ]
-};
 
 impl SyntaxKind {
     /// Whether a token of this kind means nothing to the statement.

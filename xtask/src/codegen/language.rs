@@ -2,34 +2,12 @@
 
 use std::fmt::Write as _;
 
-use apt_syntax::{
-    DialectName,
-    vocabulary::{WordClass, WordStatus},
+use apt_syntax::vocabulary::{
+    WordClass, WordStatus,
+    generate::{Entry, entries},
 };
-use serde::Deserialize;
 
 use crate::failure::{Failure, Outcome};
-
-#[derive(Deserialize)]
-struct File {
-    word: Vec<Entry>,
-}
-
-#[derive(Deserialize)]
-struct Entry {
-    spelling: String,
-    class: WordClass,
-    status: WordStatus,
-    code: Option<u16>,
-    record: Option<(u16, u16)>,
-    #[serde(default)]
-    forms: Vec<String>,
-    #[serde(default)]
-    used_in: Vec<String>,
-    #[serde(default)]
-    dialects: Vec<DialectName>,
-    help: String,
-}
 
 /// The classes in the order of the page, with their headings and what they are.
 const CLASSES: [(WordClass, &str, &str); 15] = [
@@ -79,9 +57,7 @@ fn meaning(status: WordStatus) -> &'static str {
 
 /// The page.
 pub(super) fn page(source: &str) -> Outcome<String> {
-    let file: File = toml::from_str(source).map_err(|fault| Failure::Vocabulary(fault.to_string()))?;
-    let mut words = file.word;
-    words.sort_by(|a, b| a.spelling.cmp(&b.spelling));
+    let words = entries(source).map_err(|fault| Failure::Vocabulary(fault.to_string()))?;
     let mut out = String::from(
         "<!-- Made from vocabulary.toml by `cargo xtask codegen`; do not edit. -->\n\n# The words of the language\n\n",
     );

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use apt_syntax::vocabulary::WordClass;
-use serde::Deserialize;
+use apt_syntax::vocabulary::{WordClass, generate::entries};
 
 use crate::failure::{Failure, Outcome};
 
@@ -13,23 +12,12 @@ pub(super) struct Vocabulary {
     words: BTreeMap<WordClass, Vec<String>>,
 }
 
-#[derive(Deserialize)]
-struct File {
-    word: Vec<Entry>,
-}
-
-#[derive(Deserialize)]
-struct Entry {
-    spelling: String,
-    class: WordClass,
-}
-
 impl Vocabulary {
     /// Reads the vocabulary file.
     pub(super) fn parse(source: &str) -> Outcome<Self> {
-        let file: File = toml::from_str(source).map_err(|fault| Failure::Vocabulary(fault.to_string()))?;
+        let entries = entries(source).map_err(|fault| Failure::Vocabulary(fault.to_string()))?;
         let mut words: BTreeMap<WordClass, Vec<String>> = BTreeMap::new();
-        for entry in file.word {
+        for entry in entries {
             words.entry(entry.class).or_default().push(entry.spelling);
         }
         for spellings in words.values_mut() {
@@ -55,22 +43,27 @@ pub(super) const SAMPLE: &str = r#"
 [[word]]
 spelling = "PARTNO"
 class = "text"
+status = "parsed"
 help = "x"
 [[word]]
 spelling = "GO"
 class = "motion"
+status = "parsed"
 help = "x"
 [[word]]
 spelling = "GOLFT"
 class = "motion"
+status = "parsed"
 help = "x"
 [[word]]
 spelling = "END-OF-PATH"
 class = "postprocessor-bare"
+status = "parsed"
 help = "x"
 [[word]]
 spelling = "3PT2SL"
 class = "minor"
+status = "parsed"
 help = "x"
 "#;
 

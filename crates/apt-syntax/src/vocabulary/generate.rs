@@ -28,29 +28,31 @@ struct File {
     word: Vec<Entry>,
 }
 
-#[derive(Deserialize)]
+/// One word of the data file; the fields are those of [`super::Word`].
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
-    spelling: String,
-    class: WordClass,
-    status: WordStatus,
-    code: Option<u16>,
-    record: Option<(u16, u16)>,
+#[expect(missing_docs, reason = "the fields are those of Word")]
+pub struct Entry {
+    pub spelling: String,
+    pub class: WordClass,
+    pub status: WordStatus,
+    pub code: Option<u16>,
+    pub record: Option<(u16, u16)>,
     #[serde(default)]
-    forms: Vec<String>,
+    pub forms: Vec<String>,
     #[serde(default)]
-    used_in: Vec<String>,
+    pub used_in: Vec<String>,
     /// Empty for all dialects.
     #[serde(default)]
-    dialects: Vec<DialectName>,
-    help: String,
+    pub dialects: Vec<DialectName>,
+    pub help: String,
 }
 
-/// The source of the table of words, sorted by spelling.
+/// The words of the data file, sorted by spelling.
 ///
 /// # Errors
 /// The text is no valid data file.
-pub fn generate_rust(toml: &str) -> Result<String, GenerateError> {
+pub fn entries(toml: &str) -> Result<Vec<Entry>, GenerateError> {
     let file: File = toml::from_str(toml)?;
     let mut words = BTreeMap::new();
     for entry in file.word {
@@ -61,11 +63,20 @@ pub fn generate_rust(toml: &str) -> Result<String, GenerateError> {
             return Err(GenerateError::Twice(double.spelling));
         }
     }
+    Ok(words.into_values().collect())
+}
+
+/// The source of the table of words, sorted by spelling.
+///
+/// # Errors
+/// The text is no valid data file.
+pub fn generate_rust(toml: &str) -> Result<String, GenerateError> {
+    let words = entries(toml)?;
     let mut out = String::from(
         "// Made from vocabulary.toml by `cargo xtask codegen`; do not edit.\n\nuse super::{Word, WordClass, WordStatus};\nuse crate::dialect::DialectName;\n\n",
     );
     out.push_str("/// All words, sorted by spelling.\npub(super) const WORDS: &[Word] = &[\n");
-    for entry in words.values() {
+    for entry in &words {
         write_entry(&mut out, entry);
     }
     out.push_str("];\n");
