@@ -19,7 +19,10 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     match kind {
         RunFindingKind::Failure(failure) => (failure_text(failure), Severity::Error, failure.apt3()),
         RunFindingKind::Warning(warning) => (warning_text(warning), Severity::Warning, warning.apt3()),
-        RunFindingKind::Unverified(evidence) => (unverified(evidence), Severity::Error, None),
+        RunFindingKind::Unverified(evidence) => match uncleared(evidence) {
+            Some(text) => (text, Severity::Warning, None),
+            None => (unverified(evidence), Severity::Error, None),
+        },
         RunFindingKind::NotJudged(error) => (not_judged(error), Severity::Warning, error.apt3()),
         RunFindingKind::Skipped { statements, last } => {
             let what = match statements {
@@ -375,6 +378,17 @@ fn warning_text(warning: &Warning) -> Text {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
         }
     }
+}
+
+/// The words for a pocket whose only fault is what it leaves: the path does no harm, and APT III makes it too.
+fn uncleared(evidence: &Evidence) -> Option<Text> {
+    let first = evidence.violations.first()?;
+    let only = evidence.violations.iter().all(|violation| violation.rule == Rule::Cleared);
+    only.then(|| {
+        let left = number(first.value);
+        say("APT0682", "a part of this pocket is not cleared")
+            .hint(format!("{left} more than the effective radius is missing beside cut vector {}; a smaller offset or a greater effective radius clears it", first.vector + 1))
+    })
 }
 
 fn unverified(evidence: &Evidence) -> Text {
