@@ -155,7 +155,7 @@ impl Analysis {
             let view = tree.statement(tree.statement_at(TextSize::new(start)));
             let length = view.text().trim_end().len() as u32;
             let range = TextRange::new(TextSize::new(0), TextSize::new(length));
-            origins.push(Origin { isn: view.isn(), range, frame: None });
+            origins.push(Origin::in_program(view.isn(), range));
             start += line.len() as u32;
         }
         origins

@@ -24,8 +24,8 @@ use apt_syntax::SyntaxTree;
 pub use expand::{ExpandedLine, Expansion, expand};
 pub use finding::{Expected, Finding, FindingKind, Found, RelatedKind, Severity};
 pub use fold::{Program, Statistics};
-pub use options::{IncludeResolver, Options};
-pub use record::{Frame, FrameKind, Origin, Record, RecordKind};
+pub use options::{IncludeFailure, IncludeResolver, Options};
+pub use record::{Frame, FrameKind, Origin, Record, RecordKind, SourceFile};
 pub use symbols::{DefinitionEvent, Value};
 
 /// Evaluates a program from its first statement. `cancel` is asked often; once it says yes, the program returned is

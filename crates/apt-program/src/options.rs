@@ -1,8 +1,10 @@
 //! What the caller decides about an evaluation: budgets and where included files come from.
 
-use std::{fmt, sync::Arc};
+use std::{fmt, path::Path, sync::Arc};
 
-use apt_syntax::tree::SyntaxTree;
+use smol_str::SmolStr;
+
+use crate::record::SourceFile;
 
 /// Limits that make every evaluation end, and the resolver of INCLUD.
 #[derive(Clone)]
@@ -19,8 +21,41 @@ pub struct Options {
 
 /// Finds included program text.
 pub trait IncludeResolver: Send + Sync {
-    /// The parsed text of the file that INCLUD names, or nothing when there is no such file.
-    fn resolve(&self, name: &str) -> Option<SyntaxTree>;
+    /// The file that INCLUD names, parsed.
+    ///
+    /// # Errors
+    ///
+    /// [`IncludeFailure`] when there is no such file, or it cannot be read.
+    fn resolve(&self, name: &str) -> Result<Arc<SourceFile>, IncludeFailure>;
+
+    /// Whether this is the file of the program itself, which must not include itself.
+    fn is_program(&self, _path: &Path) -> bool {
+        false
+    }
+}
+
+/// Why a file cannot be included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum IncludeFailure {
+    /// No folder that is searched has a file of this name.
+    NotFound {
+        /// The folders, in the order in which they are searched.
+        searched: Vec<SmolStr>,
+    },
+    /// The file is there and cannot be read.
+    Unreadable {
+        /// Where it is.
+        path: SmolStr,
+        /// What the system says.
+        reason: SmolStr,
+    },
+    /// The file is no part program: it is larger than any could be.
+    TooLarge {
+        /// Where it is.
+        path: SmolStr,
+        /// The largest that is taken, bytes.
+        limit: u64,
+    },
 }
 
 /// Statements that one top-level loop or macro call may execute by default.

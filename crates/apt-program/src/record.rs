@@ -1,9 +1,9 @@
 //! What Section 1 hands on: the records of PROTAP, with their origins.
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use apt_geometry::{canonical::Matrix, motion::MotionCommand};
-use apt_syntax::TextRange;
+use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
 /// Where something comes from: the statement, and the macro calls and loop turns around it.
@@ -15,6 +15,42 @@ pub struct Origin {
     pub range: TextRange,
     /// The macro call or loop turn that this statement runs in; `None` at the top level.
     pub frame: Option<Arc<Frame>>,
+    /// The included file that the statement stands in; `None` for the program itself.
+    pub source: Option<Arc<SourceFile>>,
+}
+
+impl Origin {
+    /// A place in the program itself, outside of all macro calls and loops.
+    pub fn in_program(isn: u32, range: TextRange) -> Self {
+        Self { isn, range, frame: None, source: None }
+    }
+
+    /// Number and range of the statement of the program that led here: the statement itself, or the INCLUD or CALL of
+    /// the program through which a statement of an included file came to be executed.
+    pub fn place_in_program(&self) -> (u32, TextRange) {
+        if self.source.is_none() {
+            return (self.isn, self.range);
+        }
+        let around = std::iter::successors(self.frame.as_deref(), |frame| frame.parent.as_deref());
+        let called = around.into_iter().find(|frame| frame.source.is_none());
+        called.map_or((1, TextRange::default()), |frame| (frame.isn, frame.range))
+    }
+}
+
+/// A file whose statements an INCLUD puts in.
+#[derive(Debug, Clone)]
+pub struct SourceFile {
+    /// Where it was found.
+    pub path: PathBuf,
+    /// Its statements.
+    pub tree: SyntaxTree,
+}
+
+impl PartialEq for SourceFile {
+    /// Two readings of one file are the same file.
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
 }
 
 /// One level of macro call or loop turn.
@@ -32,6 +68,8 @@ pub struct Frame {
     pub turn: u32,
     /// The frame around this one.
     pub parent: Option<Arc<Frame>>,
+    /// The included file that the CALL, LOOPST or INCLUD stands in; `None` for the program itself.
+    pub source: Option<Arc<SourceFile>>,
 }
 
 /// The kind of a frame.

@@ -1,6 +1,8 @@
 //! Diagnostics as the user sees them: a stable code, words from the catalogue, a place and the way that led there.
 
-use apt_program::record::{FrameKind, Origin};
+use std::sync::Arc;
+
+use apt_program::record::{Frame, FrameKind, Origin, SourceFile};
 use apt_syntax::SyntaxTree;
 use serde::{Deserialize, Serialize};
 
@@ -85,9 +87,50 @@ pub fn origin_steps(origin: &Origin) -> Vec<OriginStep> {
     steps
 }
 
-/// The byte range of an origin in the text of a tree.
+/// The byte range of an origin in the text of the program: for a place in an included file, that of the INCLUD or CALL
+/// that led there.
 pub fn absolute_range(tree: &SyntaxTree, origin: &Origin) -> std::ops::Range<usize> {
-    statement_range(tree, origin.isn, origin.range)
+    let (isn, range) = origin.place_in_program();
+    statement_range(tree, isn, range)
+}
+
+/// A place: bytes of an included file, or of the program itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// The included file; `None` for the program.
+    pub source: Option<Arc<SourceFile>>,
+    /// Bytes of its text.
+    pub range: std::ops::Range<usize>,
+}
+
+impl Place {
+    /// The place of an origin, in the file in which it stands.
+    pub fn of(tree: &SyntaxTree, origin: &Origin) -> Self {
+        Self::at(tree, origin.isn, origin.range, origin.source.as_ref())
+    }
+
+    /// The place of the CALL, LOOPST or INCLUD of a frame, in the file in which it stands.
+    pub fn of_frame(tree: &SyntaxTree, frame: &Frame) -> Self {
+        Self::at(tree, frame.isn, frame.range, frame.source.as_ref())
+    }
+
+    fn at(
+        tree: &SyntaxTree,
+        isn: u32,
+        range: apt_syntax::TextRange,
+        source: Option<&Arc<SourceFile>>,
+    ) -> Self {
+        let tree = source.map_or(tree, |source| &source.tree);
+        Self { source: source.cloned(), range: statement_range(tree, isn, range) }
+    }
+}
+
+/// The places that belong to a finding; of one in an included file the first is the place itself.
+pub fn related_places(tree: &SyntaxTree, diagnostic: &Diagnostic) -> Vec<(String, Place)> {
+    let own = diagnostic.origin.source.is_some();
+    let own = own.then(|| ("in the included file, here".to_owned(), Place::of(tree, &diagnostic.origin)));
+    let related = diagnostic.related.iter();
+    own.into_iter().chain(related.map(|(text, origin)| (text.clone(), Place::of(tree, origin)))).collect()
 }
 
 /// The byte range of a place relative to the statement with this number.

@@ -5,6 +5,7 @@
 
 use std::{
     ops::Range,
+    path::PathBuf,
     sync::{Arc, OnceLock},
 };
 
@@ -23,6 +24,8 @@ use crate::{
     report::{Report, ReportInput, report},
     settings::Settings,
 };
+
+pub use crate::include::{Files, OpenText, Surroundings, normalised};
 
 /// How far diagnostics go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,6 +57,7 @@ struct Basis {
 pub struct Document {
     tree: SyntaxTree,
     file: Option<String>,
+    surroundings: Surroundings,
     settings: Arc<Settings>,
     dialect_reason: DialectReason,
     memo: MotionMemo,
@@ -63,8 +67,20 @@ pub struct Document {
 }
 
 impl Document {
-    /// Parses a text. The dialect is that of the settings, else it is detected.
+    /// Parses a text. The dialect is that of the settings, else it is detected. The name of the file is its path.
     pub fn new(text: &str, file: Option<String>, settings: &Arc<Settings>) -> Self {
+        let surroundings =
+            Surroundings { path: file.as_deref().map(PathBuf::from), ..Surroundings::default() };
+        Self::placed(text, file, settings, surroundings)
+    }
+
+    /// The same for a program that stands elsewhere than its name says, perhaps among files that are open in an editor.
+    pub fn placed(
+        text: &str,
+        file: Option<String>,
+        settings: &Arc<Settings>,
+        surroundings: Surroundings,
+    ) -> Self {
         let set = settings.dialect.as_deref().and_then(|name| name.parse::<DialectName>().ok());
         let (name, dialect_reason) = match set {
             Some(name) => (name, DialectReason::Setting),
@@ -76,6 +92,7 @@ impl Document {
         Self {
             tree: SyntaxTree::parse(text, Dialect::named(name)),
             file,
+            surroundings,
             settings: Arc::clone(settings),
             dialect_reason,
             memo: MotionMemo::default(),
@@ -99,6 +116,7 @@ impl Document {
         Self {
             tree,
             file: self.file.clone(),
+            surroundings: self.surroundings.clone(),
             settings: Arc::clone(&self.settings),
             dialect_reason: self.dialect_reason.clone(),
             memo: self.memo.clone(),
@@ -164,10 +182,30 @@ impl Document {
     }
 
     /// The settings as Section 1 takes them, with the folders that INCLUD searches.
-    fn options(&self) -> Options {
+    pub fn options(&self) -> Options {
         let dialect = self.tree.dialect();
-        let resolver = FolderResolver::new(self.file(), &self.settings.include, dialect);
+        let resolver = FolderResolver::new(&self.surroundings, &self.settings.include, dialect);
         Options { include: Some(resolver), ..Options::from(&*self.settings) }
+    }
+
+    /// The same version with its evaluation forgotten: a file that it includes has changed.
+    pub fn with_changed_files(&self) -> Self {
+        Self {
+            tree: self.tree.clone(),
+            file: self.file.clone(),
+            surroundings: self.surroundings.clone(),
+            settings: Arc::clone(&self.settings),
+            dialect_reason: self.dialect_reason.clone(),
+            memo: self.memo.clone(),
+            basis: None,
+            program: OnceLock::new(),
+            result: OnceLock::new(),
+        }
+    }
+
+    /// Where the program stands.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.surroundings
     }
 
     /// Sections 1 to 3. `progress` gets the number of records done and to do.

@@ -11,16 +11,18 @@ use apt_syntax::{
 };
 use smol_str::SmolStr;
 
-use crate::statements::leaves_motion;
+use crate::{record::SourceFile, statements::leaves_motion};
 
 pub(crate) use run::{Activation, DoLoop};
-pub(crate) use substitute::Bindings;
+pub(crate) use substitute::{Bindings, splice};
 
 /// Statements with consecutive numbers, and where their labels are.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
     /// Number of the first statement.
     pub(crate) first_isn: u32,
+    /// The included file that the statements stand in.
+    pub(crate) source: Option<Arc<SourceFile>>,
     /// The statements; the last is LOOPND or TERMAC, kept for its label.
     pub(crate) statements: Vec<Arc<ParsedStatement>>,
     /// Content hashes of the statements, to tell whether two blocks say the same.
@@ -29,9 +31,9 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// An empty block that begins with this statement number.
-    pub(crate) fn new(first_isn: u32) -> Self {
-        Self { first_isn, statements: Vec::new(), hashes: Vec::new(), labels: BTreeMap::new() }
+    /// An empty block that begins with this statement number of a file.
+    pub(crate) fn new(first_isn: u32, source: Option<Arc<SourceFile>>) -> Self {
+        Self { first_isn, source, statements: Vec::new(), hashes: Vec::new(), labels: BTreeMap::new() }
     }
 
     /// Adds a statement; the first use of a label counts. Returns whether the label is new.
@@ -58,6 +60,17 @@ impl Block {
         self.labels.keys().map(SmolStr::as_str)
     }
 
+    /// Whether a statement of the block may give the name a value: as a target, or by handing it to another macro.
+    pub(crate) fn may_assign(&self, name: &str) -> bool {
+        self.statements.iter().any(|statement| {
+            let elements = &statement.elements;
+            (0..elements.len()).any(|index| {
+                let named = elements[index].text == name;
+                named && (is_target(elements, index) || is_handed_over(elements, index))
+            })
+        })
+    }
+
     /// Whether a statement of the block moves the tool.
     pub(crate) fn moves(&self) -> bool {
         self.statements.iter().any(|statement| says_motion(&statement.elements))
@@ -81,6 +94,29 @@ impl Block {
     pub(crate) fn isn(&self, index: usize) -> u32 {
         self.first_isn.saturating_add(u32::try_from(index).unwrap_or(u32::MAX))
     }
+}
+
+/// Whether the element at `index` is a name before `=`, with or without a subscript.
+pub(crate) fn is_target(elements: &[Element], index: usize) -> bool {
+    let mut depth = 0_u32;
+    for element in elements.get(index + 1..).unwrap_or_default() {
+        match element.kind {
+            ElementKind::LeftParenthesis => depth += 1,
+            ElementKind::RightParenthesis if depth == 0 => return false,
+            ElementKind::RightParenthesis => depth -= 1,
+            ElementKind::Equals if depth == 0 => return true,
+            _ if depth == 0 => return false,
+            _ => {}
+        }
+    }
+    false
+}
+
+/// Whether the element at `index` is a value of a CALL: the macro may then assign to it.
+fn is_handed_over(elements: &[Element], index: usize) -> bool {
+    let before = index.checked_sub(1).and_then(|before| elements.get(before));
+    before.is_some_and(|before| before.kind == ElementKind::Equals)
+        && elements.iter().any(|element| element.kind == ElementKind::Word && element.text == "CALL")
 }
 
 /// Labels that are numbers are compared by value: `01` is `1`.

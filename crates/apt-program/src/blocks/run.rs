@@ -57,11 +57,19 @@ impl Evaluator<'_> {
         self.here = Here {
             isn: activation.frame.isn,
             frame: Some(Arc::new(activation.frame.clone())),
+            source: activation.block.source.clone(),
             label: None,
             region: activation.region,
             depth,
         };
+        if self.trace.is_some() {
+            let statements = activation.block.statements.iter();
+            let substituted: Vec<_> =
+                statements.map(|statement| activation.bindings.apply(statement, &self.dialect)).collect();
+            self.enter_region(substituted.iter().map(|statement| &**statement));
+        }
         let flow = self.run_statements(activation);
+        self.leave_region();
         self.here = outer;
         match flow {
             Flow::Abort => Flow::Abort,
@@ -158,6 +166,7 @@ impl Evaluator<'_> {
         let mut origin = self.origin(activation.frame.range);
         origin.isn = activation.frame.isn;
         origin.frame = activation.frame.parent.clone();
+        origin.source = activation.frame.source.clone();
         let statement = activation.block.statements.get(index);
         let part = statement.and_then(|statement| statement.statement.parts.first());
         let range = part.map_or(TextRange::default(), |part| part.range);
@@ -225,6 +234,9 @@ impl Evaluator<'_> {
             _ => (None, None, None),
         };
         self.assign_scalar(variable, first);
+        if let Some(first) = first {
+            self.trace_index(variable, first);
+        }
         let (last, step) = (last?, step?);
         if step == 0.0 {
             self.report(FindingKind::ZeroStep, range);
@@ -254,6 +266,7 @@ impl Evaluator<'_> {
             let past = if innermost.step > 0.0 { next > innermost.last } else { next < innermost.last };
             if !past {
                 self.assign_scalar(&innermost.index, Some(next));
+                self.trace_index(&innermost.index, next);
                 return Some(innermost.body);
             }
             do_loops.pop();
@@ -263,6 +276,7 @@ impl Evaluator<'_> {
 
     /// A frame around the statement being executed.
     pub(crate) fn frame(&self, kind: FrameKind, name: SmolStr, range: TextRange) -> Frame {
-        Frame { kind, name, isn: self.here.isn, range, turn: 1, parent: self.here.frame.clone() }
+        let (parent, source) = (self.here.frame.clone(), self.here.source.clone());
+        Frame { kind, name, isn: self.here.isn, range, turn: 1, parent, source }
     }
 }

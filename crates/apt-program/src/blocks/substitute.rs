@@ -77,7 +77,7 @@ fn first_word(elements: &[Element]) -> Option<&str> {
 
 /// Puts a value in the place of a variable; in parentheses where its signs and operators would otherwise bind to the
 /// elements around it.
-fn splice(
+pub(crate) fn splice(
     into: &mut Vec<Element>,
     variable: &Element,
     value: &[Element],

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use apt_geometry::motion::DriveSide;
 use smol_str::SmolStr;
 
-use crate::record::{Frame, Origin};
+use crate::record::{Frame, Origin, SourceFile};
 
 /// The statement being executed.
 #[derive(Debug, Clone, Default)]
@@ -14,6 +14,8 @@ pub(crate) struct Here {
     pub(crate) isn: u32,
     /// The macro call or loop turn around it.
     pub(crate) frame: Option<Arc<Frame>>,
+    /// The included file that it stands in.
+    pub(crate) source: Option<Arc<SourceFile>>,
     /// Its label.
     pub(crate) label: Option<SmolStr>,
     /// Whether jumps may be taken here.

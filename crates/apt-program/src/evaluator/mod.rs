@@ -119,7 +119,8 @@ impl<'a> Evaluator<'a> {
 
     /// The origin of `range` in the statement being executed.
     pub(crate) fn origin(&self, range: TextRange) -> Origin {
-        Origin { isn: self.here.isn, range, frame: self.here.frame.clone() }
+        let (frame, source) = (self.here.frame.clone(), self.here.source.clone());
+        Origin { isn: self.here.isn, range, frame, source }
     }
 
     /// Reports a finding at `range` of the statement being executed.

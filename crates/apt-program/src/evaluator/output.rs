@@ -62,5 +62,6 @@ impl Output {
 pub(crate) fn same_place_and_kind(left: &Finding, right: &Finding) -> bool {
     left.origin.isn == right.origin.isn
         && left.origin.range == right.origin.range
+        && left.origin.source == right.origin.source
         && std::mem::discriminant(&left.kind) == std::mem::discriminant(&right.kind)
 }

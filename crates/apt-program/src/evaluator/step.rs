@@ -4,15 +4,16 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use apt_syntax::{
     ParsedStatement, SyntaxTree, TextRange,
-    statement::{Body, Element, ElementKind, Name, Part},
+    statement::{Body, Name},
 };
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 
-use super::{Budget, Evaluator, Flow, Region, TracedLine};
+use super::{Budget, Evaluator, Flow, Region};
 use crate::{
     blocks::{self, Activation, Bindings, Block, DoLoop, normalised_label},
     finding::{FindingKind, RelatedKind},
-    record::{FrameKind, RecordKind},
+    options::IncludeFailure,
+    record::{FrameKind, RecordKind, SourceFile},
     statements::Major,
     symbols::{Meaning, similar_names},
 };
@@ -85,6 +86,7 @@ impl Evaluator<'_> {
                 Body::Macro { name, parameters, .. } => {
                     self.open_statement(&statement);
                     let (body, next) = self.gather(top, index, "TERMAC", Some(name), part.range);
+                    self.trace_macro(&name.text, &statement, &body);
                     self.define_macro(name, parameters, body);
                     return past(next);
                 }
@@ -93,6 +95,7 @@ impl Evaluator<'_> {
                 {
                     self.open_statement(&statement);
                     let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
+                    self.trace_loop(&statement, &block);
                     let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
                     let bindings = Bindings::default();
                     self.run_block(&Activation { block: &block, bindings, region: Region::Loop, frame });
@@ -246,7 +249,7 @@ impl Evaluator<'_> {
     ) -> (Block, usize) {
         let count = top.tree.statement_count();
         let opened_at = self.here.isn;
-        let mut block = Block::new(opened_at.saturating_add(1));
+        let mut block = Block::new(opened_at.saturating_add(1), self.here.source.clone());
         let mut index = header + 1;
         while index < count {
             let view = top.tree.statement(index);
@@ -338,25 +341,29 @@ impl Evaluator<'_> {
 
     /// INCLUD: executes the statements of another file in place.
     pub(crate) fn include(&mut self, major: Major<'_>) -> Flow {
-        let Some(name) = included_name(major) else {
-            self.wrong_count(major, major.arguments.len(), "a file name", 129);
-            return Flow::Next;
-        };
-        self.asked_for_files = true;
-        let tree = self.options.include.as_ref().and_then(|resolver| resolver.resolve(&name));
-        let Some(tree) = tree else {
-            self.report(FindingKind::IncludeNotFound { name }, major.range);
-            return Flow::Next;
-        };
+        match included_name(major) {
+            Some(name) => self.include_file(&name, major.range),
+            None => {
+                self.wrong_count(major, major.arguments.len(), "a file name", 129);
+                Flow::Next
+            }
+        }
+    }
+
+    /// Executes the statements of the file with this name. `range` is the statement part that asks for them.
+    pub(crate) fn include_file(&mut self, name: &SmolStr, range: TextRange) -> Flow {
+        let Some(source) = self.included_source(name, range) else { return Flow::Next };
         let limit = self.options.macro_depth;
         if self.here.depth >= limit {
-            self.report(FindingKind::MacroDepth { name, limit }, major.range);
+            self.report(FindingKind::MacroDepth { name: name.clone(), limit }, range);
             return Flow::Abort;
         }
         let outer = self.here.clone();
-        let frame = self.frame(FrameKind::Include, name, major.range);
+        let frame = self.frame(FrameKind::Include, name.clone(), range);
         self.here.frame = Some(Arc::new(frame));
         self.here.depth += 1;
+        let tree = source.tree.clone();
+        self.here.source = Some(source);
         let mut top = TopLevel::new(&tree);
         let mut index = 0;
         let mut flow = Flow::Next;
@@ -372,25 +379,57 @@ impl Evaluator<'_> {
         if self.state.ended { Flow::End } else { flow }
     }
 
-    /// Notes an executed part for an expansion; jumps and the words that open and close regions leave no line.
-    fn trace_part(&mut self, statement: &ParsedStatement, part: &Part) {
-        if self.trace.is_none() || !leaves_line(&part.body) {
-            return;
-        }
-        let elements: Vec<Element> = if statement.statement.parts.len() == 1 {
-            without_label(&statement.elements).to_vec()
-        } else {
-            statement
-                .elements
-                .iter()
-                .filter(|element| part.range.contains_range(element.range))
-                .cloned()
-                .collect()
+    /// The file with this name; nothing when it cannot be included, which has been reported.
+    fn included_source(&mut self, name: &SmolStr, range: TextRange) -> Option<Arc<SourceFile>> {
+        self.asked_for_files = true;
+        let resolved = match &self.options.include {
+            Some(resolver) => resolver.resolve(name),
+            None => Err(IncludeFailure::NotFound { searched: Vec::new() }),
         };
-        let origin = self.origin(part.range);
-        if let Some(trace) = &mut self.trace {
-            trace.lines.push(TracedLine { elements, origin });
+        let finding = match resolved {
+            Ok(source) => match self.circle_through(&source) {
+                None => return Some(source),
+                Some(mut through) => {
+                    through.push(name.clone());
+                    FindingKind::IncludeCycle { name: name.clone(), through }
+                }
+            },
+            Err(IncludeFailure::NotFound { searched }) => {
+                FindingKind::IncludeNotFound { name: name.clone(), searched }
+            }
+            Err(IncludeFailure::Unreadable { path, reason }) => {
+                FindingKind::IncludeUnreadable { path, reason }
+            }
+            Err(IncludeFailure::TooLarge { path, limit }) => {
+                let reason = format_smolstr!("it is larger than {limit} bytes");
+                FindingKind::IncludeUnreadable { path, reason }
+            }
+        };
+        self.report(finding, range);
+        None
+    }
+
+    /// The names of the inclusions from that of a file on to the place being executed, if it stands inside of the file.
+    fn circle_through(&self, source: &Arc<SourceFile>) -> Option<Vec<SmolStr>> {
+        let mut inside = self.here.source.clone();
+        let mut through = Vec::new();
+        let mut around = self.here.frame.as_deref();
+        let is_program =
+            self.options.include.as_ref().is_some_and(|resolver| resolver.is_program(&source.path));
+        let mut circle = is_program.then_some(0);
+        while let Some(frame) = around {
+            if frame.kind == FrameKind::Include {
+                through.push(frame.name.clone());
+                if is_program || inside.as_ref() == Some(source) {
+                    circle = Some(through.len());
+                }
+            }
+            inside = frame.source.clone();
+            around = frame.parent.as_deref();
         }
+        through.truncate(circle?);
+        through.reverse();
+        Some(through)
     }
 
     /// Whether the program has ended without FINI, reported at its last statement.
@@ -422,27 +461,8 @@ fn included_name(major: Major<'_>) -> Option<SmolStr> {
     match major.arguments.first()? {
         Argument::Text { text, .. } => Some(text.clone()),
         Argument::Expression(Expression::Reference(reference)) => Some(reference.name.text.clone()),
+        // A file may have the name of a word.
+        Argument::Word(word) => Some(SmolStr::new_static(word.word.spelling)),
         _ => None,
-    }
-}
-
-/// Whether a part stands in an expansion.
-fn leaves_line(body: &Body) -> bool {
-    match body {
-        Body::Call { section, .. } => section.is_some(),
-        Body::ArithmeticIf { .. } | Body::LogicalIf { .. } | Body::Do { .. } | Body::Error => false,
-        Body::Jump { word, .. } => word.word.spelling == "TRANTO",
-        Body::Major { word, .. } => {
-            !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "INCLUD" | "CONTIN")
-        }
-        _ => true,
-    }
-}
-
-/// The elements after the label.
-fn without_label(elements: &[Element]) -> &[Element] {
-    match elements {
-        [_, close, rest @ ..] if close.kind == ElementKind::RightParenthesis => rest,
-        all => all,
     }
 }

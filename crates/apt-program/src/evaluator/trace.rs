@@ -1,21 +1,318 @@
 //! The statements executed, for an expansion.
 
-use apt_syntax::statement::Element;
+use std::{collections::BTreeSet, sync::Arc};
 
-use crate::record::Origin;
+use apt_syntax::{
+    ParsedStatement, TextRange,
+    statement::{Body, Element, ElementKind, Part, Reference},
+};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::{Evaluator, Region};
+use crate::{
+    blocks::{Block, is_target, splice},
+    record::{Frame, Origin, SourceFile},
+    statements::segment,
+    symbols::Meaning,
+};
 
 /// Collects executed statements.
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     /// The statements in order of execution.
     pub(crate) lines: Vec<TracedLine>,
+    /// Only what the statement of the program with this number executes.
+    pub(crate) at: Option<u32>,
+    /// How many levels of calls, loops and inclusions are opened; what lies deeper stands as it is written.
+    pub(crate) depth: Option<u32>,
+    /// Names that the regions being executed assign to, the innermost last: their values are shown.
+    varying: Vec<BTreeSet<SmolStr>>,
+    /// Labels that stand before a line already.
+    labels: BTreeSet<SmolStr>,
+    /// The elements of the statement being executed.
+    elements: Vec<Element>,
 }
 
-/// One executed statement.
+/// One executed statement, or one that stands as it is written.
 #[derive(Debug, Clone)]
 pub(crate) struct TracedLine {
-    /// Its elements after substitution, without its label.
+    /// Its elements after substitution.
     pub(crate) elements: Vec<Element>,
     /// Where it comes from.
     pub(crate) origin: Origin,
+    /// The macro whose definition it belongs to.
+    pub(crate) definition_of: Option<SmolStr>,
+}
+
+impl Trace {
+    /// A trace that keeps what is wanted.
+    pub(crate) fn new(at: Option<u32>, depth: Option<u32>) -> Self {
+        Self { at, depth, ..Self::default() }
+    }
+
+    /// How many levels a place lies inside of what is expanded; nothing if it does not belong to that.
+    fn nesting(&self, isn: u32, source: Option<&Arc<SourceFile>>, frame: Option<&Frame>) -> Option<u32> {
+        if self.at.is_some_and(|at| at == isn && source.is_none()) {
+            return Some(0);
+        }
+        let mut nesting = 0;
+        let mut around = frame;
+        while let Some(frame) = around {
+            nesting += 1;
+            if self.at.is_some_and(|at| at == frame.isn && frame.source.is_none()) {
+                return Some(nesting);
+            }
+            around = frame.parent.as_deref();
+        }
+        self.at.is_none().then_some(nesting)
+    }
+
+    fn varies(&self, name: &str) -> bool {
+        self.varying.iter().any(|names| names.contains(name))
+    }
+}
+
+impl Evaluator<'_> {
+    /// How many levels the place being executed lies inside of what is expanded; nothing if no trace wants it.
+    fn traced_nesting(&self) -> Option<u32> {
+        let trace = self.trace.as_ref()?;
+        let nesting = trace.nesting(self.here.isn, self.here.source.as_ref(), self.here.frame.as_deref())?;
+        trace.depth.is_none_or(|depth| nesting <= depth).then_some(nesting)
+    }
+
+    /// Whether what a statement here opens stays closed.
+    fn stays_closed(&self) -> bool {
+        let depth = self.trace.as_ref().and_then(|trace| trace.depth);
+        depth.is_some() && self.traced_nesting() == depth
+    }
+
+    /// Notes an executed part; jumps and the words that open and close regions leave no line.
+    pub(crate) fn trace_part(&mut self, statement: &ParsedStatement, part: &Part) {
+        let Some(trace) = &mut self.trace else { return };
+        let labelled = matches!(
+            statement.elements.get(1).map(|element| element.kind),
+            Some(ElementKind::RightParenthesis)
+        );
+        let parts: &[Element] = match statement.elements.as_slice() {
+            [_, _, rest @ ..] if labelled => rest,
+            all => all,
+        };
+        trace.elements = if statement.statement.parts.len() == 1 {
+            parts.to_vec()
+        } else {
+            parts.iter().filter(|element| part.range.contains_range(element.range)).cloned().collect()
+        };
+        let label = statement.elements.get(..2).filter(|_| labelled).map(<[_]>::to_vec);
+        self.trace_body(part, label);
+    }
+
+    /// Notes what a logical IF lets happen.
+    pub(crate) fn trace_conditional(&mut self, part: &Part) {
+        let Some(trace) = &mut self.trace else { return };
+        trace.elements.retain(|element| part.range.contains_range(element.range));
+        self.trace_body(part, None);
+    }
+
+    /// Notes a part whose elements the trace holds.
+    fn trace_body(&mut self, part: &Part, label: Option<Vec<Element>>) {
+        if self.traced_nesting().is_none() || !self.leaves_line(&part.body) {
+            return;
+        }
+        let mut elements = self.with_values(&part.body);
+        let origin = self.origin(part.range);
+        let top = self.here.region == Region::Top;
+        let Some(trace) = &mut self.trace else { return };
+        // At the top level Section 2 may go on at a label; inside of regions the labels served the jumps.
+        if let Some(mut label) = label.filter(|_| top)
+            && let Some(name) = label.first()
+            && trace.labels.insert(name.text.clone())
+        {
+            label.append(&mut elements);
+            elements = label;
+        }
+        trace.lines.push(TracedLine { elements, origin, definition_of: None });
+    }
+
+    /// Whether a part stands in an expansion.
+    fn leaves_line(&self, body: &Body) -> bool {
+        match body {
+            Body::Call { section, .. } => section.is_some() || self.stays_closed(),
+            Body::ArithmeticIf { .. }
+            | Body::LogicalIf { .. }
+            | Body::Do { .. }
+            | Body::Macro { .. }
+            | Body::Error => false,
+            Body::Jump { word, .. } => word.word.spelling == "TRANTO",
+            Body::Major { word, arguments, .. } => match word.word.spelling {
+                "LOOPST" | "LOOPND" | "TERMAC" | "CONTIN" => false,
+                "INCLUD" | "LIBRY" => self.stays_closed(),
+                "READ" if segment(arguments).is_some() => self.stays_closed(),
+                _ => true,
+            },
+            _ => true,
+        }
+    }
+
+    /// The elements of the part with the values of the names that the regions around it assign to.
+    fn with_values(&self, body: &Body) -> Vec<Element> {
+        let Some(trace) = &self.trace else { return Vec::new() };
+        let elements = &trace.elements;
+        let takes_values = match body {
+            Body::Assignment { .. } | Body::Definition { .. } | Body::Call { .. } => true,
+            // These have names for operands, not their values.
+            Body::Major { word, .. } => !matches!(
+                word.word.spelling,
+                "PRINT" | "PUNCH" | "READ" | "SYN" | "RESERV" | "INCLUD" | "LIBRY"
+            ),
+            _ => false,
+        };
+        if !takes_values || trace.varying.is_empty() {
+            return elements.clone();
+        }
+        // A name that gets its value inside of the statement may have another one in each of its places.
+        let assigned_inside = |name: &str| {
+            let mut targets = (0..elements.len()).filter(|&index| is_target(elements, index));
+            targets.any(|index| index > 0 && elements[index].text == name)
+        };
+        let kept_names = self.names_handed_over(body);
+        let mut shown = Vec::with_capacity(elements.len());
+        for (index, element) in elements.iter().enumerate() {
+            let is_value = element.kind == ElementKind::Name
+                && trace.varies(&element.text)
+                && !is_target(elements, index)
+                && !assigned_inside(&element.text)
+                && !kept_names.contains(&element.text);
+            let meaning = self.state.symbol(&element.text).map(|symbol| &symbol.meaning);
+            match meaning {
+                Some(Meaning::Scalar(value)) if is_value && value.is_finite() => {
+                    let around = |index: Option<usize>| Some(elements.get(index?)?.kind);
+                    let neighbours = (around(index.checked_sub(1)), around(index.checked_add(1)));
+                    splice(&mut shown, element, &number_elements(*value, element.range), neighbours, false);
+                }
+                _ => shown.push(element.clone()),
+            }
+        }
+        shown
+    }
+
+    /// Names in a CALL that the macro may assign to: they are handed over by name.
+    fn names_handed_over(&self, body: &Body) -> BTreeSet<SmolStr> {
+        let Body::Call { name, arguments, .. } = body else { return BTreeSet::new() };
+        let definition = match self.state.symbol(&name.text).map(|symbol| &symbol.meaning) {
+            Some(Meaning::Macro(definition)) => Some(definition),
+            _ => None,
+        };
+        let by_name = |variable: &str| definition.is_none_or(|one| one.body.may_assign(variable));
+        let handed = arguments.iter().filter(|argument| by_name(&argument.name.text));
+        handed
+            .filter_map(|argument| argument.value.as_ref())
+            .flatten()
+            .map(|element| element.text.clone())
+            .collect()
+    }
+
+    /// The names that a region assigns to show their values until [`Evaluator::leave_region`].
+    pub(crate) fn enter_region<'s>(&mut self, statements: impl Iterator<Item = &'s ParsedStatement>) {
+        if let Some(trace) = &mut self.trace {
+            trace.varying.push(statements.flat_map(assigned_names).collect());
+        }
+    }
+
+    /// The region has been executed.
+    pub(crate) fn leave_region(&mut self) {
+        if let Some(trace) = &mut self.trace {
+            trace.varying.pop();
+        }
+    }
+
+    /// Notes a loop that stays closed, as it is written.
+    pub(crate) fn trace_loop(&mut self, header: &ParsedStatement, block: &Block) {
+        if self.stays_closed() {
+            self.trace_written(header, block, None);
+        }
+    }
+
+    /// Notes the definition of a macro, as it is written; it is needed where calls stay closed.
+    pub(crate) fn trace_macro(&mut self, name: &SmolStr, header: &ParsedStatement, body: &Block) {
+        let wanted = self.trace.as_ref().is_some_and(|trace| trace.depth.is_some() && trace.at.is_none());
+        if wanted && self.traced_nesting().is_some() {
+            self.trace_written(header, body, Some(name));
+        }
+    }
+
+    fn trace_written(&mut self, header: &ParsedStatement, block: &Block, definition_of: Option<&SmolStr>) {
+        let opened_at = self.here.isn;
+        let statements = block.statements.iter().map(|statement| &**statement);
+        for (offset, statement) in (0..).zip(std::iter::once(header).chain(statements)) {
+            let (first, last) = (statement.statement.parts.first(), statement.statement.parts.last());
+            let Some((first, last)) = first.zip(last) else { continue };
+            self.here.isn = opened_at.saturating_add(offset);
+            let origin = self.origin(TextRange::new(first.range.start(), last.range.end()));
+            if let Some(trace) = &mut self.trace {
+                let definition_of = definition_of.cloned();
+                trace.lines.push(TracedLine { elements: statement.elements.clone(), origin, definition_of });
+            }
+        }
+        self.here.isn = opened_at;
+    }
+
+    /// Notes that DO gives its index a value.
+    pub(crate) fn trace_index(&mut self, index: &Reference, value: f64) {
+        if index.subscript.is_some() || self.traced_nesting().is_none() || !value.is_finite() {
+            return;
+        }
+        let placed = |kind, text: &str| Element { kind, text: SmolStr::new(text), range: index.range };
+        let mut elements =
+            vec![placed(ElementKind::Name, &index.name.text), placed(ElementKind::Equals, "=")];
+        elements.extend(number_elements(value, index.range));
+        let origin = self.origin(index.range);
+        if let Some(trace) = &mut self.trace {
+            trace.lines.push(TracedLine { elements, origin, definition_of: None });
+        }
+    }
+}
+
+/// The names that a statement gives values to, and those that it hands to a macro.
+fn assigned_names(statement: &ParsedStatement) -> Vec<SmolStr> {
+    let elements = &statement.elements;
+    let parts = statement.statement.parts.iter();
+    let mut names: Vec<SmolStr> = parts
+        .flat_map(|part| match &part.body {
+            Body::Macro { .. } => Vec::new(),
+            Body::Call { arguments, .. } => {
+                let values = arguments.iter().filter_map(|argument| argument.value.as_deref());
+                let alone = values.filter_map(|value| match value {
+                    [one] if one.kind == ElementKind::Name => Some(one.text.clone()),
+                    _ => None,
+                });
+                alone.collect()
+            }
+            Body::Do { index, .. } => vec![index.name.text.clone()],
+            _ => {
+                let inside = |index: &usize| part.range.contains_range(elements[*index].range);
+                let targets = (0..elements.len())
+                    .filter(inside)
+                    .filter(|&index| elements[index].kind == ElementKind::Name && is_target(elements, index));
+                targets.map(|index| elements[index].text.clone()).collect()
+            }
+        })
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// A number as elements, exactly.
+fn number_elements(value: f64, range: TextRange) -> Vec<Element> {
+    /// Magnitudes between which a number is written without exponent.
+    const PLAIN: std::ops::Range<f64> = 1e-5..1e15;
+    let magnitude = value.abs();
+    let text = if magnitude == 0.0 || PLAIN.contains(&magnitude) {
+        format_smolstr!("{}", magnitude)
+    } else {
+        format_smolstr!("{:E}", magnitude)
+    };
+    let number = Element { kind: ElementKind::Number, text, range };
+    let minus = Element { kind: ElementKind::Minus, text: SmolStr::new_static("-"), range };
+    if value < 0.0 { vec![minus, number] } else { vec![number] }
 }

@@ -1,27 +1,32 @@
 //! The program with macros and loops unrolled: each executed statement as text, with its origin.
 
+use std::collections::BTreeSet;
+
 use apt_syntax::{
     SyntaxTree,
     statement::{Element, ElementKind},
 };
+use smol_str::SmolStr;
 
 use crate::{
     evaluator::{Evaluator, State, TopLevel, Trace, TracedLine},
     options::Options,
-    record::{Frame, Origin},
+    record::Origin,
 };
 
 /// An unrolled program.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Expansion {
-    /// The statements in order of execution. Jumps, loop words, macro bodies and calls leave no line of their own.
+    /// The statements in order of execution. Jumps, and the words of loops, macros and calls that are opened, leave no
+    /// line of their own.
     pub lines: Vec<ExpandedLine>,
 }
 
 /// One executed statement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpandedLine {
-    /// The statement in canonical spelling: upper case, no blanks but those of texts, macro variables replaced.
+    /// The statement in canonical spelling: upper case, no blanks but those of texts. Macro variables are replaced, and
+    /// so are names that the loop or macro around it assigns to: by their values.
     pub text: String,
     /// Where it comes from, with the macro calls and loop turns around it.
     pub origin: Origin,
@@ -39,10 +44,11 @@ impl Expansion {
     }
 }
 
-/// Unrolls a program.
+/// Unrolls a program. What comes out does the same as the program.
 ///
 /// With `at` only what the statement with this index (from 0) executes is given: the body of a call, the turns of a
-/// loop. With `depth` calls and loops nested deeper than this are left out.
+/// loop. With `depth` calls, loops and inclusions nested deeper than this stand as they are written, with the
+/// definitions of the macros that are still called.
 pub fn expand(
     tree: &SyntaxTree,
     options: &Options,
@@ -51,47 +57,60 @@ pub fn expand(
     cancel: &dyn Fn() -> bool,
 ) -> Expansion {
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, State::default());
-    evaluator.trace = Some(Trace::default());
-    let mut top = TopLevel::new(tree);
+    let isn = at.map(|at| u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX));
+    evaluator.trace = Some(Trace::new(isn, depth));
     let count = tree.statement_count();
+    if tree.dialect().branch_anywhere {
+        // The whole program is one region there: loops are made of jumps.
+        let all: Vec<_> = (0..count).map(|index| tree.statement(index).parsed()).collect();
+        evaluator.enter_region(all.iter().filter(|one| repeats(&one.elements)).map(|one| &**one));
+    }
+    let mut top = TopLevel::new(tree);
     let mut index = 0;
     while index < count && !evaluator.state.ended && !evaluator.is_cancelled() {
         index = evaluator.step(&mut top, index).next;
     }
     let lines = evaluator.trace.map(|trace| trace.lines).unwrap_or_default();
+    let needed = needed_macros(&lines);
     let lines = lines
         .into_iter()
-        .filter(|line| at.is_none_or(|at| executes(&line.origin, at)))
-        .filter(|line| depth.is_none_or(|depth| nesting(line.origin.frame.as_deref()) <= depth))
+        .filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)))
         .map(expanded_line)
         .collect();
     Expansion { lines }
 }
 
-/// Whether the statement with this index executes what comes from this origin: itself, or as a call or loop around it.
-fn executes(origin: &Origin, at: usize) -> bool {
-    let isn = u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX);
-    let mut frame = origin.frame.as_deref();
-    if origin.isn == isn {
-        return true;
-    }
-    while let Some(inner) = frame {
-        if inner.isn == isn {
-            return true;
-        }
-        frame = inner.parent.as_deref();
-    }
-    false
+/// Whether a statement makes a new value of a name out of its old one, as the counter of a loop does, or is a DO.
+fn repeats(elements: &[Element]) -> bool {
+    let equals = elements.iter().position(|element| element.kind == ElementKind::Equals);
+    let counts = equals.is_some_and(|equals| {
+        let (targets, values) = elements.split_at(equals);
+        let named = targets.iter().filter(|element| element.kind == ElementKind::Name);
+        named.clone().any(|name| values.iter().any(|value| value.text == name.text))
+    });
+    counts || elements.iter().any(|element| element.kind == ElementKind::Word && element.text == "DO")
 }
 
-/// How many frames are around a statement.
-fn nesting(mut frame: Option<&Frame>) -> u32 {
-    let mut depth = 0;
-    while let Some(inner) = frame {
-        depth += 1;
-        frame = inner.parent.as_deref();
+/// The macros that the lines still call, and those that these call.
+fn needed_macros(lines: &[TracedLine]) -> BTreeSet<SmolStr> {
+    let mut needed: BTreeSet<SmolStr> = BTreeSet::new();
+    loop {
+        let before = needed.len();
+        let standing =
+            lines.iter().filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)));
+        let called: Vec<SmolStr> = standing.filter_map(|line| called_macro(&line.elements)).collect();
+        needed.extend(called);
+        // Each round adds a macro, or is the last one.
+        if needed.len() == before {
+            return needed;
+        }
     }
-    depth
+}
+
+/// The macro that a statement calls.
+fn called_macro(elements: &[Element]) -> Option<SmolStr> {
+    let call = elements.iter().position(|one| one.kind == ElementKind::Word && one.text == "CALL")?;
+    elements.get(call.checked_add(2)?).map(|name| name.text.clone())
 }
 
 /// The text of an executed statement.

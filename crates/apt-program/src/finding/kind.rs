@@ -484,6 +484,25 @@ pub enum FindingKind {
     IncludeNotFound {
         /// The file.
         name: SmolStr,
+        /// The folders that were searched, in their order; empty where nothing can be included.
+        searched: Vec<SmolStr>,
+    },
+    /// INCLUD of a file that cannot be read.
+    #[error("{path} cannot be read: {reason}")]
+    IncludeUnreadable {
+        /// The file.
+        path: SmolStr,
+        /// Why.
+        reason: SmolStr,
+    },
+    /// A file that includes itself, perhaps through others.
+    #[error("{name} includes itself")]
+    IncludeCycle {
+        /// The file.
+        name: SmolStr,
+        /// The names by which the files were included, from the first inclusion of the file to the one that closes
+        /// the circle.
+        through: Vec<SmolStr>,
     },
 
     // Synonyms.

@@ -96,7 +96,7 @@ impl FindingKind {
             Self::TransformForm { .. } => 506,
             Self::CopyCount { .. } => 507,
             Self::CopyOption { .. } => 503,
-            Self::IncludeNotFound { .. } => 31,
+            Self::IncludeNotFound { .. } | Self::IncludeUnreadable { .. } | Self::IncludeCycle { .. } => 31,
             Self::EndMissing => 23,
             Self::Unused { .. }
             | Self::WordBecomesName { .. }
@@ -128,6 +128,8 @@ impl FindingKind {
             | Self::LabelIsName { .. }
             | Self::NotInDialect { .. }
             | Self::IncludeNotFound { .. }
+            | Self::IncludeUnreadable { .. }
+            | Self::IncludeCycle { .. }
             | Self::InclusiveForm { .. }
             | Self::SynonymPairs { .. } => 1007,
             Self::Redefined { .. } => 50,

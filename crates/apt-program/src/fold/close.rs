@@ -74,7 +74,9 @@ fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mu
         .filter(|(name, symbol)| {
             let has_value =
                 matches!(symbol.meaning, Meaning::Scalar(_) | Meaning::Geometry(_) | Meaning::Array(_));
-            has_value && !used.contains(name) && !names_implied_part_surface(&symbol.meaning)
+            // A file that several programs include need not be used up by each.
+            let own = symbol.origin.source.is_none();
+            own && has_value && !used.contains(name) && !names_implied_part_surface(&symbol.meaning)
         })
         .map(|(name, symbol)| (name, &symbol.origin))
         .collect();

@@ -59,8 +59,7 @@ impl Shift {
 
     /// An origin. Statements of included files keep their numbers; the INCLUD itself moves.
     pub(super) fn origin(&self, origin: &mut Origin) {
-        let included = origin.frame.as_deref().is_some_and(is_included);
-        if !included {
+        if origin.source.is_none() {
             origin.isn = self.isn(origin.isn);
         }
         if let Some(frame) = &origin.frame {
@@ -71,7 +70,7 @@ impl Shift {
     /// A frame with the frames around it.
     fn frame(&self, frame: &Arc<Frame>) -> Arc<Frame> {
         let mut moved = (**frame).clone();
-        if !moved.parent.as_deref().is_some_and(is_included) {
+        if moved.source.is_none() {
             moved.isn = self.isn(moved.isn);
         }
         if let Some(parent) = &moved.parent {
@@ -118,15 +117,12 @@ impl Shift {
         self.origin(&mut symbol.origin);
         if let Meaning::Macro(definition) = &symbol.meaning {
             let mut moved: MacroDefinition = (**definition).clone();
-            moved.body.first_isn = self.isn(moved.body.first_isn);
+            if moved.body.source.is_none() {
+                moved.body.first_isn = self.isn(moved.body.first_isn);
+            }
             symbol.meaning = Meaning::Macro(Arc::new(moved));
         }
     }
-}
-
-/// Whether a frame is an included file, or stands in one.
-fn is_included(frame: &Frame) -> bool {
-    frame.kind == crate::record::FrameKind::Include || frame.parent.as_deref().is_some_and(is_included)
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ impl MacroDefinition {
     pub(crate) fn same_text(&self, other: &MacroDefinition) -> bool {
         self.variables == other.variables
             && self.body.first_isn == other.body.first_isn
+            && self.body.source == other.body.source
             && self.body.hashes == other.body.hashes
     }
 }

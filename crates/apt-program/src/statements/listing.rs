@@ -2,7 +2,7 @@
 
 use super::Major;
 use crate::{
-    evaluator::{Evaluator, Region},
+    evaluator::{Evaluator, Flow, Region},
     expression::Operand,
     finding::{Expected, FindingKind, Found},
 };
@@ -22,17 +22,26 @@ const READ_SEGMENT: f64 = 2.0;
 const READ_IN_REGION: u16 = 37;
 const READ_COUNT: u16 = 34;
 
+/// The name in `READ/2,name`, and what follows it.
+pub(crate) fn segment(arguments: &[Argument]) -> Option<(&Argument, &[Argument])> {
+    match arguments {
+        [Argument::Expression(Expression::Number { value: READ_SEGMENT, .. }), name, rest @ ..] => {
+            Some((name, rest))
+        }
+        _ => None,
+    }
+}
+
 impl Evaluator<'_> {
     /// PRINT, PUNCH and READ: the form is checked, names count as used; undefined items are no error.
-    pub(crate) fn listing(&mut self, major: Major<'_>) {
+    pub(crate) fn listing(&mut self, major: Major<'_>) -> Flow {
+        if let ("READ", Some((name, rest))) = (major.spelling(), segment(major.arguments)) {
+            return self.read_segment(major, name, rest);
+        }
         for argument in major.arguments {
             self.mark_listed(argument);
         }
         match (major.spelling(), major.arguments) {
-            (
-                "READ",
-                [Argument::Expression(Expression::Number { value: READ_SEGMENT, .. }), name, rest @ ..],
-            ) => self.read_segment(major, name, rest),
             ("READ", [_, ..]) => self.report(FindingKind::NoEffect { word: major.name() }, major.range),
             ("PRINT", arguments) if self.is_apt4() => self.apt4_listing(major, arguments),
             (_, [Argument::Word(word), ..]) if matches!(word.word.spelling, "ON" | "OFF") => {}
@@ -51,6 +60,7 @@ impl Evaluator<'_> {
                 self.wrong_operand(major, Expected::Integer, found, 326, major.range);
             }
         }
+        Flow::Next
     }
 
     /// PRINT in APT4: 0, 2 or 3 with a list, ON, OFF, or the switch of a part of the system.
@@ -72,19 +82,23 @@ impl Evaluator<'_> {
     }
 
     /// READ/2,name: puts in a stored segment of statements, which is looked for as an included file is.
-    fn read_segment(&mut self, major: Major<'_>, name: &Argument, rest: &[Argument]) {
+    fn read_segment(&mut self, major: Major<'_>, name: &Argument, rest: &[Argument]) -> Flow {
         if self.here.region != Region::Top {
-            return self.wrong_operand(major, Expected::Nothing, Found::Text, READ_IN_REGION, major.range);
+            self.wrong_operand(major, Expected::Nothing, Found::Text, READ_IN_REGION, major.range);
+            return Flow::Next;
         }
         if !rest.is_empty() {
-            return self.wrong_count(major, rest.len() + 2, "2 and one name", READ_COUNT);
+            self.wrong_count(major, rest.len() + 2, "2 and one name", READ_COUNT);
+            return Flow::Next;
         }
         match name {
             Argument::Expression(Expression::Reference(reference)) if reference.subscript.is_none() => {
-                let name = reference.name.text.clone();
-                self.report(FindingKind::IncludeNotFound { name }, reference.range);
+                self.include_file(&reference.name.text, reference.range)
             }
-            other => self.wrong_operand(major, Expected::Name, Found::Scalar, 156, other.range()),
+            other => {
+                self.wrong_operand(major, Expected::Name, Found::Scalar, 156, other.range());
+                Flow::Next
+            }
         }
     }
 
@@ -109,17 +123,21 @@ impl Evaluator<'_> {
         }
     }
 
-    /// LIBRY: there is no library of system macros, so each name is one that is not found.
-    pub(crate) fn library(&mut self, major: Major<'_>) {
+    /// LIBRY: each name is a macro of the library, which is the folders that INCLUD searches: a file of its name holds
+    /// its definition.
+    pub(crate) fn library(&mut self, major: Major<'_>) -> Flow {
         for argument in major.arguments {
             match argument {
-                Argument::Expression(Expression::Reference(reference)) => {
-                    let name = reference.name.text.clone();
-                    self.report(FindingKind::IncludeNotFound { name }, reference.range);
+                Argument::Expression(Expression::Reference(reference)) if reference.subscript.is_none() => {
+                    match self.include_file(&reference.name.text, reference.range) {
+                        Flow::Next => {}
+                        other => return other,
+                    }
                 }
                 other => self.wrong_operand(major, Expected::Name, Found::Nothing, 156, other.range()),
             }
         }
+        Flow::Next
     }
 
     /// System flags: accepted; those that APT III does not implement get its warning.

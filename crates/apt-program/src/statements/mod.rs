@@ -18,6 +18,8 @@ use apt_syntax::{
 };
 use smol_str::SmolStr;
 
+pub(crate) use listing::segment;
+
 use crate::{
     evaluator::{Evaluator, Flow, Region},
     expression::Items,
@@ -94,7 +96,10 @@ impl Evaluator<'_> {
             }
             Body::LogicalIf { condition, then, .. } => {
                 return match self.condition(condition) {
-                    Some(true) => self.execute_part(then),
+                    Some(true) => {
+                        self.trace_conditional(then);
+                        self.execute_part(then)
+                    }
                     Some(false) => Flow::Next,
                     None => {
                         if matches!(&then.body, Body::Major { word, .. } if leaves_motion(word.word.spelling))
@@ -208,14 +213,14 @@ impl Evaluator<'_> {
             "TRACUT" => self.cut_transformation(major),
             "INDEX" => self.index(major),
             "COPY" => self.copy(major),
-            "PRINT" | "PUNCH" | "READ" | "TITLES" => self.listing(major),
+            "PRINT" | "PUNCH" | "READ" | "TITLES" => return self.listing(major),
             "FINI" => return self.end(major),
             "LOOPST" => return self.loop_word_in_region(major, true),
             "LOOPND" => return self.loop_word_in_region(major, false),
             "TERMAC" => self.report(FindingKind::MacroEndAlone, major.word.range),
             "INCLUD" => return self.include(major),
             "MACHIN" => self.machine(major),
-            "LIBRY" => self.library(major),
+            "LIBRY" => return self.library(major),
             _ => self.other_major(major),
         }
         Flow::Next

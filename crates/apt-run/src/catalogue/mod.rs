@@ -106,7 +106,7 @@ fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
 pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
     let of_post = |finding: &PostFinding| {
         let (text, severity) = postprocessor::word(&finding.kind);
-        let unknown = || Origin { isn: finding.isn.max(1), range: TextRange::default(), frame: None };
+        let unknown = || Origin::in_program(finding.isn.max(1), TextRange::default());
         Diagnostic {
             wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
             severity,
@@ -123,7 +123,7 @@ pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) ->
 pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
     let of_line = |error: &ReadError| {
         let (text, severity) = cutter_locations::word(error);
-        let unknown = || Origin { isn: error.isn.max(1), range: TextRange::default(), frame: None };
+        let unknown = || Origin::in_program(error.isn.max(1), TextRange::default());
         Diagnostic {
             wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
             severity,
@@ -142,7 +142,11 @@ fn in_order(mut list: Vec<Diagnostic>, settings: &Settings) -> Vec<Diagnostic> {
         None => true,
         Some(setting) => setting.severity().map(|severity| diagnostic.severity = severity).is_some(),
     });
-    list.sort_by_key(|diagnostic| (diagnostic.origin.isn, diagnostic.origin.range.start()));
+    list.sort_by_key(|diagnostic| {
+        let (isn, range) = diagnostic.origin.place_in_program();
+        let inside = diagnostic.origin.source.as_ref().map(|_| diagnostic.origin.isn);
+        (isn, range.start(), inside)
+    });
     list
 }
 

@@ -2,6 +2,7 @@
 //! (codes 04xx, 05xx, 08xx, 09xx), and the door to the other groups of Section 1.
 
 use apt_program::finding::FindingKind as Kind;
+use smol_str::SmolStr;
 
 use super::{Text, a_kind, definitions, names, number, say, similar, syntax};
 
@@ -201,8 +202,23 @@ fn whole(kind: &Kind) -> Text {
         Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),
         Kind::NotInDialect { word } => say("APT0905", format!("{word} is not supported in this dialect"))
             .hint("another dialect is set in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),
-        Kind::IncludeNotFound { name } => say("APT0906", format!("{name} cannot be found"))
-            .hint("the setting include lists the folders that are searched"),
+        Kind::IncludeNotFound { name, searched } => {
+            let hint = match searched.as_slice() {
+                [] => "the setting include lists the folders that are searched".to_owned(),
+                folders => format!(
+                    "searched: {}; the setting include names more folders",
+                    folders.iter().map(SmolStr::as_str).collect::<Vec<_>>().join(", ")
+                ),
+            };
+            say("APT0906", format!("{name} cannot be found")).hint(hint)
+        }
+        Kind::IncludeUnreadable { path, reason } => {
+            say("APT0907", format!("{path} cannot be included: {reason}"))
+        }
+        Kind::IncludeCycle { name, through } => {
+            let way = through.iter().map(SmolStr::as_str).collect::<Vec<_>>().join(" includes ");
+            say("APT0908", format!("{name} would include itself")).hint(format!("the program includes {way}"))
+        }
         // The other groups have taken the rest.
         other => say("APT0999", format!("{other}")),
     }

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::{ClEntry, DiagnosticReport, MotionEntry, RelatedReport, Report, TotalsEntry};
 use crate::{
-    diagnostic::{Diagnostic, Severity, absolute_range, origin_steps},
+    diagnostic::{Diagnostic, Severity, absolute_range, origin_steps, related_places},
     pipeline::{Motion, RunResult},
     position::LineIndex,
 };
@@ -50,7 +50,7 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .result
             .motions
             .iter()
-            .filter(|motion| wanted(motion.origin.isn))
+            .filter(|motion| wanted(motion.origin.place_in_program().0))
             .map(|motion| motion_entry(motion, input.tree))
             .collect(),
         totals: totals_entry(input.result),
@@ -65,16 +65,19 @@ pub fn diagnostic_report(
     tree: &SyntaxTree,
     lines: &LineIndex,
 ) -> DiagnosticReport {
-    let related = diagnostic.related.iter().map(|(message, origin)| RelatedReport {
-        message: message.clone(),
-        file: file.to_owned(),
-        range: lines.range(text, absolute_range(tree, origin)),
+    let related = related_places(tree, diagnostic).into_iter().map(|(message, place)| match place.source {
+        None => RelatedReport { message, file: file.to_owned(), range: lines.range(text, place.range) },
+        Some(source) => {
+            let (text, file) = (source.tree.text(), source.path.display().to_string());
+            let range = LineIndex::new(&text).range(&text, place.range);
+            RelatedReport { message, file, range }
+        }
     });
     DiagnosticReport {
         code: diagnostic.wording.code.to_owned(),
         severity: diagnostic.severity,
         message: diagnostic.wording.message.clone(),
-        isn: diagnostic.origin.isn,
+        isn: diagnostic.origin.place_in_program().0,
         apt3: diagnostic.wording.apt3,
         file: file.to_owned(),
         range: lines.range(text, absolute_range(tree, &diagnostic.origin)),
@@ -191,8 +194,11 @@ fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
     };
     let evidence = computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
     MotionEntry {
-        isn: motion.origin.isn,
-        statement: statement_text(tree, motion.origin.isn),
+        isn: motion.origin.place_in_program().0,
+        statement: statement_text(
+            motion.origin.source.as_ref().map_or(tree, |source| &source.tree),
+            motion.origin.isn,
+        ),
         cut_vectors,
         minimum,
         part: evidence.and_then(|evidence| evidence.part),
@@ -203,14 +209,30 @@ fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
     }
 }
 
-/// The statement as its elements spell it: blanks, comments and cards left out.
+/// The statement as it was written, without comments; its continuations are joined.
 fn statement_text(tree: &SyntaxTree, isn: u32) -> String {
     let index = (isn.max(1) - 1) as usize;
     if index >= tree.statement_count() {
         return String::new();
     }
-    let parsed = tree.statement(index).parsed();
-    parsed.elements.iter().map(|element| element.text.as_str()).collect()
+    let view = tree.statement(index);
+    let (parsed, source) = (view.parsed(), view.text());
+    let mut text = String::new();
+    let mut end = None;
+    for element in &parsed.elements {
+        let (from, to) = (usize::from(element.range.start()), usize::from(element.range.end()));
+        let gap = end.and_then(|end| source.get(end..from)).unwrap_or("");
+        match gap.bytes().all(|byte| matches!(byte, b' ' | b'\t')) {
+            true => text.push_str(gap),
+            false if text.ends_with([',', '/', '=']) => {}
+            false => text.push(' '),
+        }
+        // An element may itself go on behind a continuation; its spelling has no such seam.
+        let written = source.get(from..to).filter(|written| !written.contains(['\n', '$']));
+        text.push_str(written.unwrap_or(&element.text));
+        end = Some(to);
+    }
+    text
 }
 
 fn totals_entry(result: &RunResult) -> TotalsEntry {
