@@ -1,6 +1,7 @@
 //! Surfaces as the arithmetic element sees them: signed distance with foot, natural normal and curvature, and
 //! directed distances. Made from canonical forms.
 
+mod bend;
 mod cone;
 mod directed;
 mod quadric;
@@ -9,6 +10,7 @@ mod tabulated;
 use nalgebra::Matrix3;
 
 pub use self::{
+    bend::{Bend, Region},
     cone::ConeForm,
     directed::{NoDistance, RootSelection, solve_quadratic},
     quadric::PrincipalQuadric,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use super::{Convexity, Foot, NoNormal, Surface};
+use super::{Convexity, Foot, NoNormal, Surface, bend::Region};
 use crate::{
     Vec3,
     canonical::{Plane, Quadric},
@@ -236,6 +236,48 @@ impl PrincipalQuadric {
         let bent = Matrix3::from_diagonal(&self.square) * moved;
         let projected = bent - n * (n.transpose() * bent);
         self.rotation * (projected / length) * self.rotation.transpose()
+    }
+
+    /// Upper bound of the second derivatives of `side · distance` over a region (see [`Surface::bend`]), `nearest` being
+    /// the least distance in it: infinite if there is none.
+    ///
+    /// At its foot the surface bends by `vᵀAv/|Ax + b|` along a tangent v. The gradient is bounded from below by its
+    /// components over the box that holds all feet. As long as a point below the surface is no deeper than the
+    /// smallest radius of curvature, the quadratic form `I + λA` of its multiplier is definite, so that its foot is the
+    /// only one.
+    pub(super) fn bend(&self, side: f64, foot: &Foot, region: &Region, nearest: f64) -> f64 {
+        let steepest = self.square.iter().map(|a| side * a).fold(0.0, f64::max);
+        if steepest <= 0.0 {
+            return 0.0;
+        }
+        let reach = region.lowest.abs().max(region.highest.abs()).min(foot.distance.abs() + region.radius);
+        let reach = region.radius + reach;
+        let y = self.local(&region.center);
+        let mut least = 0.0;
+        for i in 0..3 {
+            let middle = self.square[i] * y[i] + self.linear[i];
+            let low = (middle.abs() - self.square[i].abs() * reach).max(0.0);
+            least += low * low;
+        }
+        let gradient = least.max(self.least_gradient()).sqrt();
+        let curvature = if gradient > 0.0 { steepest / gradient } else { f64::INFINITY };
+        let stretch = 1.0 + nearest * curvature;
+        if stretch > 0.0 && curvature.is_finite() { curvature / stretch } else { f64::INFINITY }
+    }
+
+    /// Square of the least half gradient on the whole surface: where `Σ aᵢ yᵢ² = −d`, the terms of the sign of −d add
+    /// up to |d| at least.
+    fn least_gradient(&self) -> f64 {
+        if self.linear != Vec3::zeros() {
+            return self.linear.norm_squared();
+        }
+        let smallest = self
+            .square
+            .iter()
+            .filter(|&&a| a * self.constant < 0.0)
+            .map(|a| a.abs())
+            .fold(f64::INFINITY, f64::min);
+        if smallest.is_finite() { smallest * self.constant.abs() } else { 0.0 }
     }
 
     /// UNQUAD: the direction of the gradient of the canonical form.

@@ -1,0 +1,175 @@
+//! How strongly the distance from a surface bends over a ball: strict upper bounds of its second derivatives. With
+//! such a bound finitely many distances prove an inequality for all points between them.
+
+use super::{ConeForm, Foot, Surface};
+use crate::Vec3;
+
+/// An upper bound of the second derivative, along any unit direction, of the distance from a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bend {
+    /// It is nowhere greater than this (1/length, not negative).
+    AtMost(f64),
+    /// No bound can be given for so large a region: it may hold an edge, a vertex, or a point where nearest points
+    /// jump. A smaller region may have one.
+    Unbounded,
+    /// Bounds are not known for this kind of surface.
+    Unknown,
+}
+
+/// The points for which a bound is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// Centre of a ball.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f64,
+    /// Least distance from the surface, on the side asked for, of the points that matter; negative beyond the surface.
+    pub lowest: f64,
+    /// Greatest such distance.
+    pub highest: f64,
+}
+
+impl Surface {
+    /// A bound for `side · signed distance` over the points of a region, given the foot of its centre.
+    ///
+    /// The function may have concave ridges there (points with several nearest points on that side): its slope only
+    /// falls at them, so that the bound holds along every straight line all the same.
+    pub fn bend(&self, side: f64, foot: &Foot, region: &Region) -> Bend {
+        let nearest = region.lowest.max(side * foot.distance - region.radius);
+        // Distance is the least of the distances to points, and each of these bends by its reciprocal.
+        let far = if nearest > 0.0 { 1.0 / nearest } else { f64::INFINITY };
+        let near = match self {
+            Self::Plane(_) => 0.0,
+            // Outwards the solid is convex; inwards the distance is a concave function.
+            Self::Cylinder(_) | Self::Sphere(_) | Self::Cone(_) if side < 0.0 => 0.0,
+            Self::Cylinder(cylinder) => reciprocal(cylinder.radius + nearest),
+            Self::Sphere(sphere) => reciprocal(sphere.radius + nearest),
+            Self::Cone(cone) => cone_bend(cone, region, nearest),
+            Self::Quadric(quadric) => quadric.bend(side, foot, region, nearest),
+            _ => return Bend::Unknown,
+        };
+        let least = near.min(far);
+        if least.is_finite() { Bend::AtMost(least) } else { Bend::Unbounded }
+    }
+}
+
+/// `1/x`, infinite where x is not positive.
+fn reciprocal(x: f64) -> f64 {
+    if x > 0.0 { 1.0 / x } else { f64::INFINITY }
+}
+
+/// Outside a cone the parallel surface at a distance ρ from the axis bends by `cos α/ρ`; beyond the vertex it is a
+/// sphere, which the caller's bound covers.
+fn cone_bend(cone: &ConeForm, region: &Region, nearest: f64) -> f64 {
+    let w = region.center - cone.vertex;
+    let along = w.dot(&cone.axis);
+    let across = (w - cone.axis * along).norm();
+    if along * cone.cosine + across * cone.sine < region.radius {
+        return f64::INFINITY;
+    }
+    // Not nearer to the axis than the ball, nor than the depth allowed.
+    let by_depth = ((along - region.radius) * cone.sine + nearest) / cone.cosine;
+    cone.cosine * reciprocal((across - region.radius).max(by_depth))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::SymmetricEigen;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::canonical::{Cone, Cylinder, Geometry, Quadric, Sphere};
+
+    fn v(x: f64, y: f64, z: f64) -> Vec3 {
+        Vec3::new(x, y, z)
+    }
+
+    fn surfaces() -> Vec<Surface> {
+        let quadric = |coefficients| Geometry::Quadric(Quadric { coefficients });
+        [
+            Geometry::Cylinder(Cylinder { point: v(0.1, 0.2, 0.0), axis: v(0.3, 1.0, 0.2), radius: 1.5 }),
+            Geometry::Sphere(Sphere { center: v(0.2, 0.0, -0.1), radius: 1.8 }),
+            Geometry::Cone(Cone {
+                vertex: v(0.0, 0.0, 1.5),
+                axis: v(0.1, 0.0, -1.0).normalize(),
+                cosine: 0.8,
+            }),
+            quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]),
+            quadric([1.0, 0.6, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, -1.5]),
+            quadric([0.25, 1.0, 0.4, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            quadric([1.0, 0.8, -0.7, -1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0]),
+            quadric([1.0, 0.8, -0.7, 1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0]),
+            quadric([1.0, 0.8, -0.7, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            quadric([1.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        ]
+        .iter()
+        .map(|g| Surface::from_geometry(g).expect("surface"))
+        .collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        /// Along straight lines through the region the distance stays above its chords by no more than the bound says:
+        /// for a smooth stretch that is the second derivative, over ridges the fall of the slope.
+        #[test]
+        fn second_differences_stay_below_the_bound(
+            which in 0usize..10, side in prop::bool::ANY, center in prop::array::uniform3(-2.5..2.5f64),
+            radius in 0.01..0.6f64, depth in 0.0..0.1f64, height in 0.0..0.5f64,
+            ends in prop::collection::vec(prop::array::uniform6(-1.0..1.0f64), 40),
+        ) {
+            let surface = &surfaces()[which];
+            let side = if side { 1.0 } else { -1.0 };
+            let center = Vec3::from(center);
+            let region = Region { center, radius, lowest: -depth, highest: height };
+            let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { return Ok(()) };
+            let inside = |p: &Vec3| {
+                let d = side * surface.signed_distance(p);
+                ((p - center).norm() <= radius && d >= -depth && d <= height).then_some(d)
+            };
+            for e in ends {
+                let p = center + v(e[0], e[1], e[2]) * radius;
+                let q = p + v(e[3], e[4], e[5]) * (0.2 * radius);
+                let m = (p + q) * 0.5;
+                let (Some(a), Some(b), Some(c)) = (inside(&p), inside(&q), inside(&m)) else { continue };
+                let length = (q - p).norm();
+                let rise = 0.5 * (a + b) - c;
+                prop_assert!(rise <= bound * length * length / 8.0 + 1e-11, "{rise} over {length}, bound {bound}");
+            }
+        }
+
+        /// The bound is of use: over a small ball it comes near the greatest curvature there.
+        #[test]
+        fn small_regions_have_bounds_near_the_curvature(
+            which in 0usize..7, center in prop::array::uniform3(-1.5..1.5f64),
+        ) {
+            let surface = &surfaces()[which];
+            let foot = surface.foot(&Vec3::from(center));
+            prop_assume!(surface.natural_normal(&foot.point).is_ok());
+            let center = foot.point;
+            let (foot, hessian) = surface.foot_and_hessian(&center);
+            let greatest = SymmetricEigen::new(hessian).eigenvalues.max();
+            let region = Region { center, radius: 1e-4, lowest: -1e-4, highest: 1e-4 };
+            match surface.bend(1.0, &foot, &region) {
+                Bend::AtMost(bound) => prop_assert!(bound >= greatest * (1.0 - 1e-6)),
+                other => prop_assert!(greatest > 100.0, "{other:?} where it bends by {greatest}"),
+            }
+        }
+    }
+
+    #[test]
+    fn inside_of_round_solids_distances_do_not_bend_upward() {
+        for surface in &surfaces()[..3] {
+            let center = v(0.1, 0.1, -0.5);
+            let region = Region { center, radius: 0.5, lowest: 0.0, highest: 2.0 };
+            assert_eq!(surface.bend(-1.0, &surface.foot(&center), &region), Bend::AtMost(0.0));
+        }
+    }
+
+    #[test]
+    fn a_region_about_the_vertex_of_a_cone_has_no_bound() {
+        let cone = &surfaces()[2];
+        let center = v(0.0, 0.0, 1.6);
+        let region = Region { center, radius: 0.2, lowest: -0.1, highest: 0.3 };
+        assert_eq!(cone.bend(1.0, &cone.foot(&center), &region), Bend::Unbounded);
+    }
+}
