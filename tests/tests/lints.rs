@@ -1,15 +1,32 @@
 //! Lints are silent about good programs.
 
-use apt_ide::lint::lint;
-use apt_program::{Options, evaluate};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use std::sync::Arc;
+
+use apt_ide::{Level, Settings};
+use apt_run::{diagnostic::absolute_range, document::Document};
+use apt_syntax::DialectName;
 use apt_tests::{oracle, repository};
 
+fn document(text: &str, dialect: DialectName) -> Document {
+    let settings = Settings { dialect: Some(dialect.as_str().to_owned()), ..Settings::default() };
+    Document::new(text, None, &Arc::new(settings))
+}
+
+fn is_lint(code: &str) -> bool {
+    code.starts_with("APT095") || code.starts_with("APT096")
+}
+
 fn alarms(text: &str, dialect: DialectName) -> Vec<String> {
-    let tree = SyntaxTree::parse(text, Dialect::named(dialect));
-    let program = evaluate(&tree, &Options::default(), &|| false);
-    let told = |lint: apt_ide::lint::Lint| format!("{} {:?}: {}", lint.code, &text[lint.range], lint.message);
-    lint(&tree, &program).into_iter().map(told).collect()
+    let document = document(text, dialect);
+    let found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).expect("nobody cancels");
+    found
+        .into_iter()
+        .filter(|one| is_lint(one.wording.code))
+        .map(|one| {
+            let place = &text[absolute_range(document.tree(), &one.origin)];
+            format!("{} {place:?}: {}", one.wording.code, one.wording.message)
+        })
+        .collect()
 }
 
 #[test]
@@ -66,12 +83,14 @@ fn lints_of_damaged_programs_stay_inside_of_the_text() {
         for insert in ["", " 1 2", "$\n", ",INDIRV/1,0,0\n"] {
             let rest = &example[(cut + 13).min(example.len())..];
             let damaged = format!("{}{insert}{rest}", &example[..cut]);
-            let tree = SyntaxTree::parse(&damaged, Dialect::named(DialectName::Free));
-            let program = evaluate(&tree, &Options::default(), &|| false);
-            for lint in lint(&tree, &program) {
-                assert!(damaged.get(lint.range.clone()).is_some(), "{lint:?}");
-                assert!(lint.fix.iter().all(|(range, _)| damaged.get(range.clone()).is_some()), "{lint:?}");
-                assert!(apt_ide::lint::CODES.contains(&lint.code) && !lint.message.is_empty(), "{lint:?}");
+            let document = document(&damaged, DialectName::Free);
+            let found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {});
+            for one in found.expect("nobody cancels") {
+                let range = absolute_range(document.tree(), &one.origin);
+                assert!(damaged.get(range).is_some(), "{one:?}");
+                let mut edits = one.fixes.iter().flat_map(|fix| &fix.edits);
+                assert!(edits.all(|(range, _)| damaged.get(range.clone()).is_some()), "{one:?}");
+                assert!(!one.wording.message.is_empty(), "{one:?}");
             }
         }
     }

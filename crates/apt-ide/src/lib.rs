@@ -8,10 +8,8 @@ pub mod completion;
 pub mod dialect;
 pub mod expansion;
 pub mod folding;
-pub mod format;
 pub mod hover;
 pub mod lens;
-pub mod lint;
 pub mod navigation;
 pub mod outline;
 pub mod picture;
@@ -34,6 +32,7 @@ pub use apt_run::{
     catalogue::explain,
     diagnostic::{Diagnostic, Severity},
     document::{Document, Level},
+    format,
     settings::Settings,
 };
 use apt_syntax::{TextRange, TextSize, tree::StatementView};

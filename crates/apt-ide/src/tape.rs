@@ -115,7 +115,7 @@ impl Analysis {
             return Err(Cancelled.into());
         }
         let mut diagnostics = source.diagnostics;
-        diagnostics.extend(catalogue::tape_diagnostics(&tape, &source.origins, settings));
+        diagnostics.extend(catalogue::tape_diagnostics(self.document().tree(), &tape, &source.origins, settings));
         Ok(ControlTape { tape, diagnostics })
     }
 

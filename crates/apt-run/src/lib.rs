@@ -3,10 +3,13 @@
 //!
 //! Nothing here knows a protocol or prints.
 
+pub mod allow;
 pub mod catalogue;
 pub mod diagnostic;
 pub mod document;
+pub mod format;
 mod include;
+pub mod lint;
 pub mod memo;
 pub mod pipeline;
 pub mod position;

@@ -52,7 +52,7 @@ fn diagnostics(page: &Page, text: &str) -> Vec<Diagnostic> {
         let machine = apt_post::machine(MACHINE).unwrap();
         let options = apt_post::PostOptions { default_units: Units::Inches, ..Default::default() };
         let tape = apt_post::post(&result.records, &machine, &options);
-        list.extend(catalogue::tape_diagnostics(&tape, &result.origins, &settings));
+        list.extend(catalogue::tape_diagnostics(document.tree(), &tape, &result.origins, &settings));
     }
     list
 }

@@ -2,10 +2,11 @@
 //!
 //! Codes: 00xx lexical and syntactic, 01xx names and subscripts, 02xx arithmetic, 03xx definitions and operands,
 //! 04xx labels, loops and macros, 05xx motion statements, 06xx the arithmetic element, 07xx path transformations,
-//! 08xx post-processor statements and tape, 09xx the program as a whole. A code is never given a new meaning.
+//! 08xx post-processor statements and tape, 09xx the program as a whole, with 095x and 096x for lints. A code is never given a new meaning.
 
 mod cutter_locations;
 mod definitions;
+mod lint;
 mod motion;
 mod names;
 mod pages;
@@ -27,7 +28,9 @@ use smol_str::SmolStr;
 pub use pages::{Page, explain, pages};
 
 use crate::{
-    diagnostic::{Diagnostic, Severity, Wording},
+    allow::{Allowances, Idle},
+    diagnostic::{Diagnostic, Fix, Severity, Wording},
+    lint::{Lint, LintKind},
     pipeline::{RunFinding, RunResult},
     settings::Settings,
 };
@@ -67,6 +70,12 @@ pub fn diagnostics(
 ) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
     list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
+    for lint in crate::lint::lint(tree, program) {
+        add_lint(&mut list, lint);
+    }
+    let mut allowances = Allowances::of(tree);
+    allowances.filter(&mut list);
+    list.extend(allowances.idle(result.is_some()));
     in_order(list, settings)
 }
 
@@ -90,6 +99,65 @@ fn of_program(finding: &Finding) -> Diagnostic {
     }
 }
 
+/// What the engine says of a tool on the other side of its drive surface.
+const OTHER_SIDE: &str = "APT0660";
+
+/// Adds a lint, unless the computed motion says the same; then it only lends its fixes.
+fn add_lint(list: &mut Vec<Diagnostic>, lint: Lint) {
+    if matches!(lint.kind, LintKind::SideContradicted { .. }) {
+        let is_same =
+            |finding: &&mut Diagnostic| finding.wording.code == OTHER_SIDE && finding.origin == lint.origin;
+        if let Some(finding) = list.iter_mut().find(is_same) {
+            finding.fixes.extend(lint.fixes);
+            return;
+        }
+    }
+    list.push(of_lint(lint));
+}
+
+fn of_lint(lint: Lint) -> Diagnostic {
+    let (text, severity) = lint::word(&lint.kind);
+    let related = lint.other.map(|other| (other_place(&lint.kind).to_owned(), other));
+    Diagnostic {
+        wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
+        severity,
+        origin: lint.origin,
+        related: related.into_iter().collect(),
+        unnecessary: matches!(
+            lint.kind,
+            LintKind::DirectionReplaced | LintKind::Overwritten { .. } | LintKind::ModeReplaced { .. }
+        ),
+        fixes: lint.fixes,
+    }
+}
+
+/// What the other place of a lint is to it.
+fn other_place(kind: &LintKind) -> &'static str {
+    match kind {
+        LintKind::SideContradicted { .. } => "the side is said here",
+        _ => "this one counts",
+    }
+}
+
+/// The finding that a comment allows nothing.
+pub(crate) fn idle_allowance(reason: Idle, code: &str, origin: Origin, fixes: Vec<Fix>) -> Diagnostic {
+    let text = lint::idle(reason, code);
+    Diagnostic {
+        wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
+        severity: Severity::Warning,
+        origin,
+        related: Vec::new(),
+        unnecessary: reason == Idle::NothingFound,
+        fixes,
+    }
+}
+
+/// Whether a code is one of the post-processor, which only the making of a tape can find.
+pub fn is_tape_code(code: &str) -> bool {
+    let number = code.strip_prefix("APT").and_then(|digits| digits.parse::<u16>().ok());
+    number.is_some_and(|number| (820..900).contains(&number))
+}
+
 fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
     let (text, severity, apt3) = motion::word(&finding.kind);
     Diagnostic {
@@ -103,7 +171,12 @@ fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
 }
 
 /// The diagnostics of a tape, with the severities of the settings. `origins` is the table that the findings refer to.
-pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
+pub fn tape_diagnostics(
+    tree: &SyntaxTree,
+    tape: &Tape,
+    origins: &[Origin],
+    settings: &Settings,
+) -> Vec<Diagnostic> {
     let of_post = |finding: &PostFinding| {
         let (text, severity) = postprocessor::word(&finding.kind);
         let unknown = || Origin::in_program(finding.isn.max(1), TextRange::default());
@@ -116,7 +189,9 @@ pub fn tape_diagnostics(tape: &Tape, origins: &[Origin], settings: &Settings) ->
             fixes: Vec::new(),
         }
     };
-    in_order(tape.findings.iter().map(of_post).collect(), settings)
+    let mut list = tape.findings.iter().map(of_post).collect();
+    Allowances::of(tree).filter(&mut list);
+    in_order(list, settings)
 }
 
 /// What the reader of a CL file says, with the severities of the settings. `origins` has the statement of every line.

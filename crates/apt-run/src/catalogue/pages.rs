@@ -33,7 +33,7 @@ struct File {
 }
 
 /// The files, in the order of their codes.
-const FILES: [&str; 10] = [
+const FILES: [&str; 12] = [
     include_str!("pages/syntax.toml"),
     include_str!("pages/names.toml"),
     include_str!("pages/definitions.toml"),
@@ -44,6 +44,8 @@ const FILES: [&str; 10] = [
     include_str!("pages/reading.toml"),
     include_str!("pages/tape.toml"),
     include_str!("pages/program.toml"),
+    include_str!("pages/lint.toml"),
+    include_str!("pages/other.toml"),
 ];
 
 static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {

@@ -90,6 +90,35 @@ pub fn format_range(tree: &SyntaxTree, range: Range<usize>, options: &FormatOpti
     plan_of(tree, at(range.start)..=last, options).edits
 }
 
+/// The edits that end the lines of one statement in column 72 at the latest and change nothing else that is seen: the
+/// letters and the indentation stay. Empty if that is so already, or cannot be done.
+pub fn wrap_statement(tree: &SyntaxTree, view: &StatementView) -> Vec<Edit> {
+    let text = view.text();
+    let before = view.index.checked_sub(1).map(|index| tree.statement(index));
+    if before.is_some_and(|before| !before.text().ends_with(['\n', '\r'])) {
+        return Vec::new();
+    }
+    let indent = text.chars().take_while(|character| record::BLANKS.contains(character)).count();
+    let options = FormatOptions {
+        letter_case: LetterCase::Keep,
+        indent,
+        wrap: Some(LAST_STATEMENT_COLUMN),
+        align_comments: false,
+        ..FormatOptions::default()
+    };
+    let layout = tree.layout();
+    // One level deep, so that the indentation is the one that is there.
+    let Ok(lines) = laid_out(text, 1, &options, &layout) else { return Vec::new() };
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    let mut new = String::with_capacity(text.len());
+    for line in &lines {
+        line.write(line.own_column(), &mut new);
+    }
+    edits::between(text, &new, usize::from(view.start))
+}
+
 /// The text in the style. For every text of a dialect the result of a second call is that of the first.
 pub fn format_text(text: &str, dialect: Dialect, options: &FormatOptions) -> String {
     let tree = SyntaxTree::parse(text, dialect);

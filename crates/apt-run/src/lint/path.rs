@@ -1,0 +1,366 @@
+//! Lints of the path: what holds when the tool moves.
+//!
+//! Statements of included files are not judged here: another program may need them as they are.
+
+use std::collections::BTreeMap;
+
+use apt_geometry::{
+    canonical::GeometryKind,
+    motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
+};
+use apt_program::{Origin, Program, Record, RecordKind, record::PostArgument};
+use apt_syntax::SyntaxTree;
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
+
+use super::{Lint, LintKind};
+use crate::diagnostic::{Fix, statement_range};
+
+/// A tolerance above this part of the cutter's diameter leaves marks that the eye sees.
+const LOOSE_PART_OF_DIAMETER: f64 = 0.25;
+
+pub(super) fn lints(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
+    let mut walk = Walk::default();
+    for record in program.records() {
+        walk.record(record);
+    }
+    walk.close_thickness();
+    let Walk { lints, effective, .. } = walk;
+    let mut told = FxHashSet::default();
+    lints
+        .into_iter()
+        .filter(|lint| lint.origin.source.is_none())
+        // What has an effect the next time it is executed is needed.
+        .filter(|lint| !needs_no_effect(&lint.kind) || !effective.contains(&place(&lint.origin)))
+        .filter(|lint| told.insert((place(&lint.origin), std::mem::discriminant(&lint.kind))))
+        .map(|lint| with_fix(tree, lint))
+        .collect()
+}
+
+/// A statement part of the program.
+type Place = (u32, u32);
+
+fn place(origin: &Origin) -> Place {
+    (origin.isn, u32::from(origin.range.start()))
+}
+
+/// Whether a finding says that a statement serves nothing.
+fn needs_no_effect(kind: &LintKind) -> bool {
+    matches!(kind, LintKind::ThicknessUnfelt | LintKind::DirectionReplaced | LintKind::ModeReplaced { .. })
+}
+
+/// The other side word, where the statement that says the wrong one is known.
+fn with_fix(tree: &SyntaxTree, mut lint: Lint) -> Lint {
+    let LintKind::SideContradicted { said, stands, .. } = &lint.kind else { return lint };
+    let Some(statement) = lint.other.as_ref().filter(|other| other.source.is_none()) else { return lint };
+    let range = statement_range(tree, statement.isn, statement.range);
+    let text = tree.slice(apt_syntax::TextRange::new(
+        u32::try_from(range.start).unwrap_or(u32::MAX).into(),
+        u32::try_from(range.end).unwrap_or(u32::MAX).into(),
+    ));
+    if text.eq_ignore_ascii_case(side_word(*said)) {
+        let word = side_word(*stands);
+        let title = format!("Replace {} by {word}", side_word(*said));
+        lint.fixes.push(Fix { title, edits: vec![(range, word.to_owned())], preferred: false });
+    }
+    lint
+}
+
+/// The word that says a side.
+pub(crate) fn side_word(side: DriveSide) -> &'static str {
+    match side {
+        DriveSide::Left => "TLLFT",
+        DriveSide::Right => "TLRGT",
+        DriveSide::On => "TLON",
+    }
+}
+
+/// THICK with what the motions since have made of it.
+struct Thickness {
+    origin: Origin,
+    values: PerRole,
+    motions: u32,
+    felt: bool,
+}
+
+/// A motion that has ended at a check surface, where the tool stands now.
+struct Stop {
+    surface: SmolStr,
+    relation: Relation,
+}
+
+/// What a modal statement sets, for the finding that it serves nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Mode {
+    InsideTolerance,
+    OutsideTolerance,
+    Cutter,
+    DriveSide,
+    PartSide,
+    MaximumStep,
+    ToolAxis,
+    Output,
+}
+
+impl Mode {
+    fn words(self) -> &'static str {
+        match self {
+            Mode::InsideTolerance => "inside tolerance",
+            Mode::OutsideTolerance => "outside tolerance",
+            Mode::Cutter => "cutter",
+            Mode::DriveSide => "side of the drive surface",
+            Mode::PartSide => "side of the part surface",
+            Mode::MaximumStep => "longest step",
+            Mode::ToolAxis => "tool axis",
+            Mode::Output => "choice between CUT and DNTCUT",
+        }
+    }
+}
+
+/// What holds at a place of the path.
+#[derive(Default)]
+struct Walk {
+    lints: Vec<Lint>,
+    /// Statements that had an effect at least once.
+    effective: FxHashSet<Place>,
+    machine: bool,
+    feed: bool,
+    no_output: bool,
+    inside: Option<(Origin, PerRole)>,
+    outside: Option<(Origin, PerRole)>,
+    tolerance_told: bool,
+    diameter: Option<f64>,
+    cutter: Option<(Origin, Vec<f64>)>,
+    tool: Option<i64>,
+    cutters: BTreeMap<i64, Vec<f64>>,
+    part: Option<GeometryKind>,
+    drive_side: Option<(Origin, DriveSide)>,
+    part_side: Option<PartSide>,
+    thickness: Option<Thickness>,
+    direction: Option<(Origin, [bool; 3])>,
+    surface_vectors: bool,
+    stop: Option<Stop>,
+    /// Modal statements since the last motion.
+    waiting: BTreeMap<Mode, Origin>,
+}
+
+impl Walk {
+    fn add(&mut self, kind: LintKind, origin: &Origin, other: Option<&Origin>) {
+        self.lints.push(Lint { kind, origin: origin.clone(), other: other.cloned(), fixes: Vec::new() });
+    }
+
+    fn record(&mut self, record: &Record) {
+        match &record.kind {
+            RecordKind::Motion(command) => self.command(&record.origin, command),
+            RecordKind::Postprocessor { word, arguments, .. } => match word.as_str() {
+                "MACHIN" => self.machine = true,
+                // A cycle brings its own feed.
+                "FEDRAT" | "CYCLE" => self.feed = true,
+                "LOADTL" | "TURRET" => self.tool = tool_number(arguments),
+                _ => {}
+            },
+            // Where the tool goes after these is not known here.
+            RecordKind::Transfer(_) | RecordKind::Gap => self.stop = None,
+            _ => {}
+        }
+    }
+
+    fn command(&mut self, origin: &Origin, command: &MotionCommand) {
+        match command {
+            MotionCommand::InsideTolerance(values) => {
+                self.sets(Mode::InsideTolerance, origin);
+                self.inside = Some((origin.clone(), *values));
+            }
+            MotionCommand::OutsideTolerance(values) => {
+                self.sets(Mode::OutsideTolerance, origin);
+                self.outside = Some((origin.clone(), *values));
+            }
+            MotionCommand::Cutter(numbers) => {
+                self.sets(Mode::Cutter, origin);
+                self.diameter = numbers.first().copied();
+                self.cutter = Some((origin.clone(), numbers.clone()));
+            }
+            MotionCommand::DriveSide(side) => {
+                self.sets(Mode::DriveSide, origin);
+                self.drive_side = Some((origin.clone(), *side));
+            }
+            MotionCommand::PartSide(side) => {
+                self.sets(Mode::PartSide, origin);
+                self.part_side = Some(*side);
+            }
+            MotionCommand::MaximumStep(_) => self.sets(Mode::MaximumStep, origin),
+            MotionCommand::ToolAxis(_) => self.sets(Mode::ToolAxis, origin),
+            MotionCommand::PartSurface(surface) => self.part = Some(surface.geometry.kind()),
+            MotionCommand::AutomaticPartSurface => self.part = Some(GeometryKind::Plane),
+            MotionCommand::Output(on) => {
+                self.sets(Mode::Output, origin);
+                self.no_output = !on;
+            }
+            MotionCommand::Thickness(values) => {
+                self.close_thickness();
+                self.thickness =
+                    Some(Thickness { origin: origin.clone(), values: *values, motions: 0, felt: false });
+            }
+            MotionCommand::Direction(roles) => {
+                let given = roles.map(|role| role.is_some());
+                self.replaced_direction(given, origin);
+                self.direction = Some((origin.clone(), given));
+            }
+            MotionCommand::SurfaceVectors(_) => self.surface_vectors = true,
+            MotionCommand::Start(surfaces) | MotionCommand::Offset(surfaces) => {
+                self.moved();
+                if let Some(part) = surfaces.get(1) {
+                    self.part = Some(part.surface.geometry.kind());
+                }
+                if let Some(thickness) = &mut self.thickness {
+                    let values = [thickness.values.drive, thickness.values.part, thickness.values.check[0]];
+                    thickness.motions += 1;
+                    thickness.felt |= surfaces
+                        .iter()
+                        .zip(values)
+                        .any(|(surface, value)| value != 0.0 && surface.relation != Relation::On);
+                }
+            }
+            MotionCommand::Drive { turn, drive, checks } => {
+                self.side(origin, *turn, &drive.name);
+                let stop = self.stop_of(checks);
+                self.moved();
+                self.along_surfaces(origin, checks);
+                self.stop = stop;
+            }
+            // What these make of the values of before is their own affair.
+            MotionCommand::Pocket(_) => {
+                self.moved();
+                if let Some(thickness) = &mut self.thickness {
+                    thickness.felt = true;
+                }
+            }
+            MotionCommand::From { .. } | MotionCommand::GoTo { .. } | MotionCommand::GoDelta(_) => {
+                self.moved();
+            }
+            _ => {}
+        }
+    }
+
+    /// A modal statement: the one before it for the same mode has served nothing if no motion came between.
+    fn sets(&mut self, mode: Mode, origin: &Origin) {
+        let Some(before) = self.waiting.insert(mode, origin.clone()) else { return };
+        // TOLER sets two modes; the other one may still serve.
+        let serves = self.waiting.values().any(|other| *other == before);
+        let plain = before.frame.is_none() && origin.frame.is_none();
+        if plain && !serves && place(&before) != place(origin) {
+            self.add(LintKind::ModeReplaced { mode: mode.words() }, &before, Some(origin));
+        }
+    }
+
+    /// The tool moves: directions have been used, and the cutter in force belongs to the tool.
+    fn moved(&mut self) {
+        let waiting = std::mem::take(&mut self.waiting);
+        self.effective.extend(waiting.values().map(place));
+        if let Some((origin, _)) = self.direction.take() {
+            self.effective.insert(place(&origin));
+        }
+        self.surface_vectors = false;
+        self.stop = None;
+        let (Some(tool), Some((origin, numbers))) = (self.tool, self.cutter.clone()) else { return };
+        let first = self.cutters.entry(tool).or_insert_with(|| numbers.clone());
+        if *first != numbers {
+            self.add(LintKind::ToolWithTwoCutters { tool }, &origin, None);
+        }
+    }
+
+    /// Where a motion leaves the tool, if that is sure: one named surface, met for the first time, no direction given
+    /// for its side.
+    fn stop_of(&self, checks: &[CheckSurface]) -> Option<Stop> {
+        let [check] = checks else { return None };
+        let sure = check.occurrence == 1
+            && !check.surface.name.is_empty()
+            && !self.surface_vectors
+            && self.diameter.is_some_and(|diameter| diameter > 0.0)
+            && matches!(check.relation, Relation::To | Relation::On | Relation::Past);
+        sure.then(|| Stop { surface: check.surface.name.as_str().into(), relation: check.relation })
+    }
+
+    /// A turn onto the surface at which the tool has stopped: short of it, a turn to the left leaves it on the right hand
+    /// and so the tool on its left; past it, the other way round.
+    fn side(&mut self, origin: &Origin, turn: Turn, drive: &str) {
+        let Some(stop) = self.stop.as_ref().filter(|stop| stop.surface == drive) else { return };
+        let Some((statement, said)) = self.drive_side.clone() else { return };
+        let stands = match (stop.relation, turn) {
+            (Relation::On, Turn::Left | Turn::Right) => DriveSide::On,
+            (Relation::To, Turn::Left) | (Relation::Past, Turn::Right) => DriveSide::Left,
+            (Relation::To, Turn::Right) | (Relation::Past, Turn::Left) => DriveSide::Right,
+            _ => return,
+        };
+        if stands != said {
+            let kind = LintKind::SideContradicted { surface: drive.into(), said, stands };
+            self.add(kind, origin, Some(&statement));
+        }
+    }
+
+    fn along_surfaces(&mut self, origin: &Origin, checks: &[CheckSurface]) {
+        self.loose_tolerance();
+        let curved = !matches!(self.part, None | Some(GeometryKind::Plane | GeometryKind::Line));
+        if curved && self.inside.is_none() && self.outside.is_none() && !self.tolerance_told {
+            self.add(LintKind::ToleranceMissing, origin, None);
+            self.tolerance_told = true;
+        }
+        if self.machine && !self.no_output && !self.feed {
+            self.add(LintKind::FeedMissing, origin, None);
+            self.feed = true;
+        }
+        let drive_side = self.drive_side.as_ref().map_or(DriveSide::On, |(_, side)| *side);
+        let part_side = self.part_side.unwrap_or(PartSide::Offset);
+        let Some(thickness) = &mut self.thickness else { return };
+        thickness.motions += 1;
+        let [first, second] = thickness.values.check;
+        let check = checks
+            .iter()
+            .zip([first, second])
+            .any(|(check, value)| value != 0.0 && check.relation != Relation::On);
+        thickness.felt |= check
+            || (thickness.values.drive != 0.0 && drive_side != DriveSide::On)
+            || (thickness.values.part != 0.0 && part_side != PartSide::On);
+    }
+
+    fn loose_tolerance(&mut self) {
+        let Some(diameter) = self.diameter.filter(|diameter| *diameter > 0.0) else { return };
+        for (word, given) in [("INTOL", self.inside.clone()), ("OUTTOL", self.outside.clone())] {
+            let Some((origin, values)) = given else { continue };
+            let value = values.part.max(values.drive).max(values.check[0]).max(values.check[1]);
+            if value > LOOSE_PART_OF_DIAMETER * diameter {
+                self.add(LintKind::LooseTolerance { word, value, diameter }, &origin, None);
+            }
+        }
+    }
+
+    /// A direction that stands before another one for the same surfaces serves no motion.
+    fn replaced_direction(&mut self, given: [bool; 3], now: &Origin) {
+        let Some((origin, before)) = self.direction.take() else { return };
+        if before.iter().zip(given).all(|(before, now)| !before || now) {
+            self.add(LintKind::DirectionReplaced, &origin, Some(now));
+        }
+    }
+
+    fn close_thickness(&mut self) {
+        let Some(thickness) = self.thickness.take() else { return };
+        let values = thickness.values;
+        let nothing =
+            [values.part, values.drive, values.check[0], values.check[1]].iter().all(|value| *value == 0.0);
+        if nothing || thickness.felt {
+            self.effective.insert(place(&thickness.origin));
+        } else if thickness.motions > 0 {
+            self.add(LintKind::ThicknessUnfelt, &thickness.origin, None);
+        }
+    }
+}
+
+/// The first number of a LOADTL, if it is a whole one.
+fn tool_number(arguments: &[PostArgument]) -> Option<i64> {
+    let number = arguments.iter().find_map(|argument| match argument {
+        PostArgument::Number(number) => Some(*number),
+        _ => None,
+    })?;
+    let whole = number.fract() == 0.0 && number.abs() < f64::from(i32::MAX);
+    whole.then_some(number as i64)
+}

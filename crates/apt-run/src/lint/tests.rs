@@ -1,0 +1,243 @@
+//! A wrong and a right sample of every lint, through the same door as every finding.
+
+use std::sync::Arc;
+
+use crate::{
+    diagnostic::{Diagnostic, absolute_range},
+    document::{Document, Level},
+    format::applied,
+    settings::Settings,
+};
+
+const PAST_COLUMN_72: &str = "APT0951";
+const MISSING_COMMA: &str = "APT0952";
+const LOOSE_TOLERANCE: &str = "APT0953";
+const TOLERANCE_MISSING: &str = "APT0954";
+const FEED_MISSING: &str = "APT0955";
+const THICKNESS_WITHOUT_EFFECT: &str = "APT0956";
+const DIRECTION_WITHOUT_EFFECT: &str = "APT0957";
+const CUTTER_AND_TOOL: &str = "APT0958";
+const OTHER_SIDE: &str = "APT0959";
+const ALLOWS_NOTHING: &str = "APT0960";
+const OVERWRITTEN: &str = "APT0961";
+const MODE_REPLACED: &str = "APT0962";
+
+fn diagnostics(text: &str) -> (Document, Vec<Diagnostic>) {
+    let settings = Arc::new(Settings { dialect: Some("free".to_owned()), ..Settings::default() });
+    let document = Document::new(text, None, &settings);
+    let mut found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+    found.retain(|one| one.wording.code.starts_with("APT095") || one.wording.code.starts_with("APT096"));
+    (document, found)
+}
+
+/// Code and text of the lints.
+fn found(text: &str) -> Vec<(&'static str, &str)> {
+    let (document, found) = diagnostics(text);
+    found
+        .into_iter()
+        .map(|one| (one.wording.code, &text[absolute_range(document.tree(), &one.origin)]))
+        .collect()
+}
+
+/// The text after the first fix of every lint.
+fn fixed(text: &str) -> String {
+    let fixes = diagnostics(text).1.into_iter().filter_map(|one| one.fixes.into_iter().next());
+    applied(text, &fixes.flat_map(|fix| fix.edits).collect::<Vec<_>>())
+}
+
+const PART: &str = "L1=LINE/0,0,10,0\nL2=LINE/10,-5,10,5\nL3=LINE/0,-5,0,5\nPL=PLANE/0,0,1,0\nFROM/-2,-2,0\n";
+
+#[test]
+fn text_behind_column_72() {
+    let long = format!("A=1{}\nFINI\n", "+1".repeat(40));
+    assert_eq!(found(&long), [(PAST_COLUMN_72, "+1+1+1+1+1+")].map(|(code, _)| (code, &long[72..83])));
+    let once = fixed(&long);
+    assert!(once.lines().all(|line| line.len() <= 72), "{once}");
+    assert_eq!(found(&once), []);
+    assert_eq!(found(&format!("A=1 $$ {}\nFINI\n", "+1".repeat(40))), []);
+    assert_eq!(found(&format!("PARTNO {}\nFINI\n", "+1".repeat(40))), []);
+}
+
+#[test]
+fn blanks_where_a_comma_may_be_missing() {
+    let text = "P=POINT/1 2,3\nPRINT/3,P\nFINI\n";
+    assert_eq!(found(text), [(MISSING_COMMA, "1 2")]);
+    assert_eq!(fixed(text), "P=POINT/1,2,3\nPRINT/3,P\nFINI\n");
+    let text = "A=1\nB=2\nAB=3\nP=POINT/A B,2\nFINI\n";
+    assert_eq!(found(text), [(MISSING_COMMA, "A B")]);
+    assert_eq!(found("A=1 000\nP=POINT/1$\n2,3\nFINI\n"), []);
+}
+
+#[test]
+fn tolerances_as_wide_as_the_cutter() {
+    let part = |tolerance: &str| {
+        format!("{PART}CUTTER/.5\n{tolerance}\nGO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n")
+    };
+    assert_eq!(found(&part("INTOL/.5")), [(LOOSE_TOLERANCE, "INTOL/.5")]);
+    assert_eq!(found(&part("OUTTOL/.01")), []);
+}
+
+#[test]
+fn curved_part_surface_without_tolerances() {
+    let part = |tolerance: &str| {
+        format!(
+            "S=SPHERE/0,0,0,5\nL1=PLANE/0,1,0,0\nL2=PLANE/1,0,0,3\nFROM/0,0,9\nCUTTER/.5,.25\n{tolerance}\n\
+             GO/ON,L1,TO,S,ON,(PLANE/1,0,0,0)\nINDIRV/1,0,0\nTLON,GOFWD/L1,ON,L2\nFINI\n"
+        )
+    };
+    assert_eq!(found(&part("INTOL/.001")), []);
+    let text = part("$$");
+    assert_eq!(found(&text), [(TOLERANCE_MISSING, "GOFWD/L1,ON,L2")]);
+}
+
+#[test]
+fn cutting_without_a_feed() {
+    let part = |machine: &str, feed: &str| {
+        format!("{machine}\n{PART}CUTTER/.5\n{feed}\nGO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n")
+    };
+    let text = part("MACHIN/X,1", "$$");
+    assert_eq!(found(&text), [(FEED_MISSING, "GORGT/L1,PAST,L2")]);
+    assert_eq!(found(&part("MACHIN/X,1", "FEDRAT/10")), []);
+    assert_eq!(found(&part("$$", "$$")), [], "no machine, no feed");
+}
+
+#[test]
+fn thickness_that_no_motion_feels() {
+    let part = |side: &str, check: &str| {
+        format!("{PART}CUTTER/.5\nTHICK/0,.1\nGO/ON,L1,TO,PL,ON,L3\n{side},GORGT/L1,{check},L2\nFINI\n")
+    };
+    assert_eq!(found(&part("TLON", "ON")), [(THICKNESS_WITHOUT_EFFECT, "THICK/0,.1")]);
+    assert_eq!(found(&part("TLLFT", "ON")), []);
+    assert_eq!(found(&part("TLON", "PAST")), [], "the last value holds for the check surface too");
+}
+
+#[test]
+fn directions_one_after_the_other() {
+    let part = |between: &str| {
+        format!("{PART}CUTTER/.5\nINDIRV/1,0,0\n{between}\nINDIRV/0,1,0\nGO/TO,L1,TO,PL,TO,L3\nFINI\n")
+    };
+    assert_eq!(found(&part("$$")), [(DIRECTION_WITHOUT_EFFECT, "INDIRV/1,0,0")]);
+    assert_eq!(found(&part("GO/TO,L3,TO,PL,TO,L1")), []);
+}
+
+#[test]
+fn one_tool_with_two_cutters() {
+    let part = |tool: &str| {
+        format!("LOADTL/1\nCUTTER/.5\nFROM/0,0,0\nGOTO/1,1,1\nLOADTL/{tool}\nCUTTER/.25\nGOTO/2,2,2\nFINI\n")
+    };
+    assert_eq!(found(&part("1")), [(CUTTER_AND_TOOL, "CUTTER/.25")]);
+    assert_eq!(found(&part("2")), []);
+}
+
+#[test]
+fn sides_that_contradict_where_the_tool_stopped() {
+    let part = |side: &str, relation: &str, next: &str| {
+        format!(
+            "{PART}CUTTER/.5\nGO/TO,L1,TO,PL,TO,L3\nTLRGT,GORGT/L1,{relation},L2\n{side},{next}/L2,PAST,L3\nFINI\n"
+        )
+    };
+    let told = |side: &str, relation: &str, next: &str| !found(&part(side, relation, next)).is_empty();
+    for (relation, next, right) in [
+        ("TO", "GOLFT", "TLLFT"),
+        ("TO", "GORGT", "TLRGT"),
+        ("PAST", "GOLFT", "TLRGT"),
+        ("PAST", "GORGT", "TLLFT"),
+        ("ON", "GOLFT", "TLON"),
+        ("ON", "GORGT", "TLON"),
+    ] {
+        for side in ["TLLFT", "TLRGT", "TLON"] {
+            assert_eq!(told(side, relation, next), side != right, "{relation} {next} {side}");
+        }
+    }
+    assert!(!told("TLLFT", "2,INTOF", "GORGT"), "which crossing it is decides where the tool is");
+    assert!(!told("TLLFT", "TO", "GOFWD"), "tangent");
+    let text = part("TLLFT", "TO", "GORGT");
+    assert_eq!(found(&text), [(OTHER_SIDE, "GORGT/L2,PAST,L3")]);
+    assert_eq!(fixed(&text), part("TLRGT", "TO", "GORGT"));
+    let between = text.replace("TLLFT", "GODLTA/0,0,1\nTLLFT");
+    assert_eq!(found(&between), [], "the tool has been moved away");
+}
+
+#[test]
+fn values_that_are_overwritten_before_anything_reads_them() {
+    assert_eq!(found("A=1\nA=2\nGOTO/A,0,0\nFINI\n"), [(OVERWRITTEN, "A")]);
+    for read in
+        ["B=A", "GOTO/A,0,0", "P=POINT/A,2", "CALL/M", "X)B=1", "LOOPST\nLOOPND", "IF(A)X,X,X", "B(A)=2"]
+    {
+        assert_eq!(found(&format!("A=1\n{read}\nA=2\nGOTO/A,0,0\nFINI\n")), [], "{read}");
+    }
+    assert_eq!(found("A=1\nA=A+1\nGOTO/A,0,0\nFINI\n"), []);
+    assert_eq!(
+        found("M=MACRO/A\nA=1\nA=2\nTERMAC\nCALL/M,A=B\nFINI\n"),
+        [],
+        "a variable may stand for any name"
+    );
+    assert_eq!(found("A=1\n$$ A\n\nB=1\nA=2\nGOTO/A,B,0\nFINI\n"), [(OVERWRITTEN, "A")]);
+}
+
+#[test]
+fn modal_statements_that_are_replaced() {
+    let part = |one: &str, between: &str, other: &str| {
+        format!(
+            "{PART}CUTTER/.5\n{one}\n{between}\n{other}\nGO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n"
+        )
+    };
+    for (one, other) in [
+        ("INTOL/.01", "INTOL/.02"),
+        ("INTOL/.01", "TOLER/.02"),
+        ("MAXDP/1", "MAXDP/2"),
+        ("DNTCUT", "CUT"),
+        ("TLRGT", "TLON"),
+        ("TLAXIS/0,0,1", "TLAXIS/0,1,1"),
+    ] {
+        let replaced = part(one, "$$", other);
+        let told: Vec<_> = found(&replaced).into_iter().filter(|(_, text)| *text == one).collect();
+        assert_eq!(told, [(MODE_REPLACED, one)]);
+        assert_eq!(found(&part(one, "GOTO/1,2,3", other)).iter().filter(|(_, text)| *text == one).count(), 0);
+    }
+    assert_eq!(found(&part("TOLER/.01", "$$", "INTOL/.02")), [], "the outside tolerance still serves");
+    let called = "M=MACRO/\nMAXDP/1\nTERMAC\nCALL/M\nMAXDP/2\nFROM/0,0,0\nGOTO/1,1,1\nFINI\n";
+    assert_eq!(found(called), [], "a macro serves other places too");
+}
+
+#[test]
+fn comments_allow_what_was_looked_at() {
+    let comma = "P=POINT/1 2,3";
+    let rest = "PRINT/3,P\nFINI\n";
+    assert_eq!(found(&format!("{comma} $$ apt-lsp: allow APT0952\n{rest}")), []);
+    assert_eq!(found(&format!("$$ apt-lsp: allow apt0952\n{comma}\n{rest}")), []);
+    assert_eq!(found(&format!("$$ apt-lsp: allow APT0952\n\n$$ a point\n{comma}\n{rest}")), []);
+    assert_eq!(found(&format!("$$ apt-lsp: allow-file APT0952\n{comma}\n{rest}")), []);
+    assert_eq!(found(&format!("{comma}\n{rest}$$ apt-lsp: allow-file APT0952\n")), []);
+}
+
+#[test]
+fn comments_that_allow_nothing_are_told() {
+    let comma = "P=POINT/1 2,3";
+    let rest = "PRINT/3,P\nFINI\n";
+    let other = format!("{comma} $$ apt-lsp: allow APT0951\n{rest}");
+    assert_eq!(found(&other), [(MISSING_COMMA, "1 2"), (ALLOWS_NOTHING, "APT0951")]);
+    let both = format!("$$ apt-lsp: allow APT0951, APT0952\n{comma}\n{rest}");
+    assert_eq!(found(&both), [(ALLOWS_NOTHING, "APT0951")]);
+    assert_eq!(fixed(&both), format!("$$ apt-lsp: allow APT0952\n{comma}\n{rest}"));
+    assert_eq!(found(&fixed(&both)), []);
+    let unknown = format!("P=POINT/1,2,3 $$ apt-lsp: allow APT7777\n{rest}");
+    assert_eq!(found(&unknown), [(ALLOWS_NOTHING, "APT7777")]);
+    assert_eq!(fixed(&unknown), format!("P=POINT/1,2,3\n{rest}"));
+    let alone = format!("$$ apt-lsp: allow-file APT0952\nP=POINT/1,2,3\n{rest}");
+    assert_eq!(fixed(&alone), format!("P=POINT/1,2,3\n{rest}"));
+    let error = "P=POINT/1,2,Q $$ apt-lsp: allow APT0101\nPRINT/3,P\nFINI\n";
+    assert_eq!(found(error), [(ALLOWS_NOTHING, "APT0101")]);
+    let motion = format!("$$ apt-lsp: allow APT0601\n{comma} $$ apt-lsp: allow APT0952 APT0820\n{rest}");
+    assert_eq!(found(&motion), [], "neither the motion nor the tape has been looked at");
+}
+
+#[test]
+fn many_long_statements_are_told_by_some() {
+    let line = format!("A=1{}\n", "+1".repeat(40));
+    let all = format!("{}GOTO/A,0,0\nFINI\n", (0..70).map(|_| format!("B=A\n{line}")).collect::<String>());
+    let told = diagnostics(&format!("A=0\n{all}")).1;
+    let long: Vec<_> = told.iter().filter(|one| one.wording.code == PAST_COLUMN_72).collect();
+    assert_eq!(long.len(), 50);
+    assert!(long[49].wording.message.contains("further"), "{:?}", long[49]);
+}
