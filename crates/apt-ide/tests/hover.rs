@@ -142,6 +142,56 @@ fn a_motion_tells_its_cut_vectors_and_the_proof() {
 }
 
 #[test]
+fn a_pocket_tells_its_passes_and_the_proof() {
+    let text = "PARTNO P\nCUTTER/1\nINTOL/0.01\nOUTTOL/0.01\nFROM/0,0,5\n\
+                POC$0KET/.49,1,1,5,10,8,1,1,0,0,0,8,0,0,8,5,0,0,5,0\nFINI\n";
+    let (analysis, offset) = marked(text);
+    let hover = analysis.hover(offset, &never).unwrap().unwrap().markdown;
+    expect![[r#"
+        **pocket**, plunge: 1 position at feed 5; general passes: 19 positions at feed 10; finishing pass: 5 positions at feed 8 — verified
+
+        | surface | clearance | allowed |
+        |---|---|---|
+        | part | 0 … 0 | 0 … 0 |
+        | drive | 0 … 0 | 0 … 0 |
+
+        `GOTO/2.25,2.25,0`  
+        `GOTO/5.75,2.25,0`  
+        `GOTO/5.75,2.75,0`  
+        `GOTO/2.25,2.75,0`  
+        … 21 more  
+
+        ---
+        ```apt
+        POCKET/re,c,f,f1,f2,f3,o,p,point,point,point,...
+        ```
+        Clear a convex pocket: radius, offsets, three feeds, two switches, then three to twenty corner points."#]].assert_eq(&hover);
+}
+
+#[test]
+fn motions_to_points_tell_their_positions() {
+    let text =
+        "FROM/0,0,5\nP1=POINT/1,2,3\nLOOPST\nA=1\nB)GOD$0LTA/A,0,0\nA=A+1\nIF(A-3)B,C,C\nC)LOOPND\nFINI\n";
+    check(
+        text,
+        expect![[r#"
+        **2 positions**
+
+        `GOTO/1,0,5`  
+        `GOTO/3,0,5`  
+
+        ---
+        ```apt
+        GODLTA/dx,dy,dz[,feed]
+        GODLTA/vector[,feed]
+        GODLTA/d[,feed]
+        ```
+        Move by increments, along a vector, or with one number along the tool axis (positive withdraws).
+    "#]],
+    );
+}
+
+#[test]
 fn words_are_explained_inside_of_other_statements() {
     check(
         "P1=POINT/1,2\nL1=LINE/P1,ATAN$0GL,30\nFINI\n",

@@ -58,10 +58,10 @@ fn macros_and_loops_are_unrolled() {
             2  GOTO/5,0,0         macroM1#1
             6  GODLTA/0,5,0       macroM2#1 < macroM1#1
             11 A=1                loop#1
-            12 GODLTA/0,0,A       loop#1
-            13 A=A+1              loop#1
-            12 GODLTA/0,0,A       loop#2
-            13 A=A+1              loop#2
+            12 GODLTA/0,0,1       loop#1
+            13 A=1+1              loop#1
+            12 GODLTA/0,0,2       loop#2
+            13 A=2+1              loop#2
             16 FINI
         "#]],
     );

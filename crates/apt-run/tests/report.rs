@@ -121,6 +121,46 @@ fn motions_are_proven_and_within_their_band() {
 }
 
 #[test]
+fn statements_are_told_as_they_were_written() {
+    let text = "PARTNO S\nC1=CIRCLE/0,0,2\nFROM/5,-.5,0\n  Go / To, c1 $$ start\nTLLFT, GOLFT/C1,$ on\n   ON,(LINE/0,0,$\n\
+                1,0)\nFINI\n";
+    let value = report(text, None);
+    let statements: Vec<_> = value["motions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|motion| motion["statement"].as_str().unwrap())
+        .collect();
+    assert_eq!(statements, ["Go / To, c1", "TLLFT, GOLFT/C1,ON,(LINE/0,0,1,0)"]);
+}
+
+#[test]
+fn what_an_included_file_does_is_told_at_the_statement_that_includes_it() {
+    let folder = std::env::temp_dir().join(format!("apt-run-report-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(
+        folder.join("LIB.apt"),
+        "$$ lib\n\n\nGOTO/1,2,3\nGOTO/NONE\nM1=MACRO\nGOTO/7,8,9\nTERMAC\n",
+    )
+    .unwrap();
+    let settings = Settings { dialect: Some("free".to_owned()), ..Settings::default() };
+    let file = folder.join("main.apt").display().to_string();
+    let document = Document::new("INCLUD/LIB\nCALL/M1\nFINI\n", Some(file), &Arc::new(settings));
+    let value = document.report(&|| false, &mut |_, _| {}, None).unwrap();
+    let value = serde_json::to_value(value).unwrap();
+    let isns: Vec<_> =
+        value["cl"].as_array().unwrap().iter().map(|entry| entry["isn"].as_u64().unwrap()).collect();
+    assert_eq!(isns, [1, 2, 3]);
+    let error = &value["diagnostics"][0];
+    assert_eq!((&error["isn"], &error["range"]["start"]["line"]), (&json!(1), &json!(0)));
+    assert_eq!(error["origin"][0], json!({ "kind": "include", "name": "LIB", "isn": 1, "turn": 1 }));
+    let related = &error["related"][0];
+    assert!(related["file"].as_str().unwrap().ends_with("LIB.apt"), "{related}");
+    assert_eq!(related["range"]["start"], json!({ "line": 4, "character": 5 }), "{error}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
 fn a_range_of_statements_restricts_path_and_motions() {
     let value = report(PROGRAM, Some(14..=14));
     assert_eq!(value["motions"].as_array().unwrap().len(), 1);

@@ -1,6 +1,12 @@
 //! What a motion statement gave, in a hover.
 
-use arelem::{section2::Output, verify::Extent};
+use apt_cldata::record::ClKind;
+use apt_run::pipeline::RunResult;
+use arelem::{
+    section2::Output,
+    sequence::PocketPath,
+    verify::{Evidence, Extent},
+};
 
 use super::number;
 use crate::{Analysis, Cancel, Cancelled};
@@ -12,45 +18,95 @@ impl Analysis {
     /// The result of the motion statement with this number; empty if it gave none.
     pub(super) fn motion_markdown(&self, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
         let result = self.result(cancel, &mut |_, _| {})?;
-        let mut text = String::new();
         let mut turns = result.motions.iter().filter(|motion| motion.origin.isn == isn);
         let count = turns.clone().count();
-        let Some(motion) = turns.next_back() else { return Ok(text) };
-        let Some(Output::Sequence(sequence)) = &motion.computed.execution.output else { return Ok(text) };
-        let vectors = sequence.points.len();
-        let plural = if vectors == 1 { "" } else { "s" };
-        text.push_str(&format!("**{vectors} cut vector{plural}**"));
-        if let Some(minimum) = sequence.minimum {
-            text.push_str(&format!(" (no fewer than {minimum} are possible)"));
-        }
-        if count > 1 {
-            text.push_str(&format!(", the last of {count} times"));
-        }
+        let Some(motion) = turns.next_back() else { return Ok(points(&result, isn)) };
         let evidence = motion.computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
-        text.push_str(match evidence {
-            Some(evidence) if evidence.verified => " — verified\n\n",
-            Some(_) => " — **not verified**\n\n",
-            None => "\n\n",
-        });
-        if let Some(evidence) = evidence {
-            text.push_str("| surface | clearance | allowed |\n|---|---|---|\n");
-            for (role, extent) in
-                [("part", evidence.part), ("drive", evidence.drive), ("check", evidence.check)]
-            {
-                text.push_str(&extent.map(|extent| row(role, &extent)).unwrap_or_default());
+        let times = if count > 1 { format!(", the last of {count} times") } else { String::new() };
+        let mut text = String::new();
+        let positions: Vec<_> = match &motion.computed.execution.output {
+            Some(Output::Sequence(sequence)) => {
+                let vectors = counted(sequence.points.len(), "cut vector");
+                text.push_str(&format!("**{vectors}**"));
+                if let Some(minimum) = sequence.minimum {
+                    text.push_str(&format!(" (no fewer than {minimum} are possible)"));
+                }
+                sequence.points.iter().collect()
             }
-            text.push('\n');
-        }
-        for point in sequence.points.iter().take(POSITIONS_SHOWN) {
-            let at = point.tip;
-            text.push_str(&format!("`GOTO/{},{},{}`  \n", number(at.x), number(at.y), number(at.z)));
-        }
-        if vectors > POSITIONS_SHOWN {
-            text.push_str(&format!("… {} more  \n", vectors - POSITIONS_SHOWN));
-        }
-        text.push_str("\n---\n");
+            Some(Output::Pocket(path)) => {
+                text.push_str(&passes(path));
+                path.positions().collect()
+            }
+            Some(Output::Position(position)) => vec![position],
+            Some(Output::Ignored) | None => return Ok(points(&result, isn)),
+        };
+        text.push_str(&times);
+        text.push_str(&verdict(evidence));
+        list(&mut text, positions.iter().map(|position| position.tip.into()), positions.len());
         Ok(text)
     }
+}
+
+/// How many positions each pass of a pocket has, and at which feed.
+fn passes(path: &PocketPath) -> String {
+    let names = ["plunge", "general passes", "finishing pass"];
+    let rows = names.iter().zip(&path.passes).filter(|(_, pass)| !pass.points.is_empty());
+    let rows: Vec<_> = rows
+        .map(|(name, pass)| {
+            format!("{name}: {} at feed {}", counted(pass.points.len(), "position"), number(pass.feed))
+        })
+        .collect();
+    format!("**pocket**, {}", rows.join("; "))
+}
+
+/// What the verifier says, with the clearances where it measured them.
+fn verdict(evidence: Option<&Evidence>) -> String {
+    let Some(evidence) = evidence else { return "\n\n".to_owned() };
+    let mut text =
+        if evidence.verified { " — verified\n\n" } else { " — **not verified**\n\n" }.to_owned();
+    let rows = [("part", evidence.part), ("drive", evidence.drive), ("check", evidence.check)];
+    if rows.iter().any(|(_, extent)| extent.is_some()) {
+        text.push_str("| surface | clearance | allowed |\n|---|---|---|\n");
+        for (role, extent) in rows {
+            text.push_str(&extent.map(|extent| row(role, &extent)).unwrap_or_default());
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The positions that a statement leaves on the CL file, for one that the arithmetic element need not compute.
+fn points(result: &RunResult, isn: u32) -> String {
+    let of_statement = result.records.iter().filter(|record| record.isn == isn);
+    let positions: Vec<[f64; 3]> = of_statement
+        .filter_map(|record| match &record.kind {
+            ClKind::Motion { points, .. } => Some(points),
+            _ => None,
+        })
+        .flatten()
+        .map(|point| point.position.into())
+        .collect();
+    if positions.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("**{}**\n\n", counted(positions.len(), "position"));
+    list(&mut text, positions.iter().copied(), positions.len());
+    text
+}
+
+/// The first positions, and how many there are besides.
+fn list(text: &mut String, positions: impl Iterator<Item = [f64; 3]>, count: usize) {
+    for [x, y, z] in positions.take(POSITIONS_SHOWN) {
+        text.push_str(&format!("`GOTO/{},{},{}`  \n", number(x), number(y), number(z)));
+    }
+    if count > POSITIONS_SHOWN {
+        text.push_str(&format!("… {} more  \n", count - POSITIONS_SHOWN));
+    }
+    text.push_str("\n---\n");
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn row(role: &str, extent: &Extent) -> String {
