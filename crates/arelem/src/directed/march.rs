@@ -67,6 +67,8 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
 const TANGENT_SINE: f64 = 1e-7;
 /// How often a vector that ends at the check surface is shortened before giving up.
 const MAX_FINALS: u32 = 60;
+/// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
+const LEAST_FORWARD: f64 = 0.5;
 /// Share of the way to the stop for the vertex before it, when one vector cannot reach it.
 const SHARE_BEFORE_STOP: f64 = 0.55;
 
@@ -90,8 +92,17 @@ pub(super) fn run(
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),
         revolutions: 0,
+        before: None,
     };
     march.run(cancel)
+}
+
+/// What was known before the last cut vector, to make that vector again.
+struct Before<'a> {
+    vertex: Vertex,
+    watcher: Watcher<'a>,
+    tangency: tangency::Watch<'a>,
+    revolutions: u32,
 }
 
 struct March<'a> {
@@ -103,9 +114,10 @@ struct March<'a> {
     tangency: tangency::Watch<'a>,
     points: Vec<Vec3>,
     revolutions: u32,
+    before: Option<Before<'a>>,
 }
 
-impl March<'_> {
+impl<'a> March<'a> {
     fn run(&mut self, cancel: &dyn Fn() -> bool) -> Result<Path, MotionFailure> {
         let mut here = Vertex::start(self.prepared)?;
         let start = here;
@@ -116,11 +128,13 @@ impl March<'_> {
                 return Err(MotionFailure::Cancelled);
             }
             let next = self.stepper.advance(&here, cap)?;
+            let before = self.snapshot(&here);
             let event = match self.watcher.scan(&here.sweep(self.prepared, &next)) {
                 Some(event) => Some(event),
                 None => self.tangency.scan(&here, &next)?,
             };
             let Some(event) = event else {
+                self.before = Some(before);
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
                 here = next;
@@ -141,6 +155,10 @@ impl March<'_> {
                     tip: here.tip,
                 });
             }
+            if let Some(longer) = self.step_back(&mut here, &end.tip) {
+                cap = SHARE_BEFORE_STOP * longer;
+                continue;
+            }
             cap = SHARE_BEFORE_STOP * (end.tip - here.tip).norm().min((next.tip - here.tip).norm());
             if cap <= 1e-9 * self.prepared.size {
                 // The stop is where the last vertex already is.
@@ -158,6 +176,31 @@ impl March<'_> {
         })
     }
 
+    fn snapshot(&self, vertex: &Vertex) -> Before<'a> {
+        Before {
+            vertex: *vertex,
+            watcher: self.watcher.clone(),
+            tangency: self.tangency.clone(),
+            revolutions: self.revolutions,
+        }
+    }
+
+    /// Takes the last vertex back if it lies so near to the stop that the way there leads across the path and not
+    /// along it: vertices lie at a limit of the band, the stop at rest in it. Gives the length of the vector to divide.
+    fn step_back(&mut self, here: &mut Vertex, end: &Vec3) -> Option<f64> {
+        let delta = end - here.tip;
+        if delta.dot(&here.tangent) > LEAST_FORWARD * delta.norm() {
+            return None;
+        }
+        let before = self.before.take()?;
+        self.points.pop()?;
+        let length = (here.tip - before.vertex.tip).norm();
+        (self.watcher, self.tangency, self.revolutions) =
+            (before.watcher, before.tangency, before.revolutions);
+        *here = before.vertex;
+        Some(length)
+    }
+
     fn path(&mut self, end: &finish::End) -> Path {
         Path { points: std::mem::take(&mut self.points), check: end.check, check_side: end.side }
     }
@@ -165,7 +208,7 @@ impl March<'_> {
     /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.
     fn accept(&self, here: &Vertex, end: &Vec3) -> Result<bool, MotionFailure> {
         let delta = end - here.tip;
-        if delta.dot(&here.tangent) < 0.0 && !self.points.is_empty() {
+        if delta.dot(&here.tangent) < LEAST_FORWARD * delta.norm() && self.before.is_some() {
             return Ok(false);
         }
         if delta.norm() > self.state.maximum_step * (1.0 + 1e-9) {

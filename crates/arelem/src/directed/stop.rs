@@ -55,6 +55,7 @@ pub(super) struct Event {
 }
 
 /// Watches all check surfaces of a motion.
+#[derive(Clone)]
 pub(super) struct Watcher<'a> {
     prepared: &'a Prepared,
     checks: &'a [CheckSurface],

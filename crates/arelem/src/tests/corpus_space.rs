@@ -265,3 +265,23 @@ fn tilted_axis() {
     p.side(TlOn).drive(Forward, &y(0.0), On, &x(2.0)).ends(2.0, 0.0, 4.62346, TOLERANCE).verified();
     assert!(p.last().points.len() <= 12, "{}", p.last().points.len());
 }
+
+/// Vertices lie at a limit of the band and the stop at rest in it: a stop just behind a vertex must not be reached by a
+/// vector across the path.
+#[test]
+fn every_vector_leads_along_the_path_wherever_the_stop_lies() {
+    let part = cone(v(0.0, 0.0, 10.0), v(0.0, 0.0, -1.0), 32.6302);
+    for k in 0..300 {
+        let mut p = program(&[1.0, 0.25], 0.002, 0.002);
+        p.from(-6.3377, 1.0, 11.6105).go(&[(On, &y(1.0)), (To, &part), (On, &x(-3.1449))]);
+        let stop = -1.5 + 0.004 * f64::from(k);
+        p.indirv(1.0, 0.0, 0.0).side(TlOn).drive(Forward, &y(1.0), On, &x(stop)).verified();
+        let sequence = p.last();
+        let mut from = sequence.start.tip;
+        for point in &sequence.points {
+            let delta = point.tip - from;
+            assert!(delta.x > 0.4 * delta.norm(), "stop at {stop}: {from:?} to {:?}", point.tip);
+            from = point.tip;
+        }
+    }
+}

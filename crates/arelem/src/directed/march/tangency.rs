@@ -15,6 +15,7 @@ use crate::{
 const MAX_ITERATIONS: u32 = 80;
 
 /// Watches the check surfaces that stop at a tangency.
+#[derive(Clone)]
 pub(super) struct Watch<'a> {
     prepared: &'a Prepared,
     checks: &'a [CheckSurface],
