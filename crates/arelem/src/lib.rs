@@ -6,6 +6,7 @@
 mod attitude;
 pub mod bound;
 pub mod clearance;
+pub mod cure;
 mod directed;
 pub mod error;
 mod plane_curve;

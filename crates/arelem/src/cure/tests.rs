@@ -1,0 +1,171 @@
+//! Every failure that suggests a change gets the change that works, and no other.
+
+use Relation::{On, Past, TangentToDrive as Tanto, To};
+use Turn::{Forward, Left as GoLft, Right as GoRgt};
+use apt_geometry::motion::{DriveSide, MotionCommand, NamedSurface, PartSide, Relation, StartSurface, Turn};
+
+use super::{Cure, Remedy, remedies};
+use crate::{
+    error::RoleName,
+    tests::{Program, circle, line, motion, plane, start, v},
+};
+
+/// The remedies of a command that must fail with this number.
+fn offered(p: &mut Program, command: &MotionCommand, number: u16) -> Vec<Remedy> {
+    let state = p.state.clone();
+    let failure = p.attempt(command).expect_err("must fail");
+    assert_eq!(failure.apt3(), Some(number), "{failure:?}");
+    remedies(&state, command, &failure, &|| false)
+}
+
+fn cures(remedies: &[Remedy]) -> Vec<Cure> {
+    remedies.iter().map(|remedy| remedy.cure.clone()).collect()
+}
+
+/// Tool of diameter .5 beside the x axis, at x=2, above it.
+fn beside() -> Program {
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(2.0, 2.0, 0.0).go(&[(To, &line(0.0, 0.0, 1.0, 0.0))]).side(DriveSide::Left);
+    p
+}
+
+#[test]
+fn the_other_way_is_offered_when_the_check_surface_lies_behind() {
+    let check = line(6.0, 0.0, 6.0, 1.0);
+    // From (2,2) down to the line: right is towards −x.
+    let wrong = motion(GoRgt, &line(0.0, 0.0, 1.0, 0.0), &[(To, 1, &check)]);
+    let found = offered(&mut beside(), &wrong, 724);
+    assert_eq!(cures(&found)[0], Cure::Turn(GoLft), "{found:?}");
+    assert!((found[0].end - v(5.75, 0.25, 0.0)).norm() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn another_relation_is_offered_when_surfaces_are_not_tangent() {
+    let wrong = motion(GoLft, &line(0.0, 0.0, 1.0, 0.0), &[(Tanto, 1, &circle(6.0, 0.5, 1.0))]);
+    let found = offered(&mut beside(), &wrong, 721);
+    let relations: Vec<_> = found
+        .iter()
+        .filter_map(|remedy| match remedy.cure {
+            Cure::Relation { relation, .. } => Some(relation),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(relations, [To, On], "{found:?}");
+    assert!(found[0].end.x < found[1].end.x, "TO stops before ON: {found:?}");
+}
+
+#[test]
+fn a_smaller_count_is_offered_when_there_are_not_so_many_positions() {
+    let wrong = motion(GoLft, &line(0.0, 0.0, 1.0, 0.0), &[(On, 3, &circle(6.0, 0.5, 1.0))]);
+    let found = offered(&mut beside(), &wrong, 724);
+    assert_eq!(cures(&found)[0], Cure::Occurrence { check: 0, occurrence: 2 }, "{found:?}");
+}
+
+#[test]
+fn the_turn_along_the_path_is_offered_when_the_word_points_across() {
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(0.0, 0.25, 0.0).side(DriveSide::Left);
+    let wrong = motion(Forward, &line(0.0, 0.0, 1.0, 0.0), &[(On, 1, &line(5.0, 0.0, 5.0, 5.0))]);
+    let found = offered(&mut p, &wrong, 505);
+    assert_eq!(cures(&found), [Cure::Turn(GoRgt)], "{found:?}");
+}
+
+#[test]
+fn a_direction_is_offered_where_there_is_none() {
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(0.0, 0.25, 0.0).side(DriveSide::Left);
+    // Straight along the axis: no forward direction.
+    p.state.previous = v(0.0, 0.25, 5.0);
+    p.state.forward = None;
+    let wrong = motion(GoRgt, &line(0.0, 0.0, 1.0, 0.0), &[(On, 1, &line(5.0, 0.0, 5.0, 5.0))]);
+    let found = offered(&mut p, &wrong, 504);
+    let [Remedy { cure: Cure::Direction(vector), end }] = found.as_slice() else { panic!("{found:?}") };
+    assert!((vector - v(0.0, 1.0, 0.0)).norm() < 1e-6 && (end.x - 5.0).abs() < 1e-3, "{found:?}");
+}
+
+#[test]
+fn a_start_out_of_tolerance_is_moved_in_or_tolerated() {
+    let drive = line(0.0, 0.0, 1.0, 0.0);
+    let command = motion(GoRgt, &drive, &[(On, 1, &line(5.0, 0.0, 5.0, 5.0))]);
+    let mut p = Program::new();
+    p.cutter(&[0.5]).tolerance(0.0, 0.001).from(0.0, 0.252, 0.0).side(DriveSide::Left);
+    let found = offered(&mut p, &command, 503);
+    let [first, .., last] = found.as_slice() else { panic!("{found:?}") };
+    let Cure::Tolerance { role: RoleName::Drive, inside: false, by, values } = &first.cure else {
+        panic!("{found:?}")
+    };
+    assert!((by - 0.001).abs() < 2e-4 && values.drive >= 0.002 && values.part == 0.001, "{found:?}");
+    let Cure::MoveTo { position, by, .. } = &last.cure else { panic!("{found:?}") };
+    assert!((position - v(0.0, 0.25, 0.0)).norm() < 1e-6 && (by - 0.002).abs() < 1e-6, "{found:?}");
+    // Far out, a tolerance is no cure; the tool end on the line asks for TLON.
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(0.0, 0.0, 0.0).side(DriveSide::Left);
+    p.state.previous = v(0.0, -1.0, 0.0);
+    let found = offered(&mut p, &command, 503);
+    assert_eq!(cures(&found)[0], Cure::DriveSide(DriveSide::On), "{found:?}");
+    assert!(!cures(&found).iter().any(|cure| matches!(cure, Cure::Tolerance { .. })), "{found:?}");
+    // The tool end below the part surface by its height on it: TLONPS.
+    let mut p = Program::new();
+    p.cutter(&[0.5, 0.25]).from(0.0, 0.25, 0.0).side(DriveSide::Left);
+    let tilted = plane(-0.6, 0.0, 0.8, 0.0);
+    p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: tilted }));
+    let found = offered(&mut p, &command, 502);
+    assert!(cures(&found).contains(&Cure::PartSide(PartSide::On)), "{found:?}");
+}
+
+#[test]
+fn an_unknown_side_is_settled_by_either_surface_vector() {
+    let wall = line(3.0, 0.0, 3.0, 5.0);
+    let mut p = Program::new();
+    p.cutter(&[1.0]).from(3.0, 1.0, 2.0);
+    let found = offered(&mut p, &start(&[(To, &wall), (To, &plane(0.0, 0.0, 1.0, 0.0))]), 40);
+    let ends: Vec<f64> = found.iter().map(|remedy| remedy.end.x).collect();
+    assert!(
+        found.iter().all(|one| matches!(one.cure, Cure::SurfaceVector { role: RoleName::Drive, .. })),
+        "{found:?}"
+    );
+    assert!(ends.contains(&2.5) && ends.contains(&3.5), "both sides: {found:?}");
+}
+
+#[test]
+fn a_start_up_that_misses_is_turned_to_the_surface() {
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(0.0, 0.0, 0.0).indirv(1.0, 0.0, 0.0).run(&MotionCommand::NoPartSurface);
+    let found = offered(&mut p, &start(&[(To, &circle(5.0, 9.0, 1.0))]), 714);
+    let kinds = cures(&found);
+    assert!(matches!(kinds[0], Cure::Direction(_)) && kinds[1] == Cure::WithoutDirection, "{found:?}");
+    assert!((found[0].end - found[1].end).norm() < 1e-3, "both end at the nearest point: {found:?}");
+
+    let mut p = Program::new();
+    p.cutter(&[1.0]).from(0.0, 1.0, 2.0);
+    let wall = line(4.0, 0.0, 5.0, 5.0);
+    let surfaces = [&wall, &plane(0.0, 0.0, 1.0, 0.0)].map(|geometry| StartSurface {
+        relation: To,
+        surface: NamedSurface { name: String::new(), geometry: geometry.clone() },
+    });
+    let found = offered(&mut p, &MotionCommand::Offset(surfaces.to_vec()), 33);
+    assert!(matches!(cures(&found)[..], [Cure::Direction(_)]), "{found:?}");
+}
+
+#[test]
+fn more_points_are_offered_only_if_they_suffice() {
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(5.0, 0.0, 1.0).go(&[(To, &circle(0.0, 0.0, 2.0))]).side(DriveSide::Left);
+    p.run(&MotionCommand::MaximumPoints(20));
+    let command = motion(GoLft, &circle(0.0, 0.0, 2.0), &[(Past, 1, &line(0.0, -9.0, 0.0, 9.0))]);
+    let found = offered(&mut p, &command, 803);
+    assert!(cures(&found).contains(&Cure::Points(160)), "{found:?}");
+}
+
+#[test]
+fn what_cannot_be_cured_gets_no_remedy() {
+    let mut p = Program::new();
+    p.from(0.0, 2.0, 0.0);
+    assert_eq!(offered(&mut p, &start(&[(To, &line(0.0, 0.0, 1.0, 0.0))]), 311), []);
+    // Cancelled at once: nothing is tried.
+    let mut p = beside();
+    let state = p.state.clone();
+    let wrong = motion(GoRgt, &line(0.0, 0.0, 1.0, 0.0), &[(To, 1, &line(6.0, 0.0, 6.0, 1.0))]);
+    let failure = p.attempt(&wrong).expect_err("must fail");
+    assert_eq!(remedies(&state, &wrong, &failure, &|| true), []);
+}
