@@ -9,7 +9,7 @@ use apt_geometry::{
 use crate::{
     clearance::{Gauge, Shape},
     error::{MotionFailure, RoleName},
-    section2::State,
+    section2::{StartUpRule, State},
     sequence::Role,
 };
 
@@ -19,6 +19,10 @@ pub(crate) const GUARD: f64 = 1e-3;
 /// Place in the band, from the limit that the sag goes to, of the ends of motions on curved surfaces: between the
 /// nominal position and the limit at which vertices lie.
 const REST: f64 = 0.75;
+/// Share of the squared curvatures above which twice their negative product makes a saddle.
+const SADDLE: f64 = 1e-6;
+/// Curvature, times the size of the coordinates, below which a surface is straight.
+const STRAIGHT: f64 = 1e-7;
 /// Rounding of a clearance, relative to the size of the coordinates: the slack of all band tests.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
@@ -34,6 +38,9 @@ pub(crate) struct Working {
     pub(crate) shape: Shape,
     /// Mean curvature near the tool, turned to its side: where the ends lie when the shape does not tell.
     pub(crate) lean: f64,
+    /// The peer that the part program is written for leaves convex stretches of this surface on the inner side of the
+    /// band: APT4 does so on tabulated cylinders.
+    inner: bool,
 }
 
 /// How a path bends against a role's surface.
@@ -66,7 +73,8 @@ impl Working {
         let thickness = if on { 0.0 } else { pick(&state.thickness) };
         let gauge = Gauge { surface, on, side: 1.0, thickness };
         let shape = gauge.shape();
-        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0 })
+        let inner = state.start_up == StartUpRule::Apt4 && matches!(gauge.surface, Surface::Tabulated(_));
+        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0, inner })
     }
 
     pub(crate) fn set_side(&mut self, side: f64) {
@@ -74,11 +82,16 @@ impl Working {
         self.shape = self.gauge.shape();
     }
 
-    /// Notes how the surface bends near a position; the side must be set.
+    /// Notes how the surface bends near a position; the side must be set. On a saddle the way decides, which is not known
+    /// yet.
     pub(crate) fn look_from(&mut self, tip: &Vec3) {
         if self.shape == Shape::General {
             let foot = self.gauge.surface.foot(tip).point;
-            self.lean = self.gauge.side * self.gauge.surface.foot_and_hessian(&foot).1.trace();
+            let hessian = self.gauge.surface.foot_and_hessian(&foot).1;
+            let (mean, square) = (hessian.trace(), hessian.norm_squared());
+            // Twice the Gaussian curvature.
+            let saddle = mean * mean - square < -SADDLE * square;
+            self.lean = if saddle { 0.0 } else { self.leaning(mean, &foot) };
         }
     }
 
@@ -88,8 +101,14 @@ impl Working {
         if self.shape == Shape::General && !self.gauge.on {
             let foot = self.gauge.surface.foot(tip).point;
             let hessian = self.gauge.surface.foot_and_hessian(&foot).1;
-            self.lean = self.gauge.side * direction.dot(&(hessian * direction));
+            self.lean = self.leaning(direction.dot(&(hessian * direction)), &foot);
         }
+    }
+
+    /// Curvature turned to the tool's side; none where it is rounding.
+    fn leaning(&self, curvature: f64, place: &Vec3) -> f64 {
+        let straight = curvature.abs() * (1.0 + place.norm()) <= STRAIGHT;
+        if straight { 0.0 } else { self.gauge.side * curvature }
     }
 
     /// The clearance changes with a turning axis too, unless the tool end alone counts.
@@ -112,6 +131,7 @@ impl Working {
             Shape::Flat => return 0.0,
             Shape::Convex => REST,
             Shape::Concave => 1.0 - REST,
+            Shape::General if self.lean > 0.0 && self.inner => 1.0 - REST,
             Shape::General if self.lean > 0.0 => REST,
             Shape::General if self.lean < 0.0 => 1.0 - REST,
             Shape::General => 0.5,

@@ -5,6 +5,9 @@ mod bend;
 mod cone;
 mod directed;
 mod quadric;
+mod ruled;
+mod section_curve;
+mod sheet;
 mod tabulated;
 
 use nalgebra::Matrix3;
@@ -14,6 +17,7 @@ pub use self::{
     cone::ConeForm,
     directed::{NoDistance, RootSelection, solve_quadratic},
     quadric::PrincipalQuadric,
+    ruled::RuledSheet,
     tabulated::DirectrixCurve,
 };
 use crate::{
@@ -36,6 +40,8 @@ pub enum Surface {
     Quadric(Box<PrincipalQuadric>),
     /// Tabulated cylinder; the straight extensions go on for ever.
     Tabulated(Box<DirectrixCurve>),
+    /// Ruled surface with its extensions.
+    Ruled(Box<RuledSheet>),
 }
 
 /// Why a geometric entity is no surface here.
@@ -122,11 +128,13 @@ impl Surface {
             Geometry::TabulatedCylinder(cylinder) => {
                 DirectrixCurve::new(cylinder).map(|curve| Self::Tabulated(Box::new(curve))).ok_or(degenerate)
             }
+            Geometry::RuledSurface(surface) => {
+                RuledSheet::new(surface).map(|sheet| Self::Ruled(Box::new(sheet))).ok_or(degenerate)
+            }
             Geometry::Point(_)
             | Geometry::Vector(_)
             | Geometry::Matrix(_)
             | Geometry::PolyConic(_)
-            | Geometry::RuledSurface(_)
             | Geometry::Pattern(_) => Err(SurfaceError::Unsupported { kind }),
         }
     }
@@ -157,6 +165,7 @@ impl Surface {
             Self::Cone(cone) => cone.foot(p),
             Self::Quadric(quadric) => quadric.foot(p).0,
             Self::Tabulated(curve) => curve.foot(p).0,
+            Self::Ruled(sheet) => sheet.foot(p),
         }
     }
 
@@ -199,6 +208,7 @@ impl Surface {
                 let (foot, curvature) = curve.foot(p);
                 (foot, curve.hessian(&foot, curvature))
             }
+            Self::Ruled(sheet) => sheet.foot_and_hessian(p),
         }
     }
 
@@ -208,7 +218,7 @@ impl Surface {
             Self::Plane(_) => Convexity::Flat,
             Self::Cylinder(_) | Self::Sphere(_) | Self::Cone(_) => Convexity::Convex,
             Self::Quadric(quadric) => quadric.convexity(),
-            Self::Tabulated(_) => Convexity::General,
+            Self::Tabulated(_) | Self::Ruled(_) => Convexity::General,
         }
     }
 
@@ -235,7 +245,7 @@ impl Surface {
             }
             Self::Cone(cone) => cone.natural_normal(p),
             Self::Quadric(quadric) => quadric.natural_normal(p),
-            Self::Tabulated(_) => Ok(self.foot(p).normal),
+            Self::Tabulated(_) | Self::Ruled(_) => Ok(self.foot(p).normal),
         }
     }
 }
@@ -263,5 +273,7 @@ pub fn perpendicular(v: &Vec3) -> Vec3 {
     v.cross(&other).normalize()
 }
 
+#[cfg(test)]
+mod sheet_tests;
 #[cfg(test)]
 mod tests;

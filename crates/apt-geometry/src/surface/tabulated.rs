@@ -14,6 +14,8 @@ const MAX_ITERATIONS: u32 = 60;
 
 /// Cosine defect above which the nearest point is a corner of the curve.
 const CORNER: f64 = 1e-9;
+/// Distance from the curve, relative to the size of the coordinates, below which a point lies on it.
+const ON_CURVE: f64 = 1e-12;
 /// Curvature of a corner: large enough to be infinite for any tool, small enough to compute with.
 const CORNER_CURVATURE: f64 = 1e12;
 
@@ -180,6 +182,16 @@ impl DirectrixCurve {
         if intervals.is_empty() { None } else { Some(Self { axes, intervals }) }
     }
 
+    /// Unit direction of the generators.
+    pub fn generator(&self) -> Vec3 {
+        self.axes[2]
+    }
+
+    /// The points between intervals, in the plane through the origin.
+    pub(super) fn joints(&self) -> Vec<Vec3> {
+        self.intervals.iter().skip(1).map(|interval| self.lift(interval.start)).collect()
+    }
+
     fn flat(&self, p: &Vec3) -> Vec2 {
         Vec2::new(self.axes[0].dot(p), self.axes[1].dot(p))
     }
@@ -213,8 +225,10 @@ impl DirectrixCurve {
         let point = interval.start + interval.along * s + interval.normal_axis() * h;
         let offset = flat - point;
         let (height, length) = (offset.dot(&normal), offset.norm());
-        // At a corner between intervals the nearest point stays while the normal turns.
-        let corner = height.abs() < length * (1.0 - CORNER);
+        // At a corner between intervals the nearest point stays while the normal turns. On the curve itself the offset is
+        // rounding and says nothing.
+        let corner =
+            height.abs() < length * (1.0 - CORNER) && length > ON_CURVE * (interval.length + flat.norm());
         let distance = if corner { length.copysign(height) } else { height };
         let curvature = if corner { CORNER_CURVATURE.copysign(height) } else { -h2 / (norm * norm * norm) };
         let normal = self.lift(if corner { offset / distance } else { normal });
@@ -287,7 +301,7 @@ impl Cubic {
 }
 
 /// Root of a monotone function between limits of opposite sign.
-fn bracketed_root(f: &impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
+pub(super) fn bracketed_root(f: &impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
     let (mut low, mut high) = (low, high);
     let (at_low, at_high) = (f(low), f(high));
     if at_low == 0.0 {

@@ -1,0 +1,548 @@
+//! Ruled surfaces: straight rulings between points at equal shares of two chords (language reference 4.16).
+//!
+//! The two curves are kept as quintic pieces that pass through their points with slope and curvature. Rulings go on
+//! beyond the curves, and the curves straight beyond their ends, for [`BEYOND`] times their length, but not to where
+//! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by its middle ruling.
+
+use nalgebra::Matrix3;
+
+use super::{
+    Foot, perpendicular,
+    section_curve::{CurvePoint, SectionCurve},
+    sheet::{Jet, Rest},
+};
+use crate::{
+    Vec3,
+    canonical::{RuledEnd, RuledSurface},
+};
+
+/// How far the surface goes on beyond its curves and their ends, as a multiple of itself.
+const BEYOND: f64 = 4.0;
+/// Share of the way to the place where neighbouring rulings meet at which the extension ends.
+const BEFORE_FOLD: f64 = 0.9;
+/// Share of the chord at both ends where the meeting of rulings is not judged: a curve may stand upright there.
+const STEADY: f64 = 0.05;
+/// Accuracy of the pieces, relative to the size of the surface.
+const ACCURACY: f64 = 2e-12;
+/// Bound of the halvings of a piece of the curves.
+const MAX_DEPTH: u32 = 40;
+/// Bound of the number of pieces.
+const MAX_PIECES: usize = 4096;
+/// Strips over the surface itself, roughly: short enough for one valley of the distance each.
+const STRIPS: f64 = 48.0;
+/// Samples across a strip for its radius.
+const SAMPLES: u32 = 6;
+/// Share by which a radius is enlarged for what lies between the samples.
+const ENLARGED: f64 = 0.07;
+/// Bound of the bracketed iteration for the nearest ruling.
+const MAX_ITERATIONS: u32 = 60;
+
+/// `Σ cₖ τᵏ` with τ from 0 to 1.
+type Quintic = [Vec3; 6];
+
+/// One piece of both curves over a range of the parameter.
+#[derive(Debug, Clone, PartialEq)]
+struct Piece {
+    from: f64,
+    width: f64,
+    curves: [Quintic; 2],
+}
+
+/// All rulings of a range of the parameter, between two shares along them.
+#[derive(Debug, Clone, PartialEq)]
+struct Strip {
+    piece: usize,
+    range: [f64; 2],
+    /// The middle ruling: a point and the way to its other end.
+    middle: [Vec3; 2],
+    /// No point of the strip is farther from its middle ruling.
+    radius: f64,
+}
+
+/// A ruled surface ready for distance questions: `E(t) + v·(F(t) − E(t))`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuledSheet {
+    pieces: Vec<Piece>,
+    /// The strips of each band of shares in order, as a complete binary tree: node `k` has children `2k+1` and `2k+2`.
+    bands: Vec<Vec<Strip>>,
+    /// Range of the parameter and of the share along the rulings.
+    limits: [[f64; 2]; 2],
+    size: f64,
+    curvature: f64,
+}
+
+/// The nearest place so far.
+#[derive(Clone, Copy)]
+struct Nearest {
+    t: f64,
+    piece: usize,
+    square: f64,
+}
+
+/// Point, first and second derivative of a quintic by the parameter itself.
+fn evaluate(c: &Quintic, tau: f64, width: f64) -> [Vec3; 3] {
+    let value = ((((c[5] * tau + c[4]) * tau + c[3]) * tau + c[2]) * tau + c[1]) * tau + c[0];
+    let first = (((c[5] * (5.0 * tau) + c[4] * 4.0) * tau + c[3] * 3.0) * tau + c[2] * 2.0) * tau + c[1];
+    let second = ((c[5] * (20.0 * tau) + c[4] * 12.0) * tau + c[3] * 6.0) * tau + c[2] * 2.0;
+    [value, first / width, second / (width * width)]
+}
+
+/// The quintic with given points and derivatives at both ends.
+fn through(a: &CurvePoint, b: &CurvePoint, width: f64) -> Quintic {
+    let (c0, c1, c2) = (a.point, a.first * width, a.second * (0.5 * width * width));
+    let rest = b.point - c0 - c1 - c2;
+    let slope = b.first * width - c1 - c2 * 2.0;
+    let bend = b.second * (width * width) - c2 * 2.0;
+    [
+        c0,
+        c1,
+        c2,
+        rest * 10.0 - slope * 4.0 + bend * 0.5,
+        rest * -15.0 + slope * 7.0 - bend,
+        rest * 6.0 - slope * 3.0 + bend * 0.5,
+    ]
+}
+
+/// The curves of a definition.
+enum Edge {
+    Curve(Box<SectionCurve>),
+    Apex(Vec3),
+}
+
+impl Edge {
+    fn at(&self, share: f64, inside: f64) -> CurvePoint {
+        match self {
+            Self::Curve(curve) => curve.at(share, inside),
+            Self::Apex(point) => CurvePoint { point: *point, first: Vec3::zeros(), second: Vec3::zeros() },
+        }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        match self {
+            Self::Curve(curve) => curve.reach().into_iter().chain(curve.joints()).collect(),
+            Self::Apex(_) => Vec::new(),
+        }
+    }
+}
+
+impl RuledSheet {
+    /// `None` if the parts are not those of a definition or a section does not join its end points.
+    pub(super) fn new(surface: &RuledSurface) -> Option<Self> {
+        let (first, end) = surface.curves()?;
+        let chord = first.end - first.start;
+        let mut size = chord.norm();
+        let edges = match &end {
+            RuledEnd::Curve(second) => {
+                size = size.max((second.start - first.start).norm()).max((second.end - first.start).norm());
+                [SectionCurve::new(&first)?, SectionCurve::new(second)?].map(|c| Edge::Curve(Box::new(c)))
+            }
+            RuledEnd::Apex(apex) => {
+                size = size.max((apex - first.start).norm());
+                [Edge::Curve(Box::new(SectionCurve::new(&first)?)), Edge::Apex(*apex)]
+            }
+        };
+        let range = [-BEYOND, 1.0 + BEYOND];
+        let pieces = pieces(&edges, range, ACCURACY * size)?;
+        let mut sheet = Self { pieces, bands: Vec::new(), limits: [range, [0.0, 1.0]], size, curvature: 0.0 };
+        sheet.limits[1] = sheet.shares();
+        sheet.grow();
+        Some(sheet)
+    }
+
+    /// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
+    fn shares(&self) -> [f64; 2] {
+        let (mut low, mut high) = (-BEYOND, 1.0 + BEYOND);
+        for (k, piece) in self.pieces.iter().enumerate() {
+            for tau in [0.0, 0.5, 1.0] {
+                let t = piece.from + piece.width * tau;
+                if !(STEADY..=1.0 - STEADY).contains(&t) {
+                    continue;
+                }
+                let jet = self.jet(k, t, 0.0);
+                let (near, far) = (jet.du, jet.du + jet.duv);
+                let along = near + far;
+                let (a, b) = (near.dot(&along), far.dot(&along));
+                let meet = a / (a - b);
+                if meet >= 1.0 - 1e-9 {
+                    let apex = meet <= 1.0 + 1e-9;
+                    high = high.min(if apex { 1.0 } else { 1.0 + BEFORE_FOLD * (meet - 1.0) });
+                } else if meet <= 1e-9 {
+                    low = low.max(BEFORE_FOLD * meet.min(0.0));
+                }
+            }
+        }
+        [low, high]
+    }
+
+    fn jet(&self, piece: usize, t: f64, v: f64) -> Jet {
+        let Some(piece) = self.pieces.get(piece) else {
+            let zero = Vec3::zeros();
+            return Jet { point: zero, du: zero, dv: zero, duu: zero, duv: zero, dvv: zero };
+        };
+        let tau = (t - piece.from) / piece.width;
+        let [e, e1, e2] = evaluate(&piece.curves[0], tau, piece.width);
+        let [f, f1, f2] = evaluate(&piece.curves[1], tau, piece.width);
+        let (dv, duv) = (f - e, f1 - e1);
+        Jet { point: e + dv * v, du: e1 + duv * v, dv, duu: e2 + (f2 - e2) * v, duv, dvv: Vec3::zeros() }
+    }
+
+    /// Cuts the surface into strips and builds their trees.
+    fn grow(&mut self) {
+        let [low, high] = self.limits[1];
+        let length = |piece: &Piece| {
+            let chord = |c: &Quintic| (evaluate(c, 1.0, 1.0)[0] - evaluate(c, 0.0, 1.0)[0]).norm();
+            chord(&piece.curves[0]).max(chord(&piece.curves[1]))
+        };
+        let inner: f64 =
+            self.pieces.iter().filter(|p| p.from + p.width > 0.0 && p.from < 1.0).map(length).sum();
+        let target = (inner / STRIPS).max(f64::MIN_POSITIVE);
+        let mut ranges = Vec::new();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let count = (length(piece) / target).ceil().clamp(1.0, 4.0 * STRIPS) as u32;
+            for j in 0..count {
+                let at = |j: u32| piece.from + piece.width * (f64::from(j) / f64::from(count));
+                ranges.push((k, [at(j), at(j + 1)]));
+            }
+        }
+        let cuts = [low, 0.0, 1.0, high];
+        let mut bands = Vec::new();
+        for pair in cuts.windows(2).filter(|pair| pair[1] > pair[0]) {
+            bands.push(self.tree(&ranges, [pair[0], pair[1]]));
+        }
+        self.curvature = self.sampled_curvature(&ranges);
+        self.bands = bands;
+    }
+
+    /// Greatest principal curvature over the surface between its curves.
+    fn sampled_curvature(&self, ranges: &[(usize, [f64; 2])]) -> f64 {
+        let mut greatest: f64 = 0.0;
+        for &(piece, [a, b]) in ranges.iter().filter(|(_, r)| r[1] > 0.0 && r[0] < 1.0) {
+            for v in [0.0, 0.5, 1.0] {
+                for t in [a, 0.5 * (a + b), b] {
+                    let jet = self.jet(piece, t, v);
+                    if let Some(normal) = jet.natural(self.size) {
+                        greatest = greatest.max(jet.greatest_curvature(&normal));
+                    }
+                }
+            }
+        }
+        greatest
+    }
+
+    /// A heap-ordered tree over ranges; a leaf keeps its own range and piece.
+    fn tree(&self, ranges: &[(usize, [f64; 2])], shares: [f64; 2]) -> Vec<Strip> {
+        let leaves = ranges.len().next_power_of_two();
+        let empty = Strip {
+            piece: usize::MAX,
+            range: [0.0; 2],
+            middle: [Vec3::zeros(); 2],
+            radius: f64::NEG_INFINITY,
+        };
+        let mut nodes = vec![empty; 2 * leaves - 1];
+        // Depth first without recursion: (node, first leaf, number of leaves).
+        let mut open = vec![(0usize, 0usize, leaves)];
+        while let Some((node, first, count)) = open.pop() {
+            let held = ranges.get(first..(first + count).min(ranges.len())).unwrap_or(&[]);
+            if let (Some(strip), false) = (nodes.get_mut(node), held.is_empty()) {
+                *strip = self.strip(held, shares);
+            }
+            if count > 1 {
+                open.push((2 * node + 1, first, count / 2));
+                open.push((2 * node + 2, first + count / 2, count / 2));
+            }
+        }
+        nodes
+    }
+
+    fn strip(&self, ranges: &[(usize, [f64; 2])], shares: [f64; 2]) -> Strip {
+        let (piece, range) = ranges.get(ranges.len() / 2).copied().unwrap_or((0, [0.0; 2]));
+        let at = if ranges.len() == 1 { 0.5 * (range[0] + range[1]) } else { range[0] };
+        let ends = shares.map(|v| self.jet(piece, at, v).point);
+        let mut radius: f64 = 0.0;
+        for &(k, [a, b]) in ranges {
+            for j in 0..=SAMPLES {
+                let t = a + (b - a) * f64::from(j) / f64::from(SAMPLES);
+                for (v, end) in shares.iter().zip(&ends) {
+                    radius = radius.max((self.jet(k, t, *v).point - end).norm());
+                }
+            }
+        }
+        let range = match (ranges.first(), ranges.last()) {
+            (Some(first), Some(last)) => [first.1[0], last.1[1]],
+            _ => range,
+        };
+        let rounding = 1e-13 * self.size;
+        Strip {
+            piece,
+            range,
+            middle: [ends[0], ends[1] - ends[0]],
+            radius: radius * (1.0 + ENLARGED) + rounding,
+        }
+    }
+
+    /// The share along a ruling that is nearest to a point, and whether it is at a limit.
+    fn share(&self, p: &Vec3, e: &Vec3, along: &Vec3) -> (f64, bool) {
+        let [low, high] = self.limits[1];
+        let square = along.norm_squared();
+        if square <= 0.0 {
+            return (low.max(0.0), false);
+        }
+        let v = (p - e).dot(along) / square;
+        (v.clamp(low, high), v <= low || v >= high)
+    }
+
+    /// Half the derivative of the squared distance to the ruling, its own derivative, and the squared distance.
+    fn slope(&self, p: &Vec3, piece: usize, t: f64) -> (f64, f64, f64) {
+        let start = self.jet(piece, t, 0.0);
+        let (v, held) = self.share(p, &start.point, &start.dv);
+        let offset = start.point + start.dv * v - p;
+        let du = start.du + start.duv * v;
+        let slope = offset.dot(&du);
+        let duu = self.jet(piece, t, v).duu;
+        let mut bend = du.norm_squared() + offset.dot(&duu);
+        if !held {
+            let mixed = du.dot(&start.dv) + offset.dot(&start.duv);
+            bend -= mixed * mixed / start.dv.norm_squared().max(f64::MIN_POSITIVE);
+        }
+        (slope, bend, offset.norm_squared())
+    }
+
+    fn nearest(&self, p: &Vec3) -> Nearest {
+        let mut best = Nearest { t: 0.0, piece: 0, square: f64::INFINITY };
+        // The band between the curves first; nearer children first.
+        let mut open: Vec<(f64, usize, usize)> = Vec::with_capacity(32);
+        for (band, nodes) in self.bands.iter().enumerate() {
+            if let Some(root) = nodes.first() {
+                open.push((root.bound(p), band, 0));
+            }
+        }
+        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        while let Some((bound, band, node)) = open.pop() {
+            if bound > 0.0 && bound * bound >= best.square {
+                continue;
+            }
+            let Some(nodes) = self.bands.get(band) else { continue };
+            let child = |k: usize| {
+                nodes.get(k).filter(|strip| strip.piece != usize::MAX).map(|strip| (strip.bound(p), band, k))
+            };
+            match (child(2 * node + 1), child(2 * node + 2)) {
+                (Some(a), Some(b)) if a.0 < b.0 => open.extend([b, a]),
+                (Some(a), Some(b)) => open.extend([a, b]),
+                (Some(a), None) | (None, Some(a)) => open.push(a),
+                (None, None) => {
+                    if let Some(strip) = nodes.get(node) {
+                        self.descend(p, strip, &mut best);
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// The nearest ruling within a strip.
+    fn descend(&self, p: &Vec3, strip: &Strip, best: &mut Nearest) {
+        let [mut low, mut high] = strip.range;
+        let mut take = |t: f64, square: f64| {
+            if square < best.square {
+                *best = Nearest { t, piece: strip.piece, square };
+            }
+        };
+        let (a, b) = (self.slope(p, strip.piece, low), self.slope(p, strip.piece, high));
+        take(low, a.2);
+        take(high, b.2);
+        if !(a.0 < 0.0 && b.0 > 0.0) {
+            return;
+        }
+        let mut t = low + (high - low) * (a.0 / (a.0 - b.0));
+        let resolution = f64::EPSILON * (1.0 + low.abs().max(high.abs()));
+        for _ in 0..MAX_ITERATIONS {
+            let (slope, bend, square) = self.slope(p, strip.piece, t);
+            take(t, square);
+            if slope > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let newton = t - slope / bend;
+            let next =
+                if bend > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            if (next - t).abs() <= resolution {
+                return;
+            }
+            t = next;
+        }
+    }
+
+    /// The nearest point with its curvature elements.
+    fn place(&self, p: &Vec3) -> (Foot, Jet, Rest) {
+        let nearest = self.nearest(p);
+        let start = self.jet(nearest.piece, nearest.t, 0.0);
+        let (v, held) = self.share(p, &start.point, &start.dv);
+        let jet = self.jet(nearest.piece, nearest.t, v);
+        let [low, high] = self.limits[0];
+        let rest = match (nearest.t <= low || nearest.t >= high, held) {
+            (false, false) => self.crease(p, &jet),
+            (true, false) => Rest::AlongV,
+            (false, true) => Rest::AlongU,
+            (true, true) => Rest::Corner,
+        };
+        let natural = self.natural(&nearest, v, &jet);
+        (jet.foot(p, rest, &natural, self.size), jet, rest)
+    }
+
+    /// On a sharp bend of the curves the nearest ruling stays the same, too.
+    fn crease(&self, p: &Vec3, jet: &Jet) -> Rest {
+        let offset = p - jet.point;
+        let speed = jet.du.norm();
+        if offset.dot(&jet.du).abs() > 1e-6 * offset.norm() * speed { Rest::AlongV } else { Rest::Inside }
+    }
+
+    /// The natural normal at a place; where the rulings meet that a little way off.
+    fn natural(&self, nearest: &Nearest, v: f64, jet: &Jet) -> Vec3 {
+        let middle = 0.5 * (self.limits[1][0] + self.limits[1][1]);
+        let inner = 0.5 * (self.limits[0][0] + self.limits[0][1]);
+        jet.natural(self.size)
+            .or_else(|| self.jet(nearest.piece, nearest.t, v + 1e-6 * (middle - v)).natural(1e-6 * self.size))
+            .or_else(|| {
+                let t = nearest.t + 1e-6 * (inner - nearest.t);
+                self.jet(nearest.piece, t, v).natural(1e-6 * self.size)
+            })
+            .unwrap_or_else(|| jet.dv.try_normalize(0.0).map_or_else(Vec3::z, |dv| perpendicular(&dv)))
+    }
+
+    pub(super) fn foot(&self, p: &Vec3) -> Foot {
+        self.place(p).0
+    }
+
+    pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
+        let (foot, jet, rest) = self.place(p);
+        (foot, jet.hessian(&foot, rest))
+    }
+
+    /// Unit direction of the ruling through the nearest point.
+    pub fn ruling(&self, p: &Vec3) -> Option<Vec3> {
+        self.place(p).1.dv.try_normalize(0.0)
+    }
+
+    /// Greatest absolute value of a principal curvature between the two curves, 1/length.
+    pub fn greatest_curvature(&self) -> f64 {
+        self.curvature
+    }
+
+    /// Parameters of all crossings of a ray with the surface, in units of |direction|.
+    pub(super) fn ray_roots(&self, from: &Vec3, direction: &Vec3) -> Vec<f64> {
+        let mut roots = Vec::new();
+        let length = direction.norm();
+        if length <= 0.0 {
+            return roots;
+        }
+        let unit = direction / length;
+        for nodes in &self.bands {
+            let mut open = vec![0usize];
+            while let Some(node) = open.pop() {
+                let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };
+                if strip.ray_bound(from, &unit) > 0.0 {
+                    continue;
+                }
+                if 2 * node + 1 < nodes.len() {
+                    open.extend([2 * node + 2, 2 * node + 1]);
+                } else {
+                    self.crossings(strip, from, &unit, &mut roots);
+                }
+            }
+        }
+        roots.sort_by(f64::total_cmp);
+        roots.dedup_by(|a, b| (*a - *b).abs() <= 1e-11 * self.size);
+        roots.iter().map(|root| root / length).collect()
+    }
+
+    /// Crossings with the rulings of a strip: those that lie in one plane with the ray.
+    fn crossings(&self, strip: &Strip, from: &Vec3, unit: &Vec3, roots: &mut Vec<f64>) {
+        let volume = |t: f64| {
+            let jet = self.jet(strip.piece, t, 0.0);
+            (jet.point - from).cross(&jet.dv).dot(unit)
+        };
+        let [low, high] = strip.range;
+        let mut before = (low, volume(low));
+        for k in 1..=SAMPLES {
+            let t = low + (high - low) * f64::from(k) / f64::from(SAMPLES);
+            let here = (t, volume(t));
+            if let Some(t) = super::tabulated::bracketed_root(&volume, before.0, here.0) {
+                roots.extend(self.along_ray(strip.piece, t, from, unit));
+            }
+            before = here;
+        }
+    }
+
+    /// Distance along the ray of its crossing with a ruling in the same plane.
+    fn along_ray(&self, piece: usize, t: f64, from: &Vec3, unit: &Vec3) -> Option<f64> {
+        let jet = self.jet(piece, t, 0.0);
+        let w = jet.point - from;
+        // (w + v·dv) is along the ray: both without their parts along it.
+        let flat = |x: &Vec3| x - unit * x.dot(unit);
+        let (across, offset) = (flat(&jet.dv), flat(&w));
+        let square = across.norm_squared();
+        if square <= 1e-20 * jet.dv.norm_squared() {
+            return None;
+        }
+        let v = -offset.dot(&across) / square;
+        let [low, high] = self.limits[1];
+        (v >= low && v <= high).then(|| (w + jet.dv * v).dot(unit))
+    }
+}
+
+impl Strip {
+    /// No point of the strip is nearer than this.
+    fn bound(&self, p: &Vec3) -> f64 {
+        let [start, along] = &self.middle;
+        let w = p - start;
+        let square = along.norm_squared();
+        let x = if square > 0.0 { (w.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (w - along * x).norm() - self.radius
+    }
+
+    /// No point of a line is nearer than this.
+    fn ray_bound(&self, from: &Vec3, unit: &Vec3) -> f64 {
+        let flat = |x: &Vec3| x - unit * x.dot(unit);
+        let (w, along) = (flat(&(from - self.middle[0])), flat(&self.middle[1]));
+        let square = along.norm_squared();
+        let x = if square > 0.0 { (w.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (w - along * x).norm() - self.radius
+    }
+}
+
+/// Both curves in pieces over a range of the parameter.
+fn pieces(edges: &[Edge; 2], range: [f64; 2], accuracy: f64) -> Option<Vec<Piece>> {
+    let mut cuts: Vec<f64> = edges.iter().flat_map(Edge::breaks).collect();
+    cuts.extend([range[0], 0.0, 0.5, 1.0, range[1]]);
+    cuts.retain(|x| *x >= range[0] && *x <= range[1]);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
+    let mut pieces = Vec::new();
+    let mut open: Vec<(f64, f64, u32)> =
+        cuts.windows(2).rev().filter_map(|pair| Some((*pair.first()?, *pair.get(1)?, 0))).collect();
+    while let Some((a, b, depth)) = open.pop() {
+        let (width, middle) = (b - a, 0.5 * (a + b));
+        let mut misfit: f64 = 0.0;
+        let curves = [0, 1].map(|k: usize| {
+            let edge = &edges[k];
+            let curve = through(&edge.at(a, middle), &edge.at(b, middle), width);
+            for tau in [0.25, 0.5, 0.75] {
+                let exact = edge.at(a + width * tau, middle).point;
+                misfit = misfit.max((evaluate(&curve, tau, width)[0] - exact).norm());
+            }
+            curve
+        });
+        // A NaN is no fit either.
+        let fits = misfit <= accuracy;
+        if !fits && depth < MAX_DEPTH && width > 1e-9 {
+            open.push((middle, b, depth + 1));
+            open.push((a, middle, depth + 1));
+        } else if !(misfit <= 1e-6 * accuracy / ACCURACY) || pieces.len() >= MAX_PIECES {
+            return None;
+        } else {
+            pieces.push(Piece { from: a, width, curves });
+        }
+    }
+    Some(pieces)
+}

@@ -1,0 +1,121 @@
+//! Parametric surfaces near a point: natural normal, nearest point and curvature of the parallel surface from partial
+//! derivatives. Ruled and polyconic surfaces share it.
+
+use nalgebra::Matrix3;
+
+use super::{Foot, perpendicular};
+use crate::Vec3;
+
+/// Sine of the angle between the partial derivatives, or their length relative to the surface, below which they span no
+/// tangent plane.
+const SINGULAR: f64 = 1e-10;
+/// Stretch `1 + d·κ` of the parallel surface below which it is at its focus and has no curvature.
+const FOCUS: f64 = 1e-12;
+
+/// A place of a parametric surface with its partial derivatives.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Jet {
+    pub(super) point: Vec3,
+    pub(super) du: Vec3,
+    pub(super) dv: Vec3,
+    pub(super) duu: Vec3,
+    pub(super) duv: Vec3,
+    pub(super) dvv: Vec3,
+}
+
+/// Where on the parameter rectangle the nearest place lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rest {
+    /// Inside: the offset is along the normal.
+    Inside,
+    /// On an edge along which v runs (u is at its limit).
+    AlongV,
+    /// On an edge along which u runs (v is at its limit).
+    AlongU,
+    /// In a corner.
+    Corner,
+}
+
+impl Jet {
+    /// The unit natural normal, `du × dv`; `None` where the partial derivatives span no plane.
+    pub(super) fn natural(&self, size: f64) -> Option<Vec3> {
+        let (a, b) = (self.du.norm(), self.dv.norm());
+        if a <= SINGULAR * size || b <= SINGULAR * size {
+            return None;
+        }
+        let normal = self.du.cross(&self.dv) / (a * b);
+        let sine = normal.norm();
+        (sine > SINGULAR).then(|| normal / sine)
+    }
+
+    /// The foot of `p` if this is its nearest place; `natural` is the natural normal here, `size` that of the surface.
+    pub(super) fn foot(&self, p: &Vec3, rest: Rest, natural: &Vec3, size: f64) -> Foot {
+        let offset = p - self.point;
+        let height = offset.dot(natural);
+        let length = offset.norm();
+        // Beyond an edge the nearest point stays on it while the normal turns, as at a corner of a curve.
+        if rest == Rest::Inside || length <= 1e-9 * size || height.abs() >= length * (1.0 - 1e-9) {
+            return Foot { distance: height, point: p - natural * height, normal: *natural };
+        }
+        let distance = length.copysign(height);
+        Foot { distance, point: self.point, normal: offset / distance }
+    }
+
+    /// Second derivatives of the signed distance at the point whose foot this is.
+    pub(super) fn hessian(&self, foot: &Foot, rest: Rest) -> Matrix3<f64> {
+        let d = foot.distance;
+        let across = |n: &Vec3| Matrix3::identity() - n * n.transpose();
+        let (tangent, bent) = match rest {
+            Rest::Inside => return self.parallel(&foot.normal, d),
+            Rest::AlongV => (self.dv, self.dvv),
+            Rest::AlongU => (self.du, self.duu),
+            Rest::Corner => return across(&foot.normal) / away_from_zero(d),
+        };
+        let speed = tangent.norm();
+        if speed <= 0.0 {
+            return across(&foot.normal) / away_from_zero(d);
+        }
+        let t = tangent / speed;
+        let b = foot.normal.cross(&t);
+        let curvature = -bent.dot(&foot.normal) / (speed * speed);
+        let stretch = 1.0 + d * curvature;
+        let along = if stretch.abs() > FOCUS { curvature / stretch } else { 0.0 };
+        t * t.transpose() * along + b * b.transpose() / away_from_zero(d)
+    }
+
+    /// The shape operator of the parallel surface at a distance: `W (1 + d W)⁻¹` in the tangent plane.
+    fn parallel(&self, normal: &Vec3, d: f64) -> Matrix3<f64> {
+        let (x, y) = {
+            let x = self.du.try_normalize(0.0).unwrap_or_else(|| perpendicular(normal));
+            (x, normal.cross(&x))
+        };
+        // Rows of the inverse of the Jacobian in the frame (x, y): du = a·x, dv = b·x + c·y.
+        let (a, b, c) = (self.du.dot(&x), self.dv.dot(&x), self.dv.dot(&y));
+        if a.abs() <= 0.0 || c.abs() <= 0.0 {
+            return Matrix3::zeros();
+        }
+        let (l, m, n) = (self.duu.dot(normal), self.duv.dot(normal), self.dvv.dot(normal));
+        // Second fundamental form in the frame, turned so that it is positive where the surface curves away.
+        let xx = -l / (a * a);
+        let xy = -(m - l * b / a) / (a * c);
+        let yy = -(n - 2.0 * m * b / a + l * b * b / (a * a)) / (c * c);
+        let determinant = (1.0 + d * xx) * (1.0 + d * yy) - d * d * xy * xy;
+        if determinant.abs() <= FOCUS {
+            return Matrix3::zeros();
+        }
+        let gauss = xx * yy - xy * xy;
+        let (p, q, r) = ((xx + d * gauss) / determinant, xy / determinant, (yy + d * gauss) / determinant);
+        x * x.transpose() * p + (x * y.transpose() + y * x.transpose()) * q + y * y.transpose() * r
+    }
+
+    /// Principal curvatures' greatest absolute value at this place, in 1/length.
+    pub(super) fn greatest_curvature(&self, normal: &Vec3) -> f64 {
+        let shape = self.parallel(normal, 0.0);
+        shape.symmetric_eigenvalues().amax()
+    }
+}
+
+/// A distance to divide by, kept from zero.
+fn away_from_zero(d: f64) -> f64 {
+    if d.abs() < f64::MIN_POSITIVE { f64::MIN_POSITIVE } else { d }
+}
