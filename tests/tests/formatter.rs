@@ -1,7 +1,7 @@
 //! The formatter over every program of the repository and over damaged ones: idempotent, and nothing but the look
 //! changes.
 
-use apt_ide::format::{FormatOptions, LAST_STATEMENT_COLUMN, LetterCase, applied, format, format_text, plan};
+use apt_ide::format::{Kept, KeptReason, FormatOptions, LAST_STATEMENT_COLUMN, LetterCase, applied, format, format_text, plan};
 use apt_program::{Options, Program, RecordKind, Value, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree, record::Layout, statement::ElementKind};
 use apt_tests::{oracle, repository};
@@ -137,7 +137,7 @@ fn no_good_program_has_a_statement_that_cannot_be_laid_out() {
         let tree = SyntaxTree::parse(text, Dialect::named(*dialect));
         let kept = plan(&tree, &FormatOptions::default()).kept;
         let numbered =
-            |kept: &apt_ide::format::Kept| kept.reason == apt_ide::format::KeptReason::SequenceNumber;
+            |kept: &Kept| kept.reason == KeptReason::SequenceNumber;
         assert!(kept.iter().all(numbered), "{name}: {kept:?}");
     }
 }

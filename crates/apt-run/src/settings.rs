@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostic::Severity;
+use crate::{diagnostic::Severity, format::FormatSettings};
 
 /// What a user can set. Every field has a default, unknown fields are errors.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -20,6 +20,8 @@ pub struct Settings {
     pub include: Vec<String>,
     /// Severity per diagnostic code, or `off`.
     pub severity: BTreeMap<String, SeveritySetting>,
+    /// The style of the formatter.
+    pub format: FormatSettings,
     /// Limits on work.
     pub budget: Budget,
 }
@@ -114,7 +116,35 @@ mod tests {
         assert_eq!(settings.units.per_inch(), 25.4);
         assert_eq!(settings.severity["APT0801"].severity(), None);
         assert_eq!(settings.budget, Budget { macro_depth: 5, ..Budget::default() });
+        assert_eq!(settings.format, FormatSettings::default());
         let error = parse_project_file("dialekt = 1\n").unwrap_err();
         assert!(error.message.contains("dialekt") && error.message.contains("line 1"), "{error}");
+    }
+
+    #[test]
+    fn a_project_file_sets_the_style_within_reason() {
+        use apt_syntax::{Dialect, DialectName};
+
+        use crate::format::{FormatOptions, LetterCase};
+        let settings = parse_project_file(
+            "[format]\nletter-case = \"words\"\nindent = 2\ncontinuation-indent = 4\nwrap = 72\nalign-comments = false\n",
+        )
+        .unwrap();
+        let free = Dialect::named(DialectName::Free);
+        let style = FormatOptions::with(&free, &settings.format);
+        let expected = FormatOptions {
+            letter_case: LetterCase::Words,
+            indent: 2,
+            continuation_indent: 4,
+            wrap: Some(72),
+            align_comments: false,
+        };
+        assert_eq!(style, expected);
+        assert_eq!(FormatOptions::with(&free, &FormatSettings::default()), FormatOptions::of(&free));
+        for wrong in
+            ["wrap = 3", "indent = 1000", "continuation-indent = -1", "letter-case = \"LOUD\"", "tabs = 1"]
+        {
+            assert!(parse_project_file(&format!("[format]\n{wrong}\n")).is_err(), "{wrong}");
+        }
     }
 }

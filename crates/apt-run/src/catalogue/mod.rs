@@ -69,6 +69,7 @@ pub fn diagnostics(
     settings: &Settings,
 ) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
+    crate::lint::keep_shadowing(tree, &mut list);
     list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
     for lint in crate::lint::lint(tree, program) {
         add_lint(&mut list, lint);

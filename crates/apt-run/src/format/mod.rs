@@ -23,7 +23,7 @@ use std::ops::Range;
 
 use apt_syntax::{Dialect, SyntaxTree, record::Layout, tree::StatementView};
 
-pub use options::{FormatOptions, LAST_STATEMENT_COLUMN, LetterCase};
+pub use options::{FormatOptions, FormatSettings, LAST_STATEMENT_COLUMN, LetterCase};
 
 use line::Line;
 use record::Division;

@@ -2,10 +2,11 @@
 //! than a missed one.
 //!
 //! [`text`] looks at statements as they are written, [`values`] at what becomes of the values of names, [`path`] at the
-//! records in order of execution. The words and the gravity are those of the catalogue, as of every finding; comments
+//! records in order of execution, [`shadow`] at words that become names. The words and the gravity are those of the catalogue, as of every finding; comments
 //! that allow a finding are [`crate::allow`].
 
 mod path;
+mod shadow;
 mod text;
 mod values;
 
@@ -13,6 +14,7 @@ mod values;
 mod tests;
 
 pub(crate) use path::side_word;
+pub(crate) use shadow::keep_shadowing;
 
 use apt_geometry::motion::DriveSide;
 use apt_program::{Origin, Program};
