@@ -103,7 +103,8 @@ pub(super) static FORMATS: &[Format] = &[
             if across.norm() <= PARALLEL_SINE {
                 return Err(Impossible::Parallel.into());
             }
-            let across = across.normalize();
+            // The product of nearly parallel vectors is known to few digits: what it has along x is rounding.
+            let across = (across - along * across.dot(&along)).normalize();
             let columns = [along, across.cross(&along), across];
             matrix(Matrix::from_parts(&Matrix3::from_columns(&columns), &given.place(0)?))
         },

@@ -21,6 +21,7 @@ mod ruled;
 mod solve;
 mod tabulated;
 mod tabulated_curve;
+mod tabulated_newton;
 mod tabulated_tangent;
 mod vector;
 

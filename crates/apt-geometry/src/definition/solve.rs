@@ -42,11 +42,12 @@ pub(super) fn meet(a: &Plane, b: &Plane) -> Result<Vec3, Impossible> {
     if sine.abs() <= PARALLEL_SINE {
         return Err(Impossible::Parallel);
     }
-    Ok(Vec3::new(
-        (a.distance * b.normal.y - b.distance * a.normal.y) / sine,
-        (a.normal.x * b.distance - b.normal.x * a.distance) / sine,
-        0.0,
-    ))
+    let solve = |of_a: f64, of_b: f64| {
+        Vec3::new(of_a * b.normal.y - of_b * a.normal.y, a.normal.x * of_b - b.normal.x * of_a, 0.0) / sine
+    };
+    // Far from the origin the digits of the distances cancel: solved again for what the first place is off.
+    let place = solve(a.distance, b.distance);
+    Ok(place - solve(a.signed_distance(&place), b.signed_distance(&place)))
 }
 
 /// Half the chord at distance `offset` from the centre of a circle; zero where they touch.

@@ -5,6 +5,7 @@
 
 use super::circle::three_point_tangents;
 use super::solve::{coincidence, roots};
+use super::tabulated_newton::{self, STEEPEST};
 use super::{DefinitionError, Impossible, Modifier};
 use crate::Vec3;
 use crate::canonical::Interval;
@@ -41,10 +42,10 @@ pub(super) struct Curve {
 
 /// A chord between neighbouring points.
 #[derive(Debug, Clone, Copy)]
-struct Chord {
-    start: Vec3,
-    along: Vec3,
-    length: f64,
+pub(super) struct Chord {
+    pub(super) start: Vec3,
+    pub(super) along: Vec3,
+    pub(super) length: f64,
 }
 
 impl Chord {
@@ -96,7 +97,7 @@ pub(super) fn build(samples: &[Sample], option: Modifier) -> Result<Curve, Defin
             let given: Vec<Option<Vec3>> = samples.iter().map(tangent).collect();
             let mut directions = circle_tangents(&places, &given)?;
             if option == Modifier::Spline {
-                relax(&chords, &given, &mut directions)?;
+                directions = spline_tangents(&chords, &given, directions);
             }
             from_tangents(&chords, &directions)?
         }
@@ -221,12 +222,31 @@ fn four_point(places: &[Vec3], chords: &[Chord]) -> Result<Cubics, Impossible> {
     Ok((cubics, ends))
 }
 
+/// The tangents of a spline: those of APT III, unless its turns ran away on data that swing from side to side.
+fn spline_tangents(chords: &[Chord], given: &[Option<Vec3>], start: Vec<Vec3>) -> Vec<Vec3> {
+    let mut relaxed = start.clone();
+    let converged = relax(chords, given, &mut relaxed).unwrap_or(false);
+    let steepest = STEEPEST.cos();
+    let upright = chords
+        .iter()
+        .zip(relaxed.windows(2))
+        .any(|(chord, ends)| ends.iter().any(|direction| chord.along.dot(direction).abs() < steepest));
+    if converged && !upright {
+        return relaxed;
+    }
+    // Where there is no such curve, one without corners is left; the jumps of curvature show in the finished curve.
+    let otherwise = if upright { start.clone() } else { relaxed };
+    tabulated_newton::continuous(chords, given, &start).unwrap_or(otherwise)
+}
+
 /// Turns the tangents at the inner points until the curvature is continuous to within [`CURVATURE_JUMP`]: always at
 /// the point with the greatest jump. A free end follows its neighbour, so that the end interval is a parabola. The
 /// order of the steps, the limits, and the jump at the last inner point, which is not renewed when the free end behind
 /// it follows, are those of APT III (APREPB), because they show in the sixth digit. Points with a given tangent keep
 /// it.
-fn relax(chords: &[Chord], given: &[Option<Vec3>], directions: &mut [Vec3]) -> Result<(), Impossible> {
+///
+/// Says whether all jumps became small enough.
+fn relax(chords: &[Chord], given: &[Option<Vec3>], directions: &mut [Vec3]) -> Result<bool, Impossible> {
     let last = chords.len();
     let inner: Vec<usize> = (1..last).filter(|index| given[*index].is_none()).collect();
     let follow_start = |directions: &mut [Vec3]| -> Result<(), Impossible> {
@@ -251,7 +271,7 @@ fn relax(chords: &[Chord], given: &[Option<Vec3>], directions: &mut [Vec3]) -> R
     // APT III allows as many turns as it keeps numbers for the points, four times.
     let most_turns = 4 * (7 * directions.len() + 6);
     for _ in 0..most_turns {
-        let Some(worst) = worst(&inner, &jumps) else { break };
+        let Some(worst) = worst(&inner, &jumps) else { return Ok(true) };
         turn(chords, directions, &mut jumps, worst)?;
         if worst > 1 {
             jumps[worst - 1] = jump(chords, directions, worst - 1)?;
@@ -265,7 +285,7 @@ fn relax(chords: &[Chord], given: &[Option<Vec3>], directions: &mut [Vec3]) -> R
             follow_end(directions)?;
         }
     }
-    Ok(())
+    Ok(worst(&inner, &jumps).is_none())
 }
 
 /// The inner point with the greatest jump, if that is too great; of equal ones the first.
