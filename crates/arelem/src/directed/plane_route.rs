@@ -110,26 +110,35 @@ pub(super) fn run(
     if cancel() {
         return Err(MotionFailure::Cancelled);
     }
-    let (below, above) = reach_of_band(prepared);
-    let mut failure = None;
-    // The path through the present position; if that meets nothing, the paths at the limits of the band.
-    for shift in [0.0, -below * (1.0 - LIMIT_GUARD), above * (1.0 - LIMIT_GUARD)] {
+    let along = |shift: f64| -> Result<Path, MotionFailure> {
         let track = track(prepared, &drive, shift);
-        match choose(prepared, check, &track, &stop) {
-            Ok(found) => {
-                let points = cut(state, prepared, &track, found.x)?;
-                let check_side = side(prepared, &stop, &track, found);
-                return Ok(Some(Path { points, check: 0, check_side }));
-            }
-            Err(error) => failure = failure.or(Some(error)),
+        let found = choose(prepared, check, &track, &stop)?;
+        let points = cut(state, prepared, &track, found.x)?;
+        let check_side = side(prepared, &stop, &track, found);
+        Ok(Path { points, check: 0, check_side })
+    };
+    // The path through the present position; if that meets nothing, others in the band.
+    along(0.0)
+        .or_else(|failure| {
+            other_paths(prepared, &failure).into_iter().find_map(|shift| along(shift).ok()).ok_or(failure)
+        })
+        .map(Some)
+}
+
+/// Shifts of the path along the drive surface's gradient, inside its band, that may meet what the path through the
+/// present position does not: just so much that the gap of a tangency closes, or to the limits of the band.
+fn other_paths(prepared: &Prepared, failure: &MotionFailure) -> Vec<f64> {
+    let (below, above) = reach_of_band(prepared);
+    let (lowest, highest) = (-below * (1.0 - LIMIT_GUARD), above * (1.0 - LIMIT_GUARD));
+    match failure {
+        MotionFailure::NotTangent { gap, .. } => {
+            let check = &prepared.checks[0];
+            let guard = GUARD * check.band();
+            let missing = gap.clamp(guard - check.inside, check.outside - guard) - gap;
+            [missing, -missing].into_iter().filter(|shift| (lowest..=highest).contains(shift)).collect()
         }
+        _ => vec![lowest, highest],
     }
-    Err(failure.unwrap_or(MotionFailure::NeverMet {
-        check: 0,
-        relation: check.relation,
-        nearest: f64::INFINITY,
-        at: prepared.tip,
-    }))
 }
 
 fn eligible(state: &State, prepared: &Prepared, check: &CheckSurface) -> Option<(Curve, Curve)> {
@@ -291,13 +300,12 @@ fn tangency(
     };
     let working = &prepared.checks[0];
     let reach = if working.gauge.on { 0.0 } else { prepared.tool.radius() };
-    let band = working.band() + prepared.drive.band() + 1e-9 * prepared.size;
     let mut nearest = f64::INFINITY;
     let mut tangent: Vec<Candidate> = Vec::new();
     for x in places {
         let distance = stop.signed_distance(&track.at(x), &track.axis);
         let gap = distance.abs() - reach;
-        if gap.abs() <= band {
+        if working.holds(gap, prepared.size) {
             tangent.push(Candidate { x, level: distance.signum() * reach });
         } else if gap.abs() < nearest.abs() {
             nearest = gap;

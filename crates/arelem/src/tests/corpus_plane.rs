@@ -301,3 +301,26 @@ fn failures_have_their_numbers() {
     p.cutter(&[0.5]).from(2.0, 2.0, 0.0).go(&[(To, &x_axis())]).side(Left);
     assert_eq!(fails(&mut p, &motion(GoLft, &x_axis(), &[(To, 1, &line(-4.0, 0.0, -4.0, 1.0))])), Some(724));
 }
+
+/// Line and circle miss each other by less than the drive surface's band: the path gives way so that the check surface
+/// keeps its own band too, and what cannot be tangent is told.
+#[test]
+fn a_tangency_may_use_the_band_of_the_drive_surface() {
+    for (radius, tangent) in [(2.0, true), (2.0002, true), (1.9998, true), (2.0007, false), (1.9992, false)] {
+        for force in [false, true] {
+            let mut p = Program::new();
+            p.cutter(&[0.5]);
+            let (line, circle) = (line(0.0, 0.0, 1.0, 0.0), circle(4.0, 2.0, radius));
+            p.run(&MotionCommand::ForceIteration(force));
+            p.from(-1.0, -1.0, 1.0).go(&[(To, &line), (To, &ground()), (On, &plane(1.0, 0.0, 0.0, 0.0))]);
+            p.side(Right);
+            let outcome = p.attempt(&motion(GoRgt, &line, &[(Tanto, 1, &circle)]));
+            assert_eq!(outcome.is_ok(), tangent, "{radius} {force}: {outcome:?}");
+            p.verified();
+            if tangent {
+                let gap = (p.tip() - v(4.0, 2.0, 0.0)).norm() - radius - 0.25;
+                assert!((-1e-9..=0.0005).contains(&gap), "{radius} {force}: {gap}");
+            }
+        }
+    }
+}

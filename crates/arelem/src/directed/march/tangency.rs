@@ -8,11 +8,19 @@ use crate::{
     directed::{Prepared, is_tangent, stop::Event},
     error::{Iteration, MotionFailure},
     position::{self, Condition},
-    role::Working,
+    role::{GUARD, Working},
 };
 
 /// Bound of the bisection along one cut vector.
 const MAX_ITERATIONS: u32 = 80;
+
+/// Whether tool and check surface touch where the path is parallel to it.
+enum Gap {
+    /// They do, at this position and on this side of the check surface.
+    Closed(Vertex, f64),
+    /// They are this far apart.
+    Open(f64),
+}
 
 /// Watches the check surfaces that stop at a tangency.
 #[derive(Clone)]
@@ -43,16 +51,16 @@ impl<'a> Watch<'a> {
             if before == 0.0 || (before > 0.0) == (after > 0.0) {
                 continue;
             }
-            let vertex = self.parallel(index, from, to, before > 0.0)?;
-            let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
-            let working = &self.prepared.checks[index];
-            let band = working.band() + self.prepared.drive.band() + self.prepared.part.band();
-            if contact.clearance.abs() > band + 1e-9 * self.prepared.size {
-                if contact.clearance.abs() < self.nearest.abs() {
-                    (self.nearest, self.check) = (contact.clearance, index);
+            let parallel = self.parallel(index, from, to, before > 0.0, 0.0)?;
+            let (vertex, side) = match self.touching(index, from, to, before > 0.0, parallel)? {
+                Gap::Closed(vertex, side) => (vertex, side),
+                Gap::Open(gap) => {
+                    if gap.abs() < self.nearest.abs() {
+                        (self.nearest, self.check) = (gap, index);
+                    }
+                    continue;
                 }
-                continue;
-            }
+            };
             self.counts[index] += 1;
             self.met += 1;
             if self.counts[index] < self.checks[index].occurrence.max(1) {
@@ -77,18 +85,50 @@ impl<'a> Watch<'a> {
         Ok((contact.gradient * side).dot(&vertex.tangent))
     }
 
-    /// The position on both surfaces where the path is parallel to the check surface.
+    /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the drive surface's
+    /// band: the surfaces may miss each other by as much as both bands allow.
+    fn touching(
+        &self,
+        index: usize,
+        from: &Vertex,
+        to: &Vertex,
+        positive: bool,
+        parallel: Vertex,
+    ) -> Result<Gap, MotionFailure> {
+        let Prepared { drive, size, .. } = self.prepared;
+        let check = &self.prepared.checks[index];
+        let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
+        let (low, high) = (-check.inside, check.outside);
+        if check.holds(contact.clearance, *size) {
+            return Ok(Gap::Closed(parallel, side));
+        }
+        let guard = GUARD * check.band();
+        let missing = contact.clearance.clamp(low + guard, high - guard) - contact.clearance;
+        let along_drive = (contact.gradient.dot(&parallel.drive.gradient)).signum();
+        let shift = missing * along_drive;
+        if !drive.holds(drive.rest() + shift, *size) {
+            return Ok(Gap::Open(contact.clearance));
+        }
+        let shifted = self.parallel(index, from, to, positive, shift)?;
+        let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
+        let holds = check.holds(contact.clearance, *size);
+        Ok(if holds { Gap::Closed(shifted, side) } else { Gap::Open(contact.clearance) })
+    }
+
+    /// The position on both surfaces where the path is parallel to the check surface; `shift` is added to the drive
+    /// surface's clearance at rest.
     fn parallel(
         &self,
         index: usize,
         from: &Vertex,
         to: &Vertex,
         positive: bool,
+        shift: f64,
     ) -> Result<Vertex, MotionFailure> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions = [
             Condition::Clearance(&part.gauge, part.rest()),
-            Condition::Clearance(&drive.gauge, drive.rest()),
+            Condition::Clearance(&drive.gauge, drive.rest() + shift),
         ];
         let at = |share: f64| -> Result<Vertex, MotionFailure> {
             let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;
