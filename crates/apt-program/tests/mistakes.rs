@@ -273,14 +273,45 @@ fn an_endless_loop_ends_and_says_where_it_went() {
     let found: Vec<&Finding> =
         program.findings().filter(|finding| finding.severity == Severity::Error).collect();
     let [endless] = found.as_slice() else { panic!("{found:?}") };
-    let apt_program::FindingKind::Endless { changing, statements } = &endless.kind else {
+    let apt_program::FindingKind::Endless { changing, unchanged, statements } = &endless.kind else {
         panic!("{endless:?}")
     };
     assert_eq!(changing.as_slice(), ["I"]);
+    assert_eq!(unchanged.as_slice(), [""; 0], "no condition decides");
     assert_eq!(*statements, Options::default().statement_budget);
     let frame = endless.origin.frame.as_ref().expect("a loop turn");
     assert!(frame.turn > 1000 && frame.isn == 2);
     assert_eq!(program.record_count(), 2, "the program goes on after the loop");
+}
+
+/// Dialect, program, the names that changed and those that should have.
+type EndlessCase = (DialectName, &'static str, &'static [&'static str], &'static [&'static str]);
+
+#[test]
+fn an_endless_loop_names_what_decides_and_does_not_change() {
+    use DialectName::{Apt4, Free};
+    let cases: &[EndlessCase] = &[
+        (Free, "J=0\nLOOPST\nI=0\nA)I=I+1\nIF(J-5)A,A,B\nB)LOOPND", &["I"], &["J"]),
+        (Free, "M=MACRO/N,X\nA)X=X\nIF(X-N)A,A,B\nB)TERMAC\nK=1\nCALL/M,N=4,X=K", &[], &["K"]),
+        (Free, "J=0\nN=3\nLOOPST\nA)I=1\nIF(J*2-N)A,A,B\nB)LOOPND", &[], &["J", "N"]),
+        (Apt4, "J=0\nI=0\nA)I=I+1\nIF(J.LT.5)JUMPTO/A", &["I"], &["J"]),
+        (Apt4, "M=MACRO/N\nK=0\nA)IF(K.LT.N.AND.K.GE.0)JUMPTO/A\nTERMAC\nCALL/M,N=2", &[], &["K"]),
+    ];
+    for (dialect, text, changes, stays) in cases {
+        let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(*dialect));
+        let options = Options { statement_budget: 5_000, ..Options::default() };
+        let program = evaluate(&tree, &options, &|| false);
+        let found = program.findings().find_map(|finding| match &finding.kind {
+            FindingKind::Endless { changing, unchanged, statements } => {
+                Some((changing.clone(), unchanged.clone(), *statements))
+            }
+            _ => None,
+        });
+        let (changing, unchanged, statements) = found.expect(text);
+        assert_eq!(changing.as_slice(), *changes, "{text}");
+        assert_eq!(unchanged.as_slice(), *stays, "{text}");
+        assert_eq!(statements, 5_000, "{text}");
+    }
 }
 
 #[test]

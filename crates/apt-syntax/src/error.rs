@@ -117,6 +117,12 @@ pub enum SyntaxErrorKind {
         /// A dialect that has it.
         dialect: DialectName,
     },
+    /// THEN, ELSE, ELSEIF or ENDIF: the IF over several statements that NCL has, and none of the dialects here.
+    #[error("{word} belongs to an IF over several statements")]
+    StructuredIf {
+        /// The word.
+        word: SmolStr,
+    },
     /// A word that cannot begin a statement or cannot stand in this place.
     #[error("word {0} is not allowed here")]
     WordNotAllowed(SmolStr),
@@ -265,7 +271,7 @@ impl SyntaxErrorKind {
             Kind::WordNotAllowed(_) => 76,
             Kind::EmptyParentheses | Kind::UnexpectedMark(_) | Kind::ConditionMissing => 78,
             Kind::WordRequired => 81,
-            Kind::NameWithoutEquals { .. } | Kind::NotInDialect { .. } => 82,
+            Kind::NameWithoutEquals { .. } | Kind::NotInDialect { .. } | Kind::StructuredIf { .. } => 82,
             Kind::UnknownFunction(_) => 108,
             Kind::BadInclusiveSubscript => 109,
             Kind::MissingParameters => 129,

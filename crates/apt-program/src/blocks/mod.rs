@@ -1,5 +1,6 @@
 //! Stretches of statements that are executed as a whole: loop regions and macro bodies, with their labels and jumps.
 
+mod endless;
 mod run;
 mod substitute;
 

@@ -11,13 +11,10 @@ use smol_str::SmolStr;
 use super::{Bindings, Block};
 use crate::{
     evaluator::{Evaluator, Flow, Here, Region},
-    finding::{FindingKind, RelatedKind},
+    finding::FindingKind,
     record::{Frame, FrameKind},
-    symbols::{Value, similar_names},
+    symbols::similar_names,
 };
-
-/// Records of an endless loop that are kept: enough to see what it did.
-const RECORDS_KEPT_OF_ENDLESS_LOOP: usize = 10_000;
 
 /// How often cancellation is asked for, in statements.
 const CANCEL_INTERVAL: u64 = 256;
@@ -156,47 +153,6 @@ impl Evaluator<'_> {
             return Some(Flow::Abort);
         }
         None
-    }
-
-    /// Reports where the budget went: the loop or macro, and what changed in its last turn.
-    fn report_endless(&mut self, activation: &Activation<'_>, index: usize, turn_start: usize) {
-        let changing = self.changing_names(turn_start);
-        let finding = FindingKind::Endless { statements: self.budget.granted, changing };
-        let kind = if activation.region == Region::Macro { RelatedKind::Macro } else { RelatedKind::Loop };
-        let mut origin = self.origin(activation.frame.range);
-        origin.isn = activation.frame.isn;
-        origin.frame = activation.frame.parent.clone();
-        origin.source = activation.frame.source.clone();
-        let statement = activation.block.statements.get(index);
-        let part = statement.and_then(|statement| statement.statement.parts.first());
-        let range = part.map_or(TextRange::default(), |part| part.range);
-        self.report_related(finding, range, vec![(kind, origin)]);
-        self.state.exhausted = self.state.exhausted.saturating_add(1);
-        self.output.records.truncate(self.output.records.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
-        self.output.definitions.truncate(self.output.definitions.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
-        if self.pending.as_ref().is_some_and(|pending| pending.record >= self.output.records.len()) {
-            self.pending = None;
-        }
-        if activation.block.moves() {
-            self.gap(range);
-        }
-    }
-
-    /// Names whose values differ from the value they had before the last turn.
-    fn changing_names(&self, turn_start: usize) -> Vec<SmolStr> {
-        let (before, turn) = self.output.definitions.split_at(turn_start.min(self.output.definitions.len()));
-        let mut names: Vec<SmolStr> = turn
-            .iter()
-            .filter(|event| matches!(event.value, Value::Scalar(_)))
-            .filter(|event| {
-                let earlier = before.iter().rev().find(|other| other.name == event.name);
-                earlier.is_none_or(|earlier| earlier.value != event.value)
-            })
-            .map(|event| event.name.clone())
-            .collect();
-        names.sort_unstable();
-        names.dedup();
-        names
     }
 
     /// A backward jump: the frame gets the next turn number.

@@ -3,9 +3,13 @@
 use std::sync::Arc;
 
 use apt_geometry::motion::DriveSide;
+use apt_syntax::SyntaxTree;
 use smol_str::SmolStr;
 
 use crate::record::{Frame, Origin, SourceFile};
+
+/// Columns of a card before its sequence field.
+const STATEMENT_COLUMNS: usize = 72;
 
 /// The statement being executed.
 #[derive(Debug, Clone, Default)]
@@ -34,6 +38,26 @@ pub(crate) enum Region {
     Loop,
     /// A macro body.
     Macro,
+}
+
+/// The records behind the top-level step being executed: READ/1 takes cards from there.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct DataCards {
+    /// The statements; none before the first step.
+    pub(crate) tree: Option<SyntaxTree>,
+    /// The statement that the next card is.
+    pub(crate) next: usize,
+}
+
+impl DataCards {
+    /// The text of the next record; its sequence field is cut off.
+    pub(crate) fn card(&mut self) -> Option<String> {
+        let tree = self.tree.as_ref().filter(|tree| self.next < tree.statement_count())?;
+        let view = tree.statement(self.next);
+        let columns = if tree.sequence_field() { STATEMENT_COLUMNS } else { usize::MAX };
+        self.next += 1;
+        Some(view.text().trim_end().chars().take(columns).collect())
+    }
 }
 
 /// What is left for the present top-level step.

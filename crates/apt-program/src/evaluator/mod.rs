@@ -6,7 +6,7 @@ mod state;
 mod step;
 mod trace;
 
-pub(crate) use context::{Budget, Here, PendingDrive, Region};
+pub(crate) use context::{Budget, DataCards, Here, PendingDrive, Region};
 pub(crate) use output::{Output, same_place_and_kind};
 pub(crate) use state::{State, Synonym};
 pub(crate) use step::TopLevel;
@@ -19,6 +19,7 @@ use apt_syntax::{
 
 use crate::{
     finding::{Finding, FindingKind, RelatedKind, Severity},
+    listing::{ListingEntry, ListingKind},
     options::{APT3_MACRO_DEPTH, Options},
     record::{Origin, Record, RecordKind},
 };
@@ -56,6 +57,8 @@ pub(crate) struct Evaluator<'a> {
     pub(crate) here: Here,
     /// A motion statement that waits for the drive surface of the next one.
     pub(crate) pending: Option<PendingDrive>,
+    /// The records behind this top-level step.
+    pub(crate) cards: DataCards,
     /// What is left of the budgets of this top-level step.
     pub(crate) budget: Budget,
     /// Errors reported so far, to notice errors inside a region.
@@ -89,6 +92,7 @@ impl<'a> Evaluator<'a> {
             output: Output::default(),
             here: Here::default(),
             pending: None,
+            cards: DataCards::default(),
             budget: Budget::new(options.statement_budget),
             errors: 0,
             unknown_values: 0,
@@ -173,6 +177,12 @@ impl<'a> Evaluator<'a> {
     pub(crate) fn emit(&mut self, kind: RecordKind, range: TextRange) {
         let record = Record { origin: self.origin(range), label: self.here.label.clone(), kind };
         self.output.records.push(record);
+    }
+
+    /// Writes to the listing.
+    pub(crate) fn list(&mut self, kind: ListingKind, range: TextRange) {
+        let entry = ListingEntry { origin: self.origin(range), kind };
+        self.output.listing.push(entry);
     }
 
     /// Asks whether the work is to stop.

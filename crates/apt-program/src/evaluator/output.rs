@@ -7,6 +7,7 @@ use smol_str::SmolStr;
 
 use crate::{
     finding::{Finding, FindingKind},
+    listing::ListingEntry,
     record::{Origin, Record},
     symbols::DefinitionEvent,
 };
@@ -21,6 +22,8 @@ pub(crate) struct Output {
     pub(crate) records: Vec<Record>,
     /// Findings, one for each place and kind.
     pub(crate) findings: Vec<Finding>,
+    /// What is printed and punched.
+    pub(crate) listing: Vec<ListingEntry>,
     /// Definitions.
     pub(crate) definitions: Vec<DefinitionEvent>,
     /// Names whose meaning changed.

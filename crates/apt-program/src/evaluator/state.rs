@@ -22,6 +22,8 @@ pub(crate) struct State {
     pub(crate) system: Option<Arc<ReferenceSystem>>,
     /// CANON/ON.
     pub(crate) canon: bool,
+    /// PRINT/ON.
+    pub(crate) print_all: bool,
     /// TLLFT, TLRGT or TLON in force, which decides implied check surfaces.
     pub(crate) drive_side: DriveSide,
     /// Plain MULTAX was given: the other forms are ignored from then on.
@@ -60,6 +62,7 @@ impl Default for State {
             z_system: None,
             system: None,
             canon: false,
+            print_all: false,
             drive_side: DriveSide::On,
             axes_for_good: false,
             axes_on: false,
@@ -81,6 +84,7 @@ impl State {
             && self.z_system == other.z_system
             && self.system == other.system
             && self.canon == other.canon
+            && self.print_all == other.print_all
             && self.drive_side == other.drive_side
             && self.axes_for_good == other.axes_for_good
             && self.axes_on == other.axes_on

@@ -8,7 +8,7 @@ use apt_syntax::{
 };
 use smol_str::{SmolStr, format_smolstr};
 
-use super::{Budget, Evaluator, Flow, Region};
+use super::{Budget, DataCards, Evaluator, Flow, Region};
 use crate::{
     blocks::{self, Activation, Bindings, Block, DoLoop, normalised_label},
     finding::{FindingKind, RelatedKind},
@@ -66,8 +66,22 @@ impl<'t> TopLevel<'t> {
 }
 
 impl Evaluator<'_> {
-    /// Executes the top-level statement at `index` and all that it opens.
+    /// Executes the top-level statement at `index` and all that it opens. The cards that a READ in it takes are passed
+    /// over.
     pub(crate) fn step(&mut self, top: &mut TopLevel<'_>, index: usize) -> StepEnd {
+        let cards = DataCards { tree: Some(top.tree.clone()), next: index + 1 };
+        let outer = std::mem::replace(&mut self.cards, cards);
+        let mut end = self.top_level_statement(top, index);
+        let cards = std::mem::replace(&mut self.cards, outer);
+        if cards.next > index + 1 && end.next > index {
+            end.next = end.next.max(cards.next);
+        }
+        end.read_to = end.read_to.max(cards.next.min(top.tree.statement_count()));
+        end
+    }
+
+    /// Executes a top-level statement; the cards behind it are not passed over.
+    fn top_level_statement(&mut self, top: &mut TopLevel<'_>, index: usize) -> StepEnd {
         let count = top.tree.statement_count();
         let past = |next: usize| StepEnd { next, read_to: next.min(count), read_from: index };
         let shrink = BUDGET_SHRINK.saturating_pow(self.state.exhausted);
@@ -96,6 +110,7 @@ impl Evaluator<'_> {
                     self.open_statement(&statement);
                     let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
                     self.trace_loop(&statement, &block);
+                    self.cards.next = next;
                     let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
                     let bindings = Bindings::default();
                     self.run_block(&Activation { block: &block, bindings, region: Region::Loop, frame });
@@ -166,17 +181,7 @@ impl Evaluator<'_> {
             return !(self.state.repeated.is_multiple_of(BUDGET_SHRINK * BUDGET_SHRINK)
                 && self.is_cancelled());
         }
-        let range = top
-            .tree
-            .statement(index)
-            .parsed()
-            .statement
-            .parts
-            .first()
-            .map_or(TextRange::default(), |p| p.range);
-        let finding =
-            FindingKind::Endless { statements: self.options.statement_budget, changing: Vec::new() };
-        self.report(finding, range);
+        self.report_endless_program(top.tree, index);
         false
     }
 

@@ -53,6 +53,15 @@ pub(crate) struct Item {
     pub(crate) range: TextRange,
 }
 
+/// Low end, high end, and step with whether it goes up, of an inclusive subscript.
+pub(crate) type Bounds<'e> = (Option<&'e Expression>, Option<&'e Expression>, Option<&'e (bool, Expression)>);
+
+/// The element that a whole subscript names, if it is one of the array.
+pub(crate) fn element_of(subscript: f64, extent: u32) -> Option<u32> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside 1..=extent")]
+    (subscript >= 1.0 && subscript <= f64::from(extent)).then_some(subscript as u32)
+}
+
 /// Operands in order.
 pub(crate) type Items = Vec<Item>;
 
@@ -246,6 +255,23 @@ impl Evaluator<'_> {
         items: &mut Items,
     ) -> Option<()> {
         let key = self.array_key(&name.text);
+        let (extent, subscripts) = self.inclusive_subscripts(name, (first, last, step), range)?;
+        let mut complete = true;
+        for subscript in subscripts {
+            complete &= self.push_element(name, &key, subscript, extent, range, items).is_some();
+        }
+        complete.then_some(())
+    }
+
+    /// The extent of an array and the subscripts, whole numbers, that an inclusive subscript names in order; they may lie
+    /// outside of the array. The first is always among them.
+    pub(crate) fn inclusive_subscripts(
+        &mut self,
+        name: &Name,
+        (first, last, step): Bounds<'_>,
+        range: TextRange,
+    ) -> Option<(u32, Vec<f64>)> {
+        let key = self.array_key(&name.text);
         self.mark_used(&key);
         let extent = match self.look_up(&key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.extent,
@@ -272,15 +298,15 @@ impl Evaluator<'_> {
             return None;
         }
         let (mut at, end) = if step > 0.0 { (low, high) } else { (high, low) };
-        let mut complete = true;
+        let mut subscripts = Vec::new();
         for _ in 0..MOST_INCLUSIVE_ELEMENTS {
-            complete &= self.push_element(name, &key, at, extent, range, items).is_some();
+            subscripts.push(at);
             at += step;
             if (step > 0.0 && at > end) || (step < 0.0 && at < end) {
                 break;
             }
         }
-        complete.then_some(())
+        Some((extent, subscripts))
     }
 
     /// Adds one element of an array to the operands.
@@ -293,13 +319,11 @@ impl Evaluator<'_> {
         range: TextRange,
         items: &mut Items,
     ) -> Option<()> {
-        if !(at >= 1.0 && at <= f64::from(extent)) {
+        let Some(index) = element_of(at, extent) else {
             let finding = FindingKind::SubscriptRange { name: name.text.clone(), subscript: at, extent };
             self.report(finding, range);
             return None;
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside 1..=extent")]
-        let index = at as u32;
+        };
         let element = match self.look_up(key).map(|symbol| &symbol.meaning) {
             Some(Meaning::Array(array)) => array.get(index).cloned(),
             _ => None,

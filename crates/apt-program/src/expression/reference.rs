@@ -6,6 +6,7 @@ use apt_syntax::{
 };
 use smol_str::{SmolStr, format_smolstr};
 
+use super::operand::element_of;
 use crate::{
     evaluator::Evaluator,
     finding::{FindingKind, RelatedKind},
@@ -128,13 +129,8 @@ impl Evaluator<'_> {
     pub(crate) fn element_index(&mut self, reference: &Reference, subscript: f64) -> Option<u32> {
         let extent = self.array_extent(reference)?;
         let whole = subscript.trunc();
-        if whole >= 1.0 && whole <= f64::from(extent) {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "inside 1..=extent"
-            )]
-            return Some(whole as u32);
+        if let Some(index) = element_of(whole, extent) {
+            return Some(index);
         }
         let name = reference.name.text.clone();
         let related = self.reservation(&name);

@@ -5,6 +5,7 @@ use apt_syntax::error::SyntaxErrorKind;
 use smol_str::SmolStr;
 
 use super::{Expected, Found};
+use crate::listing::cards::CardFault;
 
 /// The kinds of findings. [`FindingKind::apt3`] gives the APT III number where one exists.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -469,6 +470,8 @@ pub enum FindingKind {
         statements: u64,
         /// Names whose values changed in the last turn; empty when nothing did.
         changing: Vec<SmolStr>,
+        /// Names in the conditions of the loop whose values did not.
+        unchanged: Vec<SmolStr>,
     },
     /// A DO loop whose index never changes.
     #[error("a DO loop with step zero")]
@@ -503,6 +506,20 @@ pub enum FindingKind {
         /// The names by which the files were included, from the first inclusion of the file to the one that closes
         /// the circle.
         through: Vec<SmolStr>,
+    },
+
+    // Dumps.
+    /// READ/1 whose cards are no dump.
+    #[error("{fault}")]
+    Cards {
+        /// What is wrong with them.
+        fault: CardFault,
+    },
+    /// READ/1 of a number for a name that holds geometry, or the reverse.
+    #[error("the dump makes another sort of {name}")]
+    CardSort {
+        /// The name.
+        name: SmolStr,
     },
 
     // Synonyms.

@@ -4,6 +4,7 @@ use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
 use apt_syntax::{dialect::DialectName, error::SyntaxErrorKind};
 
 use super::{FindingKind, Found, Severity};
+use crate::listing::cards::CardFault;
 
 impl FindingKind {
     /// The diagnostic number in a dialect: that of APT4, or that of APT III for all others.
@@ -97,6 +98,9 @@ impl FindingKind {
             Self::CopyCount { .. } => 507,
             Self::CopyOption { .. } => 503,
             Self::IncludeNotFound { .. } | Self::IncludeUnreadable { .. } | Self::IncludeCycle { .. } => 31,
+            Self::Cards { fault: CardFault::Format { .. } } => 2000,
+            Self::Cards { fault: CardFault::Missing } => 2002,
+            Self::CardSort { .. } => 2001,
             Self::EndMissing => 23,
             Self::Unused { .. }
             | Self::WordBecomesName { .. }

@@ -10,6 +10,7 @@ use super::{patch::Patch, shift::Shift};
 use crate::{
     evaluator::{Output, State},
     finding::Finding,
+    listing::ListingEntry,
     record::{Origin, Record, RecordKind},
     symbols::{DefinitionEvent, Symbol},
 };
@@ -27,6 +28,7 @@ pub(super) struct ChunkData {
     pub(super) steps: u64,
     pub(super) records: Vec<Record>,
     pub(super) findings: Vec<Finding>,
+    pub(super) listing: Vec<ListingEntry>,
     pub(super) definitions: Vec<DefinitionEvent>,
     pub(super) transfers: Vec<(SmolStr, Origin)>,
     /// Names whose meaning changed.
@@ -57,6 +59,7 @@ impl ChunkData {
             lists_all: output.lists_all,
             records: output.records,
             findings: output.findings,
+            listing: output.listing,
             definitions: output.definitions,
             transfers: output.transfers,
             touched: output.touched,

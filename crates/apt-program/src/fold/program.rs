@@ -13,6 +13,7 @@ use super::{
 use crate::{
     evaluator::State,
     finding::Finding,
+    listing::ListingEntry,
     options::Options,
     record::Record,
     symbols::{DefinitionEvent, Value, values_of},
@@ -134,6 +135,11 @@ impl Program {
     /// a statement that is executed many times stands once.
     pub fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.findings.iter()
+    }
+
+    /// What the program prints and punches, in order of execution.
+    pub fn listing(&self) -> impl Iterator<Item = &ListingEntry> {
+        self.chunks.iter().flat_map(|chunk| chunk.data().listing.iter())
     }
 
     /// Every definition in order of execution.

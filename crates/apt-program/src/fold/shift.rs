@@ -93,6 +93,9 @@ impl Shift {
                 self.origin(origin);
             }
         }
+        for entry in &mut data.listing {
+            self.origin(&mut entry.origin);
+        }
         for event in &mut data.definitions {
             self.origin(&mut event.origin);
         }

@@ -139,7 +139,11 @@ fn tabulated_count(kind: GeometryKind, values: &[f64]) -> Option<usize> {
     if kind != GeometryKind::TabulatedCylinder || points > values.len() as f64 {
         return None;
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and at most the length")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole, and at most the length"
+    )]
     let intervals = points as usize - 1;
     Some(HEAD + INTERVAL * intervals + LAST)
 }
@@ -161,7 +165,8 @@ mod tests {
 
     #[test]
     fn every_type_comes_back() {
-        let mut items = vec![dumped("A", None, Value::Scalar(-0.1)), dumped("B", Some(7), Value::Scalar(1e300))];
+        let mut items =
+            vec![dumped("A", None, Value::Scalar(-0.1)), dumped("B", Some(7), Value::Scalar(1e300))];
         for kind in GeometryKind::all() {
             let Some(count) = kind.canonical_count() else { continue };
             let numbers: Vec<f64> = (0..count).map(|index| index as f64 / 3.0).collect();

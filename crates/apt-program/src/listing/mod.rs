@@ -2,7 +2,7 @@
 //!
 //! Every line keeps the statement that made it. Numbers stay as they are until somebody asks for [`ListingEntry::lines`].
 
-pub(crate) mod cards;
+pub mod cards;
 
 use smol_str::{SmolStr, format_smolstr};
 
@@ -163,10 +163,10 @@ mod tests {
     #[test]
     fn values_are_printed_in_each_format() {
         let point = Value::Geometry(Arc::new(Geometry::Point(Vec3::new(1.0, -0.0, 2.5))));
-        assert_eq!(item(PrintFormat::Full, Some(2), Some(point.clone())), [
-            "P(2) POINT 3",
-            "  1.000000 0.000000 2.500000"
-        ]);
+        assert_eq!(
+            item(PrintFormat::Full, Some(2), Some(point.clone())),
+            ["P(2) POINT 3", "  1.000000 0.000000 2.500000"]
+        );
         assert_eq!(item(PrintFormat::Values, None, Some(Value::Scalar(7.0))), ["  7.000000"]);
         assert_eq!(item(PrintFormat::Hexadecimal, None, Some(Value::Scalar(1.0))), ["  3FF0000000000000"]);
         assert_eq!(item(PrintFormat::Full, None, None), ["P IS NOT DEFINED"]);

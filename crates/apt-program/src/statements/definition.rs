@@ -16,6 +16,7 @@ use crate::{
     evaluator::{Evaluator, Synonym},
     expression::{Item, Operand, Resolved},
     finding::{FindingKind, Found, RelatedKind},
+    listing::NESTED,
     record::Origin,
     symbols::{ArrayElement, DefinitionEvent, Meaning, Stored, Symbol, Value},
 };
@@ -121,7 +122,14 @@ impl Evaluator<'_> {
             self.report(FindingKind::UnnamedPattern, range);
             return None;
         }
-        let name = target.map_or_else(SmolStr::default, |target| target.name.text.clone());
+        let name = match target {
+            Some(target) => target.name.text.clone(),
+            None => {
+                let stored = Stored { geometry: Arc::clone(&geometry), system: self.state.system.clone() };
+                self.list_definition(&NESTED, None, &stored, range);
+                SmolStr::default()
+            }
+        };
         Some(Operand::Geometry { name, geometry })
     }
 
@@ -232,7 +240,7 @@ impl Evaluator<'_> {
     }
 
     /// Gives a name geometry, or poisons it when there is none; `canon` allows a redefinition.
-    fn define_stored(&mut self, target: &Reference, stored: Option<Stored>, canon: bool) {
+    pub(super) fn define_stored(&mut self, target: &Reference, stored: Option<Stored>, canon: bool) {
         let Some(target) = self.target(target) else { return };
         let canon = canon || self.state.canon;
         if let Some(index) = target.index {
@@ -254,6 +262,7 @@ impl Evaluator<'_> {
         match stored {
             Some(stored) => {
                 self.log(name.clone(), None, Value::Geometry(Arc::clone(&stored.geometry)), &origin);
+                self.list_definition(&name, None, &stored, range);
                 self.set_symbol(name, Meaning::Geometry(stored), origin);
             }
             None if existing.is_none() => self.set_symbol(name, Meaning::Poisoned, origin),
@@ -330,6 +339,9 @@ impl Evaluator<'_> {
             return;
         }
         let mut array = array.clone();
+        if let ArrayElement::Geometry(stored) = &element {
+            self.list_definition(name, Some(index), stored, target.reference.range);
+        }
         let origin = self.origin(target.reference.range);
         let value = match &element {
             ArrayElement::Scalar(number) => Some(Value::Scalar(*number)),

@@ -2,12 +2,14 @@
 
 mod declaration;
 mod definition;
+mod library;
 mod listing;
 mod motion;
 mod parameter;
 mod pattern;
 mod pocket;
 mod postprocessor;
+mod system_flag;
 mod tool_axis;
 mod transformation;
 
@@ -18,7 +20,7 @@ use apt_syntax::{
 };
 use smol_str::SmolStr;
 
-pub(crate) use listing::segment;
+pub(crate) use library::segment;
 
 use crate::{
     evaluator::{Evaluator, Flow, Region},

@@ -13,6 +13,7 @@ use crate::{
     evaluator::Evaluator,
     expression::{Item, Items, Operand},
     finding::FindingKind,
+    listing::ListingKind,
     record::{PostArgument, RecordKind},
 };
 
@@ -45,11 +46,13 @@ fn takes_geometry(word: &str) -> TakesGeometry {
 }
 
 impl Evaluator<'_> {
-    /// PARTNO, PPRINT, INSERT; REMARK and TITLES leave nothing.
+    /// PARTNO, PPRINT and INSERT leave records, REMARK and TITLES stand on the listing only.
     pub(crate) fn text_statement(&mut self, word: &WordUse, text: &SmolStr, range: TextRange) {
         let spelling = word.word.spelling;
-        if matches!(spelling, "REMARK" | "TITLES") {
-            return;
+        match spelling {
+            "REMARK" => return self.list(ListingKind::Remark(text.clone()), range),
+            "TITLES" => return self.list(ListingKind::heading(text), range),
+            _ => {}
         }
         let code = word.word.code.unwrap_or(NO_CODE);
         self.emit(RecordKind::Text { word: SmolStr::new_static(spelling), code, text: text.clone() }, range);

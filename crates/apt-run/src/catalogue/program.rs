@@ -51,16 +51,22 @@ fn jump(kind: &Kind) -> Option<Text> {
         Kind::LoopInMacro => say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
             .hint("IF and JUMPTO work in a macro without them"),
         Kind::LoopNotClosed => say("APT0409", "this loop is never closed").hint("add LOOPND"),
-        Kind::Endless { statements, changing } => {
-            let text =
-                say("APT0410", format!("{statements} statements were executed and no end is in sight"));
-            match changing.as_slice() {
-                [] => text.hint("check how the loop ends; the setting budget.statements allows more"),
-                names => text.hint(format!(
-                    "{} changed in the last turn; the setting budget.statements allows more",
-                    names.join(", ")
-                )),
-            }
+        Kind::Endless { statements, changing, unchanged } => {
+            let what = match (unchanged.as_slice(), changing.as_slice()) {
+                ([], []) => "no condition of the loop depends on a name that changes".to_owned(),
+                ([], changing) => format!("{} changed in the last turn", changing.join(", ")),
+                (unchanged, []) => format!(
+                    "{} decides how the loop ends and did not change in the last turn",
+                    unchanged.join(", ")
+                ),
+                (unchanged, changing) => format!(
+                    "{} decides how the loop ends and did not change in the last turn; {} did",
+                    unchanged.join(", "),
+                    changing.join(", ")
+                ),
+            };
+            say("APT0410", format!("{statements} statements were executed and no end is in sight"))
+                .hint(format!("{what}; the setting budget.statements allows more"))
         }
         _ => return None,
     })
@@ -219,6 +225,14 @@ fn whole(kind: &Kind) -> Text {
             let way = through.iter().map(SmolStr::as_str).collect::<Vec<_>>().join(" includes ");
             say("APT0908", format!("{name} would include itself")).hint(format!("the program includes {way}"))
         }
+        Kind::Cards { fault } => say("APT0909", format!("READ/1 finds no dump behind it: {fault}")).hint(
+            "PUNCH writes the cards; they stand behind the READ, the LOOPND or the CALL, and END is the last",
+        ),
+        Kind::CardSort { name } => say(
+            "APT0910",
+            format!("{name} is a number in one place and geometry in the other, and READ cannot change that"),
+        )
+        .hint("give another name in READ/1,name"),
         // The other groups have taken the rest.
         other => say("APT0999", format!("{other}")),
     }

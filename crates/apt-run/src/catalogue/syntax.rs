@@ -66,6 +66,12 @@ fn statement(kind: &Kind) -> Option<Text> {
                 "a statement is `name = value`, or begins with a word of the language; check the spelling",
             )
         }
+        Kind::StructuredIf { word } => {
+            say("APT0065", format!("{word} belongs to an IF over several statements, which NCL has")).hint(
+                "no dialect here has it: with `dialect = \"apt4\"` in apt-lsp.toml IF(a.EQ.b) takes one statement, \
+                 which may be JUMPTO; in all of them IF(a-b) takes three labels",
+            )
+        }
         Kind::NotInDialect { word, dialect } => {
             say("APT0905", format!("{word} is not part of this dialect")).hint(format!(
                 "the dialect {dialect} has it: set `dialect = \"{dialect}\"` in apt-lsp.toml, or begin the file \
@@ -99,9 +105,16 @@ fn expression(kind: &Kind) -> Option<Text> {
         Kind::TooManyPowers => say("APT0034", "too many ** follow each other"),
         Kind::TooDeep => say("APT0035", "parentheses are nested too deep")
             .hint("compute parts of it in statements of their own"),
+        Kind::RelationNotAllowed(relation) if matches!(&**relation, ".NOT." | ".EOR." | ".XOR.") => {
+            say("APT0036", format!("no dialect has {relation}"))
+                .hint("turn the relation round (.NE. for .NOT. .EQ.), or write the condition with .AND. and .OR.")
+        }
         Kind::RelationNotAllowed(relation) => {
-            say("APT0036", format!("{relation} belongs to a logical IF, which this dialect does not have"))
-                .hint("use IF(expression) negative,zero,positive, or set the dialect to apt4")
+            say("APT0036", format!("{relation} belongs to a logical IF, which this dialect does not have here"))
+                .hint(
+                    "the dialect apt4 has IF(a.EQ.b)statement: set `dialect = \"apt4\"` in apt-lsp.toml, or begin the \
+                     file with `$$ apt-lsp: dialect=apt4`; IF(expression) negative,zero,positive works everywhere",
+                )
         }
         Kind::RelationMissing => say("APT0037", "a relation such as .LT. is missing in the condition"),
         _ => return None,

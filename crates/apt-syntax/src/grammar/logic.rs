@@ -201,7 +201,15 @@ impl Parser<'_> {
         if !self.at(ElementKind::LeftParenthesis) {
             return self.fail(SyntaxErrorKind::ConditionMissing);
         }
-        let logical = self.dialect.logical_if && self.relation_in_parenthesis(self.position);
+        let relation = self.relation_in_parenthesis(self.position);
+        if relation
+            && !self.dialect.logical_if
+            && let Some(word) = self.elements.last().filter(|last| last.text == "THEN")
+        {
+            self.position = self.elements.len().saturating_sub(1);
+            return self.fail(SyntaxErrorKind::StructuredIf { word: word.text.clone() });
+        }
+        let logical = self.dialect.logical_if && relation;
         self.bump();
         if self.at(ElementKind::RightParenthesis) {
             return self.fail(SyntaxErrorKind::ConditionMissing);

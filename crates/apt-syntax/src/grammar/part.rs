@@ -14,6 +14,9 @@ use crate::vocabulary::{self, Word, WordClass};
 /// A body and the kind of its node.
 type Production = (Body, SyntaxKind);
 
+/// The words of an IF over several statements, which NCL has.
+pub(super) const STRUCTURED_IF_WORDS: [&str; 4] = ["THEN", "ELSE", "ELSEIF", "ENDIF"];
+
 impl Parser<'_> {
     /// The whole statement. Errors are noted; the statement part in which one lies becomes [`Body::Error`].
     pub(super) fn statement(&mut self) -> Statement {
@@ -256,6 +259,11 @@ impl Parser<'_> {
             return self.unknown_major();
         }
         let name = self.spelling();
+        if STRUCTURED_IF_WORDS.contains(&&*name)
+            && matches!(self.kind(1), None | Some(ElementKind::LeftParenthesis))
+        {
+            return self.fail(SyntaxErrorKind::StructuredIf { word: name });
+        }
         let foreign = vocabulary::lookup(&name).filter(|word| word.class.begins_statements());
         match foreign.and_then(|word| word.dialects.first()) {
             Some(dialect) => self.fail(SyntaxErrorKind::NotInDialect { word: name, dialect: *dialect }),
