@@ -8,11 +8,13 @@ pub mod function;
 mod kind;
 pub mod matrix;
 mod plane;
+mod poly_conic;
 mod quadric;
 mod ruled;
 mod transform;
 mod values;
 
+pub use poly_conic::PolyConicForm;
 pub use ruled::{RuledCurve, RuledEnd};
 pub use transform::TransformError;
 pub use values::CanonicalError;

@@ -32,7 +32,7 @@ pub enum TransformError {
         /// Relative difference between the scales of the section, 0 for a similarity.
         distortion: f64,
     },
-    /// This type is not moved (MATRIX, POLCON).
+    /// This type is not moved (MATRIX, or a POLCON whose values have no meaning).
     #[error("a {kind:?} is not moved")]
     NotMoved {
         /// The type.
@@ -80,7 +80,8 @@ impl Geometry {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),
                 ..Pattern::clone(pattern)
             })),
-            Geometry::Matrix(_) | Geometry::PolyConic(_) => return Err(TransformError::NotMoved { kind }),
+            Geometry::PolyConic(values) => Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?)),
+            Geometry::Matrix(_) => return Err(TransformError::NotMoved { kind }),
         })
     }
 }

@@ -93,6 +93,7 @@ impl Surface {
             Self::Quadric(quadric) => selection.choose(quadric_roots(quadric, from, direction)),
             Self::Tabulated(curve) => selection.choose(curve.ray_roots(from, direction)),
             Self::Ruled(sheet) => selection.choose(sheet.ray_roots(from, direction)),
+            Self::PolyConic(sheet) => selection.choose(sheet.ray_roots(from, direction)),
         };
         root.ok_or(NoDistance)
     }

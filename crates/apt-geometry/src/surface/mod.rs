@@ -4,6 +4,7 @@
 mod bend;
 mod cone;
 mod directed;
+mod poly_conic;
 mod quadric;
 mod ruled;
 mod section_curve;
@@ -16,6 +17,7 @@ pub use self::{
     bend::{Bend, Region},
     cone::ConeForm,
     directed::{NoDistance, RootSelection, solve_quadratic},
+    poly_conic::PolyConicSheet,
     quadric::PrincipalQuadric,
     ruled::RuledSheet,
     tabulated::DirectrixCurve,
@@ -42,6 +44,8 @@ pub enum Surface {
     Tabulated(Box<DirectrixCurve>),
     /// Ruled surface with its extensions.
     Ruled(Box<RuledSheet>),
+    /// Polyconic surface with its extensions.
+    PolyConic(Box<PolyConicSheet>),
 }
 
 /// Why a geometric entity is no surface here.
@@ -131,10 +135,12 @@ impl Surface {
             Geometry::RuledSurface(surface) => {
                 RuledSheet::new(surface).map(|sheet| Self::Ruled(Box::new(sheet))).ok_or(degenerate)
             }
+            Geometry::PolyConic(values) => {
+                PolyConicSheet::new(values).map(|sheet| Self::PolyConic(Box::new(sheet))).ok_or(degenerate)
+            }
             Geometry::Point(_)
             | Geometry::Vector(_)
             | Geometry::Matrix(_)
-            | Geometry::PolyConic(_)
             | Geometry::Pattern(_) => Err(SurfaceError::Unsupported { kind }),
         }
     }
@@ -166,6 +172,7 @@ impl Surface {
             Self::Quadric(quadric) => quadric.foot(p).0,
             Self::Tabulated(curve) => curve.foot(p).0,
             Self::Ruled(sheet) => sheet.foot(p),
+            Self::PolyConic(sheet) => sheet.foot(p),
         }
     }
 
@@ -209,6 +216,7 @@ impl Surface {
                 (foot, curve.hessian(&foot, curvature))
             }
             Self::Ruled(sheet) => sheet.foot_and_hessian(p),
+            Self::PolyConic(sheet) => sheet.foot_and_hessian(p),
         }
     }
 
@@ -218,7 +226,7 @@ impl Surface {
             Self::Plane(_) => Convexity::Flat,
             Self::Cylinder(_) | Self::Sphere(_) | Self::Cone(_) => Convexity::Convex,
             Self::Quadric(quadric) => quadric.convexity(),
-            Self::Tabulated(_) | Self::Ruled(_) => Convexity::General,
+            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) => Convexity::General,
         }
     }
 
@@ -245,7 +253,7 @@ impl Surface {
             }
             Self::Cone(cone) => cone.natural_normal(p),
             Self::Quadric(quadric) => quadric.natural_normal(p),
-            Self::Tabulated(_) | Self::Ruled(_) => Ok(self.foot(p).normal),
+            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) => Ok(self.foot(p).normal),
         }
     }
 }

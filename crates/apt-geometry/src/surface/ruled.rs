@@ -23,13 +23,15 @@ const BEFORE_FOLD: f64 = 0.9;
 /// Share of the chord at both ends where the meeting of rulings is not judged: a curve may stand upright there.
 const STEADY: f64 = 0.05;
 /// Accuracy of the pieces, relative to the size of the surface.
-const ACCURACY: f64 = 2e-12;
+const ACCURACY: f64 = 2e-11;
 /// Bound of the halvings of a piece of the curves.
 const MAX_DEPTH: u32 = 40;
 /// Bound of the number of pieces.
 const MAX_PIECES: usize = 4096;
 /// Strips over the surface itself, roughly: short enough for one valley of the distance each.
 const STRIPS: f64 = 48.0;
+/// How much wider strips of the extensions are.
+const COARSER: f64 = 8.0;
 /// Samples across a strip for its radius.
 const SAMPLES: u32 = 6;
 /// Share by which a radius is enlarged for what lies between the samples.
@@ -198,7 +200,9 @@ impl RuledSheet {
         let target = (inner / STRIPS).max(f64::MIN_POSITIVE);
         let mut ranges = Vec::new();
         for (k, piece) in self.pieces.iter().enumerate() {
-            let count = (length(piece) / target).ceil().clamp(1.0, 4.0 * STRIPS) as u32;
+            let inside = piece.from + piece.width > 0.0 && piece.from < 1.0;
+            let target = if inside { target } else { COARSER * target };
+            let count = (length(piece) / target).ceil().clamp(1.0, STRIPS) as u32;
             for j in 0..count {
                 let at = |j: u32| piece.from + piece.width * (f64::from(j) / f64::from(count));
                 ranges.push((k, [at(j), at(j + 1)]));
@@ -238,45 +242,47 @@ impl RuledSheet {
             middle: [Vec3::zeros(); 2],
             radius: f64::NEG_INFINITY,
         };
-        let mut nodes = vec![empty; 2 * leaves - 1];
-        // Depth first without recursion: (node, first leaf, number of leaves).
-        let mut open = vec![(0usize, 0usize, leaves)];
-        while let Some((node, first, count)) = open.pop() {
-            let held = ranges.get(first..(first + count).min(ranges.len())).unwrap_or(&[]);
-            if let (Some(strip), false) = (nodes.get_mut(node), held.is_empty()) {
-                *strip = self.strip(held, shares);
-            }
-            if count > 1 {
-                open.push((2 * node + 1, first, count / 2));
-                open.push((2 * node + 2, first + count / 2, count / 2));
+        let mut nodes = vec![empty.clone(); leaves - 1];
+        nodes.extend(ranges.iter().map(|&(piece, range)| self.strip(piece, range, shares)));
+        nodes.resize(2 * leaves - 1, empty);
+        for node in (0..leaves - 1).rev() {
+            if let (Some(a), Some(b)) = (nodes.get(2 * node + 1), nodes.get(2 * node + 2)) {
+                nodes[node] = self.joined(a, b, shares);
             }
         }
         nodes
     }
 
-    fn strip(&self, ranges: &[(usize, [f64; 2])], shares: [f64; 2]) -> Strip {
-        let (piece, range) = ranges.get(ranges.len() / 2).copied().unwrap_or((0, [0.0; 2]));
-        let at = if ranges.len() == 1 { 0.5 * (range[0] + range[1]) } else { range[0] };
-        let ends = shares.map(|v| self.jet(piece, at, v).point);
+    fn strip(&self, piece: usize, range: [f64; 2], shares: [f64; 2]) -> Strip {
+        let middle = 0.5 * (range[0] + range[1]);
+        let ends = shares.map(|v| self.jet(piece, middle, v).point);
         let mut radius: f64 = 0.0;
-        for &(k, [a, b]) in ranges {
-            for j in 0..=SAMPLES {
-                let t = a + (b - a) * f64::from(j) / f64::from(SAMPLES);
-                for (v, end) in shares.iter().zip(&ends) {
-                    radius = radius.max((self.jet(k, t, *v).point - end).norm());
-                }
+        for j in 0..=SAMPLES {
+            let t = range[0] + (range[1] - range[0]) * f64::from(j) / f64::from(SAMPLES);
+            for (v, end) in shares.iter().zip(&ends) {
+                radius = radius.max((self.jet(piece, t, *v).point - end).norm());
             }
         }
-        let range = match (ranges.first(), ranges.last()) {
-            (Some(first), Some(last)) => [first.1[0], last.1[1]],
-            _ => range,
+        let radius = radius * (1.0 + ENLARGED) + 1e-13 * self.size;
+        Strip { piece, range, middle: [ends[0], ends[1] - ends[0]], radius }
+    }
+
+    /// Two neighbouring strips about the ruling between them. Points at the same share of two rulings are farthest apart
+    /// at an end.
+    fn joined(&self, a: &Strip, b: &Strip, shares: [f64; 2]) -> Strip {
+        if b.piece == usize::MAX {
+            return a.clone();
+        }
+        let ends = shares.map(|v| self.jet(b.piece, b.range[0], v).point);
+        let reach = |strip: &Strip| {
+            let [start, along] = strip.middle;
+            strip.radius + (start - ends[0]).norm().max((start + along - ends[1]).norm())
         };
-        let rounding = 1e-13 * self.size;
         Strip {
-            piece,
-            range,
+            piece: b.piece,
+            range: [a.range[0], b.range[1]],
             middle: [ends[0], ends[1] - ends[0]],
-            radius: radius * (1.0 + ENLARGED) + rounding,
+            radius: reach(a).max(reach(b)),
         }
     }
 
