@@ -15,10 +15,12 @@ use apt_geometry::{
 pub(crate) use self::prepare::Prepared;
 use crate::{
     bound,
+    clearance::Shape,
     error::{MotionFailure, MotionWarning},
     role::Working,
     section2::State,
     sequence::{CutSequence, Stop, ToolPosition},
+    story::Route,
 };
 
 /// Where a motion ended, and by what.
@@ -46,6 +48,21 @@ pub(crate) fn run(
         None => march::run(state, &prepared, checks, cancel)?,
     };
     sequence(state, &prepared, checks, path)
+}
+
+/// By which route a directed motion is computed.
+pub(crate) fn route(state: &State, turn: Turn, drive: &NamedSurface, checks: &[CheckSurface]) -> Route {
+    let Ok(prepared) = prepare::prepare(state, turn, drive, checks, &mut Vec::new()) else {
+        return Route::Iteration;
+    };
+    let flat = [&prepared.part, &prepared.drive].iter().all(|role| role.shape == Shape::Flat);
+    if matches!(plane_route::run(state, &prepared, checks, &|| false), Ok(Some(_))) {
+        Route::ClosedForm
+    } else if flat && !prepared.attitude.turns() {
+        Route::Straight
+    } else {
+        Route::Iteration
+    }
 }
 
 fn sequence(

@@ -16,6 +16,7 @@ mod role;
 pub mod section2;
 pub mod sequence;
 mod start_up;
+pub mod story;
 pub mod verify;
 
 #[cfg(test)]

@@ -35,6 +35,8 @@ pub(crate) enum Condition<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solution {
     pub(crate) tip: Vec3,
+    /// Corrections made.
+    pub(crate) corrections: u32,
 }
 
 /// What was left when no position was found.
@@ -85,12 +87,12 @@ pub(crate) fn solve(
         let (worst, row) = rows.greatest();
         let scale = size(attitude.tool(), &tip);
         if worst <= RESOLUTION * scale {
-            return Ok(Solution { tip });
+            return Ok(Solution { tip, corrections: iteration });
         }
         let step = correction(&rows);
         let Some((next, next_rows)) = improve(attitude, conditions, &tip, &rows, &step) else {
             return if worst <= ACCEPTABLE * scale {
-                Ok(Solution { tip })
+                Ok(Solution { tip, corrections: iteration })
             } else {
                 Err(Unsolved { residual: worst, row, tip, iterations: iteration + 1 })
             };
@@ -100,7 +102,7 @@ pub(crate) fn solve(
     }
     let (residual, row) = rows.greatest();
     if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
-        return Ok(Solution { tip });
+        return Ok(Solution { tip, corrections: MAX_ITERATIONS });
     }
     Err(Unsolved { residual, row, tip, iterations: MAX_ITERATIONS })
 }

@@ -20,6 +20,7 @@ use crate::{
     role::Working,
     section2::{StartUpRule, State, required_position},
     sequence::{CutSequence, Stop, ToolPosition},
+    story::Route,
 };
 
 /// What a start-up works with.
@@ -58,6 +59,13 @@ pub(crate) fn start(
         None => in_space(&mut work)?,
     };
     work.sequence(tip)
+}
+
+/// By which route a GO finds its position.
+pub(crate) fn route(state: &State, surfaces: &[StartSurface]) -> Route {
+    let closed = state.start_up == StartUpRule::Apt3
+        && StartUp::new(state, surfaces).is_ok_and(|work| plane::applies(&work));
+    if closed { Route::ClosedForm } else { Route::Iteration }
 }
 
 /// OFFSET (class 7000/2): pierce the drive surface along the direction given, stand off along its normal, then move

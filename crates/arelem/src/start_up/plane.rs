@@ -17,9 +17,6 @@ const VERTICAL: f64 = 0.99995;
 
 /// The end position, or `None` if the route does not apply.
 pub(super) fn solve(work: &mut StartUp<'_>) -> Result<Option<Vec3>, MotionFailure> {
-    if work.roles.len() != 2 && !(work.roles.len() == 1 && work.state.no_part) {
-        return Ok(None);
-    }
     let Some(curve) = eligible(work) else { return Ok(None) };
     let direction = match &work.state.directions[0] {
         Some(direction) => Some(unit_direction(direction, &work.tip)?),
@@ -40,7 +37,15 @@ pub(super) fn solve(work: &mut StartUp<'_>) -> Result<Option<Vec3>, MotionFailur
     }))
 }
 
+/// True if the route applies.
+pub(super) fn applies(work: &StartUp<'_>) -> bool {
+    eligible(work).is_some()
+}
+
 fn eligible(work: &StartUp<'_>) -> Option<Curve> {
+    if work.roles.len() != 2 && !(work.roles.len() == 1 && work.state.no_part) {
+        return None;
+    }
     let state = work.state;
     let axis = work.tool.axis;
     let plain = axis.z.abs() >= VERTICAL
