@@ -163,6 +163,17 @@ impl<'a> Sweep<'a> {
         }
     }
 
+    /// Greatest acceleration of a point of the tool, per square of the distance of the tool end.
+    pub(crate) fn swing(&self) -> f64 {
+        match self.turn {
+            Some((_, angle)) if self.length > 0.0 => {
+                let rate = angle / self.length;
+                rate * rate * (self.tool.cutter.height + self.tool.radius())
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Greatest distance that a point of the tool moves per unit of distance of the tool end.
     pub(crate) fn stretch(&self) -> f64 {
         match self.turn {

@@ -46,10 +46,42 @@ impl Surface {
             Self::Sphere(sphere) => reciprocal(sphere.radius + nearest),
             Self::Cone(cone) => cone_bend(cone, region, nearest),
             Self::Quadric(quadric) => quadric.bend(side, foot, region, nearest),
+            Self::Tabulated(curve) => {
+                // The foot of a point that matters is not farther from the centre than this.
+                let away = (foot.distance.abs() + region.radius).min(region.highest.abs().max(region.lowest.abs()));
+                parallel_bend(curve.greatest_curvature(side, &region.center, region.radius + away), nearest)
+            }
             _ => return Bend::Unknown,
         };
         let least = near.min(far);
         if least.is_finite() { Bend::AtMost(least) } else { Bend::Unbounded }
+    }
+}
+
+impl Surface {
+    /// Unit direction along which the surface may be shifted without change, if there is one (a plane has many: some
+    /// direction in it).
+    pub fn generator(&self) -> Option<Vec3> {
+        match self {
+            Self::Plane(plane) => Some(super::perpendicular(&plane.normal)),
+            Self::Cylinder(cylinder) => Some(cylinder.axis),
+            Self::Quadric(quadric) => quadric.generator(),
+            Self::Tabulated(curve) => Some(curve.generator()),
+            _ => None,
+        }
+    }
+}
+
+/// Greatest bend of surfaces parallel to one that bends by at most `curvature`, at least `nearest` away from it.
+fn parallel_bend(curvature: f64, nearest: f64) -> f64 {
+    let stretch = 1.0 + nearest * curvature;
+    if curvature <= 0.0 {
+        0.0
+    } else if stretch > 0.0 {
+        // At a corner both are infinite: the distance from it bends by its reciprocal.
+        if curvature.is_finite() { curvature / stretch } else { f64::INFINITY }
+    } else {
+        f64::INFINITY
     }
 }
 
@@ -163,6 +195,21 @@ mod tests {
             let region = Region { center, radius: 0.5, lowest: 0.0, highest: 2.0 };
             assert_eq!(surface.bend(-1.0, &surface.foot(&center), &region), Bend::AtMost(0.0));
         }
+    }
+
+    #[test]
+    fn surfaces_are_shifted_along_their_generators_without_change() {
+        let count = surfaces()
+            .iter()
+            .filter_map(|surface| {
+                let along = surface.generator()?;
+                let p = v(1.9, 0.4, -0.7);
+                let (a, b) = (surface.signed_distance(&p), surface.signed_distance(&(p + along * 3.0)));
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+                Some(())
+            })
+            .count();
+        assert_eq!(count, 3);
     }
 
     #[test]

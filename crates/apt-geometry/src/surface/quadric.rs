@@ -265,6 +265,12 @@ impl PrincipalQuadric {
         if stretch > 0.0 && curvature.is_finite() { curvature / stretch } else { f64::INFINITY }
     }
 
+    /// The direction that neither the quadratic nor the linear terms know.
+    pub(super) fn generator(&self) -> Option<Vec3> {
+        let free = (0..3).find(|&i| self.square[i] == 0.0 && self.linear[i] == 0.0)?;
+        Some(self.rotation.column(free).into_owned())
+    }
+
     /// Square of the least half gradient on the whole surface: where `Σ aᵢ yᵢ² = −d`, the terms of the sign of −d add
     /// up to |d| at least.
     fn least_gradient(&self) -> f64 {

@@ -1,7 +1,9 @@
 //! Signed clearance between tool and surface as one function of the tool end (arelem reference 1.6 and 5.2), with
 //! its gradient and the contact points.
 
+mod certify;
 mod closed_form;
+mod cover;
 mod dual;
 mod matched;
 mod search;
@@ -12,6 +14,10 @@ use apt_geometry::{
     surface::{Convexity, Surface},
 };
 
+pub(crate) use self::{
+    certify::{Certificate, Face, certify},
+    cover::upward_bend,
+};
 pub use tool::Tool;
 
 /// Where tool and surface are nearest.
@@ -72,13 +78,23 @@ impl Gauge {
 
     /// How the clearance behaves along a straight line.
     pub fn shape(&self) -> Shape {
-        match (self.surface.convexity(), self.side > 0.0) {
-            (Convexity::Flat, _) => Shape::Flat,
-            (Convexity::Convex, true) | (Convexity::Hollow, false) => Shape::Convex,
-            (Convexity::Convex, false) | (Convexity::Hollow, true) => Shape::Concave,
-            (Convexity::General, _) => Shape::General,
-        }
+        shape(&self.surface, self.side)
     }
+}
+
+/// How the distance of a tool on one side of a surface behaves along a straight line.
+fn shape(surface: &Surface, side: f64) -> Shape {
+    match (surface.convexity(), side > 0.0) {
+        (Convexity::Flat, _) => Shape::Flat,
+        (Convexity::Convex, true) | (Convexity::Hollow, false) => Shape::Convex,
+        (Convexity::Convex, false) | (Convexity::Hollow, true) => Shape::Concave,
+        (Convexity::General, _) => Shape::General,
+    }
+}
+
+/// True if the clearance needs no search: it is then the least one for certain.
+pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
+    closed_form::contact(tool, &gauge.surface, gauge.side, tip).is_some()
 }
 
 /// Distance between the tool body and the surface, with the tool on the given side.

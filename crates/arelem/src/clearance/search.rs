@@ -8,7 +8,12 @@ use apt_geometry::{
 };
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-use super::{Contact, Tool, tool::Piece};
+use super::{
+    Contact, Shape, Tool,
+    certify::{Certificate, Face, certify},
+    shape,
+    tool::Piece,
+};
 
 /// Scan points on a circle.
 const SCAN: usize = 12;
@@ -16,6 +21,10 @@ const SCAN: usize = 12;
 const MAX_ITERATIONS: u32 = 40;
 /// An azimuth step below this (radians) ends the refinement: the clearance then errs by its square.
 const ANGLE_RESOLUTION: f64 = 1e-10;
+/// Bound of the searches after the first one, each from a point that was found nearer.
+const MAX_RESTARTS: u32 = 12;
+/// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
+const MISSED: f64 = 1e-7;
 /// Slack of the fan of contact normals of the corner torus, radians.
 const FAN_SLACK: f64 = 1e-9;
 
@@ -52,6 +61,7 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
             Piece::Frustum { radius, height } => search.frustum(radius, height),
         }
     }
+    search.complete();
     search.best.contact.unwrap_or_else(|| {
         let foot = surface.foot(tip);
         Contact {
@@ -64,6 +74,54 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
 }
 
 impl Search<'_> {
+    /// Looks for places that are nearer than the nearest found, until there are none. Two convex bodies need no look:
+    /// what is nearest around is nearest of all.
+    fn complete(&mut self) {
+        if shape(self.surface, self.side) == Shape::Convex {
+            return;
+        }
+        let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
+        for _ in 0..MAX_RESTARTS {
+            let level = self.best.value - slack;
+            match certify(Face { surface: self.surface, side: self.side }, self.tool, self.tip, level) {
+                Certificate::Lower(point) => {
+                    self.best.take(point.clearance, || point);
+                    self.descend(&(point.tool - self.tip));
+                }
+                Certificate::Holds | Certificate::Undecided | Certificate::Unknown => return,
+            }
+        }
+    }
+
+    /// The valleys near a point of the tool, given from its end.
+    fn descend(&mut self, point: &Vec3) {
+        let (along, across, radial) = self.tool.split(point);
+        let azimuth = radial.dot(&self.tool.across[1]).atan2(radial.dot(&self.tool.across[0]));
+        let step = std::f64::consts::TAU / SCAN as f64;
+        let tool = self.tool;
+        for piece in &tool.pieces {
+            match *piece {
+                Piece::Ring { radius, height, ball, fan } => {
+                    let azimuth =
+                        if radius > 0.0 { self.refine(radius, height, azimuth, step) } else { azimuth };
+                    let p = self.point(radius, height, azimuth);
+                    let foot = self.surface.foot(&p);
+                    self.take_in_fan(&p, &foot, ball, fan);
+                }
+                Piece::Disc { radius } => {
+                    let start =
+                        Vector2::new(point.dot(&self.tool.across[0]), point.dot(&self.tool.across[1]));
+                    self.inside_disc(radius, start * (radius / across.max(radius)));
+                }
+                Piece::Frustum { radius, height } => {
+                    let rise = height[1] - height[0];
+                    let t = if rise > 0.0 { (along - height[0]) / rise } else { 0.0 };
+                    self.inside_frustum(radius, height, Vector2::new(t.clamp(0.0, 1.0), azimuth));
+                }
+            }
+        }
+    }
+
     fn point(&self, radius: f64, height: f64, azimuth: f64) -> Vec3 {
         self.tip + self.tool.axis * height + self.direction(azimuth) * radius
     }
@@ -172,7 +230,14 @@ impl Search<'_> {
             }
             None => Vec3::zeros(),
         };
-        let mut q = Vector2::new(start.dot(&self.tool.across[0]), start.dot(&self.tool.across[1]));
+        self.inside_disc(
+            radius,
+            Vector2::new(start.dot(&self.tool.across[0]), start.dot(&self.tool.across[1])),
+        );
+    }
+
+    fn inside_disc(&mut self, radius: f64, start: Vector2<f64>) {
+        let mut q = start;
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
             let p = self.tip + self.tool.across[0] * q.x + self.tool.across[1] * q.y;

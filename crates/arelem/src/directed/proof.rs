@@ -1,22 +1,21 @@
 //! Proof that a cut vector keeps a role's band over its whole length (GOUGCK made exact). Convex and concave clearances
-//! have one interior extreme, which tangents bound from beyond; other clearances are followed from slope to slope.
+//! have one interior extreme, which tangents bound from beyond; other clearances are proven by a bound of their second
+//! derivative.
+
+mod course;
+mod ledger;
 
 use apt_geometry::Vec3;
 
+pub(crate) use self::ledger::Ledger;
 use crate::{
     attitude::Sweep,
     clearance::{Contact, Shape},
-    role::Working,
+    role::{ROUNDING, Working},
 };
 
 /// Bound of the refinement of one extreme.
 const MAX_ITERATIONS: u32 = 24;
-/// Pieces into which a vector is cut when the clearance is neither convex nor concave.
-const PIECES: usize = 6;
-/// Misfit between values and slopes, as a share of the band, above which contact may jump in between.
-const JUMP: f64 = 2e-3;
-/// Bound of the halvings where it does.
-const MAX_DEPTH: u32 = 10;
 /// An extreme is known well enough when its bound and its value differ by this share of the band.
 const ENOUGH: f64 = 2e-4;
 
@@ -40,6 +39,7 @@ struct Sample {
 struct Line<'a> {
     sweep: &'a Sweep<'a>,
     role: &'a Working,
+    ledger: &'a Ledger,
     /// −1 turns a concave clearance into a convex one.
     sign: f64,
 }
@@ -51,6 +51,12 @@ impl Line<'_> {
         self.known(x, &contact, &tip)
     }
 
+    /// True if no part of the tool is nearer to the surface than a level.
+    fn certified(&self, x: f64, level: f64) -> bool {
+        let (tip, tool) = self.sweep.at(x);
+        self.ledger.certified(&self.role.gauge, &tool, &tip, level)
+    }
+
     fn known(&self, x: f64, contact: &Contact, tip: &Vec3) -> Sample {
         Sample { x, value: self.sign * contact.clearance, slope: self.sign * self.sweep.slope(contact, tip) }
     }
@@ -60,6 +66,7 @@ impl Line<'_> {
 pub(crate) fn extremes(
     sweep: &Sweep<'_>,
     role: &Working,
+    ledger: &Ledger,
     from: (&Vec3, &Contact),
     to: (&Vec3, &Contact),
     size: f64,
@@ -69,14 +76,14 @@ pub(crate) fn extremes(
     let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
     if length > 0.0 && sweep.turns() && !role.gauge.on {
         // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
-        let line = Line { sweep, role, sign: 1.0 };
-        return general(&line, line.sample(0.0), line.sample(length), ends, size);
+        let line = Line { sweep, role, ledger, sign: 1.0 };
+        return course::extremes(&line, line.sample(0.0), line.sample(length), ends, size);
     }
     if role.shape == Shape::Flat || length <= 0.0 {
         return ends;
     }
     let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
-    let line = Line { sweep, role, sign };
+    let line = Line { sweep, role, ledger, sign };
     let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
     match role.shape {
         Shape::Flat => ends,
@@ -87,10 +94,12 @@ pub(crate) fn extremes(
         }
         Shape::Concave => {
             let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
-            let proven = ends.proven && role.holds(-bound, size);
+            // The least values are those of the ends, if no other part of the tool is deeper there.
+            let deepest = |x| line.certified(x, -role.inside - ROUNDING * size);
+            let proven = ends.proven && role.holds(-bound, size) && deepest(0.0) && deepest(length);
             Extremes { least, greatest: (-value).max(greatest), proven }
         }
-        Shape::General => general(&line, a, b, ends, size),
+        Shape::General => course::extremes(&line, a, b, ends, size),
     }
 }
 
@@ -134,56 +143,4 @@ fn tangents_meet(a: Sample, b: Sample) -> (f64, f64) {
     let x = ((a.value - b.value) + b.slope * b.x - a.slope * a.x) / turn;
     let x = x.clamp(a.x, b.x);
     (x, a.value + a.slope * (x - a.x))
-}
-
-/// Every interior extreme between samples that are close enough to tell the course between them.
-fn general(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
-    let mut found = (ends.least, ends.greatest);
-    let mut from = a;
-    for k in 1..=PIECES {
-        let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
-        between(line, from, to, 0, &mut found);
-        from = to;
-    }
-    let (least, greatest) = found;
-    Extremes { least, greatest, proven: line.role.holds(least, size) && line.role.holds(greatest, size) }
-}
-
-/// Extremes between two samples. Where the values do not fit the slopes, contact jumps from one part of the tool to
-/// another in between, and the stretch is halved.
-fn between(line: &Line<'_>, a: Sample, b: Sample, depth: u32, found: &mut (f64, f64)) {
-    found.0 = found.0.min(a.value).min(b.value);
-    found.1 = found.1.max(a.value).max(b.value);
-    let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
-    if misfit.abs() > JUMP * line.role.band() && depth < MAX_DEPTH {
-        let middle = line.sample(0.5 * (a.x + b.x));
-        between(line, a, middle, depth + 1, found);
-        between(line, middle, b, depth + 1, found);
-    } else if (a.slope < 0.0) != (b.slope < 0.0) {
-        let value = turning_value(line, a, b, ENOUGH * line.role.band());
-        found.0 = found.0.min(value);
-        found.1 = found.1.max(value);
-    }
-}
-
-/// The extreme between two samples whose slopes differ in sign.
-fn turning_value(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> f64 {
-    let (mut a, mut b) = (a, b);
-    let mut value = a.value;
-    for _ in 0..MAX_ITERATIONS {
-        let x = (a.x * b.slope - b.x * a.slope) / (b.slope - a.slope);
-        let x = if x > a.x && x < b.x { x } else { 0.5 * (a.x + b.x) };
-        let middle = line.sample(x);
-        value = middle.value;
-        // What is left to gain is at most slope times distance.
-        if middle.slope.abs() * (b.x - a.x) <= enough {
-            break;
-        }
-        if (middle.slope < 0.0) == (a.slope < 0.0) {
-            a = middle;
-        } else {
-            b = middle;
-        }
-    }
-    value
 }

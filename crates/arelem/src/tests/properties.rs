@@ -103,6 +103,25 @@ fn moved(geometry: &Geometry, rotation: &Rotation3<f64>, shift: &Vec3) -> Geomet
     }
 }
 
+/// Contact on a saddle jumps from one part of a seven-parameter cutter to another between samples of a vector.
+#[test]
+fn contact_that_jumps_on_a_saddle_keeps_the_band() {
+    let pass = Pass {
+        part: 5,
+        cutter: 3,
+        angle: 1.1202348482628555,
+        offset: 0.28566544885046713,
+        inside: 0.0,
+        outside: 1e-4,
+    };
+    let program = run(&pass, &Rotation3::identity(), &Vec3::zeros()).expect("a path");
+    for sequence in &program.sequences {
+        assert_in_tolerance(sequence);
+        let evidence = crate::verify::verify(sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{evidence:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]

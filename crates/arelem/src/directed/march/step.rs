@@ -6,7 +6,7 @@ use apt_geometry::Vec3;
 use super::{Prepared, Vertex, tangent};
 use crate::{
     clearance::{Contact, Shape},
-    directed::proof::{self, Extremes},
+    directed::proof::{self, Extremes, Ledger},
     error::{Iteration, MotionFailure},
     position::{self, Condition},
     role::{Bend, GUARD, Working},
@@ -37,6 +37,8 @@ pub(super) struct Stepper<'a> {
     curvature: Option<[f64; 2]>,
     /// How much longer than predicted the last vector came out.
     correction: f64,
+    /// What proofs leave for the next ones: part, drive.
+    ledgers: [Ledger; 2],
 }
 
 struct Trial {
@@ -52,7 +54,7 @@ struct Trial {
 
 impl<'a> Stepper<'a> {
     pub(super) fn new(prepared: &'a Prepared, maximum: f64) -> Self {
-        Self { prepared, maximum, curvature: None, correction: 1.0 }
+        Self { prepared, maximum, curvature: None, correction: 1.0, ledgers: Default::default() }
     }
 
     fn roles(&self) -> [&Working; 2] {
@@ -130,9 +132,10 @@ impl<'a> Stepper<'a> {
     fn extremes(&self, from: &Vertex, to: &Vertex) -> [Extremes; 2] {
         let Prepared { part, drive, size, .. } = self.prepared;
         let sweep = from.sweep(self.prepared, to);
+        let [for_part, for_drive] = &self.ledgers;
         [
-            proof::extremes(&sweep, part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
-            proof::extremes(&sweep, drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
+            proof::extremes(&sweep, part, for_part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
+            proof::extremes(&sweep, drive, for_drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
         ]
     }
 

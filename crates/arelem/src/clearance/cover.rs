@@ -1,0 +1,95 @@
+//! How strongly the clearance can bend upward while the tool moves: a bound over all points of the tool that may come
+//! into contact on the way.
+//!
+//! For every single point of the tool the distance to the surface bends by no more than the surface's bound. The
+//! clearance, the least of these functions, then bends by no more either, whatever jumps contact makes.
+
+use apt_geometry::{
+    Vec3,
+    surface::{Bend, Region},
+};
+
+use super::{Gauge, Tool};
+
+/// Bound of the boxes into which the tool is cut.
+const MAX_BOXES: u32 = 600;
+/// A box is small enough when its bound exceeds that of its centre by this factor at most.
+const CLOSE: f64 = 1.25;
+
+/// A box of points in the frame of the tool: across, across, along the axis.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    middle: [f64; 3],
+    half: [f64; 3],
+}
+
+/// Bound of the second derivative along any direction of the distances of all points of the tool that come within
+/// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
+/// strays farther than `spread` from its place for the given tool end.
+pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Bend {
+    let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
+    if gauge.on {
+        return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
+    }
+    let (radius, height) = (tool.radius(), tool.profile.top.height);
+    let mut cells = vec![Cell { middle: [0.0, 0.0, 0.5 * height], half: [radius, radius, 0.5 * height] }];
+    let (mut greatest, mut seen) = (0.0_f64, 0);
+    while let Some(cell) = cells.pop() {
+        seen += 1;
+        if cell.beside(radius) {
+            continue;
+        }
+        let center = tip
+            + tool.across[0] * cell.middle[0]
+            + tool.across[1] * cell.middle[1]
+            + tool.axis * cell.middle[2];
+        let reach = Vec3::from(cell.half).norm() + spread;
+        let foot = gauge.surface.foot(&center);
+        let distance = gauge.side * foot.distance;
+        if distance - reach > range[1] || distance + reach < range[0] {
+            continue;
+        }
+        let found = gauge.surface.bend(gauge.side, &foot, &region(center, reach));
+        let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
+        let enough = match (found, at_best) {
+            (Bend::Unknown, _) => return Bend::Unknown,
+            (Bend::AtMost(bound), _) if bound <= greatest => true,
+            (Bend::AtMost(bound), Bend::AtMost(least)) => bound <= CLOSE * least,
+            _ => false,
+        };
+        let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
+        if enough || small || seen >= MAX_BOXES {
+            match found {
+                Bend::AtMost(bound) => greatest = greatest.max(bound),
+                other => return other,
+            }
+        } else {
+            cells.extend(cell.halves());
+        }
+    }
+    Bend::AtMost(greatest)
+}
+
+impl Cell {
+    /// True if the box lies farther from the axis than any point of the tool.
+    fn beside(&self, radius: f64) -> bool {
+        let near = |k: usize| (self.middle[k].abs() - self.half[k]).max(0.0);
+        near(0).hypot(near(1)) > radius
+    }
+
+    /// Both halves along the longest edge.
+    fn halves(&self) -> [Self; 2] {
+        let mut k = 0;
+        for other in 1..3 {
+            if self.half[other] > self.half[k] {
+                k = other;
+            }
+        }
+        let (mut low, mut high) = (*self, *self);
+        low.half[k] *= 0.5;
+        high.half[k] *= 0.5;
+        low.middle[k] -= low.half[k];
+        high.middle[k] += high.half[k];
+        [low, high]
+    }
+}

@@ -1,0 +1,232 @@
+//! Clearances that are neither convex nor concave, and those of a turning tool: the course between samples is bounded by
+//! the second derivative. Every point of the tool has a distance that bends upward by no more than K; so has the
+//! clearance, the least of them, wherever contact jumps. It is then above every chord less K·s(h − s)/2, and below the
+//! parabolas of curvature K from both ends.
+
+use apt_geometry::surface::Bend;
+
+use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample};
+
+/// Pieces into which a vector is cut at first.
+const PIECES: usize = 3;
+/// Pieces where nothing is known of the surface's curvature.
+const PIECES_UNKNOWN: usize = 6;
+/// Misfit between values and slopes, as a share of the band, above which contact may jump in between.
+const JUMP: f64 = 2e-3;
+/// Bound of the halvings where it does.
+const MAX_DEPTH: u32 = 10;
+/// Bound of the samples on one vector.
+const MAX_SAMPLES: usize = 400;
+/// Share of what is left of the band below a sample that the proof of its depth may leave open.
+const OPEN: f64 = 0.1;
+/// What it may leave open at least, as a share of the band.
+const LEAST_OPEN: f64 = 1e-5;
+
+/// Every interior extreme between two samples, and the proof that there are no others beyond the band.
+pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
+    let mut course = Course { line, size, samples: vec![a], least: ends.least, greatest: ends.greatest };
+    let unknown = course.bend(&a, &b) == Bend::Unknown;
+    let pieces = if unknown { PIECES_UNKNOWN } else { PIECES };
+    let mut from = a;
+    for k in 1..=pieces {
+        let to = if k == pieces { b } else { line.sample(b.x * k as f64 / pieces as f64) };
+        course.between(from, to, 0);
+        course.samples.push(to);
+        from = to;
+    }
+    let proven = ends.proven && course.holds() && (unknown || course.prove());
+    Extremes { least: course.least, greatest: course.greatest, proven }
+}
+
+struct Course<'a, 'b> {
+    line: &'a Line<'b>,
+    size: f64,
+    samples: Vec<Sample>,
+    least: f64,
+    greatest: f64,
+}
+
+impl Course<'_, '_> {
+    fn note(&mut self, value: f64) {
+        self.least = self.least.min(value);
+        self.greatest = self.greatest.max(value);
+    }
+
+    fn holds(&self) -> bool {
+        self.line.role.holds(self.least, self.size) && self.line.role.holds(self.greatest, self.size)
+    }
+
+    /// Looks for extremes between two samples. Where the values do not fit the slopes, contact jumps from one part of
+    /// the tool to another in between, and the stretch is halved.
+    fn between(&mut self, a: Sample, b: Sample, depth: u32) {
+        self.note(a.value);
+        self.note(b.value);
+        let band = self.line.role.band();
+        let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
+        if misfit.abs() > JUMP * band && depth < MAX_DEPTH {
+            let middle = self.line.sample(0.5 * (a.x + b.x));
+            self.between(a, middle, depth + 1);
+            self.samples.push(middle);
+            self.between(middle, b, depth + 1);
+        } else if (a.slope < 0.0) != (b.slope < 0.0) {
+            self.turn(a, b, ENOUGH * band);
+        }
+    }
+
+    /// The extreme between two samples whose slopes differ in sign.
+    fn turn(&mut self, mut a: Sample, mut b: Sample, enough: f64) {
+        let mut last = a;
+        for _ in 0..MAX_ITERATIONS {
+            let x = (a.x * b.slope - b.x * a.slope) / (b.slope - a.slope);
+            let x = if x > a.x && x < b.x { x } else { 0.5 * (a.x + b.x) };
+            last = self.line.sample(x);
+            self.note(last.value);
+            // What is left to gain is at most slope times distance.
+            if last.slope.abs() * (b.x - a.x) <= enough {
+                break;
+            }
+            if (last.slope < 0.0) == (a.slope < 0.0) {
+                a = last;
+            } else {
+                b = last;
+            }
+        }
+        self.samples.push(last);
+    }
+
+    /// Halves stretches until all of them are proven.
+    fn prove(&mut self) -> bool {
+        let mut samples = std::mem::take(&mut self.samples);
+        samples.sort_by(|a, b| a.x.total_cmp(&b.x));
+        if !samples.iter().all(|sample| self.deep_enough(sample)) {
+            return false;
+        }
+        let mut count = samples.len();
+        let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
+        while let Some((a, b)) = open.pop() {
+            if self.holds_between(&a, &b) {
+                continue;
+            }
+            let x = 0.5 * (a.x + b.x);
+            count += 1;
+            if count > MAX_SAMPLES || x <= a.x || x >= b.x {
+                return false;
+            }
+            let middle = self.line.sample(x);
+            self.note(middle.value);
+            if !self.holds() || !self.deep_enough(&middle) {
+                return false;
+            }
+            open.push((a, middle));
+            open.push((middle, b));
+        }
+        true
+    }
+
+    /// What the tool may be deeper at a sample than its contact says.
+    fn open(&self, sample: &Sample) -> f64 {
+        let role = self.line.role;
+        (OPEN * (sample.value + role.inside)).max(LEAST_OPEN * role.band())
+    }
+
+    fn deep_enough(&self, sample: &Sample) -> bool {
+        self.line.certified(sample.x, sample.value - self.open(sample))
+    }
+
+    /// Bound of the second derivative along the stretch between two samples.
+    fn bend(&self, a: &Sample, b: &Sample) -> Bend {
+        let Line { sweep, role, ledger, .. } = self.line;
+        let stretch = if role.gauge.on { 1.0 } else { sweep.stretch() };
+        let way = (b.x - a.x) * stretch;
+        let (low, high) = (a.value.min(b.value), a.value.max(b.value));
+        let thickness = role.gauge.thickness;
+        // A point that is in contact on the way is nowhere farther from contact than the way is long.
+        let range = [low - way + thickness, high + 2.0 * way + thickness];
+        let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
+        match ledger.bend(&role.gauge, &tool, &tip, 0.5 * way, range) {
+            Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend),
+            Bend::AtMost(bend) => Bend::AtMost(bend * stretch * stretch + sweep.swing()),
+            other => other,
+        }
+    }
+
+    /// Whether the bounds on a stretch are in the band.
+    fn holds_between(&self, a: &Sample, b: &Sample) -> bool {
+        let Bend::AtMost(bend) = self.bend(a, b) else { return false };
+        let low = lowest((a.value - self.open(a), b.value - self.open(b)), bend, b.x - a.x);
+        let high = highest(a, b, bend);
+        self.line.role.holds(low, self.size) && self.line.role.holds(high, self.size)
+    }
+}
+
+/// Least value on a stretch of the chord between the end values, sagging with the given second derivative.
+fn lowest((left, right): (f64, f64), bend: f64, length: f64) -> f64 {
+    let sag = 0.5 * bend * length;
+    // Slope of chord and sag at both ends: −sag and +sag besides that of the chord.
+    let slope = (right - left) / length;
+    if slope.abs() >= sag || sag <= 0.0 {
+        return left.min(right);
+    }
+    // Zero of the slope.
+    let s = (sag - slope) / bend;
+    left + (slope - sag) * s + 0.5 * bend * s * s
+}
+
+/// Greatest value on a stretch below the parabolas from both ends with the given second derivative.
+fn highest(a: &Sample, b: &Sample, bend: f64) -> f64 {
+    let h = b.x - a.x;
+    let left = |s: f64| a.value + (a.slope + 0.5 * bend * s) * s;
+    let right = |s: f64| {
+        let t = h - s;
+        b.value - (b.slope - 0.5 * bend * t) * t
+    };
+    // Each is highest at an end of its part, wherever the parts meet; best where both agree: their difference is linear.
+    let (at_a, at_b) = (left(0.0) - right(0.0), left(h) - right(h));
+    let meet = if at_a < 0.0 && at_b > 0.0 { h * at_a / (at_a - at_b) } else { 0.5 * h };
+    left(meet).max(right(meet)).max(a.value).max(b.value)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn sample(x: f64, value: f64, slope: f64) -> Sample {
+        Sample { x, value, slope }
+    }
+
+    #[test]
+    fn bounds_of_a_parabola_are_the_parabola() {
+        // x² − x on [0, 1]: second derivative 2.
+        let (a, b) = (sample(0.0, 0.0, -1.0), sample(1.0, 0.0, 1.0));
+        assert!((lowest((0.0, 0.0), 2.0, 1.0) + 0.25).abs() < 1e-15);
+        assert!(highest(&a, &b, 2.0).abs() < 1e-15);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        /// The least of several parabolas of curvature K at most stays between the bounds.
+        #[test]
+        fn no_least_of_parabolas_leaves_its_bounds(
+            parts in prop::collection::vec((-1.0..1.0f64, -3.0..3.0f64, -6.0..1.0f64), 1..5),
+            length in 0.1..2.0f64,
+        ) {
+            let bend = 1.0;
+            let at = |x: f64| {
+                parts
+                    .iter()
+                    .map(|(c, m, k)| (c + (m + 0.5 * k * x) * x, m + k * x))
+                    .min_by(|p, q| p.0.total_cmp(&q.0))
+                    .expect("a part")
+            };
+            let ends = [0.0, length].map(|x| sample(x, at(x).0, at(x).1));
+            let low = lowest((ends[0].value, ends[1].value), bend, length);
+            let high = highest(&ends[0], &ends[1], bend);
+            for k in 0..=200 {
+                let value = at(length * f64::from(k) / 200.0).0;
+                prop_assert!(value >= low - 1e-12 && value <= high + 1e-12, "{low} {value} {high}");
+            }
+        }
+    }
+}

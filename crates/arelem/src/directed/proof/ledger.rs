@@ -1,0 +1,89 @@
+//! What has been shown about a role's clearance and holds for later vectors, too.
+
+use std::cell::Cell;
+
+use apt_geometry::{Vec3, surface::Bend};
+
+use crate::clearance::{Certificate, Face, Gauge, Shape, Tool, certify, has_closed_form, upward_bend};
+
+/// How much farther a bound reaches than the vector it is made for, so that the next ones need no new one.
+const FORESIGHT: f64 = 3.0;
+
+/// A bound of the second derivatives of a clearance about a place.
+#[derive(Debug, Clone, Copy)]
+struct Bound {
+    tip: Vec3,
+    axis: Vec3,
+    spread: f64,
+    range: [f64; 2],
+    bend: f64,
+}
+
+/// A level that the clearance at a place is not below.
+#[derive(Debug, Clone, Copy)]
+struct Level {
+    tip: Vec3,
+    axis: Vec3,
+    level: f64,
+}
+
+/// Results worth keeping from one vector to the next.
+#[derive(Debug, Default)]
+pub(crate) struct Ledger {
+    bound: Cell<Option<Bound>>,
+    /// The last two: where a vector begins and where it ends.
+    levels: Cell<[Option<Level>; 2]>,
+}
+
+impl Ledger {
+    /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
+    /// distances of the points of contact are in `range`.
+    pub(super) fn bend(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Bend {
+        if let Some(bound) = self.bound.get()
+            && (tip - bound.tip).norm() + spread <= bound.spread
+            && tool.axis == bound.axis
+            && range[0] >= bound.range[0]
+            && range[1] <= bound.range[1]
+        {
+            return Bend::AtMost(bound.bend);
+        }
+        let ample = FORESIGHT * spread;
+        let wide = [range[0] - ample, range[1] + ample];
+        match upward_bend(gauge, tool, tip, ample, wide) {
+            Bend::AtMost(bend) => {
+                self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread: ample, range: wide, bend }));
+                Bend::AtMost(bend)
+            }
+            Bend::Unbounded => upward_bend(gauge, tool, tip, spread, range),
+            Bend::Unknown => Bend::Unknown,
+        }
+    }
+
+    /// True if no part of the tool is nearer to the surface than a level.
+    pub(super) fn certified(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, level: f64) -> bool {
+        if !doubtful(gauge, tool, tip) {
+            return true;
+        }
+        let known = self.levels.get();
+        if known.iter().flatten().any(|k| k.tip == *tip && k.axis == tool.axis && k.level >= level) {
+            return true;
+        }
+        let face = Face { surface: &gauge.surface, side: gauge.side };
+        match certify(face, tool, tip, level + gauge.thickness) {
+            Certificate::Holds => {
+                self.levels.set([Some(Level { tip: *tip, axis: tool.axis, level }), known[0]]);
+                true
+            }
+            Certificate::Unknown => true,
+            Certificate::Lower(_) | Certificate::Undecided => false,
+        }
+    }
+}
+
+/// True if the search for the contact may take one of several places that are each the nearest around: where tool and
+/// solid are both convex, or the clearance has a closed form, it may not.
+fn doubtful(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
+    !gauge.on
+        && matches!(gauge.shape(), Shape::General | Shape::Concave)
+        && !has_closed_form(gauge, tool, tip)
+}
