@@ -7,15 +7,19 @@ use crate::{Vec3, canonical::TabulatedCylinder};
 
 type Vec2 = Vector2<f64>;
 
-/// Starting points per interval for the nearest point.
-const STARTS: u32 = 4;
+/// Spans of an interval that are searched for a nearest point each.
+const SPANS: u32 = 8;
 /// Bound of the Newton iteration for the nearest point of an interval; it is bracketed.
 const MAX_ITERATIONS: u32 = 60;
 
+/// Step along the curve, relative to the lengths, below which its effect on the distance is far below rounding.
+const RESOLUTION: f64 = 1e-13;
 /// Cosine defect above which the nearest point is a corner of the curve.
 const CORNER: f64 = 1e-9;
 /// Distance from the curve, relative to the size of the coordinates, below which a point lies on it.
 const ON_CURVE: f64 = 1e-12;
+/// Sine of a turn between intervals below which they join smoothly.
+const SMOOTH: f64 = 1e-7;
 /// Curvature of a corner: large enough to be infinite for any tool, small enough to compute with.
 const CORNER_CURVATURE: f64 = 1e12;
 
@@ -86,14 +90,20 @@ impl Cubic {
         Vec2::new(w.dot(&self.along), w.dot(&self.normal_axis()))
     }
 
-    /// No point of the interval is nearer than this.
-    fn lower_bound(&self, local: Vec2) -> f64 {
-        if self.open[0] || self.open[1] {
+    fn straight(&self) -> bool {
+        self.coefficients == [0.0; 3]
+    }
+
+    /// No point of the interval is nearer than the root of this.
+    fn least_square(&self, local: Vec2) -> f64 {
+        if (self.open[0] || self.open[1]) && !self.straight() {
             return 0.0;
         }
-        let dx = (-local.x).max(local.x - self.length).max(0.0);
+        let before = if self.open[0] { 0.0 } else { -local.x };
+        let after = if self.open[1] { 0.0 } else { local.x - self.length };
+        let dx = before.max(after).max(0.0);
         let dy = (self.bounds[0] - local.y).max(local.y - self.bounds[1]).max(0.0);
-        dx.hypot(dy)
+        dx * dx + dy * dy
     }
 
     /// Half the derivative of the squared distance to the point of a parameter.
@@ -118,7 +128,7 @@ impl Cubic {
             let newton = s - gradient / curvature;
             let next =
                 if curvature > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            if (next - s).abs() <= 1e-15 * (self.length + s.abs()) {
+            if (next - s).abs() <= RESOLUTION * (self.length + s.abs() + local.y.abs()) {
                 return next;
             }
             s = next;
@@ -126,12 +136,19 @@ impl Cubic {
         s
     }
 
-    /// The nearest point: its parameter and distance.
+    /// The nearest point: its parameter and squared distance.
     fn nearest(&self, local: Vec2) -> (f64, f64) {
         let reach = self.length + local.norm();
         let low = if self.open[0] { -reach } else { 0.0 };
         let high = if self.open[1] { self.length + reach } else { self.length };
-        let distance = |s: f64| (s - local.x).hypot(self.height(s)[0] - local.y);
+        if self.straight() {
+            let s = local.x.clamp(low, high);
+            return (s, (s - local.x) * (s - local.x) + local.y * local.y);
+        }
+        let distance = |s: f64| {
+            let (x, y) = (s - local.x, self.height(s)[0] - local.y);
+            x * x + y * y
+        };
         let mut best = (low, distance(low));
         let mut take = |s: f64| {
             let d = distance(s);
@@ -144,18 +161,17 @@ impl Cubic {
             take(self.nearest_from(local, local.x.clamp(low, high), [low, high]));
             return best;
         }
-        for k in 0..STARTS {
-            let left = low + (high - low) * f64::from(k) / f64::from(STARTS);
-            let right = low + (high - low) * f64::from(k + 1) / f64::from(STARTS);
-            let middle = 0.5 * (left + right);
-            let [a, b, c] = [left, middle, right].map(|s| self.gradient(local, s));
+        let mut left = (low, self.gradient(local, low));
+        for k in 1..=SPANS {
+            let right = low + (high - low) * f64::from(k) / f64::from(SPANS);
+            let right = (right, self.gradient(local, right));
             // A nearest point lies where the distance stops falling; elsewhere there is nothing to be found.
-            if a <= 0.0 && b >= 0.0 {
-                take(self.nearest_from(local, 0.5 * (left + middle), [left, middle]));
+            if left.1 <= 0.0 && right.1 >= 0.0 {
+                let share = if right.1 > left.1 { left.1 / (left.1 - right.1) } else { 0.5 };
+                let start = left.0 + (right.0 - left.0) * share;
+                take(self.nearest_from(local, start, [left.0, right.0]));
             }
-            if b <= 0.0 && c >= 0.0 {
-                take(self.nearest_from(local, 0.5 * (middle + right), [middle, right]));
-            }
+            left = right;
         }
         best
     }
@@ -204,20 +220,27 @@ impl DirectrixCurve {
     /// normal `(−sin φ, cos φ)`.
     pub(super) fn foot(&self, p: &Vec3) -> (Foot, f64) {
         let flat = self.flat(p);
-        let mut best: Option<(usize, f64, f64)> = None;
+        // First the interval that may be nearest, then all that still may be nearer.
+        let mut first = (f64::INFINITY, 0);
         for (k, interval) in self.intervals.iter().enumerate() {
-            let local = interval.to_local(flat);
-            if let Some((_, _, distance)) = best
-                && interval.lower_bound(local) > distance
-            {
-                continue;
-            }
-            let (s, distance) = interval.nearest(local);
-            if best.is_none_or(|(_, _, least)| distance < least) {
-                best = Some((k, s, distance));
+            let least = interval.least_square(interval.to_local(flat));
+            if least < first.0 {
+                first = (least, k);
             }
         }
-        let (k, s, _) = best.unwrap_or((0, 0.0, 0.0));
+        let mut best = (first.1, 0.0, f64::INFINITY);
+        let others = (0..self.intervals.len()).filter(|k| *k != first.1);
+        for k in std::iter::once(first.1).chain(others) {
+            let Some(interval) = self.intervals.get(k) else { continue };
+            let local = interval.to_local(flat);
+            if interval.least_square(local) <= best.2 {
+                let (s, square) = interval.nearest(local);
+                if square < best.2 {
+                    best = (k, s, square);
+                }
+            }
+        }
+        let (k, s, _) = best;
         let interval = &self.intervals[k];
         let [h, h1, h2] = interval.height(s);
         let norm = h1.hypot(1.0);
@@ -233,6 +256,37 @@ impl DirectrixCurve {
         let curvature = if corner { CORNER_CURVATURE.copysign(height) } else { -h2 / (norm * norm * norm) };
         let normal = self.lift(if corner { offset / distance } else { normal });
         (Foot { distance, point: p - normal * distance, normal }, curvature)
+    }
+
+    /// Greatest curvature against a side of the stretches of the directrix that lie within a distance of a point:
+    /// positive where the curve turns away from that side, infinite at a corner that does.
+    pub(super) fn greatest_curvature(&self, side: f64, center: &Vec3, reach: f64) -> f64 {
+        let flat = self.flat(center);
+        let mut greatest = f64::NEG_INFINITY;
+        let mut before: Option<Vec2> = None;
+        for interval in &self.intervals {
+            let local = interval.to_local(flat);
+            let direction = |s: f64| {
+                let [_, slope, _] = interval.height(s);
+                (interval.along + interval.normal_axis() * slope) / slope.hypot(1.0)
+            };
+            let start = direction(0.0);
+            if let Some(end) = before
+                && local.norm() <= reach
+            {
+                // Turning to the right is turning away from the natural normal.
+                let turn = side * (end.y * start.x - end.x * start.y);
+                if turn > SMOOTH {
+                    return f64::INFINITY;
+                }
+            }
+            before = Some(direction(interval.length));
+            if interval.least_square(local) > reach * reach {
+                continue;
+            }
+            greatest = greatest.max(interval.greatest_curvature(side, local, reach));
+        }
+        greatest
     }
 
     pub(super) fn hessian(&self, foot: &Foot, curvature: f64) -> Matrix3<f64> {
@@ -259,6 +313,32 @@ impl DirectrixCurve {
 }
 
 impl Cubic {
+    /// A bound of the curvature against a side over the spans within reach of a point.
+    fn greatest_curvature(&self, side: f64, local: Vec2, reach: f64) -> f64 {
+        if self.straight() {
+            return 0.0;
+        }
+        let mut greatest = f64::NEG_INFINITY;
+        let width = self.length / f64::from(SPANS);
+        for k in 0..SPANS {
+            let [a, b] = [k, k + 1].map(|k| width * f64::from(k));
+            let beside = (a - local.x).max(local.x - b).max(0.0);
+            if beside > reach {
+                continue;
+            }
+            let ([_, s0, b0], [_, s1, b1]) = (self.height(a), self.height(b));
+            // The second derivative is linear, the slope monotone unless it turns.
+            let bend = (-side * b0).max(-side * b1);
+            let turns = (b0 > 0.0) != (b1 > 0.0);
+            let crosses = (s0 > 0.0) != (s1 > 0.0);
+            let slope = if turns || crosses { 0.0 } else { s0.abs().min(s1.abs()) };
+            let steep = if turns || crosses { s0.abs().max(s1.abs()) + bend.abs() * width } else { s0.abs().max(s1.abs()) };
+            let flattening = if bend > 0.0 { slope } else { steep };
+            greatest = greatest.max(bend / flattening.hypot(1.0).powi(3));
+        }
+        greatest
+    }
+
     fn ray_roots(&self, p: Vec2, d: Vec2, roots: &mut Vec<f64>) {
         let local = self.to_local(p);
         let (du, dv) = (d.dot(&self.along), d.dot(&self.normal_axis()));
