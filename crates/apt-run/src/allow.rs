@@ -17,7 +17,10 @@ use crate::{
 };
 
 /// How a comment addresses this program.
-const ADDRESS: &str = "apt-lsp:";
+pub const ADDRESS: &str = "apt-lsp:";
+
+/// The code of a comment that allows nothing.
+pub const ALLOWS_NOTHING: &str = "APT0960";
 
 /// The word that allows a finding in one statement.
 pub const IN_STATEMENT: &str = "allow";
@@ -219,9 +222,9 @@ fn text_range(start: usize, end: usize) -> TextRange {
     TextRange::new(size(start), size(end.max(start)))
 }
 
-/// A comment that allows a finding in a statement, as a line before it with the line's own indentation.
-pub fn comment(code: &str) -> String {
-    format!("$$ {ADDRESS} {IN_STATEMENT} {code}")
+/// A comment that allows a finding: [`IN_STATEMENT`] or [`IN_PROGRAM`].
+pub fn comment(word: &str, code: &str) -> String {
+    format!("$$ {ADDRESS} {word} {code}")
 }
 
 #[cfg(test)]

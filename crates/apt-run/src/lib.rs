@@ -7,6 +7,7 @@ pub mod allow;
 pub mod catalogue;
 pub mod diagnostic;
 pub mod document;
+mod fix;
 pub mod format;
 mod include;
 pub mod lint;

@@ -11,7 +11,7 @@ use rustc_hash::FxBuildHasher;
 use smol_str::SmolStr;
 
 pub(crate) use array::{Array, ArrayElement};
-pub(crate) use similar::similar_names;
+pub use similar::similar_names;
 pub(crate) use system::{ReferenceSystem, Stored};
 
 use crate::{finding::Found, macros::MacroDefinition, record::Origin};

@@ -6,7 +6,7 @@ use smol_str::SmolStr;
 const MOST_SUGGESTIONS: usize = 3;
 
 /// The candidates nearest to `name` in edit distance, best first, at most three; ties in alphabetical order.
-pub(crate) fn similar_names<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<SmolStr> {
+pub fn similar_names<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<SmolStr> {
     let allowed = name.chars().count().div_ceil(3).min(2);
     let mut near: Vec<(usize, &str)> = candidates
         .filter(|candidate| *candidate != name)

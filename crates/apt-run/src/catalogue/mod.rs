@@ -61,6 +61,9 @@ impl Text {
     }
 }
 
+/// Findings for which fixes are looked for. Nobody reads more, and a file in another language has one in every line.
+const MOST_FIXED: usize = 1_000;
+
 /// All diagnostics of a program and perhaps its run, in order of their place, with the severities of the settings.
 pub fn diagnostics(
     tree: &SyntaxTree,
@@ -69,6 +72,9 @@ pub fn diagnostics(
     settings: &Settings,
 ) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
+    for (diagnostic, finding) in list.iter_mut().zip(program.findings()).take(MOST_FIXED) {
+        diagnostic.fixes = crate::fix::of_finding(tree, finding);
+    }
     crate::lint::keep_shadowing(tree, &mut list);
     list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
     for lint in crate::lint::lint(tree, program) {

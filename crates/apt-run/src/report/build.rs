@@ -6,9 +6,12 @@ use apt_program::{Program, Value as SymbolValue};
 use apt_syntax::SyntaxTree;
 use serde_json::{Map, Value, json};
 
-use super::{ClEntry, DiagnosticReport, MotionEntry, RelatedReport, Report, TotalsEntry};
+use super::{
+    ClEntry, DiagnosticReport, EditReport, FixReport, MotionEntry, RelatedReport, Report,
+    TotalsEntry,
+};
 use crate::{
-    diagnostic::{Diagnostic, Severity, absolute_range, origin_steps, related_places},
+    diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places},
     pipeline::{Motion, RunResult},
     position::LineIndex,
 };
@@ -84,6 +87,19 @@ pub fn diagnostic_report(
         origin: origin_steps(&diagnostic.origin),
         related: related.collect(),
         hint: diagnostic.wording.hint.clone(),
+        fixes: diagnostic.fixes.iter().map(|fix| fix_report(fix, text, lines)).collect(),
+    }
+}
+
+fn fix_report(fix: &Fix, text: &str, lines: &LineIndex) -> FixReport {
+    let edit = |(range, insert): &(std::ops::Range<usize>, String)| EditReport {
+        range: lines.range(text, range.clone()),
+        text: insert.clone(),
+    };
+    FixReport {
+        title: fix.title.clone(),
+        preferred: fix.preferred,
+        edits: fix.edits.iter().map(edit).collect(),
     }
 }
 

@@ -56,6 +56,28 @@ pub struct DiagnosticReport {
     pub related: Vec<RelatedReport>,
     /// What would help.
     pub hint: Option<String>,
+    /// Changes that settle it, the likeliest first.
+    pub fixes: Vec<FixReport>,
+}
+
+/// A change of the program that settles a diagnostic.
+#[derive(Debug, Clone, Serialize)]
+pub struct FixReport {
+    /// What it does.
+    pub title: String,
+    /// Whether it is certainly what was meant.
+    pub preferred: bool,
+    /// The edits, in order of the text and without overlap.
+    pub edits: Vec<EditReport>,
+}
+
+/// A place and what takes its place.
+#[derive(Debug, Clone, Serialize)]
+pub struct EditReport {
+    /// What is replaced.
+    pub range: Range,
+    /// By what.
+    pub text: String,
 }
 
 /// A place that belongs to a diagnostic.

@@ -1,0 +1,245 @@
+//! Changes of the program that settle findings of Section 1.
+//!
+//! A fix is offered where its place and its text are sure; whether it is what the author meant is another question, and
+//! only where that is sure too it is preferred. Statements of included files are not changed from here.
+
+mod block;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use apt_program::{Finding, FindingKind, Origin, symbols::similar_names};
+use apt_syntax::{
+    SyntaxTree, TextRange,
+    error::SyntaxErrorKind,
+    grammar::ParsedStatement,
+    statement::{Body, ElementKind},
+    tree::StatementView,
+    vocabulary,
+};
+use smol_str::SmolStr;
+
+use crate::diagnostic::Fix;
+
+/// A name shorter than this resembles too many words of the language.
+const SHORTEST_MISSPELT_WORD: usize = 4;
+
+/// The fixes of a finding, the likeliest first.
+pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
+    let origin = &finding.origin;
+    if origin.source.is_some() || tree.statement_count() == 0 {
+        return Vec::new();
+    }
+    let index = (origin.isn.max(1) as usize - 1).min(tree.statement_count() - 1);
+    let view = tree.statement(index);
+    let here = Here { tree, parsed: view.parsed(), view, origin };
+    let fixes = match &finding.kind {
+        FindingKind::Syntax(kind) => here.syntax(kind),
+        FindingKind::Undefined { name, similar }
+        | FindingKind::UnknownLabel { name, similar }
+        | FindingKind::UnknownMacro { name, similar } => here.misspelt(name, similar),
+        FindingKind::UnknownMacroVariable { parameter, known, .. } => {
+            here.misspelt(parameter, &similar_names(parameter, known.iter().map(SmolStr::as_str)))
+        }
+        FindingKind::Unused { name } => here.unused(name).into_iter().collect(),
+        FindingKind::EndMissing => block::end_of_program(tree).into_iter().collect(),
+        FindingKind::MacroNotClosed { .. } => {
+            block::end_of_block(tree, index, "TERMAC").into_iter().collect()
+        }
+        FindingKind::LoopNotClosed => block::end_of_block(tree, index, "LOOPND").into_iter().collect(),
+        FindingKind::EndInRegion | FindingKind::MacroInRegion => {
+            block::end_before(&here.view, &here.parsed, finding)
+        }
+        FindingKind::MacroEndAlone
+        | FindingKind::LoopEndAlone
+        | FindingKind::AfterEnd
+        | FindingKind::Unreachable => here.without_statement("Remove the statement").into_iter().collect(),
+        FindingKind::PostBare { .. } => here.without_parameters().into_iter().collect(),
+        FindingKind::Redefined { name, .. } => {
+            here.line_before("CANON/ON", format!("Allow {name} to be defined again")).into_iter().collect()
+        }
+        _ => Vec::new(),
+    };
+    fixes
+}
+
+
+/// The statement that a finding is about.
+struct Here<'a> {
+    tree: &'a SyntaxTree,
+    view: StatementView,
+    parsed: std::sync::Arc<ParsedStatement>,
+    origin: &'a Origin,
+}
+
+impl Here<'_> {
+    /// Bytes of the text for a range of the statement.
+    fn bytes(&self, range: TextRange) -> Range<usize> {
+        let start = usize::from(self.view.start);
+        start + usize::from(range.start())..start + usize::from(range.end())
+    }
+
+    fn written(&self, range: TextRange) -> &str {
+        self.view.text().get(Range::<usize>::from(range)).unwrap_or("")
+    }
+
+    fn syntax(&self, kind: &SyntaxErrorKind) -> Vec<Fix> {
+        let here = self.origin.range;
+        let one = |title: &str, range: TextRange, text: &str, preferred| {
+            vec![Fix {
+                title: title.to_owned(),
+                edits: vec![(self.bytes(range), text.to_owned())],
+                preferred,
+            }]
+        };
+        let before = TextRange::empty(here.start());
+        match kind {
+            SyntaxErrorKind::NameWithoutEquals { name } => self.misspelt(name, &self.similar_words(name)),
+            SyntaxErrorKind::NotInDialect { dialect, .. } => vec![Fix {
+                title: format!("Set the dialect of the program to {dialect}"),
+                edits: vec![(0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()))],
+                preferred: false,
+            }],
+            SyntaxErrorKind::MissingSeparator => one("Insert a comma", before, ",", false),
+            SyntaxErrorKind::UnopenedParenthesis => one("Remove the parenthesis", here, "", false),
+            SyntaxErrorKind::UnclosedParenthesis => match self.parsed.elements.last() {
+                Some(last) => one(
+                    "Close it at the end of the statement",
+                    TextRange::empty(last.range.end()),
+                    ")",
+                    false,
+                ),
+                None => Vec::new(),
+            },
+            SyntaxErrorKind::EndsOnPunctuation => self.without_last_mark().into_iter().collect(),
+            SyntaxErrorKind::TextWordNotInColumnOne { .. } => {
+                let blanks = self.view.text().len() - self.view.text().trim_start_matches([' ', '\t']).len();
+                let start = usize::from(self.view.start);
+                let edit = (start..start + blanks, String::new());
+                let title = "Move it to the start of the line".to_owned();
+                let fix = Fix { title, edits: vec![edit], preferred: true };
+                if blanks > 0 { vec![fix] } else { Vec::new() }
+            }
+            SyntaxErrorKind::TakesNoParameters(_) => self.without_parameters().into_iter().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Words of the language that begin statements and are spelled like a name.
+    fn similar_words(&self, name: &str) -> Vec<SmolStr> {
+        if name.chars().count() < SHORTEST_MISSPELT_WORD {
+            return Vec::new();
+        }
+        let dialect = self.tree.dialect().name;
+        let begins = |word: &&vocabulary::Word| word.class.begins_statements() && word.is_in(dialect);
+        similar_names(name, vocabulary::words().iter().filter(begins).map(|word| word.spelling))
+    }
+
+    /// Another spelling for a name, if the name stands once in the place of the finding.
+    fn misspelt(&self, name: &str, similar: &[SmolStr]) -> Vec<Fix> {
+        let here = self.origin.range;
+        let is_name = |kind| matches!(kind, ElementKind::Name | ElementKind::Word | ElementKind::Number);
+        let mut places = self.parsed.elements.iter().filter(|element| {
+            is_name(element.kind)
+                && element.text == name
+                && (here.contains_range(element.range) || here.is_empty())
+        });
+        let (Some(place), None) = (places.next(), places.next()) else { return Vec::new() };
+        let fix = |other: &SmolStr| Fix {
+            title: format!("Replace {name} by {other}"),
+            edits: vec![(self.bytes(place.range), other.to_string())],
+            preferred: similar.len() == 1,
+        };
+        similar.iter().map(fix).collect()
+    }
+
+    /// The statement without its last mark.
+    fn without_last_mark(&self) -> Option<Fix> {
+        let last = self.parsed.elements.last()?;
+        let mark = self.written(last.range);
+        (matches!(last.kind, ElementKind::Comma)).then(|| Fix {
+            title: format!("Remove the {mark} at the end"),
+            edits: vec![(self.bytes(last.range), String::new())],
+            preferred: false,
+        })
+    }
+
+    /// The word alone, without the slash and what follows it.
+    fn without_parameters(&self) -> Option<Fix> {
+        let here = self.origin.range;
+        let elements = &self.parsed.elements;
+        let slash = elements
+            .iter()
+            .filter(|element| element.kind == ElementKind::Slash)
+            .find(|slash| slash.range.start() >= here.start() || here.contains_range(slash.range))?;
+        let last = elements.last()?;
+        let range = TextRange::new(slash.range.start(), last.range.end());
+        let one_line = !self.written(range).contains(['\n', '\r']);
+        one_line.then(|| Fix {
+            title: "Remove the parameters".to_owned(),
+            edits: vec![(self.bytes(range), String::new())],
+            preferred: false,
+        })
+    }
+
+    /// The program without a definition that nobody reads, if the statement does nothing else.
+    fn unused(&self, name: &str) -> Option<Fix> {
+        let [part] = self.parsed.statement.parts.as_slice() else { return None };
+        let target = match &part.body {
+            Body::Assignment { target, .. } | Body::Definition { target, .. } => target,
+            _ => return None,
+        };
+        let equals =
+            self.parsed.elements.iter().filter(|element| element.kind == ElementKind::Equals).count();
+        if target.name.text != name || target.subscript.is_some() || equals != 1 {
+            return None;
+        }
+        self.without_statement(&format!("Remove the definition of {name}"))
+    }
+
+    /// The program without this statement. Comments stay, and a label keeps its statement.
+    fn without_statement(&self, title: &str) -> Option<Fix> {
+        let begins_line = self.begins_line();
+        let elements = &self.parsed.elements;
+        let (first, last) = (elements.first()?, elements.last()?);
+        let whole = TextRange::new(first.range.start(), last.range.end());
+        if self.parsed.statement.label.is_some() || !begins_line || !self.view.text().ends_with(['\n', '\r'])
+        {
+            return None;
+        }
+        let range = match self.parsed.comments.as_slice() {
+            [] => Range::<usize>::from(self.view.range()),
+            _ if self.written(whole).contains(['\n', '\r']) => return None,
+            _ => self.bytes(whole),
+        };
+        Some(Fix { title: title.to_owned(), edits: vec![(range, String::new())], preferred: false })
+    }
+
+    /// The statement with another one before it, both with the same indentation.
+    fn line_before(&self, statement: &str, title: String) -> Option<Fix> {
+        if !self.begins_line() {
+            return None;
+        }
+        let text = self.view.text();
+        let blanks = text.get(..text.len() - text.trim_start_matches([' ', '\t']).len())?;
+        let start = usize::from(self.view.start);
+        let insert = format!("{blanks}{statement}{}", self.line_end());
+        Some(Fix { title, edits: vec![(start..start, insert)], preferred: false })
+    }
+
+    fn begins_line(&self) -> bool {
+        let before = self.view.index.checked_sub(1).map(|index| self.tree.statement(index));
+        before.is_none_or(|before| before.text().ends_with(['\n', '\r']))
+    }
+
+    fn line_end(&self) -> &'static str {
+        line_end(self.view.text())
+    }
+}
+
+/// The line end that a statement uses.
+pub(crate) fn line_end(text: &str) -> &'static str {
+    if text.ends_with("\r\n") { "\r\n" } else { "\n" }
+}
