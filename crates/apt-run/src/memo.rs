@@ -12,7 +12,9 @@ use std::{
 
 use apt_geometry::motion::MotionCommand;
 use arelem::{
-    section2::{Execution, State},
+    cure::Remedy,
+    section2::{Execution, Output, State},
+    story::{Story, tell},
     verify::{Evidence, VerifyError},
 };
 use rustc_hash::{FxBuildHasher, FxHasher};
@@ -26,13 +28,34 @@ pub struct ComputedMotion {
     pub execution: Execution,
     /// What the verifier found; `None` where there was nothing to verify.
     pub evidence: Option<Result<Evidence, VerifyError>>,
+    /// What would cure the failure, if there is one.
+    pub remedies: Vec<Remedy>,
     /// How long engine and verifier took, seconds; for people, never for decisions.
     pub seconds: f64,
 }
 
-/// What computing a motion gives: the engine's answer, the verifier's if there was something to verify, and the time
-/// taken in seconds.
-pub type Computation = (Execution, Option<Result<Evidence, VerifyError>>, f64);
+impl ComputedMotion {
+    /// The story of the motion; none for a failure and for commands that do not move along surfaces.
+    pub fn story(&self) -> Option<Story> {
+        match &self.execution.output {
+            Some(Output::Sequence(sequence)) => tell(&self.state, &self.command, sequence),
+            _ => None,
+        }
+    }
+}
+
+/// What computing a motion gives.
+#[derive(Debug)]
+pub struct Computation {
+    /// The engine's answer.
+    pub execution: Execution,
+    /// The verifier's, if there was something to verify.
+    pub evidence: Option<Result<Evidence, VerifyError>>,
+    /// What would cure a failure.
+    pub remedies: Vec<Remedy>,
+    /// The time taken, seconds.
+    pub seconds: f64,
+}
 
 /// How often the memo had the answer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -94,12 +117,13 @@ impl MotionMemo {
         if let Some(found) = self.find(key, state, command) {
             return Some(found);
         }
-        let (execution, evidence, seconds) = compute()?;
+        let Computation { execution, evidence, remedies, seconds } = compute()?;
         let motion = Arc::new(ComputedMotion {
             state: state.clone(),
             command: command.clone(),
             execution,
             evidence,
+            remedies,
             seconds,
         });
         let mut inner = self.lock();
@@ -151,7 +175,10 @@ mod tests {
 
     fn ask(memo: &MotionMemo, state: &State, limit: u32) -> Arc<ComputedMotion> {
         let command = MotionCommand::MaximumPoints(limit);
-        let compute = || Some((execute(state, &command, &|| false), None, 0.0));
+        let compute = || {
+            let execution = execute(state, &command, &|| false);
+            Some(Computation { execution, evidence: None, remedies: Vec::new(), seconds: 0.0 })
+        };
         memo.get_or_compute(state, &command, compute).unwrap()
     }
 

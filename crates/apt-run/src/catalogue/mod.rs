@@ -13,6 +13,8 @@ mod pages;
 mod pocket;
 mod postprocessor;
 mod program;
+pub(crate) mod remedy;
+mod story;
 mod syntax;
 
 use apt_cldata::text::ReadError;
@@ -26,6 +28,7 @@ use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
 pub use pages::{Page, explain, pages};
+pub use story::lines as story_lines;
 
 use crate::{
     allow::{Allowances, Idle},

@@ -11,13 +11,16 @@ use arelem::{
     verify::{Evidence, Rule, VerifyError},
 };
 
-use super::{Text, a_kind, number, pocket, say};
+use super::{Text, a_kind, number, pocket, remedy, say};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 
 /// The words, the severity and the APT III number of a finding of Sections 2 and 3.
 pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     match kind {
-        RunFindingKind::Failure(failure) => (failure_text(failure), Severity::Error, failure.apt3()),
+        RunFindingKind::Failure { failure, remedies } => {
+            let text = failure_text(failure).maybe(remedy::hint(remedies));
+            (text, Severity::Error, failure.apt3())
+        }
         RunFindingKind::Warning(warning) => (warning_text(warning), Severity::Warning, warning.apt3()),
         RunFindingKind::Unverified(evidence) => match uncleared(evidence) {
             Some(text) => (text, Severity::Warning, None),
@@ -50,7 +53,7 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     }
 }
 
-fn role(role: RoleName) -> &'static str {
+pub(super) fn role(role: RoleName) -> &'static str {
     match role {
         RoleName::Part => "part surface",
         RoleName::Drive => "drive surface",
@@ -59,7 +62,7 @@ fn role(role: RoleName) -> &'static str {
     }
 }
 
-fn relation(relation: Relation) -> &'static str {
+pub(super) fn relation(relation: Relation) -> &'static str {
     match relation {
         Relation::To => "TO",
         Relation::On => "ON",
@@ -72,7 +75,7 @@ fn relation(relation: Relation) -> &'static str {
 /// Smallest coordinate that is shown as another number than zero, in program units: far below any tolerance.
 const COORDINATE_SHOWN: f64 = 1e-9;
 
-fn place(at: &Vec3) -> String {
+pub(super) fn place(at: &Vec3) -> String {
     // Rounding leaves traces of 1e-13 where a coordinate is meant to be zero.
     let coordinate = |value: f64| number(if value.abs() < COORDINATE_SHOWN { 0.0 } else { value });
     format!("({}, {}, {})", coordinate(at.x), coordinate(at.y), coordinate(at.z))

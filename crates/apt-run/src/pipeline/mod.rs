@@ -11,7 +11,10 @@ use apt_cldata::{
 };
 use apt_program::{Origin, Program};
 use apt_syntax::SyntaxTree;
-use arelem::error::{MotionFailure, MotionWarning};
+use arelem::{
+    cure::Remedy,
+    error::{MotionFailure, MotionWarning},
+};
 
 use crate::{
     Cancel, Cancelled,
@@ -41,7 +44,12 @@ pub struct RunFinding {
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunFindingKind {
     /// The engine could not carry out a command.
-    Failure(MotionFailure),
+    Failure {
+        /// Why.
+        failure: MotionFailure,
+        /// What was found to cure it, the likeliest first.
+        remedies: Vec<Remedy>,
+    },
     /// The engine did, with a doubt.
     Warning(MotionWarning),
     /// The independent verifier did not confirm a computed motion.

@@ -13,6 +13,7 @@ use apt_geometry::{
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use apt_syntax::dialect::DialectName;
 use arelem::{
+    cure::{Remedy, remedies},
     error::MotionWarning,
     section2::{Execution, Output, Restart, StartUpRule, State, execute},
     sequence::{CutSequence, PocketPath, ToolPosition},
@@ -174,7 +175,7 @@ impl<'a> Section2<'a> {
 
     fn command(&mut self, command: &MotionCommand, origin: &Origin, source: u32) -> Result<(), Cancelled> {
         self.parameter_record(command, origin.isn, source);
-        let execution = if is_costly(command) {
+        let (execution, remedies) = if is_costly(command) {
             let computed = {
                 let (state, cancel) = (&self.state, self.cancel);
                 self.memo.get_or_compute(state, command, || compute(state, command, cancel))
@@ -184,14 +185,14 @@ impl<'a> Section2<'a> {
             if matches!(computed.execution.output, Some(Output::Sequence(_) | Output::Pocket(_))) {
                 self.output.motions.push(Motion { origin: origin.clone(), computed: computed.clone() });
             }
-            computed.execution.clone()
+            (computed.execution.clone(), computed.remedies.clone())
         } else {
-            execute(&self.state, command, &self.cancel)
+            (execute(&self.state, command, &self.cancel), Vec::new())
         };
         if (self.cancel)() {
             return Err(Cancelled);
         }
-        self.take(execution, command, origin, source);
+        self.take(execution, remedies, command, origin, source);
         Ok(())
     }
 
@@ -204,12 +205,19 @@ impl<'a> Section2<'a> {
         self.output.findings.push(RunFinding { kind, origin: origin.clone() });
     }
 
-    fn take(&mut self, execution: Execution, command: &MotionCommand, origin: &Origin, source: u32) {
+    fn take(
+        &mut self,
+        execution: Execution,
+        remedies: Vec<Remedy>,
+        command: &MotionCommand,
+        origin: &Origin,
+        source: u32,
+    ) {
         self.state = execution.state;
         // Section 1 has told of a negative tolerance, where the statement stands.
         let is_news = |warning: &MotionWarning| !matches!(warning, MotionWarning::NegativeTolerance { .. });
         let warnings = execution.warnings.into_iter().filter(is_news).map(RunFindingKind::Warning);
-        let failure = execution.failure.map(RunFindingKind::Failure);
+        let failure = execution.failure.map(|failure| RunFindingKind::Failure { failure, remedies });
         for kind in warnings.chain(failure) {
             self.output.findings.push(RunFinding { kind, origin: origin.clone() });
         }
@@ -385,7 +393,12 @@ fn compute(state: &State, command: &MotionCommand, cancel: Cancel<'_>) -> Option
         Some(Output::Pocket(path)) if !cancel() => Some(verify_pocket(path, &cancel)),
         _ => None,
     };
-    (!cancel()).then(|| (execution, evidence, begin.elapsed().as_secs_f64()))
+    let remedies = match &execution.failure {
+        Some(failure) if !cancel() => remedies(state, command, failure, &cancel),
+        _ => Vec::new(),
+    };
+    let seconds = begin.elapsed().as_secs_f64();
+    (!cancel()).then_some(Computation { execution, evidence, remedies, seconds })
 }
 
 fn control(word: &str, code: [u16; 2], numbers: &[f64]) -> ClKind {
