@@ -168,7 +168,7 @@ pub fn is_tape_code(code: &str) -> bool {
     number.is_some_and(|number| (820..900).contains(&number))
 }
 
-fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
+fn of_run(tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
     let (text, severity, apt3) = motion::word(&finding.kind);
     Diagnostic {
         wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3 },
@@ -176,7 +176,7 @@ fn of_run(_tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
         origin: finding.origin.clone(),
         related: Vec::new(),
         unnecessary: false,
-        fixes: Vec::new(),
+        fixes: crate::fix::of_run(tree, finding),
     }
 }
 

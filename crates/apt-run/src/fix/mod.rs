@@ -4,6 +4,7 @@
 //! only where that is sure too it is preferred. Statements of included files are not changed from here.
 
 mod block;
+mod motion;
 
 #[cfg(test)]
 mod tests;
@@ -65,6 +66,7 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
     fixes
 }
 
+pub(crate) use motion::of_run;
 
 /// The statement that a finding is about.
 struct Here<'a> {

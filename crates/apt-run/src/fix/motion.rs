@@ -1,0 +1,223 @@
+//! Changes of the program that cure a failed motion. Each was found to work by carrying out the motion with it.
+
+use apt_geometry::motion::Relation;
+use apt_syntax::{
+    SyntaxTree, TextRange,
+    statement::{Element, ElementKind},
+};
+use arelem::cure::Cure;
+
+use super::Here;
+use crate::{
+    catalogue::remedy::{drive_side_word, part_side_word, relation_word, statement, triple, turn_word},
+    diagnostic::Fix,
+    pipeline::{RunFinding, RunFindingKind},
+};
+
+/// The words of each kind that a cure replaces.
+const TURNS: &[&str] = &["GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"];
+const DRIVE_SIDES: &[&str] = &["TLLFT", "TLRGT", "TLON", "TLNDON"];
+const PART_SIDES: &[&str] = &["TLONPS", "TLOFPS"];
+const RELATIONS: &[&str] = &["TO", "ON", "PAST", "TANTO", "DSTAN", "PSTAN"];
+
+/// The fixes of a finding of Section 2, the likeliest first.
+pub(crate) fn of_run(tree: &SyntaxTree, finding: &RunFinding) -> Vec<Fix> {
+    let RunFindingKind::Failure { remedies, .. } = &finding.kind else { return Vec::new() };
+    let origin = &finding.origin;
+    if origin.source.is_some() || tree.statement_count() == 0 {
+        return Vec::new();
+    }
+    let index = (origin.isn.max(1) as usize - 1).min(tree.statement_count() - 1);
+    let view = tree.statement(index);
+    let here = Here { tree, parsed: view.parsed(), view, origin };
+    remedies.iter().filter_map(|remedy| here.cured(&remedy.cure)).collect()
+}
+
+impl Here<'_> {
+    /// The program with a cure, where the place for it is sure.
+    fn cured(&self, cure: &Cure) -> Option<Fix> {
+        match cure {
+            Cure::Turn(turn) => self.replaced(TURNS, turn_word(*turn)),
+            Cure::DriveSide(side) => {
+                let word = drive_side_word(*side);
+                self.replaced(DRIVE_SIDES, word).or_else(|| self.before(word.to_owned()))
+            }
+            Cure::PartSide(side) => {
+                let word = part_side_word(*side);
+                self.replaced(PART_SIDES, word).or_else(|| self.before(word.to_owned()))
+            }
+            Cure::Relation { check: 0, relation } => self.related(*relation),
+            Cure::Occurrence { check: 0, occurrence } => self.counted(*occurrence),
+            // With two check surfaces it is not sure which place is meant; and INDIRV may stand anywhere before the GO.
+            Cure::Relation { .. } | Cure::Occurrence { .. } | Cure::WithoutDirection => None,
+            Cure::MoveTo { forward: Some(forward), .. } => {
+                let direction = format!("{}INDIRV/{}", self.line_end(), triple(forward));
+                self.before(statement(cure)? + &direction)
+            }
+            _ => self.before(statement(cure)?),
+        }
+    }
+
+    fn before(&self, statement: String) -> Option<Fix> {
+        let first = statement.lines().next().unwrap_or_default().to_owned();
+        self.line_before(&statement, format!("Insert {first} before the motion"))
+    }
+
+    /// Another word for the one of a kind that stands in the statement.
+    fn replaced(&self, kind: &[&str], word: &str) -> Option<Fix> {
+        let found = self.parsed.elements.iter().find(|element| is_word(element, kind))?;
+        (found.text != word)
+            .then(|| self.edit(found.range, word, format!("Replace {} by {word}", found.text)))
+    }
+
+    /// Another relation to the first check surface, said or implied.
+    fn related(&self, relation: Relation) -> Option<Fix> {
+        let word = relation_word(relation);
+        let place = self.check_place()?;
+        if is_word(place, RELATIONS) {
+            return Some(self.edit(place.range, word, format!("Replace {} by {word}", place.text)));
+        }
+        let at = TextRange::empty(place.range.start());
+        Some(self.edit(at, &format!("{word},"), format!("Insert {word}")))
+    }
+
+    /// Another count before INTOF.
+    fn counted(&self, occurrence: u32) -> Option<Fix> {
+        let elements = &self.parsed.elements;
+        let intof = elements.iter().position(|element| is_word(element, &["INTOF"]))?;
+        let number = elements.get(intof.checked_sub(2)?)?;
+        (number.kind == ElementKind::Number).then(|| {
+            let title = format!("Replace {},INTOF by {occurrence},INTOF", number.text);
+            self.edit(number.range, &occurrence.to_string(), title)
+        })
+    }
+
+    /// What stands behind the drive surface: the first element of the part about the check surface.
+    fn check_place(&self) -> Option<&Element> {
+        let elements = &self.parsed.elements;
+        let turn = elements.iter().position(|element| is_word(element, TURNS))?;
+        let mut depth = 0_u32;
+        for (index, element) in elements.iter().enumerate().skip(turn) {
+            match element.kind {
+                ElementKind::LeftParenthesis => depth += 1,
+                ElementKind::RightParenthesis => depth = depth.saturating_sub(1),
+                ElementKind::Comma if depth == 0 => return elements.get(index + 1),
+                _ => {}
+            }
+        }
+        None
+    }
+
+    fn edit(&self, range: TextRange, text: &str, title: String) -> Fix {
+        Fix { title, edits: vec![(self.bytes(range), text.to_owned())], preferred: false }
+    }
+}
+
+fn is_word(element: &Element, words: &[&str]) -> bool {
+    matches!(element.kind, ElementKind::Word | ElementKind::Name) && words.contains(&element.text.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::{
+        diagnostic::Diagnostic,
+        document::{Document, Level},
+        format::applied,
+        settings::Settings,
+    };
+
+    fn found(text: &str) -> Vec<Diagnostic> {
+        let document = Document::new(text, None, &Arc::new(Settings::default()));
+        document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap()
+    }
+
+    /// The fixes of the first finding with a code, and that each settles it.
+    fn fixes(text: &str, code: &str) -> Vec<(String, String)> {
+        let all = found(text);
+        let Some(finding) = all.iter().find(|one| one.wording.code == code) else {
+            panic!("no {code}: {all:?}")
+        };
+        let made: Vec<_> =
+            finding.fixes.iter().map(|fix| (fix.title.clone(), applied(text, &fix.edits))).collect();
+        for (title, fixed) in &made {
+            let left = found(fixed);
+            assert!(left.iter().all(|one| one.wording.code != code), "{title}:\n{fixed}\n{left:?}");
+        }
+        made
+    }
+
+    const HEAD: &str = "CUTTER/.5\nL1=LINE/0,0,1,0\nL2=LINE/6,0,6,1\nC1=CIRCLE/6,.5,1\n";
+
+    #[test]
+    fn each_failure_gets_the_fixes_that_work() {
+        let cases = [
+            (
+                "APT0642",
+                "FROM/2,2,0\nGO/TO,L1\nTLLFT,GORGT/L1,TO,L2\nFINI\n",
+                "TLLFT,GOLFT/L1,TO,L2",
+                "Replace GORGT by GOLFT",
+            ),
+            (
+                "APT0643",
+                "FROM/2,2,0\nGO/TO,L1\nTLLFT,GOLFT/L1,TANTO,C1\nFINI\n",
+                "GOLFT/L1,TO,C1",
+                "Replace TANTO by TO",
+            ),
+            (
+                "APT0642",
+                "FROM/2,2,0\nGO/TO,L1\nTLLFT,GOLFT/L1,ON,3,INTOF,C1\nFINI\n",
+                "ON,2,INTOF,C1",
+                "Replace 3,INTOF by 2,INTOF",
+            ),
+            (
+                "APT0627",
+                "FROM/0,.25,0\nTLLFT,GOFWD/L1,ON,L2\nFINI\n",
+                "TLLFT,GORGT/L1,ON,L2",
+                "Replace GOFWD by GORGT",
+            ),
+            (
+                "APT0620",
+                "FROM/2,0,3\nGO/TO,L1\nFINI\n",
+                "SRFVCT/(VECTOR/0,1,0)\nGO/TO,L1",
+                "Insert SRFVCT/(VECTOR/0,1,0) before the motion",
+            ),
+            (
+                "APT0625",
+                "OUTTOL/.001\nFROM/0,.252,0\nTLLFT,GORGT/L1,ON,L2\nFINI\n",
+                "OUTTOL/0.001,0.0021,0.001\nTLLFT,GORGT",
+                "Insert OUTTOL/0.001,0.0021,0.001 before the motion",
+            ),
+            (
+                "APT0622",
+                "FROM/0,2,0\nOFFSET/TO,L1\nFINI\n",
+                "INDIRV/0,-1,0\nOFFSET/TO,L1",
+                "Insert INDIRV/0,-1,0 before the motion",
+            ),
+        ];
+        for (code, text, expected, title) in cases {
+            let made = fixes(&format!("{HEAD}{text}"), code);
+            let hit = made.iter().find(|(told, _)| told == title);
+            let Some((_, fixed)) = hit else { panic!("{code}: no {title:?} in {made:?}") };
+            assert!(fixed.contains(expected), "{code}: {fixed}");
+        }
+    }
+
+    #[test]
+    fn the_hint_names_the_cure_and_where_it_leads() {
+        let text = format!("{HEAD}FROM/2,2,0\nGO/TO,L1\nTLLFT,GORGT/L1,TO,L2\nFINI\n");
+        let all = found(&text);
+        let finding = all.iter().find(|one| one.wording.code == "APT0642").unwrap();
+        let hint = finding.wording.hint.as_deref().unwrap();
+        assert!(hint.starts_with("GOLFT ends at (5.75, 0.25, 0)"), "{hint}");
+    }
+
+    #[test]
+    fn a_macro_that_fails_is_fixed_in_its_own_text() {
+        let text =
+            format!("{HEAD}M1=MACRO\nTLLFT,GORGT/L1,TO,L2\nTERMAC\nFROM/2,2,0\nGO/TO,L1\nCALL/M1\nFINI\n");
+        let made = fixes(&text, "APT0642");
+        assert!(made[0].1.contains("MACRO\nTLLFT,GOLFT/L1,TO,L2\nTERMAC"), "{made:?}");
+    }
+}
