@@ -180,3 +180,59 @@ fn a_macro_variable_can_be_the_verb_and_an_axis_is_dropped_without_multax() {
         .collect();
     assert_eq!(axes, [false, false]);
 }
+
+#[test]
+fn a_statement_may_have_22000_characters_on_640_lines() {
+    let mut text = "X=MAXF(".to_owned();
+    let mut count = 0_u32;
+    for line in 0..640 {
+        for _ in 0..7 {
+            text.push_str(&format!("{:4},", count % 9000 + 1000));
+            count += 1;
+        }
+        text.push_str(if line == 639 { "1)\n" } else { "$ text\n" });
+    }
+    text.push_str("Y=X+1");
+    assert!(text.lines().count() == 641 && text.len() > 22_000);
+    let program = run(&text);
+    assert!(problems(&program).is_empty(), "{:?}", problems(&program));
+    assert_eq!(scalar(&program, "X"), Some(f64::from(count + 999)));
+    assert_eq!(scalar(&program, "Y"), Some(f64::from(count + 1000)));
+    let sum: String =
+        (0..640).map(|line| if line == 0 { "S=1$\n".to_owned() } else { "+1 $\n".to_owned() }).collect();
+    assert_eq!(scalar(&run(&format!("{sum}+1")), "S"), Some(641.0));
+    let long = format!("S=1{}", "$\n-1+1*1/1-1+1+1+1-1*1+1+1".repeat(1_000));
+    assert_eq!(scalar(&run(&long), "S"), Some(3001.0), "twelve thousand operators");
+}
+
+#[test]
+fn constructs_nest_and_combine() {
+    let cases: &[(&str, &str, f64)] = &[
+        ("Z=0\nDO/A,I=1,3\nDO/A,J=I,3\nA)Z=Z+I*J", "Z", 25.0),
+        ("Z=0\nDO/A,I=10,1,-3\nA)Z=Z*100+I", "Z", 10_070_401.0),
+        ("Z=0\nDO/A,I=1,10\nIF(I.EQ.4)JUMPTO/B\nZ=Z+I\nA)CONTIN\nB)Z=Z*I", "Z", 24.0),
+        (
+            "M=MACRO/N,R\nR=0\nDO/A,I=1,N\nIF(MODF(I,2).EQ.0)R=R+I\nA)CONTIN\nTERMAC\nCALL/M,N=10,R=S",
+            "S",
+            30.0,
+        ),
+        ("RESERV/A,9\nI=0\nDO/L,K=1,3\nL)A(I=I+1)=K**2\nX=A(I)+A(I=I-1)*10+A(I=I-1)*100", "X", 149.0),
+        ("TO=3\nON=TO*2\nDO/TO1,PAST=1,ON\nTO1)TO=TO+PAST", "TO", 24.0),
+        ("M=MACRO/V,A,B,C\nC=V(A,B)\nTERMAC\nCALL/M,V=MAXF,A=3,B=2+5,C=R", "R", 7.0),
+        ("X=-2**2\nY=(-2)**2\nIF(X.LT.Y.AND.Y.EQ.4.OR.X.GT.100)Z=1", "Z", 1.0),
+        ("X=2\nIF(X.EQ.1.OR.X.EQ.2.AND.X.EQ.3)Y=1\nIF(X.EQ.2.OR.X.EQ.9.AND.X.EQ.8)Y=7", "Y", 7.0),
+        ("SYN/C,CIRCLE,R,RADIUS\nK=C/CENTER,(1,2),R,3\nX=CANF(7,K)", "X", 3.0),
+        ("LOOPST\nK=0\nLOOPST\nA)K=K+1\nIF(K.LT.4)JUMPTO/A\nLOOPND\nK=K*10\nLOOPND", "K", 40.0),
+        ("M=MACRO/K\nX=K*2\nTERMAC\nN=MACRO/K\nCALL/M,K=K+1\nTERMAC\nCALL/N,K=4", "X", 10.0),
+        ("V A L U E = 1 2 . 5 $ text\n+ 1 $$ the end\nX=VALUE", "X", 13.5),
+        ("P=(1,2,3)\nQ=P\nX=DISTF(Q,(POINT/4,6,3))", "X", 5.0),
+        ("A=3\nIF(A-3)1,02,3\n1)X=1\nJUMPTO/4\n2)X=2\nJUMPTO/4\n3)X=3\n4)Y=X", "Y", 2.0),
+    ];
+    for (text, name, expected) in cases {
+        let program = run(text);
+        let errors: Vec<_> =
+            program.findings().filter(|finding| finding.severity == Severity::Error).collect();
+        assert!(errors.is_empty(), "{text}: {errors:?}");
+        assert_eq!(scalar(&program, name), Some(*expected), "{text}");
+    }
+}

@@ -1,7 +1,5 @@
 //! Statements of other files: where their findings, records and frames come from.
 
-#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
 use std::{
     path::{Path, PathBuf},
     sync::Arc,

@@ -221,3 +221,16 @@ fn drive_side_is_remembered_when_the_motion_is_held() {
     assert_eq!(found[0], format!("3:DriveSide({:?})", DriveSide::Right));
     assert_eq!(found[1], format!("4:Forward L1 [{:?} 1 L2 -]", Relation::Past));
 }
+
+#[test]
+fn words_of_later_systems_stand_in_their_statements_unless_they_are_names() {
+    assert_eq!(short(&run("CYCLE/DRILL,DEPTH,2,CLEAR,.1"))[0], "1:CYCLE/DRILL=163,DEPTH=0,2,CLEAR=0,0.1");
+    assert_eq!(short(&run("DEPTH=7\nCYCLE/DRILL,DEPTH,2"))[0], "2:CYCLE/DRILL=163,7,2");
+    for (text, dialect) in
+        [("SPINDL/DEPTH\nFINI\n", DialectName::Free), ("CYCLE/DRILL,DEPTH,2\nFINI\n", DialectName::Apt3)]
+    {
+        let program = run_as(text, dialect);
+        let numbers: Vec<_> = program.findings().map(|finding| finding.number).collect();
+        assert_eq!(numbers, [Some(101)], "{text}");
+    }
+}

@@ -55,6 +55,17 @@ fn the_report_has_its_fixed_fields() {
 }
 
 #[test]
+fn what_the_program_lists_is_reported() {
+    let value = report("A=2\nPRINT/3,A\nTITLES TOP\nFINI\n", None);
+    let listing = json!([
+        { "isn": 2, "lines": ["A SCALAR 1", "  2.000000"] },
+        { "isn": 3, "lines": [" TOP"] },
+    ]);
+    assert_eq!(value["listing"], listing);
+    assert_eq!(report("A=2\nPRINT/3,A\nTITLES TOP\nFINI\n", Some(3..=3))["listing"], json!([listing[1]]));
+}
+
+#[test]
 fn a_diagnostic_says_where_it_is_and_how_it_came_there() {
     let value = report(PROGRAM, None);
     let errors: Vec<&Value> = value["diagnostics"]

@@ -107,7 +107,7 @@ syntax_kinds! {
     Subscript,
     /// A sign with its operand.
     Signed,
-    /// Two operands and an operator.
+    /// Operands and the operators between them: of one rank, or a power.
     Binary,
     /// A function with its arguments.
     FunctionCall,

@@ -260,14 +260,22 @@ pub enum Expression {
         /// The whole.
         range: TextRange,
     },
-    /// `a op b`.
-    Binary {
-        /// The operator.
-        operator: Operator,
-        /// Left side.
-        left: Box<Expression>,
-        /// Right side.
-        right: Box<Expression>,
+    /// `a ** b`.
+    Power {
+        /// The base.
+        base: Box<Expression>,
+        /// The exponent.
+        exponent: Box<Expression>,
+        /// The whole.
+        range: TextRange,
+    },
+    /// `a op b op c …` with operators of one rank, which are carried out from left to right. A list and no tree: a
+    /// statement may have ten thousand operators.
+    Chain {
+        /// The first operand.
+        first: Box<Expression>,
+        /// Each operator with the operand behind it; never empty.
+        rest: Vec<(Operator, Expression)>,
         /// The whole.
         range: TextRange,
     },
@@ -298,7 +306,7 @@ pub enum Expression {
     },
 }
 
-/// An arithmetic operator.
+/// An arithmetic operator between the operands of a chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Operator {
@@ -306,7 +314,6 @@ pub enum Operator {
     Subtract,
     Multiply,
     Divide,
-    Power,
 }
 
 /// A logical condition (dialects that have it).
@@ -402,7 +409,8 @@ impl Expression {
             Expression::Reference(reference) => reference.range,
             Expression::Number { range, .. }
             | Expression::Sign { range, .. }
-            | Expression::Binary { range, .. }
+            | Expression::Power { range, .. }
+            | Expression::Chain { range, .. }
             | Expression::Call { range, .. }
             | Expression::Assign { range, .. }
             | Expression::Parenthesised { range, .. } => *range,

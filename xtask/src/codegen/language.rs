@@ -50,7 +50,10 @@ fn meaning(status: WordStatus) -> &'static str {
         WordStatus::Evaluated => "the program does what the word says",
         WordStatus::OnTape => "the post-processor acts on it",
         WordStatus::PassedThrough => "it stands on the CL file; a machine definition may give it a meaning",
-        WordStatus::Checked => "its form is checked, and it has no effect",
+        WordStatus::NoEffect => {
+            "it is accepted and its form is checked; what it switched in the old processor does not exist here"
+        }
+        WordStatus::Reported => "the language reserves it without a public meaning, and its use is reported",
         WordStatus::Parsed => "it is known, and its use is reported as not available",
     }
 }

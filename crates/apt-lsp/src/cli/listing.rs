@@ -14,6 +14,7 @@ const WIDTH: usize = 14;
 pub(super) fn text(report: &Value) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "PROGRAM {}", words(&report["program"]));
+    printed(&mut text, report);
     symbols(&mut text, report);
     motions(&mut text, report);
     records(&mut text, report);
@@ -43,6 +44,20 @@ fn plain(number: f64) -> String {
 
 fn numbers(values: &Value) -> String {
     list(values).iter().map(words).collect::<Vec<_>>().join(", ")
+}
+
+/// What the program itself lists.
+fn printed(text: &mut String, report: &Value) {
+    let entries = list(&report["listing"]);
+    if entries.is_empty() {
+        return;
+    }
+    text.push_str("\nLISTING OF THE PROGRAM\n");
+    for entry in entries {
+        for line in list(&entry["lines"]) {
+            let _ = writeln!(text, "  {:>5}  {}", words(&entry["isn"]), words(line));
+        }
+    }
 }
 
 fn symbols(text: &mut String, report: &Value) {
@@ -115,6 +130,17 @@ fn motions(text: &mut String, report: &Value) {
     };
     let _ =
         writeln!(text, "  {}, {}, {proof}", count(motions.len() as u64, "motion"), count(sum, "cut vector"));
+    stories(text, motions);
+}
+
+/// How each motion was computed, where that was asked for.
+fn stories(text: &mut String, motions: &[Value]) {
+    for motion in motions.iter().filter(|motion| motion["story"].is_array()) {
+        let _ = writeln!(text, "\n  {} {}", words(&motion["isn"]), words(&motion["statement"]));
+        for line in list(&motion["story"]) {
+            let _ = writeln!(text, "    {}", words(line));
+        }
+    }
 }
 
 fn count(number: u64, what: &str) -> String {
@@ -220,6 +246,7 @@ mod tests {
                 { "isn": 4, "type": "other", "surface": "C1", "code": [3000, 2], "words": [0.0, 1.5] },
                 { "isn": 5, "type": "fini" },
             ],
+            "listing": [{ "isn": 1, "lines": ["C1 CIRCLE 7", "  0.000000"] }],
             "totals": {
                 "points": 3, "length": 5.5, "cut_length": 5.5, "rapid_length": 0.0, "time_minutes": null,
                 "box": [[-2.0, 0.0, 0.0], [1.25, 0.0, 1.0]],
@@ -227,6 +254,10 @@ mod tests {
         });
         expect![[r#"
             PROGRAM A.apt
+
+            LISTING OF THE PROGRAM
+                  1  C1 CIRCLE 7
+                  1    0.000000
 
             CANONICAL FORMS
               C1           CIRCLE   0, 0, 0, 0, 0, 1, 2.5

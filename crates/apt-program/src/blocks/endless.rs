@@ -160,9 +160,13 @@ fn names_of_expression(expression: &Expression, names: &mut Vec<SmolStr>) {
         Expression::Sign { operand: inner, .. }
         | Expression::Parenthesised { inner, .. }
         | Expression::Assign { value: inner, .. } => names_of_expression(inner, names),
-        Expression::Binary { left, right, .. } => {
-            names_of_expression(left, names);
-            names_of_expression(right, names);
+        Expression::Power { base, exponent, .. } => {
+            names_of_expression(base, names);
+            names_of_expression(exponent, names);
+        }
+        Expression::Chain { first, rest, .. } => {
+            names_of_expression(first, names);
+            rest.iter().for_each(|(_, operand)| names_of_expression(operand, names));
         }
         Expression::Call { arguments, .. } => {
             for argument in arguments {

@@ -30,11 +30,12 @@ impl Evaluator<'_> {
             Expression::Sign { negative, operand, .. } => {
                 self.scalar(operand).map(|value| if *negative { -value } else { value })
             }
-            Expression::Binary { operator, left, right, range } => {
-                let left = self.scalar(left);
-                let right = self.scalar(right);
-                self.binary(*operator, left?, right?, *range)
+            Expression::Power { base, exponent, range } => {
+                let base = self.scalar(base);
+                let exponent = self.scalar(exponent);
+                self.raised(base?, exponent?, *range)
             }
+            Expression::Chain { first, rest, .. } => self.chain(first, rest),
             Expression::Call { function, arguments, range } => self.function(function, arguments, *range),
             Expression::Assign { target, value, .. } => {
                 let number = self.scalar(value);
@@ -42,6 +43,31 @@ impl Evaluator<'_> {
                 number
             }
             Expression::Parenthesised { inner, .. } => self.scalar(inner),
+        }
+    }
+
+    /// Operators of one rank, from left to right. Every operand is evaluated, so that mistakes in all of them are seen.
+    fn chain(&mut self, first: &Expression, rest: &[(Operator, Expression)]) -> Option<f64> {
+        let mut value = self.scalar(first);
+        for (operator, operand) in rest {
+            let right = self.scalar(operand);
+            let range = first.range().cover(operand.range());
+            value = match (value, right) {
+                (Some(left), Some(right)) => self.binary(*operator, left, right, range),
+                _ => None,
+            };
+        }
+        value
+    }
+
+    /// `base ** exponent`.
+    fn raised(&mut self, base: f64, exponent: f64, range: TextRange) -> Option<f64> {
+        match power(base, exponent) {
+            Ok(value) => self.finite(value, range),
+            Err(kind) => {
+                self.report(kind, range);
+                None
+            }
         }
     }
 
@@ -56,13 +82,6 @@ impl Evaluator<'_> {
                 return None;
             }
             Operator::Divide => left / right,
-            Operator::Power => match power(left, right) {
-                Ok(value) => value,
-                Err(kind) => {
-                    self.report(kind, range);
-                    return None;
-                }
-            },
         };
         self.finite(value, range)
     }

@@ -603,6 +603,12 @@ pub enum FindingKind {
         found: usize,
     },
 
+    /// TLAXIS in a form that APT III accepts, and of which nobody knows what it does.
+    #[error("TLAXIS/{word} is not documented")]
+    AxisUndocumented {
+        /// The word after TLAXIS.
+        word: SmolStr,
+    },
     /// An axis that the statement gives is not used, since MULTAX is off.
     #[error("{word} gives an axis while MULTAX is off")]
     AxisDropped {

@@ -113,6 +113,7 @@ impl FindingKind {
             | Self::ZeroStep
             | Self::NotInDialect { .. }
             | Self::AxisDropped { .. }
+            | Self::AxisUndocumented { .. }
             | Self::NoEffect { .. }
             | Self::AfterEnd
             | Self::Unreachable => return None,

@@ -3,8 +3,9 @@
 use apt_geometry::canonical::{Geometry, GeometryKind};
 use apt_syntax::{
     TextRange,
+    dialect::DialectName,
     statement::{Argument, Expression, Name, WordUse},
-    vocabulary::{self, WordClass},
+    vocabulary::{self, Word, WordClass},
 };
 use smol_str::SmolStr;
 
@@ -65,13 +66,13 @@ impl Evaluator<'_> {
             return self.report(FindingKind::PostBare { word: major.name() }, major.range);
         }
         let takes_any_word = self.is_apt4() && major.spelling() == "UNITS";
-        let Some(items) = self.post_operands(major.arguments, takes_any_word) else { return };
+        let Some(items) = self.post_operands(Some(major), major.arguments, takes_any_word) else { return };
         self.emit_post(major, &items, Vec::with_capacity(items.len()));
     }
 
     /// A word that nobody knows, in a CL file: its parameters go through as they are.
     pub(crate) fn unknown_word(&mut self, name: &Name, arguments: &[Argument], range: TextRange) {
-        let Some(items) = self.post_operands(arguments, true) else { return };
+        let Some(items) = self.post_operands(None, arguments, true) else { return };
         let arguments = items
             .into_iter()
             .map(|item| match item.operand {
@@ -87,15 +88,24 @@ impl Evaluator<'_> {
         self.emit(RecordKind::Postprocessor { word: name.text.clone(), code: NO_CODE, arguments }, range);
     }
 
-    /// Operands; in CL files, and after UNITS in APT4, a name without value is text.
-    fn post_operands(&mut self, arguments: &[Argument], takes_any_word: bool) -> Option<Items> {
-        if !self.is_cl() && !takes_any_word {
-            return self.operands(arguments);
-        }
+    /// Operands; in CL files, and after UNITS in APT4, a name without value is text. A name without value that later
+    /// systems use as a word of this statement is that word (CYCLE/DRILL,DEPTH,2), but not on cards.
+    fn post_operands(
+        &mut self,
+        major: Option<Major<'_>>,
+        arguments: &[Argument],
+        takes_any_word: bool,
+    ) -> Option<Items> {
+        let takes_any_word = takes_any_word || self.is_cl();
         let mut items = Vec::with_capacity(arguments.len());
         let mut complete = true;
         for argument in arguments {
-            if let Argument::Expression(Expression::Reference(reference)) = argument
+            if let Some(word) = major.and_then(|major| self.later_word(major, argument)) {
+                items.push(Item { operand: Operand::Word(word), range: argument.range() });
+                continue;
+            }
+            if takes_any_word
+                && let Argument::Expression(Expression::Reference(reference)) = argument
                 && self.look_up(&reference.name.text).is_none()
             {
                 let operand = Operand::Text(reference.name.text.clone());
@@ -105,6 +115,17 @@ impl Evaluator<'_> {
             complete &= self.operand(argument, &mut items).is_some();
         }
         complete.then_some(items)
+    }
+
+    /// The word of later systems that a name without value stands for in a statement.
+    fn later_word(&self, major: Major<'_>, argument: &Argument) -> Option<&'static Word> {
+        let Argument::Expression(Expression::Reference(reference)) = argument else { return None };
+        let name = &reference.name.text;
+        if self.dialect_name != DialectName::Free || reference.subscript.is_some() {
+            return None;
+        }
+        let word = vocabulary::lookup(name).filter(|word| word.class == WordClass::Minor)?;
+        (word.used_in.contains(&major.spelling()) && self.look_up(name).is_none()).then_some(word)
     }
 
     /// Checks the operands and writes the record.
@@ -170,7 +191,7 @@ impl Evaluator<'_> {
         if self.state.machines > MOST_MACHINES {
             return self.report(FindingKind::MachineCount { limit: MOST_MACHINES }, major.range);
         }
-        let Some(items) = self.post_operands(&major.arguments[1..], false) else { return };
+        let Some(items) = self.post_operands(Some(major), &major.arguments[1..], false) else { return };
         self.emit_post(major, &items, vec![PostArgument::Text(name)]);
     }
 }

@@ -1,5 +1,5 @@
 //! System flags: switches of the processors of old (language reference 7.10). Their forms are checked; what they switched
-//! - listings of the system's inside, storage sizes, plotters, the order of phases on tapes - does not exist here, or
+//! (listings of the inside of the system, storage sizes, plotters, the order of phases on tapes) does not exist here, or
 //! is asked for by a command.
 
 use apt_syntax::{statement::Argument, vocabulary::WordClass};

@@ -84,8 +84,8 @@ impl Evaluator<'_> {
             }
             ("NORMPS" | "NORMDS" | "PERPTO" | "TANDS" | "FAN", _) => {
                 // Forms that APT III accepts without documenting what they do: an error, not a guess.
-                let finding = FindingKind::RelationNotHere { word: smol_str::SmolStr::new_static(word) };
-                self.report(finding, major.range);
+                let word = smol_str::SmolStr::new_static(word);
+                self.report(FindingKind::AxisUndocumented { word }, major.range);
                 None
             }
             _ => {

@@ -14,7 +14,8 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
         Kind::DefinitionWord { kind, word } => {
             say("APT0302", format!("the word {word} cannot stand in the definition of {}", a_kind(*kind)))
         }
-        Kind::UnknownType { word } => say("APT0309", format!("{word} cannot be defined by this version")),
+        Kind::UnknownType { word } => say("APT0309", format!("{word} cannot be defined by this version"))
+            .hint("it is a type of single installations, whose programs are not public"),
         Kind::Untransformable { kind } => {
             say("APT0310", format!("{} cannot be carried into this reference system", a_kind(*kind)))
         }

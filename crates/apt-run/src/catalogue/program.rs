@@ -169,6 +169,11 @@ fn motion(kind: &Kind) -> Option<Text> {
         }
         Kind::AxisDropped { word } => say("APT0511", format!("the axis of this {word} is dropped"))
             .hint("write MULTAX before it, so that tool axes count"),
+        Kind::AxisUndocumented { word } => {
+            say("APT0512", format!("what TLAXIS/{word} does in this form is documented nowhere")).hint(
+                "TLAXIS/NORMPS, NORMDS, PARLEL and ATANGL relate the axis to the surfaces; a vector fixes it",
+            )
+        }
         Kind::PocketNumbers => say("APT0509", "POCKET begins with eight numbers"),
         Kind::PocketPoints { found } => say("APT0510", format!("POCKET takes 3 to 20 points, not {found}")),
         _ => return None,

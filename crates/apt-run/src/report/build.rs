@@ -7,7 +7,7 @@ use apt_syntax::SyntaxTree;
 use serde_json::{Map, Value, json};
 
 use super::{
-    ClEntry, DiagnosticReport, EditReport, FixReport, MotionEntry, RelatedReport, Report,
+    ClEntry, DiagnosticReport, EditReport, FixReport, ListingReport, MotionEntry, RelatedReport, Report,
     TotalsEntry,
 };
 use crate::{
@@ -48,6 +48,7 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .map(|diagnostic| diagnostic_report(diagnostic, input.file, input.text, input.tree, &lines))
             .collect(),
         symbols: symbols(input.program),
+        listing: listing(input.program, wanted),
         cl: input.result.records.iter().filter(|record| wanted(record.isn)).map(cl_entry).collect(),
         motions: input
             .result
@@ -58,6 +59,15 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .collect(),
         totals: totals_entry(input.result),
     }
+}
+
+/// What the wanted statements list.
+fn listing(program: &Program, wanted: impl Fn(u32) -> bool) -> Vec<ListingReport> {
+    let entries = program.listing().map(|entry| (entry.origin.place_in_program().0, entry));
+    entries
+        .filter(|(isn, _)| wanted(*isn))
+        .map(|(isn, entry)| ListingReport { isn, lines: entry.lines() })
+        .collect()
 }
 
 /// A diagnostic with its places as lines and characters.

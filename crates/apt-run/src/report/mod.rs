@@ -25,6 +25,8 @@ pub struct Report {
     pub diagnostics: Vec<DiagnosticReport>,
     /// Final value of every symbol, `NAME` or `NAME(3)`, in alphabetic order.
     pub symbols: Map<String, Value>,
+    /// What PRINT, PUNCH, TITLES and REMARK list, in order of execution.
+    pub listing: Vec<ListingReport>,
     /// The final CL records.
     pub cl: Vec<ClEntry>,
     /// What each motion statement gave.
@@ -89,6 +91,15 @@ pub struct RelatedReport {
     pub file: String,
     /// The place.
     pub range: Range,
+}
+
+/// What one execution of a statement lists.
+#[derive(Debug, Clone, Serialize)]
+pub struct ListingReport {
+    /// Statement number.
+    pub isn: u32,
+    /// The lines; a form feed is a new page.
+    pub lines: Vec<String>,
 }
 
 /// One CL record group.

@@ -56,31 +56,27 @@ impl<'a> Parser<'a> {
     fn chain(
         &mut self,
         first: usize,
-        mut left: Expression,
+        left: Expression,
         operand: Production<'a>,
         operator_of: fn(ElementKind) -> Option<Operator>,
     ) -> Parsed<Expression> {
+        let mut rest = Vec::new();
         while let Some(operator) = self.kind(0).and_then(operator_of) {
-            self.count_operator()?;
             self.bump();
-            let right = operand(self)?;
-            left = self.binary(first, operator, left, right);
+            rest.push((operator, operand(self)?));
         }
-        Ok(left)
+        if rest.is_empty() {
+            return Ok(left);
+        }
+        self.note(SyntaxKind::Binary, first);
+        Ok(Expression::Chain { first: Box::new(left), rest, range: self.range_from(first) })
     }
 
-    fn binary(
-        &mut self,
-        first: usize,
-        operator: Operator,
-        left: Expression,
-        right: Expression,
-    ) -> Expression {
+    fn raised(&mut self, first: usize, base: Expression, exponent: Expression) -> Expression {
         self.note(SyntaxKind::Binary, first);
-        Expression::Binary {
-            operator,
-            left: Box::new(left),
-            right: Box::new(right),
+        Expression::Power {
+            base: Box::new(base),
+            exponent: Box::new(exponent),
             range: self.range_from(first),
         }
     }
@@ -119,12 +115,12 @@ impl<'a> Parser<'a> {
             SignRule::TighterThanPower => {
                 operands.into_iter().rev().reduce(|(_, _, right), (start, _, left)| {
                     self.position = end;
-                    (start, end, self.binary(start, Operator::Power, left, right))
+                    (start, end, self.raised(start, left, right))
                 })
             }
             SignRule::WeakerThanPower => operands.into_iter().reduce(|(start, _, left), (_, stop, right)| {
                 self.position = stop;
-                (start, stop, self.binary(start, Operator::Power, left, right))
+                (start, stop, self.raised(start, left, right))
             }),
         };
         self.position = end;

@@ -24,7 +24,7 @@ use crate::vocabulary::Word;
 /// program of its time comes near; the limit keeps hostile input from exhausting the stack.
 pub const MAXIMUM_DEPTH: u16 = 200;
 
-/// The most operators of a statement, for the same reason: `1+1+1…` nests to the left.
+/// The most signs, `**` and logical operators of a statement, which nest, for the same reason.
 pub const MAXIMUM_OPERATORS: u16 = 1000;
 
 /// The most `**` in a chain (language reference 1.10).

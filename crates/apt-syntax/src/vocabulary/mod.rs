@@ -86,8 +86,10 @@ pub enum WordClass {
 pub enum WordStatus {
     /// The grammar knows it; its use is reported as not available.
     Parsed,
-    /// Its form is checked; it has no effect.
-    Checked,
+    /// It is accepted and its form is checked; what it switched in the old processor does not exist here.
+    NoEffect,
+    /// The language reserves it without a public meaning: its use is reported.
+    Reported,
     /// Sections 1 and 2 do what it says.
     Evaluated,
     /// The post-processor acts on it.
@@ -98,11 +100,12 @@ pub enum WordStatus {
 
 impl WordStatus {
     /// All statuses, in the order in which a page explains them.
-    pub const ALL: [WordStatus; 5] = [
+    pub const ALL: [WordStatus; 6] = [
         WordStatus::Evaluated,
+        WordStatus::NoEffect,
+        WordStatus::Reported,
         WordStatus::OnTape,
         WordStatus::PassedThrough,
-        WordStatus::Checked,
         WordStatus::Parsed,
     ];
 
@@ -110,7 +113,8 @@ impl WordStatus {
     pub fn as_str(self) -> &'static str {
         match self {
             WordStatus::Parsed => "parsed",
-            WordStatus::Checked => "checked",
+            WordStatus::NoEffect => "evaluated (no effect)",
+            WordStatus::Reported => "evaluated (use reported)",
             WordStatus::Evaluated => "evaluated",
             WordStatus::OnTape => "on tape",
             WordStatus::PassedThrough => "passed through",
@@ -212,6 +216,27 @@ mod tests {
         assert_eq!(count[&WordClass::GeometricType], 23);
         assert_eq!(count[&WordClass::Function], 15);
         assert_eq!(count[&WordClass::PostprocessorBare], 22);
+    }
+
+    #[test]
+    fn no_word_of_apt_iii_is_only_parsed() {
+        let of_apt_iii = words().iter().filter(|word| word.is_in(DialectName::Apt3));
+        let open: Vec<&str> =
+            of_apt_iii.filter(|word| word.status == WordStatus::Parsed).map(|word| word.spelling).collect();
+        assert!(open.is_empty(), "{open:?}");
+        // Without effect are system flags only; reserved without a meaning are types of installations and two forms of
+        // TLAXIS.
+        for word in words() {
+            let fits = match word.status {
+                WordStatus::NoEffect => word.class == WordClass::SystemFlag,
+                WordStatus::Reported => {
+                    word.class == WordClass::GeometricType
+                        || ["TANDS", "FAN", "CLDATF"].contains(&word.spelling)
+                }
+                _ => true,
+            };
+            assert!(fits, "{}", word.spelling);
+        }
     }
 
     #[test]

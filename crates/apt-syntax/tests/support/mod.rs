@@ -124,15 +124,19 @@ fn expression(value: &Expression) -> String {
         Expression::Sign { negative, operand, .. } => {
             format!("({} {})", if *negative { "neg" } else { "pos" }, expression(operand))
         }
-        Expression::Binary { operator, left, right, .. } => {
-            let operator = match operator {
-                Operator::Add => "+",
-                Operator::Subtract => "-",
-                Operator::Multiply => "*",
-                Operator::Divide => "/",
-                Operator::Power => "**",
-            };
-            format!("({operator} {} {})", expression(left), expression(right))
+        Expression::Power { base, exponent, .. } => {
+            format!("(** {} {})", expression(base), expression(exponent))
+        }
+        Expression::Chain { first, rest, .. } => {
+            rest.iter().fold(expression(first), |left, (operator, right)| {
+                let operator = match operator {
+                    Operator::Add => "+",
+                    Operator::Subtract => "-",
+                    Operator::Multiply => "*",
+                    Operator::Divide => "/",
+                };
+                format!("({operator} {left} {})", expression(right))
+            })
         }
         Expression::Call { function, arguments: list, .. } => {
             format!("({}{})", function.word.spelling, arguments(list))
