@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
     Foot, perpendicular,
-    sheet::{Jet, Rest},
+    sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{Vec3, canonical::PolyConicForm};
 
@@ -276,7 +276,10 @@ impl PolyConicSheet {
         let (_, [t, s]) = self.nearest(p);
         let jet = self.jet(t, s);
         let [[t0, t1], [s0, s1]] = self.limits;
+        // On the surface itself the offset is rounding and says nothing.
+        let on_surface = (p - jet.point).norm() <= ON_SURFACE * self.size;
         let rest = match (t <= t0 || t >= t1, s <= s0 || s >= s1) {
+            _ if on_surface => Rest::Inside,
             (false, false) => Rest::Inside,
             (true, false) => Rest::AlongV,
             (false, true) => Rest::AlongU,

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 use super::{
     Foot, perpendicular,
     section_curve::{CurvePoint, SectionCurve},
-    sheet::{Jet, Rest},
+    sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
@@ -386,7 +386,10 @@ impl RuledSheet {
         let (v, held) = self.share(p, &start.point, &start.dv);
         let jet = self.jet(nearest.piece, nearest.t, v);
         let [low, high] = self.limits[0];
+        // On the surface itself the offset is rounding and says nothing.
+        let on_surface = (p - jet.point).norm() <= ON_SURFACE * self.size;
         let rest = match (nearest.t <= low || nearest.t >= high, held) {
+            _ if on_surface => Rest::Inside,
             (false, false) => self.crease(p, &jet),
             (true, false) => Rest::AlongV,
             (false, true) => Rest::AlongU,

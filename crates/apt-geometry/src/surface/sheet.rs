@@ -9,6 +9,8 @@ use crate::Vec3;
 /// Sine of the angle between the partial derivatives, or their length relative to the surface, below which they span no
 /// tangent plane.
 const SINGULAR: f64 = 1e-10;
+/// Distance, relative to the size of a surface, below which a point lies on it.
+pub(super) const ON_SURFACE: f64 = 1e-9;
 /// Stretch `1 + d·κ` of the parallel surface below which it is at its focus and has no curvature.
 const FOCUS: f64 = 1e-12;
 
@@ -54,7 +56,7 @@ impl Jet {
         let height = offset.dot(natural);
         let length = offset.norm();
         // Beyond an edge the nearest point stays on it while the normal turns, as at a corner of a curve.
-        if rest == Rest::Inside || length <= 1e-9 * size || height.abs() >= length * (1.0 - 1e-9) {
+        if rest == Rest::Inside || length <= ON_SURFACE * size || height.abs() >= length * (1.0 - 1e-9) {
             return Foot { distance: height, point: p - natural * height, normal: *natural };
         }
         let distance = length.copysign(height);

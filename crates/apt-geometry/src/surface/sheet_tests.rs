@@ -238,6 +238,22 @@ fn the_natural_normal_of_a_polyconic_surface_is_conic_times_station() {
 }
 
 #[test]
+fn on_the_surface_the_hessian_is_that_of_its_curvature() {
+    for which in 0..6 {
+        for (t, share) in [(0.3, 0.4), (0.5, 0.5), (0.71, 0.17)] {
+            let place = sheet(which).foot(&exact(which, t, share)).point;
+            let (foot, hessian) = sheet(which).foot_and_hessian(&place);
+            let away = sheet(which).foot_and_hessian(&(place + foot.normal * 1e-4)).1;
+            assert!((hessian - away).norm() < 1e-3, "surface {which} at {t}, {share}: {hessian} {away}");
+        }
+    }
+    let bent = sheet(3).foot_and_hessian(&sheet(3).foot(&exact(3, 0.5, 0.5)).point).1;
+    assert!((bent.trace() - 1.0 / 3.0).abs() < 1e-6, "a tube of radius 3: {bent}");
+    let bent = sheet(0).foot_and_hessian(&sheet(0).foot(&exact(0, 0.5, 0.5)).point).1;
+    assert!(bent.trace().powi(2) < bent.norm_squared(), "a twisted strip is a saddle: {bent}");
+}
+
+#[test]
 fn values_without_a_surface_are_degenerate() {
     let Geometry::PolyConic(values) = tube(0.0) else { panic!("a polyconic surface") };
     let kind = GeometryKind::PolyConic;

@@ -332,7 +332,11 @@ impl Cubic {
             let turns = (b0 > 0.0) != (b1 > 0.0);
             let crosses = (s0 > 0.0) != (s1 > 0.0);
             let slope = if turns || crosses { 0.0 } else { s0.abs().min(s1.abs()) };
-            let steep = if turns || crosses { s0.abs().max(s1.abs()) + bend.abs() * width } else { s0.abs().max(s1.abs()) };
+            let steep = if turns || crosses {
+                s0.abs().max(s1.abs()) + bend.abs() * width
+            } else {
+                s0.abs().max(s1.abs())
+            };
             let flattening = if bend > 0.0 { slope } else { steep };
             greatest = greatest.max(bend / flattening.hypot(1.0).powi(3));
         }
