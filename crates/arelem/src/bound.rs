@@ -1,5 +1,5 @@
 //! Lower bounds for the number of cut vectors (arelem reference 5.6): chords of a ring, where the configuration confines
-//! the tool end to one.
+//! the tool end to one; elsewhere the integral of √(κ/8τ) along the path, κ being how the clearance bends.
 
 use apt_geometry::{Vec3, surface::Surface};
 
@@ -7,6 +7,9 @@ use crate::{clearance::Shape, directed::Prepared, role::Working, sequence::CutSe
 
 /// Sine below which directions are parallel or a plane contains one.
 const PARALLEL: f64 = 1e-9;
+
+/// Difference of cosines above which the tool does not touch the side of a cone but its vertex.
+const SLANT: f64 = 1e-6;
 
 /// A ring about an axis that the tool end cannot leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,24 +65,60 @@ impl Ring {
     }
 }
 
-/// The number of cut vectors that no sequence within tolerance can beat, where a bound is known.
-pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared) -> Option<u32> {
+/// The number of cut vectors that no sequence within tolerance can beat.
+pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared) -> u32 {
     if prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat {
-        return Some(1);
+        return 1;
     }
     let mut path = Vec::with_capacity(sequence.points.len() + 1);
     path.push(sequence.start.tip);
     path.extend(sequence.points.iter().map(|p| p.tip));
-    let part = ring(prepared, &prepared.part, &prepared.drive);
-    let drive = ring(prepared, &prepared.drive, &prepared.part);
-    let rings = [part, drive].iter().flatten().map(|ring| ring.of_path(&path)).max()?;
+    let part = least(prepared, &prepared.part, &prepared.drive, &path);
+    let drive = least(prepared, &prepared.drive, &prepared.part, &path);
     // The straight way from start to end at MAXDP a vector.
     let straight = match (path.first(), path.last()) {
         (Some(first), Some(last)) => (last - first).norm(),
         _ => 0.0,
     };
-    let steps = (straight / sequence.maximum_step * (1.0 - 1e-9)).ceil();
-    Some(if steps < f64::from(u32::MAX) { rings.max(steps as u32) } else { rings })
+    part.max(drive).max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
+}
+
+/// The least number of vectors that one role asks for.
+fn least(prepared: &Prepared, role: &Working, other: &Working, path: &[Vec3]) -> u32 {
+    if role.shape == Shape::Flat {
+        return 1;
+    }
+    match ring(prepared, role, other) {
+        Some(ring) => ring.of_path(path),
+        None => {
+            let share: f64 = path.windows(2).map(|pair| share(prepared, role, &pair[0], &pair[1])).sum();
+            whole(share * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+        }
+    }
+}
+
+/// Part of the integral that sampling the bend at the ends and in the middle of each vector may add.
+const SAMPLED: f64 = 0.01;
+
+/// What one vector of the path adds to the integral of √(κ/8τ). It keeps the band, so that it counts for one at most:
+/// where contact jumps the slope turns without need of another vector.
+fn share(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
+    let length = (to - from).norm();
+    if length <= 0.0 {
+        return 0.0;
+    }
+    let direction = (to - from) / length;
+    let slope = |tip: &Vec3| role.gauge.contact(&prepared.tool, tip).gradient.dot(&direction);
+    let half = 0.5 * length;
+    let slopes = [from, &(0.5 * (from + to)), to].map(slope);
+    let of_half = |a: f64, b: f64| half * ((b - a).abs() / half / (8.0 * role.band())).sqrt();
+    (of_half(slopes[0], slopes[1]) + of_half(slopes[1], slopes[2])).min(1.0)
+}
+
+/// The next whole number.
+fn whole(x: f64) -> u32 {
+    let up = x.ceil();
+    if up < f64::from(u32::MAX) { up.max(0.0) as u32 } else { u32::MAX }
 }
 
 /// The ring to which one role confines the tool end, given the other.
@@ -116,6 +155,26 @@ fn ring(prepared: &Prepared, role: &Working, other: &Working) -> Option<Ring> {
             let away = plane.normal.dot(&(prepared.tip - center));
             let section = |r: f64| (r * r - away * away).max(0.0).sqrt();
             Some(Ring { center, axis: plane.normal, inner: section(inner), outer: section(outer) })
+        }
+        Surface::Cone(cone) => {
+            let Surface::Plane(plane) = &other.gauge.surface else { return None };
+            let square = |n: &Vec3| n.cross(&cone.axis).norm() <= PARALLEL;
+            if !(square(&plane.normal) && square(&axis)) {
+                return None;
+            }
+            // At one height the clearance changes with the distance from the axis, by the cosine of the half angle.
+            let contact = role.gauge.contact(&prepared.tool, &prepared.tip);
+            let w = prepared.tip - cone.vertex;
+            let radial = w - cone.axis * w.dot(&cone.axis);
+            let distance = radial.norm();
+            let rate = contact.gradient.dot(&radial) / distance;
+            if (rate.abs() - cone.cosine).abs() > SLANT {
+                return None;
+            }
+            let nominal = distance - contact.clearance / rate;
+            let limits = [nominal - role.inside / rate, nominal + role.outside / rate];
+            let (inner, outer) = (limits[0].min(limits[1]).max(0.0), limits[0].max(limits[1]).max(0.0));
+            Some(Ring { center: cone.vertex, axis: cone.axis, inner, outer })
         }
         _ => None,
     }

@@ -93,7 +93,7 @@ fn sequence(
         minimum: None,
     };
     if !prepared.attitude.turns() {
-        sequence.minimum = bound::minimum(&sequence, prepared);
+        sequence.minimum = Some(bound::minimum(&sequence, prepared));
     }
     Ok(sequence)
 }

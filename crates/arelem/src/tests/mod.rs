@@ -2,7 +2,9 @@
 
 mod corpus_plane;
 mod corpus_space;
+mod economy;
 mod properties;
+mod sheets;
 mod turning;
 mod worked;
 
