@@ -110,12 +110,15 @@ impl Analysis {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
             _ => self.run_to_cutter_locations(cancel, progress)?,
         };
-        let tape = apt_post::post(&source.records, &machine, &options(settings));
-        if cancel() {
-            return Err(Cancelled.into());
-        }
+        let tape = apt_post::post(&source.records, &machine, &options(settings), cancel)
+            .map_err(|apt_post::Cancelled| Cancelled)?;
         let mut diagnostics = source.diagnostics;
-        diagnostics.extend(catalogue::tape_diagnostics(self.document().tree(), &tape, &source.origins, settings));
+        diagnostics.extend(catalogue::tape_diagnostics(
+            self.document().tree(),
+            &tape,
+            &source.origins,
+            settings,
+        ));
         Ok(ControlTape { tape, diagnostics })
     }
 

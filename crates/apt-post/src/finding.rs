@@ -58,7 +58,7 @@ pub enum PostFindingKind {
     NotFinite,
     #[error("the tool axis {i} {j} {k} is not the spindle's; the move is left out")]
     ToolAxis { i: f64, j: f64, k: f64 },
-    #[error("{word} is not known; nothing is made of it")]
+    #[error("{word} is not known here; it stands on the CL file and nothing is made of it")]
     UnknownWord { word: SmolStr },
     #[error("{word} is not supported by this machine; nothing is made of it")]
     NotSupported { word: SmolStr },
@@ -66,6 +66,10 @@ pub enum PostFindingKind {
     UnknownArgument { word: SmolStr, argument: SmolStr },
     #[error("{word}: {argument} has no effect here")]
     ArgumentNotUsed { word: SmolStr, argument: SmolStr },
+    #[error("{word}: {argument} is given twice; the last one counts")]
+    ArgumentRepeated { word: SmolStr, argument: SmolStr },
+    #[error("{word}: {first} and {second} exclude each other")]
+    ArgumentConflict { word: SmolStr, first: SmolStr, second: SmolStr },
     #[error("{word}: {missing} is missing; the statement is left out")]
     MissingArgument { word: SmolStr, missing: SmolStr },
     #[error("{word}: {argument} {value} is out of range")]
@@ -74,6 +78,8 @@ pub enum PostFindingKind {
     NoCode { word: SmolStr, name: SmolStr },
     #[error("tool {number} is loaded already")]
     SameTool { number: u32 },
+    #[error("tool {number} is outside the magazine, which holds {least} to {greatest}")]
+    ToolOutsideMagazine { number: u32, least: u32, greatest: u32 },
     #[error("the tool is changed while {what} is on")]
     ToolChangeWhile { what: SmolStr },
     #[error("a cycle needs a position before it")]
@@ -88,6 +94,8 @@ pub enum PostFindingKind {
     StepNotLessThanDepth { step: f64, depth: f64 },
     #[error("a cycle without points")]
     CycleWithoutPoints,
+    #[error("CYCLE/{cycle} is still on at {word}; it is ended")]
+    CycleLeftOn { cycle: SmolStr, word: SmolStr },
     #[error("a circle off tolerance by {deviation}: made of chords")]
     ArcAsChords { deviation: f64 },
     #[error("a circle whose axis is no machine axis: made of chords")]
@@ -96,6 +104,8 @@ pub enum PostFindingKind {
     CompensationOnArc,
     #[error("cutter compensation is never used by a motion in its plane")]
     CompensationUnused,
+    #[error("the tool is changed while CUTCOM is on")]
+    CompensationLeftOn,
     #[error("RETRCT without a clearance plane")]
     NoClearance,
     #[error("PLUNGE without a RETRCT before it")]
@@ -122,14 +132,19 @@ impl PostFindingKind {
             Kind::ArcAsChords { .. }
             | Kind::ArcNotInPlane
             | Kind::CycleExpanded { .. }
-            | Kind::ArgumentNotUsed { .. }
+            | Kind::UnknownWord { .. }
             | Kind::SameTool { .. } => Severity::Information,
             Kind::SpindleOff
             | Kind::FeedOutOfRange { .. }
             | Kind::UnitMismatch { .. }
             | Kind::SpindleOutOfRange { .. }
             | Kind::AxisLimit { .. }
-            | Kind::UnknownWord { .. }
+            | Kind::ArgumentNotUsed { .. }
+            | Kind::ArgumentRepeated { .. }
+            | Kind::ArgumentConflict { .. }
+            | Kind::ToolOutsideMagazine { .. }
+            | Kind::CycleLeftOn { .. }
+            | Kind::CompensationLeftOn
             | Kind::NotSupported { .. }
             | Kind::ToolChangeWhile { .. }
             | Kind::TapFeed { .. }

@@ -8,6 +8,7 @@ mod arc;
 mod control;
 mod engine;
 pub mod finding;
+mod form;
 pub mod format;
 pub mod machine;
 pub mod punch;
@@ -15,7 +16,8 @@ mod tape;
 mod template;
 mod words;
 
-pub use engine::post;
+pub use engine::{Cancel, Cancelled, post};
 pub use finding::{PostFinding, PostFindingKind, Severity};
+pub use form::{Treatment, treatment};
 pub use machine::{MachineDefinition, MachineError, MachineInfo, machine, machines};
 pub use tape::{Block, PostOptions, Tape};

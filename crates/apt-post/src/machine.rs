@@ -345,6 +345,9 @@ pub struct Limits {
     /// Revolutions per minute.
     #[serde(default)]
     pub spindle: Option<[f64; 2]>,
+    /// First and last tool number of the magazine; 0 empties the spindle everywhere.
+    #[serde(default)]
+    pub tools: Option<[u32; 2]>,
 }
 
 /// Registers that every mill needs.
@@ -387,7 +390,14 @@ impl MachineDefinition {
             }
         }
         let axes = self.axes.iter().map(|(name, axis)| (format!("axes.{name}.limits_mm"), axis.limits_mm));
-        let ranges = [("limits.feed_mm", self.limits.feed_mm), ("limits.spindle", self.limits.spindle)];
+        let tools = self.limits.tools.map(|tools| tools.map(f64::from));
+        // A magazine may hold one tool only: its range is tested as one from below the first.
+        let tools = tools.map(|[first, last]| [first - 1.0, last]);
+        let ranges = [
+            ("limits.feed_mm", self.limits.feed_mm),
+            ("limits.spindle", self.limits.spindle),
+            ("limits.tools", tools),
+        ];
         let ranges = ranges.into_iter().filter_map(|(place, range)| Some((place.to_owned(), range?)));
         let radii = ("arc".to_owned(), [self.arc.min_radius_mm, self.arc.max_radius_mm]);
         for (place, [least, greatest]) in axes.chain(ranges).chain([radii]) {

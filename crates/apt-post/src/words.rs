@@ -28,9 +28,9 @@ impl Arguments<'_> {
         })
     }
 
-    /// The number right after a keyword.
+    /// The number right after a keyword; of a keyword that stands twice after the last.
     pub(crate) fn after(&self, wanted: &str) -> Option<f64> {
-        let at = self.items.iter().position(|item| matches!(item, ClWord::Word(word) if word == wanted))?;
+        let at = self.items.iter().rposition(|item| matches!(item, ClWord::Word(word) if word == wanted))?;
         match self.items.get(at + 1) {
             Some(ClWord::Number(number)) => Some(*number),
             _ => None,

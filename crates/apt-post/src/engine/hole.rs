@@ -191,6 +191,14 @@ impl Engine<'_> {
         self.suspended_cycle = Some(cycle);
     }
 
+    /// Reports a cycle that a statement ends which is not meant to.
+    pub(super) fn left_on(&mut self, word: &SmolStr) {
+        if let Some(cycle) = self.cycle.as_ref().filter(|cycle| cycle.holes > 0) {
+            let cycle = cycle.word.clone();
+            self.find(PostFindingKind::CycleLeftOn { cycle, word: word.clone() });
+        }
+    }
+
     /// A plain move inside a cycle: the control leaves it, the next hole takes it up again.
     pub(super) fn leave_cycle(&mut self) {
         if let Some(cycle) = self.cycle.take() {

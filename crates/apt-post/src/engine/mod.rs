@@ -27,16 +27,42 @@ const SPINDLE_AXIS_COSINE: f64 = 1.0 - 1.5e-10;
 ///
 /// The tape is made also where something is found, with the faulty statement left out; [`Tape::is_ok`] says whether
 /// it may be run.
-pub fn post(records: &[ClRecord], machine: &MachineDefinition, options: &PostOptions) -> Tape {
+///
+/// # Errors
+///
+/// [`Cancelled`] when `cancel`, which is asked often, said yes.
+pub fn post(
+    records: &[ClRecord],
+    machine: &MachineDefinition,
+    options: &PostOptions,
+    cancel: Cancel<'_>,
+) -> Result<Tape, Cancelled> {
     let units = start::units(records, machine, options);
-    let mut engine = Engine::new(machine, options, &units);
+    let mut engine = Engine::new(machine, options, &units, cancel);
     engine.start(records);
-    for record in records {
+    for (index, record) in records.iter().enumerate() {
+        if index % RECORDS_BETWEEN_QUESTIONS == 0 && engine.is_cancelled() {
+            return Err(Cancelled);
+        }
         engine.record(record);
     }
     engine.finish();
-    Tape { blocks: engine.control.blocks, findings: engine.control.findings, units: units.tape }
+    if engine.cancelled {
+        return Err(Cancelled);
+    }
+    Ok(Tape { blocks: engine.control.blocks, findings: engine.control.findings, units: units.tape })
 }
+
+/// Asked while a tape is made; `true` ends the work.
+pub type Cancel<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// The work was ended by the one who wanted it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// Records after which the caller is asked again whether the tape is still wanted: a fraction of a millisecond.
+const RECORDS_BETWEEN_QUESTIONS: usize = 64;
 
 /// A feed rate in force, in tape units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +106,9 @@ struct PendingCompensation {
 }
 
 struct Engine<'a> {
+    cancel: Cancel<'a>,
+    /// Whether `cancel` said yes: loops end then.
+    cancelled: bool,
     control: Control<'a>,
     machine: &'a MachineDefinition,
     fit_points: bool,
@@ -109,6 +138,8 @@ struct Engine<'a> {
     /// Circle of the motion record that comes next.
     next_circle: Option<usize>,
     compensation: Option<PendingCompensation>,
+    /// Whether the last CUTCOM switched compensation on.
+    compensated: bool,
     cycle: Option<hole::Cycle>,
     suspended_cycle: Option<hole::Cycle>,
     clearance: Option<f64>,
@@ -118,11 +149,20 @@ struct Engine<'a> {
     ended: bool,
     closed: bool,
     named: bool,
+    /// Whether a MACHIN has been seen.
+    machine_named: bool,
 }
 
 impl<'a> Engine<'a> {
-    fn new(machine: &'a MachineDefinition, options: &PostOptions, units: &start::UnitChoice) -> Self {
+    fn new(
+        machine: &'a MachineDefinition,
+        options: &PostOptions,
+        units: &start::UnitChoice,
+        cancel: Cancel<'a>,
+    ) -> Self {
         Engine {
+            cancel,
+            cancelled: false,
             control: Control::new(machine, units.tape),
             machine,
             fit_points: options.fit_points.unwrap_or(machine.arc.fit_points),
@@ -147,6 +187,7 @@ impl<'a> Engine<'a> {
             circles: Vec::new(),
             next_circle: None,
             compensation: None,
+            compensated: false,
             cycle: None,
             suspended_cycle: None,
             clearance: None,
@@ -156,6 +197,7 @@ impl<'a> Engine<'a> {
             ended: false,
             closed: false,
             named: false,
+            machine_named: false,
         }
     }
 
@@ -184,6 +226,12 @@ impl<'a> Engine<'a> {
         }
     }
 
+    /// Asks whether the tape is still wanted.
+    fn is_cancelled(&mut self) -> bool {
+        self.cancelled |= (self.cancel)();
+        self.cancelled
+    }
+
     fn find(&mut self, kind: PostFindingKind) {
         self.control.find(kind);
     }
@@ -202,6 +250,7 @@ impl<'a> Engine<'a> {
             return self.find(PostFindingKind::Repeated { word: "FINI".into() });
         }
         self.unused();
+        self.left_on(&"FINI".into());
         self.end_program();
         self.closed = true;
         let machine = self.machine;

@@ -21,6 +21,9 @@ const PLANE_TOLERANCE: f64 = 1e-7;
 /// OUTTOL of a program that states none: .0005 inch.
 const DEFAULT_OUTTOL_MM: f64 = 0.0127;
 
+/// Points after which the caller is asked again whether the tape is still wanted.
+const POINTS_BETWEEN_QUESTIONS: usize = 256;
+
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
         let circle = self.next_circle.take();
@@ -38,13 +41,19 @@ impl Engine<'_> {
         if self.rapid.is_some() {
             self.flush();
             self.rapid = None;
-            for position in positions {
+            for (index, position) in positions.into_iter().enumerate() {
+                if index % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+                    return;
+                }
                 self.leave_cycle();
                 self.rapid_to(position);
             }
         } else if self.cycle.is_some() {
             self.flush();
-            for position in positions {
+            for (index, position) in positions.into_iter().enumerate() {
+                if index % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+                    return;
+                }
                 self.hole(position);
             }
         } else {
@@ -119,8 +128,13 @@ impl Engine<'_> {
             start.into_iter().map(|start| self.rounded(start)).chain(positions.iter().copied()).collect();
         let mut at = 0;
         let mut arcs = 0;
+        let mut blocks = 0;
         let (planes, center) = self.planes(points);
         while let Some(point) = points.get(at) {
+            if blocks % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+                return;
+            }
+            blocks += 1;
             self.control.place = point.place;
             let straight = self.position.is_none() || self.compensation.is_some() || self.approach.is_some();
             if !straight {

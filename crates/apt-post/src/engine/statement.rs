@@ -8,24 +8,13 @@ use super::{Engine, Feed};
 use crate::{
     control::Values,
     finding::PostFindingKind,
+    form::{self, Treatment},
     words::{Arguments, FeedMode, LengthUnit, feed_unit},
 };
 
 const SECONDS_PER_MINUTE: f64 = 60.0;
 /// Largest M and G numbers that AUXFUN and PREFUN write.
 const LARGEST_CODE: f64 = 999.9;
-
-/// Words that say nothing to a three-axis mill: statements of the processor, of listings and plots.
-const SILENT: [&str; 31] = [
-    "MACHIN", "TRACUT", "INDEX", "COPY", "CLPRNT", "LPRINT", "PLOT", "OVPLOT", "PPLOT", "PENUP", "PENDWN",
-    "DRAFT", "LEADER", "DISPLY", "REMARK", "TITLES", "LETTER", "TLDATA", "PAINT", "MODE", "AIR", "TMARK",
-    "PLABEL", "NOPOST", "LINTOL", "MCHFIN", "MAXDPM", "MAXVEL", "REGBRK", "DMIS", "BREAK",
-];
-/// Words for which a three-axis mill has nothing.
-const NOT_SUPPORTED: [&str; 22] = [
-    "ROTABL", "ROTHED", "ROTATE", "HEAD", "PIVOTZ", "COUPLE", "THREAD", "PITCH", "SADDLE", "CLAMP", "TLAXIS",
-    "VTLAXS", "WCORN", "ALIGN", "POSITN", "SAFETY", "INTCOD", "IFRO", "CORNFD", "SLOWDN", "ASLOPE", "SMOOTH",
-];
 
 impl Engine<'_> {
     pub(super) fn text(&mut self, word: &SmolStr, text: &str) {
@@ -53,6 +42,9 @@ impl Engine<'_> {
         if self.site_word(&arguments) {
             return;
         }
+        for kind in form::check(&arguments) {
+            self.find(kind);
+        }
         let machine = self.machine;
         match word.as_str() {
             "RAPID" => self.rapid_statement(&arguments),
@@ -79,7 +71,7 @@ impl Engine<'_> {
             "ORIGIN" => self.shift_statement(&arguments, -1.0),
             "TRANS" => self.shift_statement(&arguments, 1.0),
             "SEQNO" => self.sequence_statement(&arguments),
-            "OPSKIP" => self.skip_statement(&arguments),
+            "OPSKIP" | "DELETE" => self.skip_statement(&arguments),
             "AUXFUN" => self.function(&arguments, "M"),
             "PREFUN" => self.function(&arguments, "G"),
             "MCHTOL" => match arguments.number() {
@@ -87,11 +79,16 @@ impl Engine<'_> {
                 _ => self.find(arguments.missing("the tolerance")),
             },
             "ARCSLP" | "SET" => self.fitting_statement(&arguments),
-            other if SILENT.contains(&other) => {}
-            other if NOT_SUPPORTED.contains(&other) => {
-                self.find(PostFindingKind::NotSupported { word: word.clone() });
+            "MACHIN" if std::mem::replace(&mut self.machine_named, true) => {
+                self.find(PostFindingKind::Repeated { word: word.clone() });
             }
-            _ => self.find(PostFindingKind::UnknownWord { word: word.clone() }),
+            other => match form::treatment(other) {
+                Some(Treatment::Silent | Treatment::OnTape) => {}
+                Some(Treatment::NotSupported) => {
+                    self.find(PostFindingKind::NotSupported { word: word.clone() });
+                }
+                None => self.find(PostFindingKind::UnknownWord { word: word.clone() }),
+            },
         }
     }
 
@@ -144,7 +141,7 @@ impl Engine<'_> {
         });
         let timed = arguments.has("AUTO");
         let off = arguments.has("OFF");
-        let known = ["IPM", "MMPM", "PERMIN", "IPR", "MMPR", "PERREV", "INVERS", "AUTO", "OFF"];
+        let known = ["IPM", "MMPM", "PERMIN", "IPR", "MMPR", "PERREV", "INVERS", "AUTO", "OFF", "MAXIPM"];
         if let Some(kind) = arguments.unknown(&known) {
             return self.find(kind);
         }
@@ -164,7 +161,9 @@ impl Engine<'_> {
         if let Some(name) = lacking {
             return self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: name.into() });
         }
-        let value = match (arguments.number(), self.feed) {
+        // The number after MAXIPM is the greatest feed, not the feed.
+        let stated_value = form::bare_numbers(arguments).first().copied();
+        let value = match (stated_value, self.feed) {
             (Some(value), _) if mode == FeedMode::Inverse && !timed => value,
             (Some(value), _) => value * self.unit_factor(unit),
             // INVERS,AUTO and INVERS,OFF keep the rate.
@@ -178,14 +177,28 @@ impl Engine<'_> {
         if mode == FeedMode::PerRevolution && self.spindle.speed.is_none() {
             self.find(PostFindingKind::FeedPerRevolutionWithoutSpindle);
         }
-        if let (FeedMode::PerMinute, Some(range)) = (mode, self.machine.limits.feed_mm) {
-            let [least, greatest] = range.map(|limit| self.tape_length(limit));
-            if !(least..=greatest).contains(&value) {
-                self.find(PostFindingKind::FeedOutOfRange { value, least, greatest });
-            }
-        }
+        self.check_feed_range(mode, value, arguments.after("MAXIPM"));
         self.feed_reported = false;
         self.feed = Some(Feed { mode, value, timed: timed && mode == FeedMode::Inverse });
+    }
+
+    /// Compares the feed per minute, which per revolution depends on the spindle, with the range of the machine and the
+    /// greatest feed that the statement allows, in inches per minute.
+    fn check_feed_range(&mut self, mode: FeedMode, value: f64, most: Option<f64>) {
+        let per_minute = match mode {
+            FeedMode::PerMinute => value,
+            FeedMode::PerRevolution => match self.spindle.speed {
+                Some(speed) => value * speed,
+                None => return,
+            },
+            FeedMode::Inverse => return,
+        };
+        let range = self.machine.limits.feed_mm.map(|range| range.map(|limit| self.tape_length(limit)));
+        let [least, greatest] = range.unwrap_or([0.0, f64::INFINITY]);
+        let greatest = most.map_or(greatest, |most| greatest.min(most * self.unit_factor(LengthUnit::Inch)));
+        if !(least..=greatest).contains(&per_minute) {
+            self.find(PostFindingKind::FeedOutOfRange { value: per_minute, least, greatest });
+        }
     }
 
     fn delay_statement(&mut self, arguments: &Arguments<'_>) {

@@ -20,6 +20,16 @@ impl Engine<'_> {
         None
     }
 
+    /// Number 0 puts the tool away.
+    fn check_magazine(&mut self, number: u32) {
+        if let Some([least, greatest]) = self.machine.limits.tools
+            && number != 0
+            && !(least..=greatest).contains(&number)
+        {
+            self.find(PostFindingKind::ToolOutsideMagazine { number, least, greatest });
+        }
+    }
+
     /// LOADTL, LOAD/TOOL, TOOLNO, TURRET, UNLOAD.
     pub(super) fn load_tool(&mut self, arguments: &Arguments<'_>) {
         let unload = arguments.word == "UNLOAD";
@@ -32,8 +42,13 @@ impl Engine<'_> {
             None => Some(number),
         };
         let Some(offset) = offset else { return };
+        self.left_on(arguments.word);
         self.end_cycle();
         self.unused();
+        self.check_magazine(number);
+        if self.compensated {
+            self.find(PostFindingKind::CompensationLeftOn);
+        }
         if self.tool == Some(number) {
             self.find(PostFindingKind::SameTool { number });
         }
@@ -64,6 +79,7 @@ impl Engine<'_> {
     pub(super) fn select_tool(&mut self, arguments: &Arguments<'_>) {
         let Some(number) = arguments.number() else { return self.find(arguments.missing("the tool number")) };
         let Some(number) = self.tool_number(arguments, "tool", number) else { return };
+        self.check_magazine(number);
         let machine = self.machine;
         let values = Values::default().number("T", f64::from(number));
         self.control.template(&machine.templates.tool_select, &values);
@@ -252,6 +268,7 @@ impl Engine<'_> {
         if let Some(pending) = self.compensation.take() {
             self.find_at(pending.place, PostFindingKind::CompensationUnused);
         }
+        self.compensated = !arguments.has("OFF");
         self.compensation = Some(PendingCompensation { words, place: self.control.place });
     }
 }
