@@ -97,7 +97,7 @@ pub(super) fn build(samples: &[Sample], option: Modifier) -> Result<Curve, Defin
             let given: Vec<Option<Vec3>> = samples.iter().map(tangent).collect();
             let mut directions = circle_tangents(&places, &given)?;
             if option == Modifier::Spline {
-                directions = spline_tangents(&chords, &given, directions);
+                directions = spline_tangents(&chords, &given, &directions);
             }
             from_tangents(&chords, &directions)?
         }
@@ -223,8 +223,8 @@ fn four_point(places: &[Vec3], chords: &[Chord]) -> Result<Cubics, Impossible> {
 }
 
 /// The tangents of a spline: those of APT III, unless its turns ran away on data that swing from side to side.
-fn spline_tangents(chords: &[Chord], given: &[Option<Vec3>], start: Vec<Vec3>) -> Vec<Vec3> {
-    let mut relaxed = start.clone();
+fn spline_tangents(chords: &[Chord], given: &[Option<Vec3>], start: &[Vec3]) -> Vec<Vec3> {
+    let mut relaxed = start.to_vec();
     let converged = relax(chords, given, &mut relaxed).unwrap_or(false);
     let steepest = STEEPEST.cos();
     let upright = chords
@@ -235,8 +235,8 @@ fn spline_tangents(chords: &[Chord], given: &[Option<Vec3>], start: Vec<Vec3>) -
         return relaxed;
     }
     // Where there is no such curve, one without corners is left; the jumps of curvature show in the finished curve.
-    let otherwise = if upright { start.clone() } else { relaxed };
-    tabulated_newton::continuous(chords, given, &start).unwrap_or(otherwise)
+    let otherwise = if upright { start.to_vec() } else { relaxed };
+    tabulated_newton::continuous(chords, given, start).unwrap_or(otherwise)
 }
 
 /// Turns the tangents at the inner points until the curvature is continuous to within [`CURVATURE_JUMP`]: always at

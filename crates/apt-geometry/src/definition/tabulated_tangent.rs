@@ -10,6 +10,8 @@ use crate::canonical::{Interval, Plane, TabulatedCylinder};
 const LYING: f64 = 1e-9;
 /// Parts of an interval in which a rolling circle is looked for; a cubic over its chord turns at most twice.
 const ROLLING_PARTS: u32 = 64;
+/// Part of a stretch over which a slope is measured: the cube root of the rounding, for a central difference.
+const SLOPE_FRACTION: f64 = 6e-6;
 
 /// One interval as a cubic of the xy-plane: coefficients of the powers of the distance along the chord.
 struct Piece {
@@ -158,21 +160,37 @@ pub(super) fn rolling_center(
             let gap = |s: f64| centers.signed_distance(&center(s));
             let station = |part: u32| piece.length * f64::from(part) / f64::from(ROLLING_PARTS);
             for part in 0..ROLLING_PARTS {
-                let (left, right) = (station(part), station(part + 1));
-                let (at_left, at_right) = (gap(left), gap(right));
-                let s = if at_left == 0.0 {
-                    left
-                } else if at_left.signum() != at_right.signum() {
-                    bisect(gap, left, right)
-                } else {
-                    continue;
-                };
-                let distance = (piece.place(s) - near).norm();
-                if side.component(&offset(s)) > 0.0 && best.is_none_or(|(least, _)| distance < least) {
-                    best = Some((distance, center(s)));
+                for s in crossings(gap, station(part), station(part + 1)) {
+                    let distance = (piece.place(s) - near).norm();
+                    if side.component(&offset(s)) > 0.0 && best.is_none_or(|(least, _)| distance < least) {
+                        best = Some((distance, center(s)));
+                    }
                 }
             }
         }
     }
     best.map(|(_, center)| center).ok_or(Impossible::NotReal)
+}
+
+/// Where a smooth function is zero in a short stretch: at a change of sign, or at two that lie on both sides of a
+/// turning point.
+fn crossings(function: impl Fn(f64) -> f64, left: f64, right: f64) -> Vec<f64> {
+    let (at_left, at_right) = (function(left), function(right));
+    if at_left == 0.0 {
+        return vec![left];
+    }
+    if at_left.signum() != at_right.signum() {
+        return vec![bisect(function, left, right)];
+    }
+    let reach = (right - left) * SLOPE_FRACTION;
+    let slope = |s: f64| function(s + reach) - function(s - reach);
+    // Only a function that comes nearer to zero from both ends can get there.
+    if at_left * slope(left) >= 0.0 || at_right * slope(right) <= 0.0 {
+        return Vec::new();
+    }
+    let turning = bisect(slope, left, right);
+    if function(turning).signum() == at_left.signum() {
+        return Vec::new();
+    }
+    vec![bisect(&function, left, turning), bisect(&function, turning, right)]
 }

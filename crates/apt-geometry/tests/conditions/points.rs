@@ -185,7 +185,7 @@ proptest! {
         let (du, dv) = (along.dot(&direction(turn)) / a, along.dot(&direction(turn + 90.0)) / b);
         let bend = (if hyperbola { du * du - dv * dv } else { du * du + dv * dv }).abs() * a.min(b).powi(2);
         let parts = vec![Part::Word(which), Part::Word(Modifier::IntersectionOf), line(of), Part::Entity(conic)];
-        let condition = (steep * steep).recip().max(bend.recip()).max(toward(which, &along).abs().recip());
+        let condition = (0.1 * steep * steep).recip().max(bend.recip()).max(toward(which, &along).abs().recip());
         Figure::flat(GeometryKind::Point, setting, Turns::Quarter, parts).condition(condition).hold(
             travel,
             // Where the line touches, rounding may take it off the curve.

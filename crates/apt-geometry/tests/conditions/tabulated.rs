@@ -16,7 +16,7 @@ pub(crate) fn wave() -> impl Strategy<Value = (Vec<f64>, f64)> {
     (prop::collection::vec(-0.15..0.15f64, 5..9), 0.1..0.9f64)
 }
 
-fn surface(geometry: &Geometry) -> &TabulatedCylinder {
+pub(crate) fn surface(geometry: &Geometry) -> &TabulatedCylinder {
     match geometry {
         Geometry::TabulatedCylinder(surface) => surface,
         other => panic!("{other:?} is no tabcyl"),
@@ -58,7 +58,7 @@ pub(crate) fn place_on_wave(setting: &Setting, heights: &[f64], station: f64) ->
 /// Places of the curve where a function of place and direction is zero.
 pub(crate) fn places_where(geometry: &Geometry, function: impl Fn(Vec3, Vec3) -> f64) -> Vec<Vec3> {
     let curve = surface(geometry);
-    let mut places = Vec::new();
+    let mut places = turning_places(curve, &function);
     for (index, interval) in curve.intervals.iter().enumerate() {
         let value = |s: f64| {
             let (place, direction) = at(curve, index, s);
@@ -79,6 +79,45 @@ pub(crate) fn places_where(geometry: &Geometry, function: impl Fn(Vec3, Vec3) ->
         }
         // Between intervals the direction may jump within rounding over a zero.
         places.push(at(curve, index, 0.0).0);
+    }
+    places
+}
+
+/// Places where a function has a least magnitude without a change of sign between the stations: two zeros may lie
+/// there.
+pub(crate) fn turning_places(curve: &TabulatedCylinder, function: impl Fn(Vec3, Vec3) -> f64) -> Vec<Vec3> {
+    let mut places = Vec::new();
+    for (index, interval) in curve.intervals.iter().enumerate() {
+        let value = |s: f64| {
+            let (place, direction) = at(curve, index, s);
+            function(place, direction)
+        };
+        let station = |part: u32| interval.length * f64::from(part) / f64::from(STATIONS);
+        for part in 1..STATIONS {
+            let around = [part - 1, part, part + 1].map(|part| value(station(part)));
+            let turns = around[1].abs() <= around[0].abs() && around[1].abs() <= around[2].abs();
+            if !turns || around.iter().any(|value| value.signum() != around[1].signum()) {
+                continue;
+            }
+            let (mut low, mut high) = (station(part - 1), station(part + 1));
+            for _ in 0..120 {
+                let (first, second) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+                let sense = around[1].signum();
+                if value(first) * sense < value(second) * sense { high = second } else { low = first }
+            }
+            let middle = 0.5 * (low + high);
+            places.push(at(curve, index, middle).0);
+            // Behind a turning point below zero there are two zeros.
+            if value(middle).signum() != around[1].signum() {
+                for (mut outer, mut inner) in [(station(part - 1), middle), (station(part + 1), middle)] {
+                    for _ in 0..80 {
+                        let between = 0.5 * (outer + inner);
+                        if value(between).signum() == around[1].signum() { outer = between } else { inner = between }
+                    }
+                    places.push(at(curve, index, outer).0);
+                }
+            }
+        }
     }
     places
 }
