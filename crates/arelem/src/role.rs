@@ -7,7 +7,7 @@ use apt_geometry::{
 };
 
 use crate::{
-    clearance::{Gauge, Shape},
+    clearance::{Gauge, Memory, Shape},
     error::{MotionFailure, RoleName},
     section2::{StartUpRule, State},
     sequence::Role,
@@ -71,7 +71,7 @@ impl Working {
             return Err(MotionFailure::NoTolerance { role: name, inside, outside });
         }
         let thickness = if on { 0.0 } else { pick(&state.thickness) };
-        let gauge = Gauge { surface, on, side: 1.0, thickness };
+        let gauge = Gauge { surface, on, side: 1.0, thickness, memory: Memory::default() };
         let shape = gauge.shape();
         let inner = state.start_up == StartUpRule::Apt4 && matches!(gauge.surface, Surface::Tabulated(_));
         Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0, inner })

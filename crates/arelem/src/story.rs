@@ -15,7 +15,7 @@ use apt_geometry::{
 
 use crate::{
     attitude::{Attitude, Sweep},
-    clearance::{Gauge, Shape, Tool},
+    clearance::{Gauge, Memory, Shape, Tool},
     directed,
     error::RoleName,
     position::{self, Condition},
@@ -194,7 +194,8 @@ impl<'a> Teller<'a> {
         let told = roles.filter_map(|(name, role)| {
             let surface = Surface::from_geometry(&role.surface.geometry).ok()?;
             let on = role.relation == Relation::On;
-            let gauge = Gauge { surface, on, side: role.side, thickness: role.thickness };
+            let memory = Memory::default();
+            let gauge = Gauge { surface, on, side: role.side, thickness: role.thickness, memory };
             Some(Told { name, role, gauge })
         });
         Self { sequence, told: told.collect() }

@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 use apt_geometry::{
     Vec3,
+    cutter::ProfilePoint,
     surface::{Bend, Foot, Region, Surface},
 };
 
@@ -36,7 +37,7 @@ pub(crate) enum Certificate {
 
 /// A stretch of the profile.
 #[derive(Debug, Clone, Copy)]
-enum Stretch {
+pub(super) enum Stretch {
     /// A straight line between two points (radius, height).
     Line([[f64; 2]; 2]),
     /// Part of the corner: centre, radius, polar angles from straight down.
@@ -47,7 +48,7 @@ enum Stretch {
 
 /// A stretch over a range of azimuth.
 #[derive(Debug, Clone, Copy)]
-struct Patch {
+pub(super) struct Patch {
     stretch: Stretch,
     azimuth: f64,
     /// Half the range, π for a whole turn.
@@ -73,9 +74,14 @@ pub(crate) struct Face<'a> {
     pub(crate) side: f64,
 }
 
-/// Examines whether the distance from a surface is nowhere on the tool below a level.
-pub(crate) fn certify(face: Face<'_>, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
-    let mut patches = patches(tool);
+/// Examines whether the distance from a surface is nowhere on some patches of the tool below a level.
+pub(super) fn certify(
+    face: Face<'_>,
+    tool: &Tool,
+    tip: &Vec3,
+    level: f64,
+    mut patches: Vec<Patch>,
+) -> Certificate {
     let mut seen = 0;
     while let Some(patch) = patches.pop() {
         seen += 1;
@@ -94,15 +100,53 @@ pub(crate) fn certify(face: Face<'_>, tool: &Tool, tip: &Vec3, level: f64) -> Ce
     Certificate::Holds
 }
 
+/// The patches that may hold points nearer than a far level. They are as large as the proof of the near level allows.
+pub(super) fn outline(face: Face<'_>, tool: &Tool, tip: &Vec3, [near, far]: [f64; 2]) -> Option<Vec<Patch>> {
+    let (mut patches, mut found) = (boundary(tool), Vec::new());
+    let mut seen = 0;
+    while let Some(patch) = patches.pop() {
+        seen += 1;
+        if seen > MAX_PATCHES {
+            return None;
+        }
+        let judged = judge(face, tool, tip, &patch)?;
+        if judged.least >= far {
+            continue;
+        }
+        // Patches as small as the distance that counts are not worth halving.
+        let small = patch.extent(judged.length) <= 0.25 * (far - near);
+        if small || judged.least >= near && patch.half < PI {
+            found.push(patch);
+        } else {
+            split(&mut patches, tool, &patch, &judged);
+        }
+    }
+    Some(found)
+}
+
+impl Patch {
+    /// Its greater dimension, its length along the profile being given.
+    fn extent(&self, length: f64) -> f64 {
+        length.max(2.0 * self.stretch.radius() * self.half.min(FRAC_PI_2))
+    }
+}
+
 /// The whole boundary, the parts that matter most last, because the last is looked at first.
-fn patches(tool: &Tool) -> Vec<Patch> {
+pub(super) fn boundary(tool: &Tool) -> Vec<Patch> {
     let profile = &tool.profile;
     let (lower, upper, top) = (profile.lower, profile.upper, profile.top);
     let whole = |stretch| Patch { stretch, azimuth: 0.0, half: PI };
     let mut patches = Vec::with_capacity(32);
-    patches.push(whole(Stretch::Line([[upper.radius, upper.height], [top.radius, top.height]])));
-    patches.push(whole(Stretch::Line([[0.0, 0.0], [lower.radius, lower.height]])));
-    if profile.arc > 0.0 {
+    let round = profile.arc > 0.0;
+    let mut line = |from: ProfilePoint, to: ProfilePoint| {
+        // The ends of the corner belong to it.
+        if from != to || !round {
+            patches.push(whole(Stretch::Line([[from.radius, from.height], [to.radius, to.height]])));
+        }
+    };
+    line(upper, top);
+    line(ProfilePoint { radius: 0.0, height: 0.0 }, lower);
+    if round {
         let center = [profile.center.radius, profile.center.height];
         patches.push(whole(Stretch::Ball { center, arc: profile.arc, fan: profile.fan }));
     }

@@ -6,6 +6,7 @@ mod closed_form;
 mod cover;
 mod dual;
 mod matched;
+mod memory;
 mod search;
 mod tool;
 
@@ -15,10 +16,10 @@ use apt_geometry::{
 };
 
 pub(crate) use self::{
-    certify::{Certificate, Face, certify},
+    certify::{Certificate, Face},
     cover::upward_bend,
 };
-pub use tool::Tool;
+pub use self::{memory::Memory, tool::Tool};
 
 /// Where tool and surface are nearest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +58,8 @@ pub struct Gauge {
     pub side: f64,
     /// THICK.
     pub thickness: f64,
+    /// Where contact was last.
+    pub memory: Memory,
 }
 
 impl Gauge {
@@ -71,9 +74,27 @@ impl Gauge {
                 surface: foot.point,
             };
         }
-        let mut contact = offset_contact(tool, &self.surface, self.side, tip);
-        contact.clearance -= self.thickness;
-        contact
+        self.offset_contact(tool, tip).0
+    }
+
+    /// The contact, and how much nearer to the surface another point of the tool may be for all that the search knows:
+    /// infinitely much where it proves nothing.
+    pub(crate) fn contact_within(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
+        if self.on { (self.contact(tool, tip), 0.0) } else { self.offset_contact(tool, tip) }
+    }
+
+    fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
+        let Self { surface, side, thickness, memory, .. } = self;
+        let (mut contact, missed) = offset_contact(tool, surface, *side, tip, Some(memory));
+        contact.clearance -= thickness;
+        (contact, missed)
+    }
+
+    /// Whether the clearance is nowhere on the tool below a level.
+    pub(crate) fn certify(&self, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
+        let (face, level) = (Face { surface: &self.surface, side: self.side }, level + self.thickness);
+        let patches = self.memory.patches(tool, self.side, tip, level);
+        certify::certify(face, tool, tip, level, patches.unwrap_or_else(|| certify::boundary(tool)))
     }
 
     /// How the clearance behaves along a straight line.
@@ -97,22 +118,28 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
     closed_form::contact(tool, &gauge.surface, gauge.side, tip).is_some()
 }
 
-/// Distance between the tool body and the surface, with the tool on the given side.
-pub(crate) fn offset_contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
+/// Distance between the tool body and the surface, with the tool on the given side; and how much less it may be.
+fn offset_contact(
+    tool: &Tool,
+    surface: &Surface,
+    side: f64,
+    tip: &Vec3,
+    memory: Option<&Memory>,
+) -> (Contact, f64) {
     closed_form::contact(tool, surface, side, tip)
         .or_else(|| matched::contact(tool, surface, side, tip))
         .or_else(|| dual::contact(tool, surface, side, tip))
-        .unwrap_or_else(|| search::contact(tool, surface, side, tip))
+        .map_or_else(|| search::contact(tool, Face { surface, side }, tip, memory), |contact| (contact, 0.0))
 }
 
 /// Distance of the whole tool from a surface without regard to sides: positive when they do not touch, on whichever
 /// side the tool is; the side with the greater clearance.
 pub(crate) fn separation(tool: &Tool, surface: &Surface, tip: &Vec3) -> (Contact, f64) {
-    let above = offset_contact(tool, surface, 1.0, tip);
+    let above = offset_contact(tool, surface, 1.0, tip, None).0;
     if above.clearance >= 0.0 {
         return (above, 1.0);
     }
-    let below = offset_contact(tool, surface, -1.0, tip);
+    let below = offset_contact(tool, surface, -1.0, tip, None).0;
     if above.clearance >= below.clearance { (above, 1.0) } else { (below, -1.0) }
 }
 

@@ -10,7 +10,8 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
     Contact, Shape, Tool,
-    certify::{Certificate, Face, certify},
+    certify::{Certificate, Face, boundary, certify},
+    memory::{Memory, Place},
     shape,
     tool::Piece,
 };
@@ -24,7 +25,7 @@ const ANGLE_RESOLUTION: f64 = 1e-10;
 /// Bound of the searches after the first one, each from a point that was found nearer.
 const MAX_RESTARTS: u32 = 12;
 /// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
-const MISSED: f64 = 1e-7;
+const MISSED: f64 = 1e-9;
 /// Slack of the fan of contact normals of the corner torus, radians.
 const FAN_SLACK: f64 = 1e-9;
 
@@ -32,13 +33,16 @@ const FAN_SLACK: f64 = 1e-9;
 struct Best {
     value: f64,
     contact: Option<Contact>,
+    /// The piece it is on.
+    piece: usize,
 }
 
 impl Best {
-    fn take(&mut self, value: f64, contact: impl FnOnce() -> Contact) {
+    fn take(&mut self, piece: usize, value: f64, contact: impl FnOnce() -> Contact) {
         if value < self.value || self.contact.is_none() {
             self.value = value;
             self.contact = Some(contact());
+            self.piece = piece;
         }
     }
 }
@@ -49,57 +53,101 @@ struct Search<'a> {
     side: f64,
     tip: &'a Vec3,
     best: Best,
+    /// The piece looked at.
+    piece: usize,
 }
 
-/// The clearance on one side, for any surface.
-pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
-    let mut search = Search { tool, surface, side, tip, best: Best { value: f64::INFINITY, contact: None } };
-    for piece in &tool.pieces {
-        match *piece {
-            Piece::Ring { radius, height, ball, fan } => search.ring(radius, height, ball, fan),
-            Piece::Disc { radius } => search.disc(radius),
-            Piece::Frustum { radius, height } => search.frustum(radius, height),
-        }
+/// The clearance on one side, for any surface; and how much nearer than the contact another point of the tool may be.
+pub(super) fn contact(tool: &Tool, face: Face<'_>, tip: &Vec3, memory: Option<&Memory>) -> (Contact, f64) {
+    let Face { surface, side } = face;
+    let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
+    let mut search = Search { tool, surface, side, tip, best, piece: 0 };
+    // Two convex bodies need no proof: what is nearest around is nearest of all.
+    let unique = shape(surface, side) == Shape::Convex;
+    let place = if unique { None } else { memory.and_then(|m| m.place(tool, side)) };
+    if let Some(place) = place {
+        search.descend(&place.point, Some(place.piece));
     }
-    search.complete();
-    search.best.contact.unwrap_or_else(|| {
+    if search.best.contact.is_none() {
+        search.scan();
+    }
+    let proof = if unique { Proof::Complete } else { search.complete(memory) };
+    if place.is_some() && matches!(proof, Proof::None) {
+        // Nothing proves the contact near the last one: look everywhere.
+        search.scan();
+    }
+    let Some(contact) = search.best.contact else {
         let foot = surface.foot(tip);
-        Contact {
-            clearance: side * foot.distance,
-            gradient: foot.normal * side,
-            tool: *tip,
-            surface: foot.point,
-        }
-    })
+        let (clearance, gradient) = (side * foot.distance, foot.normal * side);
+        return (Contact { clearance, gradient, tool: *tip, surface: foot.point }, f64::INFINITY);
+    };
+    if let (Some(memory), Proof::Within(missed)) = (memory, &proof) {
+        let place = Place { piece: search.best.piece, point: contact.tool - tip };
+        memory.keep(face, tool, tip, place, search.best.value - missed);
+    }
+    let missed = match proof {
+        Proof::Complete => 0.0,
+        Proof::Within(missed) => missed,
+        Proof::None => f64::INFINITY,
+    };
+    (contact, missed)
+}
+
+/// What is proven of a contact.
+enum Proof {
+    /// It is the nearest.
+    Complete,
+    /// No other is nearer by more than this.
+    Within(f64),
+    /// Nothing.
+    None,
 }
 
 impl Search<'_> {
-    /// Looks for places that are nearer than the nearest found, until there are none. Two convex bodies need no look:
-    /// what is nearest around is nearest of all.
-    fn complete(&mut self) {
-        if shape(self.surface, self.side) == Shape::Convex {
-            return;
-        }
-        let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
-        for _ in 0..MAX_RESTARTS {
-            let level = self.best.value - slack;
-            match certify(Face { surface: self.surface, side: self.side }, self.tool, self.tip, level) {
-                Certificate::Lower(point) => {
-                    self.best.take(point.clearance, || point);
-                    self.descend(&(point.tool - self.tip));
-                }
-                Certificate::Holds | Certificate::Undecided | Certificate::Unknown => return,
+    /// Looks everywhere.
+    fn scan(&mut self) {
+        let tool = self.tool;
+        for (k, piece) in tool.pieces.iter().enumerate() {
+            self.piece = k;
+            match *piece {
+                Piece::Ring { radius, height, ball, fan } => self.ring(radius, height, ball, fan),
+                Piece::Disc { radius } => self.disc(radius),
+                Piece::Frustum { radius, height } => self.frustum(radius, height),
             }
         }
     }
 
-    /// The valleys near a point of the tool, given from its end.
-    fn descend(&mut self, point: &Vec3) {
+    /// Looks for places that are nearer than the nearest found, until there are none.
+    fn complete(&mut self, memory: Option<&Memory>) -> Proof {
+        let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
+        for _ in 0..MAX_RESTARTS {
+            let level = self.best.value - slack;
+            let patches = memory.and_then(|m| m.patches(self.tool, self.side, self.tip, level));
+            let patches = patches.unwrap_or_else(|| boundary(self.tool));
+            let face = Face { surface: self.surface, side: self.side };
+            match certify(face, self.tool, self.tip, level, patches) {
+                Certificate::Lower(point) => {
+                    self.best.take(self.best.piece, point.clearance, || point);
+                    self.descend(&(point.tool - self.tip), None);
+                }
+                Certificate::Holds => return Proof::Within(slack),
+                Certificate::Undecided | Certificate::Unknown => return Proof::None,
+            }
+        }
+        Proof::None
+    }
+
+    /// The valleys near a point of the tool, given from its end, on one piece or all of them.
+    fn descend(&mut self, point: &Vec3, only: Option<usize>) {
         let (along, across, radial) = self.tool.split(point);
         let azimuth = radial.dot(&self.tool.across[1]).atan2(radial.dot(&self.tool.across[0]));
         let step = std::f64::consts::TAU / SCAN as f64;
         let tool = self.tool;
-        for piece in &tool.pieces {
+        for (k, piece) in tool.pieces.iter().enumerate() {
+            if only.is_some_and(|only| only != k) {
+                continue;
+            }
+            self.piece = k;
             match *piece {
                 Piece::Ring { radius, height, ball, fan } => {
                     let azimuth =
@@ -109,8 +157,7 @@ impl Search<'_> {
                     self.take_in_fan(&p, &foot, ball, fan);
                 }
                 Piece::Disc { radius } => {
-                    let start =
-                        Vector2::new(point.dot(&self.tool.across[0]), point.dot(&self.tool.across[1]));
+                    let start = Vector2::new(point.dot(&tool.across[0]), point.dot(&tool.across[1]));
                     self.inside_disc(radius, start * (radius / across.max(radius)));
                 }
                 Piece::Frustum { radius, height } => {
@@ -143,7 +190,7 @@ impl Search<'_> {
 
     fn take(&mut self, p: &Vec3, foot: &Foot, ball: f64) {
         let contact = self.contact_at(p, foot, ball);
-        self.best.take(contact.clearance, || contact);
+        self.best.take(self.piece, contact.clearance, || contact);
     }
 
     fn ring(&mut self, radius: f64, height: f64, ball: f64, fan: Option<[f64; 2]>) {

@@ -15,7 +15,13 @@ fn tool(numbers: &[f64]) -> Tool {
 }
 
 fn gauge(geometry: &Geometry, side: f64) -> Gauge {
-    Gauge { surface: Surface::from_geometry(geometry).expect("surface"), on: false, side, thickness: 0.0 }
+    Gauge {
+        surface: Surface::from_geometry(geometry).expect("surface"),
+        on: false,
+        side,
+        thickness: 0.0,
+        memory: Memory::default(),
+    }
 }
 
 fn near(found: f64, expected: f64) {

@@ -33,6 +33,8 @@ struct Sample {
     x: f64,
     value: f64,
     slope: f64,
+    /// How much less the value may be for all that the search knows.
+    missed: f64,
 }
 
 /// A clearance along a straight line.
@@ -47,8 +49,8 @@ struct Line<'a> {
 impl Line<'_> {
     fn sample(&self, x: f64) -> Sample {
         let (tip, tool) = self.sweep.at(x);
-        let contact = self.role.gauge.contact(&tool, &tip);
-        self.known(x, &contact, &tip)
+        let (contact, missed) = self.role.gauge.contact_within(&tool, &tip);
+        Sample { missed, ..self.known(x, &contact, &tip) }
     }
 
     /// True if no part of the tool is nearer to the surface than a level.
@@ -58,7 +60,8 @@ impl Line<'_> {
     }
 
     fn known(&self, x: f64, contact: &Contact, tip: &Vec3) -> Sample {
-        Sample { x, value: self.sign * contact.clearance, slope: self.sign * self.sweep.slope(contact, tip) }
+        let (value, slope) = (contact.clearance, self.sweep.slope(contact, tip));
+        Sample { x, value: self.sign * value, slope: self.sign * slope, missed: f64::INFINITY }
     }
 }
 

@@ -18,7 +18,7 @@ use apt_geometry::{
 };
 
 use crate::{
-    clearance::{Gauge, Tool},
+    clearance::{Gauge, Memory, Tool},
     error::{MotionFailure, MotionWarning},
     section2::{Output, State, execute},
     sequence::{CutSequence, Role},
@@ -186,6 +186,7 @@ fn gauge(role: &Role) -> Gauge {
         on: role.relation == Relation::On,
         side: role.side,
         thickness: role.thickness,
+        memory: Memory::default(),
     }
 }
 

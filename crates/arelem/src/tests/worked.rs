@@ -68,8 +68,13 @@ fn w26_distance_to_the_check_surface_along_the_path() {
 fn w22_three_surfaces() {
     let tool =
         Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
-    let gauge =
-        |geometry: Geometry, on: bool| Gauge { surface: surface(&geometry), on, side: 1.0, thickness: 0.0 };
+    let gauge = |geometry: Geometry, on: bool| Gauge {
+        surface: surface(&geometry),
+        on,
+        side: 1.0,
+        thickness: 0.0,
+        memory: Memory::default(),
+    };
     let part = gauge(sphere(0.0, 0.0, 0.0, 2.0), false);
     let drive = gauge(cylinder(Vec3::zeros(), Vec3::z(), 0.8), false);
     let check = gauge(plane(1.0, 0.0, 0.0, 0.3), true);
@@ -146,8 +151,13 @@ fn w33_start_on_a_cone() {
     let cn = cone(v(0.0, 0.0, 3.0), -Vec3::z(), 30.0);
     let tool =
         Tool::new(apt_geometry::cutter::Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z());
-    let gauge =
-        |geometry: &Geometry| Gauge { surface: surface(geometry), on: false, side: 1.0, thickness: 0.0 };
+    let gauge = |geometry: &Geometry| Gauge {
+        surface: surface(geometry),
+        on: false,
+        side: 1.0,
+        thickness: 0.0,
+        memory: Memory::default(),
+    };
     let (drive, part) = (gauge(&cn), gauge(&ground()));
     for (aim, expected) in [(0.0, 1.876388375), (0.0009, 1.877427605)] {
         let conditions = [Condition::Clearance(&drive, aim), Condition::Clearance(&part, 0.0)];

@@ -130,7 +130,8 @@ impl Course<'_, '_> {
     }
 
     fn deep_enough(&self, sample: &Sample) -> bool {
-        self.line.certified(sample.x, sample.value - self.open(sample))
+        let open = self.open(sample);
+        sample.missed <= open || self.line.certified(sample.x, sample.value - open)
     }
 
     /// Bound of the second derivative along the stretch between two samples.
@@ -193,7 +194,7 @@ mod tests {
     use super::*;
 
     fn sample(x: f64, value: f64, slope: f64) -> Sample {
-        Sample { x, value, slope }
+        Sample { x, value, slope, missed: 0.0 }
     }
 
     #[test]

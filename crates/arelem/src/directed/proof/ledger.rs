@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use crate::clearance::{Certificate, Face, Gauge, Shape, Tool, certify, has_closed_form, upward_bend};
+use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, upward_bend};
 
 /// How much farther a bound reaches than the vector it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
@@ -68,8 +68,7 @@ impl Ledger {
         if known.iter().flatten().any(|k| k.tip == *tip && k.axis == tool.axis && k.level >= level) {
             return true;
         }
-        let face = Face { surface: &gauge.surface, side: gauge.side };
-        match certify(face, tool, tip, level + gauge.thickness) {
+        match gauge.certify(tool, tip, level) {
             Certificate::Holds => {
                 self.levels.set([Some(Level { tip: *tip, axis: tool.axis, level }), known[0]]);
                 true
