@@ -4,6 +4,7 @@
 mod codegen;
 mod failure;
 mod layout;
+mod nightly;
 mod nvim;
 mod process;
 mod setup;
@@ -52,6 +53,18 @@ enum Task {
         #[arg(long)]
         no_editors: bool,
     },
+    /// Run the random tests with many more cases than `test` has time for, in the release profile.
+    Nightly {
+        /// Cases per form of a definition.
+        #[arg(long, default_value_t = nightly::DEFINITION_CASES)]
+        definition_cases: u32,
+        /// Random motions.
+        #[arg(long, default_value_t = nightly::MOTION_CASES)]
+        motion_cases: u32,
+        /// Seed of the random numbers, to repeat a run; another one every time if not given.
+        #[arg(long)]
+        seed: Option<u64>,
+    },
     /// Test the extension in the real VS Code: inside its extension host and clicked through in the browser.
     TestVscode(EditorArguments),
     /// Install the VS Code of the tests into the cache folder (`test-vscode` does it by itself).
@@ -99,6 +112,9 @@ fn perform(task: Task) -> Outcome {
         Task::Codegen { check } => codegen::run(check),
         Task::Setup { check } => setup::run(check),
         Task::PackageVscode { output } => vscode::package::run(&layout::root().join(output)),
+        Task::Nightly { definition_cases, motion_cases, seed } => {
+            nightly::run(nightly::Extent { definition_cases, motion_cases, seed })
+        }
         Task::Test { no_editors } => whole::run(!no_editors),
         Task::TestVscode(editor) => vscode::tests::run(&editor.server()?, &mut count),
         Task::VscodeHost => vscode::host::install().map(|host| println!("{}", host.entry.display())),

@@ -16,12 +16,13 @@ struct Report {
 
 /// Collects the steps.
 #[derive(Default)]
-struct Run {
+pub(crate) struct Run {
     reports: Vec<Report>,
 }
 
 impl Run {
-    fn step(&mut self, name: &'static str, action: impl FnOnce(&mut TestCount) -> Outcome) {
+    /// Does one step and keeps what came of it.
+    pub(crate) fn step(&mut self, name: &'static str, action: impl FnOnce(&mut TestCount) -> Outcome) {
         println!("\n== {name}");
         let start = Instant::now();
         let mut count = TestCount::default();
@@ -32,7 +33,8 @@ impl Run {
         self.reports.push(Report { name, seconds: start.elapsed().as_secs_f64(), count, failure });
     }
 
-    fn finish(self) -> Outcome {
+    /// Prints the table of the steps; fails when one of them did.
+    pub(crate) fn finish(self) -> Outcome {
         println!("\n{:<28} {:>8} {:>8} {:>8}  result", "step", "seconds", "passed", "failed");
         let mut total = TestCount::default();
         for report in &self.reports {
@@ -50,7 +52,8 @@ impl Run {
     }
 }
 
-fn cargo(arguments: &[&str]) -> Call {
+/// A call of cargo in the workspace.
+pub(crate) fn cargo(arguments: &[&str]) -> Call {
     Call::new("cargo").args(arguments).folder(layout::root())
 }
 
