@@ -1,0 +1,50 @@
+//! The long run of the random tests, for the night: many more cases than the test command has time for.
+//!
+//! The random tests take their number of cases from the environment: `PROPTEST_CASES` per form of a definition,
+//! `APT_CASES` for random motion. Unless a seed is given the run draws new cases every time and prints its seed, so that
+//! a red run can be repeated.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use crate::failure::Outcome;
+use crate::whole::{Run, cargo};
+
+/// Cases per form of a definition.
+pub(crate) const DEFINITION_CASES: u32 = 10_000;
+/// Random motions.
+pub(crate) const MOTION_CASES: u32 = 2_000;
+
+/// How long the run is and what it draws.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Extent {
+    pub(crate) definition_cases: u32,
+    pub(crate) motion_cases: u32,
+    /// Of the random numbers; none draws another one every time.
+    pub(crate) seed: Option<u64>,
+}
+
+/// Runs the random tests of definitions and of motion with many cases, in the release profile.
+pub(crate) fn run(extent: Extent) -> Outcome {
+    let seed = extent.seed.unwrap_or_else(seed_of_the_day);
+    println!("seed {seed}; repeat with `cargo xtask nightly --seed {seed}`");
+    let seed = seed.to_string();
+    let mut run = Run::default();
+    run.step("definitions", |count| {
+        cargo(&["test", "--release", "--locked", "--package", "apt-geometry", "--test", "conditions"])
+            .env("PROPTEST_RNG_SEED", &seed)
+            .env("PROPTEST_CASES", extent.definition_cases.to_string())
+            .run_counting(count)
+    });
+    run.step("random motion", |count| {
+        cargo(&["test", "--release", "--locked", "--package", "arelem"])
+            .env("PROPTEST_RNG_SEED", &seed)
+            .env("APT_CASES", extent.motion_cases.to_string())
+            .run_counting(count)
+    });
+    run.finish()
+}
+
+/// The seconds since 1970: another number every night.
+fn seed_of_the_day() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+}
