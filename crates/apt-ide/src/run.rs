@@ -6,6 +6,7 @@ use apt_cldata::record::ClKind;
 use apt_geometry::motion::MotionCommand;
 use apt_program::record::RecordKind;
 use apt_run::{
+    catalogue::story_lines,
     pipeline::{Motion, RunResult},
     report::Report,
 };
@@ -32,6 +33,33 @@ impl Analysis {
         let statements = range.and_then(|range| self.statements_of(range));
         self.result(cancel, progress)?;
         self.document().report(cancel, progress, statements)
+    }
+
+    /// The stories of the motions in the report of a run, in its order: how each was computed and why each cut vector ends
+    /// where it does. A motion without surfaces has an empty story.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn stories(
+        &self,
+        range: Option<Range<usize>>,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<Vec<String>>, Cancelled> {
+        let statements = range.and_then(|range| self.statements_of(range));
+        let result = self.result(cancel, progress)?;
+        let wanted = |motion: &&Motion| {
+            statements.as_ref().is_none_or(|range| range.contains(&motion.origin.place_in_program().0))
+        };
+        let mut stories = Vec::new();
+        for motion in result.motions.iter().filter(wanted) {
+            if cancel() {
+                return Err(Cancelled);
+            }
+            stories.push(motion.computed.story().map_or_else(Vec::new, |story| story_lines(&story)));
+        }
+        Ok(stories)
     }
 
     /// The numbers of the statements that a byte range touches.

@@ -1,10 +1,11 @@
 //! What a motion statement gave, in a hover.
 
 use apt_cldata::record::ClKind;
-use apt_run::pipeline::RunResult;
+use apt_run::{catalogue::story_lines, pipeline::RunResult};
 use arelem::{
     section2::Output,
     sequence::PocketPath,
+    story::Story,
     verify::{Evidence, Extent},
 };
 
@@ -13,12 +14,16 @@ use crate::{Analysis, Cancel, Cancelled};
 
 /// Positions shown; the rest is counted.
 const POSITIONS_SHOWN: usize = 4;
+/// Lines of the story about the ends of cut vectors that are shown; the last ones tell how the motion ended.
+const ENDS_SHOWN: usize = 3;
 
 impl Analysis {
     /// The result of the motion statement with this number; empty if it gave none.
     pub(super) fn motion_markdown(&self, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
         let result = self.result(cancel, &mut |_, _| {})?;
-        let mut turns = result.motions.iter().filter(|motion| motion.origin.isn == isn);
+        let of_statement =
+            |motion: &&apt_run::pipeline::Motion| motion.origin.isn == isn && motion.origin.source.is_none();
+        let mut turns = result.motions.iter().filter(of_statement);
         let count = turns.clone().count();
         let Some(motion) = turns.next_back() else { return Ok(points(&result, isn)) };
         let evidence = motion.computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
@@ -42,9 +47,25 @@ impl Analysis {
         };
         text.push_str(&times);
         text.push_str(&verdict(evidence));
+        if let Some(story) = motion.computed.story() {
+            text.push_str(&short(&story));
+        }
         list(&mut text, positions.iter().map(|position| position.tip.into()), positions.len());
         Ok(text)
     }
+}
+
+/// The story without the surfaces, which the table shows: the route, and how the last vectors end.
+fn short(story: &Story) -> String {
+    let lines = story_lines(story);
+    let route = lines.first();
+    let ends = lines.iter().skip(2 + story.surfaces.len());
+    let count = ends.len();
+    let mut told: Vec<&String> =
+        route.into_iter().chain(ends.skip(count.saturating_sub(ENDS_SHOWN))).collect();
+    told.dedup();
+    let items: Vec<_> = told.iter().map(|line| format!("- {line}\n")).collect();
+    format!("{}\n", items.concat())
 }
 
 /// How many positions each pass of a pocket has, and at which feed.
@@ -62,8 +83,7 @@ fn passes(path: &PocketPath) -> String {
 /// What the verifier says, with the clearances where it measured them.
 fn verdict(evidence: Option<&Evidence>) -> String {
     let Some(evidence) = evidence else { return "\n\n".to_owned() };
-    let mut text =
-        if evidence.verified { " — verified\n\n" } else { " — **not verified**\n\n" }.to_owned();
+    let mut text = if evidence.verified { " — verified\n\n" } else { " — **not verified**\n\n" }.to_owned();
     let rows = [("part", evidence.part), ("drive", evidence.drive), ("check", evidence.check)];
     if rows.iter().any(|(_, extent)| extent.is_some()) {
         text.push_str("| surface | clearance | allowed |\n|---|---|---|\n");

@@ -162,6 +162,8 @@ pub(crate) struct RunRequest {
     pub machine: Option<String>,
     /// With a scene for viewers.
     pub scene: bool,
+    /// With the story of each motion.
+    pub story: bool,
 }
 
 /// What can be written to a file.

@@ -252,6 +252,16 @@ impl Document for Program {
             let scene = with(control, "drawing", |cancel, progress| self.0.scene(cancel, progress))?;
             add("scene", to_json(&scene)?);
         }
+        if request.story {
+            let range = request.range.clone();
+            let stories = with(control, "telling", |cancel, progress| self.0.stories(range, cancel, progress))?;
+            let motions = report["motions"].as_array_mut().into_iter().flatten();
+            for (motion, story) in motions.zip(stories) {
+                if let Some(fields) = motion.as_object_mut() {
+                    fields.insert("story".to_owned(), json!(story));
+                }
+            }
+        }
         Ok(report)
     }
 

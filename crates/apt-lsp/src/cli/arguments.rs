@@ -145,6 +145,9 @@ pub(super) struct RunCall {
     /// Write to a file instead of standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// Tell how each motion was computed and why each cut vector ends where it does (human and JSON)
+    #[arg(long)]
+    pub explain_motion: bool,
     /// Warnings count as findings in the exit code
     #[arg(long)]
     pub deny_warnings: bool,

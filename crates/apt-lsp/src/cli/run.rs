@@ -18,7 +18,7 @@ pub(super) fn run(call: &RunCall, console: &Console, language: &dyn Language) ->
     let format = call.format.unwrap_or_else(|| format_of(call.output.as_deref()));
     let (control, bar) = console.control(&program.name);
     let diagnostics = program.document.diagnostics(Level::Motion, &control);
-    let product = product(&program, format, &control);
+    let product = product(&program, format, call.explain_motion, &control);
     bar.finish_and_clear();
     let (diagnostics, product) =
         match diagnostics.map_err(Refusal::from).and_then(|found| Ok((found, product?))) {
@@ -57,18 +57,24 @@ fn format_of(output: Option<&Path>) -> RunFormat {
 }
 
 /// What is written; nothing if only findings are.
-fn product(program: &Program, format: RunFormat, control: &Control) -> Result<Option<Vec<u8>>, Refusal> {
+fn product(
+    program: &Program,
+    format: RunFormat,
+    story: bool,
+    control: &Control,
+) -> Result<Option<Vec<u8>>, Refusal> {
     match format {
-        RunFormat::Human => Ok(Some(listing::text(&report(program, control)?).into_bytes())),
-        RunFormat::Json => Ok(Some(format!("{}\n", report(program, control)?).into_bytes())),
+        RunFormat::Human => Ok(Some(listing::text(&report(program, story, control)?).into_bytes())),
+        RunFormat::Json => Ok(Some(format!("{}\n", report(program, story, control)?).into_bytes())),
         RunFormat::Cl => program.document.product(&Product::ClText, control).map(Some),
         RunFormat::Cltape => program.document.product(&Product::Cltape, control).map(Some),
         RunFormat::Sarif | RunFormat::Github => Ok(None),
     }
 }
 
-fn report(program: &Program, control: &Control) -> Result<Value, Refusal> {
-    let mut report = program.document.run(&RunRequest::default(), control)?;
+fn report(program: &Program, story: bool, control: &Control) -> Result<Value, Refusal> {
+    let request = RunRequest { story, ..RunRequest::default() };
+    let mut report = program.document.run(&request, control)?;
     let name = Path::new(&program.name).file_name().and_then(|name| name.to_str());
     if let (Some(name), Some(fields)) = (name, report.as_object_mut()) {
         fields.insert("program".to_owned(), Value::String(name.to_owned()));

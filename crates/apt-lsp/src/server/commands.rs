@@ -14,8 +14,8 @@ use super::backend::Backend;
 use super::documents::{Snapshot, file_path};
 use super::job;
 use super::progress::{self, Display};
-use crate::analysis::{Control, Refusal, RunRequest};
-use crate::convert::{TextIndex, outgoing};
+use crate::analysis::{Control, Refusal, RunRequest, Surroundings};
+use crate::convert::{TextIndex, Uris, outgoing};
 use crate::settings::{Settings, Values};
 
 #[derive(Deserialize)]
@@ -25,6 +25,8 @@ struct RunArgument {
     machine: Option<String>,
     #[serde(default)]
     scene: bool,
+    #[serde(default)]
+    story: bool,
 }
 
 #[derive(Deserialize)]
@@ -75,11 +77,11 @@ fn read<T: DeserializeOwned>(argument: Value) -> Result<T> {
 
 async fn run_motion(server: &Backend, argument: RunArgument, token: Option<ProgressToken>) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
-    let RunArgument { range, machine, scene, .. } = argument;
+    let RunArgument { range, machine, scene, story, .. } = argument;
     long(server, "Run motion", snapshot, token, move |snapshot, control| {
         let machine = machine.or_else(|| default_machine(&snapshot.settings));
         let range = range.map(|range| snapshot.index.bytes(range));
-        snapshot.document.run(&RunRequest { range, machine, scene }, control)
+        snapshot.document.run(&RunRequest { range, machine, scene, story }, control)
     })
     .await
 }
@@ -163,14 +165,18 @@ async fn present(server: &Backend, uri: Uri) -> Result<Snapshot> {
         let text = crate::source::read_file(&path).ok()?.text;
         let (settings, _) = Settings::resolve(language.as_ref(), Some(&path), &Values::new(), &Values::new());
         let name = path.file_name().and_then(|name| name.to_str());
-        let document = language.open(&text, name, &settings.program);
+        let surroundings = Surroundings { path: Some(path.clone()), ..Surroundings::default() };
+        let document = language.open(&text, name, &settings.program, surroundings);
         Some(Snapshot {
             uri,
             revision: 0,
+            version: 0,
             index: TextIndex { rope: Rope::from_str(&text), encoding },
             document,
             settings: Arc::new(settings),
             superseded: CancellationToken::new(),
+            includers: Vec::new(),
+            uris: Uris::default(),
         })
     };
     match tokio::task::spawn_blocking(read).await {
