@@ -1,6 +1,6 @@
 //! The APT4 dialect: its numbers, and statement forms that it takes (language reference 10.4).
 
-use apt_program::{Finding, Options, Program, RecordKind, Severity, Value, evaluate};
+use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, Value, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 
 fn run(text: &str) -> Program {
@@ -235,4 +235,31 @@ fn constructs_nest_and_combine() {
         assert!(errors.is_empty(), "{text}: {errors:?}");
         assert_eq!(scalar(&program, name), Some(*expected), "{text}");
     }
+}
+
+#[test]
+fn do_loops_end_at_their_label_and_are_left_by_jumps() {
+    let missing = run("DO/B,I=1,3\nX=I");
+    let kinds: Vec<_> = missing.findings().map(|finding| &finding.kind).collect();
+    assert!(matches!(kinds.as_slice(), [FindingKind::UnknownLabel { name, .. }] if name == "B"), "{kinds:?}");
+    for text in [
+        "DO/A,I=1,3\nDO/B,J=1,2\nA)X=I\nB)Y=J",
+        "M=MACRO\nDO/A,I=1,3\nDO/B,J=1,2\nA)X=I\nB)Y=J\nTERMAC\nCALL/M",
+    ] {
+        let program = run(text);
+        let kinds: Vec<_> = program.findings().map(|finding| finding.kind.clone()).collect();
+        let expected = FindingKind::LoopsCross { label: "B".into(), outer: "A".into() };
+        assert_eq!(kinds, [expected], "{text}");
+    }
+    let backwards = run("A)X=1\nDO/A,I=1,3\nX=2");
+    assert!(backwards.findings().any(|finding| matches!(finding.kind, FindingKind::UnknownLabel { .. })));
+    // A loop that a jump has left is over, wherever the jump goes.
+    let text =
+        "N=0\nS=0\nC)N=N+1\nDO/A,I=1,4\nIF(N.EQ.1.AND.I.EQ.2)JUMPTO/B\nA)S=S+I\nB)IF(N.LT.2)JUMPTO/C\nA1)X=I";
+    for program in [run(text), run(&format!("M=MACRO\n{text}\nTERMAC\nCALL/M"))] {
+        assert!(problems(&program).is_empty(), "{:?}", problems(&program));
+        assert_eq!((scalar(&program, "S"), scalar(&program, "X")), (Some(11.0), Some(4.0)));
+    }
+    let outer = "S=0\nDO/A,I=1,2\nDO/B,J=1,9\nIF(J.EQ.2)JUMPTO/A\nS=S+1\nB)S=S+10\nA)S=S+100";
+    assert_eq!(scalar(&run(outer), "S"), Some(222.0));
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use apt_syntax::{
     ParsedStatement, TextRange,
-    statement::{Body, Name, Reference},
+    statement::{Body, Expression, Name, Reference},
 };
 use smol_str::SmolStr;
 
@@ -32,6 +32,25 @@ pub(crate) struct DoLoop {
     pub(crate) step: f64,
     /// Index of the first statement of the body.
     pub(crate) body: usize,
+    /// Index of the statement that carries the label.
+    pub(crate) end: usize,
+}
+
+/// A DO statement.
+pub(crate) struct DoHeader<'s> {
+    /// The label of the last statement of the loop.
+    pub(crate) label: &'s Name,
+    /// The index variable.
+    pub(crate) index: &'s Reference,
+    /// First, last and perhaps step.
+    pub(crate) bounds: &'s [Expression],
+    /// The whole.
+    pub(crate) range: TextRange,
+}
+
+/// Forgets the loops that a statement stands outside of: a jump has left them.
+pub(crate) fn leave_do_loops(do_loops: &mut Vec<DoLoop>, index: usize) {
+    do_loops.retain(|open| (open.body..=open.end).contains(&index));
 }
 
 /// What a block is executed as.
@@ -93,7 +112,7 @@ impl Evaluator<'_> {
                 self.state.without_synonyms(&substituted, &self.dialect)
             });
             let statement = Arc::clone(statement);
-            let flow = self.block_statement(&statement, index, &mut do_loops);
+            let flow = self.block_statement(&statement, (block, index), &mut do_loops);
             let target = match flow {
                 Flow::Next => self.continue_do_loops(&statement, &mut do_loops),
                 Flow::Jump(label) => self.block_label(activation, &label),
@@ -110,6 +129,7 @@ impl Evaluator<'_> {
                 turn_start = self.output.definitions.len();
                 self.next_turn();
             }
+            leave_do_loops(&mut do_loops, next);
             index = next;
         }
         Flow::Next
@@ -119,7 +139,7 @@ impl Evaluator<'_> {
     fn block_statement(
         &mut self,
         statement: &ParsedStatement,
-        index: usize,
+        (block, index): (&Block, usize),
         do_loops: &mut Vec<DoLoop>,
     ) -> Flow {
         self.here.label =
@@ -127,9 +147,8 @@ impl Evaluator<'_> {
         if let Some(part) = statement.statement.parts.first()
             && let Body::Do { label, index: variable, bounds, .. } = &part.body
         {
-            if let Some(opened) = self.open_do_loop(label, variable, bounds, part.range, index + 1) {
-                do_loops.push(opened);
-            }
+            let header = DoHeader { label, index: variable, bounds, range: part.range };
+            self.open_do_loop(&header, index + 1, block.label(&label.text), do_loops);
             return Flow::Next;
         }
         // The words that close the block are its last statement.
@@ -174,33 +193,41 @@ impl Evaluator<'_> {
         found
     }
 
-    /// DO: sets the index to the first value.
+    /// DO: sets the index to the first value and opens the loop of statements `body` to `end`, which is none where no
+    /// statement carries the label.
     pub(crate) fn open_do_loop(
         &mut self,
-        label: &Name,
-        variable: &Reference,
-        bounds: &[apt_syntax::statement::Expression],
-        range: TextRange,
+        header: &DoHeader<'_>,
         body: usize,
-    ) -> Option<DoLoop> {
-        let values: Vec<Option<f64>> = bounds.iter().map(|bound| self.scalar(bound)).collect();
+        end: Option<usize>,
+        do_loops: &mut Vec<DoLoop>,
+    ) {
+        let values: Vec<Option<f64>> = header.bounds.iter().map(|bound| self.scalar(bound)).collect();
         let (first, last, step) = match *values.as_slice() {
             [first, last] => (first, last, Some(1.0)),
             [first, last, step] => (first, last, step),
             _ => (None, None, None),
         };
-        self.assign_scalar(variable, first);
+        self.assign_scalar(header.index, first);
         if let Some(first) = first {
-            self.trace_index(variable, first);
+            self.trace_index(header.index, first);
         }
-        let (last, step) = (last?, step?);
-        if step == 0.0 {
-            self.report(FindingKind::ZeroStep, range);
-            return None;
+        leave_do_loops(do_loops, body);
+        let label = super::normalised_label(&header.label.text);
+        let Some(end) = end.filter(|end| *end >= body) else {
+            let finding = FindingKind::UnknownLabel { name: label, similar: Vec::new() };
+            return self.report(finding, header.label.range);
+        };
+        if let Some(outer) = do_loops.last().filter(|outer| outer.end < end) {
+            let finding = FindingKind::LoopsCross { label, outer: outer.label.clone() };
+            return self.report(finding, header.label.range);
         }
-        first?;
-        let label = super::normalised_label(&label.text);
-        Some(DoLoop { label, index: variable.clone(), last, step, body })
+        if step == Some(0.0) {
+            return self.report(FindingKind::ZeroStep, header.range);
+        }
+        if let (Some(_), Some(last), Some(step)) = (first, last, step) {
+            do_loops.push(DoLoop { label, index: header.index.clone(), last, step, body, end });
+        }
     }
 
     /// After the last statement of a DO loop: the next value, or out of the loop.

@@ -10,7 +10,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{Budget, DataCards, Evaluator, Flow, Region};
 use crate::{
-    blocks::{self, Activation, Bindings, Block, DoLoop, normalised_label},
+    blocks::{self, Activation, Bindings, Block, DoHeader, DoLoop, leave_do_loops, normalised_label},
     finding::{FindingKind, RelatedKind},
     options::IncludeFailure,
     record::{FrameKind, RecordKind, SourceFile},
@@ -72,6 +72,7 @@ impl Evaluator<'_> {
         let cards = DataCards { tree: Some(top.tree.clone()), next: index + 1 };
         let outer = std::mem::replace(&mut self.cards, cards);
         let mut end = self.top_level_statement(top, index);
+        leave_do_loops(&mut top.do_loops, end.next);
         let cards = std::mem::replace(&mut self.cards, outer);
         if cards.next > index + 1 && end.next > index {
             end.next = end.next.max(cards.next);
@@ -118,9 +119,12 @@ impl Evaluator<'_> {
                 }
                 Body::Do { label, index: variable, bounds, .. } => {
                     self.open_statement(&statement);
-                    let opened = self.open_do_loop(label, variable, bounds, part.range, index + 1);
-                    top.do_loops.extend(opened);
-                    return past(index + 1);
+                    let header = DoHeader { label, index: variable, bounds, range: part.range };
+                    let end = top.label(&label.text);
+                    self.open_do_loop(&header, index + 1, end, &mut top.do_loops);
+                    // That a label is missing depends on every statement.
+                    let read_to = end.filter(|end| *end > index).map_or(count, |end| end + 1);
+                    return StepEnd { next: index + 1, read_to, read_from: index };
                 }
                 _ => {}
             }

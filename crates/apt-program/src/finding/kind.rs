@@ -473,6 +473,14 @@ pub enum FindingKind {
         /// Names in the conditions of the loop whose values did not.
         unchanged: Vec<SmolStr>,
     },
+    /// A DO loop in another one that ends behind it.
+    #[error("the DO loop to {label} ends behind the one to {outer} around it")]
+    LoopsCross {
+        /// The label of the inner loop.
+        label: SmolStr,
+        /// The label of the loop around it.
+        outer: SmolStr,
+    },
     /// A DO loop whose index never changes.
     #[error("a DO loop with step zero")]
     ZeroStep,

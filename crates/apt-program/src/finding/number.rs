@@ -110,6 +110,7 @@ impl FindingKind {
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::Endless { .. }
+            | Self::LoopsCross { .. }
             | Self::ZeroStep
             | Self::NotInDialect { .. }
             | Self::AxisDropped { .. }

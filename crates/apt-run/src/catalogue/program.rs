@@ -51,6 +51,10 @@ fn jump(kind: &Kind) -> Option<Text> {
         Kind::LoopInMacro => say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
             .hint("IF and JUMPTO work in a macro without them"),
         Kind::LoopNotClosed => say("APT0409", "this loop is never closed").hint("add LOOPND"),
+        Kind::LoopsCross { label, outer } => {
+            say("APT0411", format!("the DO loop to {label} ends behind the loop to {outer} around it"))
+                .hint(format!("put the statement {label}) before {outer}), or end both loops at one label"))
+        }
         Kind::Endless { statements, changing, unchanged } => {
             let what = match (unchanged.as_slice(), changing.as_slice()) {
                 ([], []) => "no condition of the loop depends on a name that changes".to_owned(),
