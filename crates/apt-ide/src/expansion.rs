@@ -1,6 +1,7 @@
 //! The program with macros and loops unrolled, each line with its origin.
 
-use apt_program::{Options, Origin, expand};
+use apt_program::{Origin, expand};
+use apt_run::format::{FormatOptions, format_text};
 
 use crate::{Analysis, Cancel, Cancelled};
 
@@ -27,7 +28,7 @@ impl Analysis {
         cancel: Cancel<'_>,
     ) -> Result<Expansion, Cancelled> {
         let at = offset.and_then(|offset| self.statement_at(offset)).map(|(view, _)| view.index);
-        let options = Options::from(&**self.document().settings());
+        let options = self.document().options();
         let expansion = expand(self.document().tree(), &options, at, depth, &cancel);
         if cancel() {
             return Err(Cancelled);
@@ -39,6 +40,11 @@ impl Analysis {
             text.push('\n');
             origins.push(line.origin);
         }
+        // Statements are neither made nor removed, and with nothing wrapped each stays on its line.
+        let dialect = self.document().tree().dialect();
+        let style = FormatOptions { wrap: None, ..FormatOptions::of(&dialect) };
+        let formatted = format_text(&text, dialect, &style);
+        let text = if formatted.lines().count() == origins.len() { formatted } else { text };
         Ok(Expansion { text, origins })
     }
 }

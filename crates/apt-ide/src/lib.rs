@@ -3,11 +3,15 @@
 //! Offsets are bytes from the start of the text. Nothing here knows a protocol, a line number or a JSON shape of its
 //! own; the run report comes from `apt-run` as it is.
 
+pub mod action;
 mod carry;
 pub mod completion;
+mod context;
 pub mod dialect;
 pub mod expansion;
+pub mod files;
 pub mod folding;
+mod forms;
 pub mod hover;
 pub mod lens;
 pub mod navigation;
@@ -16,6 +20,7 @@ pub mod picture;
 pub mod regions;
 pub mod run;
 pub mod search;
+pub mod signature;
 pub mod tape;
 pub mod tokens;
 mod turn;
@@ -30,8 +35,8 @@ use apt_run::pipeline::RunResult;
 pub use apt_run::{
     Cancel, Cancelled,
     catalogue::explain,
-    diagnostic::{Diagnostic, Severity},
-    document::{Document, Level},
+    diagnostic::{Diagnostic, Fix, Severity},
+    document::{Document, Files, Level, OpenText, Surroundings, normalised},
     format,
     settings::Settings,
 };
@@ -43,6 +48,7 @@ pub struct Analysis {
     document: Arc<Document>,
     marks: Arc<OnceLock<regions::Marks>>,
     regions: Arc<OnceLock<Vec<regions::Region>>>,
+    files: Arc<OnceLock<Vec<files::ProgramFile>>>,
     evaluating: Arc<turn::Turn>,
     running: Arc<turn::Turn>,
     /// The evaluation of the last version before this one that was evaluated.
@@ -55,11 +61,31 @@ impl Analysis {
         Self::of(Document::new(text, file, settings))
     }
 
+    /// The same for a program that stands elsewhere than its name says, perhaps among files that are open in an editor.
+    pub fn placed(
+        text: &str,
+        file: Option<String>,
+        settings: &Arc<Settings>,
+        surroundings: Surroundings,
+    ) -> Self {
+        Self::of(Document::placed(text, file, settings, surroundings))
+    }
+
+    /// The same version with all forgotten that depends on included files, for when one of them has changed.
+    pub fn with_changed_files(&self) -> Self {
+        let mut next = Self::of(self.document.with_changed_files());
+        next.marks = Arc::clone(&self.marks);
+        next.regions = Arc::clone(&self.regions);
+        next.before = self.known_program().cloned();
+        next
+    }
+
     fn of(document: Document) -> Self {
         Self {
             document: Arc::new(document),
             marks: Arc::default(),
             regions: Arc::default(),
+            files: Arc::default(),
             evaluating: Arc::default(),
             running: Arc::default(),
             before: None,
@@ -96,7 +122,12 @@ impl Analysis {
     /// Macro bodies and loops.
     pub fn regions(&self) -> &[regions::Region] {
         let tree = self.document.tree();
-        self.regions.get_or_init(|| self.marks.get_or_init(|| regions::Marks::find(tree)).regions(tree))
+        self.regions.get_or_init(|| self.marks().regions(tree))
+    }
+
+    /// The statements that open and close regions or put in files.
+    fn marks(&self) -> &regions::Marks {
+        self.marks.get_or_init(|| regions::Marks::find(self.document.tree()))
     }
 
     /// What is known of the program without any work: its evaluation, or that of the last version that has one.
@@ -158,14 +189,7 @@ impl Analysis {
 
     /// The statement at an offset and the offset relative to its start; `None` in an empty text.
     pub(crate) fn statement_at(&self, offset: usize) -> Option<(StatementView, TextSize)> {
-        let tree = self.document.tree();
-        if tree.statement_count() == 0 {
-            return None;
-        }
-        let offset = TextSize::new(offset.min(usize::from(tree.len())) as u32);
-        let view = tree.statement(tree.statement_at(offset));
-        let relative = offset.checked_sub(view.range().start())?;
-        Some((view, relative))
+        navigation::statement_at(self.document.tree(), offset)
     }
 }
 

@@ -1,14 +1,21 @@
 //! Definition, references, highlights and rename of names and labels.
 
-use std::ops::Range;
+use std::{ops::Range, path::Path, sync::Arc};
 
+use apt_program::SourceFile;
 use apt_syntax::{
-    ParsedStatement,
+    ParsedStatement, SyntaxTree, TextSize,
     statement::{Body, Element, ElementKind},
+    tree::StatementView,
 };
 use smol_str::SmolStr;
 
-use crate::{Analysis, absolute, regions::Region, search::statements_with};
+use crate::{
+    Analysis, absolute,
+    files::{ProgramFile, names_of_files},
+    regions::Region,
+    search::statements_with,
+};
 
 /// What a name stands for at a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,6 +33,9 @@ pub struct NameAt {
 /// Where a name means the same: the whole program, or the statements of a macro body or loop.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Scope {
+    /// The file in which it lies, by its number among the files of the program (0: the program itself); 0 if it is the
+    /// whole program with all its files.
+    pub file: usize,
     /// First and last statement; `None` for the whole program.
     pub statements: Option<(usize, usize)>,
 }
@@ -61,49 +71,97 @@ pub enum RenameError {
     InUse(SmolStr),
 }
 
+/// A place in one of the files of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Spot<'a> {
+    /// The included file; `None` for the program itself.
+    pub file: Option<&'a Path>,
+    /// Bytes of its text.
+    pub offset: usize,
+}
+
+/// An occurrence in one of the files of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Located {
+    /// The included file; `None` for the program itself.
+    pub source: Option<Arc<SourceFile>>,
+    /// Where in it.
+    pub occurrence: Occurrence,
+}
+
 impl Analysis {
     /// The name at an offset.
     pub fn name_at(&self, offset: usize) -> Option<NameAt> {
-        let (view, relative) = self.statement_at(offset)?;
-        let parsed = view.parsed();
-        let index = parsed.elements.iter().position(|element| {
-            matches!(element.kind, ElementKind::Name | ElementKind::Number)
-                && element.range.contains_inclusive(relative)
-        })?;
-        let element = &parsed.elements[index];
-        let label = is_label(&parsed, index);
-        if element.kind == ElementKind::Number && !label {
-            return None;
-        }
-        let scope = self.element_scope(view.index, &parsed, index, label);
-        Some(NameAt { name: element.text.clone(), range: absolute(&view, element.range), scope, label })
+        Names(self.files()).at(0, offset)
     }
 
-    /// All occurrences of the name at an offset, in order.
+    /// The name at a place.
+    pub fn name_at_spot(&self, spot: Spot<'_>) -> Option<NameAt> {
+        Names(self.files()).at(self.file_index(spot.file)?, spot.offset)
+    }
+
+    /// All occurrences of the name at an offset in the text of the program, in order.
     pub fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
-        let Some(at) = self.name_at(offset) else { return Vec::new() };
-        self.occurrences_of(&at.name, at.label, &at.scope)
+        let own = |one: Located| one.source.is_none().then_some(one.occurrence);
+        self.occurrences_everywhere(Spot { file: None, offset }).into_iter().filter_map(own).collect()
+    }
+
+    /// All occurrences of the name at a place, those of the program first, then file by file.
+    pub fn occurrences_everywhere(&self, spot: Spot<'_>) -> Vec<Located> {
+        let Some(at) = self.name_at_spot(spot) else { return Vec::new() };
+        Names(self.files()).occurrences(&at.name, at.label, &at.scope)
     }
 
     /// Where the name at an offset gets its value: all places, the one in force at the offset first.
     pub fn definitions_at(&self, offset: usize) -> Vec<Range<usize>> {
-        let mut places: Vec<_> =
-            self.occurrences(offset).into_iter().filter(|one| one.defines).map(|one| one.range).collect();
-        let before = places.iter().rposition(|range| range.start <= offset);
-        if let Some(before) = before {
-            let inforce = places.remove(before);
-            places.insert(0, inforce);
+        let own = |one: Located| one.source.is_none().then_some(one.occurrence.range);
+        self.definitions_everywhere(Spot { file: None, offset }).into_iter().filter_map(own).collect()
+    }
+
+    /// Where the name at a place gets its value: all places, the one in force there first. The name of a file leads to
+    /// the beginning of the file.
+    pub fn definitions_everywhere(&self, spot: Spot<'_>) -> Vec<Located> {
+        if let Some(file) = self.included_at(spot) {
+            let occurrence = Occurrence { range: 0..0, defines: true };
+            return vec![Located { source: file.source.clone(), occurrence }];
+        }
+        let mut places = self.occurrences_everywhere(spot);
+        places.retain(|one| one.occurrence.defines);
+        let here = |one: &Located| {
+            one.source.as_ref().map(|source| source.path.as_path()) == spot.file
+                && one.occurrence.range.start <= spot.offset
+        };
+        if let Some(before) = places.iter().rposition(here) {
+            let in_force = places.remove(before);
+            places.insert(0, in_force);
         }
         places
     }
 
-    /// The edits that rename the name at an offset.
+    /// The edits that rename the name at an offset in the text of the program.
     ///
     /// # Errors
     ///
     /// [`RenameError`] when there is no name, or the new one cannot be used.
     pub fn rename(&self, offset: usize, new: &str) -> Result<Vec<(Range<usize>, String)>, RenameError> {
-        let at = self.name_at(offset).ok_or(RenameError::NoName)?;
+        let edits = self.rename_everywhere(Spot { file: None, offset }, new)?;
+        let own =
+            |(one, text): (Located, String)| one.source.is_none().then_some((one.occurrence.range, text));
+        Ok(edits.into_iter().filter_map(own).collect())
+    }
+
+    /// The edits of all files of the program that rename the name at a place.
+    ///
+    /// # Errors
+    ///
+    /// [`RenameError`] when there is no name, or the new one cannot be used.
+    pub fn rename_everywhere(
+        &self,
+        spot: Spot<'_>,
+        new: &str,
+    ) -> Result<Vec<(Located, String)>, RenameError> {
+        let at = self.name_at_spot(spot).filter(|_| self.included_at(spot).is_none());
+        let at = at.ok_or(RenameError::NoName)?;
         let wanted = SmolStr::new(new.trim().to_ascii_uppercase());
         let greatest = self.document().tree().dialect().name_length.map_or(usize::MAX, usize::from);
         let spelled = wanted.chars().all(|c| c.is_ascii_alphanumeric());
@@ -114,33 +172,66 @@ impl Analysis {
         if apt_syntax::vocabulary::lookup(&wanted).is_some() {
             return Err(RenameError::Word(wanted));
         }
-        if wanted != at.name && !self.occurrences_of(&wanted, at.label, &at.scope).is_empty() {
+        let names = Names(self.files());
+        if wanted != at.name && !names.occurrences(&wanted, at.label, &at.scope).is_empty() {
             return Err(RenameError::InUse(wanted));
         }
-        let new = new.trim();
-        Ok(self
-            .occurrences_of(&at.name, at.label, &at.scope)
-            .into_iter()
-            .map(|one| (one.range, new.to_owned()))
-            .collect())
+        let places = names.occurrences(&at.name, at.label, &at.scope).into_iter();
+        Ok(places.map(|one| (one, new.trim().to_owned())).collect())
     }
 
-    fn occurrences_of(&self, name: &str, label: bool, scope: &Scope) -> Vec<Occurrence> {
-        let tree = self.document().tree();
+    fn file_index(&self, file: Option<&Path>) -> Option<usize> {
+        self.files().iter().position(|one| one.is(file))
+    }
+
+    /// The file whose name stands at a place, in a statement that puts it in.
+    fn included_at(&self, spot: Spot<'_>) -> Option<&ProgramFile> {
+        let file = self.files().get(self.file_index(spot.file)?)?;
+        let (view, relative) = statement_at(&file.tree, spot.offset)?;
+        let parsed = view.parsed();
+        let names = parsed.statement.parts.iter().flat_map(|part| names_of_files(&part.body));
+        let (_, name) = names.into_iter().find(|(range, _)| range.contains_inclusive(relative))?;
+        let source = self.document().options().include?.resolve(&name).ok()?;
+        self.files().iter().find(|one| one.is(Some(&source.path)))
+    }
+}
+
+/// The names in the files of a program.
+struct Names<'a>(&'a [ProgramFile]);
+
+impl Names<'_> {
+    fn at(&self, file: usize, offset: usize) -> Option<NameAt> {
+        let (view, relative) = statement_at(&self.0.get(file)?.tree, offset)?;
+        let parsed = view.parsed();
+        let index = parsed.elements.iter().position(|element| {
+            matches!(element.kind, ElementKind::Name | ElementKind::Number)
+                && element.range.contains_inclusive(relative)
+        })?;
+        let element = &parsed.elements[index];
+        let label = is_label(&parsed, index);
+        if element.kind == ElementKind::Number && !label {
+            return None;
+        }
+        let scope = self.element_scope(file, view.index, &parsed, index, label);
+        Some(NameAt { name: element.text.clone(), range: absolute(&view, element.range), scope, label })
+    }
+
+    fn occurrences(&self, name: &str, label: bool, scope: &Scope) -> Vec<Located> {
         let mut found = Vec::new();
-        for index in statements_with(tree, name) {
-            let view = tree.statement(index);
-            let parsed = view.parsed();
-            for (at, element) in parsed.elements.iter().enumerate() {
-                let same = element.text == name && is_label(&parsed, at) == label;
-                if same
-                    && (label || element.kind == ElementKind::Name)
-                    && self.element_scope(index, &parsed, at, label) == *scope
-                {
-                    found.push(Occurrence {
-                        range: absolute(&view, element.range),
-                        defines: defines(&parsed, at),
-                    });
+        for (file, one) in self.0.iter().enumerate() {
+            for index in statements_with(&one.tree, name) {
+                let view = one.tree.statement(index);
+                let parsed = view.parsed();
+                for (at, element) in parsed.elements.iter().enumerate() {
+                    let same = element.text == name && is_label(&parsed, at) == label;
+                    if same
+                        && (label || element.kind == ElementKind::Name)
+                        && self.element_scope(file, index, &parsed, at, label) == *scope
+                    {
+                        let range = absolute(&view, element.range);
+                        let occurrence = Occurrence { range, defines: defines(&parsed, at) };
+                        found.push(Located { source: one.source.clone(), occurrence });
+                    }
                 }
             }
         }
@@ -148,7 +239,14 @@ impl Analysis {
     }
 
     /// Where the name at an element means the same. In a CALL, what stands before `=` is a variable of the macro.
-    fn element_scope(&self, statement: usize, parsed: &ParsedStatement, index: usize, label: bool) -> Scope {
+    fn element_scope(
+        &self,
+        file: usize,
+        statement: usize,
+        parsed: &ParsedStatement,
+        index: usize,
+        label: bool,
+    ) -> Scope {
         let element = &parsed.elements[index];
         let called = parsed.statement.parts.iter().find_map(|part| match &part.body {
             Body::Call { name, arguments, .. } => {
@@ -156,29 +254,50 @@ impl Analysis {
             }
             _ => None,
         });
-        let region = called.and_then(|called| {
-            let named = |region: &&Region| region.name == *called && region.variables.contains(&element.text);
-            let before = self.regions().iter().rfind(|region| named(region) && region.first < statement);
-            before.or_else(|| self.regions().iter().find(named))
-        });
-        match region {
-            Some(region) => Scope { statements: Some((region.first, region.last)) },
-            None => self.scope(statement, &element.text, label),
-        }
+        let region = called.and_then(|called| self.called(file, statement, called, &element.text));
+        region.unwrap_or_else(|| self.scope(file, statement, &element.text, label))
     }
 
-    /// Labels are local to their loop or macro, macro variables to their macro.
-    fn scope(&self, statement: usize, name: &str, label: bool) -> Scope {
+    /// The body of a macro with a variable that a statement calls: the last one before it in its file, else another one.
+    fn called(&self, file: usize, statement: usize, name: &str, variable: &str) -> Option<Scope> {
+        let named =
+            |region: &&Region| region.name == name && region.variables.iter().any(|one| one == variable);
+        let own = &self.0.get(file)?.regions;
+        let before = own.iter().rfind(|region| named(region) && region.first < statement);
+        let scope =
+            |file: usize, region: &Region| Scope { file, statements: Some((region.first, region.last)) };
+        if let Some(region) = before.or_else(|| own.iter().find(named)) {
+            return Some(scope(file, region));
+        }
+        let mut others = self.0.iter().enumerate();
+        others.find_map(|(index, other)| Some(scope(index, other.regions.iter().find(named)?)))
+    }
+
+    /// Labels are local to their loop or macro, or to their file; macro variables to their macro.
+    fn scope(&self, file: usize, statement: usize, name: &str, label: bool) -> Scope {
+        let regions = self.0.get(file).map_or(&[][..], |file| &file.regions);
         let innermost = |wanted: &dyn Fn(&Region) -> bool| {
-            self.regions().iter().rfind(|region| region.contains(statement) && wanted(region))
+            regions.iter().rfind(|region| region.contains(statement) && wanted(region))
         };
         let region = if label {
             innermost(&|region| region.first != statement || region.last != statement)
         } else {
             innermost(&|region| region.variables.iter().any(|variable| variable == name))
         };
-        Scope { statements: region.map(|region| (region.first, region.last)) }
+        let statements = region.map(|region| (region.first, region.last));
+        Scope { file: if label || statements.is_some() { file } else { 0 }, statements }
     }
+}
+
+/// The statement at an offset and the offset relative to its start; `None` in an empty text.
+pub(crate) fn statement_at(tree: &SyntaxTree, offset: usize) -> Option<(StatementView, TextSize)> {
+    if tree.statement_count() == 0 {
+        return None;
+    }
+    let offset = TextSize::new(offset.min(usize::from(tree.len())) as u32);
+    let view = tree.statement(tree.statement_at(offset));
+    let relative = offset.checked_sub(view.range().start())?;
+    Some((view, relative))
 }
 
 /// Whether an element is a statement label or a jump target.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use apt_syntax::{statement::Body, tree::SyntaxTree};
 use smol_str::SmolStr;
 
-use crate::{carry::Carried, search::contains};
+use crate::{carry::Carried, files::names_of_files, search::contains};
 
 /// The kind of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +44,8 @@ enum Mark {
     Loop,
     EndMacro,
     EndLoop,
+    /// A statement that puts in another file.
+    Inclusion,
 }
 
 /// The statements that open or close regions, in order; after an edit only the statements that it touched are looked
@@ -66,13 +68,18 @@ impl Marks {
     }
 
     fn among(tree: &SyntaxTree, statements: Range<usize>) -> impl Iterator<Item = (usize, Mark)> {
-        const WORDS: [&str; 4] = ["MACRO", "TERMAC", "LOOPST", "LOOPND"];
+        const WORDS: [&str; 7] = ["MACRO", "TERMAC", "LOOPST", "LOOPND", "INCLUD", "LIBRY", "READ"];
         statements.filter_map(move |index| {
             let view = tree.statement(index);
             let text = view.text().as_bytes();
             let may_mark = WORDS.iter().any(|word| contains(text, word.as_bytes()));
             Some((index, may_mark.then(|| mark(tree, index)).flatten()?))
         })
+    }
+
+    /// The statements that put in other files.
+    pub(crate) fn inclusions(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().filter(|(_, mark)| *mark == Mark::Inclusion).map(|(index, _)| *index)
     }
 
     /// All regions, in order of their opening statements.
@@ -92,6 +99,7 @@ impl Marks {
                     close(&mut regions, &mut open, RegionKind::Loop, *index);
                     continue;
                 }
+                Mark::Inclusion => continue,
             };
             open.push(regions.len());
             regions.push(Region { kind, name, first: *index, last: end, variables });
@@ -119,7 +127,7 @@ fn mark(tree: &SyntaxTree, index: usize) -> Option<Mark> {
             "TERMAC" => Some(Mark::EndMacro),
             "LOOPST" => Some(Mark::Loop),
             "LOOPND" => Some(Mark::EndLoop),
-            _ => None,
+            _ => (!names_of_files(&part.body).is_empty()).then_some(Mark::Inclusion),
         },
         _ => None,
     })

@@ -93,6 +93,45 @@ fn modifiers_are_those_of_the_verb() {
 }
 
 #[test]
+fn statements_ask_for_what_their_forms_take_next() {
+    check(&format!("{NAMES}GOLFT/$0\nFINI\n"), expect!["C1 L1"]);
+    check(
+        &format!("{NAMES}GOLFT/C1,$0\nFINI\n"),
+        expect![
+            "C1 L1 A ABSF ANGLF ATAN2F ATANF COSF DISTF DOTF EXPF LNTHF LOG10F LOGF NUMF SINF SQRTF TANF TO ON PAST TANTO DSTAN PSTAN INTOF"
+        ],
+    );
+    check(&format!("{NAMES}GOLFT/C1,PAST,2,$0\nFINI\n"), expect!["INTOF"]);
+    check(&format!("{NAMES}SPINDL/800,$0\nFINI\n"), expect!["CLW CCLW"]);
+    check(
+        &format!("{NAMES}GOTO/$0\nFINI\n"),
+        expect![
+            "P1 P2 A ABSF ANGLF ATAN2F ATANF COSF DISTF DOTF EXPF LNTHF LOG10F LOGF NUMF SINF SQRTF TANF"
+        ],
+    );
+    check(&format!("{NAMES}TRACUT/$0\nFINI\n"), expect!["NOMORE"]);
+    check(&format!("{NAMES}CALL/M1,DX=$0\nFINI\n"), expect!["C1 L1 P1 P2 A"]);
+}
+
+#[test]
+fn snippets_ask_for_parameters_unless_they_stand_there() {
+    let snippet = |text: &str, label: &str| {
+        let (analysis, offset) = marked(&format!("M1=MACRO/DX,DY=2\nTERMAC\n{text}\nFINI\n"));
+        analysis.program(&never).unwrap();
+        let item = analysis.completions(offset).into_iter().find(|item| item.label == label).unwrap();
+        item.snippet.unwrap_or_default()
+    };
+    assert_eq!(snippet("GOL$0", "GOLFT"), "GOLFT/${1:ds}$0");
+    assert_eq!(snippet("GOL$0/C1", "GOLFT"), "");
+    assert_eq!(snippet("C1=CIR$0", "CIRCLE"), "CIRCLE/${1:x},${2:y},${3:r}$0");
+    assert_eq!(snippet("A=SIN$0", "SINF"), "SINF(${1:x})$0");
+    assert_eq!(snippet("CALL/$0", "M1"), "M1,DX=${1:DX}$0");
+    assert_eq!(snippet("CALL/M1,$0", "DY"), "DY=${1:2}$0");
+    assert_eq!(snippet("CALL/M1,DY$0=3", "DY"), "");
+    assert_eq!(snippet("FIN$0", "FINI"), "");
+}
+
+#[test]
 fn nothing_is_proposed_in_comments_and_text() {
     for text in ["$$ GO$0\n", "P1=POINT/1,2 $$ GO$0\n", "PARTNO GO$0\n"] {
         assert_eq!(labels(text), Vec::<String>::new(), "{text:?}");

@@ -22,7 +22,7 @@ const PROJECT_FILE_LIMIT: u64 = 1 << 20;
 
 /// Keys of the editor's section that concern programs. The rest of the section (path of the server,
 /// trace …) is the editor's own.
-const PROGRAM_KEYS: [&str; 6] = ["dialect", "units", "machine", "include", "severity", "budget"];
+const PROGRAM_KEYS: [&str; 7] = ["dialect", "units", "machine", "include", "severity", "format", "budget"];
 
 /// The key of [`Settings::motion`].
 const MOTION_KEY: &str = "motion";

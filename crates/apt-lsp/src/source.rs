@@ -8,8 +8,32 @@ use std::path::Path;
 pub(crate) struct Source {
     /// The text, without a byte-order mark.
     pub text: String,
-    /// False if the bytes were no UTF-8; each byte is a character of Latin-1 then.
-    pub utf8: bool,
+    /// The form of its bytes.
+    pub form: TextForm,
+}
+
+/// How a text stands in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextForm {
+    /// UTF-8.
+    Utf8,
+    /// UTF-8 after a byte-order mark.
+    MarkedUtf8,
+    /// Each byte is a character.
+    Latin1,
+}
+
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+impl TextForm {
+    /// The bytes of a text; none if it has characters that the form cannot hold.
+    pub(crate) fn encode(self, text: &str) -> Option<Vec<u8>> {
+        match self {
+            Self::MarkedUtf8 => Some(format!("{BYTE_ORDER_MARK}{text}").into_bytes()),
+            Self::Utf8 => Some(text.as_bytes().to_vec()),
+            Self::Latin1 => text.chars().map(|character| u8::try_from(character).ok()).collect(),
+        }
+    }
 }
 
 /// Reads a file.
@@ -26,13 +50,15 @@ pub(crate) fn read_standard_input() -> std::io::Result<Vec<u8>> {
 
 /// Any bytes are a program: what is no UTF-8 comes from the time before it.
 pub(crate) fn decode(bytes: Vec<u8>) -> Source {
-    const BYTE_ORDER_MARK: char = '\u{feff}';
     match String::from_utf8(bytes) {
         Ok(text) => match text.strip_prefix(BYTE_ORDER_MARK) {
-            Some(rest) => Source { text: rest.to_owned(), utf8: true },
-            None => Source { text, utf8: true },
+            Some(rest) => Source { text: rest.to_owned(), form: TextForm::MarkedUtf8 },
+            None => Source { text, form: TextForm::Utf8 },
         },
-        Err(error) => Source { text: error.into_bytes().into_iter().map(char::from).collect(), utf8: false },
+        Err(error) => {
+            let text = error.into_bytes().into_iter().map(char::from).collect();
+            Source { text, form: TextForm::Latin1 }
+        }
     }
 }
 
@@ -41,10 +67,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_text_goes_back_in_the_form_in_which_it_came() {
+        for bytes in [&b"PARTNO"[..], "é".as_bytes(), b"\xef\xbb\xbfP", b"\xe9\0", b""] {
+            let source = decode(bytes.to_vec());
+            assert_eq!(source.form.encode(&source.text).as_deref(), Some(bytes));
+        }
+        assert_eq!(TextForm::Latin1.encode("😀"), None);
+    }
+
+    #[test]
     fn any_bytes_are_a_program() {
         let text = |bytes: &[u8]| decode(bytes.to_vec());
-        assert_eq!(text("é".as_bytes()), Source { text: "é".into(), utf8: true });
-        assert_eq!(text(b"\xef\xbb\xbfPARTNO"), Source { text: "PARTNO".into(), utf8: true });
-        assert_eq!(text(b"\xe9\0"), Source { text: "é\0".into(), utf8: false });
+        let source = |text: &str, form| Source { text: text.into(), form };
+        assert_eq!(text("é".as_bytes()), source("é", TextForm::Utf8));
+        assert_eq!(text(b"\xef\xbb\xbfPARTNO"), source("PARTNO", TextForm::MarkedUtf8));
+        assert_eq!(text(b"\xe9\0"), source("é\0", TextForm::Latin1));
     }
 }

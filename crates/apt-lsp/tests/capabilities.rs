@@ -47,7 +47,7 @@ fn lines(places: &Value) -> Vec<u64> {
 /// One question for each announced provider, with a check of its answer.
 type Probe = (&'static str, fn(&mut Server));
 
-const PROBES: [Probe; 14] = [
+const PROBES: [Probe; 19] = [
     ("textDocumentSync", |server| {
         server.change(URI, 2, 9, 5, 6, "7");
         assert!(server.tree(URI).contains("\"7\""));
@@ -60,6 +60,15 @@ const PROBES: [Probe; 14] = [
         let answer = server.ask("textDocument/completion", place(8, 5)).unwrap();
         let labels: Vec<_> = answer.as_array().unwrap().iter().map(|item| item["label"].clone()).collect();
         assert_eq!(labels, ["M1"]);
+    }),
+    ("signatureHelpProvider", |server| {
+        let answer = server.ask("textDocument/signatureHelp", place(3, 11)).unwrap();
+        let active = &answer["signatures"][answer["activeSignature"].as_u64().unwrap() as usize];
+        assert_eq!((&active["label"], &answer["activeParameter"]), (&json!("POINT/x,y"), &json!(1)));
+        assert_eq!(active["parameters"][1]["label"], "y");
+        let answer = server.ask("textDocument/signatureHelp", place(8, 11)).unwrap();
+        assert_eq!(answer["signatures"][0]["label"], "CALL/M1,DX,DY=2");
+        assert_eq!(server.ask("textDocument/signatureHelp", place(1, 3)).unwrap(), Value::Null);
     }),
     ("definitionProvider", |server| {
         assert_eq!(lines(&server.ask("textDocument/definition", place(7, 6)).unwrap()), [3]);
@@ -74,6 +83,10 @@ const PROBES: [Probe; 14] = [
     ("documentHighlightProvider", |server| {
         let answer = server.ask("textDocument/documentHighlight", place(5, 8)).unwrap();
         assert_eq!(lines(&answer), [4, 5, 8]);
+    }),
+    ("documentLinkProvider", |server| {
+        // The files of other programs are in the tests of inclusions.
+        assert_eq!(server.ask("textDocument/documentLink", whole()).unwrap(), json!([]));
     }),
     ("documentSymbolProvider", |server| {
         let answer = server.ask("textDocument/documentSymbol", whole()).unwrap();
@@ -94,6 +107,46 @@ const PROBES: [Probe; 14] = [
         assert_eq!(lines(&answer["changes"][URI]), [4, 5, 8]);
         params["newName"] = json!("GOTO");
         assert_eq!(server.ask("textDocument/rename", params).unwrap_err()["code"], -32803);
+    }),
+    ("codeActionProvider", |server| {
+        let uri = "file:///nowhere/misspelt.apt";
+        server.open(uri, "PNT1=POINT/1,2\nGOTO/PNT2");
+        let place = json!({ "start": { "line": 1, "character": 6 }, "end": { "line": 1, "character": 6 } });
+        let mut params = json!({ "textDocument": { "uri": uri }, "range": place, "context": { "diagnostics": [] } });
+        let actions = server.ask("textDocument/codeAction", params.clone()).unwrap();
+        let titles: Vec<_> = actions.as_array().unwrap().iter().map(|one| one["title"].clone()).collect();
+        assert_eq!(titles[..2], ["Add FINI", "Replace PNT2 by PNT1"]);
+        assert_eq!(titles[2], "Allow APT0901 in this statement");
+        assert_eq!(actions[1]["edit"]["changes"][uri][0]["newText"], "PNT1");
+        params["context"]["only"] = json!(["source.fixAll.apt"]);
+        let all = server.ask("textDocument/codeAction", params).unwrap();
+        assert_eq!(all[0]["edit"]["changes"][uri].as_array().unwrap().len(), 2, "{all}");
+        let uri = "file:///nowhere/call.apt";
+        server.open(uri, "M=MACRO/A\nGOTO/A,0,0\nTERMAC\nCALL/M,A=1\nFINI\n");
+        let place = json!({ "start": { "line": 3, "character": 0 }, "end": { "line": 3, "character": 0 } });
+        let params = json!({
+            "textDocument": { "uri": uri }, "range": place,
+            "context": { "diagnostics": [], "only": ["refactor.inline"] },
+        });
+        let actions = server.ask("textDocument/codeAction", params).unwrap();
+        assert_eq!(actions[0]["edit"]["changes"][uri][0]["newText"], "GOTO/1,0,0\n");
+    }),
+    ("documentFormattingProvider", |server| {
+        let uri = "file:///nowhere/style.apt";
+        server.open(uri, "p1 = point/1,2\nGOTO/P1\nFINI\n");
+        let mut params = json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
+        let edits = server.ask("textDocument/formatting", params.clone()).unwrap();
+        assert_eq!(lines(&edits), [0, 0, 0, 0]);
+        assert_eq!(edits[0]["newText"], "P");
+        params["range"] = json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 2, "character": 0 } });
+        assert_eq!(server.ask("textDocument/rangeFormatting", params).unwrap(), json!([]));
+    }),
+    ("documentRangeFormattingProvider", |server| {
+        let uri = "file:///nowhere/style.apt";
+        let mut params = json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
+        params["range"] = json!({ "start": { "line": 0, "character": 3 }, "end": { "line": 0, "character": 4 } });
+        let edits = server.ask("textDocument/rangeFormatting", params).unwrap();
+        assert_eq!(lines(&edits), [0, 0, 0, 0]);
     }),
     ("foldingRangeProvider", |server| {
         let answer = server.ask("textDocument/foldingRange", whole()).unwrap();
@@ -171,6 +224,7 @@ fn everything_announced_is_answered() {
             "diagnostic": {},
             "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
             "rename": { "prepareSupport": true },
+            "codeAction": { "codeActionLiteralSupport": { "codeActionKind": { "valueSet": ["quickfix"] } } },
         },
     });
     let mut server = Server::start(&[]);

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use apt_program::record::{Frame, FrameKind, Origin, SourceFile};
+pub use apt_program::record::SourceFile;
+use apt_program::record::{Frame, FrameKind, Origin};
 use apt_syntax::SyntaxTree;
 use serde::{Deserialize, Serialize};
 
@@ -106,23 +107,17 @@ pub struct Place {
 impl Place {
     /// The place of an origin, in the file in which it stands.
     pub fn of(tree: &SyntaxTree, origin: &Origin) -> Self {
-        Self::at(tree, origin.isn, origin.range, origin.source.as_ref())
+        let tree = origin.source.as_ref().map_or(tree, |source| &source.tree);
+        Self { source: origin.source.clone(), range: statement_range(tree, origin.isn, origin.range) }
     }
+}
 
-    /// The place of the CALL, LOOPST or INCLUD of a frame, in the file in which it stands.
-    pub fn of_frame(tree: &SyntaxTree, frame: &Frame) -> Self {
-        Self::at(tree, frame.isn, frame.range, frame.source.as_ref())
-    }
-
-    fn at(
-        tree: &SyntaxTree,
-        isn: u32,
-        range: apt_syntax::TextRange,
-        source: Option<&Arc<SourceFile>>,
-    ) -> Self {
-        let tree = source.map_or(tree, |source| &source.tree);
-        Self { source: source.cloned(), range: statement_range(tree, isn, range) }
-    }
+/// The frames of an origin with the places of their statements in the text of the program, innermost first; those in
+/// included files have none there.
+pub fn frame_places(tree: &SyntaxTree, origin: &Origin) -> Vec<(OriginStep, Option<std::ops::Range<usize>>)> {
+    let around = std::iter::successors(origin.frame.as_deref(), |frame| frame.parent.as_deref());
+    let place = |frame: &Frame| frame.source.is_none().then(|| statement_range(tree, frame.isn, frame.range));
+    origin_steps(origin).into_iter().zip(around.map(place)).collect()
 }
 
 /// The places that belong to a finding; of one in an included file the first is the place itself.

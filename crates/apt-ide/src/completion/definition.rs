@@ -7,7 +7,12 @@ use apt_geometry::{
 use apt_program::symbols::Value;
 use apt_syntax::{
     statement::{Element, ElementKind},
-    vocabulary::{WordClass, lookup},
+    vocabulary::{WordClass, lookup, words},
+};
+
+use crate::{
+    context::{Context, Opener},
+    forms::{Atom, ValueKind, forms_of, kinds_of},
 };
 
 /// What the forms of a definition let stand at a place.
@@ -19,16 +24,60 @@ pub(super) struct Next {
     pub(super) kinds: Vec<GeometryKind>,
     /// A number.
     pub(super) scalar: bool,
+    /// A name of anything.
+    pub(super) anything: bool,
 }
 
 impl Next {
     /// Whether a value can stand here.
     pub(super) fn takes(&self, value: &Value) -> bool {
         match value {
+            _ if self.anything => true,
             Value::Scalar(_) => self.scalar,
             Value::Geometry(geometry) => self.kinds.contains(&geometry.kind()),
         }
     }
+}
+
+/// What can follow `before` by the forms of the word whose parameters the place is in; nothing if no form goes on
+/// there, or the place is in the middle of an expression.
+pub(super) fn next_by_forms(before: &[&Element], kind_of: impl Fn(&str) -> ValueKind) -> Option<Next> {
+    let context = Context::innermost(before)?;
+    let Opener::Word(word) = context.opener else { return None };
+    if !context.begun().is_empty() {
+        return None;
+    }
+    let typed = context.typed(&kind_of);
+    let mut next = Next::default();
+    for form in forms_of(word) {
+        let matched = form.matched(&typed);
+        if !matched.all {
+            continue;
+        }
+        next.anything |= matched.more;
+        for parameter in matched.next.iter().filter_map(|&index| form.parameters.get(index)) {
+            match parameter.atom {
+                Atom::Word(spelling) if !next.modifiers.contains(&spelling) => next.modifiers.push(spelling),
+                Atom::Word(_) => {}
+                Atom::Number(_) => next.scalar = true,
+                Atom::Placeholder("mod" | "modifier") => {
+                    let used = words().iter().filter(|one| one.used_in.contains(&word.spelling));
+                    next.modifiers.extend(used.map(|one| one.spelling));
+                }
+                Atom::Placeholder(name) => match kinds_of(name) {
+                    None => next.scalar = true,
+                    Some([]) => next.anything = true,
+                    Some(kinds) => next.kinds.extend(kinds),
+                },
+            }
+        }
+    }
+    if next.anything {
+        let used = words().iter().filter(|one| one.used_in.contains(&word.spelling)).map(|one| one.spelling);
+        let more: Vec<_> = used.filter(|one| !next.modifiers.contains(one)).collect();
+        next.modifiers.extend(more);
+    }
+    (next != Next::default()).then_some(next)
 }
 
 /// What can follow `before`, the elements before the place, if the place is in the parameters of a definition and

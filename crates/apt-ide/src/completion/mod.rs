@@ -38,6 +38,8 @@ pub struct Completion {
     pub detail: String,
     /// More about it, Markdown.
     pub documentation: String,
+    /// What a client that knows snippets inserts instead: with places to fill in (`${1:x}`).
+    pub snippet: Option<String>,
 }
 
 /// The most names of one answer; the nearest to the place are chosen.
@@ -81,6 +83,12 @@ impl Analysis {
         let prefix = begun.map_or("", |element| element.text.get(..length).unwrap_or(&element.text));
         let before: Vec<&Element> =
             parsed.elements.iter().filter(|element| element.range.end() <= begun_at).collect();
+        // Parameters that stand there already are not to be written again.
+        let behind = parsed.elements.iter().find(|element| element.range.start() >= relative);
+        let bare = behind.is_none_or(|element| {
+            use ElementKind::{Equals, LeftParenthesis, Slash};
+            !matches!(element.kind, Slash | LeftParenthesis | Equals)
+        });
         let verb = parsed.elements.iter().find(|element| element.kind == ElementKind::Word);
         let place = self.place(&before);
         let mut items: Vec<Completion> = words()
@@ -90,6 +98,9 @@ impl Analysis {
             .map(word_completion)
             .collect();
         items.extend(self.names(&place, prefix, view.isn()));
+        if !bare {
+            items.iter_mut().for_each(|item| item.snippet = None);
+        }
         items.sort_by(|a, b| (rank(a, &place), &a.label).cmp(&(rank(b, &place), &b.label)));
         items.dedup();
         items
@@ -109,10 +120,16 @@ impl Analysis {
             }
         }
         if last.kind == ElementKind::Equals {
-            return Place::Value;
+            let called = before.iter().any(|one| one.kind == ElementKind::Word && one.text == "CALL");
+            return match called {
+                true => Place::Definition(Next { anything: true, ..Next::default() }),
+                false => Place::Value,
+            };
         }
         let kind_of = |name: &str| self.kind_of(name);
-        definition::next(before, kind_of).map_or(Place::Parameter, Place::Definition)
+        definition::next(before, kind_of)
+            .or_else(|| definition::next_by_forms(before, |name| self.value_kind(name)))
+            .map_or(Place::Parameter, Place::Definition)
     }
 
     fn kind_of(&self, name: &str) -> Option<apt_geometry::canonical::GeometryKind> {
@@ -161,27 +178,40 @@ impl Analysis {
     }
 
     fn macros(&self, prefix: &str) -> Vec<Completion> {
-        let named = self.regions().iter().filter(|region| !region.name.is_empty());
+        let named =
+            self.files().iter().flat_map(|file| &file.regions).filter(|region| !region.name.is_empty());
         let begun = named.filter(|region| region.name.starts_with(prefix));
         begun
             .map(|region| {
                 let detail = format!("MACRO/{}", region.variables.join(","));
-                plain(&region.name, CompletionKind::Macro, detail)
+                let variables = self.macro_variables(&region.name).unwrap_or_default();
+                let needed = variables.iter().filter(|(_, default)| default.is_none()).zip(1..);
+                let places = needed.map(|((name, _), place)| format!(",{name}=${{{place}:{name}}}"));
+                let snippet = format!("{}{}$0", region.name, places.collect::<String>());
+                Completion { snippet: Some(snippet), ..plain(&region.name, CompletionKind::Macro, detail) }
             })
             .collect()
     }
 
     fn variables(&self, name: &str, prefix: &str) -> Vec<Completion> {
-        let Some(region) = self.regions().iter().rfind(|region| region.name == name) else {
-            return Vec::new();
-        };
-        let begun = region.variables.iter().filter(|variable| variable.starts_with(prefix));
-        begun.map(|one| plain(one, CompletionKind::Scalar, format!("variable of {name}"))).collect()
+        let variables = self.macro_variables(name).unwrap_or_default();
+        let begun = variables.iter().filter(|(variable, _)| variable.starts_with(prefix));
+        begun
+            .map(|(variable, default)| {
+                let detail = match default {
+                    Some(default) => format!("variable of {name}, {default} if not given"),
+                    None => format!("variable of {name}"),
+                };
+                let value = default.as_deref().unwrap_or(variable);
+                let snippet = Some(format!("{variable}=${{1:{value}}}$0"));
+                Completion { snippet, ..plain(variable, CompletionKind::Scalar, detail) }
+            })
+            .collect()
     }
 }
 
 fn plain(label: &str, kind: CompletionKind, detail: String) -> Completion {
-    Completion { label: label.to_owned(), kind, detail, documentation: String::new() }
+    Completion { label: label.to_owned(), kind, detail, documentation: String::new(), snippet: None }
 }
 
 /// The order of the list: what the forms ask for comes first, words of definitions in the order of the forms.
@@ -237,5 +267,6 @@ fn word_completion(word: &Word) -> Completion {
         kind,
         detail: word.help.to_owned(),
         documentation: crate::hover::word_markdown(word),
+        snippet: crate::forms::forms_of(word).first().and_then(|form| form.snippet(word.spelling)),
     }
 }

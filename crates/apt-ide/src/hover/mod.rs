@@ -5,7 +5,7 @@ mod motion;
 
 use std::ops::Range;
 
-use apt_program::symbols::Value;
+use apt_program::symbols::{DefinitionEvent, Value};
 use apt_syntax::{
     TextSize,
     statement::{Body, Element, ElementKind},
@@ -81,7 +81,8 @@ impl Analysis {
         let program = self.program(cancel)?;
         let mut found = None;
         for event in program.definitions().filter(|event| event.name == name) {
-            if event.origin.isn > isn && found.is_some() {
+            // What an included file defines, the statement that includes it does.
+            if event.origin.place_in_program().0 > isn && found.is_some() {
                 break;
             }
             let title = match event.subscript {
@@ -110,14 +111,17 @@ impl Analysis {
             markdown.push_str(&self.turns_markdown(&at.name, isn, cancel)?);
             return Ok(Some(markdown));
         }
-        let region = self.regions().iter().find(|region| region.name == at.name);
-        if let Some(region) = region {
+        for file in self.files() {
+            let Some(region) = file.regions.iter().find(|region| region.name == at.name) else { continue };
             let count = region.last.saturating_sub(region.first + 1);
             let header = format!("{}=MACRO/{}", region.name, region.variables.join(","));
             let plural = if count == 1 { "" } else { "s" };
-            return Ok(Some(format!("```apt\n{header}\n```\nmacro of {count} statement{plural}")));
+            let from = file.source.as_ref().map(|source| format!(" of `{}`", source.path.display()));
+            let from = from.unwrap_or_default();
+            return Ok(Some(format!("```apt\n{header}\n```\nmacro of {count} statement{plural}{from}")));
         }
-        let local = self.regions().iter().rfind(|region| {
+        let regions = self.files().get(at.scope.file).map_or(&[][..], |file| &file.regions);
+        let local = regions.iter().rfind(|region| {
             region.variables.contains(&at.name) && at.scope.statements == Some((region.first, region.last))
         });
         Ok(local.map(|region| {
@@ -133,7 +137,12 @@ impl Analysis {
     /// How a name changed, if its statement was executed several times in a loop or in calls of a macro.
     fn turns_markdown(&self, name: &str, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
         let program = self.program(cancel)?;
-        let here = || program.definitions().filter(|event| event.name == name && event.origin.isn == isn);
+        let here = || {
+            let of_statement = |event: &&DefinitionEvent| {
+                event.name == name && event.origin.isn == isn && event.origin.source.is_none()
+            };
+            program.definitions().filter(of_statement)
+        };
         let (count, first) = (here().count(), here().next());
         Ok(match first {
             Some(first) if count > 1 => {

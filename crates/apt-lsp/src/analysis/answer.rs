@@ -4,16 +4,21 @@
 //! form of its own, in which they are byte ranges.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+pub(crate) use apt_ide::action::ActionKind;
 pub(crate) use apt_ide::completion::{Completion, CompletionKind};
+pub(crate) use apt_ide::files::Inclusion;
 pub(crate) use apt_ide::folding::{Fold, FoldKind};
 pub(crate) use apt_ide::hover::{CanonicalForm, Hover};
 pub(crate) use apt_ide::lens::Lens;
-pub(crate) use apt_ide::navigation::Occurrence;
+pub(crate) use apt_ide::navigation::{Located, Occurrence, Spot};
 pub(crate) use apt_ide::outline::{OutlineEntry, OutlineKind};
+pub(crate) use apt_ide::signature::{Signature, SignatureHelp};
 pub(crate) use apt_ide::tape::{MachineInfo, TapeCode};
 pub(crate) use apt_ide::tokens::{Token, TokenClass};
-pub(crate) use apt_ide::{Level, Severity};
+pub(crate) use apt_ide::{Files, Fix, Level, Severity, Surroundings, normalised};
+pub(crate) use apt_run::diagnostic::SourceFile;
 use thiserror::Error;
 
 /// The answer to a question that can be interrupted.
@@ -72,6 +77,30 @@ pub(crate) struct TextEdit {
     pub text: String,
 }
 
+/// What formatting a program comes to.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Formatting {
+    /// The edits, in order of the text and without overlap.
+    pub edits: Vec<TextEdit>,
+    /// Statements that could not be given the style, and why.
+    pub kept: Vec<(Range<usize>, String)>,
+}
+
+impl Formatting {
+    /// The text with the edits.
+    pub(crate) fn applied(&self, text: &str) -> String {
+        let mut new = String::with_capacity(text.len());
+        let mut end = 0;
+        for edit in &self.edits {
+            new.push_str(text.get(end..edit.range.start).unwrap_or(""));
+            new.push_str(&edit.text);
+            end = edit.range.end;
+        }
+        new.push_str(text.get(end..).unwrap_or(""));
+        new
+    }
+}
+
 /// One finding.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Diagnostic {
@@ -93,8 +122,27 @@ pub(crate) struct Diagnostic {
     pub origin: Vec<OriginFrame>,
     /// Other places that have to do with it.
     pub related: Vec<Related>,
+    /// Places in included files that have to do with it.
+    pub elsewhere: Vec<Elsewhere>,
     /// The text has no effect, and can be shown faded.
     pub unnecessary: bool,
+    /// Changes that settle it, the likeliest first.
+    pub fixes: Vec<Fix>,
+}
+
+/// Something that can be done about a place.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Action {
+    /// What it does, as a command.
+    pub title: String,
+    /// Its kind.
+    pub kind: ActionKind,
+    /// The edits, in order of the text and without overlap.
+    pub edits: Vec<TextEdit>,
+    /// Whether it is certainly what is wanted.
+    pub preferred: bool,
+    /// The finding that it settles.
+    pub settles: Option<Diagnostic>,
 }
 
 /// The gravest findings of a program.
@@ -128,6 +176,17 @@ pub(crate) struct Related {
     /// Why it is shown.
     pub message: String,
     /// Where.
+    pub range: Range<usize>,
+}
+
+/// A place in an included file that has to do with a finding.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Elsewhere {
+    /// Why it is shown.
+    pub message: String,
+    /// The file.
+    pub source: Arc<SourceFile>,
+    /// Where in it.
     pub range: Range<usize>,
 }
 

@@ -3,11 +3,11 @@
 //! Only conversions stand here: of cancellation and progress into the form that the analysis knows, and
 //! of places with a statement into ranges of the text.
 
-use std::iter::successors;
 use std::ops::Range;
 use std::sync::Arc;
 
 use apt_ide::dialect::describe;
+use apt_ide::format::{FormatOptions, Kept, Plan, format_range, plan};
 use apt_ide::{Analysis, Cancelled};
 use apt_run::diagnostic as found;
 use apt_run::document::DialectReason;
@@ -25,9 +25,16 @@ pub(crate) struct Engine;
 struct Program(Analysis);
 
 impl Language for Engine {
-    fn open(&self, text: &str, file_name: Option<&str>, settings: &Values) -> Arc<dyn Document> {
-        let settings = read_settings(settings).unwrap_or_default();
-        Arc::new(Program(Analysis::new(text, file_name.map(str::to_owned), &Arc::new(settings))))
+    fn open(
+        &self,
+        text: &str,
+        file_name: Option<&str>,
+        settings: &Values,
+        surroundings: Surroundings,
+    ) -> Arc<dyn Document> {
+        let settings = Arc::new(read_settings(settings).unwrap_or_default());
+        let name = file_name.map(str::to_owned);
+        Arc::new(Program(Analysis::placed(text, name, &settings, surroundings)))
     }
 
     fn check_settings(&self, settings: &Values) -> Result<(), String> {
@@ -97,16 +104,16 @@ fn with<T>(
     work(&cancel, &mut report)
 }
 
-/// The frames of an origin with their places, both innermost first.
-fn frames(steps: Vec<found::OriginStep>, places: Vec<Range<usize>>) -> Vec<OriginFrame> {
-    let frame = |(step, place): (found::OriginStep, Range<usize>)| OriginFrame {
+/// The frames of an origin, innermost first.
+fn frames(places: Vec<(found::OriginStep, Option<Range<usize>>)>) -> Vec<OriginFrame> {
+    let frame = |(step, range): (found::OriginStep, Option<Range<usize>>)| OriginFrame {
         kind: step.kind,
         name: step.name,
         isn: step.isn,
         turn: step.turn,
-        range: Some(place),
+        range,
     };
-    steps.into_iter().zip(places).map(frame).collect()
+    places.into_iter().map(frame).collect()
 }
 
 impl Program {
@@ -117,24 +124,47 @@ impl Program {
 
     fn diagnostic(&self, one: &found::Diagnostic) -> Diagnostic {
         let tree = self.0.document().tree();
-        let place = |isn, range| found::statement_range(tree, isn, range);
-        let around = successors(one.origin.frame.as_deref(), |frame| frame.parent.as_deref());
-        let places = around.map(|frame| place(frame.isn, frame.range)).collect();
-        let related = one.related.iter().map(|(message, origin)| Related {
-            message: message.clone(),
-            range: place(origin.isn, origin.range),
-        });
+        let (mut related, mut elsewhere) = (Vec::new(), Vec::new());
+        for (message, place) in found::related_places(tree, one) {
+            match place.source {
+                None => related.push(Related { message, range: place.range }),
+                Some(source) => elsewhere.push(Elsewhere { message, source, range: place.range }),
+            }
+        }
         Diagnostic {
             code: one.wording.code.to_owned(),
             severity: one.severity,
             message: one.wording.message.clone(),
             hint: one.wording.hint.clone(),
-            isn: Some(one.origin.isn),
+            isn: Some(one.origin.place_in_program().0),
             apt3: one.wording.apt3,
             range: found::absolute_range(tree, &one.origin),
-            origin: frames(found::origin_steps(&one.origin), places),
-            related: related.collect(),
+            origin: frames(found::frame_places(tree, &one.origin)),
+            related,
+            elsewhere,
             unnecessary: one.unnecessary,
+            fixes: one.fixes.clone(),
+        }
+    }
+}
+
+impl Program {
+    /// A finding in an included file as a finding of that file.
+    fn diagnostic_inside(&self, one: &found::Diagnostic) -> Diagnostic {
+        let tree = self.0.document().tree();
+        let place = found::Place::of(tree, &one.origin);
+        let own = |(message, other): (String, found::Place)| {
+            let beside = other.source == place.source && other.range != place.range;
+            beside.then_some(Related { message, range: other.range })
+        };
+        Diagnostic {
+            related: found::related_places(tree, one).into_iter().filter_map(own).collect(),
+            elsewhere: Vec::new(),
+            isn: Some(one.origin.isn),
+            range: place.range.clone(),
+            origin: Vec::new(),
+            fixes: Vec::new(),
+            ..self.diagnostic(one)
         }
     }
 }
@@ -146,6 +176,33 @@ impl Document for Program {
             analysis = analysis.edit(edit.range.clone(), &edit.text);
         }
         Arc::new(Self(analysis))
+    }
+
+    fn with_changed_files(&self) -> Arc<dyn Document> {
+        Arc::new(Self(self.0.with_changed_files()))
+    }
+
+    fn has_inclusions(&self) -> bool {
+        self.0.has_inclusions()
+    }
+
+    fn included_paths(&self) -> Vec<PathBuf> {
+        self.0.included_paths()
+    }
+
+    fn inclusions(&self) -> Vec<Inclusion> {
+        self.0.inclusions()
+    }
+
+    fn diagnostics_in(&self, file: &Path, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
+        let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
+        let stands =
+            |one: &&found::Diagnostic| one.origin.source.as_ref().is_some_and(|source| source.path == file);
+        let mut inside: Vec<_> =
+            all.iter().filter(stands).map(|one| self.diagnostic_inside(one)).collect();
+        inside.sort_by_key(|one| one.range.start);
+        inside.dedup_by(|one, other| one.range == other.range && one.code == other.code);
+        Ok(inside)
     }
 
     fn dialect(&self) -> String {
@@ -177,21 +234,28 @@ impl Document for Program {
         self.0.completions(offset)
     }
 
-    fn definitions(&self, offset: usize) -> Vec<Range<usize>> {
-        self.0.definitions_at(offset)
+    fn signature_help(&self, offset: usize) -> Option<SignatureHelp> {
+        self.0.signature_help(offset)
+    }
+
+    fn definitions(&self, spot: Spot<'_>) -> Vec<Located> {
+        self.0.definitions_everywhere(spot)
+    }
+
+    fn references(&self, spot: Spot<'_>) -> Vec<Located> {
+        self.0.occurrences_everywhere(spot)
     }
 
     fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
         self.0.occurrences(offset)
     }
 
-    fn renamable(&self, offset: usize) -> Option<Range<usize>> {
-        self.0.name_at(offset).map(|name| name.range)
+    fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>> {
+        self.0.name_at_spot(spot).map(|name| name.range)
     }
 
-    fn rename(&self, offset: usize, new: &str) -> Result<Vec<TextEdit>, Refusal> {
-        let edits = self.0.rename(offset, new).map_err(|error| Refusal::Impossible(error.to_string()))?;
-        Ok(edits.into_iter().map(|(range, text)| TextEdit { range, text }).collect())
+    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal> {
+        self.0.rename_everywhere(spot, new).map_err(|error| Refusal::Impossible(error.to_string()))
     }
 
     fn outline(&self) -> Vec<OutlineEntry> {
@@ -210,6 +274,43 @@ impl Document for Program {
         self.0.lenses()
     }
 
+    fn actions(
+        &self,
+        range: Range<usize>,
+        wanted: &[ActionKind],
+        level: Level,
+        control: &Control,
+    ) -> Answer<Vec<Action>> {
+        let found = with(control, "checking", |cancel, progress| {
+            self.0.actions(range, wanted, level, cancel, progress)
+        })?;
+        let action = |one: apt_ide::action::Action| Action {
+            title: one.title,
+            kind: one.kind,
+            edits: one.edits.into_iter().map(|(range, text)| TextEdit { range, text }).collect(),
+            preferred: one.preferred,
+            settles: one.settles.map(|finding| self.diagnostic(&finding)),
+        };
+        Ok(found.into_iter().map(action).collect())
+    }
+
+    fn format(&self, range: Option<Range<usize>>) -> Formatting {
+        let (document, tree) = (self.0.document(), self.0.document().tree());
+        let options = FormatOptions::with(&tree.dialect(), &document.settings().format);
+        let plan = match range {
+            Some(range) => Plan { edits: format_range(tree, range, &options), kept: Vec::new() },
+            None => plan(tree, &options),
+        };
+        let kept = |kept: &Kept| {
+            let view = tree.statement(kept.statement);
+            (Range::<usize>::from(view.range()), kept.reason.to_string())
+        };
+        Formatting {
+            kept: plan.kept.iter().map(kept).collect(),
+            edits: plan.edits.into_iter().map(|(range, text)| TextEdit { range, text }).collect(),
+        }
+    }
+
     fn syntax_tree(&self) -> String {
         self.0.syntax_tree()
     }
@@ -217,16 +318,11 @@ impl Document for Program {
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion> {
         let expansion = with(control, "expanding", |cancel, _| self.0.expand(at, depth, cancel))?;
         let tree = self.0.document().tree();
-        let place = |isn, range| found::statement_range(tree, isn, range);
-        let lines = (0..).zip(&expansion.origins).map(|(line, origin)| {
-            let around = successors(origin.frame.as_deref(), |frame| frame.parent.as_deref());
-            let places = around.map(|frame| place(frame.isn, frame.range)).collect();
-            ExpandedLine {
-                line,
-                isn: origin.isn,
-                range: place(origin.isn, origin.range),
-                stack: frames(found::origin_steps(origin), places),
-            }
+        let lines = (0..).zip(&expansion.origins).map(|(line, origin)| ExpandedLine {
+            line,
+            isn: origin.isn,
+            range: found::absolute_range(tree, origin),
+            stack: frames(found::frame_places(tree, origin)),
         });
         let origins = lines.collect();
         Ok(Expansion { text: expansion.text, origins })

@@ -3,6 +3,7 @@
 //! `BAD` is an error wherever it stands; `SLOW` makes motion and runs last until cancelled; `PANIC` panics.
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -27,7 +28,7 @@ struct FakeDocument {
 pub(crate) const SLOW_STEPS: u64 = 20_000;
 
 impl Language for FakeLanguage {
-    fn open(&self, text: &str, _: Option<&str>, _: &Values) -> Arc<dyn Document> {
+    fn open(&self, text: &str, _: Option<&str>, _: &Values, _: Surroundings) -> Arc<dyn Document> {
         Arc::new(FakeDocument { text: text.to_owned(), language: self.clone() })
     }
 
@@ -115,9 +116,11 @@ impl Document for FakeDocument {
             isn: Some(1),
             apt3: None,
             related: vec![Related { message: "the program begins here".into(), range: 0..0 }],
+            elsewhere: Vec::new(),
             range,
             origin: Vec::new(),
             unnecessary: false,
+            fixes: Vec::new(),
         };
         Ok(self.places("BAD").into_iter().map(finding).collect())
     }
@@ -138,11 +141,50 @@ impl Document for FakeDocument {
             kind: CompletionKind::Statement,
             detail: "go left".into(),
             documentation: String::new(),
+            snippet: Some("GOLFT/${1:ds}$0".into()),
         }]
     }
 
-    fn definitions(&self, offset: usize) -> Vec<Range<usize>> {
-        self.occurrences(offset).into_iter().take(1).map(|one| one.range).collect()
+    fn signature_help(&self, offset: usize) -> Option<SignatureHelp> {
+        let word = self.word_at(offset)?;
+        let label = format!("{}/x,y", &self.text[word.clone()]);
+        let parameters = vec![word.len() + 1..word.len() + 2, word.len() + 3..word.len() + 4];
+        let signature = Signature { label, parameters, documentation: "toy".into() };
+        Some(SignatureHelp { signatures: vec![signature], active: 0, parameter: Some(1) })
+    }
+
+    fn definitions(&self, spot: Spot<'_>) -> Vec<Located> {
+        self.references(spot).into_iter().take(1).collect()
+    }
+
+    fn references(&self, spot: Spot<'_>) -> Vec<Located> {
+        let located = |occurrence| Located { source: None, occurrence };
+        self.occurrences(spot.offset).into_iter().map(located).collect()
+    }
+
+    fn with_changed_files(&self) -> Arc<dyn Document> {
+        Arc::new(Self { text: self.text.clone(), language: self.language.clone() })
+    }
+
+    fn has_inclusions(&self) -> bool {
+        false
+    }
+
+    fn included_paths(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
+    fn inclusions(&self) -> Vec<Inclusion> {
+        let named = |range: Range<usize>| Inclusion {
+            name: "BAD".into(),
+            range,
+            path: Some(PathBuf::from("/nowhere/bad.apt")),
+        };
+        self.places("BAD").into_iter().map(named).collect()
+    }
+
+    fn diagnostics_in(&self, _: &Path, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
+        self.diagnostics(level, control)
     }
 
     fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
@@ -151,16 +193,15 @@ impl Document for FakeDocument {
         places.map(|(nth, range)| Occurrence { range, defines: nth == 0 }).collect()
     }
 
-    fn renamable(&self, offset: usize) -> Option<Range<usize>> {
-        self.word_at(offset)
+    fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>> {
+        self.word_at(spot.offset)
     }
 
-    fn rename(&self, offset: usize, new: &str) -> Result<Vec<TextEdit>, Refusal> {
+    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal> {
         if new.is_empty() {
             return Err(Refusal::Impossible("a name has letters".into()));
         }
-        let edit = |one: Occurrence| TextEdit { range: one.range, text: new.to_owned() };
-        Ok(self.occurrences(offset).into_iter().map(edit).collect())
+        Ok(self.references(spot).into_iter().map(|one| (one, new.to_owned())).collect())
     }
 
     fn outline(&self) -> Vec<OutlineEntry> {
@@ -188,6 +229,37 @@ impl Document for FakeDocument {
 
     fn lenses(&self) -> Vec<Lens> {
         vec![Lens { range: 0..0, title: "Run motion".into(), run: None }]
+    }
+
+    fn actions(
+        &self,
+        range: Range<usize>,
+        wanted: &[ActionKind],
+        level: Level,
+        control: &Control,
+    ) -> Answer<Vec<Action>> {
+        let found = self.diagnostics(level, control)?;
+        let here = found.into_iter().filter(|one| one.range.start <= range.end && one.range.end >= range.start);
+        let removal = |kind, finding: &Diagnostic| Action {
+            title: "Remove BAD".to_owned(),
+            kind,
+            edits: vec![TextEdit { range: finding.range.clone(), text: String::new() }],
+            preferred: true,
+            settles: (kind == ActionKind::QuickFix).then(|| finding.clone()),
+        };
+        Ok(here.flat_map(|one| wanted.iter().map(move |kind| removal(*kind, &one)).collect::<Vec<_>>()).collect())
+    }
+
+    fn format(&self, range: Option<Range<usize>>) -> Formatting {
+        let wanted = |place: &Range<usize>| {
+            range.as_ref().is_none_or(|range| place.start < range.end && place.end > range.start)
+        };
+        let loud = |range: Range<usize>| TextEdit { text: "BAD".to_owned(), range };
+        let edits = self.places("bad").into_iter().filter(wanted).map(loud).collect();
+        Formatting {
+            edits,
+            kept: self.places("odd").into_iter().map(|range| (range, "odd".to_owned())).collect(),
+        }
     }
 
     fn syntax_tree(&self) -> String {

@@ -9,6 +9,7 @@ mod engine;
 pub(crate) mod fake;
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use tokio_util::sync::CancellationToken;
@@ -21,7 +22,13 @@ use crate::settings::Values;
 pub(crate) trait Language: Send + Sync + 'static {
     /// Reads a program. Parsing happens here, evaluation when somebody asks. Settings that are wrong
     /// count as absent; [`Language::check_settings`] says what is wrong with them.
-    fn open(&self, text: &str, file_name: Option<&str>, settings: &Values) -> Arc<dyn Document>;
+    fn open(
+        &self,
+        text: &str,
+        file_name: Option<&str>,
+        settings: &Values,
+        surroundings: Surroundings,
+    ) -> Arc<dyn Document>;
 
     /// Says what is wrong with settings, if something is.
     fn check_settings(&self, settings: &Values) -> Result<(), String>;
@@ -45,6 +52,21 @@ pub(crate) trait Document: Send + Sync {
     /// The version after some edits, each relative to the text that the one before it left.
     fn edit(&self, edits: &[TextEdit]) -> Arc<dyn Document>;
 
+    /// The same version with all forgotten that depends on included files, for when one of them has changed.
+    fn with_changed_files(&self) -> Arc<dyn Document>;
+
+    /// Whether a statement puts in another file, be it there or not.
+    fn has_inclusions(&self) -> bool;
+
+    /// The files that are put in, directly or by others.
+    fn included_paths(&self) -> Vec<PathBuf>;
+
+    /// The names of files in the text, with the files that they name.
+    fn inclusions(&self) -> Vec<Inclusion>;
+
+    /// What is found in an included file, as findings of that file.
+    fn diagnostics_in(&self, file: &Path, level: Level, control: &Control) -> Answer<Vec<Diagnostic>>;
+
     /// The dialect in force, and why, in words for people.
     fn dialect(&self) -> String;
 
@@ -65,17 +87,23 @@ pub(crate) trait Document: Send + Sync {
     /// What could be written at an offset.
     fn completions(&self, offset: usize) -> Vec<Completion>;
 
-    /// Where the name at an offset gets its meaning; the place in force at the offset first.
-    fn definitions(&self, offset: usize) -> Vec<Range<usize>>;
+    /// The forms of what an offset is in the parameters of.
+    fn signature_help(&self, offset: usize) -> Option<SignatureHelp>;
+
+    /// Where the name at a place gets its meaning, in all files; the place in force there first.
+    fn definitions(&self, spot: Spot<'_>) -> Vec<Located>;
+
+    /// Where the name at a place stands, in all files.
+    fn references(&self, spot: Spot<'_>) -> Vec<Located>;
 
     /// Where the name at an offset stands.
     fn occurrences(&self, offset: usize) -> Vec<Occurrence>;
 
-    /// The name at an offset, if it is one that can be renamed.
-    fn renamable(&self, offset: usize) -> Option<Range<usize>>;
+    /// The name at a place, if it is one that can be renamed.
+    fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>>;
 
-    /// The edits that give the name at an offset another spelling, all relative to this version.
-    fn rename(&self, offset: usize, new: &str) -> Result<Vec<TextEdit>, Refusal>;
+    /// The edits in all files that give the name at a place another spelling, all relative to this version.
+    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal>;
 
     /// The outline.
     fn outline(&self) -> Vec<OutlineEntry>;
@@ -88,6 +116,19 @@ pub(crate) trait Document: Send + Sync {
 
     /// The places that can be run on their own.
     fn lenses(&self) -> Vec<Lens>;
+
+    /// What can be done about a range, of the kinds wanted; findings count up to a level.
+    fn actions(
+        &self,
+        range: Range<usize>,
+        wanted: &[ActionKind],
+        level: Level,
+        control: &Control,
+    ) -> Answer<Vec<Action>>;
+
+    /// The edits that give the program the style of its project; only those of statements that touch the range if one is
+    /// given.
+    fn format(&self, range: Option<Range<usize>>) -> Formatting;
 
     /// The syntax tree as indented text.
     fn syntax_tree(&self) -> String;

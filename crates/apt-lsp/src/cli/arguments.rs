@@ -16,9 +16,12 @@ pub(super) struct Arguments {
     /// Process id of the editor; some editors pass it, the server gets it in the protocol
     #[arg(long = "clientProcessId", hide = true)]
     pub client_process_id: Option<u32>,
-    /// Diagnostics of files and folders
-    #[arg(long, value_name = "PATH", num_args = 1..)]
-    pub check: Vec<PathBuf>,
+    /// Diagnostics of files and folders (as the command `check`)
+    #[arg(long, requires = "paths")]
+    pub check: bool,
+    /// What --check looks at: files and folders; `-` is standard input
+    #[arg(value_name = "PATH", requires = "check")]
+    pub paths: Vec<PathBuf>,
     #[command(flatten)]
     pub check_options: CheckOptions,
     /// When to colour
@@ -50,6 +53,8 @@ pub(super) enum Command {
     Post(PostCall),
     /// A program with macros and loops unrolled, each line with its origin
     Expand(ExpandCall),
+    /// Give programs the style of their project
+    Fmt(FmtCall),
     /// The path as a stand-alone page or picture
     View(ViewCall),
     /// What a diagnostic means, with a wrong and a right sample
@@ -219,6 +224,19 @@ impl Place {
     }
 }
 
+/// `fmt`.
+#[derive(Debug, Args)]
+pub(super) struct FmtCall {
+    /// Files and folders, formatted in place; `-` formats standard input to standard output
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// Change nothing; print the names of the files that would change
+    #[arg(long)]
+    pub check: bool,
+    #[command(flatten)]
+    pub dialect: DialectOption,
+}
+
 /// `view`.
 #[derive(Debug, Args)]
 pub(super) struct ViewCall {
@@ -251,8 +269,25 @@ mod tests {
     #[test]
     fn check_is_an_option_and_a_command() {
         let parse = |words: &[&str]| Arguments::try_parse_from([&["apt-lsp"], words].concat()).unwrap();
-        let option = parse(&["--check", "a", "b", "--format", "sarif", "--no-motion"]);
-        assert_eq!((option.check.len(), option.check_options.format), (2, CheckFormat::Sarif));
+        // Options and paths come in any order.
+        for words in [
+            &["--check", "a", "b", "--format", "sarif", "--no-motion"][..],
+            &["--check", "--no-motion", "a", "--format", "sarif", "b"],
+            &["--check", "--format=sarif", "--no-motion", "a", "b"],
+            &["--no-motion", "--format", "sarif", "--check", "a", "b"],
+            &["a", "--no-motion", "b", "--check", "--format", "sarif"],
+        ] {
+            let option = parse(words);
+            assert!(option.check && option.check_options.no_motion, "{words:?}");
+            assert_eq!(
+                (option.paths.len(), option.check_options.format),
+                (2, CheckFormat::Sarif),
+                "{words:?}"
+            );
+        }
+        for words in [&["--check"][..], &["--check", "--no-motion"], &["a"], &["--stdio", "--check", "a"]] {
+            assert!(Arguments::try_parse_from([&["apt-lsp"], words].concat()).is_err(), "{words:?}");
+        }
         let Some(Command::Check(call)) = parse(&["check", "a", "--deny-warnings"]).command else {
             panic!("no call")
         };

@@ -6,6 +6,7 @@ mod console;
 mod expand;
 mod explain;
 mod findings;
+mod fmt;
 mod listing;
 mod post;
 mod program;
@@ -43,7 +44,7 @@ impl From<Outcome> for ExitCode {
 /// Does what the arguments of the process say.
 pub(crate) fn main(language: Arc<dyn Language>) -> ExitCode {
     let arguments = Arguments::parse();
-    if arguments.command.is_none() && arguments.check.is_empty() {
+    if arguments.command.is_none() && !arguments.check {
         return crate::server::run(language);
     }
     let console = Console::new(arguments.color);
@@ -59,16 +60,17 @@ pub(crate) fn main(language: Arc<dyn Language>) -> ExitCode {
 }
 
 fn dispatch(arguments: Arguments, console: &Console, language: &dyn Language) -> Outcome {
-    if arguments.command.is_some() && (arguments.stdio || !arguments.check.is_empty()) {
+    if arguments.command.is_some() && (arguments.stdio || arguments.check) {
         let message = "`--stdio` and `--check` stand alone, without a command";
         Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
     }
     match arguments.command {
-        None => check::check(&arguments.check, &arguments.check_options, console, language),
+        None => check::check(&arguments.paths, &arguments.check_options, console, language),
         Some(Command::Check(call)) => check::check(&call.paths, &call.options, console, language),
         Some(Command::Run(call)) => run::run(&call, console, language),
         Some(Command::Post(call)) => post::post(&call, console, language),
         Some(Command::Expand(call)) => expand::expand(&call, console, language),
+        Some(Command::Fmt(call)) => fmt::fmt(&call, console, language),
         Some(Command::View(call)) => view::view(&call, console, language),
         Some(Command::Explain(call)) => explain::explain(&call.code, console, language),
         Some(Command::Tree(call)) => tree::tree(&call, console, language),

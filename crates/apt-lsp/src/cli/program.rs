@@ -9,16 +9,16 @@ use serde_json::Value;
 
 use super::arguments::{DialectOption, ProgramArgument};
 use super::console::Console;
-use crate::analysis::{Document, Language};
+use crate::analysis::{Document, Language, Surroundings};
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
-use crate::source::{self, Source};
+use crate::source::{self, Source, TextForm};
 
 /// Endings of files that are programs when a folder is walked.
 const ENDINGS: [&str; 9] = ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
 
 /// The name that means standard input.
-const STANDARD_INPUT: &str = "-";
+pub(super) const STANDARD_INPUT: &str = "-";
 
 /// A program that has been read.
 pub(super) struct Program {
@@ -30,6 +30,8 @@ pub(super) struct Program {
     pub document: Arc<dyn Document>,
     /// The settings in force.
     pub settings: Settings,
+    /// The form of its bytes; none for a binary file.
+    pub form: Option<TextForm>,
 }
 
 impl Program {
@@ -56,8 +58,10 @@ impl Program {
         let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
         let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
             let binary = language.text_of_binary(&bytes).transpose()?;
-            Ok(binary
-                .map_or_else(|| (source::decode(bytes), false), |text| (Source { text, utf8: true }, true)))
+            Ok(binary.map_or_else(
+                || (source::decode(bytes), false),
+                |text| (Source { text, form: TextForm::Utf8 }, true),
+            ))
         });
         let (source, binary) = match understood {
             Ok(both) => both,
@@ -69,7 +73,7 @@ impl Program {
         if binary {
             console.note(&format!("{name}: a binary CLTAPE; places are those of its text form"));
         }
-        if !source.utf8 {
+        if source.form == TextForm::Latin1 {
             console.note(&format!("{name}: not UTF-8; read as Latin-1"));
         }
         let mut typed = Values::new();
@@ -82,6 +86,7 @@ impl Program {
         }
         // Relative paths have parents too, once they are made whole.
         let whole = std::path::absolute(path).ok().filter(|_| !from_standard_input);
+        let beside = whole.clone();
         let home = whole.or_else(|| Some(std::env::current_dir().ok()?.join(&name)));
         let (settings, problems) = Settings::resolve(language, home.as_deref(), &Values::new(), &typed);
         for problem in &problems {
@@ -90,9 +95,11 @@ impl Program {
         if !problems.is_empty() {
             return None;
         }
-        let document = language.open(&source.text, Some(&name), &settings.program);
+        let surroundings = Surroundings { path: beside, ..Surroundings::default() };
+        let document = language.open(&source.text, Some(&name), &settings.program, surroundings);
         let index = TextIndex { rope: Rope::from_str(&source.text), encoding: Encoding::Utf16 };
-        Some(Self { name, index, document, settings })
+        let form = (!binary).then_some(source.form);
+        Some(Self { name, index, document, settings, form })
     }
 }
 

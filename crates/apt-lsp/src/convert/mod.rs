@@ -2,7 +2,9 @@
 
 pub(crate) mod changes;
 pub(crate) mod outgoing;
+mod places;
 pub(crate) mod position;
 pub(crate) mod tokens;
 
+pub(crate) use self::places::{Places, Uris};
 pub(crate) use self::position::{Encoding, TextIndex};

@@ -2,18 +2,19 @@
 
 use tower_lsp::ls_types::{self as lsp, Uri};
 
-use super::TextIndex;
-use crate::analysis::{
-    Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover, Lens, Occurrence,
-    OriginFrame, OutlineEntry, OutlineKind, Severity, TextEdit,
-};
+use super::{Places, TextIndex, Uris};
+use crate::analysis::{Action, Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover, Inclusion, Lens, Occurrence, OriginFrame, OutlineEntry, OutlineKind, Severity, Signature, SignatureHelp, TextEdit};
 
 /// Who found it, as editors show it.
 pub(crate) const SOURCE: &str = "apt";
 
 /// A finding. Hints become part of the message, since the protocol has no place for them; origins
 /// and related places become related information.
-pub(crate) fn diagnostic(index: &TextIndex, uri: &Uri, found: &Diagnostic) -> lsp::Diagnostic {
+pub(crate) fn diagnostic(
+    index: &TextIndex,
+    places: &mut Places<'_>,
+    found: &Diagnostic,
+) -> lsp::Diagnostic {
     let message = match &found.hint {
         Some(hint) => format!("{}\nhelp: {hint}", found.message),
         None => found.message.clone(),
@@ -29,11 +30,18 @@ pub(crate) fn diagnostic(index: &TextIndex, uri: &Uri, found: &Diagnostic) -> ls
         code: Some(lsp::NumberOrString::String(found.code.clone())),
         source: Some(SOURCE.to_owned()),
         message,
-        related_information: related_information(index, uri, found),
+        related_information: related_information(places, found),
         tags: found.unnecessary.then(|| vec![lsp::DiagnosticTag::UNNECESSARY]),
         data: Some(serde_json::json!({ "isn": found.isn, "apt3": found.apt3, "hint": found.hint })),
         code_description: None,
     }
+}
+
+/// Whether a finding, as the client has it, came with the motion.
+pub(crate) fn is_of_motion(found: &lsp::Diagnostic) -> bool {
+    let Some(lsp::NumberOrString::String(code)) = &found.code else { return false };
+    // Sections 2 and 3 (codes 06xx and 07xx), and comments about their findings.
+    ["APT06", "APT07", "APT096"].iter().any(|group| code.starts_with(group))
 }
 
 /// Tells at the top of a document how many findings are not shown.
@@ -47,18 +55,25 @@ pub(crate) fn left_out(count: usize) -> lsp::Diagnostic {
 }
 
 fn related_information(
-    index: &TextIndex,
-    uri: &Uri,
+    places: &mut Places<'_>,
     found: &Diagnostic,
 ) -> Option<Vec<lsp::DiagnosticRelatedInformation>> {
-    let place = |range, message: String| lsp::DiagnosticRelatedInformation {
-        location: lsp::Location { uri: uri.clone(), range: index.range(range) },
-        message,
+    let mut all = Vec::new();
+    let mut add = |source, range, message: String| {
+        let location = places.location(source, range);
+        all.extend(location.map(|location| lsp::DiagnosticRelatedInformation { location, message }));
     };
-    let related = found.related.iter().map(|related| place(&related.range, related.message.clone()));
-    let frames = found.origin.iter();
-    let origins = frames.filter_map(|frame| Some(place(frame.range.as_ref()?, frame_text(frame))));
-    let all: Vec<_> = related.chain(origins).collect();
+    for one in &found.elsewhere {
+        add(Some(&one.source), &one.range, one.message.clone());
+    }
+    for related in &found.related {
+        add(None, &related.range, related.message.clone());
+    }
+    for frame in &found.origin {
+        if let Some(range) = &frame.range {
+            add(None, range, frame_text(frame));
+        }
+    }
     (!all.is_empty()).then_some(all)
 }
 
@@ -85,8 +100,34 @@ fn markdown(value: String) -> lsp::MarkupContent {
     lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value }
 }
 
-/// Completions, in the order in which the analysis gives them.
-pub(crate) fn completions(items: Vec<Completion>) -> Vec<lsp::CompletionItem> {
+/// The forms at a place. Parameters are told as places in the form where the client can read that.
+pub(crate) fn signature_help(found: SignatureHelp, offsets: bool) -> lsp::SignatureHelp {
+    // Forms are ASCII, so that bytes are characters in every encoding.
+    let number = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+    let parameter = |label: &str, range: std::ops::Range<usize>| lsp::ParameterInformation {
+        label: if offsets {
+            lsp::ParameterLabel::LabelOffsets([number(range.start), number(range.end)])
+        } else {
+            lsp::ParameterLabel::Simple(label.get(range).unwrap_or("").to_owned())
+        },
+        documentation: None,
+    };
+    let active = found.parameter.map(number);
+    let signature = |one: Signature| lsp::SignatureInformation {
+        parameters: Some(one.parameters.iter().map(|range| parameter(&one.label, range.clone())).collect()),
+        documentation: Some(lsp::Documentation::MarkupContent(markdown(one.documentation))),
+        label: one.label,
+        active_parameter: None,
+    };
+    lsp::SignatureHelp {
+        signatures: found.signatures.into_iter().map(signature).collect(),
+        active_signature: Some(number(found.active)),
+        active_parameter: active,
+    }
+}
+
+/// Completions, in the order in which the analysis gives them, with places to fill in for a client that knows snippets.
+pub(crate) fn completions(items: Vec<Completion>, snippets: bool) -> Vec<lsp::CompletionItem> {
     let filled = |text: String| (!text.is_empty()).then_some(text);
     let convert = |(nth, item): (usize, Completion)| lsp::CompletionItem {
         label: item.label,
@@ -95,6 +136,12 @@ pub(crate) fn completions(items: Vec<Completion>) -> Vec<lsp::CompletionItem> {
         documentation: filled(item.documentation)
             .map(|text| lsp::Documentation::MarkupContent(markdown(text))),
         sort_text: Some(format!("{nth:05}")),
+        insert_text_format: item
+            .snippet
+            .as_ref()
+            .filter(|_| snippets)
+            .map(|_| lsp::InsertTextFormat::SNIPPET),
+        insert_text: item.snippet.filter(|_| snippets),
         ..lsp::CompletionItem::default()
     };
     items.into_iter().enumerate().map(convert).collect()
@@ -111,6 +158,49 @@ fn completion_kind(kind: CompletionKind) -> lsp::CompletionItemKind {
         CompletionKind::Statement => lsp::CompletionItemKind::KEYWORD,
         CompletionKind::Postprocessor => lsp::CompletionItemKind::EVENT,
     }
+}
+
+/// Something that can be done. `version` is that of the text, for a client that checks it before it applies edits.
+pub(crate) fn action(index: &TextIndex, uri: &Uri, version: Option<i32>, found: Action) -> lsp::CodeAction {
+    let edits: Vec<lsp::TextEdit> = found.edits.into_iter().map(|one| edit(index, one)).collect();
+    let change = match version {
+        Some(version) => lsp::WorkspaceEdit {
+            document_changes: Some(lsp::DocumentChanges::Edits(vec![lsp::TextDocumentEdit {
+                text_document: lsp::OptionalVersionedTextDocumentIdentifier {
+                    uri: uri.clone(),
+                    version: Some(version),
+                },
+                edits: edits.into_iter().map(lsp::OneOf::Left).collect(),
+            }])),
+            ..lsp::WorkspaceEdit::default()
+        },
+        None => lsp::WorkspaceEdit {
+            changes: Some(std::iter::once((uri.clone(), edits)).collect()),
+            ..lsp::WorkspaceEdit::default()
+        },
+    };
+    lsp::CodeAction {
+        title: found.title,
+        kind: Some(lsp::CodeActionKind::new(found.kind.name())),
+        diagnostics: found.settles.map(|finding| vec![diagnostic(index, &mut Places::new(uri, index, &Uris::default()), &finding)]),
+        edit: Some(change),
+        is_preferred: found.preferred.then_some(true),
+        ..lsp::CodeAction::default()
+    }
+}
+
+/// The links to the files that a document includes; names of files that are not there are no links.
+pub(crate) fn links(index: &TextIndex, uris: &Uris, found: Vec<Inclusion>) -> Vec<lsp::DocumentLink> {
+    let link = |one: Inclusion| {
+        let path = one.path?;
+        Some(lsp::DocumentLink {
+            range: index.range(&one.range),
+            target: Some(uris.of(&path)?),
+            tooltip: Some(path.display().to_string()),
+            data: None,
+        })
+    };
+    found.into_iter().filter_map(link).collect()
 }
 
 /// An edit.

@@ -1,6 +1,6 @@
 //! The handlers: each puts an event into the queue, or asks for a snapshot and has work done on it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -16,7 +16,7 @@ use super::job::{self, Events};
 use super::outbox::Outbox;
 use super::progress::Cancellations;
 use super::{commands, diagnostics, lifetime};
-use crate::analysis::{Answer, Control, Interrupted, Language, Level, Refusal, TextEdit};
+use crate::analysis::{ActionKind, Answer, Control, Interrupted, Language, Level, Located, Refusal, Spot};
 use crate::convert::{outgoing, tokens};
 use crate::settings::{self, Values};
 
@@ -137,6 +137,15 @@ impl Backend {
         Ok((id, tokens))
     }
 
+    async fn formatted(&self, uri: Uri, range: Option<lsp::Range>) -> Result<Option<Vec<lsp::TextEdit>>> {
+        self.ask("formatting", uri, move |snapshot, _| {
+            let range = range.map(|range| snapshot.index.bytes(range));
+            let edits = snapshot.document.format(range).edits.into_iter();
+            Ok(Some(edits.map(|edit| outgoing::edit(&snapshot.index, edit)).collect()))
+        })
+        .await
+    }
+
     async fn own(&self, command: &str, mut params: Value) -> Result<Value> {
         let token = params.as_object_mut().and_then(|fields| fields.remove("workDoneToken"));
         let token = token.and_then(|token| serde_json::from_value(token).ok());
@@ -204,8 +213,22 @@ impl Backend {
     }
 }
 
-fn location(snapshot: &Snapshot, range: &std::ops::Range<usize>) -> lsp::Location {
-    lsp::Location { uri: snapshot.uri.clone(), range: snapshot.index.range(range) }
+/// Places in the files of the program that a document belongs to, as locations.
+fn locations(snapshot: &Snapshot, found: &[Located]) -> Vec<lsp::Location> {
+    let mut places = snapshot.places();
+    found.iter().filter_map(|one| places.location(one.source.as_ref(), &one.occurrence.range)).collect()
+}
+
+/// The kinds of actions that a client asks for: without saying so all that belong to a place.
+fn wanted_actions(only: Option<&[lsp::CodeActionKind]>) -> Vec<ActionKind> {
+    let is_wanted = |kind: &ActionKind| match only {
+        None => *kind != ActionKind::FixAll,
+        Some(only) => only.iter().any(|wanted| {
+            let rest = kind.name().strip_prefix(wanted.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.') || wanted.as_str().is_empty())
+        }),
+    };
+    ActionKind::ALL.into_iter().filter(is_wanted).collect()
 }
 
 impl LanguageServer for Backend {
@@ -280,9 +303,19 @@ impl LanguageServer for Backend {
     }
 
     async fn completion(&self, params: lsp::CompletionParams) -> Result<Option<lsp::CompletionResponse>> {
-        self.ask_at("completion", params.text_document_position, |snapshot, offset, _| {
-            let items = outgoing::completions(snapshot.document.completions(offset));
+        let snippets = self.features().snippets;
+        self.ask_at("completion", params.text_document_position, move |snapshot, offset, _| {
+            let items = outgoing::completions(snapshot.document.completions(offset), snippets);
             Ok(Some(lsp::CompletionResponse::Array(items)))
+        })
+        .await
+    }
+
+    async fn signature_help(&self, params: lsp::SignatureHelpParams) -> Result<Option<lsp::SignatureHelp>> {
+        let offsets = self.features().label_offsets;
+        self.ask_at("signature help", params.text_document_position_params, move |snapshot, offset, _| {
+            let found = snapshot.document.signature_help(offset);
+            Ok(found.map(|found| outgoing::signature_help(found, offsets)))
         })
         .await
     }
@@ -292,8 +325,10 @@ impl LanguageServer for Backend {
         params: lsp::GotoDefinitionParams,
     ) -> Result<Option<lsp::GotoDefinitionResponse>> {
         self.ask_at("definition", params.text_document_position_params, |snapshot, offset, _| {
-            let found = snapshot.document.definitions(offset);
-            let places: Vec<_> = found.iter().map(|range| location(snapshot, range)).collect();
+            let file = snapshot.included_path();
+            let spot = Spot { file: file.as_deref(), offset };
+            let found = snapshot.program().document.definitions(spot);
+            let places = locations(snapshot, &found);
             Ok((!places.is_empty()).then_some(lsp::GotoDefinitionResponse::Array(places)))
         })
         .await
@@ -302,9 +337,11 @@ impl LanguageServer for Backend {
     async fn references(&self, params: lsp::ReferenceParams) -> Result<Option<Vec<lsp::Location>>> {
         let with_definition = params.context.include_declaration;
         self.ask_at("references", params.text_document_position, move |snapshot, offset, _| {
-            let found = snapshot.document.occurrences(offset);
-            let wanted = found.iter().filter(|one| with_definition || !one.defines);
-            Ok(Some(wanted.map(|one| location(snapshot, &one.range)).collect()))
+            let file = snapshot.included_path();
+            let spot = Spot { file: file.as_deref(), offset };
+            let mut found = snapshot.program().document.references(spot);
+            found.retain(|one| with_definition || !one.occurrence.defines);
+            Ok(Some(locations(snapshot, &found)))
         })
         .await
     }
@@ -325,7 +362,8 @@ impl LanguageServer for Backend {
         params: lsp::TextDocumentPositionParams,
     ) -> Result<Option<lsp::PrepareRenameResponse>> {
         self.ask_at("rename", params, |snapshot, offset, _| {
-            let found = snapshot.document.renamable(offset);
+            let file = snapshot.included_path();
+            let found = snapshot.program().document.renamable(Spot { file: file.as_deref(), offset });
             Ok(found.map(|range| lsp::PrepareRenameResponse::Range(snapshot.index.range(&range))))
         })
         .await
@@ -333,16 +371,21 @@ impl LanguageServer for Backend {
 
     async fn rename(&self, params: lsp::RenameParams) -> Result<Option<lsp::WorkspaceEdit>> {
         let place = params.text_document_position;
-        let uri = place.text_document.uri.clone();
-        let snapshot = job::snapshot(&self.events, uri.clone()).await?;
-        let edits = job::on_snapshot("rename", snapshot, move |snapshot, _| {
-            let offset = snapshot.index.offset(place.position);
-            let edits = snapshot.document.rename(offset, &params.new_name)?;
-            let convert = |edit: TextEdit| outgoing::edit(&snapshot.index, edit);
-            Ok::<Vec<_>, Refusal>(edits.into_iter().map(convert).collect())
+        let snapshot = job::snapshot(&self.events, place.text_document.uri).await?;
+        let changes = job::on_snapshot("rename", snapshot, move |snapshot, _| {
+            let file = snapshot.included_path();
+            let spot = Spot { file: file.as_deref(), offset: snapshot.index.offset(place.position) };
+            let edits = snapshot.program().document.rename(spot, &params.new_name)?;
+            let mut places = snapshot.places();
+            let mut changes = HashMap::<Uri, Vec<lsp::TextEdit>>::new();
+            for (one, new_text) in edits {
+                if let Some(at) = places.location(one.source.as_ref(), &one.occurrence.range) {
+                    changes.entry(at.uri).or_default().push(lsp::TextEdit { range: at.range, new_text });
+                }
+            }
+            Ok::<_, Refusal>(changes)
         })
         .await?;
-        let changes = std::iter::once((uri, edits)).collect();
         Ok(Some(lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }))
     }
 
@@ -362,12 +405,49 @@ impl LanguageServer for Backend {
         .await
     }
 
+    async fn document_link(&self, params: lsp::DocumentLinkParams) -> Result<Option<Vec<lsp::DocumentLink>>> {
+        self.ask("document links", params.text_document.uri, |snapshot, _| {
+            let found = snapshot.document.inclusions();
+            Ok(Some(outgoing::links(&snapshot.index, &snapshot.uris, found)))
+        })
+        .await
+    }
+
     async fn folding_range(&self, params: lsp::FoldingRangeParams) -> Result<Option<Vec<lsp::FoldingRange>>> {
         self.ask("folding ranges", params.text_document.uri, |snapshot, _| {
             let folds = snapshot.document.folds();
             Ok(Some(folds.iter().filter_map(|fold| outgoing::fold(&snapshot.index, fold)).collect()))
         })
         .await
+    }
+
+    async fn code_action(&self, params: lsp::CodeActionParams) -> Result<Option<lsp::CodeActionResponse>> {
+        let wanted = wanted_actions(params.context.only.as_deref());
+        // What the editor shows says how far the findings go that are asked about.
+        let of_motion = params.context.diagnostics.iter().any(outgoing::is_of_motion);
+        let versioned = self.features().versioned_edits;
+        let range = params.range;
+        self.ask("code actions", params.text_document.uri, move |snapshot, control| {
+            let level = if of_motion { Level::Motion } else { Level::Section1 };
+            let range = snapshot.index.bytes(range);
+            let found = snapshot.document.actions(range, &wanted, level, control)?;
+            let version = versioned.then_some(snapshot.version);
+            let action = |one| outgoing::action(&snapshot.index, &snapshot.uri, version, one).into();
+            Ok(Some(found.into_iter().map(action).collect()))
+        })
+        .await
+    }
+
+    async fn formatting(&self, params: lsp::DocumentFormattingParams) -> Result<Option<Vec<lsp::TextEdit>>> {
+        // The style is that of the project, not of the editor: columns have a meaning in part programs.
+        self.formatted(params.text_document.uri, None).await
+    }
+
+    async fn range_formatting(
+        &self,
+        params: lsp::DocumentRangeFormattingParams,
+    ) -> Result<Option<Vec<lsp::TextEdit>>> {
+        self.formatted(params.text_document.uri, Some(params.range)).await
     }
 
     async fn code_lens(&self, params: lsp::CodeLensParams) -> Result<Option<Vec<lsp::CodeLens>>> {

@@ -2,6 +2,7 @@
 
 use tower_lsp::ls_types::{self as lsp, ClientCapabilities, ServerCapabilities};
 
+use crate::analysis::ActionKind;
 use crate::convert::{Encoding, tokens};
 
 /// The commands of `workspace/executeCommand`.
@@ -19,6 +20,14 @@ pub(super) struct ClientFeatures {
     pub refresh: bool,
     /// Knows nested outlines.
     pub nested_symbols: bool,
+    /// Knows snippets: completions with places to fill in.
+    pub snippets: bool,
+    /// Reads parameters of signatures as places in their label.
+    pub label_offsets: bool,
+    /// Takes actions with their edits.
+    pub actions: bool,
+    /// Checks the version of a text before it applies edits.
+    pub versioned_edits: bool,
     /// Asks whether a name can be renamed before asking for the new one.
     pub prepares_rename: bool,
     /// Shows progress that the server begins.
@@ -45,6 +54,24 @@ impl ClientFeatures {
             nested_symbols: document
                 .and_then(|document| document.document_symbol.as_ref())
                 .and_then(|symbols| symbols.hierarchical_document_symbol_support)
+                .unwrap_or(false),
+            snippets: document
+                .and_then(|document| document.completion.as_ref())
+                .and_then(|completion| completion.completion_item.as_ref())
+                .and_then(|item| item.snippet_support)
+                .unwrap_or(false),
+            label_offsets: document
+                .and_then(|document| document.signature_help.as_ref())
+                .and_then(|help| help.signature_information.as_ref())
+                .and_then(|signature| signature.parameter_information.as_ref())
+                .and_then(|parameter| parameter.label_offset_support)
+                .unwrap_or(false),
+            actions: document
+                .and_then(|document| document.code_action.as_ref())
+                .is_some_and(|action| action.code_action_literal_support.is_some()),
+            versioned_edits: workspace
+                .and_then(|workspace| workspace.workspace_edit.as_ref())
+                .and_then(|edit| edit.document_changes)
                 .unwrap_or(false),
             prepares_rename: document
                 .and_then(|document| document.rename.as_ref())
@@ -74,6 +101,11 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
             trigger_characters: Some(["/", ",", "="].map(str::to_owned).to_vec()),
             ..lsp::CompletionOptions::default()
         }),
+        signature_help_provider: Some(lsp::SignatureHelpOptions {
+            trigger_characters: Some(["/", ",", "("].map(str::to_owned).to_vec()),
+            retrigger_characters: None,
+            work_done_progress_options: lsp::WorkDoneProgressOptions::default(),
+        }),
         definition_provider: Some(lsp::OneOf::Left(true)),
         references_provider: Some(lsp::OneOf::Left(true)),
         rename_provider: Some(if client.prepares_rename {
@@ -86,6 +118,21 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
         }),
         document_highlight_provider: Some(lsp::OneOf::Left(true)),
         document_symbol_provider: Some(lsp::OneOf::Left(true)),
+        document_link_provider: Some(lsp::DocumentLinkOptions {
+            resolve_provider: None,
+            work_done_progress_options: lsp::WorkDoneProgressOptions::default(),
+        }),
+        // Clients without literals could only be given commands, and ours have no edits to apply.
+        code_action_provider: client.actions.then(|| {
+            lsp::CodeActionProviderCapability::Options(lsp::CodeActionOptions {
+                code_action_kinds: Some(
+                    ActionKind::ALL.map(|kind| lsp::CodeActionKind::new(kind.name())).to_vec(),
+                ),
+                ..lsp::CodeActionOptions::default()
+            })
+        }),
+        document_formatting_provider: Some(lsp::OneOf::Left(true)),
+        document_range_formatting_provider: Some(lsp::OneOf::Left(true)),
         folding_range_provider: Some(lsp::FoldingRangeProviderCapability::Simple(true)),
         code_lens_provider: Some(lsp::CodeLensOptions { resolve_provider: None }),
         semantic_tokens_provider: Some(
@@ -100,7 +147,7 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
         diagnostic_provider: client.pulls.then(|| {
             lsp::DiagnosticServerCapabilities::Options(lsp::DiagnosticOptions {
                 identifier: Some("apt".to_owned()),
-                inter_file_dependencies: false,
+                inter_file_dependencies: true,
                 workspace_diagnostics: false,
                 work_done_progress_options: lsp::WorkDoneProgressOptions::default(),
             })
@@ -143,12 +190,22 @@ mod tests {
                   "="
                 ]
               },
+              "signatureHelpProvider": {
+                "triggerCharacters": [
+                  "/",
+                  ",",
+                  "("
+                ]
+              },
               "definitionProvider": true,
               "referencesProvider": true,
               "documentHighlightProvider": true,
               "documentSymbolProvider": true,
               "codeLensProvider": {},
+              "documentFormattingProvider": true,
+              "documentRangeFormattingProvider": true,
               "renameProvider": true,
+              "documentLinkProvider": {},
               "foldingRangeProvider": true,
               "executeCommandProvider": {
                 "commands": [
@@ -197,12 +254,18 @@ mod tests {
             "general": { "positionEncodings": ["utf-16", "utf-8"] },
             "textDocument": {
                 "diagnostic": {},
+                "completion": { "completionItem": { "snippetSupport": true } },
+                "signatureHelp": {
+                    "signatureInformation": { "parameterInformation": { "labelOffsetSupport": true } }
+                },
                 "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
                 "rename": { "prepareSupport": true },
+                "codeAction": { "codeActionLiteralSupport": { "codeActionKind": { "valueSet": ["quickfix"] } } },
             },
             "window": { "workDoneProgress": true },
             "workspace": {
                 "configuration": true,
+                "workspaceEdit": { "documentChanges": true },
                 "diagnostics": { "refreshSupport": true },
                 "didChangeWatchedFiles": { "dynamicRegistration": true },
             },
@@ -214,6 +277,10 @@ mod tests {
                 pulls: true,
                 refresh: true,
                 nested_symbols: true,
+                snippets: true,
+                label_offsets: true,
+                actions: true,
+                versioned_edits: true,
                 prepares_rename: true,
                 progress: true,
                 configuration: true,
@@ -223,5 +290,7 @@ mod tests {
         let announced = serde_json::to_value(server_capabilities(&client)).unwrap();
         assert_eq!(announced["positionEncoding"], "utf-8");
         assert_eq!(announced["diagnosticProvider"]["identifier"], "apt");
+        let kinds = serde_json::json!(["quickfix", "source.fixAll.apt", "refactor.inline"]);
+        assert_eq!(announced["codeActionProvider"]["codeActionKinds"], kinds);
     }
 }

@@ -14,8 +14,8 @@ use super::backend::Backend;
 use super::documents::{Snapshot, file_path};
 use super::job;
 use super::progress::{self, Display};
-use crate::analysis::{Control, Refusal, RunRequest};
-use crate::convert::{TextIndex, outgoing};
+use crate::analysis::{Control, Refusal, RunRequest, Surroundings};
+use crate::convert::{TextIndex, Uris, outgoing};
 use crate::settings::{Settings, Values};
 
 #[derive(Deserialize)]
@@ -165,14 +165,18 @@ async fn present(server: &Backend, uri: Uri) -> Result<Snapshot> {
         let text = crate::source::read_file(&path).ok()?.text;
         let (settings, _) = Settings::resolve(language.as_ref(), Some(&path), &Values::new(), &Values::new());
         let name = path.file_name().and_then(|name| name.to_str());
-        let document = language.open(&text, name, &settings.program);
+        let surroundings = Surroundings { path: Some(path.clone()), ..Surroundings::default() };
+        let document = language.open(&text, name, &settings.program, surroundings);
         Some(Snapshot {
             uri,
             revision: 0,
+            version: 0,
             index: TextIndex { rope: Rope::from_str(&text), encoding },
             document,
             settings: Arc::new(settings),
             superseded: CancellationToken::new(),
+            includers: Vec::new(),
+            uris: Uris::default(),
         })
     };
     match tokio::task::spawn_blocking(read).await {

@@ -1,6 +1,7 @@
 //! Pushed findings: after a moment of quiet, or at once if there was quiet already.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 
 use tokio::sync::mpsc;
@@ -10,7 +11,7 @@ use tower_lsp::ls_types::{self as lsp, Uri};
 use super::documents::{Event, Snapshot};
 use super::job::{self, Events};
 use crate::analysis::{Answer, Control, Level};
-use crate::convert::outgoing;
+use crate::convert::{Places, outgoing};
 
 /// Quiet after which a changed document is checked.
 const QUIET: Duration = Duration::from_millis(40);
@@ -92,13 +93,37 @@ pub(super) fn wants_motion(snapshot: &Snapshot) -> bool {
     snapshot.settings.motion.unwrap_or(true)
 }
 
+/// The findings of an included file: what the programs that include it find in it. By itself it is no program.
+fn findings_inside(
+    snapshot: &Snapshot,
+    path: &Path,
+    level: Level,
+    control: &Control,
+) -> Answer<Vec<lsp::Diagnostic>> {
+    let mut shown: Vec<lsp::Diagnostic> = Vec::new();
+    let mut places = Places::new(&snapshot.uri, &snapshot.index, &snapshot.uris);
+    for program in &snapshot.includers {
+        for found in program.document.diagnostics_in(path, level, control)? {
+            let found = outgoing::diagnostic(&snapshot.index, &mut places, &found);
+            if !shown.contains(&found) && shown.len() < MOST_SHOWN {
+                shown.push(found);
+            }
+        }
+    }
+    Ok(shown)
+}
+
 /// Findings shown of one document. Nobody reads more, and editors show no more.
 const MOST_SHOWN: usize = 1_000;
 
 /// The findings of a snapshot: the gravest, and how many there are besides.
 pub(super) fn findings(snapshot: &Snapshot, level: Level, control: &Control) -> Answer<Vec<lsp::Diagnostic>> {
+    if let Some(path) = snapshot.included_path() {
+        return findings_inside(snapshot, &path, level, control);
+    }
     let found = snapshot.document.worst_diagnostics(level, MOST_SHOWN, control)?;
-    let convert = |found| outgoing::diagnostic(&snapshot.index, &snapshot.uri, found);
+    let mut places = snapshot.places();
+    let convert = |found| outgoing::diagnostic(&snapshot.index, &mut places, found);
     let mut shown: Vec<_> = found.diagnostics.iter().map(convert).collect();
     if found.left_out > 0 {
         shown.push(outgoing::left_out(found.left_out));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use ropey::Rope;
@@ -12,8 +12,8 @@ use tower_lsp::ls_types::{self as lsp, TextDocumentContentChangeEvent, Uri};
 
 use super::diagnostics::Touched;
 use super::outbox::{Notice, Outbox};
-use crate::analysis::{Document, Language, TextEdit};
-use crate::convert::{Encoding, TextIndex, changes};
+use crate::analysis::{Document, Files, Language, Surroundings, TextEdit, normalised};
+use crate::convert::{Encoding, Places, TextIndex, Uris, changes};
 use crate::settings::{Settings, Values};
 
 /// Something that happens to the documents, or a question about them.
@@ -71,14 +71,38 @@ pub(super) struct Snapshot {
     pub uri: Uri,
     /// A number that no other state of any document in this conversation has.
     pub revision: u64,
+    /// The version that the client gave its text.
+    pub version: i32,
     /// Positions in its text.
     pub index: TextIndex,
     /// The analysis of its text.
     pub document: Arc<dyn Document>,
     /// The settings in force.
     pub settings: Arc<Settings>,
-    /// Cancelled when the document changes.
+    /// Cancelled when the document changes, or a file that it includes, or a program that includes it.
     pub superseded: CancellationToken,
+    /// The programs that include this file, as they were at that moment.
+    pub includers: Vec<Snapshot>,
+    /// What the client calls the files that it has opened.
+    pub uris: Uris,
+}
+
+impl Snapshot {
+    /// The program that the document belongs to: one that includes it, or itself.
+    pub(super) fn program(&self) -> &Snapshot {
+        self.includers.first().unwrap_or(self)
+    }
+
+    /// The path of the document, if it is an included file.
+    pub(super) fn included_path(&self) -> Option<PathBuf> {
+        self.includers.first().and_then(|_| file_path(&self.uri)).map(|path| normalised(&path))
+    }
+
+    /// Locations in the files of the program that the document belongs to.
+    pub(super) fn places(&self) -> Places<'_> {
+        let program = self.program();
+        Places::new(&program.uri, &program.index, &self.uris)
+    }
 }
 
 /// Starts the owner; it ends when the last sender of events is gone.
@@ -95,6 +119,7 @@ pub(super) fn start(
         encoding: Encoding::default(),
         push: false,
         refresh: false,
+        files: Files::default(),
         revisions: 0,
         told: BTreeSet::new(),
         touched,
@@ -110,6 +135,8 @@ struct Documents {
     encoding: Encoding,
     push: bool,
     refresh: bool,
+    /// The texts of open documents, for programs that include them.
+    files: Files,
     revisions: u64,
     /// Problems with settings that the user has been told; once is enough until something changes.
     told: BTreeSet<String>,
@@ -118,6 +145,7 @@ struct Documents {
 }
 
 struct OpenDocument {
+    path: Option<PathBuf>,
     version: i32,
     revision: u64,
     index: TextIndex,
@@ -127,6 +155,8 @@ struct OpenDocument {
     /// Edits that the analysis has not seen. A burst of them costs one analysis.
     edits: Vec<TextEdit>,
     superseded: CancellationToken,
+    /// The files that it was last known to include.
+    included: Vec<PathBuf>,
 }
 
 impl Documents {
@@ -153,7 +183,10 @@ impl Documents {
                 self.editor = settings;
                 self.read_settings_again();
             }
-            Event::ProjectChanged => self.read_settings_again(),
+            Event::ProjectChanged => {
+                self.read_settings_again();
+                self.reset_includers(None);
+            }
             Event::Opened { uri, version, text } => self.open(uri, version, &text),
             Event::Changed { uri, version, changes } => self.change(uri, version, changes),
             Event::Closed(uri) => self.close(&uri),
@@ -172,7 +205,9 @@ impl Documents {
 
     fn open(&mut self, uri: Uri, version: i32, text: &str) {
         let settings = Arc::new(self.settings_for(&uri));
+        let path = file_path(&uri).map(|path| normalised(&path));
         let document = OpenDocument {
+            path,
             version,
             revision: self.next_revision(),
             index: TextIndex { rope: Rope::from_str(text), encoding: self.encoding },
@@ -180,11 +215,80 @@ impl Documents {
             analysed: None,
             edits: Vec::new(),
             superseded: CancellationToken::new(),
+            included: Vec::new(),
         };
         if let Some(old) = self.open.insert(uri.clone(), document) {
             old.superseded.cancel();
         }
-        self.touch(uri);
+        self.touch(uri.clone());
+        self.text_changed(&uri, true);
+    }
+
+    /// The text of a document is another one now: programs that include it are evaluated again, and the files that it
+    /// includes are judged again. `all`: programs that could not find the file before may find it now.
+    fn text_changed(&mut self, uri: &Uri, all: bool) {
+        let Some(document) = self.open.get(uri) else { return };
+        if let Some(path) = document.path.clone() {
+            let rope = document.index.rope.clone();
+            self.files.open(&path, Arc::new(move || rope.to_string()));
+            if self.open.len() > 1 {
+                self.reset_includers(Some((uri, &path, all)));
+            }
+        }
+        if self.open.len() > 1 {
+            self.judge_included(uri);
+        }
+    }
+
+    /// Lets programs that include a file, or any file at all, forget what depends on it.
+    fn reset_includers(&mut self, changed: Option<(&Uri, &Path, bool)>) {
+        let others: Vec<Uri> =
+            self.open.keys().filter(|uri| changed.is_none_or(|(own, ..)| own != *uri)).cloned().collect();
+        for uri in others {
+            let included = self.included(&uri);
+            let Some(document) = self.open.get(&uri) else { continue };
+            let Some(analysed) = document.analysed.clone() else { continue };
+            let concerned = match changed {
+                Some((_, path, false)) => included.iter().any(|one| one == path),
+                _ => analysed.has_inclusions(),
+            };
+            if concerned {
+                let analysed = analysed.with_changed_files();
+                self.supersede(&uri, |document| document.analysed = Some(analysed));
+            }
+        }
+    }
+
+    /// Judges the open files again that a document includes or included.
+    fn judge_included(&mut self, uri: &Uri) {
+        let mut paths = self.open.get(uri).map(|document| document.included.clone()).unwrap_or_default();
+        paths.extend(self.included(uri));
+        let included =
+            |document: &OpenDocument| document.path.as_ref().is_some_and(|path| paths.contains(path));
+        let others = self.open.iter().filter(|(other, document)| *other != uri && included(document));
+        let others: Vec<Uri> = others.map(|(other, _)| other.clone()).collect();
+        for other in others {
+            self.supersede(&other, |_| {});
+        }
+    }
+
+    /// The files that a document includes.
+    fn included(&mut self, uri: &Uri) -> Vec<PathBuf> {
+        let Some(document) = self.open.get_mut(uri) else { return Vec::new() };
+        let analysed = document.analysis(self.language.as_ref(), uri, &self.files);
+        document.included = if analysed.has_inclusions() { analysed.included_paths() } else { Vec::new() };
+        document.included.clone()
+    }
+
+    /// Gives a document a new revision, so that what is under way for it counts no more.
+    fn supersede(&mut self, uri: &Uri, change: impl FnOnce(&mut OpenDocument)) {
+        let revision = self.next_revision();
+        let Some(document) = self.open.get_mut(uri) else { return };
+        change(document);
+        document.revision = revision;
+        document.superseded.cancel();
+        document.superseded = CancellationToken::new();
+        self.touch(uri.clone());
     }
 
     fn change(&mut self, uri: Uri, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
@@ -210,12 +314,24 @@ impl Documents {
             let edit = changes::apply(&mut document.index, change);
             document.edits.push(edit);
         }
-        self.touch(uri);
+        self.touch(uri.clone());
+        self.text_changed(&uri, false);
     }
 
     fn close(&mut self, uri: &Uri) {
         let Some(document) = self.open.remove(uri) else { return };
         document.superseded.cancel();
+        if let Some(path) = &document.path {
+            self.files.close(path);
+            self.reset_includers(Some((uri, path, true)));
+        }
+        let freed =
+            |other: &OpenDocument| other.path.as_ref().is_some_and(|path| document.included.contains(path));
+        let freed: Vec<Uri> =
+            self.open.iter().filter(|(_, other)| freed(other)).map(|(uri, _)| uri.clone()).collect();
+        for uri in freed {
+            self.supersede(&uri, |_| {});
+        }
         if self.push {
             let notice = Notice::Findings { uri: uri.clone(), diagnostics: Vec::new(), version: None };
             self.outbox.tell(notice);
@@ -223,11 +339,31 @@ impl Documents {
     }
 
     fn snapshot(&mut self, uri: &Uri) -> Option<Snapshot> {
+        let mut snapshot = self.plain_snapshot(uri)?;
+        let path = self.open.get(uri)?.path.clone();
+        if let Some(path) = path.filter(|_| self.open.len() > 1) {
+            let others: Vec<Uri> = self.open.keys().filter(|other| *other != uri).cloned().collect();
+            for other in others {
+                if self.included(&other).contains(&path) {
+                    snapshot.includers.extend(self.plain_snapshot(&other));
+                }
+            }
+        }
+        Some(snapshot)
+    }
+
+    /// A document without the programs that include it.
+    fn plain_snapshot(&mut self, uri: &Uri) -> Option<Snapshot> {
+        let uris = self.open.iter().filter_map(|(uri, one)| Some((one.path.clone()?, uri.clone())));
+        let uris = Uris(Arc::new(uris.collect()));
         let document = self.open.get_mut(uri)?;
-        let analysed = document.analysis(self.language.as_ref(), uri);
+        let analysed = document.analysis(self.language.as_ref(), uri, &self.files);
         Some(Snapshot {
+            includers: Vec::new(),
+            uris,
             uri: uri.clone(),
             revision: document.revision,
+            version: document.version,
             index: document.index.clone(),
             document: analysed,
             settings: Arc::clone(&document.settings),
@@ -291,7 +427,7 @@ impl Documents {
 }
 
 impl OpenDocument {
-    fn analysis(&mut self, language: &dyn Language, uri: &Uri) -> Arc<dyn Document> {
+    fn analysis(&mut self, language: &dyn Language, uri: &Uri, files: &Files) -> Arc<dyn Document> {
         let edits = std::mem::take(&mut self.edits);
         // Taken out, so that a fault below leaves nothing half done behind.
         let analysed = match self.analysed.take() {
@@ -300,7 +436,8 @@ impl OpenDocument {
             None => {
                 let path = file_path(uri);
                 let name = path.as_ref().and_then(|path| path.file_name()).and_then(|name| name.to_str());
-                language.open(&self.index.rope.to_string(), name, &self.settings.program)
+                let surroundings = Surroundings { path: path.clone(), files: files.clone() };
+                language.open(&self.index.rope.to_string(), name, &self.settings.program, surroundings)
             }
         };
         self.analysed = Some(Arc::clone(&analysed));

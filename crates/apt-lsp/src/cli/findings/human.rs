@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use ropey::Rope;
 
 use super::{Checked, Counts};
 use crate::analysis::{Diagnostic, Severity};
@@ -10,6 +11,7 @@ use crate::cli::Outcome;
 use crate::cli::console::Console;
 use crate::cli::program::Program;
 use crate::convert::outgoing::frame_text;
+use crate::convert::{Encoding, TextIndex};
 
 /// Lines shown of a place that spans more.
 const GREATEST_EXCERPT: usize = 5;
@@ -60,6 +62,12 @@ fn render(program: &Program, found: &Diagnostic) -> String {
     for related in &found.related {
         let message = Some(related.message.as_str());
         group = place(group, program, &related.range, AnnotationKind::Context, message);
+    }
+    for one in &found.elsewhere {
+        let rope = Rope::from_str(&one.source.tree.text());
+        let start = TextIndex { rope, encoding: Encoding::Utf32 }.range(&one.range).start;
+        let (path, line, column) = (one.source.path.display(), start.line + 1, start.character + 1);
+        group = group.element(Level::NOTE.message(format!("{}: {path}:{line}:{column}", one.message)));
     }
     for frame in &found.origin {
         group = group.element(Level::NOTE.message(frame_text(frame)));

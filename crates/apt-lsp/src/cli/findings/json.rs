@@ -1,10 +1,12 @@
 //! Findings as JSON.
 
+use ropey::Rope;
 use serde_json::{Value, json};
 
 use super::{Checked, Counts};
 use crate::analysis::Diagnostic;
 use crate::cli::program::Program;
+use crate::convert::TextIndex;
 
 /// The report as a line of JSON.
 pub(in crate::cli) fn text(checked: &[Checked]) -> String {
@@ -23,6 +25,16 @@ fn diagnostic(program: &Program, found: &Diagnostic) -> Value {
     let related = found.related.iter().map(
         |related| json!({ "message": related.message, "file": program.name, "range": range(&related.range) }),
     );
+    let elsewhere = found.elsewhere.iter().map(|one| {
+        let index = TextIndex { rope: Rope::from_str(&one.source.tree.text()), ..program.index.clone() };
+        let file = one.source.path.display().to_string();
+        json!({ "message": one.message, "file": file, "range": index.range(&one.range) })
+    });
+    let edit = |(range, text): &(std::ops::Range<usize>, String)| json!({ "range": program.index.range(range), "text": text });
+    let fixes = found.fixes.iter().map(|fix| {
+        let edits: Vec<_> = fix.edits.iter().map(edit).collect();
+        json!({ "title": fix.title, "preferred": fix.preferred, "edits": edits })
+    });
     json!({
         "code": found.code,
         "severity": found.severity,
@@ -32,7 +44,8 @@ fn diagnostic(program: &Program, found: &Diagnostic) -> Value {
         "file": program.name,
         "range": range(&found.range),
         "origin": found.origin,
-        "related": related.collect::<Vec<_>>(),
+        "related": elsewhere.chain(related).collect::<Vec<_>>(),
         "hint": found.hint,
+        "fixes": fixes.collect::<Vec<_>>(),
     })
 }

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use ropey::Rope;
 use serde_json::{Value, json};
 use serde_sarif::sarif;
 
 use super::Checked;
-use crate::analysis::{Diagnostic, Language, Severity};
+use crate::analysis::{Diagnostic, Elsewhere, Fix, Language, Related, Severity};
 use crate::cli::Outcome;
 use crate::cli::console::Console;
 use crate::cli::program::Program;
+use crate::convert::TextIndex;
 use crate::convert::outgoing::frame_text;
 
 /// Prints the log.
@@ -72,11 +74,14 @@ fn result(program: &Program, found: &Diagnostic, codes: &BTreeMap<&str, i64>) ->
         Severity::Warning => sarif::ResultLevel::Warning,
         Severity::Information | Severity::Hint => sarif::ResultLevel::Note,
     };
-    let mut related: Vec<_> = found
-        .related
-        .iter()
-        .map(|related| location(program, &related.range, Some(&related.message)))
-        .collect();
+    let inside = |one: &Elsewhere| {
+        let index = TextIndex { rope: Rope::from_str(&one.source.tree.text()), ..program.index.clone() };
+        let file = artifact(&one.source.path.display().to_string());
+        located(file, region(&index, &one.range), Some(&one.message))
+    };
+    let mut related: Vec<_> = found.elsewhere.iter().map(inside).collect();
+    let beside = |one: &Related| location(program, &one.range, Some(&one.message));
+    related.extend(found.related.iter().map(beside));
     related.extend(
         found
             .origin
@@ -92,7 +97,26 @@ fn result(program: &Program, found: &Diagnostic, codes: &BTreeMap<&str, i64>) ->
     result.rule_index = codes.get(found.code.as_str()).copied();
     result.related_locations = (!related.is_empty()).then_some(related);
     result.properties = Some(properties(found));
+    let fixes: Vec<_> = found.fixes.iter().map(|one| fix(program, one)).collect();
+    result.fixes = (!fixes.is_empty()).then_some(fixes);
     result
+}
+
+fn fix(program: &Program, found: &Fix) -> sarif::Fix {
+    let replacement = |(range, text): &(std::ops::Range<usize>, String)| {
+        sarif::Replacement::builder()
+            .deleted_region(region(&program.index, range))
+            .inserted_content(sarif::ArtifactContent::builder().text(text.as_str()).build())
+            .build()
+    };
+    let change = sarif::ArtifactChange::builder()
+        .artifact_location(artifact(&program.name))
+        .replacements(found.edits.iter().map(replacement).collect::<Vec<_>>())
+        .build();
+    sarif::Fix::builder()
+        .description(sarif::Message::builder().text(found.title.as_str()).build())
+        .artifact_changes(vec![change])
+        .build()
 }
 
 fn properties(found: &Diagnostic) -> sarif::PropertyBag {
@@ -102,16 +126,26 @@ fn properties(found: &Diagnostic) -> sarif::PropertyBag {
     sarif::PropertyBag::builder().additional_properties(additional).build()
 }
 
-fn location(program: &Program, bytes: &std::ops::Range<usize>, message: Option<&str>) -> sarif::Location {
-    let range = program.index.range(bytes);
-    let region = sarif::Region::builder()
+fn region(index: &TextIndex, bytes: &std::ops::Range<usize>) -> sarif::Region {
+    let range = index.range(bytes);
+    sarif::Region::builder()
         .start_line(i64::from(range.start.line) + 1)
         .start_column(i64::from(range.start.character) + 1)
         .end_line(i64::from(range.end.line) + 1)
         .end_column(i64::from(range.end.character) + 1)
-        .build();
-    let artifact = sarif::ArtifactLocation::builder().uri(uri_reference(&program.name)).build();
-    let place = sarif::PhysicalLocation::builder().artifact_location(artifact).region(region).build();
+        .build()
+}
+
+fn artifact(name: &str) -> sarif::ArtifactLocation {
+    sarif::ArtifactLocation::builder().uri(uri_reference(name)).build()
+}
+
+fn location(program: &Program, bytes: &std::ops::Range<usize>, message: Option<&str>) -> sarif::Location {
+    located(artifact(&program.name), region(&program.index, bytes), message)
+}
+
+fn located(file: sarif::ArtifactLocation, region: sarif::Region, message: Option<&str>) -> sarif::Location {
+    let place = sarif::PhysicalLocation::builder().artifact_location(file).region(region).build();
     let mut location = sarif::Location::builder().physical_location(place).build();
     location.message = message.map(|text| sarif::Message::builder().text(text).build());
     location

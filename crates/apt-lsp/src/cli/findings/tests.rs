@@ -7,10 +7,11 @@ use serde_json::{Value, json};
 use super::super::program::Program;
 use super::{Checked, Counts, github, human, json as json_report, outcome, sarif};
 use crate::analysis::fake::FakeLanguage;
-use crate::analysis::{Diagnostic, Language, OriginFrame, Related, Severity};
+use crate::analysis::{Diagnostic, Fix, Language, OriginFrame, Related, Severity, Surroundings};
 use crate::cli::Outcome;
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
+use crate::source::TextForm;
 
 const TEXT: &str = "PARTNO é😀\r\n$$ 😀 remark P1\r\n\tL1=LINE/P1,P9\r\nFINI";
 
@@ -18,8 +19,9 @@ fn checked(diagnostics: Vec<Diagnostic>) -> Vec<Checked> {
     let program = Program {
         name: "parts/a.apt".into(),
         index: TextIndex { rope: Rope::from_str(TEXT), encoding: Encoding::Utf16 },
-        document: FakeLanguage::default().open(TEXT, None, &Values::new()),
+        document: FakeLanguage::default().open(TEXT, None, &Values::new(), Surroundings::default()),
         settings: Settings::default(),
+        form: Some(TextForm::Utf8),
     };
     vec![Checked { program, diagnostics }]
 }
@@ -46,7 +48,13 @@ fn error() -> Diagnostic {
             range: Some(place("FINI")),
         }],
         related: vec![Related { message: "P1 is here".into(), range: place("P1") }],
+        elsewhere: Vec::new(),
         unnecessary: false,
+        fixes: vec![Fix {
+            title: "Replace P9 by P1".into(),
+            edits: vec![(place("P9"), "P1".into())],
+            preferred: true,
+        }],
     }
 }
 
@@ -60,6 +68,8 @@ fn warning() -> Diagnostic {
         range,
         origin: Vec::new(),
         related: Vec::new(),
+        elsewhere: Vec::new(),
+        fixes: Vec::new(),
         ..error()
     }
 }
@@ -121,6 +131,10 @@ fn json_has_every_field_of_the_interface() {
             "origin": [{ "kind": "macro", "name": "M", "isn": 9, "turn": 1 }],
             "related": [{ "message": "P1 is here", "file": "parts/a.apt", "range": range(1, 13, 15) }],
             "hint": "define P9 before this statement",
+            "fixes": [{
+                "title": "Replace P9 by P1", "preferred": true,
+                "edits": [{ "range": range(2, 12, 14), "text": "P1" }],
+            }],
         })
     );
     assert_eq!(report["files"][0]["diagnostics"][1]["hint"], Value::Null);
@@ -160,6 +174,15 @@ fn sarif_has_rules_results_and_related_places() {
         .collect();
     assert_eq!(related, [&json!("P1 is here"), &json!("in the macro M called at statement 9")]);
     assert_eq!(run["results"][1]["relatedLocations"], Value::Null);
+    let fix = &result["fixes"][0];
+    assert_eq!(fix["description"]["text"], "Replace P9 by P1");
+    let replacement = json!({
+        "deletedRegion": { "startLine": 3, "startColumn": 13, "endLine": 3, "endColumn": 15 },
+        "insertedContent": { "text": "P1" },
+    });
+    let change = json!({ "artifactLocation": { "uri": "parts/a.apt" }, "replacements": [replacement] });
+    assert_eq!(fix["artifactChanges"], json!([change]));
+    assert_eq!(run["results"][1]["fixes"], Value::Null);
 }
 
 #[test]

@@ -58,6 +58,10 @@ async fn questions_about_places_are_answered() {
     assert_eq!(hover["range"], range(1, 0, 2));
     let completions = talk.ask_at("textDocument/completion", 1, 1).await.unwrap();
     assert_eq!((&completions[0]["label"], &completions[0]["kind"]), (&json!("GOLFT"), &json!(14)));
+    assert_eq!(completions[0].get("insertText"), None, "this client knows no snippets");
+    let help = talk.ask_at("textDocument/signatureHelp", 1, 1).await.unwrap();
+    assert_eq!((&help["activeSignature"], &help["activeParameter"]), (&json!(0), &json!(1)));
+    assert_eq!(help["signatures"][0]["parameters"], json!([{ "label": "x" }, { "label": "y" }]));
     let definition = talk.ask_at("textDocument/definition", 1, 1).await.unwrap();
     assert_eq!(definition, json!([place(0, 0, 2)]));
     let mut question = at(1, 1);
@@ -78,6 +82,21 @@ async fn questions_about_places_are_answered() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn clients_that_can_get_snippets_and_places_of_parameters() {
+    let mut talk = Conversation::with(json!({ "textDocument": {
+        "completion": { "completionItem": { "snippetSupport": true } },
+        "signatureHelp": { "signatureInformation": { "parameterInformation": { "labelOffsetSupport": true } } },
+    } }))
+    .await;
+    talk.open("P1\n").await;
+    let completions = talk.ask_at("textDocument/completion", 0, 1).await.unwrap();
+    assert_eq!(completions[0]["insertText"], "GOLFT/${1:ds}$0");
+    assert_eq!(completions[0]["insertTextFormat"], 2);
+    let help = talk.ask_at("textDocument/signatureHelp", 0, 1).await.unwrap();
+    assert_eq!(help["signatures"][0]["parameters"][1], json!({ "label": [5, 6] }));
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn questions_about_the_whole_document_are_answered() {
     let mut talk = Conversation::about("P1\nBAD\n").await;
     let symbols = talk.ask("textDocument/documentSymbol", document()).await.unwrap();
@@ -95,6 +114,61 @@ async fn questions_about_the_whole_document_are_answered() {
     nested.open("P1\n").await;
     let symbols = nested.ask("textDocument/documentSymbol", document()).await.unwrap();
     assert_eq!(symbols[0]["selectionRange"]["start"], json!({ "line": 0, "character": 0 }));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn findings_are_settled_by_actions_for_the_version_they_are_about() {
+    let literals = json!({ "codeActionLiteralSupport": { "codeActionKind": { "valueSet": [] } } });
+    let mut talk = Conversation::with(json!({
+        "textDocument": { "codeAction": literals },
+        "workspace": { "workspaceEdit": { "documentChanges": true } },
+    }))
+    .await;
+    talk.open("GOOD\nBAD\n").await;
+    let pushed = talk.wait_for("textDocument/publishDiagnostics").await["params"]["diagnostics"].clone();
+    let place = json!({ "start": { "line": 1, "character": 1 }, "end": { "line": 1, "character": 1 } });
+    let mut question = document();
+    question["range"] = place;
+    question["context"] = json!({ "diagnostics": pushed });
+    let actions = talk.ask("textDocument/codeAction", question.clone()).await.unwrap();
+    assert_eq!(actions.as_array().unwrap().len(), 2, "a quick fix and what is written out: {actions}");
+    let fix = &actions[0];
+    assert_eq!((&fix["title"], &fix["kind"], &fix["isPreferred"]), (&json!("Remove BAD"), &json!("quickfix"), &json!(true)));
+    assert_eq!(fix["diagnostics"], pushed, "the finding is told as it was pushed");
+    let change = &fix["edit"]["documentChanges"][0];
+    assert_eq!(change["textDocument"], json!({ "uri": URI, "version": 1 }));
+    let range = json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 1, "character": 3 } });
+    assert_eq!(change["edits"], json!([{ "range": range, "newText": "" }]));
+
+    for (only, kinds) in [
+        ("quickfix", &["quickfix"][..]),
+        ("source", &["source.fixAll.apt"]),
+        ("source.fixAll", &["source.fixAll.apt"]),
+        ("source.organizeImports", &[]),
+        ("refactor", &["refactor.inline"]),
+        ("refact", &[]),
+    ] {
+        question["context"]["only"] = json!([only]);
+        let actions = talk.ask("textDocument/codeAction", question.clone()).await.unwrap();
+        let found: Vec<_> = actions.as_array().unwrap().iter().map(|one| one["kind"].clone()).collect();
+        assert_eq!(found, kinds, "{only}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_document_is_formatted_whole_and_in_part() {
+    let mut talk = Conversation::about("bad\nP1 bad\nbad\n").await;
+    let options = json!({ "tabSize": 4, "insertSpaces": true });
+    let mut question = document();
+    question["options"] = options;
+    let edits = talk.ask("textDocument/formatting", question.clone()).await.unwrap();
+    assert_eq!(edits.as_array().unwrap().len(), 3);
+    let second = json!({ "start": { "line": 1, "character": 3 }, "end": { "line": 1, "character": 6 } });
+    assert_eq!(edits[1], json!({ "range": second, "newText": "BAD" }));
+    question["range"] =
+        json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 2, "character": 0 } });
+    let edits = talk.ask("textDocument/rangeFormatting", question).await.unwrap();
+    assert_eq!(edits, json!([{ "range": second, "newText": "BAD" }]));
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -1,0 +1,71 @@
+//! Each kind of action on small programs.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::{Settings, format::applied};
+
+fn analysis(text: &str) -> Analysis {
+    let settings = Settings { dialect: Some("free".to_owned()), ..Settings::default() };
+    Analysis::new(text, None, &Arc::new(settings))
+}
+
+/// Titles and the text after each action of a kind at a piece of the text.
+fn offered(text: &str, at: &str, kind: ActionKind) -> Vec<(String, String)> {
+    let start = text.find(at).unwrap();
+    let actions =
+        analysis(text).actions(start..start, &[kind], Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+    assert!(actions.iter().all(|action| action.kind == kind));
+    actions.into_iter().map(|action| (action.title, applied(text, &action.edits))).collect()
+}
+
+#[test]
+fn findings_can_be_fixed_or_allowed() {
+    let text = "$$ apt-lsp: dialect=free\nPARTNO X\n  P=POINT/1 2,3\nGOTO/P\nFINI\n";
+    let expected = [
+        ("Insert the comma", text.replace("1 2", "1,2")),
+        ("Write 12 without blanks", text.replace("1 2", "12")),
+        ("Allow APT0952 in this statement", text.replace("  P=", "  $$ apt-lsp: allow APT0952\n  P=")),
+        (
+            "Allow APT0952 in the whole program",
+            text.replace("PARTNO", "$$ apt-lsp: allow-file APT0952\nPARTNO"),
+        ),
+    ];
+    let found = offered(text, "1 2", ActionKind::QuickFix);
+    assert_eq!(found, expected.map(|(title, new)| (title.to_owned(), new)));
+    assert_eq!(offered(text, "GOTO", ActionKind::QuickFix), [], "another place");
+    for (title, new) in found {
+        let left = analysis(&new).diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        assert_eq!(left, [], "after {title}");
+    }
+}
+
+#[test]
+fn errors_can_be_fixed_and_not_allowed() {
+    let text = "PNT1=POINT/1,2\nGOTO/PNT2\nFINI\n";
+    let found = offered(text, "PNT2", ActionKind::QuickFix);
+    assert_eq!(found, [("Replace PNT2 by PNT1".to_owned(), text.replace("PNT2", "PNT1"))]);
+}
+
+#[test]
+fn all_certain_fixes_are_applied_at_once() {
+    let text = "PNT1=POINT/1,2\nGOTO/PNT2\nP=POINT/1 2,3 $$ apt-lsp: allow APT0999\nGOTO/P";
+    let found = offered(text, "GOTO", ActionKind::FixAll);
+    let new = "PNT1=POINT/1,2\nGOTO/PNT1\nP=POINT/1 2,3\nGOTO/P\nFINI\n";
+    assert_eq!(found, [("Apply all certain fixes".to_owned(), new.to_owned())]);
+    assert_eq!(offered(new, "GOTO", ActionKind::FixAll), []);
+}
+
+#[test]
+fn calls_and_loops_are_written_out_when_that_means_the_same() {
+    let text = "M=MACRO/A,B=2\nGOTO/A,B,0\nGODLTA/0,0,A\nTERMAC\nFROM/0,0,0\nCALL/M,A=1\nGOTO/0,0,0\nFINI\n";
+    let found = offered(text, "CALL", ActionKind::Inline);
+    let new = text.replace("CALL/M,A=1\n", "GOTO/1,2,0\nGODLTA/0,0,1\n");
+    assert_eq!(found, [("Write out the call of M".to_owned(), new)]);
+    assert_eq!(offered(text, "GOTO/0,0,0", ActionKind::Inline), []);
+    assert_eq!(
+        offered("FROM/0,0,0\nCALL/M9\nFINI\n", "CALL", ActionKind::Inline),
+        [],
+        "there is no such macro"
+    );
+}

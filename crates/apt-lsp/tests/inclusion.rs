@@ -1,0 +1,206 @@
+//! Programs of two files, through the protocol and on the command line.
+
+#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
+mod support;
+
+use serde_json::{Value, json};
+
+use support::{Folder, Server};
+
+const PROGRAM: &str = "\
+PARTNO TWO FILES
+INCLUD/LIB
+CUTTER/1
+FROM/0,0,SAFE
+CALL/HOLE,PX=1
+CALL/HOLE,PX=SAFE,DP=NONE
+FINI
+";
+
+const LIBRARY: &str = "\
+$$ a library
+SAFE=5
+HOLE=MACRO/PX,DP=2
+GOTO/PX,0,SAFE
+GODLTA/-DP
+TERMAC
+";
+
+/// A folder with a program, a library and a project file that names the folder of the library.
+struct Project {
+    folder: Folder,
+    program: String,
+    library: String,
+}
+
+impl Project {
+    fn new(name: &str) -> Self {
+        let folder = Folder::new(name);
+        folder.write("apt-lsp.toml", "include = [\"lib\"]\n");
+        let uri =
+            |path: std::path::PathBuf| format!("file://{}", std::fs::canonicalize(path).unwrap().display());
+        let program = uri(folder.write("parts/main.apt", PROGRAM));
+        let library = uri(folder.write("lib/lib.apt", LIBRARY));
+        Self { folder, program, library }
+    }
+
+    fn server(&self, capabilities: Value) -> Server {
+        let mut server = Server::initialized(&capabilities);
+        server.open(&self.program, PROGRAM);
+        server
+    }
+}
+
+fn place(uri: &str, line: usize, character: usize) -> Value {
+    json!({ "textDocument": { "uri": uri }, "position": { "line": line, "character": character } })
+}
+
+/// File and line of each location, in order.
+fn lines(locations: &Value) -> Vec<(String, u64)> {
+    let file = |uri: &Value| uri.as_str().unwrap().rsplit('/').next().unwrap().to_owned();
+    let all = locations.as_array().unwrap().iter();
+    all.map(|one| (file(&one["uri"]), one["range"]["start"]["line"].as_u64().unwrap())).collect()
+}
+
+fn pushed(server: &mut Server, uri: &str, wanted: impl Fn(&[Value]) -> bool) -> Vec<Value> {
+    let message = server.wait(|message| {
+        message["method"] == "textDocument/publishDiagnostics"
+            && message["params"]["uri"] == uri
+            && wanted(message["params"]["diagnostics"].as_array().unwrap())
+    });
+    message["params"]["diagnostics"].as_array().unwrap().clone()
+}
+
+#[test]
+fn names_lead_from_one_file_to_the_other() {
+    let project = Project::new("names");
+    let mut server = project.server(json!({}));
+    for also_open in [false, true] {
+        if also_open {
+            server.open(&project.library, LIBRARY);
+        }
+        let (main, lib) = ("main.apt".to_owned(), "lib.apt".to_owned());
+        let mut ask = |method: &str, params: Value| server.ask(method, params).unwrap();
+        let definition = ask("textDocument/definition", place(&project.program, 4, 6));
+        assert_eq!(lines(&definition), [(lib.clone(), 2)], "the macro");
+        let definition = ask("textDocument/definition", place(&project.program, 3, 10));
+        assert_eq!(lines(&definition), [(lib.clone(), 1)], "the number");
+        let definition = ask("textDocument/definition", place(&project.program, 4, 11));
+        assert_eq!(lines(&definition), [(lib.clone(), 2)], "the variable of the macro");
+        let definition = ask("textDocument/definition", place(&project.program, 1, 8));
+        assert_eq!(lines(&definition), [(lib.clone(), 0)], "the file");
+        let mut question = place(&project.program, 3, 10);
+        question["context"] = json!({ "includeDeclaration": true });
+        let references = ask("textDocument/references", question);
+        let expected = [(main.clone(), 3), (main.clone(), 5), (lib.clone(), 1), (lib.clone(), 3)];
+        assert_eq!(lines(&references), expected);
+        let mut question = place(&project.program, 4, 6);
+        question["newName"] = json!("DRILL1");
+        let edits = ask("textDocument/rename", question);
+        assert_eq!(edits["changes"][&project.program].as_array().unwrap().len(), 2, "{edits}");
+        assert_eq!(edits["changes"][&project.library].as_array().unwrap().len(), 1, "{edits}");
+        let links = ask("textDocument/documentLink", json!({ "textDocument": { "uri": project.program } }));
+        assert_eq!(
+            (&links[0]["target"], &links[0]["range"]["start"]["line"]),
+            (&json!(project.library), &json!(1))
+        );
+        let hover = ask("textDocument/hover", place(&project.program, 4, 6));
+        assert!(hover["contents"]["value"].as_str().unwrap().contains("HOLE=MACRO/PX,DP"), "{hover}");
+        let hover = ask("textDocument/hover", place(&project.program, 3, 10));
+        assert!(hover["contents"]["value"].as_str().unwrap().contains("SAFE=5"), "{hover}");
+        let help = ask("textDocument/signatureHelp", place(&project.program, 4, 11));
+        assert_eq!(help["signatures"][0]["label"], "CALL/HOLE,PX,DP=2");
+    }
+    // From the library to the program that includes it.
+    let mut question = place(&project.library, 1, 1);
+    question["context"] = json!({ "includeDeclaration": false });
+    let references = server.ask("textDocument/references", question).unwrap();
+    assert_eq!(references.as_array().unwrap().len(), 3, "{references}");
+    let mut question = place(&project.library, 2, 1);
+    question["newName"] = json!("DRILL1");
+    let edits = server.ask("textDocument/rename", question).unwrap();
+    assert_eq!(edits["changes"].as_object().unwrap().len(), 2, "{edits}");
+}
+
+#[test]
+fn findings_stand_at_the_call_and_in_the_included_file() {
+    let project = Project::new("findings");
+    let mut server = project.server(json!({}));
+    let found = pushed(&mut server, &project.program, |found| !found.is_empty());
+    let inside =
+        found.iter().find(|one| one["range"]["start"]["line"] == 5).unwrap_or_else(|| panic!("{found:?}"));
+    let related = &inside["relatedInformation"][0]["location"];
+    assert_eq!((&related["uri"], &related["range"]["start"]["line"]), (&json!(project.library), &json!(4)));
+    // The library alone is no program; what is found in it is what the program finds.
+    server.open(&project.library, LIBRARY);
+    let found = pushed(&mut server, &project.library, |found| !found.is_empty());
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0]["range"]["start"]["line"], 4);
+    // The program is judged again when the library changes, and the library when the program changes.
+    server.change(&project.library, 2, 4, 0, 11, "GODLTA/0,0,1");
+    let found = pushed(&mut server, &project.program, <[Value]>::is_empty);
+    assert_eq!(found, Vec::<Value>::new());
+    pushed(&mut server, &project.library, <[Value]>::is_empty);
+    server.change(&project.library, 3, 1, 0, 6, "$$");
+    let found = pushed(&mut server, &project.program, |found| found.len() > 1);
+    assert!(found.iter().any(|one| one["range"]["start"]["line"] == 3), "SAFE is gone: {found:?}");
+    // Without the open library its text on the disk counts again.
+    server.tell("textDocument/didClose", json!({ "textDocument": { "uri": project.library } }));
+    let found = pushed(&mut server, &project.program, |found| found.len() == 1);
+    assert_eq!(found[0]["range"]["start"]["line"], 5);
+}
+
+#[test]
+fn a_client_that_pulls_gets_the_same() {
+    let project = Project::new("pulled");
+    let mut server = project.server(json!({ "textDocument": { "diagnostic": {} } }));
+    server.open(&project.library, LIBRARY);
+    let pull = |uri: &str| json!({ "textDocument": { "uri": uri } });
+    let program = server.ask("textDocument/diagnostic", pull(&project.program)).unwrap();
+    let library = server.ask("textDocument/diagnostic", pull(&project.library)).unwrap();
+    assert_eq!(library["items"].as_array().unwrap().len(), 1, "{library}");
+    server.change(&project.library, 2, 4, 0, 11, "GODLTA/0,0,1");
+    let mut again = pull(&project.program);
+    again["previousResultId"] = program["resultId"].clone();
+    let again = server.ask("textDocument/diagnostic", again).unwrap();
+    assert_eq!((&again["kind"], &again["items"]), (&json!("full"), &json!([])));
+}
+
+#[test]
+fn the_command_line_names_the_included_file() {
+    let project = Project::new("lines");
+    let ran = project.folder.run(&["--check", "--format", "json", "parts/main.apt"]);
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let found = &report["files"][0]["diagnostics"][0];
+    assert_eq!(found["range"]["start"]["line"], 5, "{found}");
+    let related = &found["related"][0];
+    assert!(related["file"].as_str().unwrap().ends_with("lib/lib.apt"), "{found}");
+    assert_eq!(related["range"]["start"]["line"], 4);
+    let ran = project.folder.run(&["--check", "parts/main.apt"]);
+    assert!(ran.stdout.contains("lib/lib.apt:5:"), "{}", ran.stdout);
+    let ran = project.folder.run(&["--check", "--format", "sarif", "parts/main.apt"]);
+    assert!(ran.stdout.contains("lib/lib.apt"), "{}", ran.stdout);
+    let ran = project.folder.run(&["expand", "parts/main.apt"]);
+    assert!(
+        ran.stdout.contains("GOTO/1,0,SAFE") && ran.stdout.contains("in the macro HOLE"),
+        "{}",
+        ran.stdout
+    );
+}
+
+#[test]
+fn circles_and_missing_files_are_said_clearly() {
+    let folder = Folder::new("circles");
+    folder.write("main.apt", "INCLUD/ONE\nINCLUD/GONE\nFINI\n");
+    folder.write("one.apt", "INCLUD/TWO\n");
+    folder.write("two.apt", "INCLUD/ONE\n");
+    let ran = folder.run(&["check", "main.apt", "--format", "json"]);
+    assert_eq!(ran.code, 1, "{ran:?}");
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let found = report["files"][0]["diagnostics"].as_array().unwrap();
+    let codes: Vec<_> = found.iter().map(|one| one["code"].as_str().unwrap()).collect();
+    assert_eq!(codes, ["APT0908", "APT0906"], "{found:?}");
+    assert!(found[0]["hint"].as_str().unwrap().contains("ONE includes TWO includes ONE"), "{}", found[0]);
+    assert!(found[1]["hint"].as_str().unwrap().contains("searched: "), "{}", found[1]);
+}
