@@ -284,6 +284,30 @@ fn an_endless_loop_ends_and_says_where_it_went() {
     assert_eq!(program.record_count(), 2, "the program goes on after the loop");
 }
 
+#[test]
+fn a_label_that_is_nowhere_is_a_warning_until_a_jump_leads_there() {
+    let severity = |text: &str, dialect: DialectName| -> Vec<(u32, Severity)> {
+        let program = run_as(&format!("{text}\nFINI\n"), dialect);
+        let unknown =
+            program.findings().filter(|finding| matches!(finding.kind, FindingKind::UnknownLabel { .. }));
+        unknown.map(|finding| (finding.origin.isn, finding.severity)).collect()
+    };
+    use DialectName::{Apt4, Free};
+    let cases: &[(DialectName, &str, &[(u32, Severity)])] = &[
+        (Free, "LOOPST\nI=1\nIF(I)A,B,B\nB)LOOPND", &[(3, Severity::Warning)]),
+        (Free, "LOOPST\nI=-1\nIF(I)A,B,B\nB)LOOPND", &[(3, Severity::Error)]),
+        (Free, "M=MACRO/N\nIF(N)A,B,B\nB)TERMAC", &[(2, Severity::Warning)]),
+        (Free, "M=MACRO/N\nIF(N)A,B,B\nB)TERMAC\nCALL/M,N=1", &[(2, Severity::Warning)]),
+        (Free, "M=MACRO/N\nIF(N)A,B,B\nB)TERMAC\nCALL/M,N=1\nCALL/M,N=-1", &[(2, Severity::Error)]),
+        (Free, "M=MACRO/N,L\nIF(N)L,B,B\nB)TERMAC\nCALL/M,N=1,L=B", &[]),
+        (Free, "M=MACRO\nTRANTO/E\nTERMAC\nCALL/M\nE)GOTO/1,2,3", &[]),
+        (Apt4, "M=MACRO/N\nIF(N.EQ.2)JUMPTO/A\nTERMAC\nCALL/M,N=1", &[(2, Severity::Warning)]),
+    ];
+    for (dialect, text, expected) in cases {
+        assert_eq!(severity(text, *dialect), *expected, "{text}");
+    }
+}
+
 /// Dialect, program, the names that changed and those that should have.
 type EndlessCase = (DialectName, &'static str, &'static [&'static str], &'static [&'static str]);
 

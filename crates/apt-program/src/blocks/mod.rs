@@ -8,7 +8,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use apt_syntax::{
     ParsedStatement, TextRange,
-    statement::{Body, Element, ElementKind, Part},
+    statement::{Body, Element, ElementKind, Name, Part},
 };
 use smol_str::SmolStr;
 
@@ -91,9 +91,33 @@ impl Block {
         found
     }
 
+    /// The labels that IF and JUMPTO name and no statement of the block carries, with their statement numbers. Names for
+    /// which `is_variable` says so are replaced when the block is executed.
+    pub(crate) fn missing_labels(&self, is_variable: &dyn Fn(&str) -> bool) -> Vec<(u32, Name)> {
+        let mut missing = Vec::new();
+        for (index, statement) in self.statements.iter().enumerate() {
+            let named = statement.statement.parts.iter().flat_map(|part| labels_named(&part.body));
+            for label in named.filter(|label| !is_variable(&label.text) && self.label(&label.text).is_none())
+            {
+                missing.push((self.isn(index), label.clone()));
+            }
+        }
+        missing
+    }
+
     /// The statement number of a statement.
     pub(crate) fn isn(&self, index: usize) -> u32 {
         self.first_isn.saturating_add(u32::try_from(index).unwrap_or(u32::MAX))
+    }
+}
+
+/// The labels of its own region that a statement part may jump to.
+fn labels_named(body: &Body) -> &[Name] {
+    match body {
+        Body::ArithmeticIf { labels, .. } => labels,
+        Body::Jump { word, label } if word.word.spelling == "JUMPTO" => std::slice::from_ref(label),
+        Body::LogicalIf { then, .. } => labels_named(&then.body),
+        _ => &[],
     }
 }
 

@@ -12,9 +12,6 @@ use crate::{
     symbols::DefinitionEvent,
 };
 
-/// Findings of one place and kind that are kept: the first of a loop tells what the others would.
-const MOST_ALIKE: usize = 1;
-
 /// Records, findings and definitions, in order of execution.
 #[derive(Debug, Default)]
 pub(crate) struct Output {
@@ -42,11 +39,12 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Adds a finding unless the same one was made at the same place.
+    /// Adds a finding unless the same one was made at the same place; of both the graver one stays.
     pub(crate) fn add_finding(&mut self, finding: Finding) {
-        let alike = self.findings.iter().filter(|other| same_place_and_kind(other, &finding)).count();
-        if alike < MOST_ALIKE {
-            self.findings.push(finding);
+        match self.findings.iter_mut().find(|other| same_place_and_kind(other, &finding)) {
+            Some(known) if known.severity < finding.severity => *known = finding,
+            Some(_) => {}
+            None => self.findings.push(finding),
         }
     }
 

@@ -11,7 +11,7 @@ use smol_str::{SmolStr, format_smolstr};
 use super::{Budget, DataCards, Evaluator, Flow, Region};
 use crate::{
     blocks::{self, Activation, Bindings, Block, DoHeader, DoLoop, leave_do_loops, normalised_label},
-    finding::{FindingKind, RelatedKind},
+    finding::{FindingKind, RelatedKind, Severity},
     options::IncludeFailure,
     record::{FrameKind, RecordKind, SourceFile},
     statements::Major,
@@ -101,6 +101,9 @@ impl Evaluator<'_> {
                 Body::Macro { name, parameters, .. } => {
                     self.open_statement(&statement);
                     let (body, next) = self.gather(top, index, "TERMAC", Some(name), part.range);
+                    self.report_missing_labels(&body, &|text| {
+                        parameters.iter().any(|parameter| parameter.name.text == text)
+                    });
                     self.trace_macro(&name.text, &statement, &body);
                     self.define_macro(name, parameters, body);
                     return past(next);
@@ -110,6 +113,7 @@ impl Evaluator<'_> {
                 {
                     self.open_statement(&statement);
                     let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
+                    self.report_missing_labels(&block, &|_| false);
                     self.trace_loop(&statement, &block);
                     self.cards.next = next;
                     let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
@@ -146,6 +150,19 @@ impl Evaluator<'_> {
                 let read_to = self.report_after_end(top.tree, index);
                 StepEnd { next: count, read_to, read_from: index }
             }
+        }
+    }
+
+    /// Labels that no statement of a loop or macro carries: a warning, which becomes an error when a jump leads there.
+    fn report_missing_labels(&mut self, block: &Block, is_variable: &dyn Fn(&str) -> bool) {
+        for (isn, label) in block.missing_labels(is_variable) {
+            let similar = similar_names(&label.text, block.labels());
+            let here = std::mem::replace(&mut self.here.isn, isn);
+            let kind = FindingKind::UnknownLabel { name: label.text.clone(), similar };
+            let mut finding = self.finding(kind, label.range);
+            finding.severity = Severity::Warning;
+            self.add(finding);
+            self.here.isn = here;
         }
     }
 

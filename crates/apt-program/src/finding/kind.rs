@@ -236,6 +236,24 @@ pub enum FindingKind {
         /// Why not.
         error: DefinitionError,
     },
+    /// The directrix of a TABCYL has a corner.
+    #[error("a corner of {degrees} degrees at point {point}")]
+    Corner {
+        /// Number of the data point, from 1.
+        point: usize,
+        /// The turn.
+        degrees: f64,
+        /// How many other corners there are.
+        others: usize,
+    },
+    /// A SPLINE whose curvature is not continuous: there is no such curve through the points.
+    #[error("the curvature of the spline jumps by {jump} at point {point}")]
+    CurvatureJump {
+        /// Number of the data point, from 1.
+        point: usize,
+        /// The jump, one over part-program units.
+        jump: f64,
+    },
     /// A word that no definition knows.
     #[error("{word} cannot stand in a definition of {kind:?}")]
     DefinitionWord {

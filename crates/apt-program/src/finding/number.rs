@@ -107,6 +107,8 @@ impl FindingKind {
             | Self::NotFinite
             | Self::Untransformable { .. }
             | Self::Doubtful { .. }
+            | Self::Corner { .. }
+            | Self::CurvatureJump { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::Endless { .. }
@@ -176,6 +178,8 @@ impl FindingKind {
             Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
             Self::EndMissing
             | Self::Doubtful { .. }
+            | Self::Corner { .. }
+            | Self::CurvatureJump { .. }
             | Self::NoEffect { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }

@@ -26,7 +26,11 @@ pub(super) fn closing_findings(
     for finding in reporting.flat_map(|chunk| chunk.data().findings.iter()) {
         let place = (finding.origin.isn, u32::from(finding.origin.range.start()));
         let known = by_place.entry(place).or_default();
-        if known.iter().any(|index| same_place_and_kind(&findings[*index], finding)) {
+        let alike = known.iter().find(|index| same_place_and_kind(&findings[**index], finding));
+        if let Some(known) = alike.and_then(|index| findings.get_mut(*index)) {
+            if known.severity < finding.severity {
+                *known = finding.clone();
+            }
             continue;
         }
         known.push(findings.len());

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Geometry, GeometryKind, Plane},
-    definition::{self, DefinitionContext, DefinitionError, Modifier},
+    canonical::{Geometry, GeometryKind, Plane, TabulatedCylinder},
+    definition::{self, Argument, DefinitionContext, DefinitionError, Modifier},
 };
 use apt_syntax::{
     TextRange,
@@ -20,6 +20,12 @@ use crate::{
     record::Origin,
     symbols::{ArrayElement, DefinitionEvent, Meaning, Stored, Symbol, Value},
 };
+
+/// Least corner of a TABCYL that is told, in degrees: FOURPT leaves smaller ones at most of its points.
+const LEAST_CORNER: f64 = 1.0;
+/// Least jump of curvature of a spline that is told, times the shorter chord: half a radian of turn over a chord. The
+/// fairing of APT III leaves much less.
+const LEAST_CURVATURE_JUMP: f64 = 0.5;
 
 /// A target with its subscript evaluated.
 struct Target<'a> {
@@ -173,12 +179,44 @@ impl Evaluator<'_> {
                 // The normal of APT4 points to the left of the way from the first to the second point.
                 Some(Arc::new(Geometry::Line(line.reversed())))
             }
-            Ok(geometry) => Some(Arc::new(geometry)),
+            Ok(geometry) => {
+                if let Geometry::TabulatedCylinder(curve) = &geometry {
+                    self.report_joints(curve, &arguments, definition.range);
+                }
+                Some(Arc::new(geometry))
+            }
             Err(error) => {
                 let range = target.map_or(definition.range, |target| definition.range.cover(target.range));
                 self.report(FindingKind::Definition { kind, error }, range);
                 None
             }
+        }
+    }
+
+    /// Warns of corners in a curve, and of a spline without continuous curvature.
+    fn report_joints(&mut self, curve: &TabulatedCylinder, arguments: &[Argument], range: TextRange) {
+        let joints = curve.joints();
+        let corners: Vec<_> = joints.iter().filter(|joint| joint.corner > LEAST_CORNER).collect();
+        if let Some(worst) = corners.iter().max_by(|a, b| a.corner.total_cmp(&b.corner)) {
+            let (point, degrees, others) = (worst.point, worst.corner, corners.len() - 1);
+            return self.report(FindingKind::Corner { point, degrees, others }, range);
+        }
+        if !arguments.contains(&Argument::Modifier(Modifier::Spline)) {
+            return;
+        }
+        // At the end points the curve goes over into its straight extensions, and a given slope may be met by a jump
+        // only: inner points without a slope are left.
+        let inner = joints.get(1..joints.len().saturating_sub(1)).unwrap_or_default();
+        let free = !arguments
+            .iter()
+            .any(|argument| matches!(argument, Argument::Modifier(Modifier::Slope | Modifier::Normal)));
+        let worst =
+            inner.iter().max_by(|a, b| (a.curvature_jump * a.chord).total_cmp(&(b.curvature_jump * b.chord)));
+        if let Some(worst) =
+            worst.filter(|joint| free && joint.curvature_jump * joint.chord > LEAST_CURVATURE_JUMP)
+        {
+            let (point, jump) = (worst.point, worst.curvature_jump);
+            self.report(FindingKind::CurvatureJump { point, jump }, range);
         }
     }
 
