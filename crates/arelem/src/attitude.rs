@@ -16,6 +16,8 @@ use crate::{
 };
 
 mod law;
+#[cfg(test)]
+mod tests;
 
 /// Step of the derivative of the axis, relative to the size of the coordinates.
 const DERIVATIVE_STEP: f64 = 1e-5;

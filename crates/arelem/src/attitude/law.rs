@@ -48,6 +48,10 @@ enum Mode {
         cosine: f64,
         sine: f64,
     },
+    /// Along the rulings of the controlling surface, in their own sense (+1) or against it (−1).
+    Parallel {
+        sense: f64,
+    },
     /// In the plane across a unit vector, turned about that vector by an angle with this cosine and sine.
     Across {
         vector: Vec3,
@@ -86,8 +90,7 @@ impl Law {
     ) -> Result<Option<Self>, AxisFailure> {
         let controlled_by_part = match mode {
             ToolAxis::Fixed(_) | ToolAxis::Keep => return Ok(None),
-            ToolAxis::Parallel { .. } => return Err(AxisFailure::NotRuled),
-            ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } => *part,
+            ToolAxis::Normal { part } | ToolAxis::Parallel { part } | ToolAxis::AtAngle { part, .. } => *part,
         };
         let (base, other) = if controlled_by_part { (part, drive) } else { (drive, part) };
         let base = base.ok_or(AxisFailure::NoSurface)?;
@@ -101,6 +104,14 @@ impl Law {
         let mut law = Self { base, other, mode: Mode::Normal };
         if let ToolAxis::AtAngle { angle, mode, .. } = mode {
             law.mode = law.angles(*angle, mode, tip, ahead)?;
+        }
+        if let ToolAxis::Parallel { .. } = mode {
+            // The rulings have two senses: the axis keeps to the one in which it points.
+            let cosine = law.ruling(tip)?.dot(&tool.axis);
+            if cosine.abs() <= SAME_DIRECTION {
+                return Err(AxisFailure::SignUnresolved);
+            }
+            law.mode = Mode::Parallel { sense: cosine.signum() };
         }
         Ok(Some(law))
     }
@@ -143,6 +154,12 @@ impl Law {
         })
     }
 
+    /// The ruling of the controlling surface nearest to a point, as a unit vector.
+    fn ruling(&self, p: &Vec3) -> Result<Vec3, AxisFailure> {
+        let Surface::Ruled(sheet) = &self.base.surface else { return Err(AxisFailure::NotRuled) };
+        sheet.ruling(p).ok_or(AxisFailure::NoNormal)
+    }
+
     /// True if every surface that counts is a plane.
     pub(crate) fn is_constant(&self) -> bool {
         let plane = |directed: &Directed| matches!(directed.surface, Surface::Plane(_));
@@ -152,6 +169,9 @@ impl Law {
 
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+        if let Mode::Parallel { sense } = self.mode {
+            return self.ruling(tip).map(|ruling| ruling * sense);
+        }
         let mut normal = self.base.normal(tip);
         let mut axis = self.towards(&normal, tip)?;
         if matches!(self.mode, Mode::Normal) {
@@ -174,6 +194,7 @@ impl Law {
     fn towards(&self, normal: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
         let axis = match self.mode {
             Mode::Normal => *normal,
+            Mode::Parallel { sense } => self.ruling(tip)? * sense,
             Mode::Tilted { cosine, sine } => {
                 let (_, aside) = self.frame(normal, tip)?;
                 normal * cosine + aside * sine

@@ -2,6 +2,7 @@
 //! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
 
 mod finish;
+mod progress;
 mod step;
 mod straight;
 mod tangency;
@@ -91,6 +92,7 @@ pub(super) fn run(
         watcher: Watcher::new(prepared, checks),
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),
+        progress: progress::Progress::new(),
         revolutions: 0,
         before: None,
     };
@@ -113,6 +115,7 @@ struct March<'a> {
     watcher: Watcher<'a>,
     tangency: tangency::Watch<'a>,
     points: Vec<Vec3>,
+    progress: progress::Progress,
     revolutions: u32,
     before: Option<Before<'a>>,
 }
@@ -137,6 +140,9 @@ impl<'a> March<'a> {
                 self.before = Some(before);
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
+                if self.progress.is_lost(self.watcher.nearest.0, &here, &next, self.prepared.size) {
+                    return Err(self.never_met());
+                }
                 here = next;
                 cap = self.state.maximum_step;
                 continue;
