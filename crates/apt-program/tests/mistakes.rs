@@ -284,6 +284,9 @@ fn an_endless_loop_ends_and_says_where_it_went() {
     assert_eq!(program.record_count(), 2, "the program goes on after the loop");
 }
 
+/// Dialect, program, and the unknown labels as (statement, severity).
+type LabelCase = (DialectName, &'static str, &'static [(u32, Severity)]);
+
 #[test]
 fn a_label_that_is_nowhere_is_a_warning_until_a_jump_leads_there() {
     let severity = |text: &str, dialect: DialectName| -> Vec<(u32, Severity)> {
@@ -293,7 +296,7 @@ fn a_label_that_is_nowhere_is_a_warning_until_a_jump_leads_there() {
         unknown.map(|finding| (finding.origin.isn, finding.severity)).collect()
     };
     use DialectName::{Apt4, Free};
-    let cases: &[(DialectName, &str, &[(u32, Severity)])] = &[
+    let cases: &[LabelCase] = &[
         (Free, "LOOPST\nI=1\nIF(I)A,B,B\nB)LOOPND", &[(3, Severity::Warning)]),
         (Free, "LOOPST\nI=-1\nIF(I)A,B,B\nB)LOOPND", &[(3, Severity::Error)]),
         (Free, "M=MACRO/N\nIF(N)A,B,B\nB)TERMAC", &[(2, Severity::Warning)]),
