@@ -29,6 +29,10 @@ const END_CELLS: usize = 4;
 const SAMPLES: u32 = 4;
 /// Share by which a radius is enlarged for what lies between the samples.
 const ENLARGED: f64 = 0.12;
+/// First step, in halves of a cell, beyond which the nearest place is that of another cell.
+const STRAYING: f64 = 6.0;
+/// Step of the parameters below which its effect on the distance is far below rounding.
+const RESOLUTION: f64 = 1e-13;
 /// Bound of the damped iteration for the nearest point.
 const MAX_ITERATIONS: u32 = 40;
 /// Bound of the steps along a ray.
@@ -44,12 +48,16 @@ struct Cell {
     radius: f64,
     /// Middle of the rectangle, conic parameter and station parameter.
     middle: [f64; 2],
+    /// Half its sides.
+    half: [f64; 2],
 }
 
 /// A polyconic surface ready for distance questions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolyConicSheet {
     form: PolyConicForm,
+    /// How many terms of each polynomial are not zero at the end.
+    terms: [usize; 7],
     /// Ranges of the conic parameter and of the station parameter.
     limits: [[f64; 2]; 2],
     /// A complete binary tree: node `k` has children `2k+1` and `2k+2`; empty nodes have a radius below zero.
@@ -76,7 +84,8 @@ impl PolyConicSheet {
         let stations =
             if form.roots.is_some() { [-last.sqrt(), last.sqrt()] } else { [-BEYOND_STATION, last] };
         let limits = [[-1.0, 2.0], stations];
-        let mut sheet = Self { form, limits, cells: Vec::new(), size: 0.0, curvature: 0.0 };
+        let terms = form.polynomials.map(|p| p.iter().rposition(|k| *k != 0.0).map_or(0, |last| last + 1));
+        let mut sheet = Self { form, terms, limits, cells: Vec::new(), size: 0.0, curvature: 0.0 };
         sheet.grow();
         let finite = sheet.cells.iter().all(|c| c.center.iter().all(|x| x.is_finite()) && !c.radius.is_nan());
         (finite && sheet.size > 0.0).then_some(sheet)
@@ -85,9 +94,10 @@ impl PolyConicSheet {
     /// A control function by the station parameter.
     fn course(&self, function: usize, s: f64) -> Course {
         let coefficients = self.form.polynomials.get(function).copied().unwrap_or_default();
+        let terms = self.terms.get(function).copied().unwrap_or(0);
         let by_station = |d: f64| {
             let mut course = [0.0; 3];
-            for k in coefficients.iter().rev() {
+            for k in coefficients.iter().take(terms).rev() {
                 course[2] = course[2] * d + 2.0 * course[1];
                 course[1] = course[1] * d + course[0];
                 course[0] = course[0] * d + k;
@@ -161,7 +171,12 @@ impl PolyConicSheet {
                 radius = radius.max((self.jet(at(t, i), at(s, j)).point - center).norm());
             }
         }
-        Cell { center, radius: radius * (1.0 + ENLARGED), middle }
+        Cell {
+            center,
+            radius: radius * (1.0 + ENLARGED),
+            middle,
+            half: [0.5 * (t[1] - t[0]), 0.5 * (s[1] - s[0])],
+        }
     }
 
     /// Cuts the surface into cells and builds the tree over them.
@@ -177,7 +192,7 @@ impl PolyConicSheet {
         let stations = even(low, high, STATION_CELLS);
         let cells = halved(&conic, &stations);
         let leaves = cells.len().next_power_of_two();
-        let empty = Cell { center: Vec3::zeros(), radius: -1.0, middle: [0.0; 2] };
+        let empty = Cell { center: Vec3::zeros(), radius: -1.0, middle: [0.0; 2], half: [0.0; 2] };
         let mut nodes = vec![empty; leaves - 1];
         nodes.extend(cells.iter().map(|&(i, j)| self.cell(conic[i], stations[j])));
         nodes.resize(2 * leaves - 1, empty);
@@ -217,7 +232,7 @@ impl PolyConicSheet {
                 (Some(a), None) | (None, Some(a)) => open.push(a),
                 (None, None) => {
                     if let Some(cell) = self.cells.get(node) {
-                        self.descend(p, cell.middle, &mut best);
+                        self.descend(p, cell, &mut best);
                     }
                 }
             }
@@ -225,38 +240,51 @@ impl PolyConicSheet {
         best
     }
 
-    /// Goes down to the nearest place from a start, by Newton's method damped so that every step descends.
-    fn descend(&self, p: &Vec3, start: [f64; 2], best: &mut (f64, [f64; 2])) {
+    /// Half the gradient of the squared distance at parameters and half its second derivatives: tt, ts, ss.
+    fn slopes(&self, p: &Vec3, q: &Vector2<f64>, jet: &Jet) -> (Vector2<f64>, [f64; 3]) {
+        let offset = jet.point - p;
+        let turned = if self.form.roots.is_some() && q.y < 0.0 { -1.0 } else { 1.0 };
+        let gradient = Vector2::new(offset.dot(&jet.du), offset.dot(&jet.dv) * turned);
+        let along = jet.du.norm_squared() + offset.dot(&jet.duu);
+        let across = jet.dv.norm_squared() + offset.dot(&jet.dvv);
+        (gradient, [along, (jet.du.dot(&jet.dv) + offset.dot(&jet.duv)) * turned, across])
+    }
+
+    /// Goes down to the nearest place from the middle of a cell, by Newton's method damped so that every step descends.
+    fn descend(&self, p: &Vec3, cell: &Cell, best: &mut (f64, [f64; 2])) {
         let [[t0, t1], [s0, s1]] = self.limits;
-        let mut q = Vector2::from(start);
+        let mut q = Vector2::from(cell.middle);
         let mut jet = self.jet(q.x, q.y);
         let mut square = (jet.point - p).norm_squared();
         let mut damping = 0.0;
-        for _ in 0..MAX_ITERATIONS {
-            let offset = jet.point - p;
-            let turned = if self.form.roots.is_some() && q.y < 0.0 { -1.0 } else { 1.0 };
-            let gradient = Vector2::new(offset.dot(&jet.du), offset.dot(&jet.dv) * turned);
-            let (a, b) =
-                (jet.du.norm_squared() + offset.dot(&jet.duu), jet.dv.norm_squared() + offset.dot(&jet.dvv));
-            let mixed = (jet.du.dot(&jet.dv) + offset.dot(&jet.duv)) * turned;
+        for turn in 0..MAX_ITERATIONS {
+            let (gradient, bends) = self.slopes(p, &q, &jet);
             // A parameter held at its limit does not move.
             let held = [
                 (q.x <= t0 && gradient.x > 0.0) || (q.x >= t1 && gradient.x < 0.0),
                 (q.y <= s0 && gradient.y > 0.0) || (q.y >= s1 && gradient.y < 0.0),
             ];
             let metric = Vector2::new(jet.du.norm_squared(), jet.dv.norm_squared());
-            let step = descent([a, mixed, b], &gradient, held, &metric, damping);
+            let step = descent(bends, &gradient, held, &metric, damping);
             let next = Vector2::new((q.x + step.x).clamp(t0, t1), (q.y + step.y).clamp(s0, s1));
-            let moved = (next - q).norm();
-            let there = self.jet(next.x, next.y);
-            let reached = (there.point - p).norm_squared();
-            if moved <= 4.0 * f64::EPSILON {
+            // From the middle of its cell a nearest place is not many cells away: another cell has that one.
+            let strays = |moved: f64, half: f64| moved.abs() > STRAYING * half;
+            let moved = next - q;
+            if turn == 0
+                && best.0 < square
+                && (strays(moved.x, cell.half[0]) || strays(moved.y, cell.half[1]))
+            {
+                return;
+            }
+            if moved.norm() <= RESOLUTION {
                 break;
             }
+            let there = self.jet(next.x, next.y);
+            let reached = (there.point - p).norm_squared();
             if reached <= square {
-                let rounding = moved <= 1e-14 || square - reached <= 0.0;
+                let settled = square - reached <= 0.0;
                 (q, jet, square, damping) = (next, there, reached, 0.2 * damping);
-                if rounding {
+                if settled {
                     break;
                 }
             } else {
@@ -468,5 +496,5 @@ fn joined(a: &Cell, b: &Cell) -> Cell {
     }
     let radius = 0.5 * (apart + a.radius + b.radius);
     let center = a.center + (b.center - a.center) * ((radius - a.radius) / apart);
-    Cell { center, radius, middle: a.middle }
+    Cell { center, radius, ..*a }
 }

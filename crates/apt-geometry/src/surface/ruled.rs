@@ -36,6 +36,8 @@ const COARSER: f64 = 8.0;
 const SAMPLES: u32 = 6;
 /// Share by which a radius is enlarged for what lies between the samples.
 const ENLARGED: f64 = 0.07;
+/// Step of the parameter below which its effect on the distance is far below rounding.
+const RESOLUTION: f64 = 1e-13;
 /// Bound of the bracketed iteration for the nearest ruling.
 const MAX_ITERATIONS: u32 = 60;
 
@@ -299,18 +301,20 @@ impl RuledSheet {
 
     /// Half the derivative of the squared distance to the ruling, its own derivative, and the squared distance.
     fn slope(&self, p: &Vec3, piece: usize, t: f64) -> (f64, f64, f64) {
-        let start = self.jet(piece, t, 0.0);
-        let (v, held) = self.share(p, &start.point, &start.dv);
-        let offset = start.point + start.dv * v - p;
-        let du = start.du + start.duv * v;
-        let slope = offset.dot(&du);
-        let duu = self.jet(piece, t, v).duu;
-        let mut bend = du.norm_squared() + offset.dot(&duu);
+        let Some(piece) = self.pieces.get(piece) else { return (0.0, 0.0, f64::INFINITY) };
+        let tau = (t - piece.from) / piece.width;
+        let [e, e1, e2] = evaluate(&piece.curves[0], tau, piece.width);
+        let [f, f1, f2] = evaluate(&piece.curves[1], tau, piece.width);
+        let (dv, duv) = (f - e, f1 - e1);
+        let (v, held) = self.share(p, &e, &dv);
+        let offset = e + dv * v - p;
+        let du = e1 + duv * v;
+        let mut bend = du.norm_squared() + offset.dot(&(e2 + (f2 - e2) * v));
         if !held {
-            let mixed = du.dot(&start.dv) + offset.dot(&start.duv);
-            bend -= mixed * mixed / start.dv.norm_squared().max(f64::MIN_POSITIVE);
+            let mixed = du.dot(&dv) + offset.dot(&duv);
+            bend -= mixed * mixed / dv.norm_squared().max(f64::MIN_POSITIVE);
         }
-        (slope, bend, offset.norm_squared())
+        (offset.dot(&du), bend, offset.norm_squared())
     }
 
     fn nearest(&self, p: &Vec3) -> Nearest {
@@ -360,7 +364,7 @@ impl RuledSheet {
             return;
         }
         let mut t = low + (high - low) * (a.0 / (a.0 - b.0));
-        let resolution = f64::EPSILON * (1.0 + low.abs().max(high.abs()));
+        let resolution = RESOLUTION * (1.0 + low.abs().max(high.abs()));
         for _ in 0..MAX_ITERATIONS {
             let (slope, bend, square) = self.slope(p, strip.piece, t);
             take(t, square);

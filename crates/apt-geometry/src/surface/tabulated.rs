@@ -34,6 +34,10 @@ struct Cubic {
     bounds: [f64; 2],
     /// The straight extension before the first or after the last point: it has no end on that side.
     open: [bool; 2],
+    /// Bounds of the curvature of each span, against either side.
+    bends: [[f64; 2]; SPANS as usize],
+    /// Sine of the turn from the interval before, positive to the right.
+    turn: f64,
 }
 
 /// The directrix with its frame.
@@ -58,6 +62,8 @@ impl Cubic {
             coefficients,
             bounds: [0.0, 0.0],
             open: [false, false],
+            bends: [[0.0; 2]; SPANS as usize],
+            turn: 0.0,
         };
         for s in super::solve_quadratic(3.0 * a, b, coefficients[2]) {
             if s > 0.0 && s < length {
@@ -65,7 +71,18 @@ impl Cubic {
                 cubic.bounds = [cubic.bounds[0].min(height), cubic.bounds[1].max(height)];
             }
         }
+        cubic.bends = std::array::from_fn(|k| {
+            let width = length / f64::from(SPANS);
+            let span = [k as f64 * width, (k + 1) as f64 * width];
+            [1.0, -1.0].map(|side| cubic.greatest_bend(side, span))
+        });
         Some(cubic)
+    }
+
+    /// Unit direction of the curve.
+    fn direction(&self, s: f64) -> Vec2 {
+        let [_, slope, _] = self.height(s);
+        (self.along + self.normal_axis() * slope) / slope.hypot(1.0)
     }
 
     /// Height over the chord, its slope and its second derivative. The extensions stay straight beyond their ends.
@@ -102,8 +119,7 @@ impl Cubic {
         let before = if self.open[0] { 0.0 } else { -local.x };
         let after = if self.open[1] { 0.0 } else { local.x - self.length };
         let dx = before.max(after).max(0.0);
-        let dy = (self.bounds[0] - local.y).max(local.y - self.bounds[1]).max(0.0);
-        dx * dx + dy * dy
+        dx * dx + least_offset(self.bounds, local.y)
     }
 
     /// Half the derivative of the squared distance to the point of a parameter.
@@ -184,7 +200,7 @@ impl DirectrixCurve {
             *axis = super::unit(axis)?;
         }
         let count = cylinder.intervals.len();
-        let mut intervals = Vec::with_capacity(count);
+        let mut intervals: Vec<Cubic> = Vec::with_capacity(count);
         for (k, interval) in cylinder.intervals.iter().enumerate() {
             let start = Vec2::new(interval.u, interval.v);
             let end = match cylinder.intervals.get(k + 1) {
@@ -193,6 +209,10 @@ impl DirectrixCurve {
             };
             let mut cubic = Cubic::new(start, end, interval.a, interval.b)?;
             cubic.open = [k == 0, k + 1 == count];
+            if let Some(before) = intervals.last() {
+                let (end, start) = (Cubic::direction(before, before.length), cubic.direction(0.0));
+                cubic.turn = end.y * start.x - end.x * start.y;
+            }
             intervals.push(cubic);
         }
         if intervals.is_empty() { None } else { Some(Self { axes, intervals }) }
@@ -263,28 +283,15 @@ impl DirectrixCurve {
     pub(super) fn greatest_curvature(&self, side: f64, center: &Vec3, reach: f64) -> f64 {
         let flat = self.flat(center);
         let mut greatest = f64::NEG_INFINITY;
-        let mut before: Option<Vec2> = None;
         for interval in &self.intervals {
             let local = interval.to_local(flat);
-            let direction = |s: f64| {
-                let [_, slope, _] = interval.height(s);
-                (interval.along + interval.normal_axis() * slope) / slope.hypot(1.0)
-            };
-            let start = direction(0.0);
-            if let Some(end) = before
-                && local.norm() <= reach
-            {
-                // Turning to the right is turning away from the natural normal.
-                let turn = side * (end.y * start.x - end.x * start.y);
-                if turn > SMOOTH {
-                    return f64::INFINITY;
-                }
+            // Turning to the right is turning away from the natural normal.
+            if side * interval.turn > SMOOTH && local.norm_squared() <= reach * reach {
+                return f64::INFINITY;
             }
-            before = Some(direction(interval.length));
-            if interval.least_square(local) > reach * reach {
-                continue;
+            if interval.least_square(local) <= reach * reach {
+                greatest = greatest.max(interval.greatest_curvature(side, local, reach));
             }
-            greatest = greatest.max(interval.greatest_curvature(side, local, reach));
         }
         greatest
     }
@@ -320,27 +327,25 @@ impl Cubic {
         }
         let mut greatest = f64::NEG_INFINITY;
         let width = self.length / f64::from(SPANS);
-        for k in 0..SPANS {
-            let [a, b] = [k, k + 1].map(|k| width * f64::from(k));
-            let beside = (a - local.x).max(local.x - b).max(0.0);
-            if beside > reach {
-                continue;
+        let within = (reach * reach - least_offset(self.bounds, local.y)).max(0.0).sqrt();
+        for (k, bends) in self.bends.iter().enumerate() {
+            let start = k as f64 * width;
+            if start - local.x <= within && local.x - start - width <= within {
+                greatest = greatest.max(if side > 0.0 { bends[0] } else { bends[1] });
             }
-            let ([_, s0, b0], [_, s1, b1]) = (self.height(a), self.height(b));
-            // The second derivative is linear, the slope monotone unless it turns.
-            let bend = (-side * b0).max(-side * b1);
-            let turns = (b0 > 0.0) != (b1 > 0.0);
-            let crosses = (s0 > 0.0) != (s1 > 0.0);
-            let slope = if turns || crosses { 0.0 } else { s0.abs().min(s1.abs()) };
-            let steep = if turns || crosses {
-                s0.abs().max(s1.abs()) + bend.abs() * width
-            } else {
-                s0.abs().max(s1.abs())
-            };
-            let flattening = if bend > 0.0 { slope } else { steep };
-            greatest = greatest.max(bend / flattening.hypot(1.0).powi(3));
         }
         greatest
+    }
+
+    /// A bound of the curvature against a side over a span.
+    fn greatest_bend(&self, side: f64, [a, b]: [f64; 2]) -> f64 {
+        let ([_, s0, b0], [_, s1, b1]) = (self.height(a), self.height(b));
+        // The second derivative is linear, the slope monotone unless it turns.
+        let bend = (-side * b0).max(-side * b1);
+        let wavers = (b0 > 0.0) != (b1 > 0.0) || (s0 > 0.0) != (s1 > 0.0);
+        let flattest = if wavers { 0.0 } else { s0.abs().min(s1.abs()) };
+        let steepest = s0.abs().max(s1.abs()) + b0.abs().max(b1.abs()) * (b - a);
+        bend / (if bend > 0.0 { flattest } else { steepest }).hypot(1.0).powi(3)
     }
 
     fn ray_roots(&self, p: Vec2, d: Vec2, roots: &mut Vec<f64>) {
@@ -382,6 +387,12 @@ impl Cubic {
             }
         }
     }
+}
+
+/// Squared distance of a height from a range of heights.
+fn least_offset(bounds: [f64; 2], height: f64) -> f64 {
+    let away = (bounds[0] - height).max(height - bounds[1]).max(0.0);
+    away * away
 }
 
 /// Root of a monotone function between limits of opposite sign.

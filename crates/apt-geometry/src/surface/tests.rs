@@ -180,3 +180,54 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+    /// Over a ball the distance from a tabulated cylinder rises above its chords by no more than the bound says.
+    #[test]
+    fn the_bend_of_a_tabulated_cylinder_is_bounded(
+        center in prop::array::uniform3(-3.0..5.0f64), radius in 0.01..0.5f64, above in any::<bool>(),
+        ends in prop::collection::vec(prop::array::uniform6(-1.0..1.0f64), 30),
+    ) {
+        let surface = tabulated();
+        let (side, center) = (if above { 1.0 } else { -1.0 }, Vec3::from(center));
+        let region = Region { center, radius, lowest: -0.05, highest: 3.0 };
+        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { return Ok(()) };
+        let distance = |p: &Vec3| side * surface.signed_distance(p);
+        for end in ends {
+            let place = |k: usize| {
+                let w = v(end[k], end[k + 1], end[k + 2]);
+                center + w * (radius / w.norm().max(1.0))
+            };
+            let (a, b) = (place(0), place(3));
+            let inside = (0..=20).all(|k| {
+                let d = distance(&(a + (b - a) * (f64::from(k) / 20.0)));
+                d >= region.lowest && d <= region.highest
+            });
+            if inside {
+                let rise = 0.5 * (distance(&a) + distance(&b)) - distance(&(0.5 * (a + b)));
+                prop_assert!(rise <= bound * (b - a).norm_squared() / 8.0 + 1e-11, "{rise} bound {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_foot_on_a_tabulated_cylinder_is_nearer_than_every_sample(x in -6.0..8.0, y in -6.0..8.0) {
+        let surface = tabulated();
+        let p = v(x, y, 0.3);
+        let foot = surface.foot(&p);
+        prop_assert!((foot.distance.abs() - (p - foot.point).norm()).abs() < 1e-12);
+        for k in 0..=1000 {
+            let s = -4.0 + 0.01 * f64::from(k);
+            // The middle interval and both straight ones by their formulas.
+            let place = if s < 0.0 {
+                v(s, -5.0 * s, 0.3)
+            } else if s <= 2.0 {
+                v(s, 0.15 * s.powi(3) - 0.1 * s * s - 0.4 * s, 0.3)
+            } else {
+                v(s, 3.0 * (s - 2.0), 0.3)
+            };
+            prop_assert!(foot.distance.abs() <= (p - place).norm() + 1e-12);
+        }
+    }
+}
