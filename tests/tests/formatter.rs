@@ -1,10 +1,12 @@
 //! The formatter over every program of the repository and over damaged ones: idempotent, and nothing but the look
 //! changes.
 
-use apt_ide::format::{Kept, KeptReason, FormatOptions, LAST_STATEMENT_COLUMN, LetterCase, applied, format, format_text, plan};
+use apt_ide::format::{
+    FormatOptions, Kept, KeptReason, LAST_STATEMENT_COLUMN, LetterCase, applied, format, format_text, plan,
+};
 use apt_program::{Options, Program, RecordKind, Value, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree, record::Layout, statement::ElementKind};
-use apt_tests::{oracle, repository};
+use apt_tests::{oracle, repository, runs};
 use proptest::prelude::*;
 
 /// The styles that are tried.
@@ -131,13 +133,71 @@ fn every_program_keeps_its_meaning_and_its_results() {
     assert!(changed > 200, "{changed} texts changed");
 }
 
+/// A report without what the look of the text decides: places, what fixes would change, and the spelling of statements.
+fn without_places(mut report: serde_json::Value) -> serde_json::Value {
+    fn walk(value: &mut serde_json::Value) {
+        match value {
+            serde_json::Value::Object(fields) => {
+                fields.remove("range");
+                fields.remove("fixes");
+                if let Some(serde_json::Value::String(statement)) = fields.get_mut("statement") {
+                    statement.retain(|character| !character.is_whitespace());
+                    statement.make_ascii_uppercase();
+                }
+                fields.values_mut().for_each(walk);
+            }
+            serde_json::Value::Array(items) => items.iter_mut().for_each(walk),
+            _ => {}
+        }
+    }
+    // These are about the look itself.
+    let of_the_look = |one: &serde_json::Value| one["code"] == "APT0951" || one["code"] == "APT0952";
+    if let Some(found) = report["diagnostics"].as_array_mut() {
+        found.retain(|one| !of_the_look(one));
+    }
+    walk(&mut report);
+    report
+}
+
+#[test]
+fn the_report_of_every_program_stays_the_same_bit_for_bit() {
+    let mut changed = 0;
+    let mut different = Vec::new();
+    for (dialect, name, text) in programs().iter().filter(|(_, name, _)| !name.contains("crates")) {
+        let before = runs::analysis(text, dialect.as_str());
+        let report = runs::report(&before).map(without_places);
+        for style in styles() {
+            let new = format_text(text, Dialect::named(*dialect), &style);
+            if new == *text {
+                continue;
+            }
+            changed += 1;
+            // The next version shares the memo of motions, so that only what has changed is computed twice.
+            let after = before.edit(0..text.len(), &new);
+            if report.is_err() || runs::report(&after).map(without_places) != report {
+                different.push(name.clone());
+            }
+        }
+    }
+    assert!(changed > 150, "{changed} texts changed");
+    assert!(different.is_empty(), "{}", different.join("\n"));
+}
+
+#[test]
+fn examples_have_the_style() {
+    for path in runs::examples() {
+        let text = runs::read(&path);
+        let free = Dialect::named(DialectName::Free);
+        assert_eq!(format_text(&text, free, &FormatOptions::of(&free)), text, "{}", path.display());
+    }
+}
+
 #[test]
 fn no_good_program_has_a_statement_that_cannot_be_laid_out() {
     for (dialect, name, text) in programs().iter().filter(|(_, name, _)| !name.contains("errors")) {
         let tree = SyntaxTree::parse(text, Dialect::named(*dialect));
         let kept = plan(&tree, &FormatOptions::default()).kept;
-        let numbered =
-            |kept: &Kept| kept.reason == KeptReason::SequenceNumber;
+        let numbered = |kept: &Kept| kept.reason == KeptReason::SequenceNumber;
         assert!(kept.iter().all(numbered), "{name}: {kept:?}");
     }
 }
