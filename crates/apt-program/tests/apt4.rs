@@ -263,3 +263,16 @@ fn do_loops_end_at_their_label_and_are_left_by_jumps() {
     let outer = "S=0\nDO/A,I=1,2\nDO/B,J=1,9\nIF(J.EQ.2)JUMPTO/A\nS=S+1\nB)S=S+10\nA)S=S+100";
     assert_eq!(scalar(&run(outer), "S"), Some(222.0));
 }
+
+#[test]
+fn an_endless_program_is_no_program_without_fini() {
+    let program = run("J=0\nA)I=1\nIF(J.LT.3)JUMPTO/A");
+    let kinds: Vec<_> = program.findings().map(|finding| &finding.kind).collect();
+    assert!(matches!(kinds.as_slice(), [FindingKind::Endless { .. }]), "{kinds:?}");
+    let unended = evaluate(
+        &SyntaxTree::parse("A=1\nB=A\n", Dialect::named(DialectName::Apt4)),
+        &Options::default(),
+        &|| false,
+    );
+    assert!(unended.findings().any(|finding| finding.kind == FindingKind::EndMissing));
+}
