@@ -11,8 +11,9 @@ use super::{
     pencil::Pencil,
     quadric::{Convexity, PrincipalQuadric},
     quadric_clearance,
+    ruled::RuledStrips,
     ruling::Ruling,
-    ruling_clearance,
+    ruling_clearance::{self, Ruled},
     tool::{Profile, Tool},
 };
 
@@ -27,8 +28,8 @@ pub(super) enum Surface {
     Pencil(Pencil),
     /// Quadric with principal axes.
     Quadric(Box<PrincipalQuadric>),
-    /// Tabulated cylinder.
-    Ruling(Box<Ruling>),
+    /// Tabulated cylinder or ruled surface.
+    Ruled(Box<Ruled>),
 }
 
 /// How the clearance varies along a straight move with a fixed tool axis.
@@ -99,7 +100,12 @@ impl Surface {
             | Geometry::LoftConic(q)
             | Geometry::Quadric(q) => Self::of_quadric(q).ok_or_else(degenerate),
             Geometry::TabulatedCylinder(surface) => {
-                Ruling::of(surface).map(|r| Self::Ruling(Box::new(r))).ok_or_else(degenerate)
+                let ruling = Ruling::of(surface).ok_or_else(degenerate)?;
+                Ok(Self::Ruled(Box::new(Ruled::Parallel(ruling))))
+            }
+            Geometry::RuledSurface(surface) => {
+                let strips = RuledStrips::of(surface).ok_or_else(degenerate)?;
+                Ok(Self::Ruled(Box::new(Ruled::Joining(strips))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
         }
@@ -116,7 +122,15 @@ impl Surface {
             Self::Sphere(center, radius) => center.norm() + radius,
             Self::Pencil(pencil) => pencil.origin.norm() + pencil.radius,
             Self::Quadric(_) => 0.0,
-            Self::Ruling(ruling) => ruling.size,
+            Self::Ruled(surface) => surface.size(),
+        }
+    }
+
+    /// How far the model of the surface may be off it.
+    fn error(&self) -> f64 {
+        match self {
+            Self::Ruled(surface) => surface.error(),
+            _ => 0.0,
         }
     }
 
@@ -131,7 +145,7 @@ impl Surface {
             }
             Self::Pencil(pencil) => Some(pencil.point_distance(x)),
             Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal)),
-            Self::Ruling(ruling) => ruling_clearance::point_distance(ruling, x),
+            Self::Ruled(surface) => ruling_clearance::point_distance(surface, x),
         }
     }
 
@@ -153,7 +167,7 @@ impl Surface {
                 | (Convexity::Outer | Convexity::OuterPair, true) => Shape::Concave,
                 _ => Shape::Free,
             },
-            Self::Ruling(_) => Shape::Free,
+            Self::Ruled(_) => Shape::Free,
         }
     }
 }
@@ -186,7 +200,8 @@ impl Clearance<'_> {
         let tool = Tool { profile: self.profile, axis: *axis };
         if self.profile.is_point() {
             let (distance, normal) = self.surface.point_distance(tip)?;
-            return Some(Reading { value: self.side * distance, normal: normal * self.side, error: 0.0 });
+            let error = self.surface.error();
+            return Some(Reading { value: self.side * distance, normal: normal * self.side, error });
         }
         match self.surface {
             Surface::Plane(normal, distance) => {
@@ -200,7 +215,7 @@ impl Clearance<'_> {
                     if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
                 Some(Reading { value: found.value, normal: found.normal, error: found.error })
             }
-            Surface::Ruling(ruling) => ruling_clearance::at(ruling, self.side, tip, &tool),
+            Surface::Ruled(surface) => ruling_clearance::at(surface, self.side, tip, &tool),
             Surface::Quadric(quadric) => quadric_clearance::at(quadric, self.side, tip, &tool),
         }
     }

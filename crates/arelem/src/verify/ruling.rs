@@ -54,6 +54,11 @@ impl Ruling {
         Some(Self { curve, axis, closed, size })
     }
 
+    /// The pieces of the directrix in the plane through the origin.
+    pub(super) fn pieces(&self) -> &[Cubic] {
+        &self.curve
+    }
+
     /// The surface as far as a tool of a certain reach can be concerned with it.
     pub(super) fn strips(&self, tip: &Vec3, reach: f64) -> Vec<Strip> {
         let height = self.axis * self.axis.dot(tip);
@@ -61,7 +66,7 @@ impl Ruling {
         let raise = [height - self.axis * reach, height + self.axis * reach];
         let lift = |c: &Cubic| raise.map(|r| c.map(|p| p + r));
         let mut strips: Vec<Strip> =
-            self.curve.iter().enumerate().map(|(piece, c)| Strip { edges: lift(c), piece }).collect();
+            self.curve.iter().enumerate().map(|(piece, c)| Strip::new(lift(c), piece)).collect();
         if self.closed {
             return strips;
         }
@@ -73,8 +78,7 @@ impl Ruling {
             let step = out * (length / (3.0 * out.norm()));
             let ray = [from, from + step, from + step * 2.0, from + step * 3.0];
             let ray = if end == 0 { [ray[3], ray[2], ray[1], ray[0]] } else { ray };
-            strips
-                .push(Strip { edges: lift(&ray), piece: if end == 0 { self.curve.len() } else { last + 2 } });
+            strips.push(Strip::new(lift(&ray), if end == 0 { self.curve.len() } else { last + 2 }));
         }
         strips
     }

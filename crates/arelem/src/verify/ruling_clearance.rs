@@ -1,15 +1,18 @@
-//! Clearance of the whole tool to a ruled surface.
+//! Clearance of the whole tool to a surface of straight rulings.
 //!
 //! Clear of the surface it is the least distance of a place of the surface. In violation it is the least translation
 //! that frees the tool (arelem reference 5.2): not less than the depth of any place of the surface in the tool, and of
 //! any place of the tool under the surface; and not more than a translation after which the tool is clear.
 
+use std::borrow::Cow;
+
 use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
+    ruled::RuledStrips,
     ruling::Ruling,
-    strip::{Touch, nearest},
+    strip::{Strip, Touch, nearest},
     tool::{Meridian, Profile, Tool, perpendicular},
 };
 
@@ -17,6 +20,10 @@ use super::{
 const RESOLUTION: f64 = 2e-11;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
+/// Distance, relative to the tool, from which on the difference of two places is a direction.
+const SURE_DISTANCE: f64 = 1e-3;
+/// Parameter next to the end of a piece at which the surface may have an edge.
+const JOINT: f64 = 1e-7;
 /// Azimuths at which an edge of the tool is looked at before its deepest place is closed in.
 const AZIMUTHS: usize = 24;
 /// The angle between two of them.
@@ -32,28 +39,78 @@ const PROOF_STEPS: usize = 14;
 /// The same for a depth that need not be the greatest yet.
 const QUICK_PROOF_STEPS: usize = 4;
 
-fn resolution(ruling: &Ruling, tip: &Vec3, reach: f64) -> f64 {
-    RESOLUTION * (ruling.size.max(tip.norm()) + reach)
+/// A surface of straight rulings.
+#[derive(Debug, Clone)]
+pub(super) enum Ruled {
+    /// A tabulated cylinder: all rulings parallel.
+    Parallel(Ruling),
+    /// Rulings between two curves, or to a point.
+    Joining(RuledStrips),
+}
+
+impl Ruled {
+    /// Greatest distance of its curves from the origin.
+    pub(super) fn size(&self) -> f64 {
+        match self {
+            Self::Parallel(ruling) => ruling.size,
+            Self::Joining(surface) => surface.size,
+        }
+    }
+
+    /// The surface as far as a tool of a certain reach can be concerned with it.
+    fn strips(&self, tip: &Vec3, reach: f64) -> Cow<'_, [Strip]> {
+        match self {
+            Self::Parallel(ruling) => Cow::Owned(ruling.strips(tip, reach)),
+            Self::Joining(surface) => Cow::Borrowed(&surface.strips),
+        }
+    }
+
+    fn natural(&self, touch: &Touch) -> Option<Vec3> {
+        match self {
+            Self::Parallel(ruling) => ruling.natural(touch),
+            Self::Joining(surface) => surface.natural(touch),
+        }
+    }
+
+    /// The common direction of all rulings.
+    fn axis(&self) -> Option<Vec3> {
+        match self {
+            Self::Parallel(ruling) => Some(ruling.axis),
+            Self::Joining(_) => None,
+        }
+    }
+
+    /// How far the strips may be off the surface.
+    pub(super) fn error(&self) -> f64 {
+        match self {
+            Self::Parallel(_) => 0.0,
+            Self::Joining(surface) => surface.error,
+        }
+    }
+}
+
+fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
+    RESOLUTION * (surface.size().max(tip.norm()) + reach)
 }
 
 /// Signed distance of a point along the natural normal and that distance's unit gradient; None beyond the end of a curve.
-pub(super) fn point_distance(ruling: &Ruling, x: &Vec3) -> Option<(f64, Vec3)> {
+pub(super) fn point_distance(surface: &Ruled, x: &Vec3) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
-    let tool = Tool { profile: &profile, axis: ruling.axis };
-    let touch = nearest(&ruling.strips(x, 0.0), x, &tool, resolution(ruling, x, 0.0), 0.0)?;
-    let natural = ruling.natural(&touch)?;
+    let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z) };
+    let touch = nearest(&surface.strips(x, 0.0), x, &tool, resolution(surface, x, 0.0), 0.0)?;
+    let natural = surface.natural(&touch)?;
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
     // At a joint the point is in the fan of its normals.
     let size = away.norm();
-    if size > 1e-6 * (1.0 + ruling.size) && height.abs() < size * (1.0 - 1e-9) {
+    if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) {
         return Some((size.copysign(height), away * (height.signum() / size)));
     }
     Some((height, natural))
 }
 
 struct Bodies<'a> {
-    ruling: &'a Ruling,
+    surface: &'a Ruled,
     side: f64,
     tool: &'a Tool<'a>,
     reach: f64,
@@ -63,45 +120,67 @@ struct Bodies<'a> {
 }
 
 /// The clearance; None beyond the end of a curve.
-pub(super) fn at(ruling: &Ruling, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
-    if tool.axis.cross(&ruling.axis).norm() <= PARALLEL {
-        let (distance, normal) = point_distance(ruling, tip)?;
-        let error = resolution(ruling, tip, 0.0);
-        return Some(Reading {
-            value: side * distance - tool.profile.widest(),
-            normal: normal * side,
-            error,
-        });
+pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+    if let Some(axis) = surface.axis()
+        && tool.axis.cross(&axis).norm() <= PARALLEL
+    {
+        let (distance, normal) = point_distance(surface, tip)?;
+        let error = resolution(surface, tip, 0.0);
+        let value = side * distance - tool.profile.widest();
+        return Some(Reading { value, normal: normal * side, error });
     }
     let reach = tool.profile.reach();
     let deep = PROVEN_DEPTH * tool.profile.widest();
-    let bodies = Bodies { ruling, side, tool, reach, resolution: resolution(ruling, tip, reach), deep };
+    let bodies = Bodies { surface, side, tool, reach, resolution: resolution(surface, tip, reach), deep };
     let touch = bodies.touch(tip)?;
     let clear = bodies.is_on_side(&touch)?;
-    if touch.value >= 0.0 && clear {
-        return Some(Reading { value: touch.value, normal: -touch.outward, error: touch.gap });
-    }
-    bodies.violation(tip, &touch)
+    let mut reading = if touch.value >= 0.0 && clear {
+        Reading { value: touch.value, normal: bodies.away(&touch)?, error: touch.gap }
+    } else {
+        bodies.violation(tip, &touch)?
+    };
+    reading.error += surface.error();
+    Some(reading)
 }
 
 impl Bodies<'_> {
     fn touch(&self, tip: &Vec3) -> Option<Touch> {
-        nearest(&self.ruling.strips(tip, 2.0 * self.reach), tip, self.tool, self.resolution, self.deep)
+        nearest(&self.surface.strips(tip, 2.0 * self.reach), tip, self.tool, self.resolution, self.deep)
+    }
+
+    /// The direction that leads the tool away. Next to a sharp edge of the tool the difference of two places says little;
+    /// the surface's own normal does, but where the surface has an edge.
+    fn away(&self, touch: &Touch) -> Option<Vec3> {
+        let normal = self.surface.natural(touch)? * self.side;
+        let beside_joint = touch.along <= JOINT || touch.along >= 1.0 - JOINT;
+        let far = touch.value.abs() > SURE_DISTANCE * self.reach;
+        Some(if far || beside_joint { -touch.outward } else { normal })
     }
 
     /// Whether the tool is on its side of the surface where it is nearest.
     fn is_on_side(&self, touch: &Touch) -> Option<bool> {
-        Some(self.side * touch.outward.dot(&self.ruling.natural(touch)?) <= 0.0)
+        Some(self.side * touch.outward.dot(&self.surface.natural(touch)?) <= 0.0)
     }
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
-        let mut deepest = (-touch.value, -touch.outward);
+        let mut deepest = (-touch.value, self.away(touch)?);
         let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
         let shallow = touch.value <= 0.0 && deepest.0 <= self.deep;
         if shallow && let Some(error) = self.unproven(tip, &deepest, QUICK_PROOF_STEPS)? {
             return Some(depth_of(&deepest, error));
+        }
+        // Deeper than that is no question of tolerance.
+        let top = tip + self.tool.axis * self.reach;
+        for place in [*tip, (tip + top) * 0.5] {
+            let depth = self.depth(&place)?;
+            if depth.0 > deepest.0 && self.tool.signed_distance(&(place - tip)).0 <= 0.0 {
+                deepest = depth;
+            }
+        }
+        if deepest.0 > self.deep {
+            return Some(depth_of(&deepest, 0.0));
         }
         let contact = touch.point - tip;
         let across = contact - self.tool.axis * self.tool.axis.dot(&contact);
@@ -138,7 +217,7 @@ impl Bodies<'_> {
 
     /// Depth of a place under the surface, and the direction out.
     fn depth(&self, x: &Vec3) -> Option<(f64, Vec3)> {
-        let (distance, normal) = point_distance(self.ruling, x)?;
+        let (distance, normal) = point_distance(self.surface, x)?;
         Some((-self.side * distance, normal * self.side))
     }
 

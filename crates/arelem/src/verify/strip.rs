@@ -22,9 +22,35 @@ pub(super) type Cubic = [Vec3; 4];
 /// Two cubics with the same parameter, joined by straight lines.
 #[derive(Debug, Clone)]
 pub(super) struct Strip {
-    pub(super) edges: [Cubic; 2],
+    edges: [Cubic; 2],
     /// Index of the curve piece it was made of.
-    pub(super) piece: usize,
+    piece: usize,
+    /// The ends of its middle ruling, and how far the control points of the edges are from them at most.
+    middle: [Vec3; 2],
+    radius: f64,
+}
+
+impl Strip {
+    pub(super) fn new(edges: [Cubic; 2], piece: usize) -> Self {
+        let middle = [place(&edges[0], 0.5), place(&edges[1], 0.5)];
+        let far = |k: usize| edges[k].iter().map(|p| (p - middle[k]).norm()).fold(0.0, f64::max);
+        let radius = far(0).max(far(1));
+        Self { edges, piece, middle, radius }
+    }
+
+    /// Its two cubics.
+    pub(super) fn edges(&self) -> &[Cubic; 2] {
+        &self.edges
+    }
+
+    /// Squared distance of a point to the middle ruling.
+    fn remoteness(&self, x: &Vec3) -> f64 {
+        let [a, b] = self.middle;
+        let along = b - a;
+        let square = along.norm_squared();
+        let t = if square > 0.0 { ((x - a).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (x - a - along * t).norm_squared()
+    }
 }
 
 /// The place of a strip that is nearest to the tool, or deepest in it.
@@ -41,6 +67,8 @@ pub(super) struct Touch {
     /// Piece of the curve, and the parameter 0 … 1 on it.
     pub(super) piece: usize,
     pub(super) along: f64,
+    /// Parameter 0 … 1 from the first edge to the second.
+    pub(super) across: f64,
 }
 
 /// A part of a strip.
@@ -50,6 +78,8 @@ struct Cell {
     piece: usize,
     /// First parameter and width, along the piece.
     along: [f64; 2],
+    /// The same from edge to edge.
+    across: [f64; 2],
     /// No place of the cell is nearer.
     lower: f64,
     /// The direction to halve it in.
@@ -131,7 +161,7 @@ impl Search<'_> {
         (lower, spread)
     }
 
-    fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2]) -> Cell {
+    fn cell(&mut self, edges: [Cubic; 2], piece: usize, along: [f64; 2], across: [f64; 2]) -> Cell {
         let middles = [place(&edges[0], 0.5), place(&edges[1], 0.5)];
         let x = (middles[0] + middles[1]) * 0.5;
         let run = tangent(&edges[0], 0.5) + tangent(&edges[1], 0.5);
@@ -155,26 +185,72 @@ impl Search<'_> {
             for level in [normal, -normal] {
                 lower = lower.max(self.bound(&edges, &level).0);
             }
+            // Beside the contact on an edge the surface turns along the edge: of its normals the part that the tool, a body
+            // of revolution, can have where it is nearest.
+            let level = self.tool.without_azimuth(&(x - self.tip), &normal);
+            if let Some(level) = level {
+                let level = if level.dot(&outward) < 0.0 { -level } else { level };
+                lower = lower.max(self.bound(&edges, &level).0);
+            }
         }
         if self.best.is_none_or(|b| value < b.value) {
-            self.best =
-                Some(Touch { value, gap: 0.0, outward, point: x, piece, along: along[0] + 0.5 * along[1] });
+            let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
+            self.best = Some(Touch { value, gap: 0.0, outward, point: x, piece, along, across });
         }
-        Cell { edges, piece, along, lower, halve_along: spread[0] >= spread[1], value }
+        Cell { edges, piece, along, across, lower, halve_along: spread[0] >= spread[1], value }
+    }
+
+    fn whole(&mut self, strip: &Strip) -> Cell {
+        self.cell(strip.edges, strip.piece, [0.0, 1.0], [0.0, 1.0])
+    }
+
+    /// Halves cells until none could hold a place nearer than the best by more than `resolution`, or one deeper than `deep`
+    /// is found; `lowest` tells what the budget left unseen.
+    fn close_in(
+        &mut self,
+        open: &mut Vec<Cell>,
+        [resolution, deep]: [f64; 2],
+        budget: &mut usize,
+        lowest: &mut f64,
+    ) {
+        while let Some(cell) = open.pop() {
+            let best = self.best.map_or(f64::INFINITY, |b| b.value);
+            if best < -deep {
+                open.clear();
+                return;
+            }
+            if cell.lower >= best - resolution {
+                continue;
+            }
+            if *budget == 0 {
+                *lowest = lowest.min(cell.lower);
+            } else {
+                *budget -= 1;
+                let [first, second] = self.split(&cell);
+                if first.value < second.value {
+                    open.extend([second, first]);
+                } else {
+                    open.extend([first, second]);
+                }
+            }
+        }
     }
 
     fn split(&mut self, cell: &Cell) -> [Cell; 2] {
         let [a, b] = &cell.edges;
+        let (piece, along, across) = (cell.piece, cell.along, cell.across);
+        let parts = |range: [f64; 2]| {
+            let half = 0.5 * range[1];
+            [[range[0], half], [range[0] + half, half]]
+        };
         if cell.halve_along {
-            let half = 0.5 * cell.along[1];
             let ([a0, a1], [b0, b1]) = (halves(a), halves(b));
-            [
-                self.cell([a0, b0], cell.piece, [cell.along[0], half]),
-                self.cell([a1, b1], cell.piece, [cell.along[0] + half, half]),
-            ]
+            let [first, last] = parts(along);
+            [self.cell([a0, b0], piece, first, across), self.cell([a1, b1], piece, last, across)]
         } else {
             let middle: Cubic = std::array::from_fn(|i| (a[i] + b[i]) * 0.5);
-            [self.cell([*a, middle], cell.piece, cell.along), self.cell([middle, *b], cell.piece, cell.along)]
+            let [first, last] = parts(across);
+            [self.cell([*a, middle], piece, along, first), self.cell([middle, *b], piece, along, last)]
         }
     }
 }
@@ -190,31 +266,32 @@ pub(super) fn nearest(
 ) -> Option<Touch> {
     let mut search =
         Search { tip: *tip, tool, sure: SURE_DIRECTION * tool.profile.reach() + resolution, best: None };
-    let mut open: Vec<Cell> = strips.iter().map(|s| search.cell(s.edges, s.piece, [0.0, 1.0])).collect();
-    // The nearest last, because it is taken first.
-    open.sort_by(|a, b| b.value.total_cmp(&a.value));
+    let middle = tip + tool.axis * (0.5 * tool.profile.reach());
+    let first = strips
+        .iter()
+        .enumerate()
+        .map(|(k, s)| (s.remoteness(&middle), k))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|f| f.1)?;
+    // The nearest strip first: what it gives leaves out most of the others at once.
     let mut lowest = f64::INFINITY;
     let mut budget = CELL_BUDGET;
-    while let Some(cell) = open.pop() {
+    let mut open = Vec::with_capacity(32);
+    open.push(search.whole(strips.get(first)?));
+    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest);
+    let found = search.best?;
+    let base = found.outward.dot(tip) + tool.support(&found.outward).0;
+    for (_, strip) in strips.iter().enumerate().filter(|(k, _)| *k != first) {
         let best = search.best?.value;
-        if best < -deep {
-            break;
-        }
-        if cell.lower >= best - resolution {
-            continue;
-        }
-        if budget == 0 {
-            lowest = lowest.min(cell.lower);
-            continue;
-        }
-        budget -= 1;
-        let [first, second] = search.split(&cell);
-        if first.value < second.value {
-            open.extend([second, first]);
-        } else {
-            open.extend([first, second]);
+        let [a, b] = strip.middle.map(|m| found.outward.dot(&m) - base - strip.radius);
+        if a.min(b) < best - resolution && search.bound(&strip.edges, &found.outward).0 < best - resolution {
+            let cell = search.whole(strip);
+            open.push(cell);
         }
     }
+    // The nearest last, because it is taken first.
+    open.sort_by(|a, b| b.value.total_cmp(&a.value));
+    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest);
     let mut touch = search.best?;
     touch.gap = resolution.max(touch.value - lowest);
     (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)

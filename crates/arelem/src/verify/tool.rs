@@ -260,6 +260,13 @@ impl Tool<'_> {
         (distance, out * q[0] + self.axis * q[1])
     }
 
+    /// A direction without its part round the axis at the azimuth of a point (from the tool end): what an outward normal of
+    /// the body there can be. None on the axis, or if nothing is left.
+    pub(super) fn without_azimuth(&self, w: &Vec3, direction: &Vec3) -> Option<Vec3> {
+        let round = self.axis.cross(w).try_normalize(0.0)?;
+        (direction - round * round.dot(direction)).try_normalize(0.0)
+    }
+
     /// Greatest distance from a point to a point of the body, and that body point.
     pub(super) fn farthest(&self, w: &Vec3) -> (f64, Vec3) {
         let (p, out) = self.split(w);

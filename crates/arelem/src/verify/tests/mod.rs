@@ -3,6 +3,7 @@
 mod clearances;
 mod mutations;
 mod paths;
+mod ruled;
 mod rulings;
 mod turning;
 mod vertices;
@@ -11,7 +12,9 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Interval, Plane, Quadric, Sphere, TabulatedCylinder},
+    canonical::{
+        Cone, Cylinder, Geometry, Interval, Plane, Quadric, RuledSurface, Sphere, TabulatedCylinder,
+    },
     cutter::Cutter,
     motion::{NamedSurface, Relation},
 };
@@ -88,6 +91,16 @@ pub(super) fn tabulated(axes: [Vec3; 3], nodes: &[[f64; 3]]) -> Geometry {
     intervals.push(straight(u, v));
     let last = [u + reach(slope), v + slope * reach(slope)];
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, kind: 0.0, intervals, last }))
+}
+
+/// A curve of a ruled surface: its surface, ends and direction across the chord.
+pub(super) fn section(surface: Geometry, ends: [[f64; 3]; 2], across: [f64; 3]) -> Vec<Geometry> {
+    let [start, end] = ends.map(|p| Geometry::Point(Vec3::from(p)));
+    vec![surface, start, end, Geometry::Vector(Vec3::from(across).normalize())]
+}
+
+pub(super) fn ruled(first: Vec<Geometry>, second: Vec<Geometry>) -> Geometry {
+    Geometry::RuledSurface(Arc::new(RuledSurface { parts: first.into_iter().chain(second).collect() }))
 }
 
 pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64, outtol: f64) -> Role {

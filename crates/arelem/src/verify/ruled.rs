@@ -1,0 +1,199 @@
+//! Ruled surfaces as strips: straight rulings between points at equal shares of two chords (language reference 4.16).
+//!
+//! Between the ends of the chords the parameter is an angle, `(1 − cos πw)/2` the share: so a section that starts upright,
+//! like a half circle, is smooth in it. Cubics through four places of each piece replace the curves; how far they are off
+//! is measured between those places and counted as an error of every distance.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{RuledCurve, RuledEnd, RuledSurface},
+};
+
+use super::{
+    section::Section,
+    strip::{Cubic, Strip, Touch, lerp, place, tangent},
+};
+
+/// How far rulings and curves go on beyond themselves, as a multiple of their length.
+const BEYOND: f64 = 4.0;
+/// Share of the way to where neighbouring rulings meet at which they end.
+const BEFORE_FOLD: f64 = 0.9;
+/// Share of the chord next to its ends where the meeting of rulings is not looked for: a curve may stand upright there.
+const STEADY: f64 = 0.05;
+/// How far a cubic may be off, relative to the size of the surface.
+const ACCURACY: f64 = 1e-10;
+/// How much farther off it may be than at the places looked at, which lie near its worst ones.
+const ALLOWANCE: f64 = 2.0;
+/// Bound of the halvings of a piece, and of the number of pieces.
+const HALVINGS: u32 = 24;
+const PIECES: usize = 4096;
+/// Parameter next to the end of a piece that counts as the joint with its neighbour.
+const JOINT: f64 = 1e-7;
+
+/// A ruled surface.
+#[derive(Debug, Clone)]
+pub(super) struct RuledStrips {
+    /// In the order of the share of the chord.
+    pub(super) strips: Vec<Strip>,
+    /// Greatest distance from the origin of the surface between its curves.
+    pub(super) size: f64,
+    /// How far a place of a strip may be off the surface.
+    pub(super) error: f64,
+}
+
+/// A curve or the point that all rulings meet in.
+enum Edge {
+    Curve(Box<Section>),
+    Apex(Vec3),
+}
+
+impl Edge {
+    fn of(curve: &RuledCurve<'_>) -> Option<Self> {
+        Section::of(curve).map(|s| Self::Curve(Box::new(s)))
+    }
+
+    fn at(&self, share: f64) -> Option<Vec3> {
+        match self {
+            Self::Curve(section) => section.at(share),
+            Self::Apex(point) => Some(*point),
+        }
+    }
+}
+
+/// A piece of both curves.
+struct Piece {
+    curves: [Cubic; 2],
+    error: f64,
+    /// Whether it lies between the ends of the chords, away from them.
+    inner: bool,
+}
+
+/// The cubic through the places at 0, ⅓, ⅔ and 1, by control points.
+fn through(p: &[Vec3; 4]) -> Cubic {
+    let first = (p[0] * -5.0 + p[1] * 18.0 - p[2] * 9.0 + p[3] * 2.0) / 6.0;
+    let second = (p[0] * 2.0 - p[1] * 9.0 + p[2] * 18.0 - p[3] * 5.0) / 6.0;
+    [p[0], first, second, p[3]]
+}
+
+impl RuledStrips {
+    /// None if the parts are not those of a definition or a section does not join its end points.
+    pub(super) fn of(surface: &RuledSurface) -> Option<Self> {
+        let (first, end) = surface.curves()?;
+        let edges = match &end {
+            RuledEnd::Curve(second) => [Edge::of(&first)?, Edge::of(second)?],
+            RuledEnd::Apex(apex) => [Edge::of(&first)?, Edge::Apex(*apex)],
+        };
+        let extent = edges[1].at(0.5)? - edges[0].at(0.5)?;
+        let scale = (first.end - first.start).norm().max(extent.norm());
+        let pieces = pieces(&edges, ACCURACY * scale)?;
+        let [low, high] = shares(&pieces);
+        let mut size: f64 = 0.0;
+        let mut error: f64 = 0.0;
+        let mut strips = Vec::with_capacity(pieces.len());
+        for (index, piece) in pieces.iter().enumerate() {
+            let [e, f] = &piece.curves;
+            let edge = |v: f64| -> Cubic { std::array::from_fn(|i| lerp(&e[i], &f[i], v)) };
+            strips.push(Strip::new([edge(low), edge(high)], index));
+            if piece.inner {
+                size = e.iter().chain(f).map(|p| p.norm()).fold(size, f64::max);
+            }
+            error = error.max(piece.error);
+        }
+        error *= (low.abs() + (1.0 - low)).max(high.abs() + (high - 1.0).abs());
+        (error.is_finite() && size.is_finite() && !strips.is_empty()).then_some(Self { strips, size, error })
+    }
+
+    fn normal_at(&self, piece: usize, along: f64, across: f64) -> Option<Vec3> {
+        let [e, f] = self.strips.get(piece)?.edges();
+        let run = lerp(&tangent(e, along), &tangent(f, along), across);
+        let normal = run.cross(&(place(f, along) - place(e, along)));
+        normal.try_normalize(0.0)
+    }
+
+    /// The natural normal, along the first curve × along the ruling; at a joint the middle between both sides.
+    pub(super) fn natural(&self, touch: &Touch) -> Option<Vec3> {
+        let here = self.normal_at(touch.piece, touch.along, touch.across)?;
+        let beside = if touch.along <= JOINT {
+            touch.piece.checked_sub(1).map(|p| (p, 1.0))
+        } else if touch.along >= 1.0 - JOINT {
+            Some((touch.piece + 1, 0.0))
+        } else {
+            None
+        };
+        let beside = beside.and_then(|(piece, along)| self.normal_at(piece, along, touch.across));
+        beside.map_or(Some(here), |n| (here + n).try_normalize(0.0))
+    }
+}
+
+/// Both curves in pieces, from one end of the extensions to the other.
+fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
+    let mut cuts = vec![-BEYOND, 0.0, 1.0, 1.0 + BEYOND];
+    for edge in edges {
+        if let Edge::Curve(section) = edge {
+            cuts.extend(section.reach);
+            cuts.extend(section.joints());
+        }
+    }
+    cuts.retain(|s| (-BEYOND..=1.0 + BEYOND).contains(s));
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
+    let mut found = Vec::new();
+    for pair in cuts.windows(2) {
+        halve(edges, [pair[0], pair[1]], accuracy, &mut found)?;
+    }
+    Some(found)
+}
+
+fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece>) -> Option<()> {
+    let inner = ends[0] >= -1e-12 && ends[1] <= 1.0 + 1e-12;
+    // The parameter: an angle between the ends of the chord, the share itself beyond.
+    let share = |w: f64| if inner { 0.5 * (1.0 - (std::f64::consts::PI * w).cos()) } else { w };
+    let angle = |s: f64| (1.0 - 2.0 * s.clamp(0.0, 1.0)).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+    let range = if inner { ends.map(angle) } else { ends };
+    // The last piece first, so that they come out in order.
+    let mut open = vec![(range, 0)];
+    while let Some(([low, high], depth)) = open.pop() {
+        let at = |edge: &Edge, x: f64| edge.at(share(low + (high - low) * x));
+        let mut error: f64 = 0.0;
+        let mut curves = [[Vec3::zeros(); 4]; 2];
+        for (edge, curve) in edges.iter().zip(&mut curves) {
+            let nodes = [at(edge, 0.0)?, at(edge, 1.0 / 3.0)?, at(edge, 2.0 / 3.0)?, at(edge, 1.0)?];
+            *curve = through(&nodes);
+            for x in [0.127, 0.5, 0.873] {
+                error = error.max(ALLOWANCE * (at(edge, x)? - place(curve, x)).norm());
+            }
+        }
+        if !error.is_finite() || found.len() + open.len() > PIECES {
+            return None;
+        }
+        if error > accuracy && depth < HALVINGS {
+            let middle = 0.5 * (low + high);
+            open.push(([middle, high], depth + 1));
+            open.push(([low, middle], depth + 1));
+        } else {
+            let middle = share(0.5 * (low + high));
+            found.push(Piece { curves, error, inner: (STEADY..=1.0 - STEADY).contains(&middle) });
+        }
+    }
+    Some(())
+}
+
+/// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
+fn shares(pieces: &[Piece]) -> [f64; 2] {
+    let (mut low, mut high) = (-BEYOND, 1.0 + BEYOND);
+    for piece in pieces.iter().filter(|p| p.inner) {
+        for x in [0.0, 0.5, 1.0] {
+            let [near, far] = [0, 1].map(|k| tangent(&piece.curves[k], x));
+            let along = near + far;
+            let (a, b) = (near.dot(&along), far.dot(&along));
+            let meet = a / (a - b);
+            if meet >= 1.0 - 1e-9 {
+                let apex = meet <= 1.0 + 1e-9;
+                high = high.min(if apex { 1.0 } else { 1.0 + BEFORE_FOLD * (meet - 1.0) });
+            } else if meet <= 1e-9 {
+                low = low.max(BEFORE_FOLD * meet.min(0.0));
+            }
+        }
+    }
+    [low, high]
+}

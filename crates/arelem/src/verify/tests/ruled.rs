@@ -1,0 +1,279 @@
+//! Ruled surfaces: against the surfaces that some of them are, dense sampling, and broken sequences.
+
+use apt_geometry::{
+    Vec3,
+    canonical::Geometry,
+    motion::{DriveSide, Relation},
+};
+use proptest::prelude::*;
+
+use super::{
+    super::{Rule, VerifyError, clearance::Surface, verify},
+    clearances::{clearance, direction, samples, tools},
+    cone, cutter, cylinder,
+    paths::{self, BAND},
+    plane, quadric, role, ruled, section, sphere, tabulated,
+};
+use crate::sequence::CutSequence;
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// Half of a cylinder of radius 2 about z, ruled between its sections at z = −1 and 1; the natural normal is inward.
+fn half_cylinder() -> Geometry {
+    let wall = || cylinder([0.0; 3], UP, 2.0);
+    let curve = |z: f64| section(wall(), [[-2.0, 0.0, z], [2.0, 0.0, z]], [0.0, 1.0, 0.0]);
+    ruled(curve(-1.0), curve(1.0))
+}
+
+/// Half of a cone with its vertex at z = 3, over its section at z = 0; the natural normal is inward.
+fn half_cone() -> Geometry {
+    let peak = cone([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], 30.0);
+    let r = 3.0 * 30f64.to_radians().tan();
+    let curve = section(peak, [[-r, 0.0, 0.0], [r, 0.0, 0.0]], [0.0, 1.0, 0.0]);
+    ruled(curve, vec![Geometry::Point(Vec3::new(0.0, 0.0, 3.0))])
+}
+
+/// The twisted surface between a line and a line askew to it: z = y(1 + x/6)/4 over x from 0 to 6 and y from 0 to 4.
+fn twisted() -> Geometry {
+    let floor = plane([0.0, 0.0, 1.0], 0.0);
+    let slope = plane([-1.0, 0.0, 6.0], 6.0);
+    ruled(
+        section(floor, [[0.0; 3], [6.0, 0.0, 0.0]], UP),
+        section(slope, [[0.0, 4.0, 1.0], [6.0, 4.0, 2.0]], [-1.0, 0.0, 6.0]),
+    )
+}
+
+/// Between an arc of a sphere and an arc of an ellipse: both curves bent, not alike.
+fn bent() -> Geometry {
+    let ball = sphere([0.0, -2.0, -3.0], 5.0);
+    let ellipse = quadric([1.0 / 16.0, 0.0, 1.0 / 4.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let rise = 2.0 * 0.75f64.sqrt();
+    ruled(
+        section(ball, [[-3.0, -2.0, 1.0], [3.0, -2.0, 1.0]], UP),
+        section(ellipse, [[-2.0, 3.0, rise], [2.0, 3.0, rise]], UP),
+    )
+}
+
+/// A place of `bent`: shares of the chords and along the ruling.
+fn bent_place(s: f64, t: f64) -> Vec3 {
+    let x = -3.0 + 6.0 * s;
+    let first = Vec3::new(x, -2.0, -3.0 + (25.0 - x * x).sqrt());
+    let x = -2.0 + 4.0 * s;
+    let second = Vec3::new(x, 3.0, 2.0 * (1.0 - x * x / 16.0).sqrt());
+    first + (second - first) * t
+}
+
+#[test]
+fn the_twisted_surface_has_its_equation() {
+    let surface = Surface::of(&twisted()).unwrap();
+    for (x, y) in [(0.5, 0.5), (3.0, 2.0), (5.9, 3.9), (8.0, 5.0), (-2.0, -1.0)] {
+        let foot = Vec3::new(x, y, 0.25 * y * (1.0 + x / 6.0));
+        let normal = Vec3::new(-y / 24.0, -0.25 * (1.0 + x / 6.0), 1.0).normalize();
+        let (distance, gradient) = surface.point_distance(&(foot + normal * 0.1)).unwrap();
+        assert!((distance - 0.1).abs() < 1e-8, "{x} {y}: {distance}");
+        assert!((gradient - normal).norm() < 1e-4, "{x} {y}: {gradient}");
+    }
+}
+
+#[test]
+fn a_half_circle_is_a_cylinder_to_its_upright_ends() {
+    let (half, whole) = (half_cylinder(), cylinder([0.0; 3], UP, 2.0));
+    for degrees in [1.0f64, 20.0, 90.0, 150.0, 179.0] {
+        let (s, c) = degrees.to_radians().sin_cos();
+        for (side, radius) in [(-1.0, 2.3), (1.0, 1.7)] {
+            let tip = [radius * c, radius * s, 0.2];
+            // The tool leans away from the wall.
+            let lean = 0.1 * f64::signum(radius - 2.0);
+            let axis = [lean * c, lean * s, 1.0];
+            let (value, normal, error) = clearance(&cutter(&[0.5, 0.1]), &half, side, tip, axis);
+            let (closed, wanted, _) = clearance(&cutter(&[0.5, 0.1]), &whole, -side, tip, axis);
+            assert!(
+                (value - closed).abs() <= error + 1e-9 && error < 1e-7,
+                "{degrees}: {value} {closed} {error}"
+            );
+            assert!((normal - wanted).norm() < 1e-4, "{degrees}: {normal} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn rulings_to_a_point_are_a_cone() {
+    let (half, whole) = (half_cone(), cone([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], 30.0));
+    let tool = cutter(&[0.5, 0.25, 0.0, 0.25, 0.0, 0.0, 1.0]);
+    for degrees in [10.0f64, 60.0, 120.0] {
+        let (s, c) = degrees.to_radians().sin_cos();
+        for (side, radius) in [(-1.0, 1.62), (1.0, 0.4)] {
+            let tip = [radius * c, radius * s, 0.5];
+            let (value, ..) = clearance(&tool, &half, side, tip, UP);
+            let (closed, ..) = clearance(&tool, &whole, -side, tip, UP);
+            assert!((value - closed).abs() < 1e-7, "{degrees}: {value} {closed}");
+        }
+    }
+}
+
+#[test]
+fn sections_of_a_tabulated_cylinder_give_it_back() {
+    let nodes: Vec<[f64; 3]> =
+        (-6..=6).map(|k| 0.5 * f64::from(k)).map(|u: f64| [u, 0.4 * u.sin(), 0.4 * u.cos()]).collect();
+    let wave = || tabulated([Vec3::x(), Vec3::z(), -Vec3::y()], &nodes);
+    let [low, high] = [-2.0f64, 2.0].map(|u| 0.4 * u.sin());
+    let curve = |y: f64| section(wave(), [[-2.0, y, low], [2.0, y, high]], UP);
+    // From y = 1 to −1, so that the natural normal is up as that of the wave.
+    let surface = ruled(curve(-1.0), curve(1.0));
+    for x in [-1.5, -0.3, 0.0, 0.9, 1.7] {
+        let tip = [x, 0.1, 0.4 * f64::sin(x) + 0.05];
+        let (value, ..) = clearance(&cutter(&[0.5, 0.25]), &surface, 1.0, tip, [0.1, 0.0, 1.0]);
+        let (closed, ..) = clearance(&cutter(&[0.5, 0.25]), &wave(), 1.0, tip, [0.1, 0.0, 1.0]);
+        assert!((value - closed).abs() < 1e-7, "{x}: {value} {closed}");
+    }
+}
+
+#[test]
+fn sections_that_miss_their_ends_are_degenerate() {
+    let ball = sphere([0.0; 3], 1.0);
+    let far = section(ball, [[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0]], UP);
+    let floor = section(plane(UP, 0.0), [[-3.0, 1.0, 0.0], [3.0, 1.0, 0.0]], UP);
+    let mut broken = over_twisted();
+    broken.part.as_mut().unwrap().surface.geometry = ruled(far, floor);
+    assert!(matches!(verify(&broken, &|| false), Err(VerifyError::Degenerate { .. })));
+    broken.part.as_mut().unwrap().surface.geometry = ruled(Vec::new(), Vec::new());
+    assert!(matches!(verify(&broken, &|| false), Err(VerifyError::Degenerate { .. })));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn bent_rulings_agree_with_dense_sampling(
+        tool in tools(),
+        at in (0.1..0.9f64, 0.1..0.9f64, 0.0..0.5f64),
+        axis in direction(),
+    ) {
+        let surface = bent();
+        let foot = bent_place(at.0, at.1);
+        let tip = foot + Vec3::z() * at.2;
+        let (value, normal, error) = clearance(&tool, &surface, 1.0, tip.into(), axis);
+        prop_assert!((normal.norm() - 1.0).abs() < 1e-9);
+        // Distance to the tool of places of the surface: the tool's boundary sampled against the surface sampled is
+        // too coarse, but the height of the tool's samples over the surface says whether it is clear.
+        let model = Surface::of(&surface).unwrap();
+        let unit = Vec3::from(axis).normalize();
+        let sampled = samples(&tool, tip, unit)
+            .iter()
+            .step_by(499)
+            .map(|x| model.point_distance(x).unwrap().0)
+            .fold(f64::INFINITY, f64::min);
+        prop_assert!(value <= sampled.max(-0.02) + 1e-6, "value {value} ± {error} sampled {sampled}");
+        if sampled > 0.1 {
+            prop_assert!(sampled - value < 0.1 && error < 1e-6, "value {value} ± {error} sampled {sampled}");
+        }
+    }
+
+    #[test]
+    fn the_nearest_place_of_bent_rulings_is_nearest(
+        x in (-2.0..2.0f64, -2.0..3.0f64, 0.0..4.0f64),
+    ) {
+        let p = Vec3::new(x.0, x.1, x.2);
+        let model = Surface::of(&bent()).unwrap();
+        let (distance, normal) = model.point_distance(&p).unwrap();
+        let mut least = f64::INFINITY;
+        for i in 0..=60 {
+            for k in 0..=60 {
+                let place = bent_place(f64::from(i) / 60.0, f64::from(k) / 60.0);
+                least = least.min((place - p).norm());
+            }
+        }
+        prop_assert!(distance.abs() <= least + 1e-8, "{distance} {least}");
+        // Over the middle of the surface nothing beyond its ends is nearer.
+        if distance.abs() < 0.3 && x.0.abs() < 1.5 && x.1 > -1.5 && x.1 < 2.5 {
+            prop_assert!(least - distance.abs() < 0.05, "{distance} {least}");
+            prop_assert!((normal.z > 0.0) && (distance > 0.0) == (p.z > (p - normal * distance).z));
+        }
+    }
+}
+
+/// A ball over the twisted surface, along x at y = 2: the centre a little more than its radius off the surface.
+fn over_twisted() -> CutSequence {
+    let count = 40;
+    let tips: Vec<Vec3> = (0..=count)
+        .map(|k| {
+            let x = 1.0 + 4.0 * f64::from(k) / f64::from(count);
+            // The foot whose normal passes through the plane y = 2 with the centre there.
+            let reach = 0.25 + 0.5 * BAND.1;
+            let mut y: f64 = 2.0;
+            let mut foot = Vec3::zeros();
+            let mut normal = Vec3::z();
+            for _ in 0..60 {
+                let fx = x - reach * normal.x;
+                foot = Vec3::new(fx, y, 0.25 * y * (1.0 + fx / 6.0));
+                normal = Vec3::new(-y / 24.0, -0.25 * (1.0 + fx / 6.0), 1.0).normalize();
+                y = 2.0 - reach * normal.y;
+            }
+            foot + normal * reach - Vec3::z() * 0.25
+        })
+        .collect();
+    let part = role(twisted(), Relation::To, 1.0, BAND.0, BAND.1);
+    let drive = role(plane([0.0, 1.0, 0.0], 2.0), Relation::On, 1.0, BAND.0, BAND.1);
+    let stop = paths::end_plane(&tips, Vec3::x());
+    paths::sequence(&tips, cutter(&[0.5, 0.25]), part, drive, stop, DriveSide::On)
+}
+
+fn rules(sequence: &CutSequence) -> Vec<Rule> {
+    verify(sequence, &|| false).unwrap().violations.iter().map(|v| v.rule).collect()
+}
+
+#[test]
+fn a_pass_over_a_twisted_surface_is_proven_and_broken_ones_are_not() {
+    let path = over_twisted();
+    let evidence = verify(&path, &|| false).unwrap();
+    assert!(evidence.verified, "{evidence:?}");
+    let part = evidence.part.unwrap();
+    assert!((part.max - 0.5 * BAND.1).abs() < 1e-6, "{part:?}");
+    for index in [1, 20] {
+        for shift in [1.5, -1.5] {
+            let mut broken = path.clone();
+            broken.points[index].tip.z += shift * (BAND.0 + BAND.1);
+            assert_eq!(rules(&broken), [Rule::PartBand], "{index} {shift}");
+        }
+    }
+    let mut turned = path.clone();
+    turned.part.as_mut().unwrap().side = -1.0;
+    assert!(rules(&turned).contains(&Rule::PartBand));
+}
+
+#[test]
+fn a_ruled_wall_as_drive_and_check_surface_is_judged() {
+    // The half cylinder from outside, a quarter turn counter-clockwise; its natural normal is inward.
+    let mut drive = paths::circle(true);
+    let shifted = |r: f64| {
+        let wall = || cylinder([0.0; 3], UP, r);
+        let curve = |z: f64| section(wall(), [[-r, 0.0, z], [r, 0.0, z]], [0.0, 1.0, 0.0]);
+        ruled(curve(-1.0), curve(6.0))
+    };
+    let role_of = drive.sequence.drive.as_mut().unwrap();
+    role_of.surface.geometry = shifted(2.5);
+    role_of.side = -1.0;
+    // The path has its vertices right at the limit, where the error term of a surface of no known shape counts.
+    role_of.outside_tolerance *= 1.001;
+    let found = verify(&drive.sequence, &|| false).unwrap();
+    assert!(found.verified, "{found:?}");
+    drive.sequence.points[5].tip *= 1.001;
+    assert!(rules(&drive.sequence).contains(&Rule::DriveBand));
+    // A wall across the motion as check surface: TO, ON and PAST are told apart.
+    let wall = |x: f64| {
+        let across = || plane([1.0, 0.0, 0.0], x);
+        let curve = |z: f64| section(across(), [[x, -3.0, z], [x, 3.0, z]], [1.0, 0.0, 0.0]);
+        ruled(curve(-1.0), curve(6.0))
+    };
+    for (relation, x, side) in
+        [(Relation::To, 3.75, -1.0), (Relation::On, 4.0, -1.0), (Relation::Past, 4.25, 1.0)]
+    {
+        let mut sequence = paths::to_circle(relation, 1).sequence;
+        sequence.points[0].tip.x = x;
+        let stop = sequence.stop.as_mut().unwrap();
+        stop.role = role(wall(4.0), relation, side, BAND.0, BAND.1);
+        assert_eq!(rules(&sequence), [], "{relation:?}");
+        sequence.points[0].tip.x += 0.01;
+        assert!(rules(&sequence).contains(&Rule::CheckBand), "{relation:?}");
+    }
+}
