@@ -209,7 +209,7 @@ mod tests {
                 Some(())
             })
             .count();
-        assert_eq!(count, 3);
+        assert_eq!(count, 2);
     }
 
     #[test]

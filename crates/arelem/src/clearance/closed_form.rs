@@ -1,4 +1,5 @@
-//! Clearances in closed form: planes, spheres, and cylinders and cones whose axis is parallel to the tool's.
+//! Clearances in closed form: planes, spheres, cones whose axis is parallel to the tool's, and cylinders of any section
+//! whose generators are.
 
 use apt_geometry::{
     Vec3,
@@ -23,8 +24,22 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
         Surface::Cone(given) if given.axis.cross(&tool.axis).norm() <= PARALLEL => {
             Some(parallel_cone(tool, given, side, tip))
         }
+        Surface::Quadric(_) | Surface::Tabulated(_) => {
+            let parallel = surface.generator()?.cross(&tool.axis).norm() <= PARALLEL;
+            parallel.then(|| along_generators(tool, surface, side, tip))
+        }
         _ => None,
     }
+}
+
+/// Seen along generators that are parallel to the tool, the surface is a plane curve and the tool a disc.
+fn along_generators(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
+    let foot = surface.foot(tip);
+    let (reach, ProfilePoint { radius, height }) = tool.profile.support(1.0, 0.0);
+    let gradient = foot.normal * side;
+    let clearance = side * foot.distance - reach;
+    let contact = tip + tool.axis * height - gradient * radius;
+    Contact { clearance, gradient, tool: contact, surface: contact - gradient * clearance }
 }
 
 /// `g = n·TE − d − H(s, −c)` with `n` towards the tool.

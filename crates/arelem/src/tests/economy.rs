@@ -105,7 +105,7 @@ const TABLE: [[f64; 4]; 5] = [
 ];
 const TABLE_END: [f64; 2] = [16.976_504_32, -4.407_081_82];
 
-fn table() -> Geometry {
+pub(super) fn table() -> Geometry {
     let interval = |[u, v, a, b]: [f64; 4]| Interval { u, v, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
         axes: [Vec3::x(), Vec3::y(), Vec3::z()],

@@ -192,6 +192,28 @@ fn a_polyconic_wall_drives_and_stops_like_the_circle_it_lies_on() {
 }
 
 #[test]
+fn upright_cylinders_of_any_section_are_met_by_discs() {
+    // A slight lean takes the general way to the same clearance.
+    let leaning = v(1e-9, 2e-9, 1.0).normalize();
+    let numbers = [1.0, 0.1, 0.41, 0.12, 5.0, 3.0, 2.0];
+    let cutter = apt_geometry::cutter::Cutter::from_numbers(&numbers, 1.0).expect("a cutter");
+    let [upright, general] = [Vec3::z(), leaning].map(|axis| Tool::new(cutter, axis));
+    let elliptic = quadric([1.0 / 16.0, 0.25, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    for (geometry, side) in [(elliptic.clone(), 1.0), (elliptic, -1.0), (super::economy::table(), 1.0)] {
+        let surface = apt_geometry::surface::Surface::from_geometry(&geometry).expect("a surface");
+        let gauge = Gauge { surface, on: false, side, thickness: 0.0, memory: Memory::default() };
+        for k in 0..12 {
+            let angle = 0.5 * f64::from(k);
+            let out = if side > 0.0 { 5.0 } else { 0.8 };
+            let tip = v(out * angle.cos(), out * angle.sin(), 0.3);
+            let (a, b) = (gauge.contact(&upright, &tip), gauge.contact(&general, &tip));
+            assert!((a.clearance - b.clearance).abs() < 1e-7, "{} {} at {tip}", a.clearance, b.clearance);
+            assert!((a.gradient - b.gradient).norm() < 1e-5, "{} {} at {tip}", a.gradient, b.gradient);
+        }
+    }
+}
+
+#[test]
 fn a_ruled_wall_has_two_sides() {
     let mut p = Program::new();
     p.tolerance(0.0, 0.001).cutter(&[0.5]).from(1.0, 1.0, 0.0);
