@@ -35,6 +35,9 @@ const STRAYING: f64 = 6.0;
 const RESOLUTION: f64 = 1e-13;
 /// Bound of the damped iteration for the nearest point.
 const MAX_ITERATIONS: u32 = 40;
+/// Distance from the surface, relative to its size, at which a crossing is looked for, and length of its longest step.
+const CLOSE: f64 = 1e-4;
+const NEAR: f64 = 1e-2;
 /// Bound of the steps along a ray.
 const MAX_STEPS: u32 = 4000;
 
@@ -362,7 +365,7 @@ impl PolyConicSheet {
             return roots;
         }
         let (mut x, last) = (along - half.sqrt(), along + half.sqrt());
-        let near = 1e-4 * self.size;
+        let near = CLOSE * self.size;
         for _ in 0..MAX_STEPS {
             if x > last {
                 break;
@@ -392,7 +395,7 @@ impl PolyConicSheet {
                 return Some(x);
             }
             let step = foot.distance / slope;
-            if !(step.abs() <= 1e-2 * self.size) {
+            if step.is_nan() || step.abs() > NEAR * self.size {
                 return None;
             }
             x -= step;

@@ -24,6 +24,8 @@ const BEFORE_FOLD: f64 = 0.9;
 const STEADY: f64 = 0.05;
 /// Accuracy of the pieces, relative to the size of the surface.
 const ACCURACY: f64 = 2e-11;
+/// How much less accurate the shortest pieces, at a kink of a curve, may be.
+const KINK: f64 = 5e4;
 /// Bound of the halvings of a piece of the curves.
 const MAX_DEPTH: u32 = 40;
 /// Bound of the number of pieces.
@@ -542,16 +544,17 @@ fn pieces(edges: &[Edge; 2], range: [f64; 2], accuracy: f64) -> Option<Vec<Piece
             let curve = through(&edge.at(a, middle), &edge.at(b, middle), width);
             for tau in [0.25, 0.5, 0.75] {
                 let exact = edge.at(a + width * tau, middle).point;
-                misfit = misfit.max((evaluate(&curve, tau, width)[0] - exact).norm());
+                let gap = (evaluate(&curve, tau, width)[0] - exact).norm();
+                // Not `max`, which would lose a gap that is no number.
+                misfit = if gap.is_nan() || gap > misfit { gap } else { misfit };
             }
             curve
         });
-        // A NaN is no fit either.
         let fits = misfit <= accuracy;
         if !fits && depth < MAX_DEPTH && width > 1e-9 {
             open.push((middle, b, depth + 1));
             open.push((a, middle, depth + 1));
-        } else if !(misfit <= 1e-6 * accuracy / ACCURACY) || pieces.len() >= MAX_PIECES {
+        } else if misfit.is_nan() || misfit > KINK * accuracy || pieces.len() >= MAX_PIECES {
             return None;
         } else {
             pieces.push(Piece { from: a, width, curves });

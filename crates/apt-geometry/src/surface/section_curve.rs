@@ -113,7 +113,7 @@ impl SectionCurve {
         let (foot, hessian) = self.surface.foot_and_hessian(&place);
         let cosine = foot.normal.dot(&self.across);
         let slope = -foot.normal.dot(&self.chord) / cosine;
-        if !(slope.abs() <= STEEP * self.chord.norm()) {
+        if slope.is_nan() || slope.abs() > STEEP * self.chord.norm() {
             return None;
         }
         let along = self.chord + self.across * slope;
