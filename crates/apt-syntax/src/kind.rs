@@ -1,124 +1,155 @@
 //! The kinds of tokens and nodes of the tree.
 
-/// Makes the enumeration of kinds and the table of all of them, which is at the index of their number, from one list.
+/// Makes the enumeration of kinds, that of the kinds of elements, which are some of them, and the table of all of them,
+/// which is at the index of their number, from one list.
 macro_rules! syntax_kinds {
-    ($($(#[$doc:meta])* $kind:ident,)*) => {
+    (
+        trivia { $($(#[$trivia_doc:meta])* $trivia:ident,)* }
+        elements { $($(#[$element_doc:meta])* $element:ident,)* }
+        others { $($(#[$doc:meta])* $kind:ident,)* }
+    ) => {
         /// What a token or node is.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u16)]
         pub enum SyntaxKind {
+            $($(#[$trivia_doc])* $trivia,)*
+            $($(#[$element_doc])* $element,)*
             $($(#[$doc])* $kind,)*
         }
 
+        /// The kind of an element of a statement.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum ElementKind {
+            $($(#[$element_doc])* $element,)*
+        }
+
+        impl From<ElementKind> for SyntaxKind {
+            /// The kind of token in which an element is written.
+            fn from(kind: ElementKind) -> SyntaxKind {
+                match kind {
+                    $(ElementKind::$element => SyntaxKind::$element,)*
+                }
+            }
+        }
+
         /// All kinds, at the index of their number.
-        const ALL: &[SyntaxKind] = &[$(SyntaxKind::$kind,)*];
+        const ALL: &[SyntaxKind] = &[
+            $(SyntaxKind::$trivia,)*
+            $(SyntaxKind::$element,)*
+            $(SyntaxKind::$kind,)*
+        ];
     };
 }
 
 syntax_kinds! {
     // Tokens without meaning for the statement.
-    /// Blanks and tabs.
-    Whitespace,
-    /// A line end.
-    LineEnd,
-    /// `$$` and what follows, or the commentary after a continuation sign.
-    Comment,
-    /// The `$` that continues the statement on the next record.
-    Continuation,
-    /// Columns 73 and later of a card.
-    SequenceField,
-    // Elements.
-    /// A name.
-    Name,
-    /// A vocabulary word.
-    Word,
-    /// A number.
-    Number,
-    /// `,`
-    Comma,
-    /// `/`
-    Slash,
-    /// `=`
-    Equals,
-    /// `(`
-    LeftParenthesis,
-    /// `)`
-    RightParenthesis,
-    /// `+`
-    Plus,
-    /// `-`
-    Minus,
-    /// `*`
-    Star,
-    /// `**`
-    Power,
-    /// The text of a text statement, or quoted text.
-    Text,
-    /// `.EQ.` and the like.
-    Relation,
-    /// A character outside the set, or a malformed number.
-    Bad,
-    /// `;` between two statements.
-    Semicolon,
-    // Nodes.
-    /// The whole document.
-    Root,
-    /// One statement with its line end.
-    Statement,
-    /// An element that is written in several pieces.
-    Split,
-    /// `label)`.
-    Label,
-    /// PARTNO and its kin.
-    TextStatement,
-    /// `A=3`.
-    Assignment,
-    /// `P=POINT/…`.
-    Definition,
-    /// `M=MACRO/…`.
-    MacroHeader,
-    /// A macro variable with its value.
-    MacroParameter,
-    /// `CALL/…`.
-    Call,
-    /// `IF(…)…`.
-    If,
-    /// `DO/…`.
-    Do,
-    /// `JUMPTO/…`.
-    Jump,
-    /// Any other major word.
-    Major,
-    /// `OBTAIN,…`.
-    Obtain,
-    /// `TYPE/…`.
-    DefinitionBody,
-    /// A list of parameters.
-    ParameterList,
-    /// `(POINT/…)`.
-    Nested,
-    /// `(1,2)`.
-    NestedPoint,
-    /// `A(1,THRU,3)`.
-    Inclusive,
-    /// A name with its subscript.
-    Reference,
-    /// A parenthesised subscript.
-    Subscript,
-    /// A sign with its operand.
-    Signed,
-    /// Operands and the operators between them: of one rank, or a power.
-    Binary,
-    /// A function with its arguments.
-    FunctionCall,
-    /// `(e)`.
-    Parenthesised,
-    /// `(A=e)`.
-    NestedAssignment,
-    /// A logical condition.
-    Condition,
-    /// What could not be read.
-    Error,
+    trivia {
+        /// Blanks and tabs.
+        Whitespace,
+        /// A line end.
+        LineEnd,
+        /// `$$` and what follows, or the commentary after a continuation sign.
+        Comment,
+        /// The `$` that continues the statement on the next record.
+        Continuation,
+        /// Columns 73 and later of a card.
+        SequenceField,
+    }
+    elements {
+        /// A name.
+        Name,
+        /// A vocabulary word.
+        Word,
+        /// A number.
+        Number,
+        /// `,`
+        Comma,
+        /// `/`
+        Slash,
+        /// `=`
+        Equals,
+        /// `(`
+        LeftParenthesis,
+        /// `)`
+        RightParenthesis,
+        /// `+`
+        Plus,
+        /// `-`
+        Minus,
+        /// `*`
+        Star,
+        /// `**`
+        Power,
+        /// The text of a text statement, or quoted text.
+        Text,
+        /// `.EQ.` and the like.
+        Relation,
+        /// A character outside the set, or a malformed number.
+        Bad,
+    }
+    others {
+        /// `;` between two statements.
+        Semicolon,
+        // Nodes.
+        /// The whole document.
+        Root,
+        /// One statement with its line end.
+        Statement,
+        /// An element that is written in several pieces.
+        Split,
+        /// `label)`.
+        Label,
+        /// PARTNO and its kin.
+        TextStatement,
+        /// `A=3`.
+        Assignment,
+        /// `P=POINT/…`.
+        Definition,
+        /// `M=MACRO/…`.
+        MacroHeader,
+        /// A macro variable with its value.
+        MacroParameter,
+        /// `CALL/…`.
+        Call,
+        /// `IF(…)…`.
+        If,
+        /// `DO/…`.
+        Do,
+        /// `JUMPTO/…`.
+        Jump,
+        /// Any other major word.
+        Major,
+        /// `OBTAIN,…`.
+        Obtain,
+        /// `TYPE/…`.
+        DefinitionBody,
+        /// A list of parameters.
+        ParameterList,
+        /// `(POINT/…)`.
+        Nested,
+        /// `(1,2)`.
+        NestedPoint,
+        /// `A(1,THRU,3)`.
+        Inclusive,
+        /// A name with its subscript.
+        Reference,
+        /// A parenthesised subscript.
+        Subscript,
+        /// A sign with its operand.
+        Signed,
+        /// Operands and the operators between them: of one rank, or a power.
+        Binary,
+        /// A function with its arguments.
+        FunctionCall,
+        /// `(e)`.
+        Parenthesised,
+        /// `(A=e)`.
+        NestedAssignment,
+        /// A logical condition.
+        Condition,
+        /// What could not be read.
+        Error,
+    }
 }
 
 impl SyntaxKind {

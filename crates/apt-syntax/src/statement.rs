@@ -7,6 +7,7 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
+pub use crate::kind::ElementKind;
 use crate::vocabulary::Word;
 
 /// A name as written (upper case, blanks removed).
@@ -346,29 +347,6 @@ pub struct Element {
     pub text: SmolStr,
     /// Where it stands, relative to the start of the statement.
     pub range: TextRange,
-}
-
-/// The kind of an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
-pub enum ElementKind {
-    Name,
-    Word,
-    Number,
-    Comma,
-    Slash,
-    Equals,
-    LeftParenthesis,
-    RightParenthesis,
-    Plus,
-    Minus,
-    Star,
-    Power,
-    Text,
-    /// `.EQ.` and the like.
-    Relation,
-    /// A character outside the set, or a malformed number.
-    Bad,
 }
 
 impl Name {

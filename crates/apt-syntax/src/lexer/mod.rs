@@ -274,27 +274,6 @@ impl Lexer<'_> {
     }
 }
 
-/// The kind of token in which an element is written.
-fn token_kind(kind: ElementKind) -> SyntaxKind {
-    match kind {
-        ElementKind::Name => SyntaxKind::Name,
-        ElementKind::Word => SyntaxKind::Word,
-        ElementKind::Number => SyntaxKind::Number,
-        ElementKind::Comma => SyntaxKind::Comma,
-        ElementKind::Slash => SyntaxKind::Slash,
-        ElementKind::Equals => SyntaxKind::Equals,
-        ElementKind::LeftParenthesis => SyntaxKind::LeftParenthesis,
-        ElementKind::RightParenthesis => SyntaxKind::RightParenthesis,
-        ElementKind::Plus => SyntaxKind::Plus,
-        ElementKind::Minus => SyntaxKind::Minus,
-        ElementKind::Star => SyntaxKind::Star,
-        ElementKind::Power => SyntaxKind::Power,
-        ElementKind::Text => SyntaxKind::Text,
-        ElementKind::Relation => SyntaxKind::Relation,
-        ElementKind::Bad => SyntaxKind::Bad,
-    }
-}
-
 /// Puts blanks and comments and the pieces of elements in order: what lies between two trivia tokens belongs to the
 /// elements, whose boundaries divide it.
 fn merge_tokens(text: &str, trivia: &[Token], lexed: &mut Lexed) {
@@ -308,7 +287,7 @@ fn merge_tokens(text: &str, trivia: &[Token], lexed: &mut Lexed) {
             offset = token.range.end();
             tokens.push(token);
         }
-        let kind = token_kind(element.kind);
+        let kind = SyntaxKind::from(element.kind);
         let first = tokens.len();
         offset = offset.max(element.range.start());
         while offset < element.range.end() {
