@@ -1,5 +1,7 @@
 //! `apt-lsp fmt`: in place, as a check, from standard input; and the settings that it obeys.
 
+#![allow(clippy::unwrap_used, reason = "a failure here is the failure of a test")]
+
 mod support;
 
 use support::{Folder, run_in};

@@ -159,8 +159,11 @@ fn read(tree: &SyntaxTree, view: &StatementView, list: &mut Vec<Allowance>) {
     }
 }
 
-/// The word and the codes of a comment that allows something, with their places in the comment.
-fn codes_of(comment: &str) -> Option<(&'static str, Vec<(String, Range<usize>)>)> {
+/// A code with its place in a comment.
+type Named = (String, Range<usize>);
+
+/// The word and the codes of a comment that allows something.
+fn codes_of(comment: &str) -> Option<(&'static str, Vec<Named>)> {
     let after = comment.find(ADDRESS)? + ADDRESS.len();
     let before = comment.get(..after - ADDRESS.len())?;
     if !before.chars().all(|character| matches!(character, '$' | ' ' | '\t')) {

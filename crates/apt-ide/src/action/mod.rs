@@ -154,7 +154,10 @@ fn fix_all(found: &[Diagnostic]) -> Option<Action> {
     for fix in fixes {
         let start = fix.first().map_or(0, |(range, _)| range.start);
         // Two insertions at one place would have no order.
-        if edits.last().is_none_or(|(range, _)| range.end < start || (range.end == start && !range.is_empty())) {
+        if edits
+            .last()
+            .is_none_or(|(range, _)| range.end < start || (range.end == start && !range.is_empty()))
+        {
             edits.extend(fix.iter().cloned());
         }
     }

@@ -36,7 +36,7 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
     let index = (origin.isn.max(1) as usize - 1).min(tree.statement_count() - 1);
     let view = tree.statement(index);
     let here = Here { tree, parsed: view.parsed(), view, origin };
-    let fixes = match &finding.kind {
+    match &finding.kind {
         FindingKind::Syntax(kind) => here.syntax(kind),
         FindingKind::Undefined { name, similar }
         | FindingKind::UnknownLabel { name, similar }
@@ -62,8 +62,7 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
             here.line_before("CANON/ON", format!("Allow {name} to be defined again")).into_iter().collect()
         }
         _ => Vec::new(),
-    };
-    fixes
+    }
 }
 
 pub(crate) use motion::of_run;
