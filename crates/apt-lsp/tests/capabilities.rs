@@ -47,7 +47,7 @@ fn lines(places: &Value) -> Vec<u64> {
 /// One question for each announced provider, with a check of its answer.
 type Probe = (&'static str, fn(&mut Server));
 
-const PROBES: [Probe; 19] = [
+const PROBES: [Probe; 22] = [
     ("textDocumentSync", |server| {
         server.change(URI, 2, 9, 5, 6, "7");
         assert!(server.tree(URI).contains("\"7\""));
@@ -84,6 +84,28 @@ const PROBES: [Probe; 19] = [
         let answer = server.ask("textDocument/documentHighlight", place(5, 8)).unwrap();
         assert_eq!(lines(&answer), [4, 5, 8]);
     }),
+    ("workspaceSymbolProvider", |server| {
+        let answer = server.ask("workspace/symbol", json!({ "query": "p1" })).unwrap();
+        let names: Vec<_> = answer.as_array().unwrap().iter().map(|one| one["name"].clone()).collect();
+        assert!(names.contains(&json!("P1")) && !names.contains(&json!("M1")), "{answer}");
+    }),
+    ("selectionRangeProvider", |server| {
+        let mut params = whole();
+        params["positions"] = json!([{ "line": 3, "character": 10 }]);
+        let answer = server.ask("textDocument/selectionRange", params).unwrap();
+        assert_eq!(answer[0]["range"]["start"]["character"], 9);
+        assert_eq!(answer[0]["parent"]["range"]["start"]["character"], 9);
+        assert_eq!(answer[0]["parent"]["parent"]["range"]["start"]["character"], 3);
+    }),
+    ("inlayHintProvider", |server| {
+        let uri = "file:///nowhere/values.apt";
+        server.open(uri, "A=2\nB=A*3\nFINI\n");
+        let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 2, "character": 0 } });
+        let answer =
+            server.ask("textDocument/inlayHint", json!({ "textDocument": { "uri": uri }, "range": range }));
+        let answer = answer.unwrap();
+        assert_eq!((&answer[0]["label"], &answer[0]["position"]["line"]), (&json!("= 6"), &json!(1)));
+    }),
     ("documentLinkProvider", |server| {
         // The files of other programs are in the tests of inclusions.
         assert_eq!(server.ask("textDocument/documentLink", whole()).unwrap(), json!([]));
@@ -112,7 +134,8 @@ const PROBES: [Probe; 19] = [
         let uri = "file:///nowhere/misspelt.apt";
         server.open(uri, "PNT1=POINT/1,2\nGOTO/PNT2");
         let place = json!({ "start": { "line": 1, "character": 6 }, "end": { "line": 1, "character": 6 } });
-        let mut params = json!({ "textDocument": { "uri": uri }, "range": place, "context": { "diagnostics": [] } });
+        let mut params =
+            json!({ "textDocument": { "uri": uri }, "range": place, "context": { "diagnostics": [] } });
         let actions = server.ask("textDocument/codeAction", params.clone()).unwrap();
         let titles: Vec<_> = actions.as_array().unwrap().iter().map(|one| one["title"].clone()).collect();
         assert_eq!(titles[..2], ["Add FINI", "Replace PNT2 by PNT1"]);
@@ -134,17 +157,21 @@ const PROBES: [Probe; 19] = [
     ("documentFormattingProvider", |server| {
         let uri = "file:///nowhere/style.apt";
         server.open(uri, "p1 = point/1,2\nGOTO/P1\nFINI\n");
-        let mut params = json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
+        let mut params =
+            json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
         let edits = server.ask("textDocument/formatting", params.clone()).unwrap();
         assert_eq!(lines(&edits), [0, 0, 0, 0]);
         assert_eq!(edits[0]["newText"], "P");
-        params["range"] = json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 2, "character": 0 } });
+        params["range"] =
+            json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 2, "character": 0 } });
         assert_eq!(server.ask("textDocument/rangeFormatting", params).unwrap(), json!([]));
     }),
     ("documentRangeFormattingProvider", |server| {
         let uri = "file:///nowhere/style.apt";
-        let mut params = json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
-        params["range"] = json!({ "start": { "line": 0, "character": 3 }, "end": { "line": 0, "character": 4 } });
+        let mut params =
+            json!({ "textDocument": { "uri": uri }, "options": { "tabSize": 8, "insertSpaces": true } });
+        params["range"] =
+            json!({ "start": { "line": 0, "character": 3 }, "end": { "line": 0, "character": 4 } });
         let edits = server.ask("textDocument/rangeFormatting", params).unwrap();
         assert_eq!(lines(&edits), [0, 0, 0, 0]);
     }),

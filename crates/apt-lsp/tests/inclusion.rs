@@ -113,6 +113,12 @@ fn names_lead_from_one_file_to_the_other() {
         assert_eq!(help["signatures"][0]["label"], "CALL/HOLE,PX,DP=2");
     }
     // From the library to the program that includes it.
+    let hover = server.ask("textDocument/hover", place(&project.library, 3, 5)).unwrap();
+    let value = hover["contents"]["value"].as_str().unwrap();
+    assert!(
+        value.contains("variable `PX` of macro `HOLE`") && value.contains("`SAFE` at statement 6"),
+        "{value}"
+    );
     let mut question = place(&project.library, 1, 1);
     question["context"] = json!({ "includeDeclaration": false });
     let references = server.ask("textDocument/references", question).unwrap();

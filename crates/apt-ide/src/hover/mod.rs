@@ -14,7 +14,10 @@ use apt_syntax::{
 
 pub use canonical::{CanonicalForm, number};
 
-use crate::{Analysis, Cancel, Cancelled, absolute};
+use crate::{
+    Analysis, Cancel, Cancelled, absolute,
+    navigation::{Spot, statement_at},
+};
 
 /// A hover.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,20 +35,30 @@ impl Analysis {
     ///
     /// [`Cancelled`] when `cancel` said so before the answer was found.
     pub fn hover(&self, offset: usize, cancel: Cancel<'_>) -> Result<Option<Hover>, Cancelled> {
-        let Some((view, relative)) = self.statement_at(offset) else { return Ok(None) };
+        self.hover_at(Spot { file: None, offset }, cancel)
+    }
+
+    /// What is to be said about a place in one of the files of the program; the range is one of that file.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the answer was found.
+    pub fn hover_at(&self, spot: Spot<'_>, cancel: Cancel<'_>) -> Result<Option<Hover>, Cancelled> {
+        let Some(file) = self.files().iter().find(|file| file.is(spot.file)) else { return Ok(None) };
+        let Some((view, relative)) = statement_at(&file.tree, spot.offset) else { return Ok(None) };
         let parsed = view.parsed();
         let Some(element) = element_at(&parsed.elements, relative) else { return Ok(None) };
         let range = absolute(&view, element.range);
         let markdown = match element.kind {
             ElementKind::Word => match lookup(&element.text) {
-                Some(word) if matches!(word.class, WordClass::Motion) => {
+                Some(word) if matches!(word.class, WordClass::Motion) && spot.file.is_none() => {
                     let result = self.motion_markdown(view.isn(), cancel)?;
                     format!("{result}{}", word_markdown(word))
                 }
                 Some(word) => word_markdown(word),
                 None => return Ok(None),
             },
-            ElementKind::Name => match self.name_markdown(offset, view.isn(), cancel)? {
+            ElementKind::Name => match self.name_markdown(spot, view.isn(), cancel)? {
                 Some(markdown) => markdown,
                 None => return Ok(None),
             },
@@ -66,21 +79,53 @@ impl Analysis {
     ) -> Result<Option<CanonicalForm>, Cancelled> {
         let Some((view, _)) = self.statement_at(offset) else { return Ok(None) };
         let Some(at) = self.name_at(offset) else { return Ok(None) };
+        let subscript = self.subscript_at(Spot { file: None, offset }, view.isn(), cancel)?;
         Ok(self
-            .value_at(&at.name, view.isn(), cancel)?
+            .value_at(&at.name, subscript, view.isn(), cancel)?
             .map(|(name, value)| CanonicalForm::new(&name, &value)))
     }
 
-    /// The value of a name at a statement: the last one given up to it, else the first one given after it.
+    /// The subscript behind the name at a place, if it is a number or a name with a value.
+    fn subscript_at(&self, spot: Spot<'_>, isn: u32, cancel: Cancel<'_>) -> Result<Option<u32>, Cancelled> {
+        let file = self.files().iter().find(|file| file.is(spot.file));
+        let Some((view, relative)) = file.and_then(|file| statement_at(&file.tree, spot.offset)) else {
+            return Ok(None);
+        };
+        let parsed = view.parsed();
+        let inside = |element: &Element| element.range.contains_inclusive(relative);
+        let at = parsed.elements.iter().position(|one| one.kind == ElementKind::Name && inside(one));
+        let Some([_, open, index, close]) = at.and_then(|at| parsed.elements.get(at..at + 4)) else {
+            return Ok(None);
+        };
+        if open.kind != ElementKind::LeftParenthesis || close.kind != ElementKind::RightParenthesis {
+            return Ok(None);
+        }
+        let value = match index.kind {
+            ElementKind::Number => index.text.parse().ok(),
+            ElementKind::Name => match self.value_at(&index.text, None, isn, cancel)? {
+                Some((_, Value::Scalar(value))) => Some(value),
+                _ => None,
+            },
+            _ => None,
+        };
+        Ok(value.filter(|value| (1.0..=f64::from(u32::MAX)).contains(value)).map(|value: f64| value as u32))
+    }
+
+    /// The value of a name, or of the element of an array with a subscript, at a statement: the last one given up to it,
+    /// else the first one given after it.
     fn value_at(
         &self,
         name: &str,
+        subscript: Option<u32>,
         isn: u32,
         cancel: Cancel<'_>,
     ) -> Result<Option<(String, Value)>, Cancelled> {
         let program = self.program(cancel)?;
         let mut found = None;
-        for event in program.definitions().filter(|event| event.name == name) {
+        let wanted = |event: &&DefinitionEvent| {
+            event.name == name && (subscript.is_none() || event.subscript == subscript)
+        };
+        for event in program.definitions().filter(wanted) {
             // What an included file defines, the statement that includes it does.
             if event.origin.place_in_program().0 > isn && found.is_some() {
                 break;
@@ -96,19 +141,24 @@ impl Analysis {
 
     fn name_markdown(
         &self,
-        offset: usize,
+        spot: Spot<'_>,
         isn: u32,
         cancel: Cancel<'_>,
     ) -> Result<Option<String>, Cancelled> {
-        let Some(at) = self.name_at(offset) else { return Ok(None) };
+        let Some(at) = self.name_at_spot(spot) else { return Ok(None) };
+        // In an included file every value counts that the program gives.
+        let until = if spot.file.is_none() { isn } else { u32::MAX };
+        let subscript = self.subscript_at(spot, until, cancel)?;
         if at.label {
             return Ok(Some(format!("label `{}`", at.name)));
         }
         if at.scope.statements.is_none()
-            && let Some((name, value)) = self.value_at(&at.name, isn, cancel)?
+            && let Some((name, value)) = self.value_at(&at.name, subscript, until, cancel)?
         {
             let mut markdown = CanonicalForm::new(&name, &value).markdown();
-            markdown.push_str(&self.turns_markdown(&at.name, isn, cancel)?);
+            if spot.file.is_none() {
+                markdown.push_str(&self.turns_markdown(&at.name, isn, cancel)?);
+            }
             return Ok(Some(markdown));
         }
         for file in self.files() {

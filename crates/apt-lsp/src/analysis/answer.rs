@@ -11,6 +11,7 @@ pub(crate) use apt_ide::completion::{Completion, CompletionKind};
 pub(crate) use apt_ide::files::Inclusion;
 pub(crate) use apt_ide::folding::{Fold, FoldKind};
 pub(crate) use apt_ide::hover::{CanonicalForm, Hover};
+pub(crate) use apt_ide::inlay::Inlay;
 pub(crate) use apt_ide::lens::Lens;
 pub(crate) use apt_ide::navigation::{Located, Occurrence, Spot};
 pub(crate) use apt_ide::outline::{OutlineEntry, OutlineKind};

@@ -198,8 +198,7 @@ impl Document for Program {
         let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
         let stands =
             |one: &&found::Diagnostic| one.origin.source.as_ref().is_some_and(|source| source.path == file);
-        let mut inside: Vec<_> =
-            all.iter().filter(stands).map(|one| self.diagnostic_inside(one)).collect();
+        let mut inside: Vec<_> = all.iter().filter(stands).map(|one| self.diagnostic_inside(one)).collect();
         inside.sort_by_key(|one| one.range.start);
         inside.dedup_by(|one, other| one.range == other.range && one.code == other.code);
         Ok(inside)
@@ -226,8 +225,16 @@ impl Document for Program {
         Ok(Worst { left_out: all.len() - diagnostics.len(), diagnostics })
     }
 
-    fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>> {
-        Ok(with(control, "", |cancel, _| self.0.hover(offset, cancel))?)
+    fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>> {
+        Ok(with(control, "", |cancel, _| self.0.hover_at(spot, cancel))?)
+    }
+
+    fn inlays(&self, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>> {
+        Ok(with(control, "", |cancel, _| self.0.inlays(range, cancel))?)
+    }
+
+    fn selections(&self, offset: usize) -> Vec<Range<usize>> {
+        self.0.selections(offset)
     }
 
     fn completions(&self, offset: usize) -> Vec<Completion> {
@@ -350,7 +357,8 @@ impl Document for Program {
         }
         if request.story {
             let range = request.range.clone();
-            let stories = with(control, "telling", |cancel, progress| self.0.stories(range, cancel, progress))?;
+            let stories =
+                with(control, "telling", |cancel, progress| self.0.stories(range, cancel, progress))?;
             let motions = report["motions"].as_array_mut().into_iter().flatten();
             for (motion, story) in motions.zip(stories) {
                 if let Some(fields) = motion.as_object_mut() {

@@ -125,7 +125,18 @@ impl Document for FakeDocument {
         Ok(self.places("BAD").into_iter().map(finding).collect())
     }
 
-    fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>> {
+    fn inlays(&self, range: Range<usize>, _: &Control) -> Answer<Vec<Inlay>> {
+        let inlay =
+            |place: Range<usize>| Inlay { offset: place.end, text: "= 1".into(), tooltip: "toy".into() };
+        Ok(self.places("BAD").into_iter().filter(|place| range.contains(&place.start)).map(inlay).collect())
+    }
+
+    fn selections(&self, offset: usize) -> Vec<Range<usize>> {
+        self.word_at(offset).into_iter().chain([0..self.text.len()]).collect()
+    }
+
+    fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>> {
+        let offset = spot.offset;
         if self.text.contains("SLOWHOVER") {
             self.slow(control)?;
         }
@@ -239,7 +250,8 @@ impl Document for FakeDocument {
         control: &Control,
     ) -> Answer<Vec<Action>> {
         let found = self.diagnostics(level, control)?;
-        let here = found.into_iter().filter(|one| one.range.start <= range.end && one.range.end >= range.start);
+        let here =
+            found.into_iter().filter(|one| one.range.start <= range.end && one.range.end >= range.start);
         let removal = |kind, finding: &Diagnostic| Action {
             title: "Remove BAD".to_owned(),
             kind,
@@ -247,7 +259,9 @@ impl Document for FakeDocument {
             preferred: true,
             settles: (kind == ActionKind::QuickFix).then(|| finding.clone()),
         };
-        Ok(here.flat_map(|one| wanted.iter().map(move |kind| removal(*kind, &one)).collect::<Vec<_>>()).collect())
+        Ok(here
+            .flat_map(|one| wanted.iter().map(move |kind| removal(*kind, &one)).collect::<Vec<_>>())
+            .collect())
     }
 
     fn format(&self, range: Option<Range<usize>>) -> Formatting {

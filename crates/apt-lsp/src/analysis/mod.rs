@@ -81,8 +81,14 @@ pub(crate) trait Document: Send + Sync {
         Ok(Worst { diagnostics, left_out })
     }
 
-    /// What stands at an offset, explained.
-    fn hover(&self, offset: usize, control: &Control) -> Answer<Option<Hover>>;
+    /// What stands at a place, explained.
+    fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>>;
+
+    /// The values that the statements in a range compute.
+    fn inlays(&self, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>>;
+
+    /// What can be selected around an offset, from the least to the whole.
+    fn selections(&self, offset: usize) -> Vec<Range<usize>>;
 
     /// What could be written at an offset.
     fn completions(&self, offset: usize) -> Vec<Completion>;

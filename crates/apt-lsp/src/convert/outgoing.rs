@@ -3,18 +3,18 @@
 use tower_lsp::ls_types::{self as lsp, Uri};
 
 use super::{Places, TextIndex, Uris};
-use crate::analysis::{Action, Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover, Inclusion, Lens, Occurrence, OriginFrame, OutlineEntry, OutlineKind, Severity, Signature, SignatureHelp, TextEdit};
+use crate::analysis::{
+    Action, Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover,
+    Inclusion, Inlay, Lens, Occurrence, OriginFrame, OutlineEntry, OutlineKind, Severity, Signature,
+    SignatureHelp, TextEdit,
+};
 
 /// Who found it, as editors show it.
 pub(crate) const SOURCE: &str = "apt";
 
 /// A finding. Hints become part of the message, since the protocol has no place for them; origins
 /// and related places become related information.
-pub(crate) fn diagnostic(
-    index: &TextIndex,
-    places: &mut Places<'_>,
-    found: &Diagnostic,
-) -> lsp::Diagnostic {
+pub(crate) fn diagnostic(index: &TextIndex, places: &mut Places<'_>, found: &Diagnostic) -> lsp::Diagnostic {
     let message = match &found.hint {
         Some(hint) => format!("{}\nhelp: {hint}", found.message),
         None => found.message.clone(),
@@ -182,7 +182,9 @@ pub(crate) fn action(index: &TextIndex, uri: &Uri, version: Option<i32>, found: 
     lsp::CodeAction {
         title: found.title,
         kind: Some(lsp::CodeActionKind::new(found.kind.name())),
-        diagnostics: found.settles.map(|finding| vec![diagnostic(index, &mut Places::new(uri, index, &Uris::default()), &finding)]),
+        diagnostics: found
+            .settles
+            .map(|finding| vec![diagnostic(index, &mut Places::new(uri, index, &Uris::default()), &finding)]),
         edit: Some(change),
         is_preferred: found.preferred.then_some(true),
         ..lsp::CodeAction::default()
@@ -201,6 +203,47 @@ pub(crate) fn links(index: &TextIndex, uris: &Uris, found: Vec<Inclusion>) -> Ve
         })
     };
     found.into_iter().filter_map(link).collect()
+}
+
+/// Values behind statements.
+pub(crate) fn inlays(index: &TextIndex, found: Vec<Inlay>) -> Vec<lsp::InlayHint> {
+    let convert = |one: Inlay| lsp::InlayHint {
+        position: index.range(&(one.offset..one.offset)).start,
+        label: lsp::InlayHintLabel::String(one.text),
+        kind: None,
+        text_edits: None,
+        tooltip: Some(lsp::InlayHintTooltip::MarkupContent(markdown(one.tooltip))),
+        padding_left: Some(true),
+        padding_right: None,
+        data: None,
+    };
+    found.into_iter().map(convert).collect()
+}
+
+/// What can be selected around a place; nothing around it selects nothing there.
+pub(crate) fn selection(
+    index: &TextIndex,
+    offset: usize,
+    found: &[std::ops::Range<usize>],
+) -> lsp::SelectionRange {
+    let around = |parent: Option<Box<lsp::SelectionRange>>, range: &std::ops::Range<usize>| {
+        Some(Box::new(lsp::SelectionRange { range: index.range(range), parent }))
+    };
+    let nothing = || lsp::SelectionRange { range: index.range(&(offset..offset)), parent: None };
+    found.iter().rev().fold(None, around).map_or_else(nothing, |least| *least)
+}
+
+/// The entries of an outline, at any depth, whose names contain a text in any letters.
+pub(crate) fn symbols_named(
+    index: &TextIndex,
+    uri: &Uri,
+    found: Vec<OutlineEntry>,
+    wanted: &str,
+) -> Vec<lsp::SymbolInformation> {
+    let wanted = wanted.to_ascii_uppercase();
+    let mut all = flat_symbols(index, uri, found);
+    all.retain(|one| one.name.to_ascii_uppercase().contains(&wanted));
+    all
 }
 
 /// An edit.

@@ -296,7 +296,9 @@ impl LanguageServer for Backend {
 
     async fn hover(&self, params: lsp::HoverParams) -> Result<Option<lsp::Hover>> {
         self.ask_at("hover", params.text_document_position_params, |snapshot, offset, control| {
-            let found = snapshot.document.hover(offset, control)?;
+            let file = snapshot.included_path();
+            let spot = Spot { file: file.as_deref(), offset };
+            let found = snapshot.program().document.hover(spot, control)?;
             Ok(found.map(|found| outgoing::hover(&snapshot.index, found)))
         })
         .await
@@ -403,6 +405,49 @@ impl LanguageServer for Backend {
             }))
         })
         .await
+    }
+
+    async fn inlay_hint(&self, params: lsp::InlayHintParams) -> Result<Option<Vec<lsp::InlayHint>>> {
+        let range = params.range;
+        self.ask("inlay hints", params.text_document.uri, move |snapshot, control| {
+            let found = snapshot.document.inlays(snapshot.index.bytes(range), control)?;
+            Ok(Some(outgoing::inlays(&snapshot.index, found)))
+        })
+        .await
+    }
+
+    async fn selection_range(
+        &self,
+        params: lsp::SelectionRangeParams,
+    ) -> Result<Option<Vec<lsp::SelectionRange>>> {
+        let positions = params.positions;
+        self.ask("selection ranges", params.text_document.uri, move |snapshot, _| {
+            let selection = |position: lsp::Position| {
+                let offset = snapshot.index.offset(position);
+                outgoing::selection(&snapshot.index, offset, &snapshot.document.selections(offset))
+            };
+            Ok(Some(positions.into_iter().map(selection).collect()))
+        })
+        .await
+    }
+
+    async fn symbol(
+        &self,
+        params: lsp::WorkspaceSymbolParams,
+    ) -> Result<Option<lsp::WorkspaceSymbolResponse>> {
+        /// Symbols of one answer; nobody reads more, and a longer query finds fewer.
+        const MOST_SYMBOLS: usize = 1_000;
+        let mut found: Vec<lsp::SymbolInformation> = Vec::new();
+        for snapshot in job::snapshots(&self.events).await? {
+            let query = params.query.clone();
+            let named = job::on_snapshot("workspace symbols", snapshot, move |snapshot, _| {
+                let outline = snapshot.document.outline();
+                Ok::<_, Refusal>(outgoing::symbols_named(&snapshot.index, &snapshot.uri, outline, &query))
+            });
+            found.extend(named.await?);
+        }
+        found.truncate(MOST_SYMBOLS);
+        Ok(Some(found.into()))
     }
 
     async fn document_link(&self, params: lsp::DocumentLinkParams) -> Result<Option<Vec<lsp::DocumentLink>>> {

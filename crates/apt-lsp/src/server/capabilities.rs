@@ -118,6 +118,9 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
         }),
         document_highlight_provider: Some(lsp::OneOf::Left(true)),
         document_symbol_provider: Some(lsp::OneOf::Left(true)),
+        workspace_symbol_provider: Some(lsp::OneOf::Left(true)),
+        selection_range_provider: Some(lsp::SelectionRangeProviderCapability::Simple(true)),
+        inlay_hint_provider: Some(lsp::OneOf::Left(true)),
         document_link_provider: Some(lsp::DocumentLinkOptions {
             resolve_provider: None,
             work_done_progress_options: lsp::WorkDoneProgressOptions::default(),
@@ -182,6 +185,7 @@ mod tests {
                 "openClose": true,
                 "change": 2
               },
+              "selectionRangeProvider": true,
               "hoverProvider": true,
               "completionProvider": {
                 "triggerCharacters": [
@@ -201,6 +205,7 @@ mod tests {
               "referencesProvider": true,
               "documentHighlightProvider": true,
               "documentSymbolProvider": true,
+              "workspaceSymbolProvider": true,
               "codeLensProvider": {},
               "documentFormattingProvider": true,
               "documentRangeFormattingProvider": true,
@@ -243,7 +248,8 @@ mod tests {
                 "full": {
                   "delta": true
                 }
-              }
+              },
+              "inlayHintProvider": true
             }"#]]
         .assert_eq(&announced);
     }

@@ -53,6 +53,8 @@ pub(super) enum Event {
     Closed(Uri),
     /// Somebody wants to see a document as it is now; none if it is not open.
     Snapshot(Uri, oneshot::Sender<Option<Snapshot>>),
+    /// Somebody wants to see all open documents as they are now.
+    Snapshots(oneshot::Sender<Vec<Snapshot>>),
     /// Findings are ready; they are told if they are still about the present text.
     Found {
         /// The document.
@@ -193,6 +195,11 @@ impl Documents {
             Event::Snapshot(uri, reply) => {
                 let snapshot = self.snapshot(&uri);
                 let _ = reply.send(snapshot);
+            }
+            Event::Snapshots(reply) => {
+                let uris: Vec<Uri> = self.open.keys().cloned().collect();
+                let all = uris.iter().filter_map(|uri| self.plain_snapshot(uri)).collect();
+                let _ = reply.send(all);
             }
             Event::Found { uri, revision, diagnostics } => self.tell(uri, revision, diagnostics),
         }

@@ -27,6 +27,13 @@ pub(super) async fn snapshot(events: &Events, uri: Uri) -> Result<Snapshot> {
     }
 }
 
+/// All open documents as they are now.
+pub(super) async fn snapshots(events: &Events) -> Result<Vec<Snapshot>> {
+    let (reply, answer) = oneshot::channel();
+    events.send(Event::Snapshots(reply)).map_err(|_| Error::internal_error())?;
+    answer.await.map_err(|_| internal_fault("reading the documents"))
+}
+
 /// Does work on the blocking pool. It is cancelled when the caller is dropped (that is what the
 /// cancelling of a request does) and when the document changes.
 pub(super) async fn on_snapshot<T: Send + 'static, E: Into<Refusal> + Send + 'static>(

@@ -133,7 +133,10 @@ async fn findings_are_settled_by_actions_for_the_version_they_are_about() {
     let actions = talk.ask("textDocument/codeAction", question.clone()).await.unwrap();
     assert_eq!(actions.as_array().unwrap().len(), 2, "a quick fix and what is written out: {actions}");
     let fix = &actions[0];
-    assert_eq!((&fix["title"], &fix["kind"], &fix["isPreferred"]), (&json!("Remove BAD"), &json!("quickfix"), &json!(true)));
+    assert_eq!(
+        (&fix["title"], &fix["kind"], &fix["isPreferred"]),
+        (&json!("Remove BAD"), &json!("quickfix"), &json!(true))
+    );
     assert_eq!(fix["diagnostics"], pushed, "the finding is told as it was pushed");
     let change = &fix["edit"]["documentChanges"][0];
     assert_eq!(change["textDocument"], json!({ "uri": URI, "version": 1 }));
