@@ -1,6 +1,7 @@
 //! Directed motions (AREPRE, ARLM2, ARLM3): from the tool's position along the drive and part surface until a check
 //! surface stops it.
 
+mod gouge;
 mod march;
 mod plane_route;
 mod prepare;
@@ -45,7 +46,11 @@ pub(crate) fn run(
     let prepared = prepare::prepare(state, turn, drive, checks, warnings)?;
     let path = match plane_route::run(state, &prepared, checks, cancel)? {
         Some(path) => path,
-        None => march::run(state, &prepared, checks, cancel)?,
+        None => march::run(state, &prepared, checks, cancel).inspect_err(|failure| {
+            if state.gouge_check {
+                warnings.extend(gouge::where_stuck(&prepared, failure));
+            }
+        })?,
     };
     sequence(state, &prepared, checks, path)
 }

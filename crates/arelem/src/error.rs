@@ -373,6 +373,16 @@ pub enum MotionWarning {
         /// Angle of the tool axis from z, radians.
         tilt: f64,
     },
+    /// GOUGCK/ON: a little ahead of where the path ends the tool would cut into a surface at another place than the one it
+    /// follows.
+    Gouge {
+        /// Part or drive surface.
+        role: RoleName,
+        /// How deep, THICK included.
+        depth: f64,
+        /// Tool end, the deepest point of the tool, and the point of the surface next to it.
+        contact: ContactPoints,
+    },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {
         /// The value.
@@ -387,7 +397,7 @@ impl MotionWarning {
             Self::WrongSideOfDrive { .. } => Some(1601),
             Self::Cutter(warning) => warning.apt3(),
             Self::AutomaticPartWithTiltedAxis { .. } => Some(3520),
-            Self::NegativeTolerance { .. } => None,
+            Self::Gouge { .. } | Self::NegativeTolerance { .. } => None,
         }
     }
 }

@@ -377,6 +377,19 @@ fn warning_text(warning: &Warning) -> Text {
             ),
         )
         .hint("give the part surface by PSIS"),
+        Warning::Gouge { role: name, depth, contact } => say(
+            "APT0665",
+            format!(
+                "going on, the tool would cut {} deep into the {} at {}",
+                number(*depth),
+                role(*name),
+                place(&contact.surface)
+            ),
+        )
+        .hint(format!(
+            "the tool end would be at {}; take a smaller tool, or stop before the narrow place",
+            place(&contact.tip)
+        )),
         Warning::NegativeTolerance { value } => {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
         }

@@ -1,0 +1,164 @@
+//! Where the tool would cut into a surface besides the contact that the path follows: in a neck, or in a corner narrower than
+//! the tool. GOUGCK/ON asks for it where no cut vector goes on.
+
+use apt_geometry::Vec3;
+
+use super::Prepared;
+use crate::{
+    clearance::Tool,
+    error::{ContactPoints, Iteration, MotionFailure, MotionWarning, RoleName},
+    role::Working,
+};
+
+/// How far ahead is looked, as a share of the tool's radius.
+const LOOK_AHEAD: f64 = 0.05;
+/// Directions around the tool in which it is measured.
+const AROUND: usize = 120;
+/// Places on the corner arc.
+const ON_ARC: usize = 6;
+/// Most places that are told.
+const MOST: usize = 4;
+
+/// A place of the tool below a surface.
+struct Cut {
+    depth: f64,
+    tool: Vec3,
+}
+
+/// What keeps the tool from going on, where a motion failed because no cut vector was found.
+pub(super) fn where_stuck(prepared: &Prepared, failure: &MotionFailure) -> Vec<MotionWarning> {
+    match failure {
+        MotionFailure::NoAdmissibleVector { role, tip, .. } => ahead(prepared, *role, tip),
+        MotionFailure::IterationLimit { iteration: Iteration::StepLength, tip, .. } => {
+            let roles = [RoleName::Part, RoleName::Drive];
+            roles.into_iter().flat_map(|role| ahead(prepared, role, tip)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The places where the tool would cut deeper than INTOL into a role's surface a little ahead of a position, the deepest
+/// first. Ahead is the way on which it cuts.
+pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<MotionWarning> {
+    let Ok(posture) = prepared.attitude.posture(tip) else { return Vec::new() };
+    let role = if name == RoleName::Part { &prepared.part } else { &prepared.drive };
+    if role.gauge.on {
+        return Vec::new();
+    }
+    let normals = [&prepared.part, &prepared.drive].map(|one| posture.contact(&one.gauge, tip).gradient);
+    let Some(tangent) = normals[0].cross(&normals[1]).try_normalize(1e-9) else { return Vec::new() };
+    let reach = LOOK_AHEAD * posture.tool.radius();
+    let deepest = |cuts: &[Cut]| cuts.first().map_or(0.0, |cut| cut.depth);
+    let ways = [reach, -reach].map(|reach| {
+        let ahead = tip + tangent * reach;
+        (ahead, cuts(&posture.tool, role, &ahead))
+    });
+    let [forward, back] = ways;
+    let (at, cuts) = if deepest(&back.1) > deepest(&forward.1) { back } else { forward };
+    let warning = |cut: Cut| {
+        let surface = role.gauge.surface.foot(&cut.tool).point;
+        let contact = ContactPoints { tip: at, tool: cut.tool, surface };
+        MotionWarning::Gouge { role: name, depth: cut.depth, contact }
+    };
+    cuts.into_iter().map(warning).collect()
+}
+
+/// The places around the tool where it is deepest below the surface.
+fn cuts(tool: &Tool, role: &Working, tip: &Vec3) -> Vec<Cut> {
+    let profile = profile(tool);
+    let around: Vec<Cut> = (0..AROUND)
+        .map(|index| {
+            let (sin, cos) = (std::f64::consts::TAU * index as f64 / AROUND as f64).sin_cos();
+            let radial = tool.across[0] * cos + tool.across[1] * sin;
+            let mut deepest = Cut { depth: f64::NEG_INFINITY, tool: *tip };
+            for (radius, height) in &profile {
+                let point = tip + radial * *radius + tool.axis * *height;
+                let above = role.gauge.side * role.gauge.surface.signed_distance(&point);
+                let depth = role.gauge.thickness - above;
+                if depth > deepest.depth {
+                    deepest = Cut { depth, tool: point };
+                }
+            }
+            deepest
+        })
+        .collect();
+    let depth = |index: usize| around.get(index % AROUND).map_or(f64::NEG_INFINITY, |cut| cut.depth);
+    let summit = |index: usize| {
+        depth(index) > role.inside
+            && depth(index) > depth(index + AROUND - 1)
+            && depth(index) >= depth(index + 1)
+    };
+    let summits: Vec<bool> = (0..AROUND).map(summit).collect();
+    let mut found: Vec<Cut> =
+        around.into_iter().zip(summits).filter_map(|(cut, summit)| summit.then_some(cut)).collect();
+    found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    found.truncate(MOST);
+    found
+}
+
+/// Places on the tool's profile: radius and height.
+fn profile(tool: &Tool) -> Vec<(f64, f64)> {
+    let profile = &tool.profile;
+    let mut places: Vec<(f64, f64)> = [profile.lower, profile.upper, profile.top]
+        .iter()
+        .map(|place| (place.radius, place.height))
+        .collect();
+    for index in 0..=ON_ARC {
+        let [from, to] = profile.fan;
+        let (sin, cos) = (from + (to - from) * index as f64 / ON_ARC as f64).sin_cos();
+        places.push((profile.center.radius + profile.arc * sin, profile.center.height - profile.arc * cos));
+    }
+    places.retain(|(radius, _)| *radius > 0.0);
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::motion::{DriveSide, MotionCommand, Relation, Turn};
+
+    use crate::{
+        error::{MotionWarning, RoleName},
+        tests::{Program, line, motion, plane, quadric},
+    };
+
+    /// A tool of radius .75 inside the ellipse x²/16 + y² = 1, whose ends have a radius of curvature of .25.
+    fn into_the_narrow_end(check: bool) -> (Program, u16) {
+        let ellipse = quadric([1.0 / 16.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[1.5]).from(0.0, 0.0, 0.0).run(&MotionCommand::GougeCheck(check));
+        p.indirv(0.0, -1.0, 0.0).go(&[(Relation::To, &ellipse), (Relation::To, &plane(0.0, 0.0, 1.0, 0.0))]);
+        let command = motion(Turn::Left, &ellipse, &[(Relation::On, 1, &line(3.9, 0.0, 3.9, 1.0))]);
+        p.side(DriveSide::Left);
+        let failure = p.attempt(&command).expect_err("the end is narrower than the tool");
+        (p, failure.apt3().expect("a number"))
+    }
+
+    #[test]
+    fn a_corner_narrower_than_the_tool_is_told_with_place_and_depth() {
+        let (p, number) = into_the_narrow_end(true);
+        assert_eq!(number, 801);
+        let gouges: Vec<_> = p
+            .warnings
+            .iter()
+            .filter_map(|warning| match warning {
+                MotionWarning::Gouge { role: RoleName::Drive, depth, contact } => Some((*depth, *contact)),
+                _ => None,
+            })
+            .collect();
+        assert!(!gouges.is_empty(), "{:?}", p.warnings);
+        for (depth, contact) in gouges {
+            assert!(depth > 0.001 && depth < 0.1, "{depth}");
+            assert!(
+                contact.surface.y.abs() > 0.5 && contact.tip.x > 0.0,
+                "at a wall of the end: {contact:?}"
+            );
+            assert!(contact.tool.y.abs() > contact.surface.y.abs(), "the tool is beyond it: {contact:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_told_unless_it_is_asked_for() {
+        let (p, number) = into_the_narrow_end(false);
+        assert_eq!((number, p.warnings.len()), (801, 0));
+    }
+}
