@@ -11,11 +11,13 @@ mod plane;
 mod poly_conic;
 mod quadric;
 mod ruled;
+mod tabulated;
 mod transform;
 mod values;
 
 pub use poly_conic::PolyConicForm;
 pub use ruled::{RuledCurve, RuledEnd};
+pub use tabulated::Joint;
 pub use transform::TransformError;
 pub use values::CanonicalError;
 

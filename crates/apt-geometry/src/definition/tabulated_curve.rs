@@ -226,17 +226,22 @@ fn four_point(places: &[Vec3], chords: &[Chord]) -> Result<Cubics, Impossible> {
 fn spline_tangents(chords: &[Chord], given: &[Option<Vec3>], start: &[Vec3]) -> Vec<Vec3> {
     let mut relaxed = start.to_vec();
     let converged = relax(chords, given, &mut relaxed).unwrap_or(false);
-    let steepest = STEEPEST.cos();
-    let upright = chords
-        .iter()
-        .zip(relaxed.windows(2))
-        .any(|(chord, ends)| ends.iter().any(|direction| chord.along.dot(direction).abs() < steepest));
-    if converged && !upright {
+    let runaway = (0..relaxed.len()).any(|point| ran_away(chords, &relaxed, point));
+    if converged && !runaway {
         return relaxed;
     }
     // Where there is no such curve, one without corners is left; the jumps of curvature show in the finished curve.
-    let otherwise = if upright { start.to_vec() } else { relaxed };
+    let otherwise = if runaway { start.to_vec() } else { relaxed };
     tabulated_newton::continuous(chords, given, start).unwrap_or(otherwise)
+}
+
+/// Whether the tangent at a point stands on one of its chords, or runs with the one and against the other.
+fn ran_away(chords: &[Chord], directions: &[Vec3], point: usize) -> bool {
+    let Some(direction) = directions.get(point) else { return false };
+    let around = [point.checked_sub(1), Some(point)];
+    let along: Vec<f64> =
+        around.iter().flatten().filter_map(|chord| Some(chords.get(*chord)?.along.dot(direction))).collect();
+    along.iter().any(|cosine| cosine.abs() < STEEPEST.cos() || cosine.signum() != along[0].signum())
 }
 
 /// Turns the tangents at the inner points until the curvature is continuous to within [`CURVATURE_JUMP`]: always at

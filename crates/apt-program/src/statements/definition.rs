@@ -204,9 +204,9 @@ impl Evaluator<'_> {
         if !arguments.contains(&Argument::Modifier(Modifier::Spline)) {
             return;
         }
-        // At the end points the curve goes over into its straight extensions, and a given slope may be met by a jump
-        // only: inner points without a slope are left.
-        let inner = joints.get(1..joints.len().saturating_sub(1)).unwrap_or_default();
+        // At the end points the curve goes over into its straight extensions, at the last inner point APT III leaves a
+        // jump (language reference 4.14), and a given slope may be met by a jump only: the other points are left.
+        let inner = joints.get(1..joints.len().saturating_sub(2)).unwrap_or_default();
         let free = !arguments
             .iter()
             .any(|argument| matches!(argument, Argument::Modifier(Modifier::Slope | Modifier::Normal)));

@@ -51,6 +51,19 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
             say("APT0333", format!("REFSYS needs a matrix, not {}", found(what)))
                 .hint("REFSYS/NOMORE returns to the base system")
         }
+        Kind::Corner { point, degrees, others } => {
+            let more = match others {
+                0 => String::new(),
+                1 => ", and there is another one".to_owned(),
+                others => format!(", and there are {others} others"),
+            };
+            say("APT0313", format!("the curve has a corner of {} degrees at point {point}{more}", number(*degrees)))
+                .hint("check the order of the points and the slopes; SPLINE and TWOPT make no corners by themselves")
+        }
+        Kind::CurvatureJump { point, jump } => {
+            say("APT0314", format!("the curvature of the spline jumps by {} at point {point}", number(*jump)))
+                .hint("the points swing from side to side: give more of them, or use TWOPT")
+        }
         Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system")
             .hint("its rows depend on each other; check for a row of zeros"),
         _ => return None,
