@@ -1,8 +1,12 @@
 //! Cost per cut vector: directed motions over one pair of surfaces each, divided by their vectors.
 
+use std::sync::Arc;
+
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    canonical::{
+        Cone, Cylinder, Geometry, Interval, Plane, Quadric, RuledSurface, Sphere, TabulatedCylinder,
+    },
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
         Turn,
@@ -60,7 +64,54 @@ fn vectors(state: &State, command: &MotionCommand) -> usize {
     }
 }
 
-fn surfaces() -> [(&'static str, Geometry); 6] {
+/// The roof z = 2 − x²/4 as a tabulated cylinder along y.
+fn tabulated() -> Geometry {
+    let height = |x: f64| 2.0 - 0.25 * x * x;
+    let mut intervals = Vec::new();
+    for k in -3..3 {
+        let (u, w) = (f64::from(k), f64::from(k + 1));
+        let (v, chord) = (height(u), height(w) - height(u));
+        let (length, lean) = (1f64.hypot(chord), chord.atan());
+        let [first, last] = [u, w].map(|x| ((-0.5 * x).atan() - lean).tan());
+        let (a, b) = ((first + last) / (length * length), -(2.0 * first + last) / length);
+        intervals.push(Interval { u, v, a, b, length, maximum: 0.0, minimum: 0.0 });
+    }
+    let straight =
+        |u: f64, v: f64| Interval { u, v, a: 0.0, b: 0.0, length: 0.0, maximum: 0.0, minimum: 0.0 };
+    intervals.insert(0, straight(-9.0, height(-3.0) - 9.0));
+    intervals.push(straight(3.0, height(3.0)));
+    let axes = [Vec3::x(), Vec3::z(), -Vec3::y()];
+    let last = [9.0, height(3.0) - 9.0];
+    Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, kind: 0.0, intervals, last }))
+}
+
+/// A roof between arcs of different radius at y = ±2.
+fn ruled() -> Geometry {
+    let curve = |y: f64, z: f64, radius: f64| {
+        let round = Cylinder { point: Vec3::new(0.0, y, z), axis: Vec3::y(), radius };
+        let end = z + (radius * radius - 4.0).sqrt();
+        let places = [Vec3::new(-2.0, y, end), Vec3::new(2.0, y, end)].map(Geometry::Point);
+        let [start, end] = places;
+        [Geometry::Cylinder(round), start, end, Geometry::Vector(Vec3::z())]
+    };
+    let parts = curve(-2.0, 0.0, 3.0).into_iter().chain(curve(2.0, 0.3, 2.6)).collect();
+    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+}
+
+/// A vault along y that widens and flattens: quarter circles change to fuller conics.
+fn poly_conic() -> Geometry {
+    let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    values.extend([0.0, -3.0, 6.0]);
+    for [constant, linear] in
+        [[2.0, 0.2], [2.0, 0.1], [2.0, 0.0], [-2.0, 0.0], [-2.0, -0.1], [0.3, -0.1], [0.7, 0.03]]
+    {
+        values.extend([constant, linear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+    values.extend([0.0; 7]);
+    Geometry::PolyConic(Arc::new(values))
+}
+
+fn surfaces() -> [(&'static str, Geometry); 9] {
     let quadric = |coefficients| Geometry::Quadric(Quadric { coefficients });
     [
         ("sphere", Geometry::Sphere(Sphere { center: Vec3::zeros(), radius: 3.0 })),
@@ -83,6 +134,9 @@ fn surfaces() -> [(&'static str, Geometry); 6] {
         ),
         ("ellipsoid", quadric([1.0 / 16.0, 1.0 / 9.0, 0.25, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
         ("saddle", quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])),
+        ("tabulated cylinder", tabulated()),
+        ("ruled surface", ruled()),
+        ("polyconic", poly_conic()),
     ]
 }
 
@@ -93,12 +147,12 @@ fn bench(bencher: Bencher<'_, '_>, which: usize, numbers: &[f64]) {
     bencher.counter(ItemsCount::new(count)).bench(|| vectors(&state, &command));
 }
 
-#[divan::bench(args = [0, 1, 2, 3, 4, 5])]
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7, 8])]
 fn ball(bencher: Bencher<'_, '_>, which: usize) {
     bench(bencher, which, &[0.5, 0.25]);
 }
 
-#[divan::bench(args = [0, 1, 2, 3, 4, 5])]
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7, 8])]
 fn bull(bencher: Bencher<'_, '_>, which: usize) {
     bench(bencher, which, &[0.5, 0.1]);
 }
