@@ -3,7 +3,10 @@
 //! A path in a ring of radii `inner` to `outer` that turns by an angle needs at least so many chords: none may leave the
 //! ring, so none subtends more than the angle of a tangent to the inner circle between its ends.
 
-use apt_tests::runs::{analysis, path_of, report};
+use apt_tests::{
+    oracle, run_report,
+    runs::{analysis, path_of, report},
+};
 
 /// Positions at the end of a motion are found to a millionth; a bound at the edge of a whole number must not flip.
 const ROUNDING: f64 = 1e-9;
@@ -238,4 +241,42 @@ fn straight_paths_take_one_cut_vector() {
         let vectors = motion["cut_vectors"].as_u64().unwrap();
         assert!(vectors == 1 && motion["verified"] == true, "{name}: {motion}");
     }
+}
+
+/// Motions of the corpus that take more cut vectors than the peer, each with its reason.
+const MORE_THAN_THE_PEER: [(&str, &str); 1] =
+    [("maxdp", "eleven vectors, the peer ten; whether those keep the band is not known")];
+
+#[test]
+fn the_corpus_takes_no_more_cut_vectors_than_the_peer() {
+    let mut compared = 0;
+    for group in ["motion2d", "motion3d"] {
+        for path in oracle::programs(group) {
+            let text = std::fs::read_to_string(path.with_extension("json")).unwrap();
+            let peer: serde_json::Value = serde_json::from_str(&text).unwrap();
+            let ours = run_report(&path, "free");
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            for motion in ours["motions"].as_array().unwrap() {
+                let of_peer = peer["cl"].as_array().unwrap().iter();
+                let Some(location) =
+                    of_peer.filter(|entry| entry["type"] == "go").find(|entry| entry["isn"] == motion["isn"])
+                else {
+                    continue;
+                };
+                let of_peer = location["points"].as_array().unwrap().len() as u64;
+                let vectors = motion["cut_vectors"].as_u64().unwrap();
+                let minimum = motion["minimum"].as_u64().unwrap_or(1);
+                assert!(
+                    minimum <= vectors,
+                    "{name} at {}: {vectors} vectors, bound {minimum}",
+                    motion["isn"]
+                );
+                let known = MORE_THAN_THE_PEER.iter().any(|(program, _)| *program == name);
+                let place = format!("{name} at {}: {vectors} vectors, the peer {of_peer}", motion["isn"]);
+                assert!(vectors <= of_peer || known, "{place}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 100, "only {compared} motions compared");
 }
