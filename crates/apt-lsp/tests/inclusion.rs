@@ -45,8 +45,8 @@ impl Project {
         Self { folder, program, library }
     }
 
-    fn server(&self, capabilities: Value) -> Server {
-        let mut server = Server::initialized(&capabilities);
+    fn server(&self, capabilities: &Value) -> Server {
+        let mut server = Server::initialized(capabilities);
         server.open(&self.program, PROGRAM);
         server
     }
@@ -75,7 +75,7 @@ fn pushed(server: &mut Server, uri: &str, wanted: impl Fn(&[Value]) -> bool) -> 
 #[test]
 fn names_lead_from_one_file_to_the_other() {
     let project = Project::new("names");
-    let mut server = project.server(json!({}));
+    let mut server = project.server(&json!({}));
     for also_open in [false, true] {
         if also_open {
             server.open(&project.library, LIBRARY);
@@ -132,7 +132,7 @@ fn names_lead_from_one_file_to_the_other() {
 #[test]
 fn findings_stand_at_the_call_and_in_the_included_file() {
     let project = Project::new("findings");
-    let mut server = project.server(json!({}));
+    let mut server = project.server(&json!({}));
     let found = pushed(&mut server, &project.program, |found| !found.is_empty());
     let inside =
         found.iter().find(|one| one["range"]["start"]["line"] == 5).unwrap_or_else(|| panic!("{found:?}"));
@@ -160,7 +160,7 @@ fn findings_stand_at_the_call_and_in_the_included_file() {
 #[test]
 fn a_client_that_pulls_gets_the_same() {
     let project = Project::new("pulled");
-    let mut server = project.server(json!({ "textDocument": { "diagnostic": {} } }));
+    let mut server = project.server(&json!({ "textDocument": { "diagnostic": {} } }));
     server.open(&project.library, LIBRARY);
     let pull = |uri: &str| json!({ "textDocument": { "uri": uri } });
     let program = server.ask("textDocument/diagnostic", pull(&project.program)).unwrap();

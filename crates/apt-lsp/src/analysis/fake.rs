@@ -132,7 +132,7 @@ impl Document for FakeDocument {
     }
 
     fn selections(&self, offset: usize) -> Vec<Range<usize>> {
-        self.word_at(offset).into_iter().chain([0..self.text.len()]).collect()
+        self.word_at(offset).into_iter().chain(std::iter::once(0..self.text.len())).collect()
     }
 
     fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>> {

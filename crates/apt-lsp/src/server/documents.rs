@@ -189,8 +189,8 @@ impl Documents {
                 self.read_settings_again();
                 self.reset_includers(None);
             }
-            Event::Opened { uri, version, text } => self.open(uri, version, &text),
-            Event::Changed { uri, version, changes } => self.change(uri, version, changes),
+            Event::Opened { uri, version, text } => self.open(&uri, version, &text),
+            Event::Changed { uri, version, changes } => self.change(&uri, version, changes),
             Event::Closed(uri) => self.close(&uri),
             Event::Snapshot(uri, reply) => {
                 let snapshot = self.snapshot(&uri);
@@ -210,9 +210,9 @@ impl Documents {
         self.revisions
     }
 
-    fn open(&mut self, uri: Uri, version: i32, text: &str) {
-        let settings = Arc::new(self.settings_for(&uri));
-        let path = file_path(&uri).map(|path| normalised(&path));
+    fn open(&mut self, uri: &Uri, version: i32, text: &str) {
+        let settings = Arc::new(self.settings_for(uri));
+        let path = file_path(uri).map(|path| normalised(&path));
         let document = OpenDocument {
             path,
             version,
@@ -228,7 +228,7 @@ impl Documents {
             old.superseded.cancel();
         }
         self.touch(uri.clone());
-        self.text_changed(&uri, true);
+        self.text_changed(uri, true);
     }
 
     /// The text of a document is another one now: programs that include it are evaluated again, and the files that it
@@ -298,9 +298,9 @@ impl Documents {
         self.touch(uri.clone());
     }
 
-    fn change(&mut self, uri: Uri, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
+    fn change(&mut self, uri: &Uri, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
         let revision = self.next_revision();
-        let Some(document) = self.open.get_mut(&uri) else {
+        let Some(document) = self.open.get_mut(uri) else {
             self.outbox.warn(format!("change of {}, which is not open; ignored", uri.as_str()));
             return;
         };
@@ -322,7 +322,7 @@ impl Documents {
             document.edits.push(edit);
         }
         self.touch(uri.clone());
-        self.text_changed(&uri, false);
+        self.text_changed(uri, false);
     }
 
     fn close(&mut self, uri: &Uri) {
