@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Interval, TabulatedCylinder},
+    canonical::{Geometry, Interval, RuledSurface, TabulatedCylinder},
     cutter::Cutter,
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
@@ -26,6 +26,13 @@ use support::{Random, cone, cylinder, named, plane, quadric, sphere};
 const ENDS: [f64; 2] = [-1.2, 1.2];
 /// Stations between them at which the search for a path looks.
 const STATIONS: u32 = 6;
+/// INTOL and OUTTOL of every motion.
+const BAND: f64 = 0.001;
+/// Places of a vector at which a changed sequence is looked at.
+const SAMPLES: u32 = 16;
+/// Part and drive surfaces, one of each makes a pair.
+const PARTS: usize = 8;
+const DRIVES: usize = 7;
 /// Share of the motions that have a path which the engine may refuse.
 const REFUSALS: f64 = 0.03;
 
@@ -58,6 +65,16 @@ fn wave(axes: [Vec3; 3], offset: f64, height: f64) -> Geometry {
     Geometry::TabulatedCylinder(Arc::new(surface))
 }
 
+/// A ruled surface between two straight sections, each of a plane with its normal across the chord.
+fn ruled(curves: [(Vec3, Vec3, Vec3); 2]) -> Geometry {
+    let mut parts = Vec::new();
+    for (start, end, normal) in curves {
+        parts.push(plane(normal.x, normal.y, normal.z, normal.dot(&start)));
+        parts.extend([Geometry::Point(start), Geometry::Point(end), Geometry::Vector(normal.normalize())]);
+    }
+    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+}
+
 /// Surfaces under the tool, about z = 0, with the side of their natural normal that is up.
 fn parts(random: &mut Random) -> Vec<(&'static str, Geometry, f64)> {
     let (a, b) = (random.between(-0.3, 0.3), random.between(-0.2, 0.2));
@@ -78,6 +95,14 @@ fn parts(random: &mut Random) -> Vec<(&'static str, Geometry, f64)> {
         ("quadric", quadric([0.04, 0.02, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.316]), 1.0),
         ("saddle", quadric([0.05, -0.04, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5]), 1.0),
         ("tabcyl", wave([Vec3::x(), Vec3::z(), -Vec3::y()], 0.0, a), 1.0),
+        (
+            "ruled",
+            ruled([
+                (Vec3::new(-5.0, -4.0, 0.0), Vec3::new(5.0, -4.0, 0.0), Vec3::z()),
+                (Vec3::new(-5.0, 4.0, -5.0 * b), Vec3::new(5.0, 4.0, 5.0 * b), Vec3::new(-b, 0.0, 1.0)),
+            ]),
+            1.0,
+        ),
     ]
 }
 
@@ -110,6 +135,18 @@ fn drives(random: &mut Random) -> Vec<(&'static str, Geometry, f64)> {
             1.0,
         ),
         ("tabcyl", wave([Vec3::x(), Vec3::y(), Vec3::z()], 2.0, a), -1.0),
+        (
+            "ruled",
+            ruled([
+                (Vec3::new(-5.0, 1.8, -3.0), Vec3::new(5.0, 1.8, -3.0), Vec3::y()),
+                (
+                    Vec3::new(-5.0, 1.8 - 5.0 * b, 6.0),
+                    Vec3::new(5.0, 1.8 + 5.0 * b, 6.0),
+                    Vec3::new(-b, 1.0, 0.0),
+                ),
+            ]),
+            1.0,
+        ),
     ]
 }
 
@@ -138,8 +175,8 @@ impl Motion {
         let at = |x: f64| plane(1.0, 0.0, 0.0, x);
         vec![
             MotionCommand::Cutter(self.cutter.clone()),
-            MotionCommand::InsideTolerance(PerRole::all(0.001)),
-            MotionCommand::OutsideTolerance(PerRole::all(0.001)),
+            MotionCommand::InsideTolerance(PerRole::all(BAND)),
+            MotionCommand::OutsideTolerance(PerRole::all(BAND)),
             MotionCommand::From { position: Vec3::new(ENDS[0], 0.0, 2.5), axis: None, name: String::new() },
             MotionCommand::Start(vec![
                 surface(Relation::To, "DS", &self.drive.0),
@@ -232,6 +269,78 @@ struct Tally {
     broken: Vec<String>,
     refused: Vec<String>,
     refused_with_path: usize,
+    /// Mutated sequences, and those that were accepted though they leave the band.
+    mutated: usize,
+    missed: Vec<String>,
+}
+
+/// What can be wrong with a sequence, with whether it surely is: then the verifier must find it; else it may be in the band.
+fn mutations(sequence: &CutSequence) -> Vec<(&'static str, bool, CutSequence)> {
+    let mut found = Vec::new();
+    let mut add = |name, sure, change: &dyn Fn(&mut CutSequence)| {
+        let mut mutated = sequence.clone();
+        change(&mut mutated);
+        found.push((name, sure, mutated));
+    };
+    let middle = sequence.points.len() / 2;
+    if middle + 1 < sequence.points.len() {
+        for (name, shift) in [("raised", 1.5), ("lowered", -1.5)] {
+            add(name, true, &|s: &mut CutSequence| s.points[middle].tip.z += shift * 2.0 * BAND * 1.3);
+        }
+        add("without a vertex", false, &|s: &mut CutSequence| {
+            s.points.remove(middle);
+        });
+    }
+    add("on the other side of the part", true, &|s: &mut CutSequence| {
+        if let Some(part) = &mut s.part {
+            part.side = -part.side;
+        }
+    });
+    add("on the other side of the drive surface", true, &|s: &mut CutSequence| {
+        s.drive_side = DriveSide::Left;
+    });
+    add("with TO for PAST", true, &|s: &mut CutSequence| {
+        if let Some(stop) = &mut s.stop {
+            stop.role.relation = match stop.role.relation {
+                Relation::To => Relation::Past,
+                Relation::Past => Relation::To,
+                _ => Relation::Past,
+            };
+        }
+    });
+    found
+}
+
+/// Whether a sequence is in its bands at many places of every vector, a little more allowed than the band.
+fn is_in_band(motion: &Motion, sequence: &CutSequence) -> bool {
+    let mut from = sequence.start.tip;
+    for point in &sequence.points {
+        for k in 0..=SAMPLES {
+            let tip = from + (point.tip - from) * (f64::from(k) / f64::from(SAMPLES));
+            let read = motion.read(&sequence.cutter, tip);
+            if !read.is_some_and(|r| r.iter().all(|g| g.abs() <= BAND * (1.0 + 1e-3))) {
+                return false;
+            }
+        }
+        from = point.tip;
+    }
+    true
+}
+
+fn mutate(motion: &Motion, sequence: &CutSequence, tally: &mut Tally) {
+    for (name, sure, mutated) in mutations(sequence) {
+        tally.mutated += 1;
+        let accepted = verify(&mutated, &|| false).is_ok_and(|e| e.verified);
+        if accepted && (sure || !is_in_band(motion, &mutated)) {
+            tally.missed.push(name.to_owned());
+        }
+    }
+}
+
+impl Tally {
+    fn is_remarkable(&self) -> bool {
+        [&self.broken, &self.refused, &self.missed].iter().any(|list| !list.is_empty())
+    }
 }
 
 fn kind(failure: &MotionFailure) -> String {
@@ -239,7 +348,7 @@ fn kind(failure: &MotionFailure) -> String {
     words.split([' ', '{', '(']).next().unwrap_or_default().to_owned()
 }
 
-fn run(motion: &Motion, cutter: &str, tally: &mut Tally) {
+fn run(motion: &Motion, cutter: &str, mutating: bool, tally: &mut Tally) {
     tally.motions += 1;
     let mut state = State::new(1.0);
     for (step, command) in motion.commands().iter().enumerate() {
@@ -254,7 +363,12 @@ fn run(motion: &Motion, cutter: &str, tally: &mut Tally) {
         }
         let Some(Output::Sequence(sequence)) = execution.output else { continue };
         match verify(&sequence, &|| false) {
-            Ok(evidence) if evidence.verified => tally.proven += 1,
+            Ok(evidence) if evidence.verified => {
+                tally.proven += 1;
+                if mutating && !sequence.start_up {
+                    mutate(motion, &sequence, tally);
+                }
+            }
             found => tally.broken.push(format!("{cutter}, step {step}: {found:?}")),
         }
     }
@@ -262,18 +376,23 @@ fn run(motion: &Motion, cutter: &str, tally: &mut Tally) {
 
 fn describe(pairs: &BTreeMap<String, Tally>) -> String {
     let mut report = String::new();
-    for (pair, tally) in pairs.iter().filter(|(_, t)| !t.broken.is_empty() || !t.refused.is_empty()) {
+    for (pair, tally) in pairs.iter().filter(|(_, t)| t.is_remarkable()) {
         let (refused, broken) = (tally.refused.len(), tally.broken.len());
         let _ = writeln!(
             report,
             "{pair}: {} proven, {refused} of {} refused, {broken} broken",
             tally.proven, tally.motions
         );
-        for line in tally.broken.iter().chain(&tally.refused) {
+        for line in tally.broken.iter().chain(&tally.refused).chain(&tally.missed) {
             let _ = writeln!(report, "    {line}");
         }
     }
     report
+}
+
+/// Motions of every pair: one, or as many as the variable `APT_CASES` of the environment says.
+fn cases() -> usize {
+    std::env::var("APT_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
 }
 
 #[test]
@@ -281,23 +400,35 @@ fn curved_pairs_are_proven_and_seldom_refused() {
     let mut random = Random(19_700_101);
     let mut pairs: BTreeMap<String, Tally> = BTreeMap::new();
     let mut turn = 0;
-    for (part_index, drive_index) in (0..7).flat_map(|p| (0..6).map(move |d| (p, d))) {
-        // The tabulated cylinders are the slowest by far: every second pair of theirs.
-        if (part_index == 6 || drive_index == 5) && (part_index + drive_index) % 2 == 0 {
-            continue;
+    for round in 0..cases() {
+        for (part_index, drive_index) in (0..PARTS).flat_map(|p| (0..DRIVES).map(move |d| (p, d))) {
+            // The surfaces with straight rulings are the slowest by far: every second pair of theirs, in turn.
+            let slow = part_index >= 6 || drive_index >= 5;
+            if slow && (part_index + drive_index + round) % 2 == 0 {
+                continue;
+            }
+            // Ruled surfaces take longer still: from the second round on.
+            let ruled = part_index + 1 == PARTS || drive_index + 1 == DRIVES;
+            if ruled && round == 0 {
+                continue;
+            }
+            let (part_name, part, up) = parts(&mut random).swap_remove(part_index);
+            let (drive_name, drive, side) = drives(&mut random).swap_remove(drive_index);
+            let (cutter_name, cutter) = CUTTERS[turn % CUTTERS.len()];
+            let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
+            turn += 1;
+            let motion = Motion { cutter: cutter.to_vec(), part: (part, up), drive: (drive, side), until };
+            let tally = pairs.entry(format!("{part_name} along {drive_name}")).or_default();
+            run(&motion, cutter_name, !slow && turn % 4 == 1 && turn < 16, tally);
         }
-        let (part_name, part, up) = parts(&mut random).swap_remove(part_index);
-        let (drive_name, drive, side) = drives(&mut random).swap_remove(drive_index);
-        let (cutter_name, cutter) = CUTTERS[turn % CUTTERS.len()];
-        let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
-        turn += 1;
-        let motion = Motion { cutter: cutter.to_vec(), part: (part, up), drive: (drive, side), until };
-        run(&motion, cutter_name, pairs.entry(format!("{part_name} along {drive_name}")).or_default());
     }
     let report = describe(&pairs);
     println!("{report}");
     let broken: usize = pairs.values().map(|t| t.broken.len()).sum();
     assert_eq!(broken, 0, "\n{report}");
+    let missed: usize = pairs.values().map(|t| t.missed.len()).sum();
+    let mutated: usize = pairs.values().map(|t| t.mutated).sum();
+    assert!(missed == 0 && mutated > 0, "{missed} of {mutated} mutated sequences accepted\n{report}");
     let motions: usize = pairs.values().map(|t| t.motions).sum();
     let refused: usize = pairs.values().map(|t| t.refused_with_path).sum();
     assert!(refused as f64 <= REFUSALS * motions as f64, "{refused} of {motions} refused\n{report}");
