@@ -77,12 +77,14 @@ fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
     if in_fan(&vertex.gradient) && vertex.clearance > best.clearance {
         best = vertex;
     }
-    if vertex.clearance < 0.0 {
-        // The vertex is inside the tool: the way out through each straight face counts, not only the shortest.
+    if best.clearance < 0.0 {
+        // The tool cuts the vertex off: the way out through each face counts, not only the shortest.
         let toward = tool.split(&(cone.vertex - tip)).2;
         let (sa, ca) = tool.cutter.alpha.sin_cos();
         let (sb, cb) = tool.cutter.beta.sin_cos();
-        for normal in [tool.axis * ca - toward * sa, tool.axis * sb - toward * cb] {
+        let corner = tip + tool.axis * tool.profile.center.height + toward * tool.profile.center.radius;
+        let through_corner = (corner - cone.vertex).try_normalize(0.0).unwrap_or(tool.axis);
+        for normal in [tool.axis * ca - toward * sa, tool.axis * sb - toward * cb, through_corner] {
             let depth = normal.dot(&(tip - cone.vertex)) - support(tool, &normal);
             if in_fan(&normal) && depth > best.clearance {
                 let contact = cone.vertex + normal * depth;

@@ -36,12 +36,12 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
     };
     let gradient = foot.normal * side;
     let clearance = side * foot.distance - profile.arc;
-    // A ball must have its centre outside. A sharp edge may be in a little, but not where a vertex may be nearer.
-    let outside = if sharp {
-        clearance > 0.0 || !matches!(surface, Surface::Cone(_))
-    } else {
-        side * foot.distance > 0.0
+    // A ball must have its centre outside. Where the tool cuts in near a vertex, another way out may be shorter.
+    let near_vertex = match surface {
+        Surface::Cone(cone) => (foot.point - cone.vertex).norm() <= tool.radius(),
+        _ => false,
     };
+    let outside = (clearance > 0.0 || !near_vertex) && (sharp || side * foot.distance > 0.0);
     let polar = gradient.dot(&tool.axis).clamp(-1.0, 1.0).acos();
     let matches = polar >= fan[0] && polar <= fan[1] && radial.is_none_or(|r| gradient.dot(&r) <= 0.0);
     (outside && matches).then(|| Contact {

@@ -1,7 +1,7 @@
 //! One cut vector: as long as its proof allows (ADELTA, DELTA). Vertices lie at the limit opposite to the sag, so that
 //! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, surface::Surface};
 
 use super::{Prepared, Vertex, tangent};
 use crate::{
@@ -24,6 +24,8 @@ const AIM: f64 = 0.9999;
 const GREATEST_GROWTH: f64 = 4.0;
 /// Cosine between the directions at both ends below which the vector is shortened (60°).
 const LEAST_TURN_COSINE: f64 = 0.5;
+/// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
+const CORNER_BANDS: f64 = 20.0;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
@@ -198,13 +200,20 @@ impl<'a> Stepper<'a> {
         self.judge(here, vertex, chord, reached)
     }
 
+    /// How long a vector may be that rounds a corner: over the vertex of a cone the path may have one.
+    fn corner(&self) -> f64 {
+        let cones = self.roles().into_iter().filter(|role| matches!(role.gauge.surface, Surface::Cone(_)));
+        CORNER_BANDS * cones.map(Working::band).sum::<f64>()
+    }
+
     fn shorter(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2], before: f64) -> Option<Trial> {
         if length < 0.5 * before { None } else { self.attempt(here, length, cap, bends) }
     }
 
     fn judge(&self, here: &Vertex, vertex: Vertex, chord: Vec3, reached: f64) -> Option<Trial> {
         let forward = chord.dot(&here.tangent) > 0.5 * reached;
-        if !forward || reached <= 0.0 || vertex.tangent.dot(&here.tangent) < LEAST_TURN_COSINE {
+        let least_cosine = if reached <= self.corner() { 0.0 } else { LEAST_TURN_COSINE };
+        if !forward || reached <= 0.0 || vertex.tangent.dot(&here.tangent) < least_cosine {
             return None;
         }
         let vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
