@@ -31,6 +31,8 @@ const SAMPLES: u32 = 4;
 const ENLARGED: f64 = 0.12;
 /// First step, in halves of a cell, beyond which the nearest place is that of another cell.
 const STRAYING: f64 = 6.0;
+/// Distance of two places, in halves of a cell, at which they belong to one valley of the distance.
+const SAME: f64 = 0.5;
 /// Step of the parameters below which its effect on the distance is far below rounding.
 const RESOLUTION: f64 = 1e-13;
 /// Bound of the damped iteration for the nearest point.
@@ -277,6 +279,11 @@ impl PolyConicSheet {
                 && best.0 < square
                 && (strays(moved.x, cell.half[0]) || strays(moved.y, cell.half[1]))
             {
+                return;
+            }
+            // A step to where the nearest place so far is leads to that place again.
+            let known = |k: usize| (next[k] - best.1[k]).abs() <= SAME * cell.half[k];
+            if turn == 0 && best.0 < square && known(0) && known(1) {
                 return;
             }
             if moved.norm() <= RESOLUTION {
