@@ -46,7 +46,7 @@ fn the_axis_follows_the_rulings_of_the_drive_surface() {
     let mut p = program(Vec3::z());
     p.go(&[(Relation::To, &wall), (Relation::On, &floor), (Relation::On, &x(1.5))]);
     p.part_side(apt_geometry::motion::PartSide::On).side(DriveSide::Left);
-    p.drive(Turn::Right, &wall, Relation::On, &x(4.5));
+    p.drive(Turn::Left, &wall, Relation::On, &x(4.5));
     let sequence = p.last();
     assert!(sequence.points.len() > 2, "the path bends: {} vectors", sequence.points.len());
     let drive = sequence.drive.as_ref().expect("a drive surface");

@@ -76,7 +76,7 @@ mod tests {
         // The path leaves the check surface for 60,000 units before it comes round.
         let (ring, floor) = (circle(0.0, 0.0, 20_000.0), plane(0.0, 0.0, 1.0, 0.0));
         let mut p = Program::new();
-        p.tolerance(0.0, 5.0).cutter(&[0.5, 0.25]).from(20_001.0, 5.0, 0.0);
+        p.tolerance(0.0, 5.0).cutter(&[0.5, 0.25]).from(20_100.0, 5.0, 0.0);
         p.run(&MotionCommand::ForceIteration(true)).run(&MotionCommand::MaximumStep(1e5));
         p.go(&[(Relation::To, &ring), (Relation::To, &floor)]);
         p.side(apt_geometry::motion::DriveSide::Left);
