@@ -108,6 +108,8 @@ pub enum SyntaxErrorKind {
     NameWithoutEquals {
         /// The name.
         name: SmolStr,
+        /// A comma follows: a list without a word that takes it.
+        listed: bool,
     },
     /// A statement that begins with a word of another dialect.
     #[error("{word} belongs to the dialect {dialect}")]
@@ -253,7 +255,10 @@ impl SyntaxErrorKind {
             Kind::NumberTooLong { .. } => 2,
             Kind::NumberNotConvertible { .. } => 4,
             Kind::BadStatementStart => 5,
-            Kind::MissingSeparator | Kind::OperatorInList | Kind::EmptyPosition => 7,
+            Kind::MissingSeparator
+            | Kind::OperatorInList
+            | Kind::EmptyPosition
+            | Kind::NameWithoutEquals { listed: true, .. } => 7,
             Kind::IllegalCharacter(_) | Kind::UnclosedText => 8,
             Kind::UnopenedParenthesis => 9,
             Kind::UnclosedParenthesis => 10,

@@ -319,7 +319,8 @@ impl MotionFailure {
     /// The APT III diagnostic number.
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
-            Self::Cancelled | Self::NotFinite | Self::NoPosition | Self::NoTolerance { .. } => return None,
+            Self::Cancelled | Self::NotFinite | Self::NoTolerance { .. } => return None,
+            Self::NoPosition => 307,
             Self::Cutter(error) => return error.apt3(),
             Self::AxisUndetermined { cause, .. } => cause.apt3(),
             Self::Pocket(failure) => return failure.apt3(),

@@ -179,7 +179,9 @@ fn motion(kind: &Kind) -> Option<Text> {
             )
         }
         Kind::PocketNumbers => say("APT0509", "POCKET begins with eight numbers"),
-        Kind::PocketPoints { found } => say("APT0510", format!("POCKET takes 3 to 20 points, not {found}")),
+        Kind::PocketPoints { found } => {
+            say("APT0510", format!("POCKET takes 3 to 20 points behind its eight numbers, not {found}"))
+        }
         _ => return None,
     })
 }

@@ -61,7 +61,7 @@ fn statement(kind: &Kind) -> Option<Text> {
             .hint("complete it, or end the line with $ to continue it on the next one"),
         Kind::UnclosedParenthesis => say("APT0015", "this parenthesis is never closed"),
         Kind::UnopenedParenthesis => say("APT0016", "this parenthesis was never opened"),
-        Kind::NameWithoutEquals { name } => {
+        Kind::NameWithoutEquals { name, .. } => {
             say("APT0017", format!("{name} is neither a word of the language nor followed by =")).hint(
                 "a statement is `name = value`, or begins with a word of the language; check the spelling",
             )

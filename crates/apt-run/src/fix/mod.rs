@@ -97,7 +97,7 @@ impl Here<'_> {
         };
         let before = TextRange::empty(here.start());
         match kind {
-            SyntaxErrorKind::NameWithoutEquals { name } => self.misspelt(name, &self.similar_words(name)),
+            SyntaxErrorKind::NameWithoutEquals { name, .. } => self.misspelt(name, &self.similar_words(name)),
             SyntaxErrorKind::NotInDialect { dialect, .. } => vec![Fix {
                 title: format!("Set the dialect of the program to {dialect}"),
                 edits: vec![(0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()))],

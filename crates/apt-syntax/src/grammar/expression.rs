@@ -301,7 +301,7 @@ impl<'a> Parser<'a> {
     pub(super) fn target_and_value(&mut self) -> Parsed<(Reference, Expression)> {
         let target = self.reference()?;
         if !self.eat(ElementKind::Equals) {
-            return self.fail(SyntaxErrorKind::NameWithoutEquals { name: target.name.text });
+            return self.fail(SyntaxErrorKind::NameWithoutEquals { name: target.name.text, listed: false });
         }
         let value = self.assigned_value()?;
         Ok((target, value))

@@ -267,7 +267,10 @@ impl Parser<'_> {
         let foreign = vocabulary::lookup(&name).filter(|word| word.class.begins_statements());
         match foreign.and_then(|word| word.dialects.first()) {
             Some(dialect) => self.fail(SyntaxErrorKind::NotInDialect { word: name, dialect: *dialect }),
-            None => self.fail(SyntaxErrorKind::NameWithoutEquals { name }),
+            None => {
+                let listed = self.kind(1) == Some(ElementKind::Comma);
+                self.fail(SyntaxErrorKind::NameWithoutEquals { name, listed })
+            }
         }
     }
 
