@@ -41,7 +41,9 @@ fn json_has_the_story_with_its_motion_only_when_asked_for() {
     let told = motions(&["run", "story.apt", "--format", "json", "--explain-motion"]);
     let ends: Vec<&str> = told
         .iter()
-        .map(|motion| motion["story"].as_array().and_then(|lines| lines.last()).and_then(Value::as_str).expect("a line"))
+        .map(|motion| {
+            motion["story"].as_array().and_then(|lines| lines.last()).and_then(Value::as_str).expect("a line")
+        })
         .collect();
     assert_eq!(
         ends,

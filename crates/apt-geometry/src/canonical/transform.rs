@@ -80,7 +80,9 @@ impl Geometry {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),
                 ..Pattern::clone(pattern)
             })),
-            Geometry::PolyConic(values) => Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?)),
+            Geometry::PolyConic(values) => {
+                Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?))
+            }
             Geometry::Matrix(_) => return Err(TransformError::NotMoved { kind }),
         })
     }

@@ -48,7 +48,8 @@ impl Surface {
             Self::Quadric(quadric) => quadric.bend(side, foot, region, nearest),
             Self::Tabulated(curve) => {
                 // The foot of a point that matters is not farther from the centre than this.
-                let away = (foot.distance.abs() + region.radius).min(region.highest.abs().max(region.lowest.abs()));
+                let away =
+                    (foot.distance.abs() + region.radius).min(region.highest.abs().max(region.lowest.abs()));
                 parallel_bend(curve.greatest_curvature(side, &region.center, region.radius + away), nearest)
             }
             _ => return Bend::Unknown,

@@ -112,7 +112,11 @@ pub(crate) fn turning_places(curve: &TabulatedCylinder, function: impl Fn(Vec3, 
                 for (mut outer, mut inner) in [(station(part - 1), middle), (station(part + 1), middle)] {
                     for _ in 0..80 {
                         let between = 0.5 * (outer + inner);
-                        if value(between).signum() == around[1].signum() { outer = between } else { inner = between }
+                        if value(between).signum() == around[1].signum() {
+                            outer = between;
+                        } else {
+                            inner = between;
+                        }
                     }
                     places.push(at(curve, index, outer).0);
                 }

@@ -40,11 +40,11 @@ impl Here<'_> {
             Cure::Turn(turn) => self.replaced(TURNS, turn_word(*turn)),
             Cure::DriveSide(side) => {
                 let word = drive_side_word(*side);
-                self.replaced(DRIVE_SIDES, word).or_else(|| self.before(word.to_owned()))
+                self.replaced(DRIVE_SIDES, word).or_else(|| self.before(word))
             }
             Cure::PartSide(side) => {
                 let word = part_side_word(*side);
-                self.replaced(PART_SIDES, word).or_else(|| self.before(word.to_owned()))
+                self.replaced(PART_SIDES, word).or_else(|| self.before(word))
             }
             Cure::Relation { check: 0, relation } => self.related(*relation),
             Cure::Occurrence { check: 0, occurrence } => self.counted(*occurrence),
@@ -52,15 +52,15 @@ impl Here<'_> {
             Cure::Relation { .. } | Cure::Occurrence { .. } | Cure::WithoutDirection => None,
             Cure::MoveTo { forward: Some(forward), .. } => {
                 let direction = format!("{}INDIRV/{}", self.line_end(), triple(forward));
-                self.before(statement(cure)? + &direction)
+                self.before(&(statement(cure)? + &direction))
             }
-            _ => self.before(statement(cure)?),
+            _ => self.before(&statement(cure)?),
         }
     }
 
-    fn before(&self, statement: String) -> Option<Fix> {
+    fn before(&self, statement: &str) -> Option<Fix> {
         let first = statement.lines().next().unwrap_or_default().to_owned();
-        self.line_before(&statement, format!("Insert {first} before the motion"))
+        self.line_before(statement, format!("Insert {first} before the motion"))
     }
 
     /// Another word for the one of a kind that stands in the statement.

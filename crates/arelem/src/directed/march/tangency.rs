@@ -17,7 +17,7 @@ const MAX_ITERATIONS: u32 = 80;
 /// Whether tool and check surface touch where the path is parallel to it.
 enum Gap {
     /// They do, at this position and on this side of the check surface.
-    Closed(Vertex, f64),
+    Closed(Box<Vertex>, f64),
     /// They are this far apart.
     Open(f64),
 }
@@ -100,7 +100,7 @@ impl<'a> Watch<'a> {
         let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
         if check.holds(contact.clearance, *size) {
-            return Ok(Gap::Closed(parallel, side));
+            return Ok(Gap::Closed(Box::new(parallel), side));
         }
         let guard = GUARD * check.band();
         let missing = contact.clearance.clamp(low + guard, high - guard) - contact.clearance;
@@ -112,7 +112,7 @@ impl<'a> Watch<'a> {
         let shifted = self.parallel(index, from, to, positive, shift)?;
         let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
         let holds = check.holds(contact.clearance, *size);
-        Ok(if holds { Gap::Closed(shifted, side) } else { Gap::Open(contact.clearance) })
+        Ok(if holds { Gap::Closed(Box::new(shifted), side) } else { Gap::Open(contact.clearance) })
     }
 
     /// The position on both surfaces where the path is parallel to the check surface; `shift` is added to the drive
