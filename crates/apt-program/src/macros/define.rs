@@ -23,7 +23,7 @@ impl Evaluator<'_> {
             }
             variables.push(MacroVariable { name: text, default: parameter.value.clone() });
         }
-        self.report_body_syntax(&body, &variables);
+        self.report_body_mistakes(&body, &variables);
         if self.look_up(&name.text).is_some() {
             let related = self.definition_of(&name.text);
             let finding = FindingKind::MacroNameUsed { name: name.text.clone() };
@@ -34,19 +34,24 @@ impl Evaluator<'_> {
         self.set_symbol(name.text.clone(), meaning, origin);
     }
 
-    /// Syntax errors of body statements that no variable or synonym can mend are reported at once, called or not.
-    fn report_body_syntax(&mut self, body: &Block, variables: &[MacroVariable]) {
+    /// Syntax errors and misplaced statements of the body that no variable or synonym can mend are reported at once,
+    /// called or not.
+    fn report_body_mistakes(&mut self, body: &Block, variables: &[MacroVariable]) {
         let header = self.here.isn;
         for (index, statement) in body.statements.iter().enumerate() {
             let may_change = statement.elements.iter().any(|element| {
                 self.state.synonyms.contains_key(&element.text)
                     || variables.iter().any(|variable| variable.name == element.text)
             });
-            if !may_change && !statement.errors.is_empty() {
-                self.here.isn = body.isn(index);
-                for error in &statement.errors {
-                    self.report(FindingKind::Syntax(error.kind.clone()), error.range);
-                }
+            if may_change {
+                continue;
+            }
+            self.here.isn = body.isn(index);
+            for error in &statement.errors {
+                self.report(FindingKind::Syntax(error.kind.clone()), error.range);
+            }
+            for part in &statement.statement.parts {
+                self.refuse_in_macro(part);
             }
         }
         self.here.isn = header;

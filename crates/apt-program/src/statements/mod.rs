@@ -171,6 +171,22 @@ impl Evaluator<'_> {
         flow
     }
 
+    /// Reports a statement that no macro can contain, whether the macro is called or not.
+    pub(crate) fn refuse_in_macro(&mut self, part: &Part) {
+        let Body::Major { word, slash, arguments } = &part.body else { return };
+        let refused = match word.word.spelling {
+            "LOOPST" | "LOOPND" | "RESERV" | "SYN" => true,
+            "READ" => segment(arguments).is_some(),
+            _ => false,
+        };
+        if refused {
+            // In a macro these statements do nothing but say that they cannot stand there.
+            let outer = std::mem::replace(&mut self.here.region, Region::Macro);
+            self.major_word(Major { word, slash: *slash, arguments, range: part.range });
+            self.here.region = outer;
+        }
+    }
+
     /// Notes that a motion is missing here.
     pub(crate) fn gap(&mut self, range: TextRange) {
         self.emit(RecordKind::Gap, range);

@@ -127,7 +127,8 @@ impl Route {
         Ok(route)
     }
 
-    /// OMIT, RETAIN and AVOID with their numbers.
+    /// OMIT, RETAIN and AVOID with their numbers. All stand in the order of output: OMIT and AVOID speak of different
+    /// points and so form one list, while RETAIN and AVOID may speak of the same.
     fn read_operations(
         &mut self,
         reader: &mut Reader<'_>,
@@ -135,8 +136,8 @@ impl Route {
         columns: Option<usize>,
     ) -> Result<(), ListError> {
         let (mut omits, mut retains) = (false, false);
-        let mut last_listed: Option<usize> = None;
-        let mut last_avoided: Option<usize> = None;
+        let mut last_retained: Option<usize> = None;
+        let mut last_changed: Option<usize> = None;
         let mut retained = vec![false; self.order.len()];
         while reader.position < reader.items.len() {
             let operation = reader.operation()?;
@@ -155,11 +156,8 @@ impl Route {
                 if columns.is_some_and(|column| self.order[first] / column != self.order[last] / column) {
                     return Err(reader.error(837, None));
                 }
-                let passed = if matches!(operation, Operation::Avoid(_)) {
-                    &mut last_avoided
-                } else {
-                    &mut last_listed
-                };
+                let passed =
+                    if operation == Operation::Retain { &mut last_retained } else { &mut last_changed };
                 if first > last || passed.is_some_and(|passed| first <= passed) {
                     return Err(reader.error(838, None));
                 }
