@@ -25,8 +25,12 @@ pub(super) fn broken(
     let mut from = 0;
     while let Some(rest) = atoms.get(from..).filter(|rest| !rest.is_empty()) {
         let indent = if from == 0 { indent } else { further };
-        let whole = width(indent, rest) + usize::from(continued);
-        let taken = if whole <= limit { rest.len() } else { break_after(rest, indent, limit) };
+        let room = limit.checked_sub(indent + usize::from(continued));
+        let taken = if room.is_some_and(|room| fit(rest, room)) {
+            rest.len()
+        } else {
+            break_after(rest, indent, limit)
+        };
         let (line, _) = rest.split_at(taken.clamp(1, rest.len()));
         codes.push(joined(indent, line));
         from += line.len();
@@ -38,8 +42,14 @@ pub(super) fn broken(
     codes
 }
 
-fn width(indent: usize, atoms: &[Atom]) -> usize {
-    indent + atoms.iter().map(|atom| columns(&atom.text)).sum::<usize>()
+/// Whether all atoms fit into so many columns. Looks no farther than that, so that a long statement costs no more than
+/// its length.
+fn fit(atoms: &[Atom], room: usize) -> bool {
+    let mut taken = 0;
+    atoms.iter().all(|atom| {
+        taken += columns(&atom.text);
+        taken <= room
+    })
 }
 
 /// How well a line may end after an atom; none if it may not. No line begins with a mark.
