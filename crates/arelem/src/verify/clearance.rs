@@ -9,6 +9,7 @@ use apt_geometry::{
 use super::{
     VerifyError,
     pencil::Pencil,
+    poly_conic::ConicStrips,
     quadric::{Convexity, PrincipalQuadric},
     quadric_clearance,
     ruled::RuledStrips,
@@ -28,7 +29,7 @@ pub(super) enum Surface {
     Pencil(Pencil),
     /// Quadric with principal axes.
     Quadric(Box<PrincipalQuadric>),
-    /// Tabulated cylinder or ruled surface.
+    /// Tabulated cylinder, ruled or polyconic surface.
     Ruled(Box<Ruled>),
 }
 
@@ -106,6 +107,10 @@ impl Surface {
             Geometry::RuledSurface(surface) => {
                 let strips = RuledStrips::of(surface).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Joining(strips))))
+            }
+            Geometry::PolyConic(values) => {
+                let strips = ConicStrips::of(values).ok_or_else(degenerate)?;
+                Ok(Self::Ruled(Box::new(Ruled::Conics(Box::new(strips)))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
         }

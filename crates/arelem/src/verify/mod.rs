@@ -8,6 +8,7 @@ mod clearance;
 mod judge;
 mod pencil;
 mod pocket;
+mod poly_conic;
 mod quadric;
 mod quadric_clearance;
 mod ruled;

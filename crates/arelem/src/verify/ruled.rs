@@ -69,7 +69,7 @@ struct Piece {
 }
 
 /// The cubic through the places at 0, ⅓, ⅔ and 1, by control points.
-fn through(p: &[Vec3; 4]) -> Cubic {
+pub(super) fn through(p: &[Vec3; 4]) -> Cubic {
     let first = (p[0] * -5.0 + p[1] * 18.0 - p[2] * 9.0 + p[3] * 2.0) / 6.0;
     let second = (p[0] * 2.0 - p[1] * 9.0 + p[2] * 18.0 - p[3] * 5.0) / 6.0;
     [p[0], first, second, p[3]]

@@ -1,4 +1,4 @@
-//! Clearance of the whole tool to a surface of straight rulings.
+//! Clearance of the whole tool to a surface of straight rulings, or to strips of such in place of another surface.
 //!
 //! Clear of the surface it is the least distance of a place of the surface. In violation it is the least translation
 //! that frees the tool (arelem reference 5.2): not less than the depth of any place of the surface in the tool, and of
@@ -10,6 +10,7 @@ use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
+    poly_conic::ConicStrips,
     ruled::RuledStrips,
     ruling::Ruling,
     strip::{Strip, Touch, nearest},
@@ -18,6 +19,8 @@ use super::{
 
 /// Accuracy of a distance, relative to the size of surface and tool.
 const RESOLUTION: f64 = 2e-11;
+/// The same, relative to how far the strips may be off the surface.
+const RESOLUTION_OF_ERROR: f64 = 0.05;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
 /// Distance, relative to the tool, from which on the difference of two places is a direction.
@@ -39,13 +42,15 @@ const PROOF_STEPS: usize = 14;
 /// The same for a depth that need not be the greatest yet.
 const QUICK_PROOF_STEPS: usize = 4;
 
-/// A surface of straight rulings.
+/// A surface made of straight rulings.
 #[derive(Debug, Clone)]
 pub(super) enum Ruled {
     /// A tabulated cylinder: all rulings parallel.
     Parallel(Ruling),
     /// Rulings between two curves, or to a point.
     Joining(RuledStrips),
+    /// A polyconic surface, its conics joined by straight lines.
+    Conics(Box<ConicStrips>),
 }
 
 impl Ruled {
@@ -54,6 +59,7 @@ impl Ruled {
         match self {
             Self::Parallel(ruling) => ruling.size,
             Self::Joining(surface) => surface.size,
+            Self::Conics(surface) => surface.size,
         }
     }
 
@@ -62,6 +68,7 @@ impl Ruled {
         match self {
             Self::Parallel(ruling) => Cow::Owned(ruling.strips(tip, reach)),
             Self::Joining(surface) => Cow::Borrowed(&surface.strips),
+            Self::Conics(surface) => Cow::Borrowed(&surface.strips),
         }
     }
 
@@ -69,6 +76,7 @@ impl Ruled {
         match self {
             Self::Parallel(ruling) => ruling.natural(touch),
             Self::Joining(surface) => surface.natural(touch),
+            Self::Conics(surface) => surface.natural(touch),
         }
     }
 
@@ -76,8 +84,14 @@ impl Ruled {
     fn axis(&self) -> Option<Vec3> {
         match self {
             Self::Parallel(ruling) => Some(ruling.axis),
-            Self::Joining(_) => None,
+            Self::Joining(_) | Self::Conics(_) => None,
         }
+    }
+
+    /// Whether the surface may have an edge at a place.
+    fn may_have_edge(&self, touch: &Touch) -> bool {
+        let at_joint = touch.along <= JOINT || touch.along >= 1.0 - JOINT;
+        at_joint && !matches!(self, Self::Conics(_))
     }
 
     /// How far the strips may be off the surface.
@@ -85,12 +99,14 @@ impl Ruled {
         match self {
             Self::Parallel(_) => 0.0,
             Self::Joining(surface) => surface.error,
+            Self::Conics(surface) => surface.error,
         }
     }
 }
 
 fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
-    RESOLUTION * (surface.size().max(tip.norm()) + reach)
+    let rounding = RESOLUTION * (surface.size().max(tip.norm()) + reach);
+    rounding.max(RESOLUTION_OF_ERROR * surface.error())
 }
 
 /// Signed distance of a point along the natural normal and that distance's unit gradient; None beyond the end of a curve.
@@ -152,9 +168,8 @@ impl Bodies<'_> {
     /// the surface's own normal does, but where the surface has an edge.
     fn away(&self, touch: &Touch) -> Option<Vec3> {
         let normal = self.surface.natural(touch)? * self.side;
-        let beside_joint = touch.along <= JOINT || touch.along >= 1.0 - JOINT;
         let far = touch.value.abs() > SURE_DISTANCE * self.reach;
-        Some(if far || beside_joint { -touch.outward } else { normal })
+        Some(if far || self.surface.may_have_edge(touch) { -touch.outward } else { normal })
     }
 
     /// Whether the tool is on its side of the surface where it is nearest.

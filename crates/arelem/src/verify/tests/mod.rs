@@ -3,6 +3,7 @@
 mod clearances;
 mod mutations;
 mod paths;
+mod poly_conics;
 mod ruled;
 mod rulings;
 mod turning;
