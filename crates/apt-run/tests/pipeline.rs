@@ -115,7 +115,8 @@ GOTO/2,2,0
 FINI
 ";
     let document = document(text);
-    assert_eq!(codes(&document), [("APT0644", 7), ("APT0690", 8)]);
+    // The lint needs no motion: ON L3, and then TLLFT of it.
+    assert_eq!(codes(&document), [("APT0644", 7), ("APT0690", 8), ("APT0959", 9)]);
     let result = run(&document);
     let skipped = result.findings.iter().find_map(|finding| match finding.kind {
         RunFindingKind::Skipped { statements, last } => Some((statements, last)),

@@ -75,7 +75,8 @@ fn a_diagnostic_says_where_it_is_and_how_it_came_there() {
         .filter(|diagnostic| diagnostic["severity"] == "error")
         .collect();
     let [error] = errors.as_slice() else { panic!("{errors:?}") };
-    let fields = ["code", "severity", "message", "isn", "apt3", "file", "range", "origin", "related", "hint"];
+    let fields =
+        ["code", "severity", "message", "isn", "apt3", "file", "range", "origin", "related", "hint", "fixes"];
     assert_eq!(keys(error), fields.into());
     assert_eq!(error["code"], "APT0101");
     assert_eq!(error["isn"], 8);
@@ -133,7 +134,7 @@ fn motions_are_proven_and_within_their_band() {
 
 #[test]
 fn statements_are_told_as_they_were_written() {
-    let text = "PARTNO S\nC1=CIRCLE/0,0,2\nFROM/5,-.5,0\n  Go / To, c1 $$ start\nTLLFT, GOLFT/C1,$ on\n   ON,(LINE/0,0,$\n\
+    let text = "PARTNO S\nCUTTER/.5\nC1=CIRCLE/0,0,2\nFROM/5,-.5,0\n  Go / To, c1 $$ start\nTLLFT, GOLFT/C1,$ on\n   ON,(LINE/0,0,$\n\
                 1,0)\nFINI\n";
     let value = report(text, None);
     let statements: Vec<_> = value["motions"]
