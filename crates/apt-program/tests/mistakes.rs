@@ -193,6 +193,50 @@ fn places(program: &Program, wanted: fn(&FindingKind) -> bool) -> Vec<u32> {
 }
 
 #[test]
+fn definitions_that_are_hardly_meant_are_warned_of() {
+    let doubts = |text: &str| -> Vec<String> {
+        let program = run(&format!("{text}\nFINI\n"));
+        let warnings = program.findings().filter(|finding| finding.severity == Severity::Warning);
+        let told = warnings.map(|finding| match &finding.kind {
+            FindingKind::Doubtful { statement, value } => {
+                format!("{}:{statement} {value}", finding.origin.isn)
+            }
+            FindingKind::NotNormalised { kind, length, normalised } => {
+                format!("{}:{kind:?} {length} {normalised:?}", finding.origin.isn)
+            }
+            other => format!("{other:?}"),
+        });
+        told.collect()
+    };
+    for (text, expected) in [
+        ("P=PATERN/LINEAR,(0,0),(1,1),0", "1:PATERN 0"),
+        ("P=PATERN/LINEAR,(0,0),(VECTOR/1,1,0),.5", "1:PATERN 0"),
+        ("P=PATERN/ARC,(CIRCLE/0,0,1),0,90,CLW,0", "1:PATERN 0"),
+        ("A=PATERN/LINEAR,(0,0),(1,1),2\nP=PATERN/PARLEL,A,(VECTOR/1,0,0),0", "2:PATERN 0"),
+        ("C=CIRCLE/CANON,0,0,0,0,0,1,-2", "1:CIRCLE -2"),
+        ("S=SPHERE/CANON,0,0,0,-2", "1:SPHERE -2"),
+        ("L=LINE/CANON,3,4,0,5", "1:Line 5 [0.6, 0.8, 0.0, 1.0]"),
+        ("L=PLANE/CANON,0,0,-2,4", "1:Plane 2 [0.0, 0.0, -1.0, 2.0]"),
+        ("L=PLANE/CANON,0,0,0,4", "1:Plane 0 []"),
+        ("C=CIRCLE/CANON,1,2,3,0,0,4,5", "1:Circle 4 [1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 5.0]"),
+        ("C=CYLNDR/CANON,1,2,3,0,3,4,5", "1:Cylinder 5 [1.0, 2.0, 3.0, 0.0, 0.6, 0.8, 5.0]"),
+        ("C=CONE/CANON,1,2,3,2,0,0,.5", "1:Cone 2 [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.5]"),
+    ] {
+        assert_eq!(doubts(text), [expected], "{text}");
+    }
+    for text in [
+        "P=PATERN/LINEAR,(0,0),(1,1),1",
+        "P=PATERN/LINEAR,(0,0),(VECTOR/1,1,0),INCR,0,AT,2",
+        "L=LINE/CANON,.707107,.707107,0,5",
+        "L=LINE/CANON,.8660,.5000,0,5",
+        "V=VECTOR/CANON,3,4,5",
+        "L=LINE/CANON,0,1,0,5\nM=LINE/L,CANON,3,4",
+    ] {
+        assert_eq!(doubts(text), [""; 0], "{text}");
+    }
+}
+
+#[test]
 fn statements_that_are_never_reached_are_found() {
     let unreachable = |text: &str| places(&run(text), |kind| matches!(kind, FindingKind::Unreachable));
     assert_eq!(unreachable("LOOPST\nA)B=1\nJUMPTO/C\n\nD=2\nE=3\nC)LOOPND\nFINI\n"), [5]);

@@ -238,6 +238,9 @@ pub enum SyntaxErrorKind {
     /// A logical IF where the dialect has none.
     #[error("a logical IF takes one statement")]
     LogicalIfStatement,
+    /// A DO as the statement of a logical IF.
+    #[error("DO cannot be the statement of an IF")]
+    ConditionalDo,
     /// OBTAIN without a type word.
     #[error("OBTAIN needs a type word")]
     ObtainTypeExpected,
@@ -294,9 +297,11 @@ impl SyntaxErrorKind {
             Kind::LabelMissing => 403,
             Kind::LabelCount { .. } => 409,
             Kind::TakesNoParameters(_) => 505,
-            Kind::RunsIntoSequenceField | Kind::RelationMissing | Kind::LogicalIfStatement | Kind::DoForm => {
-                return None;
-            }
+            Kind::RunsIntoSequenceField
+            | Kind::RelationMissing
+            | Kind::LogicalIfStatement
+            | Kind::ConditionalDo
+            | Kind::DoForm => return None,
         })
     }
 

@@ -322,6 +322,16 @@ pub enum FindingKind {
         /// The value.
         value: f64,
     },
+    /// Canonical values whose direction has another length than 1; they are stored as they are given.
+    #[error("the direction of the {kind:?} has length {length}, not 1")]
+    NotNormalised {
+        /// The type.
+        kind: GeometryKind,
+        /// The length of the normal or of the axis.
+        length: f64,
+        /// All canonical values of the same surface with a direction of length 1; none if the direction is zero.
+        normalised: Vec<f64>,
+    },
     /// OBTAIN of another type than said.
     #[error("{name} is a {found:?}, not a {expected:?}")]
     ObtainType {

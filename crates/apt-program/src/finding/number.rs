@@ -106,6 +106,7 @@ impl FindingKind {
             | Self::NotFinite
             | Self::Untransformable { .. }
             | Self::Doubtful { .. }
+            | Self::NotNormalised { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
             | Self::MacroVariableTwice { .. }
@@ -177,6 +178,7 @@ impl FindingKind {
             Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
             Self::EndMissing
             | Self::Doubtful { .. }
+            | Self::NotNormalised { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
             | Self::NoEffect { .. }

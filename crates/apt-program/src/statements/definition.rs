@@ -183,6 +183,7 @@ impl Evaluator<'_> {
                 if let Geometry::TabulatedCylinder(curve) = &geometry {
                     self.report_joints(curve, &arguments, definition.range);
                 }
+                self.report_doubtful_geometry(&geometry, &arguments, definition.range);
                 Some(Arc::new(geometry))
             }
             Err(error) => {

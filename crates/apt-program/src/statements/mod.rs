@@ -2,6 +2,7 @@
 
 mod declaration;
 mod definition;
+mod doubtful;
 mod library;
 mod listing;
 mod motion;

@@ -34,8 +34,32 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
                 .hint("check the sign and the unit of the value")
         }
         Kind::Doubtful { statement, value } => {
-            say("APT0323", format!("{} is a doubtful value for {statement}", number(*value)))
-                .hint("a tolerance is a distance and has no sign; a negative one is taken as zero")
+            let text = say("APT0323", format!("{} is a doubtful value for {statement}", number(*value)));
+            match statement.as_str() {
+                "INTOL" | "OUTTOL" | "TOLER" => {
+                    text.hint("a tolerance is a distance and has no sign; a negative one is taken as zero")
+                }
+                "PATERN" => text.hint("the pattern has no points, and a GOTO over it does not move the tool"),
+                "CIRCLE" | "CYLNDR" | "SPHERE" => {
+                    text.hint("a radius has no sign; check the order of the numbers")
+                }
+                _ => text,
+            }
+        }
+        Kind::NotNormalised { kind, length, normalised } => {
+            let text = say(
+                "APT0315",
+                format!("the direction of {} has the length {}, not 1", a_kind(*kind), number(*length)),
+            );
+            if normalised.is_empty() {
+                return Some(text.hint("three zeros are no direction"));
+            }
+            let values: Vec<String> = normalised.iter().map(|value| number(*value)).collect();
+            text.hint(format!(
+                "CANON stores the numbers as they are; write {}/CANON,{}",
+                kind.word(),
+                values.join(",")
+            ))
         }
         Kind::ObtainType { name, expected, found } => {
             say("APT0330", format!("{name} is {}, not {}", a_kind(*found), a_kind(*expected)))

@@ -158,6 +158,8 @@ fn list(kind: &Kind) -> Text {
         }
         Kind::ConditionMissing => say("APT0061", "IF is followed by its condition in parentheses"),
         Kind::LogicalIfStatement => say("APT0062", "a logical IF is followed by one statement"),
+        Kind::ConditionalDo => say("APT0066", "DO cannot be the statement of an IF")
+            .hint("the loop reaches over several statements: jump over it with IF and JUMPTO"),
         Kind::ObtainTypeExpected => say("APT0063", "OBTAIN is followed by the type of the surface")
             .hint("the form is OBTAIN,CIRCLE/C1,X,Y"),
         Kind::DoForm => say("APT0064", "the form is DO/label,index=first,last,step"),

@@ -217,6 +217,10 @@ impl Parser<'_> {
         if logical {
             let condition = self.condition()?;
             self.close()?;
+            if self.at_word("DO") && self.kind(1) == Some(ElementKind::Slash) {
+                // The statements of the loop would stand outside of the condition.
+                return self.fail(SyntaxErrorKind::ConditionalDo);
+            }
             let then = self.nested(Self::part)?;
             if !self.at_end() {
                 return self.fail(SyntaxErrorKind::LogicalIfStatement);

@@ -1,0 +1,65 @@
+//! Definitions that are accepted although they are hardly meant (language reference 9.5).
+
+use apt_geometry::{
+    canonical::Geometry,
+    definition::{Argument, Modifier},
+};
+use apt_syntax::TextRange;
+use smol_str::SmolStr;
+
+use crate::{evaluator::Evaluator, finding::FindingKind};
+
+/// By how much the length of a direction given by CANON may differ from 1: numbers with four decimals stay below it.
+const UNIT_LENGTH_TOLERANCE: f64 = 1e-4;
+
+impl Evaluator<'_> {
+    /// Warns of a pattern without points, of a negative radius, and of a direction given by CANON that is no unit vector.
+    pub(super) fn report_doubtful_geometry(
+        &mut self,
+        geometry: &Geometry,
+        arguments: &[Argument],
+        range: TextRange,
+    ) {
+        let value = match geometry {
+            Geometry::Pattern(pattern) if pattern.points.is_empty() => Some(0.0),
+            Geometry::Circle(round) | Geometry::Cylinder(round) if round.radius < 0.0 => Some(round.radius),
+            Geometry::Sphere(sphere) if sphere.radius < 0.0 => Some(sphere.radius),
+            _ => None,
+        };
+        if let Some(value) = value {
+            let statement = SmolStr::new_static(geometry.kind().word());
+            self.report(FindingKind::Doubtful { statement, value }, range);
+        }
+        if arguments.first() == Some(&Argument::Modifier(Modifier::Canon))
+            && let Some((length, normalised)) = unit_values(geometry)
+        {
+            let kind = geometry.kind();
+            self.report(FindingKind::NotNormalised { kind, length, normalised }, range);
+        }
+    }
+}
+
+/// The length of the direction, where it should be 1 and is not, and the canonical values with a unit direction: none
+/// if there is no direction at all.
+fn unit_values(geometry: &Geometry) -> Option<(f64, Vec<f64>)> {
+    // Where the direction stands among the values, and whether a distance along it follows.
+    let (first, distance) = match geometry {
+        Geometry::Line(_) | Geometry::Plane(_) => (0, Some(3)),
+        Geometry::Circle(_) | Geometry::Cylinder(_) | Geometry::Cone(_) => (3, None),
+        _ => return None,
+    };
+    let mut values = geometry.canonical_values();
+    let length = values.get(first..first + 3)?.iter().fold(0.0_f64, |sum, part| sum.hypot(*part));
+    if !length.is_finite() || (length - 1.0).abs() <= UNIT_LENGTH_TOLERANCE {
+        return None;
+    }
+    if length == 0.0 {
+        return Some((length, Vec::new()));
+    }
+    for index in (first..first + 3).chain(distance) {
+        if let Some(value) = values.get_mut(index) {
+            *value /= length;
+        }
+    }
+    Some((length, values))
+}
