@@ -94,6 +94,10 @@ pub struct Lint {
     pub fixes: Vec<Fix>,
 }
 
+/// Statements up to which overwritten values are looked for: that reads every statement again, and beyond this number
+/// the tree keeps none of them read, so that each keystroke would cost the length of the program.
+const MOST_STATEMENTS_FOR_VALUES: usize = 50_000;
+
 /// The lints of a program, each place once however often its statement is executed. The order is that of the looks;
 /// the catalogue sorts.
 pub fn lint(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
@@ -103,7 +107,9 @@ pub fn lint(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
         return Vec::new();
     }
     let mut lints = text::lints(tree);
-    lints.extend(values::lints(tree));
+    if tree.statement_count() <= MOST_STATEMENTS_FOR_VALUES {
+        lints.extend(values::lints(tree));
+    }
     lints.extend(path::lints(tree, program));
     lints
 }
