@@ -4,6 +4,7 @@
 //! that contains the z direction, a circle is an infinite cylinder about z.
 
 mod cylinder;
+pub mod extent;
 pub mod function;
 mod kind;
 pub mod matrix;

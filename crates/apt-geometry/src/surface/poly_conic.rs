@@ -2,7 +2,7 @@
 //! (language reference 4.15).
 //!
 //! With square roots of the station the surface is followed by the signed root, so that it goes smoothly round a nose at
-//! station 0. Each conic goes on straight beyond its ends, the family by [`BEYOND_STATION`] beyond its own. The nearest
+//! station 0. Each conic goes on straight beyond its ends, the family by [`POLYCONIC_STATIONS_BEYOND`] beyond its own. The nearest
 //! point is found over a tree of cells, each bounded by a ball.
 
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -11,16 +11,14 @@ use super::{
     Foot, perpendicular,
     sheet::{Jet, ON_SURFACE, Rest},
 };
-use crate::{Vec3, canonical::PolyConicForm};
+use crate::{
+    Vec3,
+    canonical::{
+        PolyConicForm,
+        extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
+    },
+};
 
-/// How far the stations are followed beyond 0 and 1.
-const BEYOND_STATION: f64 = 0.25;
-/// How far the straight ends of a conic go, as a multiple of the way to where its end tangents meet.
-const BEYOND_CONIC: f64 = 2.0;
-/// Least fullness: below it a conic is its chord (published constant).
-const LEAST_FULLNESS: f64 = 0.500_000_5;
-/// Greatest fullness: at 1 the conic is its two tangents.
-const GREATEST_FULLNESS: f64 = 1.0 - 1e-6;
 /// Cells along the stations and over a conic; each straight end has [`END_CELLS`] more.
 const STATION_CELLS: usize = 24;
 const CONIC_CELLS: usize = 12;
@@ -85,9 +83,12 @@ impl PolyConicSheet {
     /// `None` if the values do not describe a surface.
     pub(super) fn new(values: &[f64]) -> Option<Self> {
         let form = PolyConicForm::read(values)?;
-        let last = 1.0 + BEYOND_STATION;
-        let stations =
-            if form.roots.is_some() { [-last.sqrt(), last.sqrt()] } else { [-BEYOND_STATION, last] };
+        let last = 1.0 + POLYCONIC_STATIONS_BEYOND;
+        let stations = if form.roots.is_some() {
+            [-last.sqrt(), last.sqrt()]
+        } else {
+            [-POLYCONIC_STATIONS_BEYOND, last]
+        };
         let limits = [[-1.0, 2.0], stations];
         let terms = form.polynomials.map(|p| p.iter().rposition(|k| *k != 0.0).map_or(0, |last| last + 1));
         let mut sheet = Self { form, terms, limits, cells: Vec::new(), size: 0.0, curvature: 0.0 };
@@ -417,7 +418,7 @@ impl PolyConicSheet {
 /// A straight end: from a control point away from where the end tangents meet. `x` is negative; it grows with the
 /// parameter in the given sense.
 fn straight(end: &Control, meet: &Control, x: f64, sense: f64) -> [Vector2<f64>; 6] {
-    let way: [Vector2<f64>; 3] = std::array::from_fn(|k| (meet.0[k] - end.0[k]) * BEYOND_CONIC);
+    let way: [Vector2<f64>; 3] = std::array::from_fn(|k| (meet.0[k] - end.0[k]) * POLYCONIC_ENDS_BEYOND);
     let at = |k: usize| end.0[k] + way[k] * x;
     [at(0), way[0] * sense, at(1), Vector2::zeros(), way[1] * sense, at(2)]
 }

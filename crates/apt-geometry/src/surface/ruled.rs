@@ -1,7 +1,7 @@
 //! Ruled surfaces: straight rulings between points at equal shares of two chords (language reference 4.16).
 //!
 //! The two curves are kept as quintic pieces that pass through their points with slope and curvature. Rulings go on
-//! beyond the curves, and the curves straight beyond their ends, for [`BEYOND`] times their length, but not to where
+//! beyond the curves, and the curves straight beyond their ends, for [`RULED_BEYOND`] times their length, but not to where
 //! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by its middle ruling.
 
 use nalgebra::Matrix3;
@@ -13,15 +13,12 @@ use super::{
 };
 use crate::{
     Vec3,
-    canonical::{RuledEnd, RuledSurface},
+    canonical::{
+        RuledEnd, RuledSurface,
+        extent::{RULED_BEFORE_FOLD, RULED_BEYOND, RULED_STEADY},
+    },
 };
 
-/// How far the surface goes on beyond its curves and their ends, as a multiple of itself.
-const BEYOND: f64 = 4.0;
-/// Share of the way to the place where neighbouring rulings meet at which the extension ends.
-const BEFORE_FOLD: f64 = 0.9;
-/// Share of the chord at both ends where the meeting of rulings is not judged: a curve may stand upright there.
-const STEADY: f64 = 0.05;
 /// Accuracy of the pieces, relative to the size of the surface.
 const ACCURACY: f64 = 2e-11;
 /// How much less accurate the shortest pieces, at a kink of a curve, may be.
@@ -147,7 +144,7 @@ impl RuledSheet {
                 [Edge::Curve(Box::new(SectionCurve::new(&first)?)), Edge::Apex(*apex)]
             }
         };
-        let range = [-BEYOND, 1.0 + BEYOND];
+        let range = [-RULED_BEYOND, 1.0 + RULED_BEYOND];
         let pieces = pieces(&edges, range, ACCURACY * size)?;
         let mut sheet = Self { pieces, bands: Vec::new(), limits: [range, [0.0, 1.0]], size, curvature: 0.0 };
         sheet.limits[1] = sheet.shares();
@@ -157,11 +154,11 @@ impl RuledSheet {
 
     /// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
     fn shares(&self) -> [f64; 2] {
-        let (mut low, mut high) = (-BEYOND, 1.0 + BEYOND);
+        let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
         for (k, piece) in self.pieces.iter().enumerate() {
             for tau in [0.0, 0.5, 1.0] {
                 let t = piece.from + piece.width * tau;
-                if !(STEADY..=1.0 - STEADY).contains(&t) {
+                if !(RULED_STEADY..=1.0 - RULED_STEADY).contains(&t) {
                     continue;
                 }
                 let jet = self.jet(k, t, 0.0);
@@ -171,9 +168,9 @@ impl RuledSheet {
                 let meet = a / (a - b);
                 if meet >= 1.0 - 1e-9 {
                     let apex = meet <= 1.0 + 1e-9;
-                    high = high.min(if apex { 1.0 } else { 1.0 + BEFORE_FOLD * (meet - 1.0) });
+                    high = high.min(if apex { 1.0 } else { 1.0 + RULED_BEFORE_FOLD * (meet - 1.0) });
                 } else if meet <= 1e-9 {
-                    low = low.max(BEFORE_FOLD * meet.min(0.0));
+                    low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
                 }
             }
         }

@@ -2,23 +2,16 @@
 //! surface is made from (language reference 4.16).
 
 use super::{RootSelection, Surface};
+use crate::canonical::extent::{SECTION_BEYOND, SECTION_MISFIT, SECTION_STEEP_BEYOND};
 use crate::{Vec3, canonical::RuledCurve};
 
 /// Slope over the chord above which a section is not followed: its end on a circle over the diameter, where the share of
 /// the chord stops telling where on the curve one is.
 const STEEP: f64 = 1e3;
-/// Slope over the chord, in chords, above which a section is not followed beyond its ends; the straight extensions do not
-/// run faster than this either.
-const STEEP_BEYOND: f64 = 3.0;
-/// Distance of an end point from the curve, relative to the chord, beyond which the definition does not fit its surface;
-/// points are often given with four or five decimals.
-const MISFIT: f64 = 1e-2;
 /// Share of the chord by which one-sided derivatives are taken inside.
 const NUDGE: f64 = 4e-14;
 /// Steps over the chord itself at which heights are noted.
 const STEPS: usize = 32;
-/// How far beyond its ends a section is followed, in chords.
-const BEYOND: f64 = 1.0;
 /// Halvings that find the last place of a section that becomes too steep.
 const HALVINGS: u32 = 40;
 
@@ -71,22 +64,24 @@ impl SectionCurve {
         self.known = known;
         let ends = [self.at(0.0, 0.5).point, self.at(1.0, 0.5).point];
         let misfit = (ends[0] - self.start).norm().max((ends[1] - self.start - self.chord).norm());
-        (misfit <= MISFIT * self.chord.norm()).then_some(())
+        (misfit <= SECTION_MISFIT * self.chord.norm()).then_some(())
     }
 
     fn walk(&self, height: f64, sense: f64) -> Vec<(f64, f64)> {
         let mut found = Vec::new();
         let (mut share, mut guess) = (0.5, height);
         let mut step = sense / STEPS as f64;
-        let most = STEPS / 2 + (STEPS as f64 * BEYOND) as usize;
+        let most = STEPS / 2 + (STEPS as f64 * SECTION_BEYOND) as usize;
         let Some(mut here) = self.height(share, guess) else { return found };
         let mut halvings = 0;
-        while found.len() < most + HALVINGS as usize && (share + step - 0.5).abs() <= 0.5 + BEYOND + 1e-9 {
+        while found.len() < most + HALVINGS as usize
+            && (share + step - 0.5).abs() <= 0.5 + SECTION_BEYOND + 1e-9
+        {
             let beyond = (share + step - 0.5).abs() > 0.5 + 1e-9;
             let next = self.height(share + step, guess + here.slope * step).filter(|next| {
                 // The other branch of the section is not this curve.
                 let same = (next.value - guess - here.slope * step).abs() <= self.chord.norm();
-                same && (!beyond || next.slope.abs() <= STEEP_BEYOND * self.chord.norm())
+                same && (!beyond || next.slope.abs() <= SECTION_STEEP_BEYOND * self.chord.norm())
             });
             match next {
                 Some(next) => {
@@ -154,7 +149,7 @@ impl SectionCurve {
         let height = self.held(held, towards);
         let mut first = self.chord + self.across * height.slope;
         if straight {
-            let longest = (1.0 + STEEP_BEYOND) * self.chord.norm();
+            let longest = (1.0 + SECTION_STEEP_BEYOND) * self.chord.norm();
             first *= (longest / first.norm()).min(1.0);
         }
         let point = self.start + self.chord * held + self.across * height.value + first * (share - held);

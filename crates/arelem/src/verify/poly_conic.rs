@@ -5,20 +5,19 @@
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use apt_geometry::{Vec3, canonical::PolyConicForm};
+use apt_geometry::{
+    Vec3,
+    canonical::{
+        PolyConicForm,
+        extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
+    },
+};
 
 use super::{
     ruled::through,
     strip::{Cubic, Strip, Touch, lerp, place},
 };
 
-/// How far the conics go on straight, as a multiple of the way to where their end tangents meet.
-const BEYOND_CONIC: f64 = 2.0;
-/// How far the stations go on before 0 and after 1.
-const BEYOND_STATION: f64 = 0.25;
-/// Fullness below which a conic is its chord, and above which it is its tangents (published constants).
-const LEAST_FULLNESS: f64 = 0.500_000_5;
-const GREATEST_FULLNESS: f64 = 1.0 - 1e-6;
 /// How far a strip may be off, relative to the size of the surface.
 const ACCURACY: f64 = 1e-8;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
@@ -108,7 +107,7 @@ impl Conics {
         let meet = lift(y, z);
         let end = lift(sum(y, a), sum(z, d));
         let straight = |from: Rate<Vec3>, share: f64, sense: f64| {
-            let way = [0, 1].map(|k| (meet[k] - from[k]) * BEYOND_CONIC);
+            let way = [0, 1].map(|k| (meet[k] - from[k]) * POLYCONIC_ENDS_BEYOND);
             Jet { point: from[0] + way[0] * share, along: way[0] * sense, across: from[1] + way[1] * share }
         };
         if t < 0.0 {
@@ -161,9 +160,9 @@ impl Conics {
 
     fn stations(&self) -> [f64; 4] {
         match self.form.roots {
-            None => [-BEYOND_STATION, 0.0, 1.0, 1.0 + BEYOND_STATION],
+            None => [-POLYCONIC_STATIONS_BEYOND, 0.0, 1.0, 1.0 + POLYCONIC_STATIONS_BEYOND],
             Some(_) => {
-                let last = (1.0 + BEYOND_STATION).sqrt();
+                let last = (1.0 + POLYCONIC_STATIONS_BEYOND).sqrt();
                 [-last, 0.0, 1.0, last]
             }
         }

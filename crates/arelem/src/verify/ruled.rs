@@ -6,7 +6,10 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{RuledCurve, RuledEnd, RuledSurface},
+    canonical::{
+        RuledCurve, RuledEnd, RuledSurface,
+        extent::{RULED_BEFORE_FOLD, RULED_BEYOND, RULED_STEADY},
+    },
 };
 
 use super::{
@@ -14,12 +17,6 @@ use super::{
     strip::{Cubic, Strip, Touch, lerp, place, tangent},
 };
 
-/// How far rulings and curves go on beyond themselves, as a multiple of their length.
-const BEYOND: f64 = 4.0;
-/// Share of the way to where neighbouring rulings meet at which they end.
-const BEFORE_FOLD: f64 = 0.9;
-/// Share of the chord next to its ends where the meeting of rulings is not looked for: a curve may stand upright there.
-const STEADY: f64 = 0.05;
 /// How far a cubic may be off, relative to the size of the surface.
 const ACCURACY: f64 = 1e-10;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
@@ -127,14 +124,14 @@ impl RuledStrips {
 
 /// Both curves in pieces, from one end of the extensions to the other.
 fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
-    let mut cuts = vec![-BEYOND, 0.0, 1.0, 1.0 + BEYOND];
+    let mut cuts = vec![-RULED_BEYOND, 0.0, 1.0, 1.0 + RULED_BEYOND];
     for edge in edges {
         if let Edge::Curve(section) = edge {
             cuts.extend(section.reach);
             cuts.extend(section.joints());
         }
     }
-    cuts.retain(|s| (-BEYOND..=1.0 + BEYOND).contains(s));
+    cuts.retain(|s| (-RULED_BEYOND..=1.0 + RULED_BEYOND).contains(s));
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
     let mut found = Vec::new();
@@ -172,7 +169,7 @@ fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece
             open.push(([low, middle], depth + 1));
         } else {
             let middle = share(0.5 * (low + high));
-            found.push(Piece { curves, error, inner: (STEADY..=1.0 - STEADY).contains(&middle) });
+            found.push(Piece { curves, error, inner: (RULED_STEADY..=1.0 - RULED_STEADY).contains(&middle) });
         }
     }
     Some(())
@@ -180,7 +177,7 @@ fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece
 
 /// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
 fn shares(pieces: &[Piece]) -> [f64; 2] {
-    let (mut low, mut high) = (-BEYOND, 1.0 + BEYOND);
+    let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
     for piece in pieces.iter().filter(|p| p.inner) {
         for x in [0.0, 0.5, 1.0] {
             let [near, far] = [0, 1].map(|k| tangent(&piece.curves[k], x));
@@ -189,9 +186,9 @@ fn shares(pieces: &[Piece]) -> [f64; 2] {
             let meet = a / (a - b);
             if meet >= 1.0 - 1e-9 {
                 let apex = meet <= 1.0 + 1e-9;
-                high = high.min(if apex { 1.0 } else { 1.0 + BEFORE_FOLD * (meet - 1.0) });
+                high = high.min(if apex { 1.0 } else { 1.0 + RULED_BEFORE_FOLD * (meet - 1.0) });
             } else if meet <= 1e-9 {
-                low = low.max(BEFORE_FOLD * meet.min(0.0));
+                low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
             }
         }
     }

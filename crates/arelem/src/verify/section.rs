@@ -6,7 +6,10 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Quadric, RuledCurve},
+    canonical::{
+        Cone, Cylinder, Geometry, Quadric, RuledCurve,
+        extent::{SECTION_BEYOND, SECTION_MISFIT, SECTION_STEEP_BEYOND},
+    },
 };
 use nalgebra::Matrix3;
 
@@ -19,11 +22,7 @@ use super::{
 const LINEAR: f64 = 1e-13;
 /// How negative a discriminant may be for rounding, relative to its terms: at the ends of a half circle it vanishes.
 const ROUNDING: f64 = 1e-9;
-/// Distance of an end point from the section, relative to the chord, up to which the definition fits its surface.
-const MISFIT: f64 = 1e-2;
-/// Slope over the chord, in chords, above which a section is not followed beyond its ends, and no extension runs steeper.
-const STEEP: f64 = 3.0;
-/// Steps per chord in which a section is followed beyond its ends, and how many.
+/// Steps in which a section is followed beyond each of its ends.
 const STEPS: u32 = 32;
 /// Share of the chord over which a slope is measured.
 const SLOPE_STEP: f64 = 1e-6;
@@ -108,7 +107,7 @@ impl Section {
         let mut section = Self { cut, start: curve.start, chord, across, reach: [0.0, 1.0] };
         section.choose()?;
         let misfit = [0.0, 1.0].map(|s| section.height(s).map(f64::abs));
-        let most = MISFIT * chord.norm();
+        let most = SECTION_MISFIT * chord.norm();
         if !misfit.iter().all(|m| m.is_some_and(|m| m <= most)) {
             return None;
         }
@@ -162,10 +161,12 @@ impl Section {
     fn follow(&self, end: f64, sense: f64) -> f64 {
         let mut reached = end;
         for k in 1..=STEPS {
-            let share = end + sense * f64::from(k) / f64::from(STEPS);
+            let share = end + sense * SECTION_BEYOND * f64::from(k) / f64::from(STEPS);
             let slope = self.height(share).zip(self.height(share - sense * SLOPE_STEP));
             match slope {
-                Some((a, b)) if (a - b).abs() <= STEEP * self.chord.norm() * SLOPE_STEP => reached = share,
+                Some((a, b)) if (a - b).abs() <= SECTION_STEEP_BEYOND * self.chord.norm() * SLOPE_STEP => {
+                    reached = share;
+                }
                 _ => break,
             }
         }
@@ -245,7 +246,7 @@ impl Section {
         let inward = if share < held { SLOPE_STEP } else { -SLOPE_STEP };
         let slope = (self.height(held + inward)? - self.height(held)?) / inward;
         let run = self.chord + self.across * slope;
-        let longest = (1.0 + STEEP) * self.chord.norm();
+        let longest = (1.0 + SECTION_STEEP_BEYOND) * self.chord.norm();
         Some(place + run * (longest / run.norm()).min(1.0) * (share - held))
     }
 
