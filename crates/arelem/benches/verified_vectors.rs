@@ -1,10 +1,11 @@
 //! Cost of the verifier per cut vector: sequences of the engine over one part surface each, judged again and again.
 
-use std::sync::Arc;
+#[path = "../tests/support/wave.rs"]
+mod wave;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Interval, Plane, Quadric, Sphere, TabulatedCylinder},
+    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
         Turn,
@@ -16,6 +17,7 @@ use arelem::{
     verify::verify,
 };
 use divan::{Bencher, counter::ItemsCount};
+use wave::wave;
 
 fn main() {
     divan::main();
@@ -27,37 +29,6 @@ fn named(geometry: Geometry) -> NamedSurface {
 
 fn wall(normal: Vec3, distance: f64) -> Geometry {
     Geometry::Plane(Plane { normal, distance })
-}
-
-/// z = .3 sin x over ±4, by straight rulings along y.
-fn wave() -> Geometry {
-    let nodes: Vec<[f64; 3]> =
-        (-8..=8).map(|k| 0.5 * f64::from(k)).map(|u| [u, 0.3 * u.sin(), 0.3 * u.cos()]).collect();
-    let straight =
-        |u: f64, v: f64| Interval { u, v, a: 0.0, b: 0.0, length: 10.0, maximum: 0.0, minimum: 0.0 };
-    let ray = |n: [f64; 3], sense: f64| {
-        let reach = sense * 10.0 / n[2].hypot(1.0);
-        [n[0] + reach, n[1] + n[2] * reach]
-    };
-    let first = ray(nodes[0], -1.0);
-    let mut intervals = vec![straight(first[0], first[1])];
-    for pair in nodes.windows(2) {
-        let (p, q) = (pair[0], pair[1]);
-        let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-        let turn = (q[1] - p[1]).atan2(q[0] - p[0]);
-        let [s1, s2] = [p[2], q[2]].map(|s| (s.atan() - turn).tan());
-        let (a, b) = ((s1 + s2) / (length * length), -(2.0 * s1 + s2) / length);
-        intervals.push(Interval { u: p[0], v: p[1], a, b, length, maximum: 0.0, minimum: 0.0 });
-    }
-    let end = nodes[nodes.len() - 1];
-    intervals.push(straight(end[0], end[1]));
-    let axes = [Vec3::x(), Vec3::z(), -Vec3::y()];
-    Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
-        axes,
-        kind: 0.0,
-        intervals,
-        last: ray(end, 1.0),
-    }))
 }
 
 fn surfaces() -> Vec<(&'static str, Geometry)> {
@@ -93,7 +64,7 @@ fn surfaces() -> Vec<(&'static str, Geometry)> {
         ("ellipsoid", quadric([1.0 / 16.0, 1.0 / 9.0, 0.25, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
         ("dish", quadric([0.1, 0.05, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.5])),
         ("saddle", quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])),
-        ("tabcyl", wave()),
+        ("tabcyl", wave([Vec3::x(), Vec3::z(), -Vec3::y()], 0.0, 0.3)),
     ]
 }
 

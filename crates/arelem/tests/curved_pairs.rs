@@ -2,12 +2,14 @@
 //! refuses is held against a search of the verifier's own for a path.
 
 mod support;
+#[path = "support/wave.rs"]
+mod wave;
 
 use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Interval, RuledSurface, TabulatedCylinder},
+    canonical::{Geometry, RuledSurface},
     cutter::Cutter,
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
@@ -21,6 +23,7 @@ use arelem::{
     verify::verify,
 };
 use support::{Random, cone, cylinder, named, plane, quadric, sphere};
+use wave::wave;
 
 /// Where every motion starts and ends, along x.
 const ENDS: [f64; 2] = [-1.2, 1.2];
@@ -35,35 +38,6 @@ const PARTS: usize = 8;
 const DRIVES: usize = 7;
 /// Share of the motions that have a path which the engine may refuse.
 const REFUSALS: f64 = 0.03;
-
-/// v = offset + height·sin u between −4 and 4.
-fn wave(axes: [Vec3; 3], offset: f64, height: f64) -> Geometry {
-    let node = |k: i32| {
-        let u = 0.5 * f64::from(k);
-        [u, offset + height * u.sin(), height * u.cos()]
-    };
-    let nodes: Vec<[f64; 3]> = (-8..=8).map(node).collect();
-    let straight =
-        |u: f64, v: f64| Interval { u, v, a: 0.0, b: 0.0, length: 10.0, maximum: 0.0, minimum: 0.0 };
-    let ray = |n: [f64; 3], sense: f64| {
-        let reach = sense * 10.0 / n[2].hypot(1.0);
-        [n[0] + reach, n[1] + n[2] * reach]
-    };
-    let first = ray(nodes[0], -1.0);
-    let mut intervals = vec![straight(first[0], first[1])];
-    for pair in nodes.windows(2) {
-        let (p, q) = (pair[0], pair[1]);
-        let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-        let turn = (q[1] - p[1]).atan2(q[0] - p[0]);
-        let [s1, s2] = [p[2], q[2]].map(|s| (s.atan() - turn).tan());
-        let (a, b) = ((s1 + s2) / (length * length), -(2.0 * s1 + s2) / length);
-        intervals.push(Interval { u: p[0], v: p[1], a, b, length, maximum: 0.0, minimum: 0.0 });
-    }
-    let last = nodes[nodes.len() - 1];
-    intervals.push(straight(last[0], last[1]));
-    let surface = TabulatedCylinder { axes, kind: 0.0, intervals, last: ray(last, 1.0) };
-    Geometry::TabulatedCylinder(Arc::new(surface))
-}
 
 /// A ruled surface between two straight sections, each of a plane with its normal across the chord.
 fn ruled(curves: [(Vec3, Vec3, Vec3); 2]) -> Geometry {
