@@ -33,6 +33,7 @@ use std::{
 };
 
 use apt_program::Program;
+use apt_run::catalogue;
 use apt_run::pipeline::RunResult;
 pub use apt_run::{
     Cancel, Cancelled,
@@ -166,12 +167,29 @@ impl Analysis {
         self.document.run(cancel, progress)
     }
 
-    /// The diagnostics up to a level, in order of their place.
+    /// The diagnostics up to a level, in order of their place. Where the settings name a machine, the motion level holds
+    /// also what its post-processor finds, as far as the program itself is without errors.
     ///
     /// # Errors
     ///
     /// [`Cancelled`] when `cancel` said so before the end.
     pub fn diagnostics(
+        &self,
+        level: Level,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<Diagnostic>, Cancelled> {
+        let mut found = self.program_diagnostics(level, cancel, progress)?;
+        let sound = found.iter().all(|one| one.severity != Severity::Error);
+        if level == Level::Motion && sound {
+            found.extend(self.machine_diagnostics(cancel, progress)?);
+            catalogue::sort_by_place(&mut found);
+        }
+        Ok(found)
+    }
+
+    /// The diagnostics of the program alone, whatever machine it is meant for.
+    pub(crate) fn program_diagnostics(
         &self,
         level: Level,
         cancel: Cancel<'_>,

@@ -58,6 +58,9 @@ pub struct ControlTape {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// Characters of text that a statement of a CL text file carries at most.
+const CL_TEXT: usize = 80;
+
 /// The machines that come with the program.
 pub fn machines() -> Vec<MachineInfo> {
     apt_post::machines()
@@ -105,12 +108,61 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<ControlTape, TapeError> {
         let machine = machine(machine_name)?;
-        let settings = self.document().settings();
         let source = match self.document().dialect() {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
             _ => self.run_to_cutter_locations(cancel, progress)?,
         };
-        let tape = apt_post::post(&source.records, &machine, &options(settings), cancel)
+        Ok(self.tape_of(source, &machine, cancel)?)
+    }
+
+    /// What the post-processor finds for the machine of the settings, if they name one.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub(crate) fn machine_diagnostics(
+        &self,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Vec<Diagnostic>, Cancelled> {
+        let settings = self.document().settings();
+        let Some(name) = settings.machine.as_deref() else { return Ok(Vec::new()) };
+        let machine = match machine(name) {
+            Ok(machine) => machine,
+            Err(TapeError::UnknownMachine { known, .. }) => {
+                return Ok(catalogue::unknown_machine(name, &known, settings));
+            }
+            Err(TapeError::Cancelled(cancelled)) => return Err(cancelled),
+        };
+        let mut source = match self.document().dialect() {
+            DialectName::Cl => self.read_cutter_locations(cancel)?,
+            _ => {
+                let result = self.result(cancel, progress)?;
+                Source {
+                    records: result.records.clone(),
+                    origins: result.origins.clone(),
+                    diagnostics: Vec::new(),
+                }
+            }
+        };
+        // What there is to say about the program itself is told anyway.
+        source.diagnostics.clear();
+        Ok(self.tape_of(source, &machine, cancel)?.diagnostics)
+    }
+
+    /// The tape of some records, and what was found besides what is known already.
+    fn tape_of(
+        &self,
+        source: Source,
+        machine: &MachineDefinition,
+        cancel: Cancel<'_>,
+    ) -> Result<ControlTape, Cancelled> {
+        let settings = self.document().settings();
+        let mut options = options(settings);
+        if self.document().dialect() == DialectName::Cl {
+            options.text_limit = CL_TEXT;
+        }
+        let tape = apt_post::post(&source.records, machine, &options, cancel)
             .map_err(|apt_post::Cancelled| Cancelled)?;
         let mut diagnostics = source.diagnostics;
         diagnostics.extend(catalogue::tape_diagnostics(
@@ -127,7 +179,7 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Source, Cancelled> {
-        let diagnostics = self.diagnostics(Level::Motion, cancel, progress)?;
+        let diagnostics = self.program_diagnostics(Level::Motion, cancel, progress)?;
         let result = self.result(cancel, progress)?;
         Ok(Source { records: result.records.clone(), origins: result.origins.clone(), diagnostics })
     }

@@ -166,3 +166,33 @@ fn a_picture_is_made_of_pixels_without_any_font() {
     assert!(image.starts_with(b"\x89PNG\r\n\x1a\n"));
     assert!(image.len() > 5_000, "{} bytes are an empty picture", image.len());
 }
+
+#[test]
+fn the_machine_of_the_settings_is_asked_as_one_types() {
+    use apt_ide::{Analysis, Level, Settings};
+
+    let found = |machine: Option<&str>, level: Level, text: &str| -> Vec<(u32, &'static str)> {
+        let settings = Settings { machine: machine.map(str::to_owned), ..Settings::default() };
+        let analysis = Analysis::new(text, Some("part.apt".to_owned()), &std::sync::Arc::new(settings));
+        let list = analysis.diagnostics(level, &never, &mut silent).unwrap();
+        list.iter().map(|one| (one.origin.isn, one.wording.code)).collect()
+    };
+    let mill = Some("haas-mill3");
+    let text = "FROM/0,0,1\nLOADTL/21\nSPINDL/99999,CLW\nFEDRAT/5\nGOTO/1,0,0\nGOTO/1,0,0,5,5\nFINI\n";
+    let sound = text.replace("GOTO/1,0,0,5,5\n", "ROTABL/90\n");
+    assert_eq!(found(None, Level::Motion, &sound), []);
+    assert_eq!(found(mill, Level::Section1, &sound), []);
+    assert_eq!(found(mill, Level::Motion, &sound), [(2, "APT0862"), (3, "APT0831"), (6, "APT0893")]);
+    // The path of a program with an error is not the one that is meant.
+    assert!(found(mill, Level::Motion, text).iter().all(|(_, code)| !code.starts_with("APT08")));
+    assert_eq!(found(Some("mill-of-mine"), Level::Motion, &sound), [(1, "APT0894")]);
+    // A CL file, and settings that make an error of a word that nobody knows.
+    let mut settings = Settings { machine: mill.map(str::to_owned), ..Settings::default() };
+    settings.dialect = Some("cl".to_owned());
+    settings.severity.insert("APT0850".to_owned(), apt_run::settings::SeveritySetting::Error);
+    let text = "FROM/0,0,1\nLOADTL/1\nCHIPCV/ON\nFINI\n";
+    let analysis = Analysis::new(text, Some("part.cl".to_owned()), &std::sync::Arc::new(settings));
+    let list = analysis.diagnostics(Level::Motion, &never, &mut silent).unwrap();
+    let list: Vec<_> = list.iter().map(|one| (one.origin.isn, one.wording.code, one.severity)).collect();
+    assert_eq!(list, [(3, "APT0850", apt_ide::Severity::Error)]);
+}

@@ -60,7 +60,8 @@ pub(crate) struct Control<'a> {
     held: BTreeMap<String, String>,
     /// Code in force in each modal group.
     modes: BTreeMap<&'a str, &'a str>,
-    pub(crate) skip: bool,
+    /// Level of the optional blocks that are being made.
+    pub(crate) skip: Option<u32>,
     pub(crate) numbering: Numbering,
 }
 
@@ -85,7 +86,7 @@ impl<'a> Control<'a> {
             place: (0, u32::MAX),
             held: BTreeMap::new(),
             modes: BTreeMap::new(),
-            skip: false,
+            skip: None,
             numbering: Numbering {
                 on: sequence.on,
                 next: sequence.start,
@@ -281,8 +282,13 @@ impl<'a> Control<'a> {
     pub(crate) fn push_block(&mut self, text: &str) {
         let plain = text.is_empty() || text.starts_with(['%', 'O', '(', ';']);
         let mut block = String::new();
-        if self.skip && !plain {
+        if let Some(level) = self.skip
+            && !plain
+        {
             block.push_str(&self.machine.block.skip);
+            if level > 1 {
+                block.push_str(&level.to_string());
+            }
         }
         if self.numbering.on && !plain {
             if self.numbering.count.is_multiple_of(self.numbering.every) {

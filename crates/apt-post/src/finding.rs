@@ -122,6 +122,28 @@ pub enum PostFindingKind {
     Character { character: char },
     #[error("the block has {length} characters, {limit} are allowed")]
     BlockTooLong { length: usize, limit: usize },
+    #[error("a circle while CYCLE/{cycle} is on: each of its points becomes a hole")]
+    CycleOnArc { cycle: SmolStr },
+    #[error("the tool cuts before the first tool is loaded, by statement {isn}")]
+    CuttingBeforeTool { isn: u32 },
+    #[error("{word}: an offset while no tool is loaded")]
+    OffsetWithoutTool { word: SmolStr },
+    #[error("COOLNT while the spindle is off")]
+    CoolantBeforeSpindle,
+    #[error("{word}/OFF while nothing is on")]
+    NothingOn { word: SmolStr },
+    #[error("{word}: {argument} {value} is outside {least} to {greatest}")]
+    ArgumentOutOfRange { word: SmolStr, argument: SmolStr, value: f64, least: f64, greatest: f64 },
+    #[error("OPSKIP level {level}, the control knows {levels}; the plain mark is used")]
+    SkipLevel { level: u32, levels: u32 },
+    #[error("{word} writes {code} of the group {group}, which the post-processor keeps itself")]
+    FunctionInGroup { word: SmolStr, code: SmolStr, group: SmolStr },
+    #[error("{word} writes {code}, which {owner} stands for")]
+    FunctionOfWord { word: SmolStr, code: SmolStr, owner: SmolStr },
+    #[error("{word} has {length} characters of text, a card holds {limit}")]
+    TextTooLong { word: SmolStr, length: usize, limit: usize },
+    #[error("{word} turns an axis that this machine does not have; nothing is made of it")]
+    NoRotaryAxis { word: SmolStr },
 }
 
 impl PostFindingKind {
@@ -133,6 +155,7 @@ impl PostFindingKind {
             | Kind::ArcNotInPlane
             | Kind::CycleExpanded { .. }
             | Kind::UnknownWord { .. }
+            | Kind::NothingOn { .. }
             | Kind::SameTool { .. } => Severity::Information,
             Kind::SpindleOff
             | Kind::FeedOutOfRange { .. }
@@ -156,6 +179,16 @@ impl PostFindingKind {
             | Kind::RapidUnused
             | Kind::Repeated { .. }
             | Kind::Character { .. }
+            | Kind::CuttingBeforeTool { .. }
+            | Kind::CycleOnArc { .. }
+            | Kind::OffsetWithoutTool { .. }
+            | Kind::CoolantBeforeSpindle
+            | Kind::ArgumentOutOfRange { .. }
+            | Kind::SkipLevel { .. }
+            | Kind::FunctionInGroup { .. }
+            | Kind::FunctionOfWord { .. }
+            | Kind::TextTooLong { .. }
+            | Kind::NoRotaryAxis { .. }
             | Kind::MotionAfterEnd => Severity::Warning,
             _ => Severity::Error,
         }

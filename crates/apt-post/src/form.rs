@@ -92,7 +92,7 @@ struct Form {
 
 /// Words whose arguments are few enough to be listed. The statements of FEDRAT, SPINDL, COOLNT, CUTCOM and CYCLE know
 /// their own minor words and are left out when one is unknown.
-const FORMS: [Form; 23] = [
+const FORMS: [Form; 24] = [
     Form { word: "SPINDL", numbers: 1, minors: ANY },
     Form { word: "COOLNT", numbers: 0, minors: ANY },
     Form { word: "CUTCOM", numbers: 1, minors: ANY },
@@ -102,6 +102,7 @@ const FORMS: [Form; 23] = [
     Form { word: "SELECT", numbers: 1, minors: &["TOOL"] },
     Form { word: "UNLOAD", numbers: 1, minors: &["TOOL"] },
     Form { word: "OFSTNO", numbers: 1, minors: &["ADJUST"] },
+    Form { word: "LEADER", numbers: 1, minors: &[] },
     Form { word: "DELAY", numbers: 1, minors: &["REV"] },
     Form { word: "DWELL", numbers: 1, minors: &["REV"] },
     Form { word: "CLEARP", numbers: 4, minors: &["XYPLAN", "YZPLAN", "ZXPLAN", "TOOL", "AVOID"] },
@@ -111,11 +112,12 @@ const FORMS: [Form; 23] = [
     Form { word: "PLUNGE", numbers: 1, minors: &[] },
     Form { word: "ORIGIN", numbers: 3, minors: &[] },
     Form { word: "TRANS", numbers: 3, minors: &[] },
-    Form { word: "SEQNO", numbers: 1, minors: &["ON", "OFF", "INCR"] },
-    Form { word: "OPSKIP", numbers: 0, minors: &["ON", "OFF"] },
-    Form { word: "DELETE", numbers: 0, minors: &["ON", "OFF"] },
-    Form { word: "AUXFUN", numbers: 1, minors: &[] },
-    Form { word: "PREFUN", numbers: 1, minors: &[] },
+    // The first number, and after INCR's step every how many blocks.
+    Form { word: "SEQNO", numbers: 2, minors: &["ON", "OFF", "INCR"] },
+    Form { word: "OPSKIP", numbers: 1, minors: &["ON", "OFF"] },
+    Form { word: "DELETE", numbers: 1, minors: &["ON", "OFF"] },
+    Form { word: "AUXFUN", numbers: 1, minors: &["NOW"] },
+    Form { word: "PREFUN", numbers: 1, minors: &["NOW"] },
     Form { word: "MCHTOL", numbers: 1, minors: &[] },
 ];
 /// Minor words that the statement looks at itself.
@@ -144,7 +146,8 @@ const EXCLUSIVE: [&[&str]; 9] = [
 pub(crate) fn check(arguments: &Arguments<'_>) -> Vec<PostFindingKind> {
     let mut found = Vec::new();
     let word = arguments.word;
-    if treatment(word) != Some(Treatment::OnTape) {
+    // LEADER speaks to the punch, which has a leader of its own; what it asks for is checked all the same.
+    if treatment(word) != Some(Treatment::OnTape) && word != "LEADER" {
         return found;
     }
     let minors: Vec<&SmolStr> = minors(arguments).collect();

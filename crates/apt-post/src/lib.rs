@@ -20,4 +20,4 @@ pub use engine::{Cancel, Cancelled, post};
 pub use finding::{PostFinding, PostFindingKind, Severity};
 pub use form::{Treatment, treatment};
 pub use machine::{MachineDefinition, MachineError, MachineInfo, machine, machines};
-pub use tape::{Block, PostOptions, Tape};
+pub use tape::{Block, CARD_TEXT, PostOptions, Tape};

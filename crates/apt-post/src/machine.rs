@@ -118,6 +118,18 @@ pub struct MachineDefinition {
     /// Ranges.
     #[serde(default)]
     pub limits: Limits,
+    /// What has to stand before what.
+    #[serde(default)]
+    pub rules: OrderRules,
+}
+
+/// What has to stand before what; otherwise there is a warning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OrderRules {
+    /// Coolant is switched on only while the spindle turns.
+    #[serde(default)]
+    pub coolant_after_spindle: bool,
 }
 
 /// Unit of the tape.
@@ -193,8 +205,17 @@ pub struct BlockLayout {
     pub comment: String,
     /// What makes a block optional.
     pub skip: String,
+    /// How many levels of optional blocks the control tells apart, at most 9; the number of a level above the first is
+    /// written behind the mark.
+    #[serde(default = "one_level")]
+    pub skip_levels: u32,
     /// Sequence numbers.
     pub sequence: Sequence,
+}
+
+/// A control that knows optional blocks, but no levels.
+fn one_level() -> u32 {
+    1
 }
 
 /// Sequence numbers.
@@ -242,6 +263,7 @@ pub struct Codes {
     pub compensation_left: Option<String>,
     pub compensation_right: Option<String>,
     pub compensation_off: Option<String>,
+    pub length_offset_off: Option<String>,
     pub stop: String,
     pub optional_stop: String,
     pub cycle_off: Option<String>,

@@ -23,11 +23,16 @@ pub struct PostOptions {
     pub default_units: Units,
     /// Whether runs of points are fitted by arcs where no circle record vouches for them; `None` as the machine says.
     pub fit_points: Option<bool>,
+    /// Most characters of text that PARTNO, PPRINT and INSERT may carry.
+    pub text_limit: usize,
 }
+
+/// Characters of text on a card: columns 7 to 72.
+pub const CARD_TEXT: usize = 66;
 
 impl Default for PostOptions {
     fn default() -> Self {
-        PostOptions { default_units: Units::Inches, fit_points: None }
+        PostOptions { default_units: Units::Inches, fit_points: None, text_limit: CARD_TEXT }
     }
 }
 

@@ -333,7 +333,7 @@ fn findings() {
         ),
         ("SPINDL/200,SFM\n", PostFindingKind::NoCutterDiameter),
         ("FOO/1\n", PostFindingKind::UnknownWord { word: "FOO".into() }),
-        ("ROTABL/90\n", PostFindingKind::NotSupported { word: "ROTABL".into() }),
+        ("VACUUM/ON\n", PostFindingKind::NotSupported { word: "VACUUM".into() }),
         (
             "COOLNT/WATER\n",
             PostFindingKind::UnknownArgument { word: "COOLNT".into(), argument: "WATER".into() },

@@ -45,7 +45,13 @@ impl Engine<'_> {
     /// The CYCLE statement.
     pub(super) fn cycle_statement(&mut self, arguments: &Arguments<'_>) {
         match arguments.items.first() {
-            Some(ClWord::Word(word)) if word == "OFF" || word == "NOMORE" => return self.end_cycle(),
+            Some(ClWord::Word(word)) if word == "OFF" || word == "NOMORE" => {
+                // Patterns with AVOID say CYCLE/NOMORE whether a cycle is on or not.
+                if !std::mem::take(&mut self.cycle_asked) && self.cycle.is_none() && word == "OFF" {
+                    self.find(PostFindingKind::NothingOn { word: arguments.word.clone() });
+                }
+                return self.end_cycle();
+            }
             Some(ClWord::Word(word)) if word == "ON" => {
                 match self.suspended_cycle.clone() {
                     Some(cycle) => self.cycle = Some(Cycle { open: None, holes: 0, ..cycle }),
@@ -55,10 +61,14 @@ impl Engine<'_> {
             }
             _ => {}
         }
+        self.cycle_asked = true;
         let order = match cycle_order(arguments) {
             Ok(order) => order,
             Err(kind) => return self.find(kind),
         };
+        if let Some(place) = self.rapid.take() {
+            self.find_at(place, PostFindingKind::RapidUnused);
+        }
         self.end_cycle();
         let Some(name) = self.machine.cycle_words.get(order.kind.as_str()).cloned() else {
             let (word, argument) = (arguments.word.clone(), order.kind.clone());
@@ -68,7 +78,8 @@ impl Engine<'_> {
         let Some(depth) = order.depth.map(|depth| depth * scale) else {
             return self.find(arguments.missing("DEPTH"));
         };
-        let Some(clearance) = order.clearance.map(|clearance| clearance * scale) else {
+        let before = self.suspended_cycle.as_ref().map(|cycle| cycle.clearance);
+        let Some(clearance) = order.clearance.map(|clearance| clearance * scale).or(before) else {
             return self.find(arguments.missing("RAPTO"));
         };
         if depth <= 0.0 || depth.is_nan() {
@@ -199,6 +210,14 @@ impl Engine<'_> {
         }
     }
 
+    /// Reports a circle whose points become holes.
+    pub(super) fn circle_in_cycle(&mut self) {
+        if let Some(cycle) = &self.cycle {
+            let cycle = cycle.word.clone();
+            self.find(PostFindingKind::CycleOnArc { cycle });
+        }
+    }
+
     /// A plain move inside a cycle: the control leaves it, the next hole takes it up again.
     pub(super) fn leave_cycle(&mut self) {
         if let Some(cycle) = self.cycle.take() {
@@ -234,10 +253,7 @@ impl Engine<'_> {
             self.cycle = Some(cycle);
             return;
         }
-        if !self.spindle.on && !self.spindle_reported {
-            self.spindle_reported = true;
-            self.find(PostFindingKind::SpindleOff);
-        }
+        self.check_tool();
         let level = self.level(&mut cycle, top, plane);
         let machine = self.machine;
         match machine.cycles.get(&cycle.name) {

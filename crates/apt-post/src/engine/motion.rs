@@ -30,6 +30,9 @@ impl Engine<'_> {
         let positions = self.tape_positions(points);
         if from {
             self.flush();
+            if !positions.is_empty() && std::mem::replace(&mut self.started, true) {
+                self.find(PostFindingKind::Repeated { word: "FROM".into() });
+            }
             // FROM says where the tool stands; the tape says nothing of it.
             self.position = positions.last().copied().or(self.position);
             return;
@@ -50,6 +53,9 @@ impl Engine<'_> {
             }
         } else if self.cycle.is_some() {
             self.flush();
+            if circle.is_some() {
+                self.circle_in_cycle();
+            }
             for (index, position) in positions.into_iter().enumerate() {
                 if index % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
                     return;
@@ -221,9 +227,20 @@ impl Engine<'_> {
             self.feed_reported = true;
             self.find(PostFindingKind::NoFeed);
         }
+        self.check_tool();
+    }
+
+    /// Whether the tool that cuts, in a hole too, is there and turns.
+    pub(super) fn check_tool(&mut self) {
         if !self.spindle.on && !self.spindle_reported {
             self.spindle_reported = true;
             self.find(PostFindingKind::SpindleOff);
+        }
+        if let Some(isn) = self.first_tool.take()
+            && self.tool.is_none()
+            && !self.machine.templates.tool_change.is_empty()
+        {
+            self.find(PostFindingKind::CuttingBeforeTool { isn });
         }
     }
 

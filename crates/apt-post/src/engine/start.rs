@@ -68,6 +68,7 @@ impl Engine<'_> {
         if let Some((record, _)) = name {
             self.control.place = (record.isn, record.source);
         }
+        self.first_tool = records.iter().find(|record| loads_tool(record)).map(|record| record.isn);
         let text = name.map_or("", |(_, text)| text);
         let codes = &self.machine.codes;
         let unit = match self.control.units {
@@ -86,6 +87,17 @@ impl Engine<'_> {
                 self.control.template(template, &values);
             }
         }
+    }
+}
+
+/// Whether a record puts a tool into the spindle.
+fn loads_tool(record: &ClRecord) -> bool {
+    let ClKind::Postprocessor { word, arguments, .. } = &record.kind else { return false };
+    match word.as_str() {
+        "LOADTL" | "LOAD" | "TURRET" => true,
+        // TOOLNO/ADJUST chooses an offset only.
+        "TOOLNO" => !arguments.iter().any(|item| matches!(item, ClWord::Word(word) if word == "ADJUST")),
+        _ => false,
     }
 }
 

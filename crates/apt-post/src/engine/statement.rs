@@ -4,7 +4,7 @@ use apt_cldata::record::{ClWord, Units};
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
-use super::{Engine, Feed};
+use super::{Engine, Feed, MILLIMETERS_PER_INCH};
 use crate::{
     control::Values,
     finding::PostFindingKind,
@@ -13,12 +13,23 @@ use crate::{
 };
 
 const SECONDS_PER_MINUTE: f64 = 60.0;
+const MILLISECONDS_PER_SECOND: f64 = 1000.0;
+/// The longest leader that makes sense on a tape: fifty feet.
+const LONGEST_LEADER_INCHES: f64 = 600.0;
+/// Levels of optional blocks: 1 to 9 have a digit.
+const FIRST_SKIP_LEVEL: u32 = 1;
+const LAST_SKIP_LEVEL: u32 = 9;
 /// Largest M and G numbers that AUXFUN and PREFUN write.
 const LARGEST_CODE: f64 = 999.9;
 
 impl Engine<'_> {
     pub(super) fn text(&mut self, word: &SmolStr, text: &str) {
         let machine = self.machine;
+        let length = text.trim().chars().count();
+        if matches!(word.as_str(), "PARTNO" | "PPRINT" | "INSERT") && length > self.text_limit {
+            let limit = self.text_limit;
+            self.find(PostFindingKind::TextTooLong { word: word.clone(), length, limit });
+        }
         match word.as_str() {
             // The first one stands at the start of the tape.
             "PARTNO" if !std::mem::replace(&mut self.named, true) => {}
@@ -79,6 +90,8 @@ impl Engine<'_> {
                 _ => self.find(arguments.missing("the tolerance")),
             },
             "ARCSLP" | "SET" => self.fitting_statement(&arguments),
+            "LEADER" => self.leader_statement(&arguments),
+            "ROTABL" | "ROTHED" | "ROTATE" => self.find(PostFindingKind::NoRotaryAxis { word: word.clone() }),
             "MACHIN" if std::mem::replace(&mut self.machine_named, true) => {
                 self.find(PostFindingKind::Repeated { word: word.clone() });
             }
@@ -212,11 +225,59 @@ impl Engine<'_> {
             let word = arguments.word.clone();
             return self.find(PostFindingKind::BadValue { word, argument: "time".into(), value });
         }
-        self.dwell_block(seconds);
+        let greatest = self.longest_dwell();
+        self.within(arguments.word, "time", seconds, 0.0, greatest);
+        self.dwell_block(seconds.min(greatest));
+    }
+
+    /// The longest dwell that the register of the control takes, in seconds.
+    fn longest_dwell(&self) -> f64 {
+        let Some(register) = self.machine.registers.get("P") else { return f64::INFINITY };
+        let greatest = 10.0_f64.powi(i32::from(register.left)) - 1.0;
+        if self.machine.templates.dwell_in_milliseconds {
+            greatest / MILLISECONDS_PER_SECOND
+        } else {
+            greatest
+        }
+    }
+
+    /// LEADER/n, a length of blank tape.
+    fn leader_statement(&mut self, arguments: &Arguments<'_>) {
+        let Some(length) = arguments.number() else { return self.find(arguments.missing("the length")) };
+        let greatest = self.tape_length(LONGEST_LEADER_INCHES * MILLIMETERS_PER_INCH);
+        self.within(arguments.word, "length", length * self.scale, 0.0, greatest);
+    }
+
+    /// Whether a value is within its range; a finding when it is not.
+    fn within(&mut self, word: &SmolStr, argument: &str, value: f64, least: f64, greatest: f64) -> bool {
+        let within = (least..=greatest).contains(&value);
+        if !within {
+            let (word, argument) = (word.clone(), argument.into());
+            self.find(PostFindingKind::ArgumentOutOfRange { word, argument, value, least, greatest });
+        }
+        within
     }
 
     fn offset_statement(&mut self, arguments: &Arguments<'_>) {
-        let Some(number) = arguments.after("ADJUST").or_else(|| arguments.number()) else {
+        if self.tool.is_none() {
+            self.find(PostFindingKind::OffsetWithoutTool { word: arguments.word.clone() });
+        }
+        if arguments.has("OFF") {
+            return match self.machine.codes.length_offset_off.clone() {
+                Some(code) => self.control.code(&code),
+                None => self.find(PostFindingKind::NoCode {
+                    word: arguments.word.clone(),
+                    name: "length_offset_off".into(),
+                }),
+            };
+        }
+        if arguments.has("MINUS") {
+            let word = arguments.word.clone();
+            self.find(PostFindingKind::ArgumentNotUsed { word, argument: "MINUS".into() });
+        }
+        // ADJUST,ON takes up the offset that was there.
+        let again = arguments.has("ON").then_some(f64::from(self.length_offset));
+        let Some(number) = arguments.after("ADJUST").or_else(|| arguments.number()).or(again) else {
             return self.find(arguments.missing("the offset number"));
         };
         if !(number >= 0.0 && number.fract() == 0.0 && number <= f64::from(u16::MAX)) {
@@ -291,41 +352,94 @@ impl Engine<'_> {
     }
 
     fn sequence_statement(&mut self, arguments: &Arguments<'_>) {
-        let numbering = &mut self.control.numbering;
         if arguments.has("ON") || arguments.has("OFF") {
-            numbering.on = arguments.has("ON");
+            self.control.numbering.on = arguments.has("ON");
             return;
         }
-        let whole = |value: f64| {
-            (0.0..=f64::from(self.machine.block.sequence.max)).contains(&value).then_some(value as u32)
-        };
-        let Some(start) = arguments.number().and_then(whole) else {
+        let numbers = form::bare_numbers(arguments);
+        let Some(start) = numbers.first().copied() else {
             return self.find(arguments.missing("the number"));
         };
-        numbering.on = true;
-        (numbering.next, numbering.count) = (start, 0);
-        if let Some(step) = arguments.after("INCR").and_then(whole) {
-            numbering.step = step;
+        let greatest = f64::from(self.machine.block.sequence.max);
+        if self.within(arguments.word, "number", start, 0.0, greatest) {
+            let numbering = &mut self.control.numbering;
+            numbering.on = true;
+            (numbering.next, numbering.count) = (start as u32, 0);
+        }
+        if let Some(step) = arguments.after("INCR")
+            && self.within(arguments.word, "INCR", step, 0.0, greatest)
+        {
+            self.control.numbering.step = step as u32;
+        }
+        if let Some(every) = numbers.get(1).copied()
+            && self.within(arguments.word, "blocks between numbers", every, 1.0, greatest)
+        {
+            self.control.numbering.every = every as u32;
         }
     }
 
     fn skip_statement(&mut self, arguments: &Arguments<'_>) {
-        self.control.skip = !arguments.has("OFF");
+        self.control.skip = (!arguments.has("OFF")).then(|| self.skip_level(arguments));
         // A skipped block must not have been the only one that carried a modal word.
         self.control.forget_all();
     }
 
+    /// The level of OPSKIP/ON,n: the first if the control has not as many.
+    fn skip_level(&mut self, arguments: &Arguments<'_>) -> u32 {
+        let Some(level) = arguments.number() else { return FIRST_SKIP_LEVEL };
+        let (least, greatest) = (f64::from(FIRST_SKIP_LEVEL), f64::from(LAST_SKIP_LEVEL));
+        if !self.within(arguments.word, "level", level, least, greatest) {
+            return FIRST_SKIP_LEVEL;
+        }
+        let (level, levels) = (level as u32, self.machine.block.skip_levels);
+        if level > levels {
+            self.find(PostFindingKind::SkipLevel { level, levels });
+            return FIRST_SKIP_LEVEL;
+        }
+        level
+    }
+
+    /// AUXFUN and PREFUN: an M or G code as it stands.
     fn function(&mut self, arguments: &Arguments<'_>, letter: &str) {
         match arguments.number() {
             Some(number) if (0.0..=LARGEST_CODE).contains(&number) => {
                 let tenths = (number * 10.0).round() / 10.0;
-                self.control.code(&format!("{letter}{tenths}"));
+                let code = format!("{letter}{tenths}");
+                self.check_function(arguments.word, &code);
+                self.control.code(&code);
             }
             Some(value) => {
                 let word = arguments.word.clone();
                 self.find(PostFindingKind::BadValue { word, argument: "number".into(), value });
             }
             None => self.find(arguments.missing("the number")),
+        }
+    }
+
+    /// Reports a code that the post-processor writes itself and thinks it knows the state of.
+    fn check_function(&mut self, word: &SmolStr, code: &str) {
+        let machine = self.machine;
+        let group = machine.groups.iter().find(|(_, codes)| codes.iter().any(|known| known == code));
+        if let Some((group, _)) = group {
+            let (word, code, group) = (word.clone(), code.into(), group.into());
+            return self.find(PostFindingKind::FunctionInGroup { word, code, group });
+        }
+        let codes = &machine.codes;
+        let coolant = [&codes.coolant_mist, &codes.coolant_air, &codes.coolant_through];
+        let coolant = coolant.into_iter().flatten().chain([&codes.coolant_flood, &codes.coolant_off]);
+        let spindle = [&codes.spindle_clockwise, &codes.spindle_counterclockwise, &codes.spindle_off];
+        let owned = spindle
+            .into_iter()
+            .chain(&codes.spindle_orient)
+            .map(|text| ("SPINDL", text))
+            .chain(coolant.map(|text| ("COOLNT", text)))
+            .chain([("STOP", &codes.stop), ("OPSTOP", &codes.optional_stop)])
+            .chain(machine.templates.tool_change.iter().map(|text| ("LOADTL", text)))
+            .chain(machine.templates.program_end.iter().map(|text| ("END", text)));
+        let owner = owned.into_iter().find(|(_, text)| text.split_whitespace().any(|token| token == code));
+        if let Some((owner, _)) = owner {
+            let (word, code) = (word.clone(), code.into());
+            self.find(PostFindingKind::FunctionOfWord { word, code, owner: owner.into() });
         }
     }
 

@@ -228,7 +228,12 @@ impl Engine<'_> {
         self.coolant = true;
         match &mut self.approach {
             Some(pending) => *pending = code,
-            None => self.control.code(&code),
+            None => {
+                if self.machine.rules.coolant_after_spindle && !self.spindle.on {
+                    self.find(PostFindingKind::CoolantBeforeSpindle);
+                }
+                self.control.code(&code);
+            }
         }
     }
 

@@ -227,12 +227,36 @@ fn in_order(mut list: Vec<Diagnostic>, settings: &Settings) -> Vec<Diagnostic> {
         None => true,
         Some(setting) => setting.severity().map(|severity| diagnostic.severity = severity).is_some(),
     });
+    sort_by_place(&mut list);
+    list
+}
+
+/// Sorts diagnostics by their place in the program; those of one place keep their order.
+pub fn sort_by_place(list: &mut [Diagnostic]) {
     list.sort_by_key(|diagnostic| {
         let (isn, range) = diagnostic.origin.place_in_program();
         let inside = diagnostic.origin.source.as_ref().map(|_| diagnostic.origin.isn);
         (isn, range.start(), inside)
     });
-    list
+}
+
+/// What is told when the settings name a machine that nobody knows, with the severities of the settings.
+pub fn unknown_machine(name: &str, known: &[String], settings: &Settings) -> Vec<Diagnostic> {
+    let wording = Wording {
+        code: "APT0894",
+        message: format!("the settings name the machine {name}, which is not known; no tape is checked"),
+        hint: Some(format!("the machines are {}", known.join(", "))),
+        apt3: None,
+    };
+    let diagnostic = Diagnostic {
+        wording,
+        severity: Severity::Warning,
+        origin: Origin::in_program(1, TextRange::default()),
+        related: Vec::new(),
+        unnecessary: false,
+        fixes: Vec::new(),
+    };
+    in_order(vec![diagnostic], settings)
 }
 
 fn related(kind: RelatedKind) -> &'static str {

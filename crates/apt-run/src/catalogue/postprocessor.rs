@@ -60,6 +60,9 @@ fn measured(kind: &Kind) -> Option<String> {
             format!("the circle is made of chords: an arc would be {} off", number(*deviation))
         }
         Kind::ArcAsChords { .. } => "the circle is made of chords: the control has no such arc".to_owned(),
+        Kind::ArgumentOutOfRange { word, argument, value, least, greatest } => {
+            outside(&format!("{word}: the {argument}"), *value, *least, *greatest)
+        }
         _ => return None,
     })
 }
@@ -76,6 +79,7 @@ fn code(kind: &Kind) -> &'static str {
         Kind::SpindleOutOfRange { .. } => "APT0831",
         Kind::NoSpindleSpeed => "APT0832",
         Kind::NoCutterDiameter => "APT0833",
+        Kind::CoolantBeforeSpindle => "APT0834",
         Kind::AxisLimit { .. } => "APT0840",
         Kind::DigitLimit { .. } => "APT0841",
         Kind::NotFinite => "APT0842",
@@ -93,6 +97,8 @@ fn code(kind: &Kind) -> &'static str {
         Kind::SameTool { .. } => "APT0860",
         Kind::ToolChangeWhile { .. } => "APT0861",
         Kind::ToolOutsideMagazine { .. } => "APT0862",
+        Kind::CuttingBeforeTool { .. } => "APT0863",
+        Kind::OffsetWithoutTool { .. } => "APT0864",
         Kind::CycleWithoutPosition => "APT0865",
         Kind::CycleExpanded { .. } => "APT0866",
         Kind::CycleNotPossible { .. } => "APT0867",
@@ -100,6 +106,8 @@ fn code(kind: &Kind) -> &'static str {
         Kind::StepNotLessThanDepth { .. } => "APT0869",
         Kind::CycleWithoutPoints => "APT0870",
         Kind::CycleLeftOn { .. } => "APT0871",
+        Kind::NothingOn { .. } => "APT0872",
+        Kind::CycleOnArc { .. } => "APT0873",
         Kind::ArcAsChords { .. } => "APT0875",
         Kind::ArcNotInPlane => "APT0876",
         Kind::CompensationOnArc => "APT0877",
@@ -107,11 +115,17 @@ fn code(kind: &Kind) -> &'static str {
         Kind::CompensationLeftOn => "APT0879",
         Kind::NoClearance => "APT0880",
         Kind::NoRetract => "APT0881",
+        Kind::ArgumentOutOfRange { .. } => "APT0882",
+        Kind::SkipLevel { .. } => "APT0883",
         Kind::MotionAfterEnd => "APT0885",
         Kind::NoFini => "APT0886",
         Kind::RapidUnused => "APT0887",
+        Kind::FunctionInGroup { .. } => "APT0888",
+        Kind::FunctionOfWord { .. } => "APT0889",
         Kind::Character { .. } => "APT0890",
         Kind::BlockTooLong { .. } => "APT0891",
+        Kind::TextTooLong { .. } => "APT0892",
+        Kind::NoRotaryAxis { .. } => "APT0893",
     }
 }
 
@@ -153,6 +167,18 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         Kind::NoFini => "check whether the file is complete",
         Kind::RapidUnused => "RAPID holds for the next motion only",
         Kind::Character { .. } => "it is written as a question mark; use the characters of ASCII",
+        Kind::CuttingBeforeTool { .. } => "load the tool before the first cut",
+        Kind::OffsetWithoutTool { .. } => "give LOADTL before",
+        Kind::CoolantBeforeSpindle => "give SPINDL before COOLNT",
+        Kind::NothingOn { .. } => "remove it, or give the cycle that it is meant to end",
+        Kind::CycleOnArc { .. } => "give CYCLE/OFF before the circle",
+        Kind::SkipLevel { .. } => "leave out the level",
+        Kind::FunctionInGroup { .. } => {
+            "let the words of the program bring the code, or add a word to the machine"
+        }
+        Kind::FunctionOfWord { .. } => "use the word, so that its state is known",
+        Kind::TextTooLong { .. } => "shorten it, or divide it into two statements",
+        Kind::NoRotaryAxis { .. } => "choose a machine with the axis, or remove the statement",
         _ => return None,
     })
 }
