@@ -1,4 +1,4 @@
-//! Section 3: TRACUT, INDEX and COPY over the CL records of Section 2.
+//! Section 3: TRACUT, INDEX and COPY over the CL records of Section 2, after VTLAXS ([`crate::tilt`]).
 //!
 //! A TRACUT replaces the one before (they do not multiply). A COPY repeats all records between its INDEX and the
 //! INDEX/n,NOMORE or, without one, the COPY itself; the k-th copy carries k steps of the transform. A TRACUT that was
@@ -9,7 +9,10 @@ use std::collections::BTreeMap;
 use apt_geometry::{Vec3, canonical::Matrix};
 use smol_str::SmolStr;
 
-use crate::record::{ClKind, ClRecord, ClWord};
+use crate::{
+    record::{ClKind, ClRecord, ClWord},
+    tilt::{TiltError, tilt},
+};
 
 /// Deepest nesting of INDEX ... COPY.
 pub const MAXIMUM_NESTING: usize = 3;
@@ -160,6 +163,9 @@ pub enum EditErrorKind {
         /// The position before the transform.
         position: [f64; 3],
     },
+    /// VTLAXS or WCORN.
+    #[error(transparent)]
+    Tilt(#[from] TiltError),
 }
 
 impl EditErrorKind {
@@ -173,6 +179,7 @@ impl EditErrorKind {
             | EditErrorKind::IndexReused { .. }
             | EditErrorKind::TooManyCopies { .. } => Some(11),
             EditErrorKind::AxisVanishes { .. } => Some(37),
+            EditErrorKind::Tilt(error) => error.apt3(),
             EditErrorKind::ZeroCount { .. }
             | EditErrorKind::TooManyRecords { .. }
             | EditErrorKind::NotFinite { .. } => None,
@@ -182,8 +189,10 @@ impl EditErrorKind {
 
 /// Executes the edit statements. The list comes back whole, also with errors: a faulty statement has no effect.
 pub fn edit(items: Vec<EditItem>) -> (Vec<ClRecord>, Vec<EditError>) {
+    // VTLAXS changes the path itself; TRACUT and COPY transform what it makes.
+    let (items, errors) = tilt(items);
     let spans = spans(&items);
-    let mut editor = Editor { levels: vec![Level::base()], errors: Vec::new(), made: 0 };
+    let mut editor = Editor { levels: vec![Level::base()], errors, made: 0 };
     for (at, item) in items.into_iter().enumerate() {
         editor.item(item, spans.get(&at).copied());
     }

@@ -24,7 +24,7 @@ const ON_TAPE: [&str; 42] = [
     "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT", "TRANS", "TURRET", "UNLOAD",
 ];
 /// Words of the processor, of listings, of plots and of the punch.
-const SILENT: [&str; 34] = [
+const SILENT: [&str; 36] = [
     "CALSUB",
     "CAMERA",
     "CLPRNT",
@@ -59,15 +59,18 @@ const SILENT: [&str; 34] = [
     "TLDATA",
     "TOOL",
     "TRACUT",
+    // Section 3 has carried them out.
+    "VTLAXS",
+    "WCORN",
 ];
 /// Words for which a three-axis mill has nothing.
-const NOT_SUPPORTED: [&str; 59] = [
+const NOT_SUPPORTED: [&str; 57] = [
     "AIR", "ALIGN", "ASLOPE", "BREAK", "CAM", "CHECK", "CHUCK", "CLAMP", "CORNFD", "COUPLE", "DRESS",
     "FACEML", "HEAD", "IFRO", "INTCOD", "LINTOL", "LOCKX", "MAGTAP", "MAXDPM", "MAXVEL", "MDEND", "MDWRIT",
     "MODE", "MOVETO", "PALLET", "PBS", "PICKUP", "PITCH", "PIVOTZ", "POSITN", "POSMAP", "POSTN", "PPFUN",
     "PROBX", "PROBY", "QUILL", "RESET", "REVERS", "ROTABL", "ROTATE", "ROTHED", "SADDLE", "SAFETY", "SLOWDN",
-    "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS", "TMARK", "ULOCKX", "VACUUM", "VTLAXS", "WCORN", "ZERO",
-    "ARCDAT", "ARCMOV", "MOVNRB", "POD",
+    "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS", "TMARK", "ULOCKX", "VACUUM", "ZERO", "ARCDAT",
+    "ARCMOV", "MOVNRB", "POD",
 ];
 
 /// What becomes of a word; `None` for one that the post-processor does not know.

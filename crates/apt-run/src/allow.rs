@@ -109,7 +109,9 @@ impl Allowance {
         if catalogue::explain(&self.code).is_none_or(|page| page.code != self.code) {
             return Some(Idle::UnknownCode);
         }
-        let of_motion = self.code.starts_with("APT06") || self.code.starts_with("APT071");
+        let of_motion = self.code.starts_with("APT06")
+            || self.code.starts_with("APT071")
+            || self.code.starts_with("APT072");
         let of_tape = catalogue::is_tape_code(&self.code);
         (!of_tape && (motion || !of_motion)).then_some(Idle::NothingFound)
     }

@@ -16,6 +16,7 @@ mod program;
 pub(crate) mod remedy;
 mod story;
 mod syntax;
+mod tilt;
 
 use apt_cldata::text::ReadError;
 use apt_geometry::canonical::GeometryKind;

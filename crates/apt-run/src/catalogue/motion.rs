@@ -472,6 +472,7 @@ fn edit(kind: &EditErrorKind) -> Text {
         EditErrorKind::AxisVanishes { .. } => {
             say("APT0718", "the transformation leaves the tool axis without direction")
         }
+        EditErrorKind::Tilt(error) => super::tilt::word(error),
         EditErrorKind::NotFinite { .. } => {
             say("APT0719", "the transformation gives a position that is not a number")
         }
