@@ -2,7 +2,10 @@
 
 use super::choice::ZERO_COMPONENT;
 use super::{Argument, DefinitionError, Impossible, Modifier};
-use crate::canonical::{CanonicalError, Geometry, GeometryKind, Plane};
+use crate::canonical::{Geometry, GeometryKind, Plane};
+
+/// APT III: no form of the type begins like this.
+const NO_CANON: u16 = 1000;
 
 /// `TYPE/CANON,v1,…,vn` or `TYPE/surface,CANON,v1,…`.
 pub(super) fn define(kind: GeometryKind, arguments: &[Argument]) -> Result<Geometry, DefinitionError> {
@@ -16,6 +19,9 @@ pub(super) fn define(kind: GeometryKind, arguments: &[Argument]) -> Result<Geome
 }
 
 fn build(kind: GeometryKind, arguments: &[Argument]) -> Result<Geometry, DefinitionError> {
+    if matches!(kind, GeometryKind::RuledSurface | GeometryKind::Pattern) {
+        return Err(DefinitionError::Special { number: NO_CANON, position: Some(0) });
+    }
     let mut values = Vec::with_capacity(arguments.len());
     for (index, argument) in arguments.iter().enumerate() {
         match argument {
@@ -34,8 +40,8 @@ fn copy(kind: GeometryKind, source: &Geometry, arguments: &[Argument]) -> Result
     if source.kind() != kind {
         return Err(DefinitionError::CanonicalKind { expected: kind, found: source.kind() });
     }
-    if kind == GeometryKind::RuledSurface || kind == GeometryKind::Pattern {
-        return Err(CanonicalError::NoRow { kind }.into());
+    if matches!(kind, GeometryKind::RuledSurface | GeometryKind::Pattern) {
+        return Err(DefinitionError::Special { number: NO_CANON, position: Some(1) });
     }
     let mut values = source.canonical_values();
     if arguments.len() > values.len() {

@@ -1,4 +1,5 @@
-//! CIRCLE (language reference 4.4): always in the xy-plane, given z is dropped.
+//! CIRCLE (language reference 4.4): always in the xy-plane, given z is dropped. A radius that is not positive is taken as
+//! it is, as APT III does.
 
 use super::choice::{Toward, X_OR_Y};
 use super::format::{Format, Parameter};
@@ -26,22 +27,22 @@ pub(super) static FORMATS: &[Format] = &[
     Format {
         parameters: &[Scalar("x"), Scalar("y"), Scalar("radius")],
         help: "by center coordinates and radius",
-        build: |given| circle(given.scalar(0)?, given.scalar(1)?, given.positive(2)?),
+        build: |given| circle(given.scalar(0)?, given.scalar(1)?, given.scalar(2)?),
     },
     Format {
         parameters: &[Scalar("x"), Scalar("y"), Scalar("z"), Scalar("radius")],
         help: "by center coordinates and radius; z is ignored",
-        build: |given| circle(given.scalar(0)?, given.scalar(1)?, given.positive(3)?),
+        build: |given| circle(given.scalar(0)?, given.scalar(1)?, given.scalar(3)?),
     },
     Format {
         parameters: &[CENTER, CENTER_POINT, RADIUS, Scalar("radius")],
         help: "by center and radius",
-        build: |given| about(&given.flat(1)?, given.positive(3)?),
+        build: |given| about(&given.flat(1)?, given.scalar(3)?),
     },
     Format {
         parameters: &[CENTER, Scalar("x"), Scalar("y"), Scalar("z"), RADIUS, Scalar("radius")],
         help: "by center coordinates and radius; z is ignored",
-        build: |given| circle(given.scalar(1)?, given.scalar(2)?, given.positive(5)?),
+        build: |given| circle(given.scalar(1)?, given.scalar(2)?, given.scalar(5)?),
     },
     Format {
         parameters: &[CENTER, CENTER_POINT, TANTO, LINE],
@@ -75,7 +76,7 @@ pub(super) static FORMATS: &[Format] = &[
         parameters: &[WHICH, LINE, WHICH, LINE, RADIUS, Scalar("radius")],
         help: "tangent to two lines, the center on the named side of each",
         build: |given| {
-            let radius = given.positive(5)?;
+            let radius = given.scalar(5)?;
             let center = solve::meet(&offset_line(given, 0, radius)?, &offset_line(given, 2, radius)?)?;
             about(&center, radius)
         },
@@ -89,7 +90,7 @@ pub(super) static FORMATS: &[Format] = &[
         parameters: &[WHICH, LINE, WHICH, IN_OR_OUT, CIRCLE, RADIUS, Scalar("radius")],
         help: "tangent to a line and a circle, inside or outside the circle",
         build: |given| {
-            let radius = given.positive(6)?;
+            let radius = given.scalar(6)?;
             let other = given.circle(4)?;
             let line = offset_line(given, 0, radius)?;
             let reach = center_distance(given.modifier(3)?, &other, radius);
@@ -138,7 +139,7 @@ fn offset_line(given: &Given<'_>, selector: usize, radius: f64) -> Result<Plane,
 
 /// Distance between the centres of two circles that touch: inside (either in the other) or outside.
 fn center_distance(word: Modifier, other: &Cylinder, radius: f64) -> f64 {
-    if word == Modifier::In { (other.radius - radius).abs() } else { other.radius + radius }
+    if word == Modifier::In { (other.radius - radius).abs() } else { (other.radius + radius).abs() }
 }
 
 /// The centre lies on the bisectors; the sides are taken relative to the first point.
@@ -174,7 +175,7 @@ fn line_and_point(given: &Given<'_>) -> Result<Geometry, DefinitionError> {
 }
 
 fn two_circles(given: &Given<'_>) -> Result<Geometry, DefinitionError> {
-    let radius = given.positive(6)?;
+    let radius = given.scalar(6)?;
     let (first, second) = (given.circle(2)?, given.circle(4)?);
     let words = [given.modifier(1)?, given.modifier(3)?];
     let distances = [center_distance(words[0], &first, radius), center_distance(words[1], &second, radius)];

@@ -1,4 +1,5 @@
-//! ELLIPS, HYPERB, GCONIC and QADRIC (language reference 4.6, 4.8, 4.13).
+//! ELLIPS, HYPERB, GCONIC and QADRIC (language reference 4.6, 4.8, 4.13). As in APT III nothing is said of a conic that falls
+//! apart or of a quadric that is none.
 
 use super::format::{Format, Parameter};
 use super::given::Given;
@@ -85,9 +86,6 @@ pub(super) static QUADRIC_FORMATS: &[Format] = &[Format {
         for (slot, index) in (4..10).zip(3..9) {
             coefficients[slot] = given.scalar(index)? / 2.0;
         }
-        if coefficients.iter().all(|value| *value == 0.0) {
-            return Err(Impossible::Singular.into());
-        }
         Ok(Geometry::Quadric(Quadric { coefficients }))
     },
 }];
@@ -95,7 +93,7 @@ pub(super) static QUADRIC_FORMATS: &[Format] = &[Format {
 /// An ellipse (`sign` 1) or hyperbola (`sign` −1): `b² X² + sign·a² Y² = a² b²` in the axes of the conic.
 fn central(given: &Given<'_>, sign: f64) -> Result<Quadric, DefinitionError> {
     let center = given.flat(1)?;
-    let (a, b) = (given.positive(2)?, given.positive(3)?);
+    let (a, b) = (given.scalar(2)?, given.scalar(3)?);
     let (sine, cosine) = sine_cosine_degrees(given.scalar(4)?);
     let (bb, aa) = (b * b, sign * a * a);
     let xx = bb * cosine * cosine + aa * sine * sine;
@@ -121,9 +119,5 @@ fn alternate(given: &Given<'_>) -> Result<[f64; 6], DefinitionError> {
 }
 
 fn general([a, b, d, h, p, q]: [f64; 6]) -> Result<Geometry, DefinitionError> {
-    // Without terms of x or y there is no curve.
-    if [a, b, h, p, q].iter().all(|value| *value == 0.0) {
-        return Err(Impossible::Singular.into());
-    }
     Ok(Geometry::GeneralConic(Quadric::plane_conic(a, b, d, h, p, q)))
 }

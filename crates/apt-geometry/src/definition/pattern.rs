@@ -21,10 +21,12 @@ const ARC: Parameter = Word(Modifier::Arc);
 const PARLEL: Parameter = Word(Modifier::Parallel);
 const INCR: Parameter = Word(Modifier::Increment);
 const SENSE: Parameter = Selector(&[Modifier::Clockwise, Modifier::Counterclockwise]);
-const INCREMENTS: Parameter = Repeated(&[Choice(&[
-    &[Scalar("increment")],
-    &[Scalar("count"), Word(Modifier::At), Scalar("increment")],
-])]);
+const INCREMENT: Parameter =
+    Choice(&[&[Scalar("increment")], &[Scalar("count"), Word(Modifier::At), Scalar("increment")]]);
+const INCREMENTS: Parameter = Repeated(&[INCREMENT]);
+/// APT III takes INCR again before each increment of a LINEAR pattern, and only there.
+const MORE_INCREMENTS: Parameter =
+    Choice(&[&[], &[Repeated(&[Choice(&[&[INCREMENT], &[INCR, INCREMENT]])])]]);
 
 /// Most points of a pattern. APT III had room for 330; the bound here only keeps a slip in a count from filling the
 /// memory (APT III 802).
@@ -36,7 +38,7 @@ pub(super) static FORMATS: &[Format] = &[
         help: "points at equal distances between two points, both included",
         build: |given| {
             let (first, last) = (given.place(1)?, given.place(2)?);
-            let number = count(given, 3)?;
+            let number = at_least_one(given, 3)?;
             let gaps = number.saturating_sub(1).max(1) as f64;
             linear((0..number).map(|index| first + (last - first) * (index as f64 / gaps)).collect())
         },
@@ -46,11 +48,11 @@ pub(super) static FORMATS: &[Format] = &[
         help: "points one vector apart",
         build: |given| {
             let (first, step) = (given.place(1)?, given.place(2)?);
-            linear((0..count(given, 3)?).map(|index| first + step * index as f64).collect())
+            linear((0..at_least_one(given, 3)?).map(|index| first + step * index as f64).collect())
         },
     },
     Format {
-        parameters: &[LINEAR, POINT, VECTOR, INCR, INCREMENTS],
+        parameters: &[LINEAR, POINT, VECTOR, INCR, INCREMENT, MORE_INCREMENTS],
         help: "points at increments along a vector",
         build: |given| {
             let (first, along) = (given.place(1)?, unit(given, 2)?);
@@ -87,7 +89,7 @@ pub(super) static FORMATS: &[Format] = &[
         help: "a linear pattern repeated one vector apart",
         build: |given| {
             let step = given.place(2)?;
-            let offsets: Vec<Vec3> = (0..count(given, 3)?).map(|index| step * index as f64).collect();
+            let offsets: Vec<Vec3> = (0..at_least_one(given, 3)?).map(|index| step * index as f64).collect();
             parallel(given, &offsets)
         },
     },
@@ -107,16 +109,18 @@ pub(super) static FORMATS: &[Format] = &[
     },
 ];
 
-/// A count of points: the whole part of a number that is not negative.
+/// A count of points: the whole part of a number; nothing where that is negative, as in APT III.
 fn count(given: &Given<'_>, index: usize) -> Result<usize, DefinitionError> {
-    let number = given.scalar(index)?.trunc();
-    if number < 0.0 {
-        return Err(DefinitionError::Special { number: 800, position: Some(index) });
-    }
+    let number = given.scalar(index)?.trunc().max(0.0);
     if number > MOST_POINTS {
         return Err(DefinitionError::Special { number: 802, position: Some(index) });
     }
     Ok(number as usize)
+}
+
+/// The count of a whole pattern: its first point, or column, is there whatever the count says, as in APT III.
+fn at_least_one(given: &Given<'_>, index: usize) -> Result<usize, DefinitionError> {
+    Ok(count(given, index)?.max(1))
 }
 
 fn unit(given: &Given<'_>, index: usize) -> Result<Vec3, DefinitionError> {
@@ -132,6 +136,9 @@ fn stations(given: &Given<'_>, mut index: usize) -> Result<Vec<f64>, DefinitionE
     let mut stations = vec![0.0];
     let mut reached = 0.0;
     while index < given.count() {
+        if given.word_at(index) == Some(Modifier::Increment) {
+            index += 1;
+        }
         let grouped = given.word_at(index + 1) == Some(Modifier::At);
         let (times, increment) = if grouped {
             (count(given, index)?, given.scalar(index + 2)?)
@@ -163,12 +170,14 @@ fn sense(given: &Given<'_>, index: usize) -> Result<f64, DefinitionError> {
     Ok(if given.modifier(index)? == Modifier::Clockwise { -1.0 } else { 1.0 })
 }
 
-/// Equal angles stand for the whole circle.
+/// An end angle that lies against the sense is taken whole turns on, so that equal angles stand for the whole circle; one
+/// more than a turn ahead stays there, as in APT III.
 fn arc_between(given: &Given<'_>) -> Result<Geometry, DefinitionError> {
     let (start, end) = (given.scalar(2)?, given.scalar(3)?);
     let sense = sense(given, 4)?;
-    let number = count(given, 5)?;
-    let turn = (sense * (end - start)).rem_euclid(360.0);
+    let number = at_least_one(given, 5)?;
+    let ahead = sense * (end - start);
+    let turn = if ahead > 0.0 { ahead } else { ahead.rem_euclid(360.0) };
     let turn = if turn == 0.0 { 360.0 } else { turn };
     let gaps = number.saturating_sub(1).max(1) as f64;
     arc(given, (0..number).map(|index| start + sense * turn * (index as f64 / gaps)))

@@ -159,7 +159,7 @@ fn conic(given: &Given<'_>, index: usize) -> Result<Quadric, DefinitionError> {
 }
 
 /// The two places where a line of the xy-plane meets the section of a quadric with that plane; of them the one farther
-/// `toward`. Where the word does not tell them apart the first along the line is taken, as APT III does.
+/// `toward`. Where the word does not tell them apart the one with the positive root is taken, as APT III does.
 fn line_conic(line: &Plane, conic: &Quadric, toward: Toward) -> Result<Vec3, Impossible> {
     let direction = line.line_direction();
     let foot = line.normal * line.distance;
@@ -187,8 +187,12 @@ fn line_conic(line: &Plane, conic: &Quadric, toward: Toward) -> Result<Vec3, Imp
     if reach < 0.0 {
         return Err(Impossible::NoIntersection { gap });
     }
+    // The root that does not cancel, and the other from the product of both; in the order of −half ± √reach.
     let root = half + reach.sqrt().copysign(half);
-    let stations = if root == 0.0 { [0.0, 0.0] } else { [-root / square, -constant / root] };
+    let mut stations = if root == 0.0 { [0.0, 0.0] } else { [-constant / root, -root / square] };
+    if root < 0.0 {
+        stations.swap(0, 1);
+    }
     let [first, second] = stations.map(|station| foot + direction * station);
     Ok(if toward.component(&second) > toward.component(&first) { second } else { first })
 }

@@ -1,4 +1,5 @@
-//! CYLNDR, CONE and SPHERE (language reference 4.5, 4.7, 4.12).
+//! CYLNDR, CONE and SPHERE (language reference 4.5, 4.7, 4.12). A radius or an angle that is not positive is taken as it is,
+//! as APT III does.
 
 use nalgebra::Matrix3;
 
@@ -32,22 +33,22 @@ pub(super) static CYLINDER_FORMATS: &[Format] = &[
             Scalar("radius"),
         ],
         help: "by a point of the axis, the axis and the radius",
-        build: |given| cylinder(given.triple(0)?, given.triple(3)?, given.positive(6)?),
+        build: |given| cylinder(given.triple(0)?, given.triple(3)?, given.scalar(6)?),
     },
     Format {
         parameters: &[POINT, Scalar("i"), Scalar("j"), Scalar("k"), Scalar("radius")],
         help: "by a point of the axis, the axis and the radius",
-        build: |given| cylinder(given.place(0)?, given.triple(1)?, given.positive(4)?),
+        build: |given| cylinder(given.place(0)?, given.triple(1)?, given.scalar(4)?),
     },
     Format {
         parameters: &[Scalar("x"), Scalar("y"), Scalar("z"), VECTOR, Scalar("radius")],
         help: "by a point of the axis, the axis and the radius",
-        build: |given| cylinder(given.triple(0)?, given.place(3)?, given.positive(4)?),
+        build: |given| cylinder(given.triple(0)?, given.place(3)?, given.scalar(4)?),
     },
     Format {
         parameters: &[POINT, VECTOR, Scalar("radius")],
         help: "by a point of the axis, the axis and the radius",
-        build: |given| cylinder(given.place(0)?, given.place(1)?, given.positive(2)?),
+        build: |given| cylinder(given.place(0)?, given.place(1)?, given.scalar(2)?),
     },
 ];
 
@@ -57,7 +58,8 @@ pub(super) static CONE_FORMATS: &[Format] = &[Format {
     build: |given| {
         let (vertex, axis) = (given.place(0)?, unit(&given.place(1)?)?);
         let degrees = given.scalar(2)?;
-        if degrees <= 0.0 || degrees >= 90.0 {
+        // The cosine, which is what is stored, does not know a sign.
+        if degrees.abs() >= 90.0 {
             return Err(Impossible::AngleOutOfRange { degrees }.into());
         }
         Ok(Geometry::Cone(Cone { vertex, axis, cosine: degrees.to_radians().cos() }))
@@ -68,25 +70,24 @@ pub(super) static SPHERE_FORMATS: &[Format] = &[
     Format {
         parameters: &[Scalar("x"), Scalar("y"), Scalar("z"), Scalar("radius")],
         help: "by center coordinates and radius",
-        build: |given| sphere(given.triple(0)?, given.positive(3)?),
+        build: |given| sphere(given.triple(0)?, given.scalar(3)?),
     },
     Format {
         parameters: &[POINT, Scalar("radius")],
         help: "by center and radius",
-        build: |given| sphere(given.place(0)?, given.positive(1)?),
+        build: |given| sphere(given.place(0)?, given.scalar(1)?),
     },
     Format {
         parameters: &[CENTER, POINT, Word(Modifier::Radius), Scalar("radius")],
         help: "by center and radius",
-        build: |given| sphere(given.place(1)?, given.positive(3)?),
+        build: |given| sphere(given.place(1)?, given.scalar(3)?),
     },
     Format {
         parameters: &[CENTER, POINT, POINT],
         help: "by center and a point of the sphere",
         build: |given| {
-            let (center, on) = (given.place(1)?, given.place(2)?);
-            distinct(&center, &on)?;
-            sphere(center, (on - center).norm())
+            let center = given.place(1)?;
+            sphere(center, (given.place(2)? - center).norm())
         },
     },
     Format {
@@ -94,12 +95,7 @@ pub(super) static SPHERE_FORMATS: &[Format] = &[
         help: "by center, tangent to a plane",
         build: |given| {
             let center = given.place(1)?;
-            let radius = given.plane(3)?.signed_distance(&center).abs();
-            if radius > 0.0 {
-                sphere(center, radius)
-            } else {
-                Err(Impossible::NotPositive { value: radius }.into())
-            }
+            sphere(center, given.plane(3)?.signed_distance(&center).abs())
         },
     },
     Format { parameters: &[POINT, POINT, POINT, POINT], help: "through four points", build: through_four },

@@ -168,12 +168,13 @@ impl Cubic {
         Cubic { a: keep(self.a, length * length), b: keep(self.b, length) }
     }
 
-    /// Greatest and least height over the chord, divided by its length.
+    /// Greatest and least height over the chord, divided by its length. Rounding is no bump: the signs of both matter.
     fn extremes(&self, length: f64) -> (f64, f64) {
         let turns = roots(&[-(self.a * length + self.b) * length, 2.0 * self.b, 3.0 * self.a], 0.0, length);
         turns
             .iter()
             .map(|s| self.height(*s, length) / length)
+            .filter(|height| height.abs() > FLAT)
             .fold((0.0, 0.0), |(most, least), height| (f64::max(most, height), f64::min(least, height)))
     }
 }

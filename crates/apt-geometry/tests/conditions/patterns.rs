@@ -122,8 +122,10 @@ proptest! {
             Part::Word(Modifier::Arc), circle(center, radius), Part::Heading(angles[0]), Part::Heading(angles[1]), Part::Word(word), Part::Number(f64::from(number)),
         ];
         let sense = if clockwise { -1.0 } else { 1.0 };
-        let sweep = (sense * (angles[1] - angles[0])).rem_euclid(360.0);
-        prop_assume!(sweep > 1e-3 && sweep < 359.999);
+        let ahead = sense * (angles[1] - angles[0]);
+        // An end that lies against the sense is reached whole turns on.
+        let sweep = if ahead > 0.0 { ahead } else { ahead.rem_euclid(360.0) };
+        prop_assume!(sweep > 1e-3 && (ahead > 0.0 || sweep < 359.999));
         Figure::flat(GeometryKind::Pattern, setting, Turns::Flat, parts).condition(1e3).hold(travel, |_| false, |geometry| {
             let pattern = found(geometry);
             prop_assert_eq!((pattern.arrangement, pattern.points.len()), (Arrangement::Arc, usize::from(number)));

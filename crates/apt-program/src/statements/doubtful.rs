@@ -13,19 +13,15 @@ use crate::{evaluator::Evaluator, finding::FindingKind};
 const UNIT_LENGTH_TOLERANCE: f64 = 1e-4;
 
 impl Evaluator<'_> {
-    /// Warns of a pattern without points, of a negative radius, and of a direction given by CANON that is no unit vector.
+    /// Warns of a count, a radius, a half axis and an angle that is not positive, of a quadric without coefficients, and of
+    /// a direction given by CANON that is no unit vector.
     pub(super) fn report_doubtful_geometry(
         &mut self,
         geometry: &Geometry,
         arguments: &[Argument],
         range: TextRange,
     ) {
-        let value = match geometry {
-            Geometry::Pattern(pattern) if pattern.points.is_empty() => Some(0.0),
-            Geometry::Circle(round) | Geometry::Cylinder(round) if round.radius < 0.0 => Some(round.radius),
-            Geometry::Sphere(sphere) if sphere.radius < 0.0 => Some(sphere.radius),
-            _ => None,
-        };
+        let value = doubtful_value(geometry, arguments);
         if let Some(value) = value {
             let statement = SmolStr::new_static(geometry.kind().word());
             self.report(FindingKind::Doubtful { statement, value }, range);
@@ -36,6 +32,36 @@ impl Evaluator<'_> {
             let kind = geometry.kind();
             self.report(FindingKind::NotNormalised { kind, length, normalised }, range);
         }
+    }
+}
+
+/// A number of the definition, or of what it gives, that is accepted although nothing can be made of it.
+fn doubtful_value(geometry: &Geometry, arguments: &[Argument]) -> Option<f64> {
+    let given = |index: usize| match arguments.get(index) {
+        Some(Argument::Scalar(value)) => Some(*value),
+        _ => None,
+    };
+    let by_canon = arguments.contains(&Argument::Modifier(Modifier::Canon));
+    let not_positive = |value: f64| value <= 0.0;
+    match geometry {
+        // After INCR an increment stands last.
+        Geometry::Pattern(_) if !arguments.contains(&Argument::Modifier(Modifier::Increment)) => {
+            given(arguments.len().checked_sub(1)?).map(f64::trunc).filter(|count| *count < 1.0)
+        }
+        Geometry::Circle(round) | Geometry::Cylinder(round) => {
+            Some(round.radius).filter(|r| not_positive(*r))
+        }
+        Geometry::Sphere(sphere) => Some(sphere.radius).filter(|r| not_positive(*r)),
+        Geometry::Cone(_) if !by_canon => given(2).filter(|degrees| not_positive(*degrees)),
+        Geometry::Ellipse(_) | Geometry::Hyperbola(_) if !by_canon => {
+            [given(2)?, given(3)?].into_iter().find(|axis| not_positive(*axis))
+        }
+        Geometry::Quadric(quadric) | Geometry::GeneralConic(quadric) => {
+            // The constant alone, the fourth number, makes no surface.
+            let mut terms = quadric.coefficients.iter().enumerate().filter(|(index, _)| *index != 3);
+            terms.all(|(_, value)| *value == 0.0).then_some(0.0)
+        }
+        _ => None,
     }
 }
 

@@ -39,10 +39,13 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
                 "INTOL" | "OUTTOL" | "TOLER" => {
                     text.hint("a tolerance is a distance and has no sign; a negative one is taken as zero")
                 }
-                "PATERN" => text.hint("the pattern has no points, and a GOTO over it does not move the tool"),
+                "PATERN" => text.hint("the pattern has its first point, or column, and no more"),
                 "CIRCLE" | "CYLNDR" | "SPHERE" => {
-                    text.hint("a radius has no sign; check the order of the numbers")
+                    text.hint("a radius is greater than zero; check the order of the numbers")
                 }
+                "CONE" => text.hint("the half angle lies between 0 and 90 degrees"),
+                "ELLIPS" | "HYPERB" => text.hint("a half axis is longer than zero"),
+                "QADRIC" | "GCONIC" => text.hint("without x, y and z the equation describes no surface"),
                 _ => text,
             }
         }
@@ -144,9 +147,9 @@ fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
                 154 => "the pattern has no point with this number",
                 701 => "the two end points of a curve are too close together",
                 702 => "the third point or vector must not lie along the end points",
-                800 => "a count of points cannot be negative",
                 801 => "only LINEAR patterns can be repeated by PARLEL",
                 802 => "the pattern would have too many points",
+                1000 => "it cannot be made from canonical values",
                 1001 => "there are too few points for this kind of curve, or too many",
                 _ => "a limit of this form is exceeded",
             };
