@@ -16,8 +16,9 @@ const SCAN: usize = 16;
 const MAX_ITERATIONS: u32 = 60;
 /// Width of the bracket, radians, that is rounding.
 const RESOLUTION: f64 = 1e-15;
-
-/// Slope, relative to the size of the lengths, that is rounding.
+/// Share of the bracket beyond a kink at which its other side is looked at.
+const BEYOND: f64 = 1e-3;
+/// Slope, relative to the size of the lengths, that is rounding; the greatest distance is found as well as that too.
 const SLOPE_RESOLUTION: f64 = 1e-14;
 
 /// Surface normals `n(φ) = fixed + (cos φ · a + sin φ · b)`, with support `n·origin + level` of the solid.
@@ -117,35 +118,82 @@ fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
     best.unwrap_or_else(|| refine(tool, family, tip, 0.0, step))
 }
 
+/// A place of the bracket: angle, distance there, and its derivative.
+#[derive(Clone, Copy)]
+struct End {
+    angle: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl End {
+    fn at(tool: &Tool, family: &Family, tip: &Vec3, angle: f64) -> Self {
+        let (value, slope, ..) = family.sample(tool, tip, angle);
+        Self { angle, value, slope }
+    }
+
+    /// Where the tangents at two ends meet, and how high: the distance between them is no greater.
+    fn meeting(&self, other: &Self) -> Option<(f64, f64)> {
+        let rise = self.slope - other.slope;
+        if rise <= 0.0 {
+            return None;
+        }
+        let angle = (other.value - self.value + self.slope * self.angle - other.slope * other.angle) / rise;
+        Some((angle, self.value + self.slope * (angle - self.angle)))
+    }
+}
+
 /// The greatest distance near a scan point.
 fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Contact {
-    let (mut low, mut high) = (start - step, start + step);
-    let (mut slope_low, mut slope_high) = (family.sample(tool, tip, low).1, family.sample(tool, tip, high).1);
-    let resolution = SLOPE_RESOLUTION * (tool.radius() + (tip - family.origin).norm());
-    let (mut angle, mut last) = (start, 0.0);
+    let at = |angle: f64| End::at(tool, family, tip, angle);
+    let (mut low, mut high) = (at(start - step), at(start + step));
+    // Slopes for the Illinois rule: an end that stays twice is weighed half, so that both ends move.
+    let (mut weight_low, mut weight_high) = (low.slope, high.slope);
+    let size = tool.radius() + tool.cutter.height + (tip - family.origin).norm();
+    let resolution = SLOPE_RESOLUTION * size;
+    let (mut here, mut last) = (at(start), 0.0);
+    let mut best = here;
     for iteration in 0..MAX_ITERATIONS {
-        let slope = family.sample(tool, tip, angle).1;
-        if slope.abs() <= resolution || high - low <= RESOLUTION * (1.0 + angle.abs()) {
+        if here.value > best.value {
+            best = here;
+        }
+        let narrow = high.angle - low.angle <= RESOLUTION * (1.0 + here.angle.abs());
+        if here.slope.abs() <= resolution || narrow {
             break;
         }
-        // The Illinois rule: an end that stays twice is weighed half, so that both ends move.
-        if slope > 0.0 {
-            (low, slope_low) = (angle, slope);
-            slope_high *= if last > 0.0 { 0.5 } else { 1.0 };
+        if here.slope > 0.0 {
+            (low, weight_low) = (here, here.slope);
+            weight_high *= if last > 0.0 { 0.5 } else { 1.0 };
         } else {
-            (high, slope_high) = (angle, slope);
-            slope_low *= if last < 0.0 { 0.5 } else { 1.0 };
+            (high, weight_high) = (here, here.slope);
+            weight_low *= if last < 0.0 { 0.5 } else { 1.0 };
         }
-        last = slope;
-        // Every fourth step bisects, for the kinks of straight tool edges.
-        let secant = low + (high - low) * slope_low / (slope_low - slope_high);
-        let next =
-            if iteration % 4 != 3 && secant > low && secant < high { secant } else { 0.5 * (low + high) };
-        if next == angle {
+        last = here.slope;
+        let (reach, middle) = (high.angle - low.angle, 0.5 * (low.angle + high.angle));
+        // At the kinks that straight edges of the tool make the slope is never small, but the tangents of the two ends
+        // meet there, as far as the stretches between are straight.
+        let meeting = low.meeting(&high);
+        let sag = size * reach * reach;
+        if meeting.is_some_and(|(_, bound)| bound + sag - best.value <= resolution) {
             break;
         }
-        angle = next;
+        let kink = meeting.map_or(middle, |(angle, _)| angle);
+        let next = match iteration % 4 {
+            2 => kink,
+            // Just beyond, so that the farther end comes near too.
+            3 if kink - low.angle < high.angle - kink => kink + (kink - low.angle).max(BEYOND * reach),
+            3 => kink - (high.angle - kink).max(BEYOND * reach),
+            _ => low.angle + reach * weight_low / (weight_low - weight_high),
+        };
+        let next = if next > low.angle && next < high.angle { next } else { middle };
+        if next == here.angle {
+            break;
+        }
+        here = at(next);
     }
-    let (clearance, _, normal, contact) = family.sample(tool, tip, angle);
+    if here.value > best.value {
+        best = here;
+    }
+    let (clearance, _, normal, contact) = family.sample(tool, tip, best.angle);
     Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
 }

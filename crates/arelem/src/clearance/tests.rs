@@ -154,3 +154,77 @@ proptest! {
         }
     }
 }
+
+/// Samples of the whole boundary made finer and finer about the least, for a tool outside a convex solid.
+fn refined(tool: &Tool, gauge: &Gauge, tip: &Vec3) -> f64 {
+    let p = &tool.profile;
+    let part = |from: f64, to: f64, t: f64| from + (to - from) * t;
+    // Lower line, arc, upper line.
+    let place = |t: f64| -> (f64, f64) {
+        if t < 1.0 {
+            (t * p.lower.radius, t * p.lower.height)
+        } else if t < 2.0 {
+            let polar = part(p.fan[0], p.fan[1], t - 1.0);
+            (p.center.radius + p.arc * polar.sin(), p.center.height - p.arc * polar.cos())
+        } else {
+            (part(p.upper.radius, p.top.radius, t - 2.0), part(p.upper.height, p.top.height, t - 2.0))
+        }
+    };
+    let (mut center, mut half) = ([1.5, 0.0], [1.5, std::f64::consts::PI]);
+    let mut least = f64::INFINITY;
+    for round in 0..12 {
+        let around = center;
+        let count = if round == 0 { 300 } else { 20 };
+        for i in -count..=count {
+            for k in -count..=count {
+                let share = [i, k].map(|x| f64::from(x) / f64::from(count));
+                let t = (around[0] + half[0] * share[0]).clamp(0.0, 3.0);
+                let angle = around[1] + half[1] * share[1];
+                let (radius, height) = place(t);
+                let radial = tool.across[0] * angle.cos() + tool.across[1] * angle.sin();
+                let at = tip + tool.axis * height + radial * radius;
+                let distance = gauge.side * gauge.surface.signed_distance(&at);
+                if distance < least {
+                    (least, center) = (distance, [t, angle]);
+                }
+            }
+        }
+        half = half.map(|x| x / if round == 0 { 60.0 } else { 6.0 });
+    }
+    least
+}
+
+/// Contact in the middle of a straight flank, or near one of its ends, is a kink of the distance over the normals.
+#[test]
+fn flanks_touch_round_solids_anywhere() {
+    let cases = [
+        (
+            // Near the lower end of the flank.
+            vec![1.0, 0.1875, 0.33, 0.22, 7.89935231433134, 5.0, 4.758946859480256],
+            v(0.7758241689643466, 0.13424432236515066, 0.616502490476318),
+            Geometry::Cone(Cone {
+                vertex: v(-0.8282937380995063, 1.5912313630978119, -1.1926614803459095),
+                axis: v(0.7034415620627794, -0.469664425010695, -0.5334653659255212),
+                cosine: 0.8092552061698755,
+            }),
+            v(-1.0261350464787444, 2.0727186094774916, -1.301037892945468),
+        ),
+        (
+            // Near the top of the flank of a ball cutter.
+            vec![0.8566182138664524, 0.4283091069332262],
+            v(-0.5658602179305312, -0.09487492796095744, 0.8190243963448312),
+            Geometry::Cylinder(Cylinder {
+                point: v(-4.191214300936019, 0.20250018134231199, 3.9437397023330467),
+                axis: v(-0.3522485896704196, 0.8026075630360932, 0.4813959184179167),
+                radius: 2.7073650317223756,
+            }),
+            v(1.2524411509704407, 0.7367360738332862, 1.6617951117870124),
+        ),
+    ];
+    for (numbers, axis, geometry, tip) in cases {
+        let cutter = Cutter::from_numbers(&numbers, 1.0).expect("cutter");
+        let (tool, gauge) = (Tool::new(cutter, axis.normalize()), gauge(&geometry, 1.0));
+        let (found, wanted) = (gauge.contact(&tool, &tip).clearance, refined(&tool, &gauge, &tip));
+        assert!((found - wanted).abs() < 1e-10, "{found:e}, samples {wanted:e}");
+    }
+}

@@ -24,8 +24,8 @@ const BAND_SHARE: f64 = 1e-5;
 const FREE_SHARE: [f64; 2] = [4e-4, 2e-5];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
-/// Sine below which a surface is neither left nor right of the motion.
-const ACROSS: f64 = 1e-3;
+/// Sine below which a surface is neither left nor right of the motion (3°).
+const ACROSS: f64 = 0.05;
 /// Sine of the angle that two normals may differ by at an exact tangency.
 const TANGENT: f64 = 1e-6;
 /// Step of the curvature estimate at a tangency, relative to the size of the geometry.
@@ -207,7 +207,7 @@ impl Judge<'_> {
         }
         if !start_up && (part.is_some() || drive.is_some()) {
             if let Some(drive) = drive {
-                self.side(drive)?;
+                self.side(drive, part)?;
             }
             self.progress(part, drive)?;
             self.step_length(part, drive);
@@ -311,26 +311,35 @@ impl Judge<'_> {
         }
     }
 
-    /// The tool is left or right of the drive surface, as TLLFT and TLRGT promise.
-    fn side(&mut self, drive: &Bound<'_>) -> Result<(), VerifyError> {
+    /// The tool sets out left or right of the drive surface, as TLLFT and TLRGT promise. From there on it is the side of the
+    /// surface that is kept, which the band holds it to: where the path turns over, along the tool axis, left becomes right.
+    fn side(&mut self, drive: &Bound<'_>, part: Option<&Bound<'_>>) -> Result<(), VerifyError> {
         let wanted = match self.sequence.drive_side {
             DriveSide::On => return Ok(()),
             _ if drive.on => return Ok(()),
             DriveSide::Left => 1.0,
             DriveSide::Right => -1.0,
         };
-        for vector in 0..self.positions.len() - 1 {
-            let (from, to) = (self.positions[vector], self.positions[vector + 1]);
+        for (vector, pair) in self.positions.windows(2).enumerate() {
+            let (from, to) = (pair[0], pair[1]);
             let motion = to.tip - from.tip;
             let length = motion.norm();
             if length <= self.guard() {
                 continue;
             }
             let normal = drive.normal(&from).ok_or(VerifyError::NoDistance { vector })?;
-            let sine = wanted * normal.dot(&from.axis.cross(&motion)) / length;
+            // Along the path, from which a long vector may lead away in a curve's chord.
+            let travel = part.and_then(|p| p.normal(&from)).map_or(Vec3::zeros(), |n| n.cross(&normal));
+            let onward = if travel.norm() > PARALLEL {
+                travel * (travel.dot(&motion).signum() / travel.norm())
+            } else {
+                motion / length
+            };
+            let sine = wanted * normal.dot(&from.axis.cross(&onward));
             if sine < -ACROSS {
                 self.findings.add(Rule::Side, vector, sine, -sine);
             }
+            break;
         }
         Ok(())
     }
