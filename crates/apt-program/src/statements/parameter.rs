@@ -6,6 +6,7 @@ use smol_str::SmolStr;
 use super::Major;
 use crate::{
     evaluator::Evaluator,
+    expression::{Item, Items},
     finding::{Expected, FindingKind, Found},
     record::{PostArgument, RecordKind},
 };
@@ -16,7 +17,7 @@ impl Evaluator<'_> {
         const EXPECTED: &str = "1, 2 or 7";
         let Some(items) = self.operands_of(major, EXPECTED, 129) else { return };
         if items.first().and_then(|item| item.word()) == Some("OPTION") {
-            return self.control(major, &items, [6000, 6]);
+            return self.disk(major, &items);
         }
         // CL files of CAM systems give any number of values.
         let Some(values) = self.scalars_of(major, &items, 129) else { return };
@@ -24,6 +25,33 @@ impl Evaluator<'_> {
             return self.wrong_count(major, values.len(), EXPECTED, 129);
         }
         self.motion(MotionCommand::Cutter(values), major.range);
+    }
+
+    /// CUTTER/OPTION: a disk that replaces the cutter for the part surface (1) or the drive surface (2).
+    fn disk(&mut self, major: Major<'_>, items: &Items) {
+        let numbers: Vec<f64> = items.iter().skip(1).map_while(Item::scalar).collect();
+        let off = items.get(2).is_some_and(|item| item.word() == Some("OFF"));
+        match *numbers.as_slice() {
+            [role, ..] if role != 1.0 && role != 2.0 => {
+                let finding =
+                    FindingKind::OperandRange { statement: major.name(), value: role, number: Some(129) };
+                return self.report(finding, major.range);
+            }
+            [_, _, _] if items.len() == 4 => {
+                let word = SmolStr::new_static("CUTTER/OPTION");
+                self.report(FindingKind::NoEffect { word }, major.range);
+            }
+            [_] if off && items.len() == 3 => {}
+            _ => {
+                return self.wrong_count(
+                    major,
+                    items.len(),
+                    "OPTION, 1 or 2, and a radius and height or OFF",
+                    129,
+                );
+            }
+        }
+        self.control(major, items, [6000, 6]);
     }
 
     /// INTOL, OUTTOL, TOLER and THICK: missing values repeat the last one.
@@ -111,7 +139,7 @@ impl Evaluator<'_> {
     }
 
     /// A control record of words and numbers.
-    pub(crate) fn control(&mut self, major: Major<'_>, items: &[crate::expression::Item], code: [u16; 2]) {
+    pub(crate) fn control(&mut self, major: Major<'_>, items: &[Item], code: [u16; 2]) {
         let mut arguments = Vec::with_capacity(items.len());
         for item in items {
             match (item.scalar(), item.word()) {

@@ -13,6 +13,9 @@ use crate::{
     record::{CopyStep, RecordKind},
 };
 
+/// APT III, edit phase: COPY cannot mirror by itself.
+const MIRROR_IN_COPY: u16 = 10;
+
 impl Evaluator<'_> {
     /// TRACUT/matrix or TRACUT/NOMORE.
     pub(crate) fn cut_transformation(&mut self, major: Major<'_>) {
@@ -56,7 +59,15 @@ impl Evaluator<'_> {
             Some("SAME") => 3,
             Some("XYROT" | "MODIFY") => 4,
             Some("TRANSL") => 6,
-            _ => return self.report(FindingKind::CopyOption { found: option.found() }, option.range),
+            word => {
+                let mut finding =
+                    self.finding(FindingKind::CopyOption { found: option.found() }, option.range);
+                // MODIFY with a matrix of MIRROR makes a mirrored copy.
+                if word == Some("MIRROR") {
+                    finding.number = Some(MIRROR_IN_COPY);
+                }
+                return self.add(finding);
+            }
         };
         if items.len() != expected {
             return self.report(FindingKind::CopyCount { found: items.len(), expected }, major.range);
