@@ -16,6 +16,8 @@ const SCAN: usize = 16;
 const MAX_ITERATIONS: u32 = 60;
 /// Width of the bracket, radians, that is rounding.
 const RESOLUTION: f64 = 1e-15;
+/// Width of a bracket about a kink, radians, whose normals are the same but for rounding.
+const KINK_RESOLUTION: f64 = 1e-11;
 /// Share of the bracket beyond a kink at which its other side is looked at.
 const BEYOND: f64 = 1e-3;
 /// Slope, relative to the size of the lengths, that is rounding; the greatest distance is found as well as that too.
@@ -154,11 +156,16 @@ fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Co
     let (mut here, mut last) = (at(start), 0.0);
     let mut best = here;
     for iteration in 0..MAX_ITERATIONS {
+        let narrow = high.angle - low.angle <= RESOLUTION * (1.0 + here.angle.abs());
+        if here.slope.abs() <= resolution {
+            // About a smooth greatest distance the distance tells less than the slope.
+            best = here;
+            break;
+        }
         if here.value > best.value {
             best = here;
         }
-        let narrow = high.angle - low.angle <= RESOLUTION * (1.0 + here.angle.abs());
-        if here.slope.abs() <= resolution || narrow {
+        if narrow {
             break;
         }
         if here.slope > 0.0 {
@@ -174,7 +181,8 @@ fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Co
         // meet there, as far as the stretches between are straight.
         let meeting = low.meeting(&high);
         let sag = size * reach * reach;
-        if meeting.is_some_and(|(_, bound)| bound + sag - best.value <= resolution) {
+        let is_found = meeting.is_some_and(|(_, bound)| bound + sag - best.value <= resolution);
+        if is_found && reach <= KINK_RESOLUTION {
             break;
         }
         let kink = meeting.map_or(middle, |(angle, _)| angle);
@@ -190,9 +198,6 @@ fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Co
             break;
         }
         here = at(next);
-    }
-    if here.value > best.value {
-        best = here;
     }
     let (clearance, _, normal, contact) = family.sample(tool, tip, best.angle);
     Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
