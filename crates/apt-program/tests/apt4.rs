@@ -53,7 +53,18 @@ const MISTAKES: &[(&str, &[(u32, u16)])] = &[
     ("A1=LOGF(0)", &[(1, 37)]),
     ("A1=ARSINF(2)", &[(1, 38)]),
     ("A1=ARCOSF(-2)", &[(1, 38)]),
+    ("A1=LOG10F(-2)", &[(1, 36)]),
+    ("A1=LOG10F(0)", &[(1, 37)]),
+    ("A1=ARSINB(2)", &[(1, 38)]),
+    ("A1=ARCOSB(2)", &[(1, 38)]),
     ("A=LINE/0,0,1,1\nB=LINE/0,0,1,2\nD=DISTF(A,B)", &[(3, 62)]),
+    ("A=VECTOR/1,0,0\nB=POINT/0,0,1\nD=DISTF(A,B)", &[(3, 61)]),
+    ("A=VECTOR/1,0,0\nB=POINT/0,1,0\nD=ANGLF(A,B)", &[(3, 80)]),
+    ("A=POINT/1,2,0\nD=ANGLF(A,(POINT/1,2,5))", &[(2, 80)]),
+    ("A=VECTOR/0,0,0\nD=ANGLB(A,A)", &[(2, 80)]),
+    ("A=ELLIPS/CENTER,(0,0),2,1,0\nD=SPATF(A,A,A)", &[(2, 54)]),
+    ("A=POINT/1,2\nD=NUMF(A)", &[(2, 36)]),
+    ("P=PATERN/LINEAR,(0,0),(1,1),4\nA=CANF(1,P)", &[(2, 39)]),
     ("P=POINT/1,2\nA=CANF(4,P)", &[(2, 40)]),
     ("P=POINT/1,2\nA=CANF(0,P)", &[(2, 41)]),
     ("A=PARMF(1)", &[(1, 42)]),
@@ -119,6 +130,98 @@ const ACCEPTED: &[(&str, &[(&str, f64)])] = &[
     ),
     ("P1=POINT/1,2\nRESERV/P,2\nP(1)=P1\nX=CANF(1,P(1))", &[("X", 1.0)]),
     ("TO=4\nPOINT=3\nX=TO/POINT", &[("X", 4.0 / 3.0)]),
+    // Every function of one number: in degrees, in radians, of whole numbers.
+    ("X=SINF(30)\nY=COSF(60)\nZ=TANF(45)\nW=COTANF(45)", &[("X", 0.5), ("Y", 0.5), ("Z", 1.0), ("W", 1.0)]),
+    ("X=ARSINF(.5)\nY=ARCOSF(.5)\nZ=ATANF(1)", &[("X", 30.0), ("Y", 60.0), ("Z", 45.0)]),
+    (
+        "X=SINB(.5)\nY=COSB(.5)\nZ=TANB(.5)\nW=COTANB(.5)",
+        &[
+            ("X", 0.479_425_538_604_203),
+            ("Y", 0.877_582_561_890_372_7),
+            ("Z", 0.546_302_489_843_790_5),
+            ("W", 1.830_487_721_712_452),
+        ],
+    ),
+    (
+        "X=ARSINB(1)*2\nY=ARCOSB(-1)\nZ=ATANB(1)*4\nW=ATAN2B(1,-1)*4/3",
+        &[
+            ("X", std::f64::consts::PI),
+            ("Y", std::f64::consts::PI),
+            ("Z", std::f64::consts::PI),
+            ("W", std::f64::consts::PI),
+        ],
+    ),
+    (
+        "X=SINHF(1)\nY=COSHF(1)\nZ=TANHF(1)",
+        &[("X", 1.175_201_193_643_801_4), ("Y", 1.543_080_634_815_243_7), ("Z", 0.761_594_155_955_764_9)],
+    ),
+    (
+        "X=INTF(-2.7)\nY=MODF(7.5,2)\nZ=MODF(-7.5,2)\nW=MODF(7.5,-2)",
+        &[("X", -2.0), ("Y", 1.5), ("Z", -1.5), ("W", 1.5)],
+    ),
+    (
+        "X=SIGNF(3,-2)\nY=SIGNF(-3,2)\nZ=MINF(3,1,2)\nW=MAXF(-1,-5)",
+        &[("X", -3.0), ("Y", 3.0), ("Z", 1.0), ("W", -1.0)],
+    ),
+    (
+        "X=MINF(4)\nY=EXPF(0)\nZ=LOG10F(100)\nW=ATAN2F(1,-1)",
+        &[("X", 4.0), ("Y", 1.0), ("Z", 2.0), ("W", 135.0)],
+    ),
+    // Geometry leads with a place, a normal or a vector.
+    (
+        "A=(0,0,0)\nB=(-1,-1,5)\nC=CIRCLE/1,0,2\nX=ANGLF(A,B)\nY=ANGLF(C,(POINT/1,7))\nZ=ANGLF((POINT/1,7),C)",
+        &[("X", 225.0), ("Y", 90.0), ("Z", 270.0)],
+    ),
+    (
+        "E=PLANE/0,0,1,3\nF=PLANE/1,0,1,0\nV=VECTOR/0,0,-2\nL=LINE/0,0,1,0\nX=ANGLF(E,F)\nY=ANGLF(E,V)\nZ=ANGLF(L,E)\nW=ANGLB(V,E)",
+        &[("X", 45.0), ("Y", 180.0), ("Z", 90.0), ("W", std::f64::consts::PI)],
+    ),
+    // The normal of a line points to its left: of the x axis up, of one at 30 degrees 30 degrees on.
+    (
+        "X=ANGLF((LINE/0,0,1,0),(LINE/(0,0),ATANGL,30))\nY=ANGLF((LINE/0,0,1,0),(VECTOR/0,1,0))",
+        &[("X", 30.0), ("Y", 0.0)],
+    ),
+    (
+        "E=PLANE/0,0,1,3\nP=POINT/1,2,7\nX=DISTF(P,E)\nY=DISTF(E,(POINT/0,0,0))\nZ=DISTF(E,(PLANE/0,0,-2,4))\nW=DISTF(P,(POINT/1,2,3))",
+        &[("X", 4.0), ("Y", -3.0), ("Z", 5.0), ("W", 4.0)],
+    ),
+    (
+        "L=LINE/0,2,1,2\nX=DISTF((POINT/5,7),L)\nY=DISTF(L,(LINE/0,0,-1,0))\nZ=DISTF((CIRCLE/1,2,9),(CIRCLE/4,6,9))\nW=DISTF(L,(PLANE/0,1,0,5))",
+        &[("X", 5.0), ("Y", 2.0), ("Z", 5.0), ("W", 3.0)],
+    ),
+    (
+        "U=VECTOR/1,0,0\nV=VECTOR/3,4,0\nW=VECTOR/0,0,2\nX=SPATF(U,V,W)\nY=SPATF((POINT/0,0,2),U,V)\nZ=DOTF(V,(POINT/1,2,3))\nR=LNTHF((POINT/2,3,6))",
+        &[("X", 8.0), ("Y", 8.0), ("Z", 11.0), ("R", 7.0)],
+    ),
+    ("PA=PATERN/LINEAR,(POINT/0,0),(POINT/9,0),4\nX=NUMF(PA)", &[("X", 4.0)]),
+    // CANF takes the n-th number of every type; the number is truncated.
+    (
+        "X=CANF(4,(PLANE/0,0,2,3))\nY=CANF(7,(CIRCLE/1,2,3))\nZ=CANF(2.9,(POINT/1,2,3))\nW=CANF(3,(VECTOR/4,5,6))",
+        &[("X", 1.5), ("Y", 3.0), ("Z", 2.0), ("W", 6.0)],
+    ),
+    (
+        "X=CANF(1,(LINE/0,0,3,4))\nY=CANF(4,(SPHERE/1,2,3,9))\nZ=CANF(7,(CONE/(POINT/0,0,0),(VECTOR/0,0,1),60))\nW=CANF(7,(CYLNDR/0,0,0,0,0,1,5))",
+        &[("X", -0.8), ("Y", 9.0), ("Z", 0.5), ("W", 5.0)],
+    ),
+    (
+        "M=MATRIX/TRANSL,7,8,9\nX=CANF(4,M)\nY=CANF(8,M)\nZ=CANF(4,(QADRIC/1,2,3,4,5,6,7,8,9,10))\nW=CANF(1,(ELLIPS/CENTER,(0,0),4,2,0))",
+        &[("X", 7.0), ("Y", 8.0), ("Z", 10.0), ("W", 4.0)],
+    ),
+    // Operands without parentheses, signs, chains and assignments from left to right.
+    ("A=2\nB=3\nP=POINT/A+1,A*3,-A\nX=CANF(1,P)*100+CANF(2,P)*10+CANF(3,P)", &[("X", 358.0)]),
+    ("A=2\nB=3\nV=VECTOR/A*B,B/A,A**2\nX=LNTHF(V)**2", &[("X", 36.0 + 2.25 + 16.0)]),
+    ("P=POINT/(X=5),(Y=X+1),Y\nZ=CANF(3,P)", &[("X", 5.0), ("Y", 6.0), ("Z", 6.0)]),
+    (
+        "X=-2**.5\nY=2**-2**2\nZ=0**0\nW=2**-1",
+        &[("X", -std::f64::consts::SQRT_2), ("Y", 0.0625), ("Z", 1.0), ("W", 0.5)],
+    ),
+    ("L=LINE/(0,0),(3,4)\nX=CANF(1,L)*10+CANF(2,L)", &[("X", -8.0 + 0.6)]),
+    ("P=(1,2)\nQ=P\nX=CANF(2,Q)\nY=CANF(3,Q)", &[("X", 2.0), ("Y", 0.0)]),
+    ("TO=4\nSTOP=5\nX=TO+STOP", &[("X", 9.0)]),
+    ("P=POINT/1,2\nOBTAIN,POINT/P,A,,C\nX=A+C", &[("X", 1.0)]),
+    ("C=CIRCLE/CANON,1,2,3,0,0,1,4\nX=CANF(3,C)", &[("X", 3.0)]),
+    ("ZSURF/(PLANE/0,0,1,7)\nP=(1,2)\nX=CANF(3,P)", &[("X", 7.0)]),
+    ("M=MACRO/\nX=3\nTERMAC\nCALL/M", &[("X", 3.0)]),
     ("DO/L1,I=1,3\nP=POINT/I,0\nL1)X=CANF(1,P)", &[("X", 3.0)]),
     ("P=POINT/1,2\nCANON/ON\nP=POINT/3,4", &[]),
     ("UNITS/FATHOM", &[]),
@@ -156,6 +259,10 @@ fn functions_go_on_after_an_argument_outside_their_domain() {
     assert_eq!(scalar(&program, "B"), Some(0.0));
     assert_eq!(scalar(&program, "C"), Some(0.0));
     assert_eq!(scalar(&program, "D"), Some(7.0));
+    let program =
+        run("A=LOG10F(-100)\nB=PARMF(UVAL)\nC=ANGLF((VECTOR/1,0,0),(POINT/1,0))\nD=NUMF((POINT/1,2))");
+    let values = ["A", "B", "C", "D"].map(|name| scalar(&program, name));
+    assert_eq!(values, [Some(2.0), Some(0.0), Some(0.0), Some(0.0)]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::format::{Format, Parameter};
 use super::given::Given;
-use super::{DefinitionError, Impossible, Modifier};
+use super::{DefinitionError, Modifier};
 use crate::canonical::matrix::sine_cosine_degrees;
 use crate::canonical::{Geometry, GeometryKind, Quadric};
 

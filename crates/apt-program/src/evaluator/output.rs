@@ -65,4 +65,15 @@ pub(crate) fn same_place_and_kind(left: &Finding, right: &Finding) -> bool {
         && left.origin.range == right.origin.range
         && left.origin.source == right.origin.source
         && std::mem::discriminant(&left.kind) == std::mem::discriminant(&right.kind)
+        && !are_elements_of_one_list(left, right)
+}
+
+/// Whether two names without value are elements that one inclusive subscript names: each of them is told.
+fn are_elements_of_one_list(left: &Finding, right: &Finding) -> bool {
+    match (&left.kind, &right.kind) {
+        (FindingKind::Undefined { name: one, .. }, FindingKind::Undefined { name: other, .. }) => {
+            one != other && left.origin.frame == right.origin.frame
+        }
+        _ => false,
+    }
 }

@@ -14,10 +14,9 @@ pub(crate) struct State {
     pub(crate) symbols: SymbolTable,
     /// Synonyms, and words that have become names.
     pub(crate) synonyms: imbl::OrdMap<SmolStr, Synonym>,
-    /// The plane that supplies z, in the coordinates of `z_system`.
+    /// The plane that supplies z. Its numbers are those that it had at ZSURF and speak of whatever reference system is in
+    /// force where a point is defined, as in APT III.
     pub(crate) z_surface: Plane,
-    /// The reference system in which ZSURF was given.
-    pub(crate) z_system: Option<Arc<ReferenceSystem>>,
     /// REFSYS in force.
     pub(crate) system: Option<Arc<ReferenceSystem>>,
     /// CANON/ON.
@@ -59,7 +58,6 @@ impl Default for State {
             symbols: SymbolTable::default(),
             synonyms: imbl::OrdMap::new(),
             z_surface: Plane::horizontal(),
-            z_system: None,
             system: None,
             canon: false,
             print_all: false,
@@ -81,7 +79,6 @@ impl State {
     pub(crate) fn same_modal_values(&self, other: &State) -> bool {
         self.synonyms == other.synonyms
             && self.z_surface == other.z_surface
-            && self.z_system == other.z_system
             && self.system == other.system
             && self.canon == other.canon
             && self.print_all == other.print_all

@@ -1,6 +1,6 @@
-//! The functions of the language (reference 2.6 and 10.4). Angles are in degrees at the language's edge.
+//! The functions of the language (reference 2.6 and 10.4). Angles are in degrees at the language's edge. Those of geometry
+//! are in [`super::measure`].
 
-use apt_geometry::{Vec3, canonical::Geometry};
 use apt_syntax::{
     TextRange,
     statement::{Argument, WordUse},
@@ -8,20 +8,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use super::{Item, Operand};
-use crate::{
-    evaluator::Evaluator,
-    finding::{FindingKind, Severity},
-};
-
-/// Lines and planes count as parallel up to this sine (language reference 2.6).
-const PARALLEL_SINE: f64 = 1e-8;
-
-/// A point this near to the centre has no direction from it, in part-program units (language reference 2.6).
-const CENTER_DISTANCE: f64 = 1e-6;
-
-/// APT4: PARMF without an intersection before it, CLDATF without CL data.
-const APT4_NO_INTERSECTION: u16 = 42;
-const APT4_NO_CL_DATA: u16 = 93;
+use crate::{evaluator::Evaluator, finding::FindingKind};
 
 /// A function of one number.
 type OneNumber = fn(f64) -> Option<f64>;
@@ -89,8 +76,11 @@ impl Evaluator<'_> {
         range: TextRange,
     ) -> Option<f64> {
         self.refuse_inclusive(arguments)?;
-        let items = self.operands(arguments)?;
         let name = function.word.spelling;
+        if name == "PARMF" {
+            return Some(self.intersection_parameter(range));
+        }
+        let items = self.operands(arguments)?;
         let value = match name {
             "SQRTF" => self.square_root(&items, range)?,
             "ATAN2F" => self.two_numbers(name, &items, range, |y, x| Some(y.atan2(x).to_degrees()))?,
@@ -107,7 +97,7 @@ impl Evaluator<'_> {
             "DISTF" => self.distance(&items, range)?,
             "NUMF" => self.pattern_count(&items, range)?,
             "CANF" => self.canonical_number(&items, range)?,
-            "PARMF" | "CLDATF" => return self.not_available(name, range),
+            "CLDATF" => return self.location_data(name, range),
             _ => self.one_number(name, &items, range)?,
         };
         self.finite(value, range)
@@ -128,16 +118,6 @@ impl Evaluator<'_> {
             }
         }
         result
-    }
-
-    /// Functions of results that are not kept: the parameters of the last intersection, the CL file.
-    fn not_available(&mut self, name: &'static str, range: TextRange) -> Option<f64> {
-        let mut finding =
-            self.finding(FindingKind::RoutineNotAvailable { name: SmolStr::new_static(name) }, range);
-        finding.severity = Severity::Error;
-        finding.number = Some(if name == "PARMF" { APT4_NO_INTERSECTION } else { APT4_NO_CL_DATA });
-        self.add(finding);
-        None
     }
 
     /// SQRTF: of a negative number the root of the absolute value, with a finding.
@@ -182,137 +162,6 @@ impl Evaluator<'_> {
         numbers.into_iter().reduce(choose)
     }
 
-    /// DOTF of two vectors or points.
-    fn scalar_product(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        if let [a, b] = items
-            && !self.is_apt4()
-        {
-            self.refuse_mixed("DOTF", a, b, range)?;
-        }
-        let [a, b] = self.directions::<2>("DOTF", items, range)?;
-        Some(a.dot(&b))
-    }
-
-    /// Reports two arguments of different types where they must be of one; nothing if they are.
-    fn refuse_mixed(&mut self, name: &'static str, a: &Item, b: &Item, range: TextRange) -> Option<()> {
-        let (Some(first), Some(second)) =
-            (a.geometry().map(Geometry::kind), b.geometry().map(Geometry::kind))
-        else {
-            return Some(());
-        };
-        if first == second {
-            return Some(());
-        }
-        let function = SmolStr::new_static(name);
-        self.report(FindingKind::FunctionMixed { function, first, second }, range);
-        None
-    }
-
-    /// SPATF: the triple product.
-    fn triple_product(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        let [a, b, c] = self.directions::<3>("SPATF", items, range)?;
-        Some(a.dot(&b.cross(&c)))
-    }
-
-    /// LNTHF of a vector or point.
-    fn length(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        let [a] = self.directions::<1>("LNTHF", items, range)?;
-        Some(a.norm())
-    }
-
-    /// ANGLF and ANGLB, in radians: the direction of a point seen from the centre of a circle, or, in APT4, the angle
-    /// between vectors, lines or planes.
-    fn angle(&mut self, name: &'static str, items: &[Item], range: TextRange) -> Option<f64> {
-        let [first, second] = self.pair(name, items, range)?;
-        match (first.geometry(), second.geometry()) {
-            (Some(Geometry::Circle(circle)), Some(Geometry::Point(point))) => {
-                let way = point - circle.point;
-                if way.x.hypot(way.y) <= CENTER_DISTANCE {
-                    self.report(FindingKind::AngleOfCenter, range);
-                    return None;
-                }
-                let angle = way.y.atan2(way.x);
-                Some(if angle < 0.0 { angle + std::f64::consts::TAU } else { angle })
-            }
-            (Some(left), Some(right)) if self.is_apt4() => {
-                let (Some(a), Some(b)) = (direction_of(left), direction_of(right)) else {
-                    return self.wrong_kind(name, first, second);
-                };
-                Some(a.cross(&b).norm().atan2(a.dot(&b)))
-            }
-            _ => self.wrong_kind(name, first, second),
-        }
-    }
-
-    /// DISTF of parallel lines or planes; in APT4 also from a point.
-    fn distance(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        let [first, second] = self.pair("DISTF", items, range)?;
-        match (first.geometry(), second.geometry()) {
-            (Some(Geometry::Line(a)), Some(Geometry::Line(b)))
-            | (Some(Geometry::Plane(a)), Some(Geometry::Plane(b))) => {
-                let scale = a.normal.norm() * b.normal.norm();
-                let sine = a.normal.cross(&b.normal).norm() / scale;
-                if sine.is_nan() || sine > PARALLEL_SINE {
-                    self.report(FindingKind::NotParallel { sine }, range);
-                    return None;
-                }
-                let sign = a.normal.dot(&b.normal).signum();
-                Some((a.distance / a.normal.norm() - sign * b.distance / b.normal.norm()).abs())
-            }
-            (Some(Geometry::Point(a)), Some(Geometry::Point(b))) if self.is_apt4() => Some((a - b).norm()),
-            (Some(Geometry::Point(point)), Some(Geometry::Line(plane) | Geometry::Plane(plane)))
-            | (Some(Geometry::Line(plane) | Geometry::Plane(plane)), Some(Geometry::Point(point)))
-                if self.is_apt4() =>
-            {
-                Some(plane.signed_distance(point).abs())
-            }
-            (Some(Geometry::Line(_)), Some(Geometry::Plane(_)))
-            | (Some(Geometry::Plane(_)), Some(Geometry::Line(_))) => {
-                self.refuse_mixed("DISTF", first, second, range)?;
-                None
-            }
-            _ => self.wrong_kind("DISTF", first, second),
-        }
-    }
-
-    /// NUMF of a pattern.
-    fn pattern_count(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        let [item] = items else {
-            self.report_count("NUMF", 1, items.len(), range);
-            return None;
-        };
-        let Some((_, pattern)) = item.pattern() else {
-            return self.wrong_kind("NUMF", item, item);
-        };
-        #[expect(clippy::cast_precision_loss, reason = "patterns are far smaller than 2^53 points")]
-        Some(pattern.points.len() as f64)
-    }
-
-    /// CANF(n,geometry) or CANF(geometry,n): the n-th canonical number.
-    fn canonical_number(&mut self, items: &[Item], range: TextRange) -> Option<f64> {
-        let [first, second] = self.pair("CANF", items, range)?;
-        let (number, geometry) = match (first.scalar(), second.geometry()) {
-            (Some(number), Some(geometry)) => (number, geometry),
-            _ => match (second.scalar(), first.geometry()) {
-                (Some(number), Some(geometry)) => (number, geometry),
-                _ => return self.wrong_kind("CANF", first, second),
-            },
-        };
-        let values = geometry.canonical_values();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a negative index saturates"
-        )]
-        let value = (number >= 1.0).then(|| values.get(number as usize - 1).copied()).flatten();
-        if value.is_none() {
-            let finding =
-                FindingKind::FunctionDomain { function: SmolStr::new_static("CANF"), value: number };
-            self.report(finding, range);
-        }
-        value
-    }
-
     /// Exactly N numbers.
     fn numbers<const N: usize>(
         &mut self,
@@ -335,29 +184,13 @@ impl Evaluator<'_> {
         Some(items.iter().filter_map(Item::scalar).collect())
     }
 
-    /// Exactly N vectors or points.
-    fn directions<const N: usize>(
+    /// Exactly two operands.
+    pub(super) fn pair<'b>(
         &mut self,
         name: &'static str,
-        items: &[Item],
+        items: &'b [Item],
         range: TextRange,
-    ) -> Option<[Vec3; N]> {
-        if items.len() != N {
-            self.report_count(name, N, items.len(), range);
-            return None;
-        }
-        let mut directions = [Vec3::zeros(); N];
-        for (direction, item) in directions.iter_mut().zip(items) {
-            match item.vector().or_else(|| item.point()) {
-                Some(value) => *direction = value,
-                None => return self.wrong_kind(name, item, item).map(|_| directions),
-            }
-        }
-        Some(directions)
-    }
-
-    /// Exactly two operands.
-    fn pair<'b>(&mut self, name: &'static str, items: &'b [Item], range: TextRange) -> Option<[&'b Item; 2]> {
+    ) -> Option<[&'b Item; 2]> {
         if let [first, second] = items {
             return Some([first, second]);
         }
@@ -366,26 +199,22 @@ impl Evaluator<'_> {
     }
 
     /// Reports a wrong number of arguments.
-    fn report_count(&mut self, name: &'static str, expected: usize, found: usize, range: TextRange) {
+    pub(super) fn report_count(
+        &mut self,
+        name: &'static str,
+        expected: usize,
+        found: usize,
+        range: TextRange,
+    ) {
         let function = SmolStr::new_static(name);
         self.report(FindingKind::FunctionCount { function, expected, found }, range);
     }
 
     /// Reports an argument of the wrong kind: the second, unless that is a number where the first is not right either.
-    fn wrong_kind(&mut self, name: &'static str, first: &Item, second: &Item) -> Option<f64> {
+    pub(super) fn wrong_kind(&mut self, name: &'static str, first: &Item, second: &Item) -> Option<f64> {
         let item = if matches!(first.operand, Operand::Geometry { .. }) { second } else { first };
         let finding = FindingKind::FunctionKind { function: SmolStr::new_static(name), found: item.found() };
         self.report(finding, item.range);
         None
-    }
-}
-
-/// The direction that ANGLF compares: of a vector or point itself, of a line along it, of a plane its normal.
-fn direction_of(geometry: &Geometry) -> Option<Vec3> {
-    match geometry {
-        Geometry::Vector(vector) | Geometry::Point(vector) => Some(*vector),
-        Geometry::Line(plane) => Some(plane.line_direction()),
-        Geometry::Plane(plane) => Some(plane.normal),
-        _ => None,
     }
 }

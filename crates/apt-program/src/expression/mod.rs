@@ -3,6 +3,7 @@
 mod arithmetic;
 mod condition;
 mod function;
+mod measure;
 mod operand;
 mod reference;
 

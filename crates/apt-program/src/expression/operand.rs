@@ -235,9 +235,9 @@ impl Evaluator<'_> {
         Some(Operand::Geometry { name: SmolStr::default(), geometry: Arc::new(Geometry::Point(point)) })
     }
 
-    /// z of the ZSURF plane over a point, in the coordinates of the reference system in force.
+    /// z of the ZSURF plane over a point.
     pub(crate) fn z_over(&mut self, x: f64, y: f64, range: TextRange) -> Option<f64> {
-        let z = self.z_plane().and_then(|plane| plane.z_over(x, y)).filter(|z| z.is_finite());
+        let z = self.state.z_surface.z_over(x, y).filter(|z| z.is_finite());
         if z.is_none() {
             self.report(FindingKind::VerticalZSurface, range);
         }

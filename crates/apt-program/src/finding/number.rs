@@ -146,6 +146,8 @@ impl FindingKind {
             Self::NotReserved { .. } => 1111,
             Self::ReserveForm | Self::ReserveExtent { .. } => 2027,
             Self::FunctionDomain { function, value } => return domain_number(function, *value),
+            Self::FunctionKind { function, .. } => return argument_number(function),
+            Self::AngleOfCenter => 80,
             Self::NegativeRoot { .. } => 20,
             Self::NotParallel { .. } => 62,
             Self::Definition { error, .. } => match error {
@@ -221,10 +223,24 @@ fn syntax_number(kind: &SyntaxErrorKind) -> Option<u16> {
 fn domain_number(function: &str, value: f64) -> Option<u16> {
     match function {
         "LOGF" | "LOG10F" if value == 0.0 => Some(37),
-        "LOGF" | "LOG10F" | "SQRTF" => Some(20),
+        "LOG10F" => Some(36),
+        "LOGF" | "SQRTF" => Some(20),
+        "ANGLF" | "ANGLB" => Some(80),
         "ARSINF" | "ARCOSF" | "ARSINB" | "ARCOSB" => Some(38),
         "CANF" if value < 1.0 => Some(41),
         "CANF" => Some(40),
+        _ => None,
+    }
+}
+
+/// The APT4 number of an argument that a function does not take; most functions take what comes.
+fn argument_number(function: &str) -> Option<u16> {
+    match function {
+        "ANGLF" | "ANGLB" => Some(80),
+        "DISTF" => Some(61),
+        "SPATF" => Some(54),
+        "NUMF" => Some(36),
+        "CANF" => Some(39),
         _ => None,
     }
 }

@@ -44,10 +44,7 @@ impl Evaluator<'_> {
             }
         };
         match plane.filter(|plane| plane.z_over(0.0, 0.0).is_some_and(f64::is_finite)) {
-            Some(plane) => {
-                self.state.z_surface = plane;
-                self.state.z_system = self.state.system.clone();
-            }
+            Some(plane) => self.state.z_surface = plane,
             None => self.report(FindingKind::VerticalZSurface, major.range),
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Geometry, GeometryKind, Plane, TabulatedCylinder},
+    canonical::{Geometry, GeometryKind, TabulatedCylinder},
     definition::{self, Argument, DefinitionContext, DefinitionError, Modifier},
 };
 use apt_syntax::{
@@ -170,11 +170,8 @@ impl Evaluator<'_> {
             self.refuse_skipped(kind, &items, definition.range)?;
         }
         let arguments = self.definition_arguments(kind, &items)?;
-        let Some(z_surface) = self.z_plane() else {
-            self.report(FindingKind::VerticalZSurface, definition.range);
-            return None;
-        };
-        match definition::define(kind, &arguments, &DefinitionContext { z_surface }) {
+        let context = DefinitionContext { z_surface: self.state.z_surface };
+        match definition::define(kind, &arguments, &context) {
             Ok(Geometry::Line(line)) if self.is_apt4() && is_line_by_two_points(&arguments) => {
                 // The normal of APT4 points to the left of the way from the first to the second point.
                 Some(Arc::new(Geometry::Line(line.reversed())))
@@ -261,21 +258,6 @@ impl Evaluator<'_> {
     fn unknown_modifier<T>(&mut self, kind: GeometryKind, word: SmolStr, range: TextRange) -> Option<T> {
         self.report(FindingKind::DefinitionWord { kind, word }, range);
         None
-    }
-
-    /// The ZSURF plane in the coordinates of the reference system in force; none if it cannot be carried there.
-    pub(crate) fn z_plane(&self) -> Option<Plane> {
-        if self.state.z_system == self.state.system {
-            return Some(self.state.z_surface);
-        }
-        let stored = Stored {
-            geometry: Arc::new(Geometry::Plane(self.state.z_surface)),
-            system: self.state.z_system.clone(),
-        };
-        match stored.seen_from(self.state.system.as_ref()).as_deref() {
-            Some(Geometry::Plane(plane)) => Some(*plane),
-            _ => None,
-        }
     }
 
     /// Gives a name geometry, or poisons it when there is none; `canon` allows a redefinition.
