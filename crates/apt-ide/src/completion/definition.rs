@@ -26,6 +26,8 @@ pub(super) struct Next {
     pub(super) scalar: bool,
     /// A name of anything.
     pub(super) anything: bool,
+    /// A label of a statement.
+    pub(super) labels: bool,
 }
 
 impl Next {
@@ -64,6 +66,7 @@ pub(super) fn next_by_forms(before: &[&Element], kind_of: impl Fn(&str) -> Value
                     let used = words().iter().filter(|one| one.used_in.contains(&word.spelling));
                     next.modifiers.extend(used.map(|one| one.spelling));
                 }
+                Atom::Placeholder(name) if name.starts_with("label") => next.labels = true,
                 Atom::Placeholder(name) => match kinds_of(name) {
                     None => next.scalar = true,
                     Some([]) => next.anything = true,

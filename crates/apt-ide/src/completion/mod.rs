@@ -1,16 +1,22 @@
 //! Completion: the words and names that can stand at a place.
 
 mod definition;
+#[cfg(test)]
+mod tests;
 
 use apt_program::symbols::Value;
 use apt_syntax::{
     statement::{Element, ElementKind},
+    tree::StatementView,
     vocabulary::{Word, WordClass, words},
 };
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
-use crate::Analysis;
+use crate::{
+    Analysis,
+    context::{Context, Opener},
+};
 use definition::Next;
 
 /// The kind of a completion.
@@ -56,10 +62,16 @@ enum Place {
     Macro,
     /// A variable in a CALL of this macro.
     Variable(SmolStr),
-    /// A parameter of a definition, by its forms.
+    /// A parameter of a definition or statement, by its forms.
     Definition(Next),
-    /// In a parameter list or expression.
+    /// A parameter where no form goes on.
     Parameter,
+    /// In parentheses that have just been opened: a nested definition or an expression.
+    Nested,
+    /// In an expression.
+    Expression,
+    /// A name that is new here.
+    NewName,
 }
 
 impl Analysis {
@@ -91,13 +103,14 @@ impl Analysis {
         });
         let verb = parsed.elements.iter().find(|element| element.kind == ElementKind::Word);
         let place = self.place(&before);
+        let wrapped = self.needs_parentheses(&before);
         let mut items: Vec<Completion> = words()
             .iter()
             .filter(|word| word.spelling.starts_with(prefix) && word.is_in(self.document().dialect()))
             .filter(|word| fits(word, &place, verb.map(|verb| verb.text.as_str())))
-            .map(word_completion)
+            .map(|word| word_completion(word, wrapped))
             .collect();
-        items.extend(self.names(&place, prefix, view.isn()));
+        items.extend(self.names(&place, prefix, &view));
         if !bare {
             items.iter_mut().for_each(|item| item.snippet = None);
         }
@@ -127,9 +140,27 @@ impl Analysis {
             };
         }
         let kind_of = |name: &str| self.kind_of(name);
-        definition::next(before, kind_of)
-            .or_else(|| definition::next_by_forms(before, |name| self.value_kind(name)))
-            .map_or(Place::Parameter, Place::Definition)
+        let next = definition::next(before, kind_of)
+            .or_else(|| definition::next_by_forms(before, |name| self.value_kind(name)));
+        match (next, last.kind) {
+            (Some(next), _) => Place::Definition(next),
+            (None, ElementKind::Slash | ElementKind::Comma) if names_macro(before) => Place::NewName,
+            (None, ElementKind::Slash | ElementKind::Comma) => Place::Parameter,
+            (None, ElementKind::LeftParenthesis) => Place::Nested,
+            (None, _) => Place::Expression,
+        }
+    }
+
+    /// Whether an expression that begins behind `before` needs parentheses: in the list of a statement or definition,
+    /// where the dialect takes no bare expressions.
+    fn needs_parentheses(&self, before: &[&Element]) -> bool {
+        let begins =
+            before.last().is_some_and(|last| matches!(last.kind, ElementKind::Slash | ElementKind::Comma));
+        let of_function = matches!(
+            Context::innermost(before),
+            Some(Context { opener: Opener::Word(word), .. }) if word.class == WordClass::Function
+        );
+        begins && !of_function && !self.document().tree().dialect().bare_expressions
     }
 
     fn kind_of(&self, name: &str) -> Option<apt_geometry::canonical::GeometryKind> {
@@ -141,14 +172,48 @@ impl Analysis {
         }
     }
 
-    fn names(&self, place: &Place, prefix: &str, isn: u32) -> Vec<Completion> {
+    fn names(&self, place: &Place, prefix: &str, view: &StatementView) -> Vec<Completion> {
+        let isn = view.isn();
         match place {
-            Place::Start => Vec::new(),
+            Place::Start | Place::NewName => Vec::new(),
             Place::Macro => self.macros(prefix),
             Place::Variable(name) => self.variables(name, prefix),
-            Place::Definition(next) => self.values(prefix, isn, |value| next.takes(value)),
-            Place::Value | Place::Parameter => self.values(prefix, isn, |_| true),
+            Place::Definition(next) => {
+                let mut found = self.values(prefix, isn, |value| next.takes(value));
+                if next.labels {
+                    found.extend(self.labels(prefix, view.index));
+                }
+                found
+            }
+            Place::Value | Place::Parameter | Place::Nested | Place::Expression => {
+                self.values(prefix, isn, |_| true)
+            }
         }
+    }
+
+    /// The labels that a jump in a statement can lead to: those of its macro or loop, else those outside of both.
+    fn labels(&self, prefix: &str, statement: usize) -> Vec<Completion> {
+        let tree = self.document().tree();
+        let regions = self.regions();
+        let innermost = |statement: usize| regions.iter().rposition(|region| region.contains(statement));
+        let here = innermost(statement);
+        let (first, last) = match here.and_then(|index| regions.get(index)) {
+            Some(region) => (region.first, region.last),
+            None => (0, tree.statement_count()),
+        };
+        let mut found = Vec::new();
+        for view in tree.statements().skip(first).take(last.saturating_sub(first) + 1) {
+            if !begins_with_label(view.text().as_bytes()) || innermost(view.index) != here {
+                continue;
+            }
+            let parsed = view.parsed();
+            let Some(label) = &parsed.statement.label else { continue };
+            if label.text.starts_with(prefix) && found.len() < GREATEST_NAMES {
+                let detail = format!("label of statement {}", view.isn());
+                found.push(plain(&label.text, CompletionKind::Name, detail));
+            }
+        }
+        found
     }
 
     /// Names with a value, the nearest to a statement first if there are too many.
@@ -235,26 +300,35 @@ fn fits(word: &Word, place: &Place, verb: Option<&str>) -> bool {
         Place::Value => {
             matches!(word.class, Class::GeometricType | Class::Function) || word.spelling == "MACRO"
         }
-        Place::Macro | Place::Variable(_) => false,
+        Place::Macro | Place::Variable(_) | Place::NewName => false,
         Place::Definition(next) => match word.class {
             Class::Function => next.scalar,
             Class::Minor => next.modifiers.contains(&word.spelling),
             _ => false,
         },
         Place::Parameter => match word.class {
-            Class::GeometricType | Class::Function => true,
-            Class::Minor => verb.is_none_or(|verb| used_in(word, verb)),
+            Class::Function => true,
+            Class::Minor => verb.is_some_and(|verb| word.used_in.contains(&verb)),
             _ => false,
         },
+        Place::Nested => matches!(word.class, Class::GeometricType | Class::Function),
+        Place::Expression => word.class == Class::Function,
     }
 }
 
-/// Whether a minor word is known to be used with a verb; a word that says nothing about it is proposed everywhere.
-fn used_in(word: &Word, verb: &str) -> bool {
-    word.used_in.is_empty() || word.used_in.contains(&verb)
+/// Whether what stands before is the header of a macro up to one of its variables.
+fn names_macro(before: &[&Element]) -> bool {
+    before.iter().any(|element| element.kind == ElementKind::Word && element.text == "MACRO")
 }
 
-fn word_completion(word: &Word) -> Completion {
+/// Whether a statement may begin with a label: letters and digits, blanks among them, and a parenthesis.
+fn begins_with_label(text: &[u8]) -> bool {
+    let end = text.iter().position(|byte| !byte.is_ascii_alphanumeric() && !byte.is_ascii_whitespace());
+    end.is_some_and(|end| text.get(end) == Some(&b')'))
+}
+
+/// A word as a proposal; `wrapped` in parentheses if it begins an expression that needs them.
+fn word_completion(word: &Word, wrapped: bool) -> Completion {
     let kind = match word.class {
         WordClass::Minor => CompletionKind::Modifier,
         WordClass::GeometricType => CompletionKind::Type,
@@ -262,11 +336,15 @@ fn word_completion(word: &Word) -> Completion {
         WordClass::Postprocessor | WordClass::PostprocessorBare => CompletionKind::Postprocessor,
         _ => CompletionKind::Statement,
     };
+    let mut snippet = crate::forms::forms_of(word).first().and_then(|form| form.snippet(word.spelling));
+    if wrapped && word.class == WordClass::Function {
+        snippet = snippet.map(|snippet| format!("({})$0", snippet.trim_end_matches("$0")));
+    }
     Completion {
         label: word.spelling.to_owned(),
         kind,
         detail: word.help.to_owned(),
         documentation: crate::hover::word_markdown(word),
-        snippet: crate::forms::forms_of(word).first().and_then(|form| form.snippet(word.spelling)),
+        snippet,
     }
 }
