@@ -37,7 +37,7 @@ use apt_run::catalogue;
 use apt_run::pipeline::RunResult;
 pub use apt_run::{
     Cancel, Cancelled,
-    catalogue::explain,
+    catalogue::{Worst, explain},
     diagnostic::{Diagnostic, Fix, Severity},
     document::{Document, Files, Level, OpenText, Surroundings, normalised},
     format,
@@ -186,6 +186,35 @@ impl Analysis {
             catalogue::sort_by_place(&mut found);
         }
         Ok(found)
+    }
+
+    /// The gravest of [`Analysis::diagnostics`], at most `most`, and how many others there are.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn worst_diagnostics(
+        &self,
+        level: Level,
+        most: usize,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Worst, Cancelled> {
+        match level {
+            Level::Section1 => drop(self.program(cancel)?),
+            Level::Motion => drop(self.result(cancel, progress)?),
+        }
+        let mut worst = self.document.worst_diagnostics(level, most, cancel, progress)?;
+        // Errors are the gravest: if there are any, some are among these.
+        let sound = worst.diagnostics.iter().all(|one| one.severity != Severity::Error);
+        if level == Level::Motion && sound {
+            worst.diagnostics.extend(self.machine_diagnostics(cancel, progress)?);
+            catalogue::sort_by_place(&mut worst.diagnostics);
+            let left_out = worst.left_out;
+            worst = Worst::of(worst.diagnostics, most);
+            worst.left_out += left_out;
+        }
+        Ok(worst)
     }
 
     /// The diagnostics of the program alone, whatever machine it is meant for.

@@ -263,3 +263,56 @@ fn tapes_are_punched_and_pictures_are_images() {
     assert_eq!(folder.run(&["view", "good.apt", "-o", "path.png"]).code, 0);
     assert!(std::fs::read(folder.0.join("path.png")).unwrap().starts_with(b"\x89PNG"));
 }
+
+/// Every kind of lint can be set for one code in the project file, on the command line and in comments for a statement
+/// and for the program.
+#[test]
+fn lints_are_set_per_code_per_line_and_per_file() {
+    let twice = "P=POINT/1 2,3\nQ=POINT/4 5,6\nFROM/P\nGOTO/Q\nFINI\n";
+    let told = |folder: &Folder, arguments: &[&str]| {
+        let ran =
+            folder.run(&[&["check", "a.apt", "--format", "json", "--dialect", "free"], arguments].concat());
+        let report: Value =
+            serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{error}: {ran:?}"));
+        let of_code = |one: &&Value| one["code"] == "APT0952";
+        let found = report["files"][0]["diagnostics"].as_array().unwrap().iter();
+        let found =
+            found.filter(of_code).map(|one| (one["isn"].as_u64().unwrap(), one["severity"].to_string()));
+        (found.collect::<Vec<_>>(), ran.code)
+    };
+    let level = |isn: u64, severity: &str| (isn, format!("{severity:?}"));
+    let both = |severity: &str| vec![level(1, severity), level(2, severity)];
+
+    let folder = Folder::new("lint-settings");
+    folder.write("a.apt", twice);
+    assert_eq!(told(&folder, &[]), (both("warning"), 0));
+    // On the command line.
+    for (setting, found, code) in [
+        ("APT0952=off", Vec::new(), 0),
+        ("apt0952=hint", both("hint"), 0),
+        ("APT0952=information", both("information"), 0),
+        ("APT0952=error", both("error"), 1),
+    ] {
+        assert_eq!(told(&folder, &["--severity", setting]), (found, code), "{setting}");
+    }
+    let two = ["--severity", "APT0951=off", "--severity", "APT0952=off"];
+    assert_eq!(told(&folder, &two), (Vec::new(), 0));
+    for wrong in ["APT0952", "APT0952=loud", "APT9999=off", "=off"] {
+        let ran = folder.run(&["check", "a.apt", "--severity", wrong]);
+        assert!(ran.code == 2 && !ran.stderr.is_empty(), "{wrong}: {ran:?}");
+    }
+    // In the project file; what is typed wins.
+    folder.write("apt-lsp.toml", "[severity]\nAPT0952 = \"off\"\n");
+    assert_eq!(told(&folder, &[]), (Vec::new(), 0));
+    assert_eq!(told(&folder, &["--severity", "APT0952=warning"]), (both("warning"), 0));
+    folder.write("apt-lsp.toml", "[severity]\nAPT0952 = \"error\"\n");
+    assert_eq!(told(&folder, &[]), (both("error"), 1));
+    folder.write("apt-lsp.toml", "");
+    // Per statement and per file.
+    folder.write("a.apt", &twice.replacen("2,3", "2,3 $$ apt-lsp: allow APT0952", 1));
+    assert_eq!(told(&folder, &[]), (vec![level(2, "warning")], 0));
+    folder.write("a.apt", &format!("$$ apt-lsp: allow APT0952\n{twice}"));
+    assert_eq!(told(&folder, &[]), (vec![level(3, "warning")], 0));
+    folder.write("a.apt", &format!("{twice}$$ apt-lsp: allow-file APT0952\n"));
+    assert_eq!(told(&folder, &[]), (Vec::new(), 0));
+}

@@ -14,6 +14,7 @@ use apt_syntax::{SyntaxTree, TextRange, TextSize, tree::StatementView};
 use crate::{
     catalogue,
     diagnostic::{Diagnostic, Fix, Severity, statement_range},
+    lint::notes::addressing_blocks,
 };
 
 /// How a comment addresses this program.
@@ -64,10 +65,17 @@ impl Allowances {
     /// Reads the comments.
     pub fn of(tree: &SyntaxTree) -> Self {
         let mut list = Vec::new();
-        for view in tree.statements().filter(|view| view.text().contains(ADDRESS)) {
-            read(tree, &view, &mut list);
+        for block in addressing_blocks(tree) {
+            for view in block.statements().filter(|view| view.text().contains(ADDRESS)) {
+                read(tree, &view, &mut list);
+            }
         }
         Self { list }
+    }
+
+    /// Whether no comment allows anything.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
     }
 
     /// Takes out what is allowed. Errors stay; the severities are those of the catalogue, before any setting.

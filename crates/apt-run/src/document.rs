@@ -16,7 +16,8 @@ use apt_syntax::{
 };
 
 use crate::{
-    Cancel, Cancelled, catalogue,
+    Cancel, Cancelled,
+    catalogue::{self, Worst},
     diagnostic::Diagnostic,
     include::FolderResolver,
     memo::MotionMemo,
@@ -243,6 +244,26 @@ impl Document {
             Level::Motion => Some(self.run(cancel, progress)?),
         };
         Ok(catalogue::diagnostics(&self.tree, &program, result.as_deref(), &self.settings))
+    }
+
+    /// The gravest diagnostics up to a level, at most `most`, in order of their place, and how many others there are.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn worst_diagnostics(
+        &self,
+        level: Level,
+        most: usize,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Worst, Cancelled> {
+        let program = self.program(cancel)?;
+        let result = match level {
+            Level::Section1 => None,
+            Level::Motion => Some(self.run(cancel, progress)?),
+        };
+        Ok(catalogue::worst(&self.tree, &program, result.as_deref(), &self.settings, most))
     }
 
     /// The report of a run, of the whole program or of some statements.

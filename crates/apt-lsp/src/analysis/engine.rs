@@ -214,15 +214,11 @@ impl Document for Program {
     }
 
     fn worst_diagnostics(&self, level: Level, most: usize, control: &Control) -> Answer<Worst> {
-        let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
-        let mut chosen: Vec<usize> = (0..all.len()).collect();
-        if all.len() > most {
-            chosen.sort_by_key(|&index| (std::cmp::Reverse(all[index].severity), index));
-            chosen.truncate(most);
-            chosen.sort_unstable();
-        }
-        let diagnostics: Vec<_> = chosen.into_iter().map(|index| self.diagnostic(&all[index])).collect();
-        Ok(Worst { left_out: all.len() - diagnostics.len(), diagnostics })
+        let worst = with(control, "checking", |cancel, progress| {
+            self.0.worst_diagnostics(level, most, cancel, progress)
+        })?;
+        let diagnostics = worst.diagnostics.iter().map(|one| self.diagnostic(one)).collect();
+        Ok(Worst { diagnostics, left_out: worst.left_out })
     }
 
     fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>> {

@@ -72,22 +72,45 @@ pub(super) struct ProgramArgument {
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]
-    pub dialect: DialectOption,
+    pub reading: ReadingOptions,
 }
 
-/// The dialect, for every call that reads a program.
+/// Settings that can be typed, for every call that reads a program.
 #[derive(Debug, Clone, Args)]
-pub(super) struct DialectOption {
+pub(super) struct ReadingOptions {
     /// Dialect: free, apt3, apt4, cl … (default: project file, first line, detection)
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<String>,
+    /// How grave a diagnostic is: off, hint, information, warning or error (repeatable)
+    #[arg(long = "severity", value_name = "CODE=SEVERITY", value_parser = SeverityOption::parse)]
+    pub severities: Vec<SeverityOption>,
+}
+
+/// The severity of one diagnostic.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct SeverityOption {
+    /// The code, APTnnnn.
+    pub code: String,
+    /// What the setting `severity` takes.
+    pub severity: String,
+}
+
+impl SeverityOption {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((code, severity)) if !code.is_empty() && !severity.is_empty() => {
+                Ok(Self { code: code.to_ascii_uppercase(), severity: severity.to_ascii_lowercase() })
+            }
+            _ => Err("not CODE=SEVERITY, for example APT0951=off".to_owned()),
+        }
+    }
 }
 
 /// How findings are told by `check`.
 #[derive(Debug, Clone, Args)]
 pub(super) struct CheckOptions {
     #[command(flatten)]
-    pub dialect: DialectOption,
+    pub reading: ReadingOptions,
     /// How to tell the findings
     #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
     pub format: CheckFormat,
@@ -165,7 +188,7 @@ pub(super) struct PostCall {
     #[arg(value_name = "FILE", required_unless_present = "list_machines")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
-    pub dialect: DialectOption,
+    pub reading: ReadingOptions,
     /// The machine (default: project file)
     #[arg(long, value_name = "NAME")]
     pub machine: Option<String>,
@@ -234,7 +257,7 @@ pub(super) struct FmtCall {
     #[arg(long)]
     pub check: bool,
     #[command(flatten)]
-    pub dialect: DialectOption,
+    pub reading: ReadingOptions,
 }
 
 /// `view`.
@@ -293,6 +316,15 @@ mod tests {
         };
         assert_eq!((call.paths.len(), call.options.deny_warnings), (1, true));
         assert!(parse(&["--stdio"]).command.is_none());
+    }
+
+    #[test]
+    fn severities_are_codes_with_a_word() {
+        let parsed = SeverityOption::parse("apt0951=Off").unwrap();
+        assert_eq!((parsed.code.as_str(), parsed.severity.as_str()), ("APT0951", "off"));
+        for wrong in ["", "APT0951", "=off", "APT0951=", "off"] {
+            assert!(SeverityOption::parse(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

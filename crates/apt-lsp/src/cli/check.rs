@@ -21,7 +21,7 @@ pub(super) fn check(
     let level = if options.no_motion { Level::Section1 } else { Level::Motion };
     let mut programs = Vec::new();
     for file in &files {
-        match Program::load(file, &options.dialect, console, language) {
+        match Program::load(file, &options.reading, console, language) {
             Some(program) => programs.push(program),
             None => worst = Outcome::Unusable,
         }

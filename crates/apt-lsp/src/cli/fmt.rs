@@ -17,7 +17,7 @@ pub(super) fn fmt(call: &FmtCall, console: &Console, language: &dyn Language) ->
     let (files, unreadable) = program::find(&call.paths, console);
     let mut worst = if unreadable > 0 { Outcome::Unusable } else { Outcome::Clean };
     for file in &files {
-        let outcome = match Program::load(file, &call.dialect, console, language) {
+        let outcome = match Program::load(file, &call.reading, console, language) {
             Some(program) => one(&program, file, call.check, console),
             None => Outcome::Unusable,
         };

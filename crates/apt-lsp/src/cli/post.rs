@@ -15,7 +15,7 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
         return list_machines(console, language);
     }
     let Some(file) = call.file.clone() else { return Outcome::Unusable };
-    let argument = ProgramArgument { file, dialect: call.dialect.clone() };
+    let argument = ProgramArgument { file, reading: call.reading.clone() };
     let Some(program) = Program::read(&argument, console, language) else { return Outcome::Unusable };
     let of_settings = program.settings.program.get("machine").and_then(Value::as_str).map(str::to_owned);
     let Some(machine) = call.machine.clone().or(of_settings) else {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use ropey::Rope;
 use serde_json::Value;
 
-use super::arguments::{DialectOption, ProgramArgument};
+use super::arguments::{ProgramArgument, ReadingOptions, SeverityOption};
 use super::console::Console;
 use crate::analysis::{Document, Language, Surroundings};
 use crate::convert::{Encoding, TextIndex};
@@ -41,7 +41,7 @@ impl Program {
         console: &Console,
         language: &dyn Language,
     ) -> Option<Self> {
-        let program = Self::load(&argument.file, &argument.dialect, console, language)?;
+        let program = Self::load(&argument.file, &argument.reading, console, language)?;
         console.note(&format!("{}: dialect {}", program.name, program.document.dialect()));
         Some(program)
     }
@@ -49,7 +49,7 @@ impl Program {
     /// Reads a program. What is wrong is said on standard error.
     pub(super) fn load(
         path: &Path,
-        dialect: &DialectOption,
+        reading: &ReadingOptions,
         console: &Console,
         language: &dyn Language,
     ) -> Option<Self> {
@@ -77,10 +77,17 @@ impl Program {
             console.note(&format!("{name}: not UTF-8; read as Latin-1"));
         }
         let mut typed = Values::new();
-        if let Some(dialect) = &dialect.dialect {
+        if let Some(dialect) = &reading.dialect {
             typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
         }
-        if let Err(message) = language.check_settings(&typed) {
+        if !reading.severities.is_empty() {
+            let one = |one: &SeverityOption| (one.code.clone(), Value::String(one.severity.clone()));
+            let severities = reading.severities.iter().map(one).collect();
+            typed.insert("severity".to_owned(), Value::Object(severities));
+        }
+        let unknown = reading.severities.iter().find(|one| language.title(&one.code).is_none());
+        let unknown = unknown.map(|one| format!("there is no diagnostic {}", one.code));
+        if let Some(message) = unknown.or_else(|| language.check_settings(&typed).err()) {
             console.error(&message);
             return None;
         }

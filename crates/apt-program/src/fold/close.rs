@@ -84,7 +84,10 @@ fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mu
         })
         .map(|(name, symbol)| (name, &symbol.origin))
         .collect();
-    unused.sort_by_key(|(name, origin)| (origin.isn, origin.range.start(), (*name).clone()));
+    unused.sort_unstable_by(|(name, origin), (other, elsewhere)| {
+        let place = |origin: &Origin| (origin.isn, origin.range.start());
+        place(origin).cmp(&place(elsewhere)).then_with(|| name.cmp(other))
+    });
     for (name, origin) in unused {
         let name = SmolStr::new(name.trim_end_matches(ARRAY_KEY_SUFFIX));
         push(findings, FindingKind::Unused { name }, dialect, origin);

@@ -39,7 +39,7 @@ pub(super) fn word(kind: &Kind) -> (Text, Severity) {
                 .hint("give FEDRAT before this motion"),
             Severity::Warning,
         ),
-        Kind::ThicknessUnfelt => (
+        Kind::ThicknessUnfelt { .. } => (
             say("APT0956", "no motion feels this THICK: the tool is ON the surfaces")
                 .hint("THICK works where the tool is beside, short of or behind a surface"),
             Severity::Warning,

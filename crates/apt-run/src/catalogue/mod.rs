@@ -18,12 +18,14 @@ mod story;
 mod syntax;
 mod tilt;
 
+use std::cmp::Reverse;
+
 use apt_cldata::text::ReadError;
 use apt_geometry::canonical::GeometryKind;
 use apt_post::{PostFinding, Tape};
 use apt_program::{
     Origin, Program,
-    finding::{Finding, RelatedKind, Severity as ProgramSeverity},
+    finding::{Finding, FindingKind, RelatedKind, Severity as ProgramSeverity},
 };
 use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
@@ -75,8 +77,83 @@ pub fn diagnostics(
     result: Option<&RunResult>,
     settings: &Settings,
 ) -> Vec<Diagnostic> {
-    let mut list: Vec<Diagnostic> = program.findings().map(of_program).collect();
-    for (diagnostic, finding) in list.iter_mut().zip(program.findings()).take(MOST_FIXED) {
+    let findings: Vec<&Finding> = program.findings().collect();
+    worded(tree, program, &findings, Allowances::of(tree), result, settings)
+}
+
+/// The gravest diagnostics of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Worst {
+    /// The diagnostics, in order of their place.
+    pub diagnostics: Vec<Diagnostic>,
+    /// How many others there are.
+    pub left_out: usize,
+}
+
+impl Worst {
+    /// The gravest of some diagnostics, at most `most`; of equally grave ones those that come first.
+    pub fn of(mut diagnostics: Vec<Diagnostic>, most: usize) -> Self {
+        let left_out = diagnostics.len().saturating_sub(most);
+        if left_out > 0 {
+            let mut numbered: Vec<(usize, Diagnostic)> = diagnostics.into_iter().enumerate().collect();
+            numbered.sort_by_key(|(number, one)| (Reverse(one.severity), *number));
+            numbered.truncate(most);
+            numbered.sort_unstable_by_key(|(number, _)| *number);
+            diagnostics = numbered.into_iter().map(|(_, one)| one).collect();
+        }
+        Self { diagnostics, left_out }
+    }
+}
+
+/// What [`diagnostics`] finds, cut to the gravest: only these are put into words, as far as the others can be judged
+/// without.
+pub fn worst(
+    tree: &SyntaxTree,
+    program: &Program,
+    result: Option<&RunResult>,
+    settings: &Settings,
+    most: usize,
+) -> Worst {
+    let allowances = Allowances::of(tree);
+    let mut findings: Vec<&Finding> = program.findings().collect();
+    let total = findings.len();
+    // Settings and comments name codes, and words that become names are judged one with the other.
+    let judged = |finding: &&Finding| matches!(finding.kind, FindingKind::WordBecomesName { .. });
+    if total > most && settings.severity.is_empty() && allowances.is_empty() && !findings.iter().any(judged) {
+        findings = gravest(findings, most);
+    }
+    let unworded = total - findings.len();
+    let mut worst = Worst::of(worded(tree, program, &findings, allowances, result, settings), most);
+    worst.left_out += unworded;
+    worst
+}
+
+/// The gravest of more than `most` findings; of equally grave ones those that come first.
+fn gravest(findings: Vec<&Finding>, most: usize) -> Vec<&Finding> {
+    let gravity = |(number, finding): (usize, &&Finding)| {
+        let (isn, range) = finding.origin.place_in_program();
+        (Reverse(finding.severity), isn, range.start(), number)
+    };
+    let mut numbered: Vec<_> = findings.iter().enumerate().map(gravity).collect();
+    if most < numbered.len() {
+        numbered.select_nth_unstable(most);
+        numbered.truncate(most);
+    }
+    numbered.sort_unstable();
+    numbered.into_iter().filter_map(|(.., number)| findings.get(number).copied()).collect()
+}
+
+/// Findings of Section 1 and all others in words, in order of their place.
+fn worded(
+    tree: &SyntaxTree,
+    program: &Program,
+    findings: &[&Finding],
+    mut allowances: Allowances,
+    result: Option<&RunResult>,
+    settings: &Settings,
+) -> Vec<Diagnostic> {
+    let mut list: Vec<Diagnostic> = findings.iter().map(|finding| of_program(finding)).collect();
+    for (diagnostic, finding) in list.iter_mut().zip(findings).take(MOST_FIXED) {
         diagnostic.fixes = crate::fix::of_finding(tree, finding);
     }
     crate::lint::keep_shadowing(tree, &mut list);
@@ -84,7 +161,6 @@ pub fn diagnostics(
     for lint in crate::lint::lint(tree, program) {
         add_lint(&mut list, lint);
     }
-    let mut allowances = Allowances::of(tree);
     allowances.filter(&mut list);
     list.extend(allowances.idle(result.is_some()));
     in_order(list, settings)
@@ -146,6 +222,7 @@ fn of_lint(lint: Lint) -> Diagnostic {
 fn other_place(kind: &LintKind) -> &'static str {
     match kind {
         LintKind::SideContradicted { .. } => "the side is said here",
+        LintKind::ToolWithTwoCutters { .. } => "the tool has this cutter before",
         _ => "this one counts",
     }
 }

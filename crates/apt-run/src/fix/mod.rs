@@ -29,13 +29,8 @@ const SHORTEST_MISSPELT_WORD: usize = 4;
 
 /// The fixes of a finding, the likeliest first.
 pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
-    let origin = &finding.origin;
-    if origin.source.is_some() || tree.statement_count() == 0 {
-        return Vec::new();
-    }
-    let index = (origin.isn.max(1) as usize - 1).min(tree.statement_count() - 1);
-    let view = tree.statement(index);
-    let here = Here { tree, parsed: view.parsed(), view, origin };
+    let Some(here) = Here::of(tree, &finding.origin) else { return Vec::new() };
+    let index = here.view.index;
     match &finding.kind {
         FindingKind::Syntax(kind) => here.syntax(kind),
         FindingKind::Undefined { name, similar }
@@ -67,12 +62,56 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
 
 pub(crate) use motion::of_run;
 
+/// The program without the statement of a place, where it stands in the program itself, does nothing else and can go
+/// away whole.
+pub(crate) fn removal(tree: &SyntaxTree, origin: &Origin, title: &str) -> Option<Fix> {
+    let here = Here::of(tree, origin)?;
+    let equals = here.parsed.elements.iter().filter(|element| element.kind == ElementKind::Equals).count();
+    let single = here.parsed.statement.parts.len() == 1 && equals <= 1 && !here.parsed.is_broken();
+    if single { here.without_statement(title) } else { None }
+}
+
+/// The statement of a place written anew, where it does nothing else and stands on one line.
+pub(crate) fn rewriting(tree: &SyntaxTree, origin: &Origin, title: String, text: String) -> Option<Fix> {
+    let here = Here::of(tree, origin)?;
+    let elements = &here.parsed.elements;
+    let first = match here.parsed.statement.label {
+        None => elements.first()?,
+        // The label keeps its place.
+        Some(_) => elements.iter().find(|element| element.range.start() >= origin.range.start())?,
+    };
+    let whole = TextRange::new(first.range.start(), elements.last()?.range.end());
+    let single = here.parsed.statement.parts.len() == 1 && !here.parsed.is_broken();
+    let one_line = !here.written(whole).contains(['\n', '\r']);
+    (single && one_line).then(|| Fix { title, edits: vec![(here.bytes(whole), text)], preferred: false })
+}
+
+/// The statement of a place of the program itself as it is written, without comments, if it does nothing else and
+/// stands on one line.
+pub(crate) fn written(tree: &SyntaxTree, origin: &Origin) -> Option<String> {
+    let here = Here::of(tree, origin)?;
+    let elements = &here.parsed.elements;
+    let whole = TextRange::new(elements.first()?.range.start(), elements.last()?.range.end());
+    let text = here.written(whole);
+    let single = here.parsed.statement.parts.len() == 1 && here.parsed.statement.label.is_none();
+    (single && !text.contains(['\n', '\r'])).then(|| text.to_owned())
+}
+
 /// The statement that a finding is about.
 struct Here<'a> {
     tree: &'a SyntaxTree,
     view: StatementView,
     parsed: std::sync::Arc<ParsedStatement>,
     origin: &'a Origin,
+}
+
+impl<'a> Here<'a> {
+    /// The statement of a place; none in included files.
+    fn of(tree: &'a SyntaxTree, origin: &'a Origin) -> Option<Self> {
+        let last = tree.statement_count().checked_sub(1).filter(|_| origin.source.is_none())?;
+        let view = tree.statement((origin.isn.max(1) as usize - 1).min(last));
+        Some(Here { tree, parsed: view.parsed(), view, origin })
+    }
 }
 
 impl Here<'_> {

@@ -5,6 +5,7 @@
 //! records in order of execution, [`shadow`] at words that become names. The words and the gravity are those of the catalogue, as of every finding; comments
 //! that allow a finding are [`crate::allow`].
 
+pub(crate) mod notes;
 mod path;
 mod shadow;
 mod text;
@@ -17,11 +18,15 @@ pub(crate) use path::side_word;
 pub(crate) use shadow::keep_shadowing;
 
 use apt_geometry::motion::DriveSide;
-use apt_program::{Origin, Program};
+use apt_program::{
+    Origin, Program,
+    finding::{Finding, Severity},
+};
 use apt_syntax::{SyntaxTree, dialect::DialectName};
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use crate::diagnostic::Fix;
+use crate::{diagnostic::Fix, fix::removal};
 
 /// What is odd, with its evidence.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +57,10 @@ pub enum LintKind {
     /// A motion along surfaces before any feed rate.
     FeedMissing,
     /// No motion feels the THICK.
-    ThicknessUnfelt,
+    ThicknessUnfelt {
+        /// The one before it was not zero, and would hold without it.
+        hides: bool,
+    },
     /// INDIRV, INDIRP or SRFVCT that another one replaces before a motion.
     DirectionReplaced,
     /// One tool number with two cutters.
@@ -94,22 +102,48 @@ pub struct Lint {
     pub fixes: Vec<Fix>,
 }
 
-/// Statements up to which overwritten values are looked for: that reads every statement again, and beyond this number
-/// the tree keeps none of them read, so that each keystroke would cost the length of the program.
-const MOST_STATEMENTS_FOR_VALUES: usize = 50_000;
-
 /// The lints of a program, each place once however often its statement is executed. The order is that of the looks;
 /// the catalogue sorts.
+///
+/// What is written is looked at once per block of statements ([`notes`]); what the path makes of it is found by a walk
+/// over the records.
 pub fn lint(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
     if tree.dialect().name == DialectName::Cl {
         // Programs write these files: their lines are of any length, their values are results, and a point has no
         // surface to hold a tolerance of.
         return Vec::new();
     }
-    let mut lints = text::lints(tree);
-    if tree.statement_count() <= MOST_STATEMENTS_FOR_VALUES {
-        lints.extend(values::lints(tree));
+    let mut texts = text::TextLints::new(tree);
+    let mut values = values::Join::default();
+    let mut depth = 0;
+    for block in tree.blocks() {
+        let notes = notes::Notes::of(&block, depth);
+        let sum = notes.values(&block, depth);
+        texts.block(block.first_statement(), &notes.text);
+        values.block(block.first_statement(), &sum);
+        depth = sum.depth();
     }
+    let mut lints = texts.lints();
+    lints.extend(effective_overwriting(tree, program, values.lints()));
     lints.extend(path::lints(tree, program));
+    lints
+}
+
+/// The overwritten values of which nothing else is told: a name that cannot take the value keeps its meaning.
+fn effective_overwriting(tree: &SyntaxTree, program: &Program, mut lints: Vec<Lint>) -> Vec<Lint> {
+    if lints.is_empty() {
+        return lints;
+    }
+    let is_grave = |finding: &&Finding| finding.severity >= Severity::Warning;
+    let told: FxHashSet<u32> =
+        program.findings().filter(is_grave).map(|finding| finding.origin.isn).collect();
+    let is_told = |lint: &Lint| {
+        let places = [Some(&lint.origin), lint.other.as_ref()];
+        places.into_iter().flatten().any(|place| told.contains(&place.isn))
+    };
+    lints.retain(|lint| !is_told(lint));
+    for lint in &mut lints {
+        lint.fixes.extend(removal(tree, &lint.origin, "Remove the value that nothing reads"));
+    }
     lints
 }

@@ -14,7 +14,10 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::{Lint, LintKind};
-use crate::diagnostic::{Fix, statement_range};
+use crate::{
+    diagnostic::{Fix, statement_range},
+    fix::{removal, rewriting, written},
+};
 
 /// A tolerance above this part of the cutter's diameter leaves marks that the eye sees.
 const LOOSE_PART_OF_DIAMETER: f64 = 0.25;
@@ -33,7 +36,7 @@ pub(super) fn lints(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
         // What has an effect the next time it is executed is needed.
         .filter(|lint| !needs_no_effect(&lint.kind) || !effective.contains(&place(&lint.origin)))
         .filter(|lint| told.insert((place(&lint.origin), std::mem::discriminant(&lint.kind))))
-        .map(|lint| with_fix(tree, lint))
+        .map(|lint| with_fixes(tree, lint))
         .collect()
 }
 
@@ -46,24 +49,52 @@ fn place(origin: &Origin) -> Place {
 
 /// Whether a finding says that a statement serves nothing.
 fn needs_no_effect(kind: &LintKind) -> bool {
-    matches!(kind, LintKind::ThicknessUnfelt | LintKind::DirectionReplaced | LintKind::ModeReplaced { .. })
+    matches!(
+        kind,
+        LintKind::ThicknessUnfelt { .. } | LintKind::DirectionReplaced | LintKind::ModeReplaced { .. }
+    )
+}
+
+/// The lint with what cures it.
+fn with_fixes(tree: &SyntaxTree, mut lint: Lint) -> Lint {
+    let fixes = match &lint.kind {
+        LintKind::SideContradicted { said, stands, .. } => other_side(tree, &lint, *said, *stands),
+        LintKind::DirectionReplaced => {
+            removal(tree, &lint.origin, "Remove the direction that another one replaces")
+        }
+        LintKind::ModeReplaced { .. } => {
+            removal(tree, &lint.origin, "Remove the statement that another one replaces")
+        }
+        LintKind::ThicknessUnfelt { hides: false } => {
+            removal(tree, &lint.origin, "Remove the THICK that no motion feels")
+        }
+        LintKind::ThicknessUnfelt { hides: true } => {
+            let title = "Write THICK/0, which ends the one before".to_owned();
+            rewriting(tree, &lint.origin, title, "THICK/0".to_owned())
+        }
+        LintKind::ToolWithTwoCutters { tool } => lint.other.as_ref().and_then(|first| {
+            let text = written(tree, first)?;
+            rewriting(tree, &lint.origin, format!("Write {text}, as tool {tool} had before"), text)
+        }),
+        _ => None,
+    };
+    lint.fixes.extend(fixes);
+    lint
 }
 
 /// The other side word, where the statement that says the wrong one is known.
-fn with_fix(tree: &SyntaxTree, mut lint: Lint) -> Lint {
-    let LintKind::SideContradicted { said, stands, .. } = &lint.kind else { return lint };
-    let Some(statement) = lint.other.as_ref().filter(|other| other.source.is_none()) else { return lint };
+fn other_side(tree: &SyntaxTree, lint: &Lint, said: DriveSide, stands: DriveSide) -> Option<Fix> {
+    let statement = lint.other.as_ref().filter(|other| other.source.is_none())?;
     let range = statement_range(tree, statement.isn, statement.range);
     let text = tree.slice(apt_syntax::TextRange::new(
         u32::try_from(range.start).unwrap_or(u32::MAX).into(),
         u32::try_from(range.end).unwrap_or(u32::MAX).into(),
     ));
-    if text.eq_ignore_ascii_case(side_word(*said)) {
-        let word = side_word(*stands);
-        let title = format!("Replace {} by {word}", side_word(*said));
-        lint.fixes.push(Fix { title, edits: vec![(range, word.to_owned())], preferred: false });
-    }
-    lint
+    text.eq_ignore_ascii_case(side_word(said)).then(|| {
+        let word = side_word(stands);
+        let title = format!("Replace {} by {word}", side_word(said));
+        Fix { title, edits: vec![(range, word.to_owned())], preferred: false }
+    })
 }
 
 /// The word that says a side.
@@ -81,6 +112,8 @@ struct Thickness {
     values: PerRole,
     motions: u32,
     felt: bool,
+    /// The one before was not zero and would hold without this one.
+    hides: bool,
 }
 
 /// A motion that has ended at a check surface, where the tool stands now.
@@ -132,7 +165,7 @@ struct Walk {
     diameter: Option<f64>,
     cutter: Option<(Origin, Vec<f64>)>,
     tool: Option<i64>,
-    cutters: BTreeMap<i64, Vec<f64>>,
+    cutters: BTreeMap<i64, (Origin, Vec<f64>)>,
     part: Option<GeometryKind>,
     drive_side: Option<(Origin, DriveSide)>,
     part_side: Option<PartSide>,
@@ -193,13 +226,20 @@ impl Walk {
             MotionCommand::PartSurface(surface) => self.part = Some(surface.geometry.kind()),
             MotionCommand::AutomaticPartSurface => self.part = Some(GeometryKind::Plane),
             MotionCommand::Output(on) => {
-                self.sets(Mode::Output, origin);
+                if *on && self.no_output {
+                    // The place where the tool is now is put out, which is an effect of both statements.
+                    self.effective.extend(self.waiting.remove(&Mode::Output).iter().map(place));
+                    self.effective.insert(place(origin));
+                } else {
+                    self.sets(Mode::Output, origin);
+                }
                 self.no_output = !on;
             }
             MotionCommand::Thickness(values) => {
+                let hides = self.thickness.as_ref().is_some_and(|before| !is_zero(&before.values));
                 self.close_thickness();
-                self.thickness =
-                    Some(Thickness { origin: origin.clone(), values: *values, motions: 0, felt: false });
+                let origin = origin.clone();
+                self.thickness = Some(Thickness { origin, values: *values, motions: 0, felt: false, hides });
             }
             MotionCommand::Direction(roles) => {
                 let given = roles.map(|role| role.is_some());
@@ -263,9 +303,11 @@ impl Walk {
         self.surface_vectors = false;
         self.stop = None;
         let (Some(tool), Some((origin, numbers))) = (self.tool, self.cutter.clone()) else { return };
-        let first = self.cutters.entry(tool).or_insert_with(|| numbers.clone());
-        if *first != numbers {
-            self.add(LintKind::ToolWithTwoCutters { tool }, &origin, None);
+        let (first, dimensions) =
+            self.cutters.entry(tool).or_insert_with(|| (origin.clone(), numbers.clone()));
+        if *dimensions != numbers {
+            let first = first.clone();
+            self.add(LintKind::ToolWithTwoCutters { tool }, &origin, Some(&first));
         }
     }
 
@@ -344,15 +386,17 @@ impl Walk {
 
     fn close_thickness(&mut self) {
         let Some(thickness) = self.thickness.take() else { return };
-        let values = thickness.values;
-        let nothing =
-            [values.part, values.drive, values.check[0], values.check[1]].iter().all(|value| *value == 0.0);
-        if nothing || thickness.felt {
+        if is_zero(&thickness.values) || thickness.felt {
             self.effective.insert(place(&thickness.origin));
         } else if thickness.motions > 0 {
-            self.add(LintKind::ThicknessUnfelt, &thickness.origin, None);
+            self.add(LintKind::ThicknessUnfelt { hides: thickness.hides }, &thickness.origin, None);
         }
     }
+}
+
+/// Whether a THICK leaves no stock anywhere.
+fn is_zero(values: &PerRole) -> bool {
+    [values.part, values.drive, values.check[0], values.check[1]].iter().all(|value| *value == 0.0)
 }
 
 /// The first number of a LOADTL, if it is a whole one.

@@ -186,7 +186,8 @@ fn modal_statements_that_are_replaced() {
         ("INTOL/.01", "INTOL/.02"),
         ("INTOL/.01", "TOLER/.02"),
         ("MAXDP/1", "MAXDP/2"),
-        ("DNTCUT", "CUT"),
+        ("DNTCUT", "DNTCUT"),
+        ("CUT", "DNTCUT"),
         ("TLRGT", "TLON"),
         ("TLAXIS/0,0,1", "TLAXIS/0,1,1"),
     ] {
@@ -195,6 +196,7 @@ fn modal_statements_that_are_replaced() {
         assert_eq!(told, [(MODE_REPLACED, one)]);
         assert_eq!(found(&part(one, "GOTO/1,2,3", other)).iter().filter(|(_, text)| *text == one).count(), 0);
     }
+    assert_eq!(found(&part("DNTCUT", "$$", "CUT")), [], "CUT puts out the place where the tool is");
     assert_eq!(found(&part("TOLER/.01", "$$", "INTOL/.02")), [], "the outside tolerance still serves");
     let called = "M=MACRO/\nMAXDP/1\nTERMAC\nCALL/M\nMAXDP/2\nFROM/0,0,0\nGOTO/1,1,1\nFINI\n";
     assert_eq!(found(called), [], "a macro serves other places too");
@@ -240,4 +242,167 @@ fn many_long_statements_are_told_by_some() {
     let long: Vec<_> = told.iter().filter(|one| one.wording.code == PAST_COLUMN_72).collect();
     assert_eq!(long.len(), 50);
     assert!(long[49].wording.message.contains("further"), "{:?}", long[49]);
+}
+
+/// Codes and places of all findings except some, and the path.
+fn others_and_path(text: &str, except: &str) -> (Vec<(&'static str, String)>, Vec<Vec<Vec<f64>>>) {
+    let settings = Arc::new(Settings { dialect: Some("free".to_owned()), ..Settings::default() });
+    let document = Document::new(text, None, &settings);
+    let found = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
+    let report = document.report(&|| false, &mut |_, _| {}, None).unwrap();
+    let others = found
+        .iter()
+        .filter(|one| one.wording.code != except)
+        .map(|one| (one.wording.code, text[absolute_range(document.tree(), &one.origin)].to_owned()))
+        .collect();
+    (others, report.cl.into_iter().filter_map(|entry| entry.points).collect())
+}
+
+/// Applies one fix of the only finding with a code: the finding is gone and no other comes. The text is returned.
+fn cured(text: &str, code: &str, which: usize, same_path: bool) -> String {
+    let told = diagnostics(text).1;
+    let [finding] = told.iter().filter(|one| one.wording.code == code).collect::<Vec<_>>()[..] else {
+        panic!("{code} is not told once: {told:?}")
+    };
+    let fixed = applied(text, &finding.fixes[which].edits);
+    assert!(found(&fixed).iter().all(|(other, _)| *other != code), "{code} stays in {fixed}");
+    let (before, after) = (others_and_path(text, code), others_and_path(&fixed, code));
+    assert_eq!(after.0, before.0, "other findings after the fix of {code}");
+    if same_path {
+        assert_eq!(after.1, before.1, "the path after the fix of {code}");
+    }
+    fixed
+}
+
+#[test]
+fn every_mechanical_cure_cures_and_changes_nothing_else() {
+    let drive = "GO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n";
+    let start = format!("{PART}CUTTER/.5\n");
+    let with = |statements: &str| format!("{start}{statements}{drive}");
+    let without = |statements: &str, gone: &str| with(&statements.replacen(gone, "", 1));
+    for (code, statements, gone) in [
+        (MODE_REPLACED, "INTOL/.01\nINTOL/.02\n", "INTOL/.01\n"),
+        (MODE_REPLACED, "MAXDP/1 $$ why\nMAXDP/2\n", "MAXDP/1"),
+        (MODE_REPLACED, "  DNTCUT\n  DNTCUT\n  CUT\n", "  DNTCUT\n"),
+        (DIRECTION_WITHOUT_EFFECT, "INDIRV/1,0,0\nINDIRV/0,1,0\n", "INDIRV/1,0,0\n"),
+        (OVERWRITTEN, "A=1\nA=2\nPRINT/3,A\n", "A=1\n"),
+    ] {
+        assert_eq!(cured(&with(statements), code, 0, true), without(statements, gone), "{statements}");
+    }
+    let on = "GO/ON,L1,TO,PL,ON,L3\nTLON,GORGT/L1,ON,L2\nFINI\n";
+    let thick = |before: &str| format!("{start}{before}THICK/0,.1\n{on}");
+    assert_eq!(cured(&thick(""), THICKNESS_WITHOUT_EFFECT, 0, true), format!("{start}{on}"));
+    // A THICK before it would come back to life.
+    let before = "THICK/.2\nGO/ON,L1,TO,PL,ON,L3\n";
+    let expected = format!("{start}{before}THICK/0\n{on}");
+    assert_eq!(cured(&thick(before), THICKNESS_WITHOUT_EFFECT, 0, true), expected);
+    let tool = |second: &str| {
+        format!("LOADTL/1\nCUTTER/.5,.1\nFROM/0,0,0\nGOTO/1,1,1\n{second}\nGOTO/2,2,2\nFINI\n")
+    };
+    assert_eq!(cured(&tool("CUTTER/.25 $$ x"), CUTTER_AND_TOOL, 0, true), tool("CUTTER/.5,.1 $$ x"));
+    let long = format!("A=1{}\nPRINT/3,A\nFINI\n", "+1".repeat(40));
+    assert!(cured(&long, PAST_COLUMN_72, 0, true).lines().all(|line| line.len() <= 72));
+    let comma = |list: &str| format!("P=POINT/{list},3\nPRINT/3,P\nFINI\n");
+    assert_eq!(cured(&comma("1 2"), MISSING_COMMA, 0, true), comma("1,2"));
+    assert_eq!(cured("PRINT/3,(1 2)\nFINI\n", MISSING_COMMA, 1, true), "PRINT/3,(12)\nFINI\n");
+    let side = |side: &str| {
+        format!("{start}GO/TO,L1,TO,PL,TO,L3\nTLRGT,GORGT/L1,TO,L2\n{side},GORGT/L2,PAST,L3\nFINI\n")
+    };
+    assert_eq!(fixed(&side("TLLFT")), side("TLRGT"));
+    assert_eq!(found(&side("TLRGT")), []);
+}
+
+#[test]
+fn what_is_not_sure_has_no_cure() {
+    let fixes = |text: &str, code: &str| -> usize {
+        let told = diagnostics(text).1;
+        let of_code: Vec<_> = told.iter().filter(|one| one.wording.code == code).collect();
+        assert!(!of_code.is_empty(), "{code} in {text}");
+        of_code.iter().map(|one| one.fixes.len()).sum()
+    };
+    // The label is a place to jump to, and the other part of the statement has an effect of its own.
+    let label = "FROM/0,0,0\nX)MAXDP/1\nMAXDP/2\nGOTO/1,1,1\nIF(0)X,Y,Y\nY)FINI\n";
+    assert_eq!(fixes(label, MODE_REPLACED), 0);
+    let two = format!("{PART}CUTTER/.5\nTLRGT,PSIS/PL\nTLON\nGOTO/2,2,2\nFINI\n");
+    assert_eq!(fixes(&two, MODE_REPLACED), 0);
+}
+
+#[test]
+fn geometry_that_is_defined_again_is_left_to_its_own_findings() {
+    let rest = "P=POINT/1,2\nP=POINT/3,4\nFROM/0,0,0\nGOTO/P\nFINI\n";
+    assert_eq!(found(&format!("CANON/ON\n{rest}")), [], "somebody has allowed it on purpose");
+    assert_eq!(found(rest), [], "the name keeps its first meaning, as another finding says");
+}
+
+#[test]
+fn a_listing_of_all_names_reads_all_values() {
+    let part = |between: &str| format!("A=1\n{between}A=2\nFROM/0,0,0\nGOTO/A,0,0\nFINI\n");
+    assert_eq!(found(&part("PRINT/3,ALL\n")), []);
+    assert_eq!(found(&part("PRINT/3,A\n")), []);
+    assert_eq!(found(&part("")), [(OVERWRITTEN, "A")]);
+}
+
+#[test]
+fn values_are_followed_over_any_number_of_statements() {
+    let far = |between: &str| {
+        let fill = "GODLTA/0,0,1\n".repeat(700);
+        format!("FROM/0,0,0\nA=1\n{fill}{between}{fill}A=2\nGOTO/A,0,0\nFINI\n")
+    };
+    assert_eq!(found(&far("")), [(OVERWRITTEN, "A")]);
+    for between in ["GOTO/A,0,0\n", "X)GOTO/1,1,1\n", "M=MACRO/\nTERMAC\n"] {
+        assert_eq!(found(&far(between)), [], "{between}");
+    }
+    let many = format!("A=1\nA=2\n{}GOTO/A,0,0\nFINI\n", "GODLTA/0,0,1\n".repeat(60_000));
+    assert_eq!(found(&many), [(OVERWRITTEN, "A")], "no program is too long");
+}
+
+#[test]
+fn an_edit_reads_the_blocks_that_it_touches_and_no_others() {
+    let mut text = String::from("FROM/0,0,0\n");
+    for number in 0..5_000 {
+        text.push_str(&format!("A{number}=1\nGODLTA/A{number},0,1\n"));
+    }
+    text.push_str("FINI\n");
+    let settings = Arc::new(Settings { dialect: Some("free".to_owned()), ..Settings::default() });
+    let notes = |document: &Document| -> Vec<Arc<super::notes::Notes>> {
+        document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        let made_here = |block: apt_syntax::tree::BlockView<'_>| super::notes::Notes::of(&block, usize::MAX);
+        document.tree().blocks().map(made_here).collect()
+    };
+    let before = Document::new(&text, None, &settings);
+    let known = notes(&before);
+    assert!(known.len() > 30, "{} blocks", known.len());
+    for (at, insert) in
+        [(text.len() / 2, "\nB=1 2\n"), (40, "7"), (text.len() - 9, "$$ apt-lsp: allow APT0951\n")]
+    {
+        let after = before.edit(at..at, insert);
+        let fresh = notes(&after);
+        let is_known = |one: &&Arc<super::notes::Notes>| known.iter().any(|other| Arc::ptr_eq(one, other));
+        assert!(fresh.iter().filter(is_known).count() + 2 >= known.len(), "{insert:?} at {at}");
+        // What was kept says the same as what is found out anew.
+        let anew = Document::new(&after.tree().text(), None, &settings);
+        let found =
+            |document: &Document| document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        assert_eq!(found(&after), found(&anew), "{insert:?} at {at}");
+    }
+}
+
+#[test]
+fn a_macro_that_is_opened_far_above_hides_what_is_overwritten_below() {
+    let text = |first: &str| {
+        let fill = "GODLTA/0,0,1\n".repeat(600);
+        format!("{first}\nFROM/0,0,0\n{fill}A=1\nA=2\n{fill}GOTO/A,0,0\nFINI\n")
+    };
+    let settings = Arc::new(Settings { dialect: Some("free".to_owned()), ..Settings::default() });
+    let plain = Document::new(&text("$$"), None, &settings);
+    let lints = |document: &Document| {
+        let program = document.program(&|| false).unwrap();
+        super::lint(document.tree(), &program).into_iter().map(|one| one.kind).collect::<Vec<_>>()
+    };
+    let overwritten = [super::LintKind::Overwritten { name: "A".into() }];
+    assert_eq!(lints(&plain), overwritten);
+    let open = plain.edit(0..2, "M=MACRO/");
+    assert_eq!(lints(&open), []);
+    let closed = open.edit(8..8, "\nTERMAC");
+    assert_eq!(lints(&closed), overwritten);
 }

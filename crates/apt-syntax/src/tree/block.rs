@@ -1,5 +1,6 @@
 //! Blocks: some hundred statements with their text.
 
+use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
 use super::length_of;
@@ -22,6 +23,8 @@ pub(super) struct Block {
     /// What the lines say about sequence fields.
     evidence: SequenceEvidence,
     kept: OnceLock<Box<[Kept]>>,
+    /// What somebody else has found out about its statements.
+    derived: OnceLock<Arc<dyn Any + Send + Sync>>,
 }
 
 /// Divides a text that begins at a statement into blocks.
@@ -41,7 +44,13 @@ pub(super) fn blocks_of(text: &str, starts: &[u32], layout: &Layout) -> Vec<Arc<
             SequenceFieldRule::WhenPresent => SequenceEvidence::of(text),
             SequenceFieldRule::Always | SequenceFieldRule::Never => SequenceEvidence::default(),
         };
-        blocks.push(Arc::new(Block { text: text.into(), starts, evidence, kept: OnceLock::new() }));
+        blocks.push(Arc::new(Block {
+            text: text.into(),
+            starts,
+            evidence,
+            kept: OnceLock::new(),
+            derived: OnceLock::new(),
+        }));
     }
     blocks
 }
@@ -105,6 +114,18 @@ impl Block {
             // If it is there already, it is the same.
             let _ = kept.set(parsed);
         }
+    }
+
+    /// What `make` says about the statements, kept as long as the block lives. The first kind of data that is asked for
+    /// is the one that is kept.
+    pub(super) fn derived<T: Any + Send + Sync>(&self, make: impl FnOnce() -> T) -> Arc<T> {
+        if let Some(kept) = self.derived.get() {
+            return Arc::clone(kept).downcast::<T>().unwrap_or_else(|_| Arc::new(make()));
+        }
+        let made = Arc::new(make());
+        // If somebody else was faster, theirs says the same.
+        let _ = self.derived.set(Arc::clone(&made) as Arc<dyn Any + Send + Sync>);
+        made
     }
 
     fn kept(&self) -> &[Kept] {

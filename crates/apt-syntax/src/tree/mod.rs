@@ -14,7 +14,7 @@ use std::sync::Arc;
 use rowan::{TextRange, TextSize};
 
 pub use edit::StatementChange;
-pub use view::{StatementView, TokenView, tokens};
+pub use view::{BlockView, StatementView, TokenView, tokens};
 
 use crate::dialect::{Dialect, SequenceFieldRule};
 use crate::kind::SyntaxNode;
@@ -146,6 +146,12 @@ impl SyntaxTree {
     /// All statements in order.
     pub fn statements(&self) -> impl Iterator<Item = StatementView> + '_ {
         (0..self.statement_count()).map(|index| self.statement(index))
+    }
+
+    /// The runs of statements that versions of the document share, in order.
+    pub fn blocks(&self) -> impl Iterator<Item = BlockView<'_>> {
+        let places = self.document.blocks.iter().zip(&self.document.starts);
+        places.map(|(block, start)| BlockView { tree: self, block, first: start.statement as usize })
     }
 
     /// The index of the statement in which an offset lies; at and beyond the end of the text the last one.

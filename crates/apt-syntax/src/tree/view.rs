@@ -1,12 +1,14 @@
 //! One statement of a document.
 
+use std::any::Any;
 use std::hash::Hasher as _;
 use std::sync::Arc;
 
 use rowan::{TextRange, TextSize};
 use rustc_hash::FxHasher;
 
-use super::{Document, green, range_at};
+use super::block::Block;
+use super::{Document, SyntaxTree, green, range_at};
 use crate::grammar::ParsedStatement;
 use crate::kind::{SyntaxKind, SyntaxNode};
 use crate::lexer;
@@ -23,6 +25,40 @@ pub struct StatementView {
     pub(super) document: Arc<Document>,
     pub(super) block: usize,
     pub(super) local: usize,
+}
+
+/// A run of some hundred statements: what versions of a document share. An edit replaces those that it touches.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockView<'a> {
+    pub(super) tree: &'a SyntaxTree,
+    pub(super) block: &'a Block,
+    pub(super) first: usize,
+}
+
+impl<'a> BlockView<'a> {
+    /// The index of its first statement.
+    pub fn first_statement(&self) -> usize {
+        self.first
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &'a str {
+        self.block.text()
+    }
+
+    /// Its statements.
+    pub fn statements(&self) -> impl Iterator<Item = StatementView> + use<'a> {
+        let (tree, first) = (self.tree, self.first);
+        let end = first + self.block.statement_count() as usize;
+        (first..end).map(move |index| tree.statement(index))
+    }
+
+    /// What `make` finds out about the statements, kept with the block for all versions that share it. It must depend on
+    /// nothing but the statements, and count them from the first one of the block. There is room for one kind of data:
+    /// another kind is made anew at each call.
+    pub fn derived<T: Any + Send + Sync>(&self, make: impl FnOnce() -> T) -> Arc<T> {
+        self.block.derived(make)
+    }
 }
 
 /// A token of a statement, for those who colour text.
