@@ -1,8 +1,13 @@
-//! What can be folded: macro bodies, loops, runs of comment lines, continued statements.
+//! What can be folded: macro bodies, loops, branches of IFs, runs of comment lines, continued statements.
 
 use std::ops::Range;
 
-use crate::Analysis;
+use apt_syntax::{
+    statement::{Body, Clause},
+    tree::StatementView,
+};
+
+use crate::{Analysis, search::contains};
 
 /// The kind of a fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,9 +45,19 @@ impl Analysis {
             })
             .collect();
         let mut comment: Option<Range<usize>> = None;
+        // The clauses that opened the branches which are open, innermost last.
+        let mut open: Vec<usize> = Vec::new();
         for view in tree.statements() {
             let text = view.text();
             let range = bytes(view.index);
+            let ends = branch_ends(&view).filter(|_| tree.dialect().structured_if);
+            if let Some((opens, closes)) = ends {
+                let first = if closes { open.pop() } else { None };
+                // The clause that ends a branch stays in sight.
+                let branch = first.map(|first| bytes(first).start..range.start);
+                folds.extend(branch.map(|range| Fold { kind: FoldKind::Region, range }));
+                open.extend(opens.then_some(view.index));
+            }
             if text.trim_start().starts_with("$$") {
                 comment = Some(comment.map_or(range.clone(), |run| run.start..range.end));
                 continue;
@@ -55,6 +70,21 @@ impl Analysis {
         close(&mut folds, tree, &mut comment);
         folds.sort_by_key(|fold| (fold.range.start, std::cmp::Reverse(fold.range.end)));
         folds
+    }
+}
+
+/// Whether a statement opens and whether it closes a branch of an IF over several statements; nothing if neither.
+fn branch_ends(view: &StatementView) -> Option<(bool, bool)> {
+    let text = view.text().as_bytes();
+    if ![b"THEN".as_slice(), b"ELSE", b"ENDIF"].iter().any(|word| contains(text, word)) {
+        return None;
+    }
+    let parsed = view.parsed();
+    match &parsed.statement.parts.first()?.body {
+        Body::Clause { clause: Clause::If(_), .. } => Some((true, false)),
+        Body::Clause { clause: Clause::ElseIf(_) | Clause::Else, .. } => Some((true, true)),
+        Body::Clause { clause: Clause::End, .. } => Some((false, true)),
+        _ => None,
     }
 }
 

@@ -58,6 +58,15 @@ fn the_outline_nests_macros_and_loops() {
 }
 
 #[test]
+fn the_branches_of_an_if_fold() {
+    let text = "A=1\nIF(A.EQ.1)THEN\nB=1\nIF(A.EQ.2)THEN\nB=3\nENDIF\nELSE\nB=2\nENDIF\nENDIF\nFINI\n";
+    let lines = |offset: usize| text[..offset].matches('\n').count();
+    let folds: Vec<(usize, usize)> =
+        analysis(text).folds().iter().map(|fold| (lines(fold.range.start), lines(fold.range.end))).collect();
+    assert_eq!(folds, [(1, 6), (3, 5), (6, 8)]);
+}
+
+#[test]
 fn regions_remarks_and_continued_statements_fold() {
     let lines = |offset: usize| PROGRAM[..offset].matches('\n').count();
     let folds: Vec<String> = analysis(PROGRAM)

@@ -42,7 +42,7 @@ const CASES: &[Case] = &[
     ("unknown function", "A=NOSUCHF(3)", &[(1, 108)]),
     ("missing comma in a long name", "P=POINT/RADIUS SIZE", &[(1, 1)]),
     ("missing comma in a short name", "P=POINT/A B", &[(1, 101)]),
-    ("word of another dialect", "DO/A,I=1,3", &[(1, 82)]),
+    ("DO without the end of its loop", "DO/A,I=1,3", &[(1, 406)]),
     ("mixed array", "RESERV/A,3\nA(1)=1\nA(2)=POINT/1,2", &[(3, 106)]),
     ("mixed order of RESERV", "RESERV/A,3,4,B", &[(1, 255)]),
     ("RESERV of a used name", "A=1\nRESERV/A,3", &[(2, 256)]),
@@ -311,6 +311,14 @@ fn a_gap_stands_where_a_motion_is_missing() {
     assert_eq!(gaps("M=MACRO/A\nB=A\nTERMAC\nCALL/M\nFINI\n"), [], "a macro without motion");
     assert_eq!(gaps("LOOPST\nA)GOTO/1,1\nJUMPTO/A\nLOOPND\nFINI\n"), [2], "an endless loop");
     assert_eq!(gaps("A=NIX\nSPINDL/A\nGOTO/1,1\nFINI\n"), [], "nothing moves there");
+}
+
+#[test]
+fn words_of_other_dialects_are_told_as_such() {
+    for text in ["DO/A,I=1,3", "IF(1.EQ.1)THEN", "ELSE", "ELSEIF(1.EQ.1)THEN", "ENDIF"] {
+        let program = run_as(&format!("{text}\nFINI\n"), DialectName::Apt3);
+        assert_eq!(problems(&program), [(1, Some(82))], "{text}");
+    }
 }
 
 #[test]

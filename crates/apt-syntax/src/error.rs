@@ -119,9 +119,21 @@ pub enum SyntaxErrorKind {
         /// A dialect that has it.
         dialect: DialectName,
     },
-    /// THEN, ELSE, ELSEIF or ENDIF: the IF over several statements that NCL has, and none of the dialects here.
+    /// THEN, ELSE, ELSEIF or ENDIF in a dialect that does not have the IF over several statements.
     #[error("{word} belongs to an IF over several statements")]
     StructuredIf {
+        /// The word.
+        word: SmolStr,
+    },
+    /// THEN, ELSE or `ENDIF` with something else behind it on the line.
+    #[error("{word} ends its statement")]
+    RunsOnAfterWord {
+        /// The word.
+        word: SmolStr,
+    },
+    /// ELSEIF, or an IF without a statement, that does not end on THEN.
+    #[error("{word} wants THEN behind its condition")]
+    ThenMissing {
         /// The word.
         word: SmolStr,
     },
@@ -238,6 +250,12 @@ pub enum SyntaxErrorKind {
     /// A logical IF where the dialect has none.
     #[error("a logical IF takes one statement")]
     LogicalIfStatement,
+    /// An ELSE, ENDIF or IF over several statements as the statement of a logical IF.
+    #[error("{word} cannot be the statement of an IF")]
+    ConditionalClause {
+        /// The word.
+        word: SmolStr,
+    },
     /// A DO as the statement of a logical IF.
     #[error("DO cannot be the statement of an IF")]
     ConditionalDo,
@@ -300,6 +318,9 @@ impl SyntaxErrorKind {
             Kind::RunsIntoSequenceField
             | Kind::RelationMissing
             | Kind::LogicalIfStatement
+            | Kind::ConditionalClause { .. }
+            | Kind::RunsOnAfterWord { .. }
+            | Kind::ThenMissing { .. }
             | Kind::ConditionalDo
             | Kind::DoForm => return None,
         })
@@ -319,6 +340,7 @@ impl SyntaxErrorKind {
                 | SyntaxErrorKind::IllegalCharacter(_)
                 | SyntaxErrorKind::UnclosedText
                 | SyntaxErrorKind::MisplacedDecimalPoint
+                | SyntaxErrorKind::RunsOnAfterWord { .. }
                 | SyntaxErrorKind::RunsIntoSequenceField
         )
     }

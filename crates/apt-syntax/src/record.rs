@@ -3,7 +3,7 @@
 //! The fast scan over a whole document and the lexer of one statement use the same division, so they agree on where a
 //! statement ends.
 
-use crate::dialect::{Dialect, SequenceFieldRule};
+use crate::dialect::{Dialect, SequenceFieldRule, TextWords};
 
 /// The column (counted from one) where the sequence field of a card begins.
 pub const SEQUENCE_FIELD_COLUMN: usize = 73;
@@ -71,9 +71,13 @@ pub fn record_length(text: &str) -> (usize, usize) {
 /// What kind of statement begins with this record.
 pub fn statement_form(record: &str, layout: &Layout) -> StatementForm {
     let dialect = &layout.dialect;
-    if !dialect.text_words_anywhere {
-        let is_text = record.get(..6).is_some_and(|head| is_text_word(head, dialect));
-        return if is_text { StatementForm::Text { word: 0, text: 6 } } else { StatementForm::Ordinary };
+    if dialect.text_words != TextWords::Anywhere {
+        let in_column_one = record.get(..6).is_some_and(|head| is_text_word(head, dialect));
+        return match in_column_one {
+            true => StatementForm::Text { word: 0, text: 6 },
+            false if dialect.text_words == TextWords::Indented => indented_form(record, dialect),
+            false => StatementForm::Ordinary,
+        };
     }
     if record.trim_start().starts_with("$$->") {
         return StatementForm::Remark;
@@ -82,6 +86,16 @@ pub fn statement_form(record: &str, layout: &Layout) -> StatementForm {
     let Some(rest) = record.get(word..) else { return StatementForm::Ordinary };
     let length = rest.bytes().take_while(|byte| byte.is_ascii_alphanumeric() || *byte == b'_').count();
     let is_text = rest.get(..length).is_some_and(|head| is_text_word(head, dialect));
+    if is_text { StatementForm::Text { word, text: word + length } } else { StatementForm::Ordinary }
+}
+
+/// A text word behind blanks, if a blank, a slash or nothing follows it.
+fn indented_form(record: &str, dialect: &Dialect) -> StatementForm {
+    let rest = record.trim_start_matches([' ', '\t']);
+    let word = record.len() - rest.len();
+    let length = rest.bytes().take_while(u8::is_ascii_alphanumeric).count();
+    let ends = matches!(rest.as_bytes().get(length), None | Some(b' ' | b'\t' | b'/' | b'\n' | b'\r'));
+    let is_text = ends && rest.get(..length).is_some_and(|head| is_text_word(head, dialect));
     if is_text { StatementForm::Text { word, text: word + length } } else { StatementForm::Ordinary }
 }
 
@@ -125,7 +139,7 @@ fn after_sequence_prefix(record: &str) -> &str {
 
 /// The bytes of a statement's first record that are a sequence number of PostWorks (with the blanks before it).
 pub(crate) fn sequence_prefix_length(record: &str, layout: &Layout) -> usize {
-    if !layout.dialect.text_words_anywhere {
+    if layout.dialect.text_words != TextWords::Anywhere {
         return 0;
     }
     let rest = after_sequence_prefix(record);
@@ -152,7 +166,8 @@ pub fn divide_record(text: &str, form: StatementForm, layout: &Layout) -> Record
     match form {
         StatementForm::Text { .. } => {
             // PostWorks continues a text with `~`.
-            record.continues = layout.dialect.text_words_anywhere && statement.trim_end().ends_with('~');
+            record.continues =
+                layout.dialect.text_words == TextWords::Anywhere && statement.trim_end().ends_with('~');
         }
         StatementForm::Remark => {
             record.significant = 0;
@@ -371,9 +386,24 @@ mod tests {
 
     #[test]
     fn semicolons_separate_where_the_dialect_says_so() {
-        let mut layout = layout(DialectName::Free);
-        layout.dialect.semicolon_separates = true;
-        assert_eq!(statement_boundaries("A=1;B=2 $$ x;y\nC=3;\n", &layout).starts, [0, 4, 15, 19]);
+        let free = layout(DialectName::Free);
+        assert_eq!(statement_boundaries("A=1;B=2 $$ x;y\nC=3;\n", &free).starts, [0, 4, 15, 19]);
+        assert_eq!(split("A=1$ a;b\n+2; C=1\n", DialectName::Free), ["A=1$ a;b\n+2;", " C=1\n"]);
+        for dialect in [DialectName::Apt3, DialectName::Apt4, DialectName::Cl] {
+            assert_eq!(split("A=1;B=2\n", dialect).len(), 1, "{dialect}");
+        }
+    }
+
+    #[test]
+    fn texts_reach_to_the_end_of_the_line() {
+        for text in ["PPRINT A; B $$ C\n", "  PPRINT A;B\n", "\tpprint/A;B $\n", " PARTNO;X\n"] {
+            let count = if text.starts_with(" PARTNO;") { 2 } else { 1 };
+            assert_eq!(split(text, DialectName::Free).len(), count, "{text:?}");
+        }
+        assert_eq!(
+            split("RAPID; PPRINT A;B\nX=1\n", DialectName::Free),
+            ["RAPID;", " PPRINT A;B\n", "X=1\n"]
+        );
     }
 
     #[test]

@@ -110,6 +110,13 @@ pub enum Body {
         /// What is done if it holds.
         then: Box<Part>,
     },
+    /// A statement of an IF over several statements (dialects that have it).
+    Clause {
+        /// The word IF, ELSEIF, ELSE or ENDIF.
+        word: WordUse,
+        /// What it says.
+        clause: Clause,
+    },
     /// `DO/label,i=first,last,step` (dialects that have it).
     Do {
         /// The word DO.
@@ -317,6 +324,19 @@ pub enum Operator {
     Divide,
 }
 
+/// A statement of an IF over several statements: each opens a branch, the last closes them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Clause {
+    /// `IF(condition)THEN`
+    If(Condition),
+    /// `ELSEIF(condition)THEN`
+    ElseIf(Condition),
+    /// `ELSE`
+    Else,
+    /// `ENDIF`
+    End,
+}
+
 /// A logical condition (dialects that have it).
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the names say it")]
@@ -324,6 +344,7 @@ pub enum Condition {
     Relation { operator: RelationOperator, left: Expression, right: Expression },
     And(Box<Condition>, Box<Condition>),
     Or(Box<Condition>, Box<Condition>),
+    Not(Box<Condition>),
 }
 
 /// A relation of a logical condition.

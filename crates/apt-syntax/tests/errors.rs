@@ -37,7 +37,7 @@ fn numbers_of_apt_iii() {
             ("P=POINT 1,2", &[7]),
             ("P=POINT/1,,2", &[7]),
             ("A=(2+3)(4+5)", &[7]),
-            ("A;B=3", &[8]),
+            ("A?B=3", &[8]),
             ("A=3+4)", &[9]),
             ("A=(3+4", &[10]),
             ("L1=LINE/(POINT/0,0,(POINT/1,1)", &[10]),
@@ -48,11 +48,6 @@ fn numbers_of_apt_iii() {
             ("GOTO/P1,", &[11]),
             ("POINT) A=1", &[17]),
             ("A=B.5", &[20]),
-            ("  PPRINT X", &[21]),
-            ("ENDIF", &[82]),
-            ("ELSE", &[82]),
-            ("ELSEIF(A-1)", &[82]),
-            ("IF(A.EQ.1)THEN", &[82]),
             ("ELSE=3", &[]),
             ("FINI,", &[23]),
             ("FINI/1", &[23]),
@@ -74,7 +69,6 @@ fn numbers_of_apt_iii() {
             ("A(1)", &[82]),
             ("A=MAXF(1,2)", &[]),
             ("A=NOSUCH(1,2)", &[108]),
-            ("DO/A,I=1,3", &[82]),
             ("SCON/INIT,ALL", &[82]),
             ("PRINT/3,A(1,THRU)", &[109]),
             ("P=POINT/", &[129]),
@@ -107,8 +101,10 @@ fn numbers_of_apt_iii() {
 fn other_dialects() {
     check(Apt4, &[("Z=3$\nPOINT/1,2", &[7]), ("W=3)", &[9]), ("R=ABSF(-3", &[10]), ("IF(A.EQ.1)", &[11])]);
     check(Apt4, &[("LONGNAME=3", &[1]), ("IF(.NOT.A.EQ.1)B=2", &[20])]);
-    check(Free, &[("IF(A.EQ.1)B=2", &[20])]);
+    check(Apt3, &[("IF(A.EQ.1)B=2", &[20]), ("A;B=3", &[8]), ("  PPRINT X", &[21]), ("ENDIF", &[82])]);
+    check(Apt3, &[("DO/A,I=1,3", &[82]), ("ELSE", &[82]), ("ELSEIF(A-1)", &[82]), ("IF(A.EQ.1)THEN", &[82])]);
     check(Apt3, &[("LONGNAME=3", &[1]), ("A=MAXF(1,2)", &[108])]);
+    check(Apt4, &[("A;B=3", &[8])]);
     let many = format!("GOTO/{}1", "1,".repeat(300));
     check(Apt3, &[(&many.replace("1,", "1,$\n"), &[13])]);
     check(Free, &[(&many, &[])]);

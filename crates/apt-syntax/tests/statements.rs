@@ -200,6 +200,63 @@ fn logic() {
 }
 
 #[test]
+fn ifs_over_several_statements() {
+    check(
+        Free,
+        &[
+            ("IF(X.EQ.1)THEN", "(IF (Eq X 1))"),
+            ("A)if ( x .gt. y+1 ) then", "A) (IF (Gt X (+ Y 1)))"),
+            (
+                "IF(A.LT.1.AND..NOT.(B.GT.2.OR.C.NE.3))THEN",
+                "(IF (and (Lt A 1) (not (or (Gt B 2) (Ne C 3)))))",
+            ),
+            ("IF(.NOT..NOT.A.LT.1)B=2", "(when (not (not (Lt A 1))) (let B 2))"),
+            ("ELSEIF(X.EQ.2)THEN", "(ELSEIF (Eq X 2))"),
+            ("ELSE IF (X.EQ.2) THEN", "(ELSEIF (Eq X 2))"),
+            ("ELSE", "(ELSE)"),
+            ("B)END IF", "B) (ENDIF)"),
+            ("IF(X.EQ.1)JUMPTO/B", "(when (Eq X 1) (JUMPTO B))"),
+            ("DO/B,I=1,3", "(do B I 1 3)"),
+            ("B)CONTIN", "B) (CONTIN)"),
+            // Everywhere else the words are names.
+            ("THEN=1", "(let THEN 1)"),
+            ("ELSE=THEN+ENDIF", "(let ELSE (+ THEN ENDIF))"),
+            ("ELSEIF(3)=5", "(let ELSEIF<3> 5)"),
+            ("DO=CONTIN", "(let DO CONTIN)"),
+            ("P=POINT/DO,ELSE", "(define P POINT DO ELSE)"),
+            // Mistakes.
+            ("IF(X.EQ.1)THEN B=2", "(error) !RunsOnAfterWord { word: \"THEN\" }"),
+            ("IF(X.EQ.1)THENB=2", "(when (Eq X 1) (let THENB 2))"),
+            ("ELSE B=2", "(error) !RunsOnAfterWord { word: \"ELSE\" }"),
+            ("ENDIF A=1", "(error) !RunsOnAfterWord { word: \"ENDIF\" }"),
+            ("ELSE/1", "(error) !RunsOnAfterWord { word: \"ELSE\" }"),
+            ("THEN", "(error) !WordNotAllowed(\"THEN\")"),
+            ("ELSE)X=1", "ELSE) (let X 1)"),
+            ("IF(X)THEN", "(error) !RelationMissing"),
+            ("IF()THEN", "(error) !ConditionMissing"),
+            ("IF(X.EQ.1)", "(error) !ThenMissing { word: \"IF\" }"),
+            ("ELSEIF(X.EQ.1)", "(error) !ThenMissing { word: \"ELSEIF\" }"),
+            ("ELSEIF(X.EQ.1)B=2", "(error) !ThenMissing { word: \"ELSEIF\" }"),
+            ("IF(A.EQ.1)ELSE", "(error) !ConditionalClause { word: \"ELSE\" }"),
+            ("IF(A.EQ.1)IF(B.EQ.1)THEN", "(error) !ConditionalClause { word: \"IF\" }"),
+        ],
+    );
+    for dialect in [Apt3, Apt4] {
+        check(
+            dialect,
+            &[
+                ("IF(X.EQ.1)THEN", "(error) !StructuredIf { word: \"THEN\" }"),
+                ("ELSEIF(X.EQ.1)THEN", "(error) !StructuredIf { word: \"ELSEIF\" }"),
+                ("ELSE", "(error) !StructuredIf { word: \"ELSE\" }"),
+                ("ENDIF", "(error) !StructuredIf { word: \"ENDIF\" }"),
+                ("THEN=ELSE", "(let THEN ELSE)"),
+            ],
+        );
+    }
+    check(Apt3, &[("DO/B,I=1,3", "(error) !NotInDialect { word: \"DO\", dialect: Apt4 }")]);
+}
+
+#[test]
 fn text_statements() {
     check(
         Free,
@@ -209,9 +266,16 @@ fn text_statements() {
             ("insert/G2", "(text INSERT \"/G2\")"),
             ("REMARKABLE=3", "(text REMARK \"ABLE=3\")"),
             ("TITLES", "(text TITLES \"\")"),
-            ("  PARTNO X", "(error) !TextWordNotInColumnOne { word: \"PARTNO\" }"),
+            ("  PARTNO X", "(text PARTNO \" X\")"),
+            ("\tpprint/HELLO; you $", "(text PPRINT \"HELLO; you $\")"),
+            ("  INSERT / G2", "(text INSERT \" G2\")"),
+            ("  TITLES", "(text TITLES \"\")"),
+            ("  PPRINTX=5", "(let PPRINTX 5)"),
         ],
     );
+    for dialect in [Apt3, Apt4] {
+        check(dialect, &[("  PARTNO X", "(error) !TextWordNotInColumnOne { word: \"PARTNO\" }")]);
+    }
     let card = format!("{:<72}00010", "PARTNO A");
     check(Apt3, &[(&card, &format!("(text PARTNO \" A{}\")", " ".repeat(64)))]);
 }

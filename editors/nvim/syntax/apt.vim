@@ -28,8 +28,8 @@ syntax keyword aptPathParameter SCON
 syntax keyword aptPathControl 2DCALC 3DCALC AUTOPS BEVELS DNTCUT GOUGCK MULTAX NDTEST DMILL NOPS
 syntax keyword aptPathControl CUT
 
-syntax keyword aptLogic CONTIN JUMPTO LOOPND LOOPST TERMAC TRANTO LIBRY MACRO CALL FINI
-syntax keyword aptLogic DO IF
+syntax keyword aptLogic CONTIN ELSEIF JUMPTO LOOPND LOOPST TERMAC TRANTO ENDIF LIBRY MACRO
+syntax keyword aptLogic CALL ELSE FINI DO IF
 
 syntax keyword aptDeclaration OBTAIN REFSYS RESERV CANON ZSURF SYN
 
@@ -83,11 +83,12 @@ syntax keyword aptMinor ZAXIS ZXROT AUTO BLUE BORE BOTH CCLW DARK DASH DECR
 syntax keyword aptMinor DEEP DOWN FACE FEED FLOW FULL GRID HIGH INCH INCR
 syntax keyword aptMinor INIT LAST LEFT LITE LOCK MAIN MILL MIST MMPM MMPR
 syntax keyword aptMinor NEGX NEGY NEGZ NEXT OMIT OPEN PART PAST PLUS POSN
-syntax keyword aptMinor POSX POSY POSZ RAIL REAM REAR SAME SIDE STEP THRU
-syntax keyword aptMinor TRAV TURN TYPE UNIT 5PT ALL ARC BCD CAM CLW
-syntax keyword aptMinor FAN FPM FPR IPM IPR LOW MED NOW NOX NOY
-syntax keyword aptMinor NOZ OFF OUT PEN RED REV RPM SEG SFM SMM
-syntax keyword aptMinor TAP TPI XYZ AT CM IN MM ON TO UP
+syntax keyword aptMinor POSX POSY POSZ RAIL REAM REAR SAME SIDE STEP THEN
+syntax keyword aptMinor THRU TRAV TURN TYPE UNIT 5PT ALL ARC BCD CAM
+syntax keyword aptMinor CLW FAN FPM FPR IPM IPR LOW MED NOW NOX
+syntax keyword aptMinor NOY NOZ OFF OUT PEN RED REV RPM SEG SFM
+syntax keyword aptMinor SMM TAP TPI XYZ AT CM IN MM ON TO
+syntax keyword aptMinor UP
 
 " The rest of the card is text: behind columns 1-6, or in CL files behind a blank or slash.
 syntax match aptTextLine /\%(^\%(INSERT\|PARTNO\|PPRINT\|REMARK\|TITLES\|TPRINT\)\)\@<=.*$/

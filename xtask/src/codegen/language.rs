@@ -95,8 +95,17 @@ fn row(out: &mut String, word: &Entry) {
     };
     let mut help = escaped(&word.help);
     if !word.dialects.is_empty() {
-        let names: Vec<String> = word.dialects.iter().map(|name| format!("`{name}`")).collect();
-        let _ = write!(help, " Reserved in {} only.", names.join(", "));
+        let names = |soft: bool| {
+            let those = word.dialects.iter().filter(|name| word.soft_in.contains(name) == soft);
+            those.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+        };
+        let (reserved, soft) = (names(false), names(true));
+        if !reserved.is_empty() {
+            let _ = write!(help, " Reserved in {reserved} only.");
+        }
+        if !soft.is_empty() {
+            let _ = write!(help, " In {soft} a word where no name can stand.");
+        }
     }
     let status = word.status.as_str();
     let _ = writeln!(out, "| `{}` | {place} | {codes} | {status} | {help} |", word.spelling);

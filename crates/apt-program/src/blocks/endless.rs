@@ -2,7 +2,7 @@
 
 use apt_syntax::{
     ParsedStatement, SyntaxTree, TextRange,
-    statement::{Argument, Body, Condition, Expression, Part},
+    statement::{Argument, Body, Clause, Condition, Expression, Part},
 };
 use smol_str::SmolStr;
 
@@ -131,6 +131,9 @@ fn names_of_part(part: &Part, names: &mut Vec<SmolStr>) {
             names_of_condition(condition, names);
             names_of_part(then, names);
         }
+        Body::Clause { clause: Clause::If(condition) | Clause::ElseIf(condition), .. } => {
+            names_of_condition(condition, names);
+        }
         _ => {}
     }
 }
@@ -141,6 +144,7 @@ fn names_of_condition(condition: &Condition, names: &mut Vec<SmolStr>) {
             names_of_expression(left, names);
             names_of_expression(right, names);
         }
+        Condition::Not(inner) => names_of_condition(inner, names),
         Condition::And(left, right) | Condition::Or(left, right) => {
             names_of_condition(left, names);
             names_of_condition(right, names);

@@ -1,5 +1,7 @@
 //! Stretches of statements that are executed as a whole: loop regions and macro bodies, with their labels and jumps.
 
+mod branches;
+mod clause;
 mod endless;
 mod run;
 mod substitute;
@@ -14,6 +16,7 @@ use smol_str::SmolStr;
 
 use crate::{record::SourceFile, statements::leaves_motion};
 
+pub(crate) use branches::{BranchFinder, Branches, ClauseFault, ClauseMark, ClausePlace, clause_mark};
 pub(crate) use run::{Activation, DoHeader, DoLoop, leave_do_loops};
 pub(crate) use substitute::{Bindings, splice};
 
@@ -29,12 +32,21 @@ pub(crate) struct Block {
     /// Content hashes of the statements, to tell whether two blocks say the same.
     pub(crate) hashes: Vec<u64>,
     labels: BTreeMap<SmolStr, usize>,
+    /// The branches of IFs over several statements.
+    pub(crate) branches: Branches,
 }
 
 impl Block {
     /// An empty block that begins with this statement number of a file.
     pub(crate) fn new(first_isn: u32, source: Option<Arc<SourceFile>>) -> Self {
-        Self { first_isn, source, statements: Vec::new(), hashes: Vec::new(), labels: BTreeMap::new() }
+        Self {
+            first_isn,
+            source,
+            statements: Vec::new(),
+            hashes: Vec::new(),
+            labels: BTreeMap::new(),
+            branches: Branches::default(),
+        }
     }
 
     /// Adds a statement; the first use of a label counts. Returns whether the label is new.
@@ -105,6 +117,19 @@ impl Block {
         missing
     }
 
+    /// The labels to which IF and JUMPTO would jump into a branch from outside, with the statement numbers of the jumps.
+    pub(crate) fn jumps_into_branches(&self) -> Vec<(u32, Name)> {
+        let mut jumps = Vec::new();
+        for (index, statement) in self.statements.iter().enumerate() {
+            let named = statement.statement.parts.iter().flat_map(|part| labels_named(&part.body));
+            let into = |label: &&Name| {
+                self.label(&label.text).is_some_and(|target| !self.branches.may_jump(index, target))
+            };
+            jumps.extend(named.filter(into).map(|label| (self.isn(index), label.clone())));
+        }
+        jumps
+    }
+
     /// The statement number of a statement.
     pub(crate) fn isn(&self, index: usize) -> u32 {
         self.first_isn.saturating_add(u32::try_from(index).unwrap_or(u32::MAX))
@@ -170,7 +195,7 @@ pub(crate) fn always_jumps(statement: &ParsedStatement) -> bool {
 /// Whether a statement does something that is missed when it is never reached.
 pub(crate) fn wants_to_be_reached(part: &Part) -> bool {
     match &part.body {
-        Body::Text { .. } | Body::Macro { .. } | Body::Error => false,
+        Body::Text { .. } | Body::Macro { .. } | Body::Clause { .. } | Body::Error => false,
         Body::Major { word, .. } => {
             !matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC" | "FINI" | "CONTIN")
         }

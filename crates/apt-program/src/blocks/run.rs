@@ -99,6 +99,7 @@ impl Evaluator<'_> {
         let errors_before = self.errors;
         let mut parsed: Vec<Option<Arc<ParsedStatement>>> = vec![None; block.statements.len()];
         let mut do_loops: Vec<DoLoop> = Vec::new();
+        let mut testing: Option<usize> = None;
         let mut jumps_after_error = 0_u32;
         let mut turn_start = self.output.definitions.len();
         let mut index = 0;
@@ -112,11 +113,14 @@ impl Evaluator<'_> {
                 self.state.without_synonyms(&substituted, &self.dialect)
             });
             let statement = Arc::clone(statement);
-            let flow = self.block_statement(&statement, (block, index), &mut do_loops);
-            let target = match flow {
-                Flow::Next => self.continue_do_loops(&statement, &mut do_loops),
-                Flow::Jump(label) => self.block_label(activation, &label),
-                other => return other,
+            let target = if let Some(next) = self.block_clause(&statement, (block, index), &mut testing) {
+                self.continue_do_loops(&statement, &mut do_loops).or(Some(next))
+            } else {
+                match self.block_statement(&statement, (block, index), &mut do_loops) {
+                    Flow::Next => self.continue_do_loops(&statement, &mut do_loops),
+                    Flow::Jump(label) => self.block_label(activation, index, &label),
+                    other => return other,
+                }
             };
             let next = target.unwrap_or(index + 1);
             if next <= index {
@@ -148,7 +152,9 @@ impl Evaluator<'_> {
             && let Body::Do { label, index: variable, bounds, .. } = &part.body
         {
             let header = DoHeader { label, index: variable, bounds, range: part.range };
-            self.open_do_loop(&header, index + 1, block.label(&label.text), do_loops);
+            let end = block.label(&label.text);
+            let crosses = end.is_some_and(|end| !block.branches.same_branch(index, end));
+            self.open_do_loop(&header, index + 1, (end, crosses), do_loops);
             return Flow::Next;
         }
         // The words that close the block are its last statement.
@@ -184,22 +190,26 @@ impl Evaluator<'_> {
     }
 
     /// The statement that a jump leads to, or a finding that the label is not in this block.
-    fn block_label(&mut self, activation: &Activation<'_>, label: &Name) -> Option<usize> {
+    fn block_label(&mut self, activation: &Activation<'_>, from: usize, label: &Name) -> Option<usize> {
         let found = activation.block.label(&label.text);
         if found.is_none() {
             let similar = similar_names(&label.text, activation.block.labels());
             self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
         }
+        if found.is_some_and(|found| !activation.block.branches.may_jump(from, found)) {
+            self.report_jump_into_branch(self.here.isn, label);
+            return None;
+        }
         found
     }
 
     /// DO: sets the index to the first value and opens the loop of statements `body` to `end`, which is none where no
-    /// statement carries the label.
+    /// statement carries the label. `crosses` tells that the end stands in another branch of an IF than the DO.
     pub(crate) fn open_do_loop(
         &mut self,
         header: &DoHeader<'_>,
         body: usize,
-        end: Option<usize>,
+        (end, crosses): (Option<usize>, bool),
         do_loops: &mut Vec<DoLoop>,
     ) {
         let values: Vec<Option<f64>> = header.bounds.iter().map(|bound| self.scalar(bound)).collect();
@@ -218,6 +228,9 @@ impl Evaluator<'_> {
             let finding = FindingKind::UnknownLabel { name: label, similar: Vec::new() };
             return self.report(finding, header.label.range);
         };
+        if crosses {
+            return self.report(FindingKind::LoopCrossesBranch { label }, header.label.range);
+        }
         if let Some(outer) = do_loops.last().filter(|outer| outer.end < end) {
             let finding = FindingKind::LoopsCross { label, outer: outer.label.clone() };
             return self.report(finding, header.label.range);

@@ -1,5 +1,6 @@
 //! The evaluator: the state of Section 1, what a stretch of the program leaves behind, and the place it stands at.
 
+mod conditional;
 mod context;
 mod output;
 mod state;
@@ -9,7 +10,7 @@ mod trace;
 pub(crate) use context::{Budget, DataCards, Here, PendingDrive, Region};
 pub(crate) use output::{Output, same_place_and_kind};
 pub(crate) use state::{State, Synonym};
-pub(crate) use step::TopLevel;
+pub(crate) use step::{StepEnd, TopLevel};
 pub(crate) use trace::{Trace, TracedLine};
 
 use apt_syntax::{

@@ -8,9 +8,11 @@ use apt_syntax::{
 };
 use smol_str::{SmolStr, format_smolstr};
 
-use super::{Budget, DataCards, Evaluator, Flow, Region};
+use super::{Budget, DataCards, Evaluator, Flow, Region, conditional::Conditional};
 use crate::{
-    blocks::{self, Activation, Bindings, Block, DoHeader, DoLoop, leave_do_loops, normalised_label},
+    blocks::{
+        self, Activation, Bindings, Block, BranchFinder, DoHeader, DoLoop, leave_do_loops, normalised_label,
+    },
     finding::{FindingKind, RelatedKind, Severity},
     options::IncludeFailure,
     record::{FrameKind, RecordKind, SourceFile},
@@ -29,6 +31,10 @@ pub(crate) struct TopLevel<'t> {
     pub(crate) tree: &'t SyntaxTree,
     /// DO loops that are open.
     pub(crate) do_loops: Vec<DoLoop>,
+    /// The outermost IF over several statements that was begun last.
+    pub(super) conditional: Option<Conditional>,
+    /// The clause of it that decides next.
+    pub(super) testing: Option<usize>,
     /// Where labels are; filled at the first jump.
     labels: Option<BTreeMap<SmolStr, usize>>,
 }
@@ -47,7 +53,12 @@ pub(crate) struct StepEnd {
 impl<'t> TopLevel<'t> {
     /// The statements of a file.
     pub(crate) fn new(tree: &'t SyntaxTree) -> Self {
-        Self { tree, do_loops: Vec::new(), labels: None }
+        Self { tree, do_loops: Vec::new(), conditional: None, testing: None, labels: None }
+    }
+
+    /// Whether the statement with this index can begin a stretch of its own: no loop and no IF is open there.
+    pub(crate) fn is_settled(&self, index: usize) -> bool {
+        self.do_loops.is_empty() && self.conditional.as_ref().is_none_or(|open| open.is_before(index))
     }
 
     /// The index of the statement that carries a label.
@@ -125,13 +136,17 @@ impl Evaluator<'_> {
                     self.open_statement(&statement);
                     let header = DoHeader { label, index: variable, bounds, range: part.range };
                     let end = top.label(&label.text);
-                    self.open_do_loop(&header, index + 1, end, &mut top.do_loops);
+                    let crosses = end.is_some_and(|end| self.crosses_branches(top.tree, index, end));
+                    self.open_do_loop(&header, index + 1, (end, crosses), &mut top.do_loops);
                     // That a label is missing depends on every statement.
                     let read_to = end.filter(|end| *end > index).map_or(count, |end| end + 1);
                     return StepEnd { next: index + 1, read_to, read_from: index };
                 }
                 _ => {}
             }
+        }
+        if let Some(end) = self.top_level_clause(top, index, &statement) {
+            return end;
         }
         let flow = self.statement(&statement);
         match flow {
@@ -190,7 +205,8 @@ impl Evaluator<'_> {
 
     /// Counts statements executed again at the top level; gives up when there are too many.
     fn may_repeat(&mut self, top: &TopLevel<'_>, index: usize) -> bool {
-        if self.here.frame.is_some() || !self.dialect.branch_anywhere {
+        let may_go_back = self.dialect.branch_anywhere || !top.do_loops.is_empty();
+        if self.here.frame.is_some() || !may_go_back {
             return true;
         }
         if index >= self.state.reached {
@@ -223,7 +239,7 @@ impl Evaluator<'_> {
     }
 
     /// Syntax errors and the label.
-    fn open_statement(&mut self, statement: &ParsedStatement) {
+    pub(crate) fn open_statement(&mut self, statement: &ParsedStatement) {
         for error in &statement.errors {
             self.report(FindingKind::Syntax(error.kind.clone()), error.range);
         }
@@ -276,6 +292,7 @@ impl Evaluator<'_> {
         let count = top.tree.statement_count();
         let opened_at = self.here.isn;
         let mut block = Block::new(opened_at.saturating_add(1), self.here.source.clone());
+        let mut branches = BranchFinder::default();
         let mut index = header + 1;
         while index < count {
             let view = top.tree.statement(index);
@@ -284,12 +301,15 @@ impl Evaluator<'_> {
             let word = blocks::single_word(&statement);
             let foreign_macro = macro_name.is_some() && blocks::is_macro_header(&statement);
             if word == Some("FINI") || foreign_macro {
+                self.settle_branches(&mut block, branches);
                 self.report_unclosed(index, &statement, opened_at, macro_name, foreign_macro, range);
                 return (block, index);
             }
             self.push_to_block(&mut block, index, original, view.content_hash());
+            branches.statement(index - header - 1, &statement);
             index += 1;
             if word == Some(closing) {
+                self.settle_branches(&mut block, branches);
                 for (isn, range) in block.unreachable() {
                     self.report_at(isn, FindingKind::Unreachable, range);
                 }
@@ -301,7 +321,18 @@ impl Evaluator<'_> {
             None => FindingKind::LoopNotClosed,
         };
         self.report(finding, range);
+        self.settle_branches(&mut block, branches);
         (block, count)
+    }
+
+    /// Gives a block its branches, and reports what is wrong with them and with the jumps among them.
+    fn settle_branches(&mut self, block: &mut Block, branches: BranchFinder) {
+        block.branches = branches.finish(block.statements.len());
+        let statement = |index: usize| Some((block.isn(index), Arc::clone(block.statements.get(index)?)));
+        self.report_clause_faults(&block.branches, &statement);
+        for (isn, label) in block.jumps_into_branches() {
+            self.report_jump_into_branch(isn, &label);
+        }
     }
 
     /// Adds a statement to a block; a label twice in it is reported.

@@ -139,6 +139,7 @@ impl Evaluator<'_> {
             Body::Call { section, .. } => section.is_some() || self.stays_closed(),
             Body::ArithmeticIf { .. }
             | Body::LogicalIf { .. }
+            | Body::Clause { .. }
             | Body::Do { .. }
             | Body::Macro { .. }
             | Body::Error => false,

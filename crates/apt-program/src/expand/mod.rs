@@ -60,9 +60,11 @@ pub fn expand(
     let isn = at.map(|at| u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX));
     evaluator.trace = Some(Trace::new(isn, depth));
     let count = tree.statement_count();
-    if tree.dialect().branch_anywhere {
-        // The whole program is one region there: loops are made of jumps.
+    if tree.dialect().branch_anywhere || tree.dialect().do_loops {
         let all: Vec<_> = (0..count).map(|index| tree.statement(index).parsed()).collect();
+        let jumps_free = tree.dialect().branch_anywhere;
+        let all = if jumps_free || all.iter().any(|one| is_do(&one.elements)) { all } else { Vec::new() };
+        // The whole program is one region then: loops are made of jumps.
         evaluator.enter_region(all.iter().filter(|one| repeats(&one.elements)).map(|one| &**one));
     }
     let mut top = TopLevel::new(tree);
@@ -88,7 +90,11 @@ fn repeats(elements: &[Element]) -> bool {
         let named = targets.iter().filter(|element| element.kind == ElementKind::Name);
         named.clone().any(|name| values.iter().any(|value| value.text == name.text))
     });
-    counts || elements.iter().any(|element| element.kind == ElementKind::Word && element.text == "DO")
+    counts || is_do(elements)
+}
+
+fn is_do(elements: &[Element]) -> bool {
+    elements.iter().any(|element| element.kind == ElementKind::Word && element.text == "DO")
 }
 
 /// The macros that the lines still call, and those that these call.

@@ -15,6 +15,7 @@ impl Evaluator<'_> {
                 let right = self.scalar(right);
                 Some(holds(*operator, left?, right?))
             }
+            Condition::Not(inner) => self.condition(inner).map(|holds| !holds),
             Condition::And(left, right) => {
                 let left = self.condition(left);
                 let right = self.condition(right);

@@ -509,6 +509,33 @@ pub enum FindingKind {
         /// The label of the loop around it.
         outer: SmolStr,
     },
+    /// A DO loop that begins and ends in different branches of an IF.
+    #[error("the DO loop to {label} begins and ends in different branches")]
+    LoopCrossesBranch {
+        /// The label of the loop.
+        label: SmolStr,
+    },
+    /// ELSE, ELSEIF or ENDIF without an IF.
+    #[error("{word} without an IF")]
+    ClauseWithoutIf {
+        /// The word.
+        word: SmolStr,
+    },
+    /// ELSE or ELSEIF behind the ELSE of the same IF.
+    #[error("{word} behind ELSE")]
+    ClauseAfterElse {
+        /// The word.
+        word: SmolStr,
+    },
+    /// An IF over several statements without ENDIF.
+    #[error("IF without ENDIF")]
+    BranchNotClosed,
+    /// A jump into a branch of an IF from outside.
+    #[error("a jump to {name} inside of an IF")]
+    JumpIntoBranch {
+        /// The label.
+        name: SmolStr,
+    },
     /// A DO loop whose index never changes.
     #[error("a DO loop with step zero")]
     ZeroStep,
@@ -639,7 +666,7 @@ pub enum FindingKind {
         found: usize,
     },
 
-    /// TLAXIS in a form that APT III accepts, and of which nobody knows what it does.
+    /// TLAXIS in a form that APT III accepts and does not document: it is taken as in later systems.
     #[error("TLAXIS/{word} is not documented")]
     AxisUndocumented {
         /// The word after TLAXIS.

@@ -57,7 +57,7 @@ impl FindingKind {
             Self::ReferenceSystem { .. } | Self::SingularMatrix => 651,
             Self::DuplicateLabel { .. } => 6,
             Self::LabelIsName { .. } => 3,
-            Self::UnknownLabel { .. } => 406,
+            Self::UnknownLabel { .. } | Self::JumpIntoBranch { .. } => 406,
             Self::JumpOutsideRegion => 407,
             Self::UnknownTransfer { .. } => 456,
             Self::NestedLoop => 206,
@@ -113,6 +113,10 @@ impl FindingKind {
             | Self::RoutineNotAvailable { .. }
             | Self::Endless { .. }
             | Self::LoopsCross { .. }
+            | Self::LoopCrossesBranch { .. }
+            | Self::ClauseWithoutIf { .. }
+            | Self::ClauseAfterElse { .. }
+            | Self::BranchNotClosed
             | Self::ZeroStep
             | Self::NotInDialect { .. }
             | Self::AxisDropped { .. }
@@ -177,6 +181,7 @@ impl FindingKind {
     /// How bad this is unless the project says otherwise.
     pub fn severity(&self) -> Severity {
         match self {
+            Self::AxisUndocumented { .. } => Severity::Information,
             Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
             Self::EndMissing
             | Self::Doubtful { .. }

@@ -145,7 +145,7 @@ fn run_chunk(
         read_from = read_from.min(end.read_from);
         read_to = read_to.max(end.read_to);
         index = end.next;
-        let settled = evaluator.pending.is_none() && top.do_loops.is_empty();
+        let settled = evaluator.pending.is_none() && top.is_settled(index);
         if settled && (steps >= CHUNK_STEPS || until == Some(index)) {
             break;
         }

@@ -113,6 +113,11 @@ impl Evaluator<'_> {
                     }
                 };
             }
+            // Where the branches are is known before anything is executed: these belong to none.
+            Body::Clause { word, .. } => {
+                let word = SmolStr::new_static(word.word.spelling);
+                self.report(FindingKind::ClauseWithoutIf { word }, part.range);
+            }
             Body::Do { word, .. } => {
                 self.report(FindingKind::NotInDialect { word: SmolStr::new_static("DO") }, word.range);
             }

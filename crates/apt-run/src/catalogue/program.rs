@@ -55,6 +55,20 @@ fn jump(kind: &Kind) -> Option<Text> {
             say("APT0411", format!("the DO loop to {label} ends behind the loop to {outer} around it"))
                 .hint(format!("put the statement {label}) before {outer}), or end both loops at one label"))
         }
+        Kind::LoopCrossesBranch { label } => say(
+            "APT0439",
+            format!("the DO loop to {label} begins in one branch of an IF and ends in another"),
+        )
+        .hint(format!("put the DO and the statement {label}) into the same branch")),
+        Kind::ClauseWithoutIf { word } => say("APT0435", format!("{word} without an IF"))
+            .hint(format!("IF(condition)THEN stands before it, on a line of its own; or remove {word}")),
+        Kind::ClauseAfterElse { word } => say("APT0436", format!("{word} behind the ELSE of the same IF"))
+            .hint("ELSE opens the last branch: ELSEIF stands before it, ENDIF behind it"),
+        Kind::BranchNotClosed => say("APT0437", "this IF is never closed").hint("add ENDIF"),
+        Kind::JumpIntoBranch { name } => {
+            say("APT0438", format!("{name} stands in a branch of an IF that this jump does not come from"))
+                .hint("a branch is entered through its IF only; jumps may lead out of it")
+        }
         Kind::Endless { statements, changing, unchanged } => {
             let what = match (unchanged.as_slice(), changing.as_slice()) {
                 ([], []) => "no condition of the loop depends on a name that changes".to_owned(),
@@ -174,9 +188,16 @@ fn motion(kind: &Kind) -> Option<Text> {
         Kind::AxisDropped { word } => say("APT0511", format!("the axis of this {word} is dropped"))
             .hint("write MULTAX before it, so that tool axes count"),
         Kind::AxisUndocumented { word } => {
-            say("APT0512", format!("what TLAXIS/{word} does in this form is documented nowhere")).hint(
-                "TLAXIS/NORMPS, NORMDS, PARLEL and ATANGL relate the axis to the surfaces; a vector fixes it",
-            )
+            let meaning = match word.as_str() {
+                "NORMPS" | "NORMDS" => {
+                    "the axis is kept along the normal, in planes across the vector; a number behind it has no meaning"
+                }
+                "PERPTO" => "the axis is kept along the drive surface and across the vector",
+                "TANDS" => "the axis is kept along the drive surface, in planes across the motion",
+                _ => "the axis turns evenly until it lies along the drive surface where the motion ends",
+            };
+            say("APT0512", format!("APT III does not document this form of TLAXIS/{word}"))
+                .hint(format!("as in later systems, {meaning}"))
         }
         Kind::PocketNumbers => say("APT0509", "POCKET begins with eight numbers"),
         Kind::PocketPoints { found } => {

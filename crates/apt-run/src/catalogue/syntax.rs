@@ -32,13 +32,23 @@ fn lexical(kind: &Kind) -> Option<Text> {
             say("APT0004", "a decimal point cannot stand here").hint("a comma may be missing before it")
         }
         Kind::IllegalCharacter(character) => {
-            say("APT0005", format!("the character {character:?} is not part of the language"))
+            let said = say("APT0005", format!("the character {character:?} is not part of the language"));
+            match character {
+                ';' => said.hint(
+                    "in the dialect free it separates statements: set `dialect = \"free\"` in apt-lsp.toml, or \
+                     write one statement on a line",
+                ),
+                _ => said,
+            }
         }
         Kind::UnclosedText => say("APT0006", "the quoted text is not closed"),
-        Kind::TextWordNotInColumnOne { word } => {
-            say("APT0007", format!("{word} is recognised in columns 1 to 6 only"))
-                .hint("move it to the start of the line")
-        }
+        Kind::TextWordNotInColumnOne { word } => say(
+            "APT0007",
+            format!("{word} is recognised in columns 1 to 6 only"),
+        )
+        .hint(
+            "move it to the start of the line; with `dialect = \"free\"` in apt-lsp.toml it may be indented",
+        ),
         Kind::RunsIntoSequenceField => say("APT0008", "the statement runs past column 72 and is cut there")
             .hint("end the line with $ before column 72 and go on with the next line"),
         _ => return None,
@@ -67,10 +77,11 @@ fn statement(kind: &Kind) -> Option<Text> {
             )
         }
         Kind::StructuredIf { word } => {
-            say("APT0065", format!("{word} belongs to an IF over several statements, which NCL has")).hint(
-                "no dialect here has it: with `dialect = \"apt4\"` in apt-lsp.toml IF(a.EQ.b) takes one statement, \
-                 which may be JUMPTO; in all of them IF(a-b) takes three labels",
-            )
+            say("APT0065", format!("{word} belongs to an IF over several statements, which this dialect does not have"))
+                .hint(
+                    "the dialect free has it: set `dialect = \"free\"` in apt-lsp.toml, or begin the file with \
+                     `$$ apt-lsp: dialect=free`; IF(a-b) takes three labels in every dialect",
+                )
         }
         Kind::NotInDialect { word, dialect } => {
             say("APT0905", format!("{word} is not part of this dialect")).hint(format!(
@@ -106,13 +117,13 @@ fn expression(kind: &Kind) -> Option<Text> {
         Kind::TooDeep => say("APT0035", "parentheses are nested too deep")
             .hint("compute parts of it in statements of their own"),
         Kind::RelationNotAllowed(relation) if matches!(&**relation, ".NOT." | ".EOR." | ".XOR.") => {
-            say("APT0036", format!("no dialect has {relation}"))
+            say("APT0036", format!("{relation} cannot stand here"))
                 .hint("turn the relation round (.NE. for .NOT. .EQ.), or write the condition with .AND. and .OR.")
         }
         Kind::RelationNotAllowed(relation) => {
             say("APT0036", format!("{relation} belongs to a logical IF, which this dialect does not have here"))
                 .hint(
-                    "the dialect apt4 has IF(a.EQ.b)statement: set `dialect = \"apt4\"` in apt-lsp.toml, or begin the \
+                    "the dialects apt4 and free have IF(a.EQ.b)statement: set `dialect = \"apt4\"` in apt-lsp.toml, or begin the \
                      file with `$$ apt-lsp: dialect=apt4`; IF(expression) negative,zero,positive works everywhere",
                 )
         }
@@ -160,6 +171,18 @@ fn list(kind: &Kind) -> Text {
         Kind::LogicalIfStatement => say("APT0062", "a logical IF is followed by one statement"),
         Kind::ConditionalDo => say("APT0066", "DO cannot be the statement of an IF")
             .hint("the loop reaches over several statements: jump over it with IF and JUMPTO"),
+        Kind::ConditionalClause { word } => {
+            say("APT0067", format!("{word} cannot be the statement of an IF"))
+                .hint("a clause of an IF over several statements stands alone on its line")
+        }
+        Kind::RunsOnAfterWord { word } => {
+            say("APT0068", format!("{word} stands alone at the end of its statement"))
+                .hint("blanks mean nothing here: begin a new line, or put ; between the statements")
+        }
+        Kind::ThenMissing { word } => {
+            say("APT0069", format!("THEN is missing behind the condition of {word}"))
+                .hint("IF takes THEN or a statement, ELSEIF takes THEN")
+        }
         Kind::ObtainTypeExpected => say("APT0063", "OBTAIN is followed by the type of the surface")
             .hint("the form is OBTAIN,CIRCLE/C1,X,Y"),
         Kind::DoForm => say("APT0064", "the form is DO/label,index=first,last,step"),

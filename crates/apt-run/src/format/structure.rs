@@ -3,7 +3,7 @@
 use apt_syntax::{
     SyntaxTree,
     grammar::ParsedStatement,
-    statement::{Body, Part},
+    statement::{Body, Clause, Part},
     tree::StatementView,
 };
 use smol_str::SmolStr;
@@ -22,6 +22,8 @@ enum Open {
     Macro(usize),
     Loop(usize),
     Do(usize, SmolStr),
+    /// An IF over several statements, by its last clause.
+    Branch(usize),
 }
 
 /// The places of all statements. Only macros and loops that are closed count, so that a program that is being typed
@@ -69,6 +71,7 @@ impl Survey {
             Body::Macro { .. } => self.open.push(Open::Macro(index)),
             Body::Do { label, .. } => self.open.push(Open::Do(index, label.label())),
             Body::LogicalIf { then, .. } => self.part(index, then),
+            Body::Clause { clause, .. } => self.clause(index, clause),
             Body::Major { word, .. } => match word.word.spelling {
                 "LOOPST" => self.open.push(Open::Loop(index)),
                 "LOOPND" => self.close(index, |open| matches!(open, Open::Loop(_))),
@@ -81,11 +84,21 @@ impl Survey {
 
     fn close(&mut self, index: usize, is_wanted: impl Fn(&Open) -> bool) {
         let Some(at) = self.open.iter().rposition(is_wanted) else { return };
-        if let Some(Open::Macro(first) | Open::Loop(first)) = self.open.get(at) {
+        if let Some(Open::Macro(first) | Open::Loop(first) | Open::Branch(first)) = self.open.get(at) {
             // The closing statement stands below the opening one.
             self.bodies.push((first + 1, index.saturating_sub(1)));
         }
         self.open.truncate(at);
+    }
+
+    /// Clauses stand below each other, what is between them deeper.
+    fn clause(&mut self, index: usize, clause: &Clause) {
+        if !matches!(clause, Clause::If(_)) {
+            self.close(index, |open| matches!(open, Open::Branch(_)));
+        }
+        if !matches!(clause, Clause::End) {
+            self.open.push(Open::Branch(index));
+        }
     }
 
     /// Adds up the bodies.

@@ -106,7 +106,8 @@ fn marked(text: &str) -> Option<(DialectName, &'static str)> {
             return Some((DialectName::Cl, "N1,"));
         }
     }
-    // The statements of APT4 may come late in a program.
+    // The statements of APT4 may come late in a program, and an IF over several statements later still.
+    let mut apt4 = None;
     for line in text.lines() {
         let is_text = ["PARTNO", "PPRINT", "REMARK", "INSERT", "TITLES", "$$"]
             .iter()
@@ -121,17 +122,26 @@ fn marked(text: &str) -> Option<(DialectName, &'static str)> {
             .split_once(')')
             .filter(|(label, _)| !label.contains('('))
             .map_or(&*statement, |(_, rest)| rest);
+        if begins_several(after_label) {
+            return Some((DialectName::Free, "THEN"));
+        }
+        if apt4.is_some() {
+            continue;
+        }
         let start = APT4_STARTS.into_iter().find(|mark| after_label.starts_with(mark));
         let relations = after_label.starts_with("IF(");
         let part = APT4_PARTS
             .into_iter()
             .filter(|part| relations || part.starts_with('='))
             .find(|part| after_label.contains(part));
-        if let Some(mark) = start.or(part) {
-            return Some((DialectName::Apt4, mark));
-        }
+        apt4 = start.or(part);
     }
-    None
+    apt4.map(|mark| (DialectName::Apt4, mark))
+}
+
+/// Whether a statement (upper case, without blanks and label) is an IF over several statements, which APT4 does not have.
+fn begins_several(statement: &str) -> bool {
+    statement.starts_with("IF(") && statement.trim_end_matches(';').ends_with(")THEN")
 }
 
 /// `N12,WORD…`: the rows of PostWorks text.
@@ -180,6 +190,11 @@ mod tests {
         assert_eq!(name("N1    , PARTNO  SPAR\nN2    , MACHIN/ PWORKS, 12\n", "x"), DialectName::Cl);
         assert_eq!(name("PARTNO A\nIF(X.EQ.1.AND.Y.EQ.2)Z=1\n", "a.apt"), DialectName::Apt4);
         assert_eq!(name("PARTNO A\n20)DO/A,I=1,4\n", "a.apt"), DialectName::Apt4);
+        assert_eq!(
+            name("PARTNO A\nIF(X.EQ.1)Z=1\nb) if (X.gt.2) then $$ so\nENDIF\n", "a.apt"),
+            DialectName::Free
+        );
+        assert_eq!(name("PARTNO A\nPPRINT IF(X.EQ.1)THEN\nIF(X.EQ.1)THEN=1\n", "a.apt"), DialectName::Apt4);
     }
 
     #[test]

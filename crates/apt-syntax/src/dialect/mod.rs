@@ -98,6 +98,17 @@ pub enum LongNames {
     Taken,
 }
 
+/// Where PARTNO and its kin begin a statement of text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TextWords {
+    /// In columns 1-6 only, whatever follows (language reference 1.5).
+    InColumnOne,
+    /// There, and behind blanks if a blank or a slash follows (language reference 1.11 and 10.1).
+    Indented,
+    /// In any column, also behind the sequence numbers that CAM systems write.
+    Anywhere,
+}
+
 /// The switches of a dialect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Dialect {
@@ -113,8 +124,8 @@ pub struct Dialect {
     pub number_digits: Option<u16>,
     /// The most elements of a statement; none for no limit.
     pub statement_elements: Option<u32>,
-    /// PARTNO and its kin may stand in any column, with a slash or a blank after them.
-    pub text_words_anywhere: bool,
+    /// Where PARTNO and its kin may stand.
+    pub text_words: TextWords,
     /// Blanks separate words and numbers.
     pub blanks_separate: bool,
     /// `-` and `_` may stand inside names.
@@ -137,6 +148,10 @@ pub struct Dialect {
     pub words_as_names: bool,
     /// `IF(a.LT.b)statement`.
     pub logical_if: bool,
+    /// `.NOT.` in the condition of a logical IF.
+    pub logical_not: bool,
+    /// `IF(a.LT.b)THEN`, `ELSEIF(a.LT.b)THEN`, `ELSE` and `ENDIF`.
+    pub structured_if: bool,
     /// `DO/label,i=first,last,step`.
     pub do_loops: bool,
     /// Macro values may be expressions, subscripted names and nested definitions.
@@ -159,9 +174,17 @@ impl Dialect {
     /// The switches of a named dialect.
     pub const fn named(name: DialectName) -> Dialect {
         match name {
-            DialectName::Free => {
-                Dialect { long_names: LongNames::Taken, later_functions: true, ..Dialect::APT_III }
-            }
+            DialectName::Free => Dialect {
+                long_names: LongNames::Taken,
+                later_functions: true,
+                text_words: TextWords::Indented,
+                semicolon_separates: true,
+                logical_if: true,
+                logical_not: true,
+                structured_if: true,
+                do_loops: true,
+                ..Dialect::APT_III
+            },
             DialectName::Apt3 => Dialect {
                 name: DialectName::Apt3,
                 sequence_field: SequenceFieldRule::Always,
@@ -189,7 +212,7 @@ impl Dialect {
                 sequence_field: SequenceFieldRule::Never,
                 name_length: None,
                 number_digits: None,
-                text_words_anywhere: true,
+                text_words: TextWords::Anywhere,
                 blanks_separate: true,
                 long_word_characters: true,
                 quoted_text: true,
@@ -210,7 +233,7 @@ impl Dialect {
         long_names: LongNames::Refused,
         number_digits: Some(16),
         statement_elements: None,
-        text_words_anywhere: false,
+        text_words: TextWords::InColumnOne,
         blanks_separate: false,
         long_word_characters: false,
         quoted_text: false,
@@ -222,6 +245,8 @@ impl Dialect {
         later_functions: false,
         words_as_names: false,
         logical_if: false,
+        logical_not: false,
+        structured_if: false,
         do_loops: false,
         macro_value_expressions: false,
         obtain_slash: true,
@@ -234,7 +259,7 @@ impl Dialect {
 
     /// The vocabulary word of a spelling (upper case), if it is reserved in this dialect.
     pub fn word(&self, spelling: &str) -> Option<&'static Word> {
-        vocabulary::lookup(spelling).filter(|word| word.is_in(self.name))
+        vocabulary::lookup(spelling).filter(|word| word.is_reserved_in(self.name))
     }
 }
 
@@ -270,6 +295,9 @@ mod tests {
         let apt4 = Dialect::named(DialectName::Apt4);
         assert!(free.word("POINT").is_some());
         assert!(free.word("INTF").is_none(), "INTF is an array name in APT III (error 108)");
+        for spelling in ["THEN", "ELSE", "ENDIF", "DO", "UNITS"] {
+            assert!(free.word(spelling).is_none(), "{spelling} stays a name of APT III");
+        }
         assert!(apt4.word("INTF").is_some());
     }
 }

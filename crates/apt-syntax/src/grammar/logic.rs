@@ -7,7 +7,7 @@ use super::{Parsed, Parser};
 use crate::error::SyntaxErrorKind;
 use crate::kind::SyntaxKind;
 use crate::statement::{
-    Body, Condition, Element, ElementKind, Expression, MacroParameter, Name, RelationOperator,
+    Body, Clause, Condition, Element, ElementKind, Expression, MacroParameter, Name, RelationOperator,
 };
 
 type Production = (Body, SyntaxKind);
@@ -209,7 +209,8 @@ impl Parser<'_> {
             self.position = self.elements.len().saturating_sub(1);
             return self.fail(SyntaxErrorKind::StructuredIf { word: word.text.clone() });
         }
-        let logical = self.dialect.logical_if && relation;
+        let several = self.dialect.structured_if && self.ends_on_then();
+        let logical = self.dialect.logical_if && (relation || several);
         self.bump();
         if self.at(ElementKind::RightParenthesis) {
             return self.fail(SyntaxErrorKind::ConditionMissing);
@@ -217,6 +218,14 @@ impl Parser<'_> {
         if logical {
             let condition = self.condition()?;
             self.close()?;
+            if several && self.at_word("THEN") {
+                self.bump();
+                return Ok((Body::Clause { word, clause: Clause::If(condition) }, SyntaxKind::If));
+            }
+            if self.dialect.structured_if && self.at_end() {
+                return self.fail(SyntaxErrorKind::ThenMissing { word: word.word.spelling.into() });
+            }
+            self.refuse_clause()?;
             if self.at_word("DO") && self.kind(1) == Some(ElementKind::Slash) {
                 // The statements of the loop would stand outside of the condition.
                 return self.fail(SyntaxErrorKind::ConditionalDo);
@@ -231,6 +240,44 @@ impl Parser<'_> {
         self.close()?;
         let labels = self.three_labels()?;
         Ok((Body::ArithmeticIf { word, condition, labels }, SyntaxKind::If))
+    }
+
+    /// An IF over several statements cannot be the statement of a logical IF.
+    fn refuse_clause(&self) -> Parsed<()> {
+        let ends = self.elements.last().is_some_and(|last| last.text == "THEN");
+        if self.dialect.structured_if && self.at_word("IF") && ends {
+            return self.fail(SyntaxErrorKind::ConditionalClause { word: "IF".into() });
+        }
+        Ok(())
+    }
+
+    /// Whether the last element is the word THEN.
+    fn ends_on_then(&self) -> bool {
+        self.elements.last().is_some_and(|last| last.kind == ElementKind::Word && last.text == "THEN")
+    }
+
+    /// `ELSEIF(condition)THEN`
+    pub(super) fn else_if(&mut self) -> Parsed<Production> {
+        let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
+        if !self.eat(ElementKind::LeftParenthesis) || self.at(ElementKind::RightParenthesis) {
+            return self.fail(SyntaxErrorKind::ConditionMissing);
+        }
+        let condition = self.condition()?;
+        self.close()?;
+        if !self.at_word("THEN") {
+            return self.fail(SyntaxErrorKind::ThenMissing { word: word.word.spelling.into() });
+        }
+        self.bump();
+        Ok((Body::Clause { word, clause: Clause::ElseIf(condition) }, SyntaxKind::If))
+    }
+
+    /// `ELSE` and `ENDIF`
+    pub(super) fn bare_clause(&mut self, clause: Clause) -> Parsed<Production> {
+        let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
+        if !self.at_end() {
+            return self.fail(SyntaxErrorKind::RunsOnAfterWord { word: word.word.spelling.into() });
+        }
+        Ok((Body::Clause { word, clause }, SyntaxKind::If))
     }
 
     fn three_labels(&mut self) -> Parsed<[Name; 3]> {
@@ -289,8 +336,13 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    /// `(condition)` or a relation. No dialect has `.NOT.` (language reference 10.4).
+    /// `.NOT.` part, `(condition)` or a relation. APT4 has no `.NOT.` (language reference 10.4).
     fn condition_part(&mut self) -> Parsed<Condition> {
+        if self.dialect.logical_not && self.eat_relation(".NOT.") {
+            self.count_operator()?;
+            let inner = self.nested(Self::condition_part)?;
+            return Ok(Condition::Not(Box::new(inner)));
+        }
         if self.at(ElementKind::LeftParenthesis) && self.relation_in_parenthesis(self.position) {
             self.bump();
             let condition = self.condition()?;

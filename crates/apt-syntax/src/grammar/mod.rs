@@ -12,7 +12,7 @@ mod part;
 use rowan::TextRange;
 use smol_str::SmolStr;
 
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, TextWords};
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
 use crate::lexer::{self, Lexed};
@@ -125,7 +125,7 @@ pub(crate) fn parse_with_nodes(text: &str, layout: &Layout) -> (ParsedStatement,
 
 /// `  PARTNO …`: a text word that does not begin in column 1 is none, and what follows runs into it.
 fn misplaced_text_word(text: &str, elements: &[Element], layout: &Layout) -> Option<SyntaxError> {
-    if layout.dialect.text_words_anywhere || elements.first()?.kind != ElementKind::Name {
+    if layout.dialect.text_words == TextWords::Anywhere || elements.first()?.kind != ElementKind::Name {
         return None;
     }
     let trimmed = text.trim_start_matches([' ', '\t']);

@@ -8,7 +8,7 @@ use super::{MAXIMUM_DEPTH, Parsed, Parser};
 use crate::dialect::SequenceFieldRule;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
-use crate::statement::{Body, Definition, Element, ElementKind, Name, Part, Statement, WordUse};
+use crate::statement::{Body, Clause, Definition, Element, ElementKind, Name, Part, Statement, WordUse};
 use crate::vocabulary::{self, Word, WordClass};
 
 /// A body and the kind of its node.
@@ -229,6 +229,9 @@ impl Parser<'_> {
         }
         match word.spelling {
             "IF" => self.branch(),
+            "ELSEIF" => self.else_if(),
+            "ELSE" => self.bare_clause(Clause::Else),
+            "ENDIF" => self.bare_clause(Clause::End),
             "DO" => self.do_loop(),
             "CALL" => self.call(),
             "JUMPTO" | "TRANTO" => self.jump(),
@@ -262,7 +265,10 @@ impl Parser<'_> {
         if STRUCTURED_IF_WORDS.contains(&&*name)
             && matches!(self.kind(1), None | Some(ElementKind::LeftParenthesis))
         {
-            return self.fail(SyntaxErrorKind::StructuredIf { word: name });
+            return self.fail(match self.dialect.structured_if {
+                true => SyntaxErrorKind::ConditionalClause { word: name },
+                false => SyntaxErrorKind::StructuredIf { word: name },
+            });
         }
         let foreign = vocabulary::lookup(&name).filter(|word| word.class.begins_statements());
         match foreign.and_then(|word| word.dialects.first()) {

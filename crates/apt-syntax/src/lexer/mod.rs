@@ -6,6 +6,7 @@
 
 mod number;
 mod significant;
+mod soft;
 
 use rowan::TextRange;
 use smol_str::SmolStr;
@@ -53,6 +54,7 @@ pub fn lex(text: &str, layout: &Layout) -> Lexed {
     let mut lexer = Lexer { layout, characters: &reduced.characters, position: 0, lexed: Lexed::default() };
     lexer.lexed.errors = reduced.errors;
     lexer.elements();
+    lexer.soft_words();
     if let Some((word, text_part)) = reduced.text_statement {
         lexer.text_statement(text, word, text_part);
     }
@@ -231,7 +233,12 @@ impl Lexer<'_> {
 
     /// The pieces in which the element from `start` is written.
     fn pieces(&self, start: usize) -> Vec<SmolStr> {
-        let characters = self.characters.get(start..self.position).unwrap_or_default();
+        self.pieces_of(start, self.position)
+    }
+
+    /// The pieces in which the characters of a range of indices are written; none if they are one.
+    fn pieces_of(&self, start: usize, end: usize) -> Vec<SmolStr> {
+        let characters = self.characters.get(start..end).unwrap_or_default();
         let pieces: Vec<SmolStr> = characters
             .chunk_by(|before, here| before.end() == here.offset as usize)
             .map(|piece| piece.iter().map(|character| char::from(character.byte)).collect())

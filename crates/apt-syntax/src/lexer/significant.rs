@@ -3,6 +3,7 @@
 use rowan::TextRange;
 
 use super::Token;
+use crate::dialect::TextWords;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
 use crate::record::{Layout, Record, StatementForm, divide_record, sequence_prefix_length};
@@ -120,13 +121,19 @@ impl Reduced {
         }
     }
 
-    /// The word and the text. In card dialects the text is everything after column 6, verbatim; where text words may
-    /// stand anywhere, blanks, a slash and quotes around it are none of it.
+    /// The word and the text. In columns 1-6 the text is everything after the word, verbatim, and so it is behind blanks,
+    /// but for a slash; where text words may stand anywhere, blanks, a slash and quotes around it are none of it.
     fn text(&mut self, text: &str, word: usize, start: usize, end: usize, layout: &Layout) {
         let end = end.max(start);
         let word_range = text_range(word, start);
         let (mut from, mut to) = (start, end);
-        if layout.dialect.text_words_anywhere {
+        if layout.dialect.text_words == TextWords::Indented && word > 0 {
+            let inner = text.get(start..end).unwrap_or("");
+            if let Some(after) = inner.trim_start_matches([' ', '\t']).strip_prefix('/') {
+                from = end - after.len();
+            }
+        }
+        if layout.dialect.text_words == TextWords::Anywhere {
             let inner = text.get(start..end).unwrap_or("");
             let trimmed = inner.trim_start_matches([' ', '\t']);
             let trimmed = trimmed.strip_prefix('/').unwrap_or(trimmed).trim_start_matches([' ', '\t']);

@@ -45,6 +45,9 @@ pub struct Entry {
     /// Empty for all dialects.
     #[serde(default)]
     pub dialects: Vec<DialectName>,
+    /// Dialects in which the word is no reserved one.
+    #[serde(default)]
+    pub soft_in: Vec<DialectName>,
     pub help: String,
 }
 
@@ -85,11 +88,13 @@ pub fn generate_rust(toml: &str) -> Result<String, GenerateError> {
 
 fn write_entry(out: &mut String, entry: &Entry) {
     let dialects = if entry.dialects.is_empty() { DialectName::ALL.to_vec() } else { entry.dialects.clone() };
-    let dialects: Vec<String> = dialects.iter().map(|name| format!("DialectName::{name:?}")).collect();
+    let names =
+        |names: &[DialectName]| names.iter().map(|name| format!("DialectName::{name:?}")).collect::<Vec<_>>();
+    let (dialects, soft_in) = (names(&dialects), names(&entry.soft_in));
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
-        "    Word {{ spelling: {:?}, class: WordClass::{:?}, status: WordStatus::{:?}, code: {:?}, record: {:?}, forms: &{:?}, used_in: &{:?}, dialects: &[{}], help: {:?} }},",
+        "    Word {{ spelling: {:?}, class: WordClass::{:?}, status: WordStatus::{:?}, code: {:?}, record: {:?}, forms: &{:?}, used_in: &{:?}, dialects: &[{}], soft_in: &[{}], help: {:?} }},",
         entry.spelling,
         entry.class,
         entry.status,
@@ -98,6 +103,7 @@ fn write_entry(out: &mut String, entry: &Entry) {
         entry.forms,
         entry.used_in,
         dialects.join(", "),
+        soft_in.join(", "),
         entry.help,
     );
 }

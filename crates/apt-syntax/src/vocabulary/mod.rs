@@ -31,16 +31,23 @@ pub struct Word {
     pub forms: &'static [&'static str],
     /// Where a minor word is used: major words and types.
     pub used_in: &'static [&'static str],
-    /// The dialects in which the word is reserved.
+    /// The dialects that have the word.
     pub dialects: &'static [DialectName],
+    /// Those among them in which it is not reserved: it is a word where no name can stand, and else a name.
+    pub soft_in: &'static [DialectName],
     /// One line of help.
     pub help: &'static str,
 }
 
 impl Word {
-    /// Whether the word is reserved in a dialect.
+    /// Whether a dialect has the word.
     pub fn is_in(&self, dialect: DialectName) -> bool {
         self.dialects.contains(&dialect)
+    }
+
+    /// Whether the word is reserved in a dialect: it cannot be a name there.
+    pub fn is_reserved_in(&self, dialect: DialectName) -> bool {
+        self.is_in(dialect) && !self.soft_in.contains(&dialect)
     }
 }
 
@@ -187,6 +194,7 @@ mod tests {
             assert!(word.help.len() >= 12, "{} has no help", word.spelling);
             assert!(word.spelling.len() <= LONGEST_SPELLING, "{}", word.spelling);
             assert!(!word.dialects.is_empty(), "{}", word.spelling);
+            assert!(word.soft_in.iter().all(|dialect| word.is_in(*dialect)), "{}", word.spelling);
             if word.class != WordClass::Minor {
                 assert!(!word.forms.is_empty(), "{} has no form", word.spelling);
             }

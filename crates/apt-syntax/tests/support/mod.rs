@@ -3,7 +3,8 @@
 #![allow(dead_code, reason = "every test file uses its part")]
 
 use apt_syntax::statement::{
-    Argument, Body, Condition, Definition, Expression, MacroParameter, Operator, Part, Reference, Statement,
+    Argument, Body, Clause, Condition, Definition, Expression, MacroParameter, Operator, Part, Reference,
+    Statement,
 };
 use apt_syntax::{Dialect, DialectName, ParsedStatement, SyntaxTree};
 
@@ -49,6 +50,12 @@ fn part(part: &Part) -> String {
         Body::LogicalIf { condition: when, then, .. } => {
             format!("(when {} {})", condition(when), self::part(then))
         }
+        Body::Clause { word, clause } => match clause {
+            Clause::If(when) | Clause::ElseIf(when) => {
+                format!("({} {})", word.word.spelling, condition(when))
+            }
+            Clause::Else | Clause::End => format!("({})", word.word.spelling),
+        },
         Body::Do { label, index, bounds, .. } => {
             let bounds: Vec<String> = bounds.iter().map(expression).collect();
             format!("(do {} {} {})", label.text, reference(index), bounds.join(" "))
@@ -154,6 +161,7 @@ fn condition(when: &Condition) -> String {
             format!("({operator:?} {} {})", expression(left), expression(right))
         }
         Condition::And(left, right) => format!("(and {} {})", condition(left), condition(right)),
+        Condition::Not(inner) => format!("(not {})", condition(inner)),
         Condition::Or(left, right) => format!("(or {} {})", condition(left), condition(right)),
     }
 }

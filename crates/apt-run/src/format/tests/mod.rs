@@ -79,7 +79,7 @@ fn reasons_are_told() {
         assert_eq!(plan.edits, Vec::new());
         plan.kept.iter().map(|kept| (kept.statement, kept.reason)).collect::<Vec<_>>()
     };
-    assert_eq!(reasons("A=1\nA ; B=2\n", DialectName::Free), [(1, KeptReason::IllegalCharacter)]);
+    assert_eq!(reasons("A=1\nA # B=2\n", DialectName::Free), [(1, KeptReason::IllegalCharacter)]);
     assert_eq!(reasons(" REMARKABLE=3\n", DialectName::Free), [(0, KeptReason::ReadOtherwise)]);
     assert_eq!(reasons("N12 , GOTO / 1, 2, 3\n", DialectName::Cl), [(0, KeptReason::SequenceNumber)]);
     let card =
@@ -90,9 +90,26 @@ fn reasons_are_told() {
 
 #[test]
 fn statements_on_one_line_stay() {
-    let mut dialect = Dialect::named(DialectName::Free);
-    dialect.semicolon_separates = true;
-    assert_eq!(format_text("A = 1;B = 2\nC = 3\n", dialect, &FormatOptions::default()), "A = 1;B = 2\nC=3\n");
+    assert_eq!(free("A = 1;B = 2\nC = 3\n"), "A = 1;B = 2\nC=3\n");
+}
+
+#[test]
+fn the_branches_of_an_if_are_indented() {
+    assert_eq!(
+        free(
+            "if(a.eq.1)then\nb=1\nelse if(a.gt.2.and..not.b.eq.3)then\nif(b.lt.1)then\nc=1\nend if\nelse\nb=2\nendif\n"
+        ),
+        "IF(A.EQ.1)THEN\n     B=1\nELSE IF(A.GT.2.AND..NOT.B.EQ.3)THEN\n     IF(B.LT.1)THEN\n          C=1\n     END IF\nELSE\n     B=2\nENDIF\n"
+    );
+    // An IF that is being typed moves nothing.
+    assert_eq!(free("IF(A.EQ.1)THEN\nB=1\n"), "IF(A.EQ.1)THEN\nB=1\n");
+}
+
+#[test]
+fn indented_texts_stay_texts() {
+    for text in ["  PPRINT  A ; b $$ c\n", "A=1; PPRINT/x\nB=2\n", "PARTNO X\n"] {
+        assert_eq!(free(text), text);
+    }
 }
 
 #[test]
