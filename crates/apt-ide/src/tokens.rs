@@ -40,25 +40,40 @@ pub struct Token {
     pub definition: bool,
 }
 
+/// Above this many statements the tokens of the whole text leave out the marks between names (`/ , = ( )` and operators),
+/// half of all tokens: every grammar of an editor colours them. The tokens of a range have them.
+pub const MOST_STATEMENTS_WITH_MARKS: usize = 5_000;
+
+/// The most tokens of a whole text: a reply must stay small whatever the program. Editors ask for the tokens of the range
+/// that they show, which are never cut.
+pub const MOST_TOKENS: usize = 100_000;
+
 impl Analysis {
-    /// The tokens of the statements that a byte range touches, or of the whole text, in order.
+    /// The tokens of the statements that a byte range touches, or of the whole text, in order; of a long text no marks
+    /// and at most [`MOST_TOKENS`].
     pub fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
         let tree = self.document().tree();
         if tree.statement_count() == 0 {
             return Vec::new();
         }
         let whole = 0..usize::from(tree.len());
+        let is_whole = range.is_none();
+        let with_marks = !is_whole || tree.statement_count() <= MOST_STATEMENTS_WITH_MARKS;
         let range = range.unwrap_or(whole);
         let index = |offset: usize| tree.statement_at((offset.min(usize::from(tree.len())) as u32).into());
         let (first, last) = (index(range.start), index(range.end));
         let mut tokens = Vec::new();
         for statement in first..=last {
-            self.statement_tokens(&tree.statement(statement), &mut tokens);
+            self.statement_tokens(&tree.statement(statement), with_marks, &mut tokens);
+            if is_whole && tokens.len() >= MOST_TOKENS {
+                tokens.truncate(MOST_TOKENS);
+                break;
+            }
         }
         tokens
     }
 
-    fn statement_tokens(&self, view: &StatementView, tokens: &mut Vec<Token>) {
+    fn statement_tokens(&self, view: &StatementView, with_marks: bool, tokens: &mut Vec<Token>) {
         let start = usize::from(view.range().start());
         let text = view.text();
         let parsed = view.parsed();
@@ -81,7 +96,8 @@ impl Analysis {
                 ElementKind::Number => TokenClass::Number,
                 ElementKind::Text => TokenClass::String,
                 ElementKind::Bad => continue,
-                _ => TokenClass::Operator,
+                _ if with_marks => TokenClass::Operator,
+                _ => continue,
             };
             push_lines(tokens, text, start, absolute(view, element.range), class, labelled || defined);
         }

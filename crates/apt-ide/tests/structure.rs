@@ -113,6 +113,22 @@ fn tokens_cover_words_names_numbers_and_comments() {
 }
 
 #[test]
+fn tokens_of_a_long_text_are_without_marks_and_bounded() {
+    use apt_ide::tokens::{MOST_STATEMENTS_WITH_MARKS, MOST_TOKENS};
+    let long = |statements: usize| analysis(&"GOTO/1,2,A\n".repeat(statements));
+    let is_mark = |class: TokenClass| class == TokenClass::Operator;
+    let short = long(MOST_STATEMENTS_WITH_MARKS - 1);
+    assert!(short.tokens(None).iter().any(|token| is_mark(token.class)));
+    let program = long(MOST_STATEMENTS_WITH_MARKS + 1);
+    let all = program.tokens(None);
+    assert!(all.iter().all(|token| !is_mark(token.class)), "marks are left out");
+    assert_eq!(all.len(), 4 * (MOST_STATEMENTS_WITH_MARKS + 1));
+    assert_eq!(long(MOST_TOKENS).tokens(None).len(), MOST_TOKENS);
+    let seen = program.tokens(Some(0..40));
+    assert!(seen.iter().any(|token| is_mark(token.class)), "what is shown is complete");
+}
+
+#[test]
 fn tokens_of_a_range_are_those_of_the_whole() {
     let program = analysis(PROGRAM);
     let all = program.tokens(None);
