@@ -1,6 +1,6 @@
 //! Inlay hints: the values of names, behind the statements that give them.
 
-use std::ops::Range;
+use std::{ops::Range, path::Path};
 
 use apt_syntax::{
     statement::{Argument, Body, Expression},
@@ -33,7 +33,23 @@ impl Analysis {
     ///
     /// [`Cancelled`] when `cancel` said so before the end.
     pub fn inlays(&self, range: Range<usize>, cancel: Cancel<'_>) -> Result<Vec<Inlay>, Cancelled> {
-        let tree = self.document().tree();
+        self.inlays_in(None, range, cancel)
+    }
+
+    /// The same for a range of one of the files of the program; `None` is the program itself.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn inlays_in(
+        &self,
+        file: Option<&Path>,
+        range: Range<usize>,
+        cancel: Cancel<'_>,
+    ) -> Result<Vec<Inlay>, Cancelled> {
+        let Some(tree) = self.files().iter().find(|one| one.is(file)).map(|one| &one.tree) else {
+            return Ok(Vec::new());
+        };
         if tree.statement_count() == 0 {
             return Ok(Vec::new());
         }
@@ -44,7 +60,8 @@ impl Analysis {
         let mut given: FxHashMap<(u32, &str), (usize, Option<u32>, &apt_program::Value)> =
             FxHashMap::default();
         for event in program.definitions() {
-            if isns.contains(&event.origin.isn) && event.origin.source.is_none() {
+            let source = event.origin.source.as_ref().map(|source| source.path.as_path());
+            if isns.contains(&event.origin.isn) && source == file {
                 let times =
                     given.get(&(event.origin.isn, event.name.as_str())).map_or(0, |(times, ..)| *times);
                 given.insert((event.origin.isn, &event.name), (times + 1, event.subscript, &event.value));

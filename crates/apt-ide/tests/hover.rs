@@ -203,6 +203,12 @@ fn words_are_explained_inside_of_other_statements() {
         **ATANGL** At an angle, in degrees, to an axis, a line, a plane or a surface normal.
 
         modifier, code 1
+
+        here in LINE:
+        ```apt
+        LINE/point,{ATANGL,angle|SLOPE,s}[,{XAXIS|YAXIS}]
+        LINE/point,{ATANGL,angle|SLOPE,s},line
+        ```
     "#]],
     );
 }
@@ -268,4 +274,58 @@ fn a_cancelled_hover_is_no_answer() {
     let (analysis, offset) = marked("P1=POINT/1,2\nL1=LINE/P$01,ATANGL,30\nFINI\n");
     assert!(analysis.hover(offset, &|| true).is_err());
     assert!(analysis.hover(offset, &never).unwrap().is_some());
+}
+
+const JUMPS: &str = "\
+A=0
+LOOPST
+L1)A=A+1
+IF(A-3)L1,L1,L2
+B=1
+L3)B=2
+L2)GOTO/A,0,0
+LOOPND
+JUMPTO/L9
+L4)A=9
+FINI
+";
+
+#[test]
+fn labels_tell_where_they_are_who_jumps_there_and_whether_they_are_reached() {
+    let told = |mark: &str, with: &str| {
+        let (analysis, offset) = marked(&JUMPS.replacen(mark, with, 1));
+        analysis.hover(offset, &never).unwrap().unwrap().markdown
+    };
+    let first = "label `L1` of statement 3, which is reached 4 times\n\njumped to from:\n- statement 4, IF";
+    assert_eq!(told("L1)", "$0L1)"), first);
+    assert_eq!(told("IF(A-3)L1", "IF(A-3)$0L1"), first);
+    assert_eq!(
+        told("L2)", "$0L2)"),
+        "label `L2` of statement 7, which is reached once\n\njumped to from:\n- statement 4, IF"
+    );
+    assert_eq!(
+        told("L3)", "$0L3)"),
+        "label `L3` of statement 6, which is never reached\n\nnothing jumps here"
+    );
+    assert_eq!(
+        told("JUMPTO/L9", "JUMPTO/$0L9"),
+        "label `L9`, which stands before no statement\n\njumped to from:\n- statement 9, JUMPTO"
+    );
+}
+
+#[test]
+fn modifiers_are_told_in_their_forms() {
+    let told = |text: &str| {
+        let (analysis, offset) = marked(text);
+        analysis.program(&never).unwrap();
+        analysis.hover(offset, &never).unwrap().unwrap().markdown
+    };
+    let word = told("SPINDL/800,$0CLW\nFINI\n");
+    assert!(word.starts_with("**CLW** ") && word.contains("here in SPINDL:\n"), "{word}");
+    let line = told("P=POINT/1,2\nL=LINE/P,$0ATANGL,30\nFINI\n");
+    assert!(line.contains("\nLINE/point,{ATANGL,") && !line.contains("PARLEL"), "{line}");
+    let motion = told("L1=LINE/XAXIS\nL2=LINE/YAXIS\nGOLFT/L1,$0PAST,L2\nFINI\n");
+    assert!(motion.contains("GOLFT/ds,") && motion.contains("here in GOLFT:"), "{motion}");
+    // A word that is no modifier of this statement is told alone.
+    assert!(!told("SPINDL/800,$0XLARGE\nFINI\n").contains("in SPINDL"));
 }

@@ -1,6 +1,7 @@
 //! Hovers: a word's help, a name's value with the meaning of each number, a motion's result.
 
 mod canonical;
+mod label;
 mod motion;
 
 use std::ops::Range;
@@ -16,6 +17,8 @@ pub use canonical::{CanonicalForm, number};
 
 use crate::{
     Analysis, Cancel, Cancelled, absolute,
+    context::{Context, Opener},
+    forms::{Form, Typed, forms_of},
     navigation::{Spot, statement_at},
 };
 
@@ -51,13 +54,27 @@ impl Analysis {
         let range = absolute(&view, element.range);
         let markdown = match element.kind {
             ElementKind::Word => match lookup(&element.text) {
-                Some(word) if matches!(word.class, WordClass::Motion) && spot.file.is_none() => {
-                    let result = self.motion_markdown(view.isn(), cancel)?;
+                Some(word) if matches!(word.class, WordClass::Motion) => {
+                    let result = self.motion_markdown(view.isn(), spot.file, cancel)?;
                     format!("{result}{}", word_markdown(word))
+                }
+                Some(word) if word.class == WordClass::Minor => {
+                    let before: Vec<&Element> = parsed
+                        .elements
+                        .iter()
+                        .filter(|one| one.range.end() <= element.range.start())
+                        .collect();
+                    format!("{}{}", word_markdown(word), self.modifier_markdown(word, &before))
                 }
                 Some(word) => word_markdown(word),
                 None => return Ok(None),
             },
+            ElementKind::Number if self.name_at_spot(spot).is_some_and(|at| at.label) => {
+                match self.name_markdown(spot, view.isn(), cancel)? {
+                    Some(markdown) => markdown,
+                    None => return Ok(None),
+                }
+            }
             ElementKind::Name => match self.name_markdown(spot, view.isn(), cancel)? {
                 Some(markdown) => markdown,
                 None => return Ok(None),
@@ -65,6 +82,25 @@ impl Analysis {
             _ => return Ok(None),
         };
         Ok(Some(Hover { range, markdown }))
+    }
+
+    /// What a modifier is a part of: the forms that go on with it behind `before`.
+    fn modifier_markdown(&self, word: &'static Word, before: &[&Element]) -> String {
+        let Some(context) = Context::innermost(before) else { return String::new() };
+        let Opener::Word(opener) = context.opener else { return String::new() };
+        let typed = context.typed(&|name: &str| self.value_kind(name));
+        let fits = |form: &&Form| {
+            let matched = form.matched(&typed);
+            let goes_on = |index: &usize| {
+                form.parameters.get(*index).is_some_and(|one| one.atom.takes(Typed::Word(word.spelling)))
+            };
+            matched.all && matched.next.iter().any(goes_on)
+        };
+        let forms: Vec<&str> = forms_of(opener).iter().filter(fits).map(|form| form.text).collect();
+        if forms.is_empty() {
+            return String::new();
+        }
+        format!("\n\nhere in {}:\n```apt\n{}\n```", opener.spelling, forms.join("\n"))
     }
 
     /// The canonical form of the name at an offset.
@@ -150,7 +186,7 @@ impl Analysis {
         let until = if spot.file.is_none() { isn } else { u32::MAX };
         let subscript = self.subscript_at(spot, until, cancel)?;
         if at.label {
-            return Ok(Some(format!("label `{}`", at.name)));
+            return Ok(Some(self.label_markdown(spot, &at, cancel)?));
         }
         if at.scope.statements.is_none()
             && let Some((name, value)) = self.value_at(&at.name, subscript, until, cancel)?

@@ -1,6 +1,9 @@
 //! What a motion statement gave, in a hover.
 
+use std::path::Path;
+
 use apt_cldata::record::ClKind;
+use apt_program::Origin;
 use apt_run::{catalogue::story_lines, pipeline::RunResult};
 use arelem::{
     section2::Output,
@@ -18,14 +21,21 @@ const POSITIONS_SHOWN: usize = 4;
 const ENDS_SHOWN: usize = 3;
 
 impl Analysis {
-    /// The result of the motion statement with this number; empty if it gave none.
-    pub(super) fn motion_markdown(&self, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
+    /// The result of the motion statement with this number, of the program or of an included file; empty if it gave
+    /// none.
+    pub(super) fn motion_markdown(
+        &self,
+        isn: u32,
+        file: Option<&Path>,
+        cancel: Cancel<'_>,
+    ) -> Result<String, Cancelled> {
         let result = self.result(cancel, &mut |_, _| {})?;
-        let of_statement =
-            |motion: &&apt_run::pipeline::Motion| motion.origin.isn == isn && motion.origin.source.is_none();
-        let mut turns = result.motions.iter().filter(of_statement);
+        let here = |origin: &Origin| {
+            origin.isn == isn && origin.source.as_ref().map(|source| source.path.as_path()) == file
+        };
+        let mut turns = result.motions.iter().filter(|motion| here(&motion.origin));
         let count = turns.clone().count();
-        let Some(motion) = turns.next_back() else { return Ok(points(&result, isn)) };
+        let Some(motion) = turns.next_back() else { return Ok(points(&result, here)) };
         let evidence = motion.computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
         let times = if count > 1 { format!(", the last of {count} times") } else { String::new() };
         let mut text = String::new();
@@ -43,7 +53,7 @@ impl Analysis {
                 path.positions().collect()
             }
             Some(Output::Position(position)) => vec![position],
-            Some(Output::Ignored) | None => return Ok(points(&result, isn)),
+            Some(Output::Ignored) | None => return Ok(points(&result, here)),
         };
         text.push_str(&times);
         text.push_str(&verdict(evidence));
@@ -96,8 +106,9 @@ fn verdict(evidence: Option<&Evidence>) -> String {
 }
 
 /// The positions that a statement leaves on the CL file, for one that the arithmetic element need not compute.
-fn points(result: &RunResult, isn: u32) -> String {
-    let of_statement = result.records.iter().filter(|record| record.isn == isn);
+fn points(result: &RunResult, here: impl Fn(&Origin) -> bool) -> String {
+    let of_statement =
+        result.records.iter().filter(|record| result.origins.get(record.source as usize).is_some_and(&here));
     let positions: Vec<[f64; 3]> = of_statement
         .filter_map(|record| match &record.kind {
             ClKind::Motion { points, .. } => Some(points),
