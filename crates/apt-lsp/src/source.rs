@@ -25,6 +25,10 @@ pub(crate) enum TextForm {
 
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
+/// Endings of files that are programs when a folder is walked.
+pub(crate) const ENDINGS: [&str; 9] =
+    ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
+
 impl TextForm {
     /// The bytes of a text; none if it has characters that the form cannot hold.
     pub(crate) fn encode(self, text: &str) -> Option<Vec<u8>> {
@@ -60,6 +64,12 @@ pub(crate) fn decode(bytes: Vec<u8>) -> Source {
             Source { text, form: TextForm::Latin1 }
         }
     }
+}
+
+/// Whether the name of a file looks like that of a program.
+pub(crate) fn is_program(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 #[cfg(test)]

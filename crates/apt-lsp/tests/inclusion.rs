@@ -210,3 +210,71 @@ fn circles_and_missing_files_are_said_clearly() {
     assert!(found[0]["hint"].as_str().unwrap().contains("ONE includes TWO includes ONE"), "{}", found[0]);
     assert!(found[1]["hint"].as_str().unwrap().contains("searched: "), "{}", found[1]);
 }
+
+#[test]
+fn an_open_included_file_shows_what_its_program_computes() {
+    let project = Project::new("computed");
+    let library = "SAFE=2+3\nHOLE=MACRO/PX,DP=2\nGOTO/PX,0,SAFE\nGODLTA/-DP\nTERMAC\n";
+    project.folder.write("lib/lib.apt", library);
+    let mut server = Server::initialized(&json!({}));
+    let program = PROGRAM.replace("NONE", "1");
+    server.open(&project.program, &program);
+    server.open(&project.library, library);
+    let hover = server.ask("textDocument/hover", place(&project.library, 2, 1)).unwrap();
+    let text = hover["contents"]["value"].as_str().unwrap();
+    assert!(text.contains("`GOTO/1,0,5`") && text.contains("`GOTO/5,0,5`"), "{text}");
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 5, "character": 0 } });
+    let question = json!({ "textDocument": { "uri": project.library }, "range": whole });
+    let hints = server.ask("textDocument/inlayHint", question).unwrap();
+    assert_eq!((&hints[0]["position"]["line"], &hints[0]["label"]), (&json!(0), &json!("= 5")), "{hints}");
+}
+
+#[test]
+fn symbols_of_included_files_and_of_the_project_are_found() {
+    let project = Project::new("symbols");
+    project
+        .folder
+        .write("parts/other.apt", "PARTNO OTHER\nHOLES=PATERN/LINEAR,(POINT/0,0),(POINT/5,0),4\nFINI\n");
+    project.folder.write("parts/notes.txt", "HOLE=NO PROGRAM\n");
+    let mut server = project.server(&json!({}));
+    let mut named = |query: &str| -> Vec<(String, String)> {
+        let found = server.ask("workspace/symbol", json!({ "query": query })).unwrap();
+        let name = |one: &Value| one["name"].as_str().unwrap().to_owned();
+        let file =
+            |one: &Value| one["location"]["uri"].as_str().unwrap().rsplit('/').next().unwrap().to_owned();
+        found.as_array().unwrap().iter().map(|one| (name(one), file(one))).collect()
+    };
+    let pair = |name: &str, file: &str| (name.to_owned(), file.to_owned());
+    assert_eq!(named("hole"), [pair("HOLE", "lib.apt"), pair("HOLES", "other.apt")]);
+    assert_eq!(named("safe"), [pair("SAFE", "lib.apt")]);
+    assert_eq!(named("two files"), [pair("TWO FILES", "main.apt")]);
+    // An open file is there once, with the text of the editor.
+    server.open(&project.library, "DRILL=MACRO/X\nTERMAC\n");
+    let found = server.ask("workspace/symbol", json!({ "query": "HOLE" })).unwrap();
+    assert_eq!(found.as_array().unwrap().len(), 1, "{found}");
+}
+
+#[test]
+fn included_files_are_watched_and_read_again() {
+    let project = Project::new("watched");
+    let watches = json!({ "workspace": { "didChangeWatchedFiles": { "dynamicRegistration": true } } });
+    let mut server = project.server(&watches);
+    let registration = server.wait(|message| {
+        message["method"] == "client/registerCapability"
+            && message["params"]["registrations"][0]["id"] == "apt-lsp/included-files"
+    });
+    let watchers = &registration["params"]["registrations"][0]["registerOptions"]["watchers"];
+    assert_eq!(*watchers, json!([{ "globPattern": "**/lib.apt" }]));
+    server.send(&json!({ "jsonrpc": "2.0", "id": registration["id"], "result": null }));
+    let found = pushed(&mut server, &project.program, |found| !found.is_empty());
+    assert_eq!(found[0]["range"]["start"]["line"], 5, "{found:?}");
+    // Another program changes the file on the disk.
+    project.folder.write("lib/lib.apt", &LIBRARY.replace("-DP", "0,0,1"));
+    let change = json!({ "changes": [{ "uri": project.library, "type": 2 }] });
+    server.tell("workspace/didChangeWatchedFiles", change);
+    pushed(&mut server, &project.program, <[Value]>::is_empty);
+    // Without the statement nothing is left to be watched.
+    server.change(&project.program, 2, 1, 0, 10, "$$");
+    let forgotten = server.wait(|message| message["method"] == "client/unregisterCapability");
+    assert_eq!(forgotten["params"]["unregisterations"][0]["id"], "apt-lsp/included-files");
+}

@@ -225,8 +225,8 @@ impl Document for Program {
         Ok(with(control, "", |cancel, _| self.0.hover_at(spot, cancel))?)
     }
 
-    fn inlays(&self, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>> {
-        Ok(with(control, "", |cancel, _| self.0.inlays(range, cancel))?)
+    fn inlays(&self, file: Option<&Path>, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>> {
+        Ok(with(control, "", |cancel, _| self.0.inlays_in(file, range, cancel))?)
     }
 
     fn selections(&self, offset: usize) -> Vec<Range<usize>> {

@@ -125,7 +125,7 @@ impl Document for FakeDocument {
         Ok(self.places("BAD").into_iter().map(finding).collect())
     }
 
-    fn inlays(&self, range: Range<usize>, _: &Control) -> Answer<Vec<Inlay>> {
+    fn inlays(&self, _: Option<&Path>, range: Range<usize>, _: &Control) -> Answer<Vec<Inlay>> {
         let inlay =
             |place: Range<usize>| Inlay { offset: place.end, text: "= 1".into(), tooltip: "toy".into() };
         Ok(self.places("BAD").into_iter().filter(|place| range.contains(&place.start)).map(inlay).collect())

@@ -84,8 +84,8 @@ pub(crate) trait Document: Send + Sync {
     /// What stands at a place, explained.
     fn hover(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Hover>>;
 
-    /// The values that the statements in a range compute.
-    fn inlays(&self, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>>;
+    /// The values that the statements in a range of a file of the program compute; none is the program itself.
+    fn inlays(&self, file: Option<&Path>, range: Range<usize>, control: &Control) -> Answer<Vec<Inlay>>;
 
     /// What can be selected around an offset, from the least to the whole.
     fn selections(&self, offset: usize) -> Vec<Range<usize>>;

@@ -12,10 +12,7 @@ use super::console::Console;
 use crate::analysis::{Document, Language, Surroundings};
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
-use crate::source::{self, Source, TextForm};
-
-/// Endings of files that are programs when a folder is walked.
-const ENDINGS: [&str; 9] = ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
+use crate::source::{self, ENDINGS, Source, TextForm, is_program};
 
 /// The name that means standard input.
 pub(super) const STANDARD_INPUT: &str = "-";
@@ -157,9 +154,4 @@ pub(super) fn find(paths: &[PathBuf], console: &Console) -> (Vec<PathBuf>, usize
     }
     found.dedup();
     (found, unreadable)
-}
-
-fn is_program(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }

@@ -15,7 +15,7 @@ use super::documents::{self, Event, Snapshot};
 use super::job::{self, Events};
 use super::outbox::Outbox;
 use super::progress::Cancellations;
-use super::{commands, diagnostics, lifetime};
+use super::{commands, diagnostics, lifetime, symbols};
 use crate::analysis::{ActionKind, Answer, Control, Interrupted, Language, Level, Located, Refusal, Spot};
 use crate::convert::{outgoing, tokens};
 use crate::settings::{self, Values};
@@ -239,6 +239,7 @@ impl LanguageServer for Backend {
             encoding: features.encoding,
             push: !features.pulls,
             refresh: features.refresh,
+            watches: features.watches_files,
         });
         let _ = self.features.set(features);
         let options = params.initialization_options.unwrap_or_default();
@@ -290,8 +291,17 @@ impl LanguageServer for Backend {
         }
     }
 
-    async fn did_change_watched_files(&self, _: lsp::DidChangeWatchedFilesParams) {
-        self.happened(Event::ProjectChanged);
+    async fn did_change_watched_files(&self, params: lsp::DidChangeWatchedFilesParams) {
+        let paths = params.changes.iter().filter_map(|change| documents::file_path(&change.uri));
+        let is_project =
+            |path: &std::path::PathBuf| path.file_name().is_some_and(|name| name == settings::PROJECT_FILE);
+        let (project, others): (Vec<_>, Vec<_>) = paths.partition(is_project);
+        if !project.is_empty() || others.is_empty() {
+            self.happened(Event::ProjectChanged);
+        }
+        if !others.is_empty() {
+            self.happened(Event::FilesChanged(others));
+        }
     }
 
     async fn hover(&self, params: lsp::HoverParams) -> Result<Option<lsp::Hover>> {
@@ -410,7 +420,9 @@ impl LanguageServer for Backend {
     async fn inlay_hint(&self, params: lsp::InlayHintParams) -> Result<Option<Vec<lsp::InlayHint>>> {
         let range = params.range;
         self.ask("inlay hints", params.text_document.uri, move |snapshot, control| {
-            let found = snapshot.document.inlays(snapshot.index.bytes(range), control)?;
+            let file = snapshot.included_path();
+            let range = snapshot.index.bytes(range);
+            let found = snapshot.program().document.inlays(file.as_deref(), range, control)?;
             Ok(Some(outgoing::inlays(&snapshot.index, found)))
         })
         .await
@@ -438,13 +450,20 @@ impl LanguageServer for Backend {
         /// Symbols of one answer; nobody reads more, and a longer query finds fewer.
         const MOST_SYMBOLS: usize = 1_000;
         let mut found: Vec<lsp::SymbolInformation> = Vec::new();
-        for snapshot in job::snapshots(&self.events).await? {
+        let open = job::snapshots(&self.events).await?;
+        for snapshot in &open {
             let query = params.query.clone();
-            let named = job::on_snapshot("workspace symbols", snapshot, move |snapshot, _| {
-                let outline = snapshot.document.outline();
-                Ok::<_, Refusal>(outgoing::symbols_named(&snapshot.index, &snapshot.uri, outline, &query))
+            let named = job::on_snapshot("workspace symbols", snapshot.clone(), move |snapshot, _| {
+                Ok::<_, Refusal>(symbols::of_document(snapshot, &query))
             });
             found.extend(named.await?);
+        }
+        if let Some(first) = open.first().cloned() {
+            let language = Arc::clone(&self.language);
+            let closed = job::on_snapshot("workspace symbols", first, move |_, control| {
+                symbols::of_closed_files(&open, language.as_ref(), &params.query, control)
+            });
+            found.extend(closed.await?);
         }
         found.truncate(MOST_SYMBOLS);
         Ok(Some(found.into()))

@@ -26,11 +26,15 @@ pub(super) enum Event {
         push: bool,
         /// True if the client can be told to pull again.
         refresh: bool,
+        /// True if the client can watch files.
+        watches: bool,
     },
     /// The settings of the editor are these.
     Settings(Values),
     /// Project files may have changed.
     ProjectChanged,
+    /// Other files have changed on the disk.
+    FilesChanged(Vec<PathBuf>),
     /// A document was opened.
     Opened {
         /// Which.
@@ -95,6 +99,11 @@ impl Snapshot {
         self.includers.first().unwrap_or(self)
     }
 
+    /// The path of the document, if it is a file.
+    pub(super) fn path(&self) -> Option<PathBuf> {
+        file_path(&self.uri).map(|path| normalised(&path))
+    }
+
     /// The path of the document, if it is an included file.
     pub(super) fn included_path(&self) -> Option<PathBuf> {
         self.includers.first().and_then(|_| file_path(&self.uri)).map(|path| normalised(&path))
@@ -121,6 +130,8 @@ pub(super) fn start(
         encoding: Encoding::default(),
         push: false,
         refresh: false,
+        watches: false,
+        watched: BTreeSet::new(),
         files: Files::default(),
         revisions: 0,
         told: BTreeSet::new(),
@@ -137,6 +148,9 @@ struct Documents {
     encoding: Encoding,
     push: bool,
     refresh: bool,
+    watches: bool,
+    /// The names of the included files that the client watches.
+    watched: BTreeSet<String>,
     /// The texts of open documents, for programs that include them.
     files: Files,
     revisions: u64,
@@ -159,6 +173,8 @@ struct OpenDocument {
     superseded: CancellationToken,
     /// The files that it was last known to include.
     included: Vec<PathBuf>,
+    /// The revision whose included files are watched.
+    noted: u64,
 }
 
 impl Documents {
@@ -178,8 +194,9 @@ impl Documents {
 
     fn apply(&mut self, event: Event) {
         match event {
-            Event::Introduced { encoding, push, refresh } => {
+            Event::Introduced { encoding, push, refresh, watches } => {
                 (self.encoding, self.push, self.refresh) = (encoding, push, refresh);
+                self.watches = watches;
             }
             Event::Settings(settings) => {
                 self.editor = settings;
@@ -189,6 +206,7 @@ impl Documents {
                 self.read_settings_again();
                 self.reset_includers(None);
             }
+            Event::FilesChanged(paths) => self.files_changed(&paths),
             Event::Opened { uri, version, text } => self.open(&uri, version, &text),
             Event::Changed { uri, version, changes } => self.change(&uri, version, changes),
             Event::Closed(uri) => self.close(&uri),
@@ -223,6 +241,7 @@ impl Documents {
             edits: Vec::new(),
             superseded: CancellationToken::new(),
             included: Vec::new(),
+            noted: 0,
         };
         if let Some(old) = self.open.insert(uri.clone(), document) {
             old.superseded.cancel();
@@ -239,7 +258,7 @@ impl Documents {
             let rope = document.index.rope.clone();
             self.files.open(&path, Arc::new(move || rope.to_string()));
             if self.open.len() > 1 {
-                self.reset_includers(Some((uri, &path, all)));
+                self.reset_includers(Some((Some(uri), &path, all)));
             }
         }
         if self.open.len() > 1 {
@@ -248,9 +267,9 @@ impl Documents {
     }
 
     /// Lets programs that include a file, or any file at all, forget what depends on it.
-    fn reset_includers(&mut self, changed: Option<(&Uri, &Path, bool)>) {
-        let others: Vec<Uri> =
-            self.open.keys().filter(|uri| changed.is_none_or(|(own, ..)| own != *uri)).cloned().collect();
+    fn reset_includers(&mut self, changed: Option<(Option<&Uri>, &Path, bool)>) {
+        let other = |uri: &&Uri| changed.is_none_or(|(own, ..)| own != Some(*uri));
+        let others: Vec<Uri> = self.open.keys().filter(other).cloned().collect();
         for uri in others {
             let included = self.included(&uri);
             let Some(document) = self.open.get(&uri) else { continue };
@@ -263,6 +282,46 @@ impl Documents {
                 let analysed = analysed.with_changed_files();
                 self.supersede(&uri, |document| document.analysed = Some(analysed));
             }
+        }
+    }
+
+    /// Files have changed on the disk: programs that include one are evaluated again, unless it is open. A file that
+    /// nobody includes yet, or that is gone, may be one that was missing, or hide another one no more.
+    fn files_changed(&mut self, paths: &[PathBuf]) {
+        for path in paths.iter().map(|path| normalised(path)) {
+            if self.open.values().any(|document| document.path.as_ref() == Some(&path)) {
+                continue;
+            }
+            let known = self.open.values().any(|document| document.included.contains(&path));
+            self.reset_includers(Some((None, &path, !known || !path.exists())));
+        }
+        if self.refresh && !self.push {
+            self.outbox.tell(Notice::Refresh);
+        }
+    }
+
+    /// Has the client watch the files that the open programs include, by their names: they may lie in any folder.
+    fn watch(&mut self) {
+        let paths = self.open.values().flat_map(|document| &document.included);
+        let names = paths.filter_map(|path| path.file_name()?.to_str().map(str::to_owned));
+        let names: BTreeSet<String> = names.collect();
+        if names != self.watched {
+            let again = !self.watched.is_empty();
+            self.watched.clone_from(&names);
+            self.outbox.tell(Notice::Watch { names: names.into_iter().collect(), again });
+        }
+    }
+
+    /// Finds out which files a document includes, once for each of its revisions, and has them watched.
+    fn note_included(&mut self, uri: &Uri) {
+        let Some(document) = self.open.get(uri) else { return };
+        let revision = document.revision;
+        if document.noted != revision {
+            self.included(uri);
+            if let Some(document) = self.open.get_mut(uri) {
+                document.noted = revision;
+            }
+            self.watch();
         }
     }
 
@@ -330,7 +389,7 @@ impl Documents {
         document.superseded.cancel();
         if let Some(path) = &document.path {
             self.files.close(path);
-            self.reset_includers(Some((uri, path, true)));
+            self.reset_includers(Some((Some(uri), path, true)));
         }
         let freed =
             |other: &OpenDocument| other.path.as_ref().is_some_and(|path| document.included.contains(path));
@@ -363,6 +422,9 @@ impl Documents {
     fn plain_snapshot(&mut self, uri: &Uri) -> Option<Snapshot> {
         let uris = self.open.iter().filter_map(|(uri, one)| Some((one.path.clone()?, uri.clone())));
         let uris = Uris(Arc::new(uris.collect()));
+        if self.watches {
+            self.note_included(uri);
+        }
         let document = self.open.get_mut(uri)?;
         let analysed = document.analysis(self.language.as_ref(), uri, &self.files);
         Some(Snapshot {

@@ -14,6 +14,7 @@ mod job;
 mod lifetime;
 mod outbox;
 mod progress;
+mod symbols;
 #[cfg(test)]
 mod tests;
 

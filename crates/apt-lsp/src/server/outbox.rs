@@ -2,9 +2,11 @@
 //!
 //! Those who tell something only put it here; nobody who handles a message ever waits for the client.
 
+use serde_json::json;
 use tokio::sync::mpsc;
 use tower_lsp::Client;
-use tower_lsp::ls_types::{Diagnostic, MessageType, Uri};
+use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::{Diagnostic, MessageType, Registration, Unregistration, Uri};
 
 /// Something to tell.
 #[derive(Debug)]
@@ -24,6 +26,33 @@ pub(super) enum Notice {
     Show(String),
     /// The findings of clients that pull are out of date.
     Refresh,
+    /// Included files are to be watched, by name.
+    Watch {
+        /// All of them.
+        names: Vec<String>,
+        /// Whether others were watched before.
+        again: bool,
+    },
+}
+
+/// Registers the watching of included files anew.
+async fn watch_included(client: &Client, names: &[String], again: bool) -> Result<()> {
+    const ID: &str = "apt-lsp/included-files";
+    const METHOD: &str = "workspace/didChangeWatchedFiles";
+    if again {
+        let old = Unregistration { id: ID.to_owned(), method: METHOD.to_owned() };
+        client.unregister_capability(vec![old]).await?;
+    }
+    if names.is_empty() {
+        return Ok(());
+    }
+    let watchers: Vec<_> = names.iter().map(|name| json!({ "globPattern": format!("**/{name}") })).collect();
+    let registration = Registration {
+        id: ID.to_owned(),
+        method: METHOD.to_owned(),
+        register_options: Some(json!({ "watchers": watchers })),
+    };
+    client.register_capability(vec![registration]).await
 }
 
 /// The way into the outbox.
@@ -34,6 +63,16 @@ impl Outbox {
     /// Starts the task that empties the outbox.
     pub(super) fn start(client: Client) -> Self {
         let (sender, mut waiting) = mpsc::unbounded_channel();
+        let (watching, mut to_watch) = mpsc::unbounded_channel::<(Vec<String>, bool)>();
+        let watcher = client.clone();
+        tokio::spawn(async move {
+            while let Some((names, again)) = to_watch.recv().await {
+                if let Err(error) = watch_included(&watcher, &names, again).await {
+                    let text = format!("the client does not watch included files: {error}");
+                    watcher.log_message(MessageType::WARNING, text).await;
+                }
+            }
+        });
         tokio::spawn(async move {
             while let Some(notice) = waiting.recv().await {
                 match notice {
@@ -46,6 +85,10 @@ impl Outbox {
                         let client = client.clone();
                         // A request: its answer must not hold up the notices behind it.
                         tokio::spawn(async move { client.workspace_diagnostic_refresh().await });
+                    }
+                    Notice::Watch { names, again } => {
+                        // Requests as well; one after the other, so that the last one counts.
+                        let _ = watching.send((names, again));
                     }
                 }
             }
