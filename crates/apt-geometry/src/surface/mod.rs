@@ -6,6 +6,7 @@ mod cone;
 mod directed;
 mod poly_conic;
 mod quadric;
+mod quadric_bound;
 mod ruled;
 mod section_curve;
 mod sheet;
@@ -19,6 +20,7 @@ pub use self::{
     directed::{NoDistance, RootSelection, solve_quadratic},
     poly_conic::PolyConicSheet,
     quadric::PrincipalQuadric,
+    quadric_bound::{QuadraticFunction, Stationary},
     ruled::RuledSheet,
     tabulated::DirectrixCurve,
 };

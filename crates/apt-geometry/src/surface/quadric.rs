@@ -17,11 +17,11 @@ const MAX_ITERATIONS: u32 = 80;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrincipalQuadric {
     /// Columns are the principal axes.
-    rotation: Matrix3<f64>,
-    origin: Vec3,
-    square: Vec3,
-    linear: Vec3,
-    constant: f64,
+    pub(super) rotation: Matrix3<f64>,
+    pub(super) origin: Vec3,
+    pub(super) square: Vec3,
+    pub(super) linear: Vec3,
+    pub(super) constant: f64,
     /// The canonical coefficients, `A,B,C,D,F,G,H,P,Q,R`, for directed distances and normals.
     pub coefficients: [f64; 10],
 }

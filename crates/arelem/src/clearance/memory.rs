@@ -8,8 +8,12 @@ use std::cell::RefCell;
 
 use apt_geometry::Vec3;
 
-use super::Tool;
-use super::certify::{Face, Patch, outline};
+use super::{
+    Contact, Tool,
+    certify::{Face, Patch, outline},
+    quadric::Start,
+    tool::Piece,
+};
 
 /// How many times the last step the tool may move before the patches are looked at again.
 const FORESIGHT: f64 = 3.0;
@@ -23,6 +27,19 @@ pub(super) struct Place {
     pub(super) piece: usize,
     /// The point of contact from the tool end.
     pub(super) point: Vec3,
+    /// On which side of a circle it is, and the multiplier of its nearest point on a quadric.
+    pub(super) start: Option<Start>,
+}
+
+impl Place {
+    /// Where to begin on the circle.
+    pub(super) fn start(&self, tool: &Tool) -> Start {
+        self.start.unwrap_or_else(|| {
+            let radial = tool.split(&self.point).2;
+            let direction = [radial.dot(&tool.across[0]), radial.dot(&tool.across[1])];
+            Start { direction, multiplier: None }
+        })
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -70,6 +87,31 @@ impl Memory {
         let outline = known.outline.as_ref()?;
         let moved = (tip - outline.tip).norm();
         (moved <= outline.spread && outline.level - moved >= level).then(|| outline.patches.clone())
+    }
+
+    /// Keeps where a contact is that was proven without patches.
+    pub(super) fn remember(&self, tool: &Tool, side: f64, tip: &Vec3, place: Place) {
+        let Ok(mut memory) = self.0.try_borrow_mut() else { return };
+        match memory.as_mut() {
+            Some(known) if known.axis == tool.axis && known.side == side => {
+                (known.tip, known.place) = (*tip, place);
+            }
+            _ => *memory = Some(Known { tip: *tip, axis: tool.axis, side, place, outline: None }),
+        }
+    }
+
+    /// Keeps a contact at the tool's corner.
+    pub(super) fn remember_corner(&self, tool: &Tool, side: f64, tip: &Vec3, contact: &Contact) {
+        let center = &tool.profile.center;
+        if center.radius == 0.0 {
+            return;
+        }
+        let corner = tool.pieces.iter().position(|piece| {
+            matches!(piece, Piece::Ring { radius, height, .. } if *radius == center.radius && *height == center.height)
+        });
+        if let Some(piece) = corner {
+            self.remember(tool, side, tip, Place { piece, point: contact.tool - tip, start: None });
+        }
     }
 
     /// Keeps a contact that is proven, and the patches around it if those known do not reach so far.

@@ -7,8 +7,10 @@ mod cover;
 mod dual;
 mod matched;
 mod memory;
+mod quadric;
 mod search;
 mod tool;
+mod waves;
 
 use apt_geometry::{
     Vec3,
@@ -93,6 +95,12 @@ impl Gauge {
     /// Whether the clearance is nowhere on the tool below a level.
     pub(crate) fn certify(&self, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
         let (face, level) = (Face { surface: &self.surface, side: self.side }, level + self.thickness);
+        if let Some(posed) = quadric::Posed::new(tool, &self.surface, self.side, tip) {
+            let contact = offset_contact(tool, &self.surface, self.side, tip, Some(&self.memory)).0;
+            if contact.clearance >= level && posed.clears(level, &contact) {
+                return Certificate::Holds;
+            }
+        }
         let patches = self.memory.patches(tool, self.side, tip, level);
         certify::certify(face, tool, tip, level, patches.unwrap_or_else(|| certify::boundary(tool)))
     }
@@ -126,9 +134,19 @@ fn offset_contact(
     tip: &Vec3,
     memory: Option<&Memory>,
 ) -> (Contact, f64) {
-    closed_form::contact(tool, surface, side, tip)
-        .or_else(|| matched::contact(tool, surface, side, tip))
-        .or_else(|| dual::contact(tool, surface, side, tip))
+    if let Some(contact) = closed_form::contact(tool, surface, side, tip) {
+        return (contact, 0.0);
+    }
+    if let Some(found) = memory.and_then(|memory| quadric::contact(tool, surface, side, tip, memory)) {
+        return found;
+    }
+    if let Some(contact) = matched::contact(tool, surface, side, tip) {
+        if let Some(memory) = memory {
+            memory.remember_corner(tool, side, tip, &contact);
+        }
+        return (contact, 0.0);
+    }
+    dual::contact(tool, surface, side, tip)
         .map_or_else(|| search::contact(tool, Face { surface, side }, tip, memory), |contact| (contact, 0.0))
 }
 

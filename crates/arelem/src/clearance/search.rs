@@ -12,6 +12,7 @@ use super::{
     Contact, Shape, Tool,
     certify::{Certificate, Face, boundary, certify},
     memory::{Memory, Place},
+    quadric::Posed,
     shape,
     tool::Piece,
 };
@@ -25,7 +26,7 @@ const ANGLE_RESOLUTION: f64 = 1e-10;
 /// Bound of the searches after the first one, each from a point that was found nearer.
 const MAX_RESTARTS: u32 = 12;
 /// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
-const MISSED: f64 = 1e-9;
+pub(super) const MISSED: f64 = 1e-9;
 /// Slack of the fan of contact normals of the corner torus, radians.
 const FAN_SLACK: f64 = 1e-9;
 
@@ -82,7 +83,7 @@ pub(super) fn contact(tool: &Tool, face: Face<'_>, tip: &Vec3, memory: Option<&M
         return (Contact { clearance, gradient, tool: *tip, surface: foot.point }, f64::INFINITY);
     };
     if let (Some(memory), Proof::Within(missed)) = (memory, &proof) {
-        let place = Place { piece: search.best.piece, point: contact.tool - tip };
+        let place = Place { piece: search.best.piece, point: contact.tool - tip, start: None };
         memory.keep(face, tool, tip, place, search.best.value - missed);
     }
     let missed = match proof {
@@ -120,8 +121,15 @@ impl Search<'_> {
     /// Looks for places that are nearer than the nearest found, until there are none.
     fn complete(&mut self, memory: Option<&Memory>) -> Proof {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
+        let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
             let level = self.best.value - slack;
+            if let Some(posed) = &posed
+                && let Some(contact) = &self.best.contact
+                && posed.clears(level, contact)
+            {
+                return Proof::Within(slack);
+            }
             let patches = memory.and_then(|m| m.patches(self.tool, self.side, self.tip, level));
             let patches = patches.unwrap_or_else(|| boundary(self.tool));
             let face = Face { surface: self.surface, side: self.side };

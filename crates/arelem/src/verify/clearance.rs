@@ -26,7 +26,7 @@ pub(super) enum Surface {
     /// Centre and radius.
     Sphere(Vec3, f64),
     /// Cylinder or cone.
-    Pencil(Pencil),
+    Pencil(Box<Pencil>),
     /// Quadric with principal axes.
     Quadric(Box<PrincipalQuadric>),
     /// Tabulated cylinder, ruled or polyconic surface.
@@ -44,6 +44,17 @@ pub(super) enum Shape {
     Concave,
     /// Nothing known beyond Lipschitz 1.
     Free,
+}
+
+impl Convexity {
+    /// How the clearance from a quadric of this convexity varies along straight moves.
+    pub(super) fn shape(self, side: f64) -> Shape {
+        match (self, side > 0.0) {
+            (Self::Inner, true) | (Self::Outer, false) => Shape::Convex,
+            (Self::Inner | Self::InnerPair, false) | (Self::Outer | Self::OuterPair, true) => Shape::Concave,
+            _ => Shape::Free,
+        }
+    }
 }
 
 /// A clearance with its unit gradient (the surface normal at the contact, towards the tool) and a bound of its error.
@@ -80,14 +91,14 @@ impl Surface {
                 if !(finite(&c.point) && radius.is_finite() && radius > 0.0) {
                     return Err(degenerate());
                 }
-                Ok(Self::Pencil(Pencil::new(c.point, axis, 1.0, radius)))
+                Ok(Self::Pencil(Box::new(Pencil::new(c.point, axis, 1.0, radius))))
             }
             Geometry::Cone(c) => {
                 let axis = unit(&c.axis).ok_or_else(degenerate)?;
                 if !(finite(&c.vertex) && c.cosine > 0.0 && c.cosine < 1.0) {
                     return Err(degenerate());
                 }
-                Ok(Self::Pencil(Pencil::new(c.vertex, axis, c.cosine, 0.0)))
+                Ok(Self::Pencil(Box::new(Pencil::new(c.vertex, axis, c.cosine, 0.0))))
             }
             Geometry::Sphere(s) => {
                 if !(finite(&s.center) && s.radius.is_finite()) {
@@ -166,12 +177,7 @@ impl Surface {
                     Shape::Concave
                 }
             }
-            Self::Quadric(quadric) => match (quadric.convexity, outside) {
-                (Convexity::Inner, true) | (Convexity::Outer, false) => Shape::Convex,
-                (Convexity::Inner | Convexity::InnerPair, false)
-                | (Convexity::Outer | Convexity::OuterPair, true) => Shape::Concave,
-                _ => Shape::Free,
-            },
+            Self::Quadric(quadric) => quadric.convexity.shape(side),
             Self::Ruled(_) => Shape::Free,
         }
     }

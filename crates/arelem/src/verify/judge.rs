@@ -9,7 +9,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
-    clearance::{Clearance, Shape, Surface},
+    clearance::{Clearance, Reading, Shape, Surface},
     span::{Extremes, Span},
     stop,
     tool::Profile,
@@ -39,6 +39,9 @@ struct Bound<'a> {
     on: bool,
     intol: f64,
     outtol: f64,
+    /// The clearance at each position, where the bands of whole vectors are judged: a position ends one vector and
+    /// begins the next.
+    readings: Vec<Reading>,
 }
 
 impl<'a> Bound<'a> {
@@ -55,7 +58,28 @@ impl<'a> Bound<'a> {
             on,
             intol: if on { wider } else { role.inside_tolerance },
             outtol: if on { wider } else { role.outside_tolerance },
+            readings: Vec::new(),
         })
+    }
+
+    /// Reads the clearance at all positions.
+    fn read(mut self, positions: &[ToolPosition], cancel: &dyn Fn() -> bool) -> Result<Self, VerifyError> {
+        let mut readings = Vec::with_capacity(positions.len());
+        let clearance = self.clearance();
+        for (k, place) in positions.iter().enumerate() {
+            if cancel() {
+                return Err(VerifyError::Cancelled);
+            }
+            let vector = k.saturating_sub(1);
+            readings.push(clearance.at(&place.tip, &place.axis).ok_or(VerifyError::NoDistance { vector })?);
+        }
+        self.readings = readings;
+        Ok(self)
+    }
+
+    /// The reading at a position that was read.
+    fn reading(&self, index: usize) -> Result<&Reading, VerifyError> {
+        self.readings.get(index).ok_or(VerifyError::NoDistance { vector: index })
     }
 
     fn clearance(&self) -> Clearance<'_> {
@@ -127,7 +151,7 @@ struct Judge<'a> {
 ///
 /// # Errors
 /// See [`VerifyError`]; an error means that the sequence could not be judged, not that it is wrong.
-pub fn verify(sequence: &CutSequence, cancel: &dyn Fn() -> bool) -> Result<Evidence, VerifyError> {
+pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Result<Evidence, VerifyError> {
     let profile = match (&sequence.part, &sequence.drive, &sequence.stop) {
         // Point to point motion needs no cutter.
         (None, None, None) => Profile::tool_end(),
@@ -142,6 +166,12 @@ pub fn verify(sequence: &CutSequence, cancel: &dyn Fn() -> bool) -> Result<Evide
     let check = match &sequence.stop {
         Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role))?),
         None => None,
+    };
+    let (part, drive) = if sequence.start_up {
+        (part, drive)
+    } else {
+        let part = part.map(|b| b.read(&positions, cancel)).transpose()?;
+        (part, drive.map(|b| b.read(&positions, cancel)).transpose()?)
     };
     for bound in [&part, &drive, &check].into_iter().flatten() {
         size = size.max(bound.surface.size());
@@ -247,7 +277,8 @@ impl Judge<'_> {
             if (self.cancel)() {
                 return Err(VerifyError::Cancelled);
             }
-            let span = Span { clearance: &clearance, from: pair[0], to: pair[1], beyond };
+            let ends = [*bound.reading(vector)?, *bound.reading(vector + 1)?];
+            let span = Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond };
             let lost = VerifyError::NoDistance { vector };
             let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
             if bound.excess(&found, guard).is_some() && found.error > last_tolerance {
@@ -361,10 +392,7 @@ impl Judge<'_> {
             let direction = motion / length;
             let mut sine = if heading.norm() > 0.0 { direction.dot(&heading) } else { 1.0 };
             if let (Some(part), Some(drive)) = (part, drive) {
-                let lost = VerifyError::NoDistance { vector };
-                let n = part.normal(&from).ok_or(lost.clone())?;
-                let m = drive.normal(&from).ok_or(lost)?;
-                let travel = n.cross(&m);
+                let travel = part.reading(vector)?.normal.cross(&drive.reading(vector)?.normal);
                 if travel.norm() > PARALLEL && heading.norm() > 0.0 {
                     let along = travel / (travel.norm() * travel.dot(&heading).signum());
                     sine = direction.dot(&along);

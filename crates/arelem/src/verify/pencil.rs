@@ -6,7 +6,12 @@
 
 use apt_geometry::Vec3;
 
-use super::tool::{Tool, perpendicular};
+use super::{
+    circle_contact,
+    clearance::{Reading, Shape},
+    quadric::{Convexity, PrincipalQuadric},
+    tool::{Tool, perpendicular},
+};
 
 /// Directions looked at before the search closes in.
 const SECTORS: usize = 16;
@@ -30,6 +35,8 @@ pub(super) struct Pencil {
     pub(super) radius: f64,
     /// Unit vectors that complete the axis to a frame.
     frame: [Vec3; 2],
+    /// The quadric about the origin that this is, both nappes of a cone.
+    form: PrincipalQuadric,
 }
 
 /// A value with the unit normal it belongs to and a bound of its error.
@@ -45,7 +52,10 @@ impl Pencil {
         let first = perpendicular(&axis);
         let frame = [first, axis.cross(&first)];
         let sine = if radius > 0.0 { 0.0 } else { (1.0 - cosine * cosine).max(0.0).sqrt() };
-        Self { origin, axis, sine, cosine, radius, frame }
+        // Scaled so that half the gradient on a cylinder is a half; on a cone any scale will do.
+        let squares = if radius > 0.0 { [0.5 / radius, 0.0] } else { [cosine * cosine, sine * sine] };
+        let form = PrincipalQuadric::round(&frame, &axis, squares, radius, Convexity::Inner);
+        Self { origin, axis, sine, cosine, radius, frame, form }
     }
 
     fn radial(&self, phi: f64) -> Vec3 {
@@ -84,6 +94,9 @@ impl Pencil {
             let (distance, normal) = self.point_distance(tip);
             return Found { value: distance - tool.profile.widest(), normal, error: 0.0 };
         }
+        if let Some(found) = self.by_circle(Shape::Convex, 1.0, &w, tool) {
+            return found;
+        }
         // The plane at φ and how it changes with φ.
         let plane = |phi: f64| {
             let n = self.normal(phi);
@@ -93,6 +106,13 @@ impl Pencil {
         let mut best = self.search(&plane, &w);
         self.raise_by_vertex(&w, tool, &mut best);
         best
+    }
+
+    /// The clearance of a tool that touches with its corner or an edge, on this nappe of a cone.
+    fn by_circle(&self, shape: Shape, side: f64, w: &Vec3, tool: &Tool<'_>) -> Option<Found> {
+        let Reading { value, normal, error } = circle_contact::at(&self.form, shape, side, w, tool)?;
+        let ours = self.sine <= 0.0 || side * normal.dot(&self.axis) < 0.0;
+        ours.then_some(Found { value, normal, error })
     }
 
     /// The greatest value of `plane` (value and derivative): each sector in which it rises first and falls last is
@@ -135,6 +155,12 @@ impl Pencil {
         if self.sine <= 0.0 && tool.axis.cross(&self.axis).norm() <= 1e-14 {
             let (distance, normal) = self.point_distance(tip);
             return Found { value: -distance - tool.profile.widest(), normal: -normal, error: 0.0 };
+        }
+        let back = -self.axis;
+        if (self.sine <= 0.0 || back.dot(&w) + tool.support(&back).0 < 0.0)
+            && let Some(found) = self.by_circle(Shape::Concave, -1.0, &w, tool)
+        {
+            return found;
         }
         let plane = |phi: f64| {
             let n = self.normal(phi);

@@ -42,6 +42,31 @@ pub(super) struct PrincipalQuadric {
     pub(super) convexity: Convexity,
 }
 
+/// A quadratic function `Σ aᵢyᵢ² + 2bᵢyᵢ + c` in principal axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lower {
+    a: Vec3,
+    b: Vec3,
+    constant: f64,
+}
+
+impl Lower {
+    /// The value at a point.
+    pub(super) fn at(&self, y: &Vec3) -> f64 {
+        self.a.component_mul(y).dot(y) + 2.0 * self.b.dot(y) + self.constant
+    }
+
+    /// Half the gradient.
+    pub(super) fn slope(&self, y: &Vec3) -> Vec3 {
+        self.a.component_mul(y) + self.b
+    }
+
+    /// The form of the squares for two directions.
+    pub(super) fn form(&self, v: &Vec3, w: &Vec3) -> f64 {
+        self.a.component_mul(v).dot(w)
+    }
+}
+
 /// A point's signed distance (positive where F > 0) and the unit gradient of that distance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointDistance {
@@ -77,16 +102,75 @@ impl PrincipalQuadric {
         (0..3).all(|i| local[i].abs() <= 1e-12 || (self.a[i] == 0.0 && self.b[i] == 0.0))
     }
 
-    fn value(&self, y: &Vec3) -> f64 {
+    /// `k (ρ² − r²) − l z²` about an axis through the origin.
+    pub(super) fn round(
+        frame: &[Vec3; 2],
+        axis: &Vec3,
+        [k, l]: [f64; 2],
+        radius: f64,
+        convexity: Convexity,
+    ) -> Self {
+        let axes = Matrix3::from_columns(&[frame[0], frame[1], *axis]);
+        Self { axes, a: [k, k, -l], b: [0.0; 3], constant: -k * radius * radius, convexity }
+    }
+
+    /// A point or direction in principal axes.
+    pub(super) fn turned_in(&self, v: &Vec3) -> Vec3 {
+        self.axes.tr_mul(v)
+    }
+
+    /// A direction given in principal axes.
+    pub(super) fn turned_out(&self, v: &Vec3) -> Vec3 {
+        self.axes * v
+    }
+
+    /// The eigenvalues.
+    pub(super) fn squares(&self) -> Vec3 {
+        Vec3::from(self.a)
+    }
+
+    /// `1/(1 + λaᵢ)`: by how much the foot draws nearer. All are positive where it is the nearest one.
+    pub(super) fn shrink(&self, lambda: f64) -> Vec3 {
+        Vec3::from_fn(|i, _| 1.0 / (1.0 + lambda * self.a[i]))
+    }
+
+    /// A first guess of the multiplier: as if F were linear, but this side of the poles. None where F is stationary.
+    pub(super) fn first_multiplier(&self, p: &Vec3) -> Option<f64> {
+        let slope = self.slope(p);
+        let guess = self.value(p) / (2.0 * slope.norm_squared());
+        let critical =
+            self.a.iter().filter(|a| *a * guess < 0.0).map(|a| 1.0 / a.abs()).fold(f64::INFINITY, f64::min);
+        guess.is_finite().then(|| guess.clamp(-0.8 * critical, 0.8 * critical))
+    }
+
+    /// A function that, times λ ≥ 0, is nowhere above the squared distance from the points with `side·F ≤ 0`: the least
+    /// `|x − y|² + λ·side·F(y)` over all y. None where that has no least value.
+    pub(super) fn lower(&self, side: f64, lambda: f64) -> Option<Lower> {
+        let k = self.shrink(side * lambda);
+        if lambda < 0.0 || k.min() <= 0.0 {
+            return None;
+        }
+        let mut lower = Lower { a: Vec3::zeros(), b: Vec3::zeros(), constant: side * self.constant };
+        for i in 0..3 {
+            lower.a[i] = side * self.a[i] * k[i];
+            lower.b[i] = side * self.b[i] * k[i];
+            lower.constant -= lambda * self.b[i] * self.b[i] * k[i];
+        }
+        Some(lower)
+    }
+
+    /// F at a point in principal axes.
+    pub(super) fn value(&self, y: &Vec3) -> f64 {
         (0..3).map(|i| (self.a[i] * y[i] + 2.0 * self.b[i]) * y[i]).sum::<f64>() + self.constant
     }
 
     /// Half gradient.
-    fn slope(&self, y: &Vec3) -> Vec3 {
+    pub(super) fn slope(&self, y: &Vec3) -> Vec3 {
         Vec3::from_fn(|i, _| self.a[i] * y[i] + self.b[i])
     }
 
-    fn foot(&self, p: &Vec3, lambda: f64) -> Vec3 {
+    /// The stationary point of `|p − y|² + λF(y)`.
+    pub(super) fn foot(&self, p: &Vec3, lambda: f64) -> Vec3 {
         Vec3::from_fn(|i, _| (p[i] - lambda * self.b[i]) / (1.0 + lambda * self.a[i]))
     }
 

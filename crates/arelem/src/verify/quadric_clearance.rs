@@ -8,7 +8,8 @@
 use apt_geometry::Vec3;
 
 use super::{
-    clearance::{Reading, Shape, Surface},
+    circle_contact,
+    clearance::{Reading, Shape},
     quadric::{PointDistance, PrincipalQuadric},
     tool::{Meridian, Tool, perpendicular},
 };
@@ -56,8 +57,11 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error: 0.0 });
     }
+    let shape = quadric.convexity.shape(side);
+    if let Some(reading) = circle_contact::at(quadric, shape, side, tip, tool) {
+        return Some(reading);
+    }
     let first = perpendicular(&tool.axis);
-    let shape = Surface::Quadric(Box::new(quadric.clone())).shape(side);
     let mut search = Search {
         quadric,
         side,

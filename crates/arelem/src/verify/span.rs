@@ -2,7 +2,7 @@
 
 use crate::sequence::ToolPosition;
 
-use super::clearance::{Clearance, Shape};
+use super::clearance::{Clearance, Reading, Shape};
 
 /// Evaluations that one extreme may cost; the gap left then is the error term.
 const EVALUATIONS: usize = 60;
@@ -71,6 +71,8 @@ pub(super) struct Span<'a> {
     pub(super) clearance: &'a Clearance<'a>,
     pub(super) from: ToolPosition,
     pub(super) to: ToolPosition,
+    /// The clearance at both.
+    pub(super) ends: [Reading; 2],
     /// A clearance beyond these decides by itself: the search need not go on.
     pub(super) beyond: [f64; 2],
 }
@@ -87,7 +89,10 @@ impl Span<'_> {
 
     fn sample(&self, t: f64) -> Option<Sample> {
         let place = between(&self.from, &self.to, t)?;
-        let reading = self.clearance.at(&place.tip, &place.axis)?;
+        self.known(t, self.clearance.at(&place.tip, &place.axis)?)
+    }
+
+    fn known(&self, t: f64, reading: Reading) -> Option<Sample> {
         let slope = if self.turns() {
             let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
             (self.value(high)? - self.value(low)?) / (high - low)
@@ -99,7 +104,7 @@ impl Span<'_> {
 
     /// Extremes to within `tolerance`; None where there is no distance.
     pub(super) fn extremes(&self, tolerance: f64) -> Option<Extremes> {
-        let (first, last) = (self.sample(0.0)?, self.sample(1.0)?);
+        let (first, last) = (self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?);
         let error = first.error.max(last.error);
         let (low, high) = (first.value.min(last.value), first.value.max(last.value));
         let shape = if self.turns() { Shape::Free } else { self.clearance.shape() };

@@ -1,0 +1,370 @@
+//! Quadrics, cylinders and cones touched by a circle of the tool: contact and proof in the principal coordinates of the
+//! surface.
+//!
+//! Contact on an edge or on the corner (a circle of balls) is found by Newton's method for azimuth and multiplier of
+//! the nearest point at once, from the last contact near by. That it is the nearest of the whole tool is shown by
+//! tangent planes for convex solids, and for all others by quadratic functions below the squared distance, which have
+//! closed bounds over whole circles and patches of the tool.
+
+use std::borrow::Cow;
+
+use apt_geometry::{
+    Vec3,
+    cutter::ProfilePoint,
+    surface::{PrincipalQuadric, QuadraticFunction, Surface},
+};
+
+use super::{
+    Contact, Shape, Tool,
+    memory::{Memory, Place},
+    search::MISSED,
+    shape,
+    tool::Piece,
+    waves::{Waves, length, turned},
+};
+
+/// Bound of Newton's method: without convergence the general search takes over.
+const MAX_ITERATIONS: u32 = 12;
+/// A last step below this, in radians and as a share of the radii of curvature, ends it: what is left is its square, and
+/// the clearance errs by the square of that.
+const NEARLY: f64 = 1e-5;
+/// Rounding of a cosine.
+const ROUNDING: f64 = 1e-12;
+/// Largest azimuth step, radians.
+const LARGEST_STEP: f64 = 0.5;
+/// Share of the way to a pole of the multiplier that one step may go.
+const TO_POLE: f64 = 0.9;
+/// Gap between contact and tangent plane, relative to the sizes, that is rounding.
+const GAP: f64 = 1e-13;
+/// Bound of the parts into which a flank of the tool is cut.
+const MAX_PARTS: u32 = 200;
+
+/// Tool and surface in the principal coordinates of the surface.
+pub(super) struct Posed<'a> {
+    form: Cow<'a, PrincipalQuadric>,
+    tool: &'a Tool,
+    side: f64,
+    tip: Vec3,
+    axis: Vec3,
+    across: [Vec3; 2],
+}
+
+/// A quadratic function with its values on the directions of the tool.
+struct Bound {
+    function: QuadraticFunction,
+    /// The form of the squares for both directions across the axis, and for both together.
+    across: [f64; 3],
+    /// The tool end from which circles are measured.
+    tip: Vec3,
+    /// What the function must not be below.
+    target: f64,
+}
+
+/// A contact on a circle.
+struct Touch {
+    contact: Contact,
+    /// Cosine of the angle between tool axis and surface normal.
+    lean: f64,
+    /// Where to begin the next time.
+    start: Start,
+}
+
+/// Where the search on a circle begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Start {
+    /// Cosine and sine of the azimuth.
+    pub(super) direction: [f64; 2],
+    /// The multiplier of the nearest point, if it is known.
+    pub(super) multiplier: Option<f64>,
+}
+
+/// The contact near the last one, if that was on a circle of the tool and the new one is proven; and how much nearer
+/// another point may be.
+pub(super) fn contact(
+    tool: &Tool,
+    surface: &Surface,
+    side: f64,
+    tip: &Vec3,
+    memory: &Memory,
+) -> Option<(Contact, f64)> {
+    let place = memory.place(tool, side)?;
+    let &Piece::Ring { radius, height, ball, fan } = tool.pieces.get(place.piece)? else { return None };
+    let convex = shape(surface, side) == Shape::Convex;
+    if convex && radius == 0.0 {
+        // One nearest point does it.
+        return None;
+    }
+    let posed = Posed::new(tool, surface, side, tip)?;
+    let Touch { contact, lean, start } = if radius == 0.0 {
+        posed.touch_on_axis(surface, height, ball)?
+    } else {
+        posed.touch(radius, height, ball, &place.start(tool))?
+    };
+    if fan.is_some() {
+        // Cosines of the polar angles, from straight down, between which the corner has its normals.
+        let down = |p: &ProfilePoint| (height - p.height) / ball;
+        if lean > down(&tool.profile.lower) + ROUNDING || lean < down(&tool.profile.upper) - ROUNDING {
+            return None;
+        }
+    }
+    let missed = if convex {
+        (posed.is_way_out(surface, &contact) && (fan.is_some() || posed.touches_by_plane(&contact, tip)))
+            .then_some(0.0)?
+    } else {
+        let slack = MISSED * (tool.radius() + tool.profile.top.height);
+        posed.clears(contact.clearance - slack, &contact).then_some(slack)?
+    };
+    let point = contact.tool - tip;
+    memory.remember(tool, side, tip, Place { piece: place.piece, point, start: Some(start) });
+    Some((contact, missed))
+}
+
+impl<'a> Posed<'a> {
+    /// `None` for surfaces that are no quadrics.
+    pub(super) fn new(tool: &'a Tool, surface: &'a Surface, side: f64, tip: &Vec3) -> Option<Self> {
+        let form = surface.principal_quadric()?;
+        let axis = form.direction_to_principal(&tool.axis);
+        let across = [0, 1].map(|k| form.direction_to_principal(&tool.across[k]));
+        let tip = form.to_principal(tip);
+        Some(Self { form, tool, side, tip, axis, across })
+    }
+
+    /// The contact of a circle of balls near a place of it: where the nearest point of the surface is stationary.
+    fn touch(&self, radius: f64, height: f64, ball: f64, start: &Start) -> Option<Touch> {
+        let squares = *self.form.squares();
+        let center = self.tip + self.axis * height;
+        let mut direction = start.direction;
+        let mut multiplier = match start.multiplier {
+            Some(known) => self.limited(0.0, known),
+            None => {
+                // The first step of Newton's method from the place itself.
+                let here = self.form.stationary(&(center + self.radial(direction) * radius), 0.0);
+                self.limited(0.0, here.value / (2.0 * here.gradient.norm_squared()))
+            }
+        };
+        for _ in 0..MAX_ITERATIONS {
+            let outward = self.radial(direction) * radius;
+            let onward = self.radial([-direction[1], direction[0]]) * radius;
+            let at = self.form.stationary(&(center + outward), multiplier);
+            if at.stretch.min() <= 0.0 {
+                return None;
+            }
+            let (g, k) = (at.gradient, at.stretch);
+            let bent = squares.component_mul(&k);
+            // Slope along the circle and F, with their derivatives by azimuth and multiplier.
+            let slope = g.dot(&onward);
+            let (slope_turn, slope_grow) = (
+                bent.component_mul(&onward).dot(&onward) - g.dot(&outward),
+                -bent.component_mul(&g).dot(&onward),
+            );
+            let (value_turn, value_grow) =
+                (2.0 * k.component_mul(&g).dot(&onward), -2.0 * k.component_mul(&g).dot(&g));
+            let determinant = slope_turn * value_grow - slope_grow * value_turn;
+            let turn = (slope_grow * at.value - slope * value_grow) / determinant;
+            let grow = (value_turn * slope - slope_turn * at.value) / determinant;
+            if !(turn.is_finite() && grow.is_finite()) {
+                return None;
+            }
+            let near = turn.abs() <= NEARLY && grow.abs() * bent.amax() <= NEARLY;
+            direction = turned(direction, turn.clamp(-LARGEST_STEP, LARGEST_STEP));
+            multiplier = self.limited(multiplier, multiplier + grow);
+            if near {
+                // A least distance, not a greatest one.
+                let curvature = slope_turn - slope_grow * value_turn / value_grow;
+                let outside = ball <= 0.0 || self.side * multiplier > 0.0;
+                return (self.side * curvature > 0.0 && outside).then(|| {
+                    self.made(center + self.radial(direction) * radius, direction, multiplier, ball)
+                });
+            }
+        }
+        None
+    }
+
+    /// The contact of a ball about a point of the axis.
+    fn touch_on_axis(&self, surface: &Surface, height: f64, ball: f64) -> Option<Touch> {
+        let center = self.form.from_principal(&(self.tip + self.axis * height));
+        let foot = surface.foot(&center);
+        let (distance, gradient) = (self.side * foot.distance, foot.normal * self.side);
+        let lean = gradient.dot(&self.tool.axis);
+        let contact = Contact {
+            clearance: distance - ball,
+            gradient,
+            tool: center - gradient * ball,
+            surface: foot.point,
+        };
+        let start = Start { direction: [1.0, 0.0], multiplier: None };
+        (ball <= 0.0 || distance > 0.0).then_some(Touch { contact, lean, start })
+    }
+
+    fn radial(&self, [cosine, sine]: [f64; 2]) -> Vec3 {
+        self.across[0] * cosine + self.across[1] * sine
+    }
+
+    fn made(&self, place: Vec3, direction: [f64; 2], multiplier: f64, ball: f64) -> Touch {
+        let at = self.form.stationary(&place, multiplier);
+        let length = at.gradient.norm();
+        let normal = at.gradient * (self.side / length);
+        // What is left of F is the last bit of the distance.
+        let distance = self.side * (multiplier * length + 0.5 * at.value / length);
+        let contact = Contact {
+            clearance: distance - ball,
+            gradient: self.form.direction_from_principal(&normal),
+            tool: self.form.from_principal(&(place - normal * ball)),
+            surface: self.form.from_principal(&(place - normal * distance)),
+        };
+        let start = Start { direction, multiplier: Some(multiplier) };
+        Touch { contact, lean: normal.dot(&self.axis), start }
+    }
+
+    /// A multiplier that stays between the poles.
+    fn limited(&self, from: f64, to: f64) -> f64 {
+        let mut next = to;
+        for a in self.form.squares().iter() {
+            if 1.0 + next * a <= (1.0 - TO_POLE) * (1.0 + from * a) {
+                next = from + TO_POLE * (-1.0 / a - from);
+            }
+        }
+        next
+    }
+
+    /// Whether a contact with a cone is one with this nappe, and not one where the tool cuts in near the vertex: there
+    /// another way out may be shorter.
+    fn is_way_out(&self, surface: &Surface, contact: &Contact) -> bool {
+        let Surface::Cone(cone) = surface else { return true };
+        let foot = contact.surface - cone.vertex;
+        foot.dot(&cone.axis) > 0.0 && (contact.clearance > 0.0 || foot.norm() > self.tool.radius())
+    }
+
+    /// Whether the tangent plane at a contact has the whole tool on one side, a convex solid being on the other: two convex
+    /// bodies are nearest where their normals match.
+    fn touches_by_plane(&self, contact: &Contact, tip: &Vec3) -> bool {
+        let (along, across, _) = self.tool.split(&contact.gradient);
+        let reach = self.tool.profile.support(across, -along).0;
+        let by_plane = contact.gradient.dot(&(tip - contact.surface)) - reach;
+        let size = self.tool.radius() + self.tool.profile.top.height + (tip - contact.surface).norm();
+        by_plane >= contact.clearance - GAP * size
+    }
+
+    /// Whether no point of the tool is nearer to the surface than a level, by bounds made from a contact. If not, there may
+    /// be one or the bounds are too weak.
+    pub(super) fn clears(&self, level: f64, contact: &Contact) -> bool {
+        let foot = self.form.to_principal(&contact.surface);
+        let steepness = self.form.stationary(&foot, 0.0).gradient.norm();
+        let towards = self.form.direction_to_principal(&contact.gradient);
+        if steepness <= 0.0 || steepness.is_nan() {
+            return false;
+        }
+        let profile = &self.tool.profile;
+        let Some(sharp) = self.bound(level, steepness, &towards) else { return false };
+        let corner = if profile.arc > 0.0 {
+            level + profile.arc > 0.0
+                && self
+                    .bound(level + profile.arc, steepness, &towards)
+                    .is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
+        } else {
+            self.floor(&sharp, &profile.lower, &towards) >= sharp.target
+        };
+        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
+        corner
+            && if profile.lower.height > 0.0 {
+                self.flank(&sharp, [&tip, &profile.lower], &towards)
+            } else {
+                self.bottom(&sharp, profile.lower.radius)
+            }
+            && (profile.top.height <= profile.upper.height
+                || self.flank(&sharp, [&profile.upper, &profile.top], &towards))
+    }
+
+    /// The function for a distance that points must keep; for a depth, F for the tool shifted out by it.
+    fn bound(&self, distance: f64, steepness: f64, towards: &Vec3) -> Option<Bound> {
+        let least = distance.max(0.0);
+        let function = self.form.distance_bound(self.side, least / steepness)?;
+        let [u, v] = &self.across;
+        Some(Bound {
+            across: [function.form(u, u), function.form(v, v), function.form(u, v)],
+            function,
+            tip: self.tip + towards * (least - distance),
+            target: least * steepness,
+        })
+    }
+
+    /// A lower bound of a function over a circle about the axis.
+    fn floor(&self, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
+        let center = bound.tip + self.axis * circle.height;
+        let middle = bound.function.at(&center);
+        let rho = circle.radius;
+        if rho == 0.0 {
+            return middle;
+        }
+        let slope = bound.function.half_gradient(&center);
+        let [u, v] = &self.across;
+        let [uu, vv, uv] = bound.across;
+        let waves = Waves {
+            constant: middle + 0.5 * rho * rho * (uu + vv),
+            first: [2.0 * rho * slope.dot(u), 2.0 * rho * slope.dot(v)],
+            second: [0.5 * rho * rho * (uu - vv), rho * rho * uv],
+        };
+        let coarse = waves.coarse_floor();
+        if coarse >= bound.target { coarse } else { waves.floor([-towards.dot(u), -towards.dot(v)]) }
+    }
+
+    /// Whether a function is nowhere inside the flat bottom below its target, if it is not on its edge: inside there is a
+    /// least value only where the function is bowl-shaped.
+    fn bottom(&self, bound: &Bound, radius: f64) -> bool {
+        let [uu, vv, uv] = bound.across;
+        let determinant = uu * vv - uv * uv;
+        if radius == 0.0 || determinant <= 0.0 || uu + vv <= 0.0 {
+            return true;
+        }
+        let slope = bound.function.half_gradient(&bound.tip);
+        let (a, b) = (slope.dot(&self.across[0]), slope.dot(&self.across[1]));
+        let (x, y) = ((uv * b - vv * a) / determinant, (uv * a - uu * b) / determinant);
+        length([x, y]) >= radius || bound.function.at(&bound.tip) + a * x + b * y >= bound.target
+    }
+
+    /// Whether a function is nowhere below its target on the patch between two circles. Along each straight line of the
+    /// patch it is a parabola whose second derivative is known.
+    fn flank(&self, bound: &Bound, [low, high]: [&ProfilePoint; 2], towards: &Vec3) -> bool {
+        let (rise, spread) = (high.height - low.height, high.radius - low.radius);
+        let [uu, vv, uv] = bound.across;
+        let along = bound.function.square.component_mul(&self.axis);
+        let tilt = length([along.dot(&self.across[0]), along.dot(&self.across[1])]);
+        let bend = rise * rise * along.dot(&self.axis)
+            + 2.0 * (rise * spread).abs() * tilt
+            + spread * spread * (0.5 * (uu + vv) + length([0.5 * (uu - vv), uv]));
+        let at = |t: f64| ProfilePoint { radius: low.radius + t * spread, height: low.height + t * rise };
+        let floor = |t: f64| self.floor(bound, &at(t), towards);
+        let (first, last) = (floor(0.0), floor(1.0));
+        if first < bound.target || last < bound.target {
+            return false;
+        }
+        let mut open = Vec::new();
+        let mut part = Some((0.0, first, 1.0, last));
+        let mut count = 0;
+        while let Some((from, start, to, end)) = part {
+            if least_between(start, end, bend * (to - from) * (to - from)) < bound.target {
+                count += 1;
+                let middle = 0.5 * (from + to);
+                let value = floor(middle);
+                if count > MAX_PARTS || value < bound.target {
+                    return false;
+                }
+                open.push((middle, value, to, end));
+                part = Some((from, start, middle, value));
+            } else {
+                part = open.pop();
+            }
+        }
+        true
+    }
+}
+
+/// Least value of a parabola between the values at both ends of [0, 1], given half its second derivative.
+fn least_between(start: f64, end: f64, bend: f64) -> f64 {
+    let ends = start.min(end);
+    if bend <= 0.0 {
+        return ends;
+    }
+    let t = 0.5 * (start - end + bend) / bend;
+    if t > 0.0 && t < 1.0 { start + (end - start - bend * (1.0 - t)) * t } else { ends }
+}

@@ -1,0 +1,341 @@
+//! A tool that touches a quadric (or cylinder or cone) with its corner or an edge: the usual case, in which one contact
+//! and one bound settle the clearance.
+//!
+//! The contact is a place of a circle of the tool with its foot on the surface, both found by Newton's method from the
+//! azimuth that faces the surface. It counts only if it is shown to be the nearest. For a convex solid the tangent plane
+//! shows it. For any other the multipliers do: of the contact's foot, of the circle, of the height on a straight piece.
+//! With multipliers the squared distance has a lower bound that is the least value of one quadratic function without
+//! conditions.
+
+use apt_geometry::Vec3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
+
+use super::{
+    clearance::{Reading, Shape},
+    quadric::{Lower, PrincipalQuadric},
+    tool::{Meridian, Tool, perpendicular},
+};
+
+/// Steps of Newton's method before the general search is asked.
+const STEPS: usize = 14;
+/// Last step, radians and relative to the radii of curvature, after which only the square of it is left.
+const LAST_STEP: f64 = 1e-6;
+/// Share of the size of the tool by which a bound may miss the contact: it counts as error.
+const SLACK: f64 = 1e-10;
+/// The same for tangent planes, which are exact.
+const PLANE_SLACK: f64 = 1e-12;
+/// Halvings of one straight piece.
+const HALVINGS: usize = 60;
+/// Rounding of the fan of the corner arc, as a sine.
+const NEARLY_IN_FAN: f64 = 1e-9;
+
+/// One position of the tool in the principal axes of the surface.
+struct Place<'a> {
+    quadric: &'a PrincipalQuadric,
+    side: f64,
+    tool: &'a Tool<'a>,
+    tip: Vec3,
+    axis: Vec3,
+    across: [Vec3; 2],
+}
+
+/// A place of the tool and its foot, in principal axes.
+#[derive(Debug, Clone, Copy)]
+struct Touch {
+    distance: f64,
+    /// Towards the tool.
+    normal: Vec3,
+    /// Half the gradient of F at the foot.
+    steepness: f64,
+    foot: Vec3,
+}
+
+/// What is asked of all points of the tool: a bound of their squared distances, from a place of the tool end.
+struct Demand {
+    lower: Lower,
+    tip: Vec3,
+    least: f64,
+}
+
+/// The clearance, if one circle of the tool is in contact and that is proven.
+pub(super) fn at(
+    quadric: &PrincipalQuadric,
+    shape: Shape,
+    side: f64,
+    tip: &Vec3,
+    tool: &Tool<'_>,
+) -> Option<Reading> {
+    let first = perpendicular(&tool.axis);
+    let place = Place {
+        quadric,
+        side,
+        tool,
+        tip: quadric.turned_in(tip),
+        axis: quadric.turned_in(&tool.axis),
+        across: [quadric.turned_in(&first), quadric.turned_in(&tool.axis.cross(&first))],
+    };
+    let size = tool.profile.reach();
+    let corner = tool.profile.corner();
+    let edges = tool.profile.edges().map(|p| (p, 0.0));
+    let mut done: Option<Meridian> = None;
+    for (p, ball) in corner.into_iter().chain(edges) {
+        if done == Some(p) {
+            continue;
+        }
+        done = Some(p);
+        let Some(touch) = place.touch(p, ball) else { continue };
+        let value = touch.distance - ball;
+        let (proven, error) = if shape == Shape::Convex {
+            let gap = PLANE_SLACK * size;
+            (place.is_beyond_plane(&touch, value - gap), gap)
+        } else {
+            (place.keeps(value - SLACK * size, &touch), SLACK * size)
+        };
+        if proven {
+            return Some(Reading { value, normal: quadric.turned_out(&touch.normal), error });
+        }
+    }
+    None
+}
+
+impl Place<'_> {
+    fn on_circle(&self, phi: f64) -> [Vec3; 2] {
+        let (s, c) = phi.sin_cos();
+        [self.across[0] * c + self.across[1] * s, self.across[1] * c - self.across[0] * s]
+    }
+
+    /// The contact with a ball about a circle near the azimuth that faces the surface.
+    fn touch(&self, [rho, height]: Meridian, ball: f64) -> Option<Touch> {
+        let center = self.tip + self.axis * height;
+        let facing = self.quadric.slope(&center) * -self.side;
+        let mut phi = facing.dot(&self.across[1]).atan2(facing.dot(&self.across[0]));
+        let mut lambda = None;
+        for _ in 0..STEPS {
+            let [out, round] = self.on_circle(phi);
+            let p = center + out * rho;
+            let multiplier = match lambda {
+                Some(known) => known,
+                None => self.quadric.first_multiplier(&p)?,
+            };
+            let k = self.quadric.shrink(multiplier);
+            if k.min() <= 0.0 {
+                return None;
+            }
+            let foot = self.quadric.foot(&p, multiplier);
+            let g = self.quadric.slope(&foot);
+            let value = self.quadric.value(&foot);
+            let along = round * rho;
+            // Both equations, slope along the circle and F, with their derivatives.
+            let curved = self.quadric.squares().component_mul(&k);
+            let matrix = Matrix2::new(
+                curved.component_mul(&along).dot(&along) - rho * g.dot(&out),
+                -curved.component_mul(&g).dot(&along),
+                2.0 * k.component_mul(&g).dot(&along),
+                -2.0 * k.component_mul(&g).dot(&g),
+            );
+            if rho <= 0.0 {
+                let grow = -value / matrix[(1, 1)];
+                let next = multiplier + grow;
+                if grow.abs() * curved.amax() <= LAST_STEP {
+                    return self.finished(&p, next, ball);
+                }
+                lambda = Some(next);
+                continue;
+            }
+            let step = matrix.try_inverse()? * Vector2::new(-g.dot(&along), -value);
+            if !(step.x.is_finite() && step.y.is_finite()) {
+                return None;
+            }
+            phi += step.x.clamp(-0.5, 0.5);
+            lambda = Some(multiplier + step.y);
+            if step.x.abs() <= LAST_STEP && step.y.abs() * curved.amax() <= LAST_STEP {
+                return self.finished(&(center + self.on_circle(phi)[0] * rho), multiplier + step.y, ball);
+            }
+        }
+        None
+    }
+
+    fn finished(&self, p: &Vec3, multiplier: f64, ball: f64) -> Option<Touch> {
+        if self.quadric.shrink(multiplier).min() <= 0.0 {
+            return None;
+        }
+        let foot = self.quadric.foot(p, multiplier);
+        let g = self.quadric.slope(&foot);
+        let steepness = g.norm();
+        let normal = g * (self.side / steepness);
+        let distance = self.side * (multiplier * steepness + 0.5 * self.quadric.value(&foot) / steepness);
+        if !distance.is_finite() || ball > 0.0 && !self.in_fan(distance, &normal) {
+            return None;
+        }
+        Some(Touch { distance, normal, steepness, foot })
+    }
+
+    /// Whether a ball of the corner has this contact normal on its arc.
+    fn in_fan(&self, distance: f64, normal: &Vec3) -> bool {
+        let height = -normal.dot(&self.axis);
+        let outward = (1.0 - height * height).max(0.0).sqrt();
+        let turned = |by: f64| [(outward - by * height).max(0.0), height + by * outward];
+        distance > 0.0
+            && [-NEARLY_IN_FAN, NEARLY_IN_FAN].iter().any(|by| self.tool.profile.fan_holds(turned(*by)))
+    }
+
+    /// Whether the whole tool is at least this far beyond the tangent plane at the foot.
+    fn is_beyond_plane(&self, touch: &Touch, least: f64) -> bool {
+        let n = self.quadric.turned_out(&touch.normal);
+        let reach = self.tool.support(&-n).0;
+        touch.normal.dot(&(self.tip - touch.foot)) - reach >= least
+    }
+
+    /// Whether every point of the tool keeps a distance from the surface.
+    fn keeps(&self, least: f64, touch: &Touch) -> bool {
+        let profile = self.tool.profile;
+        let Some(sharp) = self.demand(least, touch) else { return false };
+        let [lower, upper, top] = profile.edges();
+        let corner = match profile.corner() {
+            // The balls of the corner hold the ends of its arc.
+            Some((center, radius)) => {
+                least + radius > 0.0
+                    && self
+                        .demand(least + radius, touch)
+                        .is_some_and(|demand| self.circle(&demand, center, touch) >= demand.least)
+            }
+            None => self.circle(&sharp, lower, touch) >= sharp.least,
+        };
+        corner
+            && (lower == [0.0; 2]
+                || if lower[1] > 0.0 {
+                    self.piece(&sharp, [[0.0; 2], lower], touch)
+                } else {
+                    self.disc(&sharp, lower, touch)
+                })
+            && (upper == top || self.piece(&sharp, [upper, top], touch))
+    }
+
+    /// For a distance to keep, the bound of squared distances; for a depth allowed, F itself with the tool moved out by it.
+    fn demand(&self, distance: f64, touch: &Touch) -> Option<Demand> {
+        let kept = distance.max(0.0);
+        let lower = self.quadric.lower(self.side, kept / touch.steepness)?;
+        Some(Demand {
+            lower,
+            tip: self.tip + touch.normal * (kept - distance),
+            least: kept * touch.steepness,
+        })
+    }
+
+    /// Azimuth of a circle that faces the contact.
+    fn facing(&self, touch: &Touch) -> Vector2<f64> {
+        let n = Vector2::new(-touch.normal.dot(&self.across[0]), -touch.normal.dot(&self.across[1]));
+        n.try_normalize(0.0).unwrap_or_else(Vector2::x)
+    }
+
+    /// The quadratic form across the axis.
+    fn form(&self, lower: &Lower) -> Matrix2<f64> {
+        let [u, v] = &self.across;
+        let uv = lower.form(u, v);
+        Matrix2::new(lower.form(u, u), uv, uv, lower.form(v, v))
+    }
+
+    /// Lower bound over a circle: with the multiplier of the circle at the place that faces the contact.
+    fn circle(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> f64 {
+        let center = demand.tip + self.axis * height;
+        let middle = demand.lower.at(&center);
+        if rho <= 0.0 {
+            return middle;
+        }
+        let slope = demand.lower.slope(&center);
+        let g = Vector2::new(slope.dot(&self.across[0]), slope.dot(&self.across[1]));
+        let form = self.form(&demand.lower);
+        let mut place = self.facing(touch) * rho;
+        let mut best = f64::NEG_INFINITY;
+        // One step of Newton's method along the circle, in case that the nearest place is turned away a little.
+        for _ in 0..3 {
+            let pull = form * place + g;
+            let mu = -pull.dot(&place) / (rho * rho);
+            best = best.max(middle + least_of(&form, mu, &g) - mu * rho * rho);
+            if best >= demand.least {
+                break;
+            }
+            let round = Vector2::new(-place.y, place.x);
+            let bend = round.dot(&(form * round)) - pull.dot(&place);
+            if bend <= 0.0 {
+                break;
+            }
+            place = (place - round * (pull.dot(&round) / bend)).try_normalize(0.0).map_or(place, |d| d * rho);
+        }
+        best
+    }
+
+    /// Whether nothing within a circle is lower than demanded, if nothing on it is.
+    fn disc(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> bool {
+        let center = demand.tip + self.axis * height;
+        let slope = demand.lower.slope(&center);
+        let g = Vector2::new(slope.dot(&self.across[0]), slope.dot(&self.across[1]));
+        let form = self.form(&demand.lower);
+        let middle = demand.lower.at(&center);
+        let place = self.facing(touch) * rho;
+        let mu = (-(form * place + g).dot(&place) / (rho * rho)).max(0.0);
+        let bowl = form.m11 * form.m22 > form.m12 * form.m12 && form.trace() > 0.0;
+        // Not bowl-shaped, it is lowest on the circle.
+        !bowl || middle + least_of(&form, mu, &g) - mu * rho * rho >= demand.least
+    }
+
+    /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from
+    /// the axis and for staying between the circles.
+    fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch) -> bool {
+        let facing = self.facing(touch);
+        let mut open = vec![ends];
+        for _ in 0..HALVINGS {
+            let Some([a, b]) = open.pop() else { return true };
+            let best =
+                self.between(demand, [a, b], &facing, false).max(self.between(demand, [a, b], &facing, true));
+            if best < demand.least {
+                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+                open.extend([[middle, b], [a, middle]]);
+            }
+        }
+        open.is_empty()
+    }
+
+    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: &Vector2<f64>, upper: bool) -> f64 {
+        let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
+        let at = if upper || a[0] <= 0.0 { 1.0 } else { 0.0 };
+        let rho = a[0] + spread * at;
+        let start = demand.tip + self.axis * a[1];
+        let way = self.axis * rise;
+        let [u, v] = &self.across;
+        let lower = &demand.lower;
+        let (form, slope) = (self.form(lower), lower.slope(&start));
+        let g = Vector2::new(slope.dot(u), slope.dot(v));
+        let cross = Vector2::new(lower.form(u, &way), lower.form(v, &way));
+        let place = facing * rho;
+        let mu = -(form * place + g + cross * at).dot(&place) / (rho * rho);
+        let climb = slope.dot(&way) + cross.dot(&place) + lower.form(&way, &way) * at - mu * spread * rho;
+        let nu = (if at > 0.0 { -2.0 * climb } else { 2.0 * climb }).max(0.0);
+        let bent = lower.form(&way, &way) - mu * spread * spread + nu;
+        let matrix = Matrix3::new(
+            form.m11 + mu,
+            form.m12,
+            cross.x,
+            form.m12,
+            form.m22 + mu,
+            cross.y,
+            cross.x,
+            cross.y,
+            bent,
+        );
+        let half = Vec3::new(g.x, g.y, slope.dot(&way) - mu * a[0] * spread - 0.5 * nu);
+        let Some(factors) = matrix.cholesky() else { return f64::NEG_INFINITY };
+        lower.at(&start) - mu * a[0] * a[0] - half.dot(&factors.solve(&half))
+    }
+}
+
+/// Least value of `wᵀ(H + μ)w + 2g·w`; −∞ if there is none.
+fn least_of(form: &Matrix2<f64>, mu: f64, g: &Vector2<f64>) -> f64 {
+    let (a, b, c) = (form.m11 + mu, form.m12, form.m22 + mu);
+    let determinant = a * c - b * b;
+    if determinant > 0.0 && a + c > 0.0 {
+        -(c * g.x * g.x - 2.0 * b * g.x * g.y + a * g.y * g.y) / determinant
+    } else {
+        f64::NEG_INFINITY
+    }
+}
