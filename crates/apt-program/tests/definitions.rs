@@ -1,6 +1,7 @@
 //! Definitions in whole programs: reference systems, ZSURF, nests, canonical forms, redefinition, subscripts (language
 //! reference 2.7, 2.8, 3.3, 4.0, 4.18 and 7.6). Numbers are worked out by hand.
 
+use apt_geometry::definition::RuledFault;
 use apt_program::{Finding, FindingKind, Options, Program, Severity, Value, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 
@@ -252,4 +253,21 @@ fn numbers_that_nothing_can_be_made_of_are_warned_of() {
         assert_eq!(warning.severity, Severity::Warning, "{text}");
         assert_eq!(warning.kind, FindingKind::Doubtful { statement: word.into(), value: number }, "{text}");
     }
+}
+
+#[test]
+fn curves_of_a_ruled_surface_past_their_points_are_told_where_they_are_defined() {
+    let head = "A=PLANE/0,0,1,0\nV=VECTOR/0,0,1\nP=POINT/0,3,0\nQ=POINT/4,3,0\n";
+    let told = |first: &str| {
+        let program = run(&format!("{head}R=RLDSRF/A,{first},A,P,Q,V"));
+        let findings: Vec<_> =
+            program.findings().map(|finding| (finding.severity, finding.kind.clone())).collect();
+        assert_eq!(numbers(&program, "R").len(), 34, "defined all the same");
+        findings
+    };
+    let fault = |fault| [(Severity::Warning, FindingKind::RuledCurve { fault })];
+    assert_eq!(told("(0,0,0),(4,0,0),V"), []);
+    let off = RuledFault::OffSurface { curve: 1, distances: [1.0, 0.5] };
+    assert_eq!(told("(0,0,1),(4,0,.5),V"), fault(off));
+    assert_eq!(told("(0,0,1),(4,0,1),(0,5,1)"), fault(RuledFault::NotMet { curve: 1 }));
 }

@@ -59,3 +59,35 @@ fn no_cut_vector_on_a_curve_is_longer_than_maxdp() {
         }
     }
 }
+
+#[test]
+fn a_ruled_surface_is_what_its_directions_find_whatever_its_points() {
+    let program = |ends: [&str; 4]| {
+        let [a, b, c, d] = ends;
+        format!(
+            "CUTTER/.5,.25\nINTOL/.001\nOUTTOL/.001\nA=PLANE/0,0,1,0\nB=CYLNDR/3,0,-4,0,1,0,6\nV=VECTOR/0,0,1\n\
+             R=RLDSRF/A,(0,0,{a}),(6,0,{b}),V,B,(0,4,{c}),(6,4,{d}),V\n\
+             S=PLANE/0,1,0,2\nFROM/1,2,4\nGO/ON,S,TO,R,ON,(PLANE/1,0,0,1)\nTLON,GORGT/S,ON,(PLANE/1,0,0,5)\nFINI\n"
+        )
+    };
+    let end = (36.0_f64 - 9.0).sqrt() - 4.0;
+    let end = end.to_string();
+    let on = report(&analysis(&program(["0", "0", &end, &end]), "free")).unwrap();
+    let off = report(&analysis(&program(["-.5", "1.5", "1", ".25"]), "free")).unwrap();
+    for (report, warnings) in [(&on, 0), (&off, 2)] {
+        assert_eq!(report["ok"], true, "{}", report["diagnostics"]);
+        let told = report["diagnostics"].as_array().unwrap().iter().filter(|told| told["code"] == "APT0316");
+        assert_eq!(told.count(), warnings, "{}", report["diagnostics"]);
+        assert!(report["motions"].as_array().unwrap().iter().all(|motion| motion["verified"] == true));
+    }
+    let (on, off) = (path_of(&on), path_of(&off));
+    assert_eq!(on.len(), off.len());
+    for (one, other) in on.iter().zip(&off) {
+        assert!(
+            (0..3).all(|axis| (one.at[axis] - other.at[axis]).abs() < 1e-6),
+            "{:?} {:?}",
+            one.at,
+            other.at
+        );
+    }
+}

@@ -11,8 +11,8 @@ pub const RULED_STEADY: f64 = 0.05;
 pub const SECTION_BEYOND: f64 = 1.0;
 /// Slope over the chord, in chords, above which a section is not followed beyond its ends; no extension runs steeper.
 pub const SECTION_STEEP_BEYOND: f64 = 3.0;
-/// Distance of an end point from its section, relative to the chord, up to which the definition fits the surface: points are
-/// often given with four or five decimals.
+/// Distance of an end point from its section, relative to the chord, up to which a section that stands upright there is taken
+/// to end in it: points are often given with four or five decimals.
 pub const SECTION_MISFIT: f64 = 1e-2;
 /// How far the stations of a polyconic surface are followed before 0 and after 1.
 pub const POLYCONIC_STATIONS_BEYOND: f64 = 0.25;

@@ -18,6 +18,7 @@ mod plane_conic_points;
 mod point;
 mod round;
 mod ruled;
+mod ruled_fit;
 mod solve;
 mod tabulated;
 mod tabulated_curve;
@@ -27,6 +28,7 @@ mod vector;
 
 pub use format::{ArgumentKind, Format, Parameter, first_mismatch, formats, matching_format, type_of_next};
 pub use modifier::Modifier;
+pub use ruled_fit::{RuledFault, ruled_faults};
 
 use crate::canonical::{CanonicalError, Geometry, GeometryKind};
 
@@ -46,7 +48,7 @@ pub enum Argument {
 /// What a definition needs from the statements before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DefinitionContext {
-    /// The plane that supplies z (ZSURF), in the coordinates of the reference system in force.
+    /// The plane that supplies z (ZSURF), in the coordinates of the arguments.
     pub z_surface: crate::canonical::Plane,
 }
 

@@ -62,6 +62,12 @@ impl SectionCurve {
         known.push((0.5, height));
         known.extend(self.walk(height, 1.0));
         self.known = known;
+        // A section that runs over the whole chord is the curve, wherever the end points are: it is looked for from the
+        // chord along the direction across. One that stands upright at an end is held to the end points.
+        let [first, last] = self.reach();
+        if first <= 0.0 && last >= 1.0 {
+            return Some(());
+        }
         let ends = [self.at(0.0, 0.5).point, self.at(1.0, 0.5).point];
         let misfit = (ends[0] - self.start).norm().max((ends[1] - self.start - self.chord).norm());
         (misfit <= SECTION_MISFIT * self.chord.norm()).then_some(())

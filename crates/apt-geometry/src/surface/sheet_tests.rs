@@ -182,9 +182,9 @@ fn a_section_over_the_diameter_is_followed_to_its_ends() {
 }
 
 #[test]
-fn a_section_that_misses_its_end_points_is_degenerate() {
+fn a_section_that_does_not_reach_its_end_points_is_degenerate() {
     let astray = ruled(
-        curve(circle(0.0, 0.0, 6.0), v(-3.0, 5.0, 0.0), v(3.0, 2.0, 0.0), Vec3::y()),
+        curve(circle(0.0, 0.0, 6.0), v(-9.0, 5.0, 0.0), v(9.0, 2.0, 0.0), Vec3::y()),
         curve(plane(Vec3::y(), 1.0), v(-2.0, 1.0, 4.0), v(2.0, 1.0, 4.0), Vec3::y()),
     );
     let kind = GeometryKind::RuledSurface;

@@ -1,6 +1,9 @@
 //! The kinds of findings.
 
-use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
+use apt_geometry::{
+    canonical::GeometryKind,
+    definition::{DefinitionError, RuledFault},
+};
 use apt_syntax::error::SyntaxErrorKind;
 use smol_str::SmolStr;
 
@@ -253,6 +256,12 @@ pub enum FindingKind {
         point: usize,
         /// The jump, one over part-program units.
         jump: f64,
+    },
+    /// A curve of a RLDSRF that its surface does not have, or that runs past its end points.
+    #[error("a curve of the ruled surface: {fault:?}")]
+    RuledCurve {
+        /// What is wrong with it.
+        fault: RuledFault,
     },
     /// A word that no definition knows.
     #[error("{word} cannot stand in a definition of {kind:?}")]

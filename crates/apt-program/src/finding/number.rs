@@ -109,6 +109,7 @@ impl FindingKind {
             | Self::NotNormalised { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
+            | Self::RuledCurve { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::Endless { .. }
@@ -188,6 +189,7 @@ impl FindingKind {
             | Self::NotNormalised { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
+            | Self::RuledCurve { .. }
             | Self::NoEffect { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }

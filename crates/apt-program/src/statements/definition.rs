@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Geometry, GeometryKind, TabulatedCylinder},
-    definition::{self, Argument, DefinitionContext, DefinitionError, Modifier},
+    canonical::{Geometry, GeometryKind, RuledSurface, TabulatedCylinder},
+    definition::{self, Argument, DefinitionContext, DefinitionError, Modifier, RuledFault},
 };
 use apt_syntax::{
     TextRange,
@@ -26,6 +26,9 @@ const LEAST_CORNER: f64 = 1.0;
 /// Least jump of curvature of a spline that is told, times the shorter chord: half a radian of turn over a chord. The
 /// fairing of APT III leaves much less.
 const LEAST_CURVATURE_JUMP: f64 = 0.5;
+
+/// Parameters of one curve of a RLDSRF: surface, two end points, and the point or vector across.
+const CURVE_PARAMETERS: usize = 4;
 
 /// A target with its subscript evaluated.
 struct Target<'a> {
@@ -180,6 +183,9 @@ impl Evaluator<'_> {
                 if let Geometry::TabulatedCylinder(curve) = &geometry {
                     self.report_joints(curve, &arguments, definition.range);
                 }
+                if let Geometry::RuledSurface(surface) = &geometry {
+                    self.report_ruled_faults(surface, &items, definition.range);
+                }
                 self.report_doubtful_geometry(&geometry, &arguments, definition.range);
                 Some(Arc::new(geometry))
             }
@@ -215,6 +221,17 @@ impl Evaluator<'_> {
         {
             let (point, jump) = (worst.point, worst.curvature_jump);
             self.report(FindingKind::CurvatureJump { point, jump }, range);
+        }
+    }
+
+    /// Warns of curves of a ruled surface that are not where their points are, each at its own parameters.
+    fn report_ruled_faults(&mut self, surface: &RuledSurface, items: &[Item], range: TextRange) {
+        for fault in definition::ruled_faults(surface) {
+            let (RuledFault::NotMet { curve } | RuledFault::OffSurface { curve, .. }) = fault;
+            let of_curve = items.chunks(CURVE_PARAMETERS).nth(curve.saturating_sub(1)).unwrap_or_default();
+            let place = of_curve.first().zip(of_curve.last());
+            let place = place.map_or(range, |(first, last)| first.range.cover(last.range));
+            self.report(FindingKind::RuledCurve { fault }, place);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     canonical::GeometryKind,
-    definition::{DefinitionError, Impossible, formats},
+    definition::{DefinitionError, Impossible, RuledFault, formats},
 };
 use apt_program::finding::{Expected, FindingKind as Kind};
 
@@ -91,10 +91,33 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
             say("APT0314", format!("the curvature of the spline jumps by {} at point {point}", number(*jump)))
                 .hint("the points swing from side to side: give more of them, or use TWOPT")
         }
+        Kind::RuledCurve { fault } => ruled_curve(fault),
         Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system")
             .hint("its rows depend on each other; check for a row of zeros"),
         _ => return None,
     })
+}
+
+fn ruled_curve(fault: &RuledFault) -> Text {
+    const ORDINALS: [&str; 2] = ["first", "second"];
+    let ordinal = |curve: usize| ORDINALS.get(curve.saturating_sub(1)).copied().unwrap_or("next");
+    match fault {
+        RuledFault::NotMet { curve } => say(
+            "APT0316",
+            format!("the {} surface is not met along the direction across its chord", ordinal(*curve)),
+        )
+        .hint("the third point or the vector points from the chord to the curve; no motion can follow this surface"),
+        RuledFault::OffSurface { curve, distances: [first, second] } => say(
+            "APT0316",
+            format!(
+                "the end points of the {} curve are {} and {} away from its surface",
+                ordinal(*curve),
+                number(*first),
+                number(*second)
+            ),
+        )
+        .hint("the curve is what the direction across the chord meets of the surface, and runs past these points"),
+    }
 }
 
 fn wanted(expected: Expected) -> &'static str {

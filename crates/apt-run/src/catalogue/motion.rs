@@ -3,6 +3,7 @@
 use apt_cldata::edit::EditErrorKind;
 use apt_geometry::{
     Vec3,
+    canonical::GeometryKind,
     cutter::{CutterError, CutterWarning},
     motion::Relation,
 };
@@ -133,6 +134,13 @@ fn setting(failure: &Failure) -> Option<Text> {
         Failure::SurfaceUnsupported { role: name, kind } => {
             say("APT0608", format!("{} cannot be a {}", a_kind(*kind), role(*name)))
         }
+        Failure::SurfaceDegenerate { role: name, kind: GeometryKind::RuledSurface } => say(
+            "APT0609",
+            format!(
+                "a curve of the {}, a RLDSRF, does not reach from one end point to the other",
+                role(*name)
+            ),
+        ),
         Failure::SurfaceDegenerate { role: name, kind } => say(
             "APT0609",
             format!(

@@ -8,7 +8,7 @@ use apt_geometry::{
     Vec3,
     canonical::{
         Cone, Cylinder, Geometry, Quadric, RuledCurve,
-        extent::{SECTION_BEYOND, SECTION_MISFIT, SECTION_STEEP_BEYOND},
+        extent::{SECTION_BEYOND, SECTION_STEEP_BEYOND},
     },
 };
 use nalgebra::Matrix3;
@@ -106,11 +106,8 @@ impl Section {
         let cut = Cut::of(curve.surface)?;
         let mut section = Self { cut, start: curve.start, chord, across, reach: [0.0, 1.0] };
         section.choose()?;
-        let misfit = [0.0, 1.0].map(|s| section.height(s).map(f64::abs));
-        let most = SECTION_MISFIT * chord.norm();
-        if !misfit.iter().all(|m| m.is_some_and(|m| m <= most)) {
-            return None;
-        }
+        // The end points need not lie on the surface: the curve is what the direction across finds from the chord.
+        section.height(0.0).zip(section.height(1.0))?;
         section.reach = [section.follow(0.0, -1.0), section.follow(1.0, 1.0)];
         Some(section)
     }
