@@ -142,6 +142,8 @@ pub enum RecordKind {
         /// Its parameters.
         arguments: Vec<PostArgument>,
     },
+    /// PTONLY/1: Section 2 is not to run at all, wherever in the program this stands (language reference 7.10).
+    SkipMotion,
     /// TRANTO/label.
     Transfer(SmolStr),
     /// A motion, or a parameter that motions depend on, that could not be evaluated: Section 1 has reported why.

@@ -216,3 +216,38 @@ fn a_label_that_the_path_may_go_on_at_stays() {
     let text = "L1=LINE/0,0,1,0\nTRANTO/A\nGOTO/1,1,1\nA)GOTO/2,2,2\nFINI\n";
     assert_eq!(unroll(text, None, None).text(), text);
 }
+
+#[test]
+fn labels_of_check_surfaces_in_macros_and_loops_stay_apart() {
+    let text = "L=LINE/XAXIS\nC1=CIRCLE/5,0,1\nC2=CIRCLE/9,0,1\nZL0001=1\n\
+                M=MACRO/Y\nGOFWD/L,TO,C1,A,TO,C2,B\nA)GOTO/Y,ZL0001\nTRANTO/B\nGOTO/Y,2\nB)GOTO/Y,3\nTERMAC\n\
+                CALL/M,Y=5\nCALL/M,Y=6\nI=0\n\
+                LOOPST\nE)I=I+1\nTRANTO/F\nF)GOTO/I,7\nIF(I-2)E,G,G\nG)LOOPND\n\
+                FINI\n";
+    let expansion = unroll(text, None, None);
+    expect![[r#"
+        L=LINE/XAXIS
+        C1=CIRCLE/5,0,1
+        C2=CIRCLE/9,0,1
+        ZL0001=1
+        GOFWD/L,TO,C1,A,TO,C2,B
+        A)GOTO/5,ZL0001
+        TRANTO/B
+        GOTO/5,2
+        B)GOTO/5,3
+        GOFWD/L,TO,C1,ZL0002,TO,C2,ZL0003
+        ZL0002)GOTO/6,ZL0001
+        TRANTO/ZL0003
+        GOTO/6,2
+        ZL0003)GOTO/6,3
+        I=0
+        I=0+1
+        TRANTO/F
+        F)GOTO/1,7
+        I=1+1
+        TRANTO/ZL0004
+        ZL0004)GOTO/2,7
+        FINI
+    "#]]
+    .assert_eq(&expansion.text());
+}

@@ -135,3 +135,24 @@ fn an_expansion_shows_included_statements_with_their_origin() {
     assert_eq!(included.text(), "SAFE=5\n", "statement 3 of the program, not of the file");
     assert!(included.lines[0].origin.source.is_some());
 }
+
+#[test]
+fn read_takes_surfaces_from_the_library_in_apt4() {
+    let apt4 = |text: &str, files: &[(&'static str, &'static str)]| {
+        let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt4));
+        evaluate(&tree, &options(files), &|| false)
+    };
+    let library = [("P1", "P1=POINT/1,2,3\n"), ("L1", "READ/1,P1\nL1=LINE/P1,(POINT/0,0)\n")];
+    let program = apt4("READ/1,L1,P1\nGOTO/P1\nC=CIRCLE/CENTER,P1,TANTO,(LINE/0,0,1,0)", &library);
+    let told: Vec<_> = program.findings().filter(|one| one.severity > apt_program::Severity::Hint).collect();
+    assert!(told.is_empty(), "{told:?}");
+    assert!(["L1", "P1", "C"].iter().all(|name| program.symbols().iter().any(|(known, _)| known == name)));
+    let missing = apt4("READ/1,NIX", &library);
+    assert!(
+        missing
+            .findings()
+            .any(|one| matches!(&one.kind, FindingKind::IncludeNotFound { name, .. } if name == "NIX"))
+    );
+    let bare = apt4("READ/1", &library);
+    assert!(bare.findings().any(|one| matches!(one.kind, FindingKind::OperandCount { .. })));
+}

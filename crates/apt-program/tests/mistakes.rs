@@ -129,14 +129,18 @@ const CASES: &[Case] = &[
     ("unnamed nested pattern", "GOTO/(PATERN/LINEAR,(1,1),(2,2),5)", &[(1, 820)]),
     ("pattern of one point", "P=PATERN/LINEAR,(1,1)", &[(1, 800)]),
     ("two words of SYN", "SYN/GOLFT,GORGT", &[(1, 355)]),
+    ("a number in SYN", "SYN/3,POINT", &[(1, 19)]),
+    ("a number for the word of SYN", "SYN/A,3", &[(1, 19)]),
+    ("two names in SYN", "SYN/A,B", &[(1, 356)]),
+    ("SYN of itself", "SYN/A,SYN", &[(1, 356)]),
+    ("SYN of a used name", "A=1\nSYN/A,POINT", &[(2, 355)]),
+    ("the first pair of SYN fixes the order", "SYN/GL,GOLFT,GORGT,GR", &[(1, 355)]),
+    ("the other order of SYN", "SYN/GOLFT,GL,GR,GORGT", &[(1, 355)]),
+    ("pairs behind a wrong one", "SYN/A,B,P,POINT\nQ=P/1,2", &[(1, 356)]),
+    ("a synonym as a name", "SYN/P,POINT\nP=3", &[(2, 155)]),
+    ("a synonym as a macro variable", "SYN/P,POINT\nM=MACRO/P\nTERMAC", &[(2, 207), (3, 209)]),
     ("check surfaces without labels", "L=LINE/XAXIS\nGOLFT/L,TO,L,TO,L", &[(2, 132)]),
     ("label of a statement without motion", "TRANTO/A\nA)B=1", &[(1, 456)]),
-    (
-        "ten MACHIN",
-        "MACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\nMACHIN/A\n\
-      MACHIN/A\nMACHIN/A",
-        &[(10, 504)],
-    ),
     ("PTONLY", "PTONLY/7", &[(1, 553)]),
     ("DEBUG", "DEBUG/7", &[(1, 22)]),
     ("second PSIS operand", "P=PLANE/0,0,1,0\nPSIS/P,P", &[(2, 576)]),
@@ -291,6 +295,49 @@ fn longer_names_and_later_functions_are_taken_in_free_form() {
     };
     assert_eq!([value("RADIUS1"), value("B")], [3.0, 8.0]);
     assert!((value("C") - 4.0).abs() < 1e-12 && (value("D") - 90.0).abs() < 1e-12 && value("E") == 0.0);
+}
+
+/// Functions that later systems have (language reference 10.1 and 10.4), with their values.
+const LATER_FUNCTIONS: &[(&str, f64)] = &[
+    ("TANF(45)", 1.0),
+    ("ATAN2F(1,-1)", 135.0),
+    ("ATAN2F(-1,-1)", -135.0),
+    ("LOG10F(1000)", 3.0),
+    ("MAXF(1,7,3)", 7.0),
+    ("MINF(4,-2)", -2.0),
+    ("MODF(-7,4)", -3.0),
+    ("INTF(-2.7)", -2.0),
+    ("SIGNF(3,-2)", -3.0),
+    ("ACOSF(.5)", 60.0),
+    ("ASINF(-.5)", -30.0),
+    ("ARCOSF(0)", 90.0),
+    ("ARSINF(1)", 90.0),
+    ("COTANF(45)", 1.0),
+    ("SINB(0)", 0.0),
+    ("COSHF(0)", 1.0),
+    ("CANF(2,(POINT/4,5,6))", 5.0),
+    ("SPATF((VECTOR/1,0,0),(VECTOR/0,1,0),(VECTOR/0,0,1))", 1.0),
+];
+
+#[test]
+fn later_functions_have_their_values_in_free_form_and_are_arrays_on_cards() {
+    for (call, expected) in LATER_FUNCTIONS {
+        let program = run(&format!("X={call}\nFINI\n"));
+        assert_eq!(problems(&program), [], "{call}");
+        let values = program.symbols();
+        let found = values.iter().find(|(name, _)| name == "X").map(|(_, value)| value.clone());
+        match found {
+            Some(apt_program::Value::Scalar(value)) => {
+                assert!((value - expected).abs() < 1e-9, "{call}: {value}")
+            }
+            other => panic!("{call}: {other:?}"),
+        }
+        let in_apt_iii = ["TANF", "ATAN2F", "LOG10F"].iter().any(|name| call.starts_with(name));
+        let cards = problems(&run_as(&format!("X={call}\nFINI\n"), DialectName::Apt3));
+        // APT III takes the nest in a subscript for a name without its slash.
+        let number = if call.contains("VECTOR") { 155 } else { 108 };
+        assert_eq!(cards, if in_apt_iii { vec![] } else { vec![(1, Some(number))] }, "{call}");
+    }
 }
 
 /// Where motions are missing: `isn` of each gap.

@@ -150,7 +150,8 @@ fn an_unknown_condition_leaves_a_gap_where_the_tool_moves() {
 #[test]
 fn loops_that_never_end_are_noticed() {
     for text in ["LOOPST\nA)X=1\nIF(X.LT.2)THEN\nJUMPTO/A\nENDIF\nLOOPND", "DO/E,I=1,2\nI=1\nE)CONTIN"] {
-        let program = run(text);
+        let options = Options { statement_budget: 20_000, ..Options::default() };
+        let program = evaluate(&tree(text), &options, &|| false);
         let endless =
             program.findings().filter(|finding| matches!(finding.kind, FindingKind::Endless { .. }));
         assert_eq!(endless.count(), 1, "{text}");

@@ -49,6 +49,23 @@ fn codes(document: &Document) -> Vec<(&'static str, u32)> {
     list.iter().map(|found| (found.wording.code, found.origin.isn)).collect()
 }
 
+#[test]
+fn ptonly_leaves_the_motions_uncomputed() {
+    let text =
+        "CUTTER/.5\nL=LINE/XAXIS\nFROM/0,3,0\nGO/TO,L\nGOTO/1,1,1\nTLLFT,GOLFT/L,PAST,(LINE/5,0,5,1)\nFINI\n";
+    let whole = run(&document(text));
+    assert!(!whole.records.is_empty() && !whole.motions.is_empty());
+    for program in [format!("PTONLY/1\n{text}"), text.replace("GOTO/1", "PTONLY/1\nGOTO/1")] {
+        let document = document(&program);
+        let result = run(&document);
+        assert!(result.records.is_empty() && result.motions.is_empty() && result.findings.is_empty());
+        assert!(codes(&document).iter().any(|(code, _)| *code == "APT0911"), "{:?}", codes(&document));
+    }
+    let again = document(&format!("PTONLY/2\n{text}"));
+    assert_eq!(run(&again).motions.len(), whole.motions.len());
+    assert!(codes(&again).contains(&("APT0912", 1)));
+}
+
 const TWO_CHECKS: &str = "\
 CUTTER/.5
 L1=LINE/XAXIS

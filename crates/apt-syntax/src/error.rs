@@ -88,6 +88,14 @@ pub enum SyntaxErrorKind {
         /// The most.
         limit: u32,
     },
+    /// The statement has more nested definitions and points than the dialect allows.
+    #[error("{count} nests, more than {limit}")]
+    TooManyNests {
+        /// How many it has.
+        count: u32,
+        /// The most.
+        limit: u32,
+    },
     /// `label)` without a statement.
     #[error("label without a statement")]
     LabelWithoutStatement,
@@ -293,7 +301,7 @@ impl SyntaxErrorKind {
             Kind::TwoOperators => 54,
             Kind::TooManyPowers => 56,
             Kind::FunctionWithoutParentheses(_) => 59,
-            Kind::TooDeep => 70,
+            Kind::TooDeep | Kind::TooManyNests { .. } => 70,
             Kind::WordNotAllowed(_) => 76,
             Kind::EmptyParentheses | Kind::UnexpectedMark(_) | Kind::ConditionMissing => 78,
             Kind::WordRequired => 81,
@@ -353,6 +361,7 @@ impl SyntaxErrorKind {
                 | SyntaxErrorKind::NameTooLong { .. }
                 | SyntaxErrorKind::NumberTooLong { .. }
                 | SyntaxErrorKind::TooManyElements { .. }
+                | SyntaxErrorKind::TooManyNests { .. }
         )
     }
 }

@@ -108,6 +108,12 @@ fn other_dialects() {
     let many = format!("GOTO/{}1", "1,".repeat(300));
     check(Apt3, &[(&many.replace("1,", "1,$\n"), &[13])]);
     check(Free, &[(&many, &[])]);
+    let nests = |count: usize| format!("P=PATERN/RANDOM{}", ",$\n(POINT/1,2),$\n(3,4)".repeat(count));
+    for (count, dialect, expected) in
+        [(5, Apt3, &[][..]), (6, Apt3, &[70][..]), (6, Free, &[]), (6, Apt4, &[])]
+    {
+        check(dialect, &[(&nests(count), expected)]);
+    }
 }
 
 #[test]

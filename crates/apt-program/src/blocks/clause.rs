@@ -92,7 +92,7 @@ impl Evaluator<'_> {
                     let other = statement(*otherwise).and_then(|(isn, parsed)| {
                         let mut origin = self.origin(parsed.statement.parts.first()?.range);
                         origin.isn = isn;
-                        Some((RelatedKind::Loop, origin))
+                        Some((RelatedKind::Branch, origin))
                     });
                     let related = other.into_iter().collect();
                     self.report_related(FindingKind::ClauseAfterElse { word }, range, related);

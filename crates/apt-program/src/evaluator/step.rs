@@ -226,11 +226,14 @@ impl Evaluator<'_> {
     pub(crate) fn statement(&mut self, statement: &ParsedStatement) -> Flow {
         self.open_statement(statement);
         for part in &statement.statement.parts {
+            let (line, transfers) = (self.traced_lines(), self.output.transfers.len());
             self.trace_part(statement, part);
             if matches!(part.body, Body::Error) && blocks::says_motion(&statement.elements) {
                 self.gap(part.range);
             }
-            match self.execute_part(part) {
+            let flow = self.execute_part(part);
+            self.trace_transfers(line, transfers);
+            match flow {
                 Flow::Next => {}
                 other => return other,
             }

@@ -1,6 +1,9 @@
 //! The statements executed, for an expansion.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use apt_syntax::{
     ParsedStatement, TextRange,
@@ -10,7 +13,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{Evaluator, Region};
 use crate::{
-    blocks::{Block, is_target, splice},
+    blocks::{Block, is_target, normalised_label, splice},
     record::{Frame, Origin, SourceFile},
     statements::segment,
     symbols::Meaning,
@@ -31,6 +34,56 @@ pub(crate) struct Trace {
     labels: BTreeSet<SmolStr>,
     /// The elements of the statement being executed.
     elements: Vec<Element>,
+    /// What keeps the labels of loops and macros apart once they are unrolled.
+    region_labels: RegionLabels,
+}
+
+/// Labels inside of loops and macros at which Section 2 may go on: each turn and each call has its own, so in an unrolled
+/// program each needs a name of its own.
+#[derive(Debug, Default)]
+pub(crate) struct RegionLabels {
+    /// How often each label stands in the program.
+    labels: BTreeMap<SmolStr, u32>,
+    /// All names of the program: no new label is one of them.
+    names: BTreeSet<SmolStr>,
+    /// The labels that statements still to come will carry, by how deep the call is and what they are called there.
+    open: BTreeMap<(u32, SmolStr), SmolStr>,
+    /// How many new labels have been made.
+    made: u32,
+}
+
+impl RegionLabels {
+    /// Looks at a statement of the program.
+    pub(crate) fn statement(&mut self, statement: &ParsedStatement) {
+        if let Some(label) = &statement.statement.label {
+            let count = self.labels.entry(normalised_label(&label.text)).or_default();
+            *count = count.saturating_add(1);
+        }
+        let names = statement.elements.iter().filter(|element| element.kind == ElementKind::Name);
+        self.names.extend(names.map(|element| element.text.clone()));
+    }
+
+    /// What the label that a statement leads to is called in the unrolled program.
+    fn open(&mut self, depth: u32, label: &SmolStr, emitted: &BTreeSet<SmolStr>) -> SmolStr {
+        if let Some(name) = self.open.get(&(depth, label.clone())) {
+            return name.clone();
+        }
+        let is_taken = emitted.contains(label) || self.labels.get(label).is_some_and(|count| *count > 1);
+        let name = if is_taken { self.fresh() } else { label.clone() };
+        self.open.insert((depth, label.clone()), name.clone());
+        name
+    }
+
+    fn fresh(&mut self) -> SmolStr {
+        // The program has finitely many names, so one of the next is free.
+        loop {
+            self.made = self.made.saturating_add(1);
+            let name = format_smolstr!("ZL{:04}", self.made);
+            if !self.names.contains(&name) || self.made == u32::MAX {
+                return name;
+            }
+        }
+    }
 }
 
 /// One executed statement, or one that stands as it is written.
@@ -46,8 +99,8 @@ pub(crate) struct TracedLine {
 
 impl Trace {
     /// A trace that keeps what is wanted.
-    pub(crate) fn new(at: Option<u32>, depth: Option<u32>) -> Self {
-        Self { at, depth, ..Self::default() }
+    pub(crate) fn new(at: Option<u32>, depth: Option<u32>, region_labels: RegionLabels) -> Self {
+        Self { at, depth, region_labels, ..Self::default() }
     }
 
     /// How many levels a place lies inside of what is expanded; nothing if it does not belong to that.
@@ -120,17 +173,44 @@ impl Evaluator<'_> {
         }
         let mut elements = self.with_values(&part.body);
         let origin = self.origin(part.range);
-        let top = self.here.region == Region::Top;
+        let (top, depth) = (self.here.region == Region::Top, self.here.depth);
         let Some(trace) = &mut self.trace else { return };
-        // At the top level Section 2 may go on at a label; inside of regions the labels served the jumps.
-        if let Some(mut label) = label.filter(|_| top)
-            && let Some(name) = label.first()
-            && trace.labels.insert(name.text.clone())
+        // Section 2 may go on at a label of the top level. Inside of regions most labels served the jumps only.
+        if let Some(mut label) = label
+            && let Some(name) = label.first_mut()
         {
-            label.append(&mut elements);
-            elements = label;
+            let open = trace.region_labels.open.remove(&(depth, normalised_label(&name.text)));
+            let stays = top || open.is_some();
+            name.text = open.unwrap_or_else(|| name.text.clone());
+            if stays && trace.labels.insert(name.text.clone()) {
+                label.append(&mut elements);
+                elements = label;
+            }
         }
         trace.lines.push(TracedLine { elements, origin, definition_of: None });
+    }
+
+    /// How many lines there are.
+    pub(crate) fn traced_lines(&self) -> usize {
+        self.trace.as_ref().map_or(0, |trace| trace.lines.len())
+    }
+
+    /// Gives the labels that a statement of a loop or macro leads to the names that they have in the unrolled program. The
+    /// statement made the line with this index, if any, and the transfers from `first` on.
+    pub(crate) fn trace_transfers(&mut self, line: usize, first: usize) {
+        if self.trace.is_none() || self.here.region == Region::Top {
+            return;
+        }
+        let (depth, isn) = (self.here.depth, self.here.isn);
+        let transfers = self.output.transfers.get(first..).unwrap_or_default();
+        let own = transfers.iter().filter(|(_, origin)| origin.isn == isn && origin.frame == self.here.frame);
+        let Some(trace) = &mut self.trace else { return };
+        let Some(line) = trace.lines.get_mut(line) else { return };
+        for (label, origin) in own {
+            let name = trace.region_labels.open(depth, label, &trace.labels);
+            let places = line.elements.iter_mut().filter(|element| element.range == origin.range);
+            places.for_each(|element| element.text = name.clone());
+        }
     }
 
     /// Whether a part stands in an expansion.

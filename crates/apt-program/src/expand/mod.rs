@@ -9,7 +9,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use crate::{
-    evaluator::{Evaluator, State, TopLevel, Trace, TracedLine},
+    evaluator::{Evaluator, RegionLabels, State, TopLevel, Trace, TracedLine},
     options::Options,
     record::Origin,
 };
@@ -58,10 +58,12 @@ pub fn expand(
 ) -> Expansion {
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, State::default());
     let isn = at.map(|at| u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX));
-    evaluator.trace = Some(Trace::new(isn, depth));
     let count = tree.statement_count();
+    let all: Vec<_> = (0..count).map(|index| tree.statement(index).parsed()).collect();
+    let mut labels = RegionLabels::default();
+    all.iter().for_each(|statement| labels.statement(statement));
+    evaluator.trace = Some(Trace::new(isn, depth, labels));
     if tree.dialect().branch_anywhere || tree.dialect().do_loops {
-        let all: Vec<_> = (0..count).map(|index| tree.statement(index).parsed()).collect();
         let jumps_free = tree.dialect().branch_anywhere;
         let all = if jumps_free || all.iter().any(|one| is_do(&one.elements)) { all } else { Vec::new() };
         // The whole program is one region then: loops are made of jumps.

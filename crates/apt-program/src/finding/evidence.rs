@@ -24,6 +24,17 @@ pub enum Found {
     Nothing,
 }
 
+/// What is wrong with a pair of SYN.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SynonymFault {
+    /// One of the two is neither a name nor a word.
+    NoSymbol,
+    /// Where the new name should stand is a word, or a name that is used already.
+    NotNew,
+    /// Where the word of the language should stand is none, or SYN.
+    NotWord,
+}
+
 /// What a statement wants at a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it")]

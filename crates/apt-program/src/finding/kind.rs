@@ -7,7 +7,7 @@ use apt_geometry::{
 use apt_syntax::error::SyntaxErrorKind;
 use smol_str::SmolStr;
 
-use super::{Expected, Found};
+use super::{Expected, Found, SynonymFault};
 use crate::listing::cards::CardFault;
 
 /// The kinds of findings. [`FindingKind::apt3`] gives the APT III number where one exists.
@@ -617,6 +617,8 @@ pub enum FindingKind {
         first: SmolStr,
         /// Second operand.
         second: SmolStr,
+        /// What is wrong with them.
+        fault: SynonymFault,
     },
 
     // Motion.
@@ -733,6 +735,15 @@ pub enum FindingKind {
     CopyOption {
         /// What it got.
         found: Found,
+    },
+    /// PTONLY/1: no motion is computed.
+    #[error("no motion is computed")]
+    MotionSkipped,
+    /// PTONLY/2 and PTONLY/3: they go on from the files of an earlier run.
+    #[error("PTONLY/{number} goes on from an earlier run")]
+    RestartNotAvailable {
+        /// 2 or 3.
+        number: u8,
     },
     /// A word that is not yet implemented in the processor and has no effect.
     #[error("{word} has no effect")]

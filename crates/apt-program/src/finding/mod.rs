@@ -8,7 +8,7 @@ use apt_syntax::dialect::DialectName;
 
 use crate::record::Origin;
 
-pub use evidence::{Expected, Found};
+pub use evidence::{Expected, Found, SynonymFault};
 pub use kind::FindingKind;
 
 /// Something to tell the programmer.
@@ -49,6 +49,8 @@ pub enum RelatedKind {
     Loop,
     /// The label stands here.
     Label,
+    /// The last branch of the IF begins here.
+    Branch,
     /// The motion statement that waits for its check surface.
     WaitingMotion,
 }

@@ -3,7 +3,7 @@
 use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
 use apt_syntax::{dialect::DialectName, error::SyntaxErrorKind};
 
-use super::{FindingKind, Found, Severity};
+use super::{FindingKind, Found, Severity, SynonymFault};
 use crate::listing::cards::CardFault;
 
 impl FindingKind {
@@ -77,7 +77,9 @@ impl FindingKind {
             Self::SynonymPairs { .. } => 351,
             Self::SynonymInRegion => 353,
             Self::SynonymCount { .. } => 354,
-            Self::SynonymKind { .. } => 355,
+            Self::SynonymKind { fault: SynonymFault::NoSymbol, .. } => 19,
+            Self::SynonymKind { fault: SynonymFault::NotNew, .. } => 355,
+            Self::SynonymKind { fault: SynonymFault::NotWord, .. } => 356,
             Self::ModifierOnDrive { .. } => 135,
             Self::ImpliedCheckVertical => 136,
             Self::ImpliedCheckBroken { .. } => 137,
@@ -123,6 +125,8 @@ impl FindingKind {
             | Self::AxisDropped { .. }
             | Self::AxisUndocumented { .. }
             | Self::NoEffect { .. }
+            | Self::MotionSkipped
+            | Self::RestartNotAvailable { .. }
             | Self::AfterEnd
             | Self::Unreachable => return None,
         })
@@ -184,6 +188,7 @@ impl FindingKind {
         match self {
             Self::AxisUndocumented { .. } => Severity::Information,
             Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
+            Self::MotionSkipped => Severity::Information,
             Self::EndMissing
             | Self::Doubtful { .. }
             | Self::NotNormalised { .. }
@@ -191,6 +196,7 @@ impl FindingKind {
             | Self::CurvatureJump { .. }
             | Self::RuledCurve { .. }
             | Self::NoEffect { .. }
+            | Self::RestartNotAvailable { .. }
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::AxisDropped { .. }

@@ -142,6 +142,11 @@ impl Program {
         self.chunks.iter().flat_map(|chunk| chunk.data().listing.iter())
     }
 
+    /// Whether the program wants its motions left uncomputed (PTONLY/1).
+    pub fn skips_motion(&self) -> bool {
+        self.records().any(|record| record.kind == crate::record::RecordKind::SkipMotion)
+    }
+
     /// Every definition in order of execution.
     pub fn definitions(&self) -> impl Iterator<Item = &DefinitionEvent> {
         self.chunks.iter().flat_map(|chunk| chunk.data().definitions.iter())

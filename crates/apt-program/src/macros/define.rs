@@ -5,13 +5,13 @@ use apt_syntax::statement::{MacroParameter, Name};
 use super::{MacroDefinition, MacroVariable};
 use crate::{blocks::Block, evaluator::Evaluator, finding::FindingKind, symbols::Meaning};
 
-/// Most macro variables (language reference 1.10).
+/// Most macro variables where tables are bounded (language reference 1.10).
 const MOST_VARIABLES: usize = 50;
 
 impl Evaluator<'_> {
     /// Defines a macro with this body. The statement being executed is its header.
     pub(crate) fn define_macro(&mut self, name: &Name, parameters: &[MacroParameter], body: Block) {
-        if parameters.len() > MOST_VARIABLES {
+        if self.dialect.bounded_tables && parameters.len() > MOST_VARIABLES {
             let finding = FindingKind::MacroVariableCount { found: parameters.len(), limit: MOST_VARIABLES };
             self.report(finding, name.range);
         }

@@ -13,7 +13,7 @@ use super::Major;
 use crate::{
     evaluator::{Evaluator, Region, Synonym},
     expression::{Item, Operand},
-    finding::{Expected, FindingKind, Found},
+    finding::{Expected, FindingKind, Found, SynonymFault},
     symbols::{Array, Meaning, ReferenceSystem},
 };
 
@@ -127,7 +127,7 @@ impl Evaluator<'_> {
         self.set_symbol(key, Meaning::Array(array), origin);
     }
 
-    /// SYN: pairs of a new spelling and a vocabulary word, in either order.
+    /// SYN: pairs of a new spelling and a vocabulary word; the first pair fixes the order.
     pub(crate) fn synonyms(&mut self, major: Major<'_>) {
         if self.here.region != Region::Top {
             return self.report(FindingKind::SynonymInRegion, major.word.range);
@@ -139,21 +139,32 @@ impl Evaluator<'_> {
         for pair in major.arguments.chunks(2) {
             let [first, second] = pair else { continue };
             let (new, old) = if new_first { (first, second) } else { (second, first) };
-            let (Some(new), Argument::Word(old)) = (plain_name(new), old) else {
-                let finding = FindingKind::SynonymKind { first: spelled(first), second: spelled(second) };
+            let fault = self.synonym_fault(new, old);
+            let (Some(new), Argument::Word(old), None) = (plain_name(new), old, fault) else {
+                let fault = fault.unwrap_or(SynonymFault::NotNew);
+                let (first_text, second_text) = (spelled(first), spelled(second));
+                let finding = FindingKind::SynonymKind { first: first_text, second: second_text, fault };
                 self.report(finding, first.range().cover(second.range()));
                 continue;
             };
-            if old.word.spelling == "SYN" || self.look_up(&new.text).is_some() {
-                let finding = FindingKind::SynonymKind { first: spelled(first), second: spelled(second) };
-                self.report(finding, first.range().cover(second.range()));
-                continue;
-            }
-            if self.state.synonyms.len() >= MOST_SYNONYMS {
+            if self.dialect.bounded_tables && self.state.synonyms.len() >= MOST_SYNONYMS {
                 return self.report(FindingKind::SynonymCount { limit: MOST_SYNONYMS }, major.range);
             }
             let word = Synonym::Word(SmolStr::new_static(old.word.spelling));
             self.state.synonyms.insert(new.text.clone(), word);
+        }
+    }
+
+    /// What is wrong with a pair of SYN.
+    fn synonym_fault(&self, new: &Argument, old: &Argument) -> Option<SynonymFault> {
+        let is_item =
+            |argument: &Argument| matches!(argument, Argument::Word(_)) || plain_name(argument).is_some();
+        let is_renamed = |old: &Argument| matches!(old, Argument::Word(old) if old.word.spelling != "SYN");
+        match plain_name(new) {
+            _ if !is_item(new) || !is_item(old) => Some(SynonymFault::NoSymbol),
+            None => Some(SynonymFault::NotNew),
+            Some(name) if self.look_up(&name.text).is_some() => Some(SynonymFault::NotNew),
+            Some(_) => (!is_renamed(old)).then_some(SynonymFault::NotWord),
         }
     }
 

@@ -30,6 +30,13 @@ const LEAST_CURVATURE_JUMP: f64 = 0.5;
 /// Parameters of one curve of a RLDSRF: surface, two end points, and the point or vector across.
 const CURVE_PARAMETERS: usize = 4;
 
+/// Most points of a TABCYL and of a PATERN where tables are bounded, and the APT III numbers of more (language
+/// reference 1.10).
+const MOST_CURVE_POINTS: usize = 139;
+const MOST_PATTERN_POINTS: usize = 330;
+const CURVE_OVERFLOW: u16 = 1001;
+const PATTERN_OVERFLOW: u16 = 802;
+
 /// A target with its subscript evaluated.
 struct Target<'a> {
     reference: &'a Reference,
@@ -180,6 +187,10 @@ impl Evaluator<'_> {
                 Some(Arc::new(Geometry::Line(line.reversed())))
             }
             Ok(geometry) => {
+                if let Some(error) = self.beyond_storage(&geometry) {
+                    self.report(FindingKind::Definition { kind, error }, definition.range);
+                    return None;
+                }
                 if let Geometry::TabulatedCylinder(curve) = &geometry {
                     self.report_joints(curve, &arguments, definition.range);
                 }
@@ -195,6 +206,20 @@ impl Evaluator<'_> {
                 None
             }
         }
+    }
+
+    /// The error of a curve or pattern with more points than APT III stores, where tables are bounded.
+    fn beyond_storage(&self, geometry: &Geometry) -> Option<DefinitionError> {
+        let (points, most, number) = match geometry {
+            // Beside the intervals between the points there are the two extensions.
+            Geometry::TabulatedCylinder(curve) => {
+                (curve.intervals.len().saturating_sub(1), MOST_CURVE_POINTS, CURVE_OVERFLOW)
+            }
+            Geometry::Pattern(pattern) => (pattern.points.len(), MOST_PATTERN_POINTS, PATTERN_OVERFLOW),
+            _ => return None,
+        };
+        let beyond = self.dialect.bounded_tables && points > most;
+        beyond.then_some(DefinitionError::Special { number, position: None })
     }
 
     /// Warns of corners in a curve, and of a spline without continuous curvature.

@@ -49,9 +49,37 @@ impl Evaluator<'_> {
     pub(crate) fn listing(&mut self, major: Major<'_>) -> Flow {
         match (major.spelling(), segment(major.arguments)) {
             ("READ", Some((name, rest))) => return self.read_segment(major, name, rest),
+            ("READ", None) if self.is_apt4() => return self.read_library(major),
             ("READ", None) => self.read_dump(major),
             ("PUNCH", _) => self.punch(major),
             _ => self.print(major),
+        }
+        Flow::Next
+    }
+
+    /// READ/1,names in APT4: surfaces from a library, which is the folders that INCLUD searches (language reference
+    /// 10.4): a file of its name holds the definition of each. A name that has a value already is not read again.
+    fn read_library(&mut self, major: Major<'_>) -> Flow {
+        if self.listing_number(major, &[1.0]).is_none() {
+            return Flow::Next;
+        }
+        let names = major.arguments.get(1..).unwrap_or_default();
+        if names.is_empty() {
+            self.wrong_count(major, 1, "1 and the names of surfaces", LISTING_FORM);
+        }
+        for argument in names {
+            let Argument::Expression(Expression::Reference(reference)) = argument else {
+                self.wrong_operand(major, Expected::Name, Found::Nothing, LISTING_FORM, argument.range());
+                continue;
+            };
+            let name = &reference.name.text;
+            if self.look_up(name).is_some() {
+                continue;
+            }
+            match self.include_file(name, reference.range) {
+                Flow::Next => {}
+                other => return other,
+            }
         }
         Flow::Next
     }

@@ -188,7 +188,7 @@ impl Evaluator<'_> {
             _ => return self.report(FindingKind::MachineName, major.range),
         };
         self.state.machines += 1;
-        if self.state.machines > MOST_MACHINES {
+        if self.dialect.bounded_tables && self.state.machines > MOST_MACHINES {
             return self.report(FindingKind::MachineCount { limit: MOST_MACHINES }, major.range);
         }
         let Some(items) = self.post_operands(Some(major), &major.arguments[1..], false) else { return };

@@ -1,6 +1,6 @@
 //! System flags: switches of the processors of old (language reference 7.10). Their forms are checked; what they switched
 //! (listings of the inside of the system, storage sizes, plotters, the order of phases on tapes) does not exist here, or
-//! is asked for by a command.
+//! is asked for by a command. Only PTONLY/1 switches something: the motion phase off.
 
 use apt_syntax::{statement::Argument, vocabulary::WordClass};
 
@@ -9,6 +9,7 @@ use crate::{
     evaluator::Evaluator,
     expression::{Item, Operand},
     finding::{Expected, FindingKind, Found},
+    record::RecordKind,
 };
 
 /// APT III numbers: a wrong item in PTONLY, a DEBUG form, a wrong count, a word that does not belong here.
@@ -57,8 +58,7 @@ fn form(word: &str) -> Form {
 }
 
 impl Evaluator<'_> {
-    /// A system flag: its form is checked. Flags that APT III itself does not implement get its warning, and so does a
-    /// restart from an earlier run, of which there is nothing left.
+    /// A system flag: its form is checked. Flags that APT III itself does not implement get its warning.
     pub(crate) fn system_flag(&mut self, major: Major<'_>) {
         match form(major.spelling()) {
             Form::Bare => {
@@ -118,21 +118,27 @@ impl Evaluator<'_> {
         }
     }
 
-    /// PTONLY/1, PTONLY/2 and PTONLY/3,n: the files of an earlier run that they go on from are not kept.
+    /// PTONLY/1: the motions are not computed. PTONLY/2 and PTONLY/3,n go on from the files of an earlier run, which are not
+    /// kept.
     fn restart(&mut self, major: Major<'_>) {
         let Some(items) = self.operands(major.arguments) else { return };
         match items.iter().map(|item| &item.operand).collect::<Vec<_>>().as_slice() {
-            [Operand::Scalar(number)] if [1.0, 2.0].contains(number) => {}
-            [Operand::Scalar(number), Operand::Scalar(_)] if *number == 3.0 => {}
-            [Operand::Scalar(number)] if *number == 3.0 => {
-                return self.wrong_count(major, 1, "3 and a record number", COUNT);
+            [Operand::Scalar(1.0)] => {
+                self.report(FindingKind::MotionSkipped, major.range);
+                self.emit(RecordKind::SkipMotion, major.range);
             }
+            [Operand::Scalar(2.0)] => {
+                self.report(FindingKind::RestartNotAvailable { number: 2 }, major.range);
+            }
+            [Operand::Scalar(3.0), Operand::Scalar(_)] => {
+                self.report(FindingKind::RestartNotAvailable { number: 3 }, major.range);
+            }
+            [Operand::Scalar(3.0)] => self.wrong_count(major, 1, "3 and a record number", COUNT),
             _ => {
                 let found = items.first().map_or(Found::Nothing, Item::found);
-                return self.wrong_operand(major, Expected::Integer, found, POINTS_ONLY, major.range);
+                self.wrong_operand(major, Expected::Integer, found, POINTS_ONLY, major.range);
             }
         }
-        self.report(FindingKind::NoEffect { word: major.name() }, major.range);
     }
 
     /// DEBUG/[SEC1|SEC2,]ON|OFF.

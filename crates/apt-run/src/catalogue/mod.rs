@@ -344,6 +344,7 @@ fn related(kind: RelatedKind) -> &'static str {
         RelatedKind::Macro => "the macro is defined here",
         RelatedKind::Loop => "the loop begins here",
         RelatedKind::Label => "the label stands here",
+        RelatedKind::Branch => "the last branch begins here",
         RelatedKind::WaitingMotion => "this motion waits for its check surface",
     }
 }

@@ -70,7 +70,13 @@ fn subscript(kind: &Kind) -> Option<Text> {
                 .hint(format!("write {name}(1)"))
         }
         Kind::NotReserved { name } => say("APT0122", format!("{name} is neither a function nor an array"))
-            .hint(format!("an array is declared by RESERV/{name},n before it is used")),
+            .hint(match apt_syntax::vocabulary::later_function(name) {
+                Some(_) => format!(
+                    "as a function {name} belongs to the dialects free and apt4: set `dialect = \"free\"` in \
+                     apt-lsp.toml; an array is declared by RESERV/{name},n before it is used"
+                ),
+                None => format!("an array is declared by RESERV/{name},n before it is used"),
+            }),
         Kind::MixedArray { name, holds_geometry } => {
             let holds = if *holds_geometry { "geometry" } else { "numbers" };
             say(

@@ -1,7 +1,7 @@
 //! Words for labels, loops, macros, motion statements, post-processor statements and the program as a whole
 //! (codes 04xx, 05xx, 08xx, 09xx), and the door to the other groups of Section 1.
 
-use apt_program::finding::FindingKind as Kind;
+use apt_program::finding::{FindingKind as Kind, SynonymFault};
 use smol_str::SmolStr;
 
 use super::{Text, a_kind, definitions, names, number, say, similar, syntax};
@@ -140,10 +140,17 @@ fn macro_call(kind: &Kind) -> Option<Text> {
         }
         Kind::SynonymInRegion => say("APT0441", "SYN cannot stand in a loop or macro"),
         Kind::SynonymCount { limit } => say("APT0442", format!("there are more than {limit} synonyms")),
-        Kind::SynonymKind { first, second } => say(
+        Kind::SynonymKind { first, second, fault } => say(
             "APT0443",
             format!("SYN/{first},{second} does not pair a new name with a word of the language"),
-        ),
+        )
+        .hint(match fault {
+            SynonymFault::NoSymbol => "both are written as they are: a name, and the word that it shall stand for",
+            SynonymFault::NotNew => "the new name is no word and not in use; the first pair fixes the order of all pairs",
+            SynonymFault::NotWord => {
+                "a word of the language other than SYN is renamed; the first pair fixes the order of all pairs"
+            }
+        }),
         _ => return None,
     })
 }
@@ -237,6 +244,16 @@ fn whole(kind: &Kind) -> Text {
         }
         Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
         Kind::Unreachable => say("APT0903", "this statement is never reached"),
+        Kind::MotionSkipped => say("APT0911", "no motion is computed, because PTONLY/1 says so")
+            .hint("remove the statement to get the cutter path"),
+        Kind::RestartNotAvailable { number } => say(
+            "APT0912",
+            format!("PTONLY/{number} goes on from the files of an earlier run, and none are kept"),
+        )
+        .hint(match number {
+            2 => "the whole program is run; to use a CL file again, give that file to the command `post`",
+            _ => "the whole program is run; leave out what is done by statements of the program",
+        }),
         Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),
         Kind::NotInDialect { word } => say("APT0905", format!("{word} is not supported in this dialect"))
             .hint("another dialect is set in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),

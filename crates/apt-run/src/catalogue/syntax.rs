@@ -171,6 +171,11 @@ fn list(kind: &Kind) -> Text {
         Kind::LogicalIfStatement => say("APT0062", "a logical IF is followed by one statement"),
         Kind::ConditionalDo => say("APT0066", "DO cannot be the statement of an IF")
             .hint("the loop reaches over several statements: jump over it with IF and JUMPTO"),
+        Kind::TooManyNests { count, limit } => say(
+            "APT0070",
+            format!("the statement has {count} nested definitions, and APT III takes {limit}"),
+        )
+        .hint("define some of them before, in statements of their own; the dialect free takes any number"),
         Kind::ConditionalClause { word } => {
             say("APT0067", format!("{word} cannot be the statement of an IF"))
                 .hint("a clause of an IF over several statements stands alone on its line")

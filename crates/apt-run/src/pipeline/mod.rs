@@ -87,7 +87,8 @@ pub struct RunResult {
     pub totals: Totals,
 }
 
-/// Runs Sections 2 and 3 over a program. `progress` gets the number of records done and to do.
+/// Runs Sections 2 and 3 over a program; nothing comes out of them if the program says PTONLY/1. `progress` gets the
+/// number of records done and to do.
 ///
 /// # Errors
 ///
@@ -101,6 +102,11 @@ pub fn run(
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<RunResult, Cancelled> {
     memo.begin_run();
+    if program.skips_motion() {
+        let (records, origins) = (Vec::new(), Vec::new());
+        let totals = totals(&records);
+        return Ok(RunResult { records, origins, motions: Vec::new(), findings: Vec::new(), totals });
+    }
     let mut section2 = section2::Section2::new(settings, tree.dialect().name, memo, cancel);
     let total = program.record_count();
     for (done, record) in program.records().enumerate() {

@@ -157,6 +157,8 @@ impl<'a> Section2<'a> {
                 self.state.restart = Restart::Waiting;
                 self.state.forward = None;
             }
+            // With it nothing comes here.
+            RecordKind::SkipMotion => {}
             RecordKind::Transfer(label) => self.transfer = Some((label.clone(), record.origin.clone())),
             RecordKind::End => {
                 self.pending_transfer();

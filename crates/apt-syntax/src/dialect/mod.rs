@@ -124,6 +124,11 @@ pub struct Dialect {
     pub number_digits: Option<u16>,
     /// The most elements of a statement; none for no limit.
     pub statement_elements: Option<u32>,
+    /// The most nested definitions and points of a statement; none for no limit.
+    pub statement_nests: Option<u32>,
+    /// Tables have the sizes that they have in APT III: macro variables, synonyms, machines, points of curves and
+    /// patterns (language reference 1.10).
+    pub bounded_tables: bool,
     /// Where PARTNO and its kin may stand.
     pub text_words: TextWords,
     /// Blanks separate words and numbers.
@@ -189,6 +194,8 @@ impl Dialect {
                 name: DialectName::Apt3,
                 sequence_field: SequenceFieldRule::Always,
                 statement_elements: Some(600),
+                statement_nests: Some(10),
+                bounded_tables: true,
                 ..Dialect::APT_III
             },
             DialectName::Apt4 => Dialect {
@@ -233,6 +240,8 @@ impl Dialect {
         long_names: LongNames::Refused,
         number_digits: Some(16),
         statement_elements: None,
+        statement_nests: None,
+        bounded_tables: false,
         text_words: TextWords::InColumnOne,
         blanks_separate: false,
         long_word_characters: false,

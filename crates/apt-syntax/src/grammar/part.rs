@@ -40,6 +40,7 @@ impl Parser<'_> {
                 Ok((part, more)) => {
                     parts.push(part);
                     if !more {
+                        self.count_nests();
                         break;
                     }
                 }
@@ -50,6 +51,18 @@ impl Parser<'_> {
             }
         }
         Statement { label, parts }
+    }
+
+    /// Tells of more nested definitions and points than the dialect takes.
+    fn count_nests(&mut self) {
+        let Some(limit) = self.dialect.statement_nests else { return };
+        let is_nest = |kind| matches!(kind, SyntaxKind::Nested | SyntaxKind::NestedPoint);
+        let nests = self.nodes.iter().filter(|node| is_nest(node.kind));
+        let count = u32::try_from(nests.count()).unwrap_or(u32::MAX);
+        if count > limit {
+            let range = self.range_from(0);
+            self.errors.push(SyntaxError::new(SyntaxErrorKind::TooManyNests { count, limit }, range));
+        }
     }
 
     /// Notes the error and makes the rest of the statement, from `first` on, a part that says nothing.
