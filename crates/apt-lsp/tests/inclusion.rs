@@ -269,7 +269,7 @@ fn included_files_are_watched_and_read_again() {
     let found = pushed(&mut server, &project.program, |found| !found.is_empty());
     assert_eq!(found[0]["range"]["start"]["line"], 5, "{found:?}");
     // Another program changes the file on the disk.
-    project.folder.write("lib/lib.apt", &LIBRARY.replace("-DP", "0,0,1"));
+    project.folder.write("lib/lib.apt", LIBRARY.replace("-DP", "0,0,1"));
     let change = json!({ "changes": [{ "uri": project.library, "type": 2 }] });
     server.tell("workspace/didChangeWatchedFiles", change);
     pushed(&mut server, &project.program, <[Value]>::is_empty);
