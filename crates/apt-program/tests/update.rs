@@ -75,6 +75,48 @@ fn inserted_lines_move_the_rest() {
     assert_eq!(last.origin.isn, 2_007);
 }
 
+/// Names that begin and cease to be read, defined, and listed, one edit after the other.
+#[test]
+fn names_that_nobody_reads_are_known_after_every_edit() {
+    let filler = |from: usize| (from..from + 400).map(|n| format!("GOTO/{n},0,0\n")).collect::<String>();
+    let text = format!(
+        "U=1\nV=2\nP=POINT/1,2\nQ=POINT/3,4\n{}GOTO/P\n{}GOTO/V,0,0\n$$ end\nFINI\n",
+        filler(0),
+        filler(1000)
+    );
+    let mut tree = parse(&text);
+    let mut text = text;
+    let mut program = run(&tree);
+    let unused = |program: &Program| -> Vec<String> {
+        let told = program.findings().filter_map(|finding| match &finding.kind {
+            apt_program::FindingKind::Unused { name } => Some(name.to_string()),
+            _ => None,
+        });
+        told.collect()
+    };
+    assert_eq!(unused(&program), ["U", "Q"]);
+    for (old, new, expected) in [
+        ("GOTO/P\n", "GOTO/Q\n", vec!["U", "P"]),
+        ("GOTO/200,0", "GOTO/U,0", vec!["P"]),
+        ("GOTO/U,0", "GOTO/201,0", vec!["U", "P"]),
+        ("U=1", "W=1", vec!["W", "P"]),
+        ("GOTO/V,0,0", "GOTO/7,0,0", vec!["W", "V", "P"]),
+        ("GOTO/1005,0,0", "A=1005", vec!["W", "V", "P", "A"]),
+        ("P=POINT/1,2\n", "P=POINT/1,W\n", vec!["V", "P", "A"]),
+        ("GOTO/1100,0,0\n", "GOTO/1100,0,0\nGOTO/P\n", vec!["V", "A"]),
+        ("$$ end", "PRINT/3,ALL", vec![]),
+        ("PRINT/3,ALL", "$$ end", vec!["V", "A"]),
+    ] {
+        let at = text.find(old).expect("the place");
+        let (next, change) = edited(&tree, at, at + old.len(), new);
+        text.replace_range(at..at + old.len(), new);
+        program = program.update(&next, &change, &options(), &|| false);
+        tree = next;
+        assert_same(&program, &run(&parse(&text)), &format!("{old} replaced by {new}"));
+        assert_eq!(unused(&program), expected, "{old} replaced by {new}");
+    }
+}
+
 #[test]
 fn a_changed_value_reaches_everything_after_it() {
     let text = long_program(1_000);

@@ -457,3 +457,9 @@ pub(crate) fn curve_places(surface: &TabulatedCylinder) -> Vec<Vec3> {
 pub(crate) fn config() -> ProptestConfig {
     ProptestConfig { failure_persistence: None, max_global_rejects: 10_000_000, ..ProptestConfig::default() }
 }
+
+#[test]
+fn without_the_variable_there_are_256_cases_per_form() {
+    let wanted = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256);
+    assert_eq!(config().cases, wanted);
+}

@@ -1,6 +1,5 @@
-//! Findings of the program as a whole: unused names, transfers that lead nowhere.
+//! Findings of the program as a whole: transfers that lead nowhere. Names that nobody reads are [`super::unused`].
 
-use apt_geometry::canonical::{Geometry, Plane};
 use apt_syntax::dialect::DialectName;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -10,7 +9,7 @@ use crate::{
     evaluator::{State, same_place_and_kind},
     finding::{Finding, FindingKind},
     record::Origin,
-    symbols::{ARRAY_KEY_SUFFIX, Meaning},
+    symbols::Meaning,
 };
 
 /// The findings of all chunks, each once, and those that need the whole program.
@@ -38,9 +37,6 @@ pub(super) fn closing_findings(
     }
     if complete {
         add_unknown_transfers(chunks, end, dialect, &mut findings);
-        if chunks.iter().any(Chunk::moves) && !chunks.iter().any(Chunk::lists_all) {
-            add_unused(chunks, end, dialect, &mut findings);
-        }
     }
     findings
 }
@@ -67,38 +63,6 @@ fn add_unknown_transfers(chunks: &[Chunk], end: &State, dialect: DialectName, fi
             push(findings, kind, dialect, origin);
         }
     }
-}
-
-/// Names of numbers and geometry that nobody reads, in the order of their definition.
-fn add_unused(chunks: &[Chunk], end: &State, dialect: DialectName, findings: &mut Vec<Finding>) {
-    let used: FxHashSet<&SmolStr> = chunks.iter().flat_map(Chunk::used).collect();
-    let mut unused: Vec<(&SmolStr, &Origin)> = end
-        .symbols
-        .iter()
-        .filter(|(name, symbol)| {
-            let has_value =
-                matches!(symbol.meaning, Meaning::Scalar(_) | Meaning::Geometry(_) | Meaning::Array(_));
-            // A file that several programs include need not be used up by each.
-            let own = symbol.origin.source.is_none();
-            own && has_value && !used.contains(name) && !names_implied_part_surface(&symbol.meaning)
-        })
-        .map(|(name, symbol)| (name, &symbol.origin))
-        .collect();
-    unused.sort_unstable_by(|(name, origin), (other, elsewhere)| {
-        let place = |origin: &Origin| (origin.isn, origin.range.start());
-        place(origin).cmp(&place(elsewhere)).then_with(|| name.cmp(other))
-    });
-    for (name, origin) in unused {
-        let name = SmolStr::new(name.trim_end_matches(ARRAY_KEY_SUFFIX));
-        push(findings, FindingKind::Unused { name }, dialect, origin);
-    }
-}
-
-/// The xy-plane is the part surface as long as no other is named: a name for it says what the motions run on, so that it
-/// is not unused even when no statement reads it.
-fn names_implied_part_surface(meaning: &Meaning) -> bool {
-    matches!(meaning, Meaning::Geometry(stored)
-        if matches!(*stored.geometry, Geometry::Plane(plane) if plane == Plane::horizontal()))
 }
 
 /// Adds a finding.

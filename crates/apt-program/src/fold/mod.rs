@@ -7,5 +7,6 @@ mod patch;
 mod program;
 mod run;
 mod shift;
+mod unused;
 
 pub use program::{Program, Statistics};

@@ -26,6 +26,11 @@ impl Patch {
         Some(self.0.as_ref()?.get(name)?.as_ref())
     }
 
+    /// The names of which it says something.
+    pub(super) fn names(&self) -> impl Iterator<Item = &SmolStr> {
+        self.0.iter().flat_map(|meanings| meanings.keys())
+    }
+
     /// Gives the names of a state their meanings.
     pub(super) fn apply(&self, state: &mut State) {
         for (name, symbol) in self.0.iter().flat_map(|meanings| meanings.iter()) {

@@ -9,6 +9,7 @@ use super::{
     chunk::Chunk,
     close::closing_findings,
     run::{End, Old, Outcome, evaluate_from},
+    unused::{Replacement, Unused},
 };
 use crate::{
     evaluator::State,
@@ -28,6 +29,7 @@ pub struct Program {
     /// A statement asked for a file, which may change without any edit of the program.
     asked_for_files: bool,
     findings: Arc<Vec<Finding>>,
+    unused: Unused,
     statistics: Statistics,
 }
 
@@ -80,7 +82,10 @@ impl Program {
     fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>, dialect: DialectName) -> Program {
         let mut reused: u64 = outcome.reused + kept.iter().map(Chunk::steps).sum::<u64>();
         let mut chunks = kept;
+        let from = chunks.len();
         chunks.extend(outcome.chunks);
+        let to = chunks.len();
+        let mut unused = None;
         let (end, complete) = match outcome.end {
             End::Complete(state) => (Arc::new(*state), true),
             End::Cancelled => (Arc::new(State::default()), false),
@@ -96,17 +101,30 @@ impl Program {
                     shift.state(&mut end);
                 }
                 patch.apply(&mut end);
+                if shift.is_nothing() {
+                    let replacement = Replacement {
+                        old: old.chunks.get(from..first).unwrap_or_default(),
+                        new: chunks.get(from..to).unwrap_or_default(),
+                        patched: patch.names().collect(),
+                    };
+                    unused = Some(old.unused.after(&replacement, &old.end, (&chunks, &end), dialect));
+                }
                 (Arc::new(end), true)
             }
         };
         let findings = Arc::new(closing_findings(&chunks, &end, dialect, complete));
+        let unused = match unused {
+            Some(unused) => unused,
+            None if complete => Unused::find(&chunks, &end, dialect),
+            None => Unused::default(),
+        };
         let statistics = Statistics {
             evaluated_statements: outcome.steps,
             reused_statements: reused,
             checkpoints: chunks.len(),
         };
         let asked_for_files = outcome.asked_for_files;
-        Program { chunks, end, complete, asked_for_files, findings, statistics }
+        Program { chunks, end, complete, asked_for_files, findings, unused, statistics }
     }
 
     /// An evaluation that gave nothing.
@@ -117,6 +135,7 @@ impl Program {
             complete: false,
             asked_for_files: false,
             findings: Arc::new(Vec::new()),
+            unused: Unused::default(),
             statistics: Statistics::default(),
         }
     }
@@ -134,7 +153,7 @@ impl Program {
     /// All findings: those of the statements in order of execution, then those of the program as a whole. A finding of
     /// a statement that is executed many times stands once.
     pub fn findings(&self) -> impl Iterator<Item = &Finding> {
-        self.findings.iter()
+        self.findings.iter().chain(self.unused.findings())
     }
 
     /// What the program prints and punches, in order of execution.

@@ -78,7 +78,11 @@ pub fn diagnostics(
     settings: &Settings,
 ) -> Vec<Diagnostic> {
     let findings: Vec<&Finding> = program.findings().collect();
-    worded(tree, program, &findings, Allowances::of(tree), result, settings)
+    let mut list: Vec<Diagnostic> = findings.iter().map(|finding| of_program(finding)).collect();
+    for (diagnostic, finding) in list.iter_mut().zip(findings).take(MOST_FIXED) {
+        diagnostic.fixes = crate::fix::of_finding(tree, finding);
+    }
+    completed(list, tree, program, Allowances::of(tree), result, settings)
 }
 
 /// The gravest diagnostics of a program.
@@ -106,7 +110,7 @@ impl Worst {
 }
 
 /// What [`diagnostics`] finds, cut to the gravest: only these are put into words, as far as the others can be judged
-/// without.
+/// without. Fixes for findings of Section 1 are left out: they are looked for when somebody asks what can be done.
 pub fn worst(
     tree: &SyntaxTree,
     program: &Program,
@@ -123,7 +127,8 @@ pub fn worst(
         findings = gravest(findings, most);
     }
     let unworded = total - findings.len();
-    let mut worst = Worst::of(worded(tree, program, &findings, allowances, result, settings), most);
+    let list = findings.into_iter().map(of_program).collect();
+    let mut worst = Worst::of(completed(list, tree, program, allowances, result, settings), most);
     worst.left_out += unworded;
     worst
 }
@@ -143,19 +148,15 @@ fn gravest(findings: Vec<&Finding>, most: usize) -> Vec<&Finding> {
     numbered.into_iter().filter_map(|(.., number)| findings.get(number).copied()).collect()
 }
 
-/// Findings of Section 1 and all others in words, in order of their place.
-fn worded(
+/// The findings of Section 1 with all others, in order of their place.
+fn completed(
+    mut list: Vec<Diagnostic>,
     tree: &SyntaxTree,
     program: &Program,
-    findings: &[&Finding],
     mut allowances: Allowances,
     result: Option<&RunResult>,
     settings: &Settings,
 ) -> Vec<Diagnostic> {
-    let mut list: Vec<Diagnostic> = findings.iter().map(|finding| of_program(finding)).collect();
-    for (diagnostic, finding) in list.iter_mut().zip(findings).take(MOST_FIXED) {
-        diagnostic.fixes = crate::fix::of_finding(tree, finding);
-    }
     crate::lint::keep_shadowing(tree, &mut list);
     list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
     for lint in crate::lint::lint(tree, program) {

@@ -406,3 +406,36 @@ fn a_macro_that_is_opened_far_above_hides_what_is_overwritten_below() {
     let closed = open.edit(8..8, "\nTERMAC");
     assert_eq!(lints(&closed), overwritten);
 }
+
+/// The gravest diagnostics are those of the whole list, whether the others were put into words or not.
+#[test]
+fn the_gravest_are_those_of_the_whole_list() {
+    let mut text = String::from("FROM/0,0,0\n");
+    for number in 0..300 {
+        text.push_str(&format!("U{number}=1\nGOTO/{number},0,0\n"));
+        if number % 50 == 7 {
+            text.push_str("GOTO/NONE,1,2\nINTOL/-1\n");
+        }
+    }
+    text.push_str("FINI\n");
+    for (comment, severity) in [("", ""), ("$$ apt-lsp: allow APT0110\nX=1\n", ""), ("", "APT0110")] {
+        let severity = (!severity.is_empty())
+            .then(|| (severity.to_owned(), crate::settings::SeveritySetting::Information));
+        let settings = Arc::new(Settings {
+            dialect: Some("free".to_owned()),
+            severity: severity.into_iter().collect(),
+            ..Settings::default()
+        });
+        let document = Document::new(&format!("{comment}{text}"), None, &settings);
+        let mut all = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
+        all.iter_mut().for_each(|one| one.fixes.clear());
+        assert!(all.len() > 300);
+        for most in [0, 1, 5, 20, 299, 1_000] {
+            let mut worst =
+                document.worst_diagnostics(Level::Motion, most, &|| false, &mut |_, _| {}).unwrap();
+            worst.diagnostics.iter_mut().for_each(|one| one.fixes.clear());
+            assert_eq!(worst, crate::catalogue::Worst::of(all.clone(), most), "{most} of {}", all.len());
+            assert_eq!(worst.diagnostics.len() + worst.left_out, all.len());
+        }
+    }
+}
