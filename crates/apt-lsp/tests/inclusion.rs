@@ -227,6 +227,10 @@ fn an_open_included_file_shows_what_its_program_computes() {
     let question = json!({ "textDocument": { "uri": project.library }, "range": whole });
     let hints = server.ask("textDocument/inlayHint", question).unwrap();
     assert_eq!((&hints[0]["position"]["line"], &hints[0]["label"]), (&json!(0), &json!("= 5")), "{hints}");
+    let question = json!({ "textDocument": { "uri": project.library } });
+    let lenses = server.ask("textDocument/codeLens", question).unwrap();
+    assert_eq!(lenses.as_array().unwrap().len(), 1, "{lenses}");
+    assert_eq!(lenses[0]["command"]["arguments"][0]["uri"], project.program, "{lenses}");
 }
 
 #[test]

@@ -516,8 +516,14 @@ impl LanguageServer for Backend {
 
     async fn code_lens(&self, params: lsp::CodeLensParams) -> Result<Option<Vec<lsp::CodeLens>>> {
         self.ask("code lenses", params.text_document.uri, |snapshot, _| {
-            let lenses = snapshot.document.lenses().into_iter();
-            Ok(Some(lenses.map(|lens| outgoing::lens(&snapshot.index, &snapshot.uri, lens)).collect()))
+            let program = snapshot.program();
+            let mut lenses = snapshot.document.lenses();
+            if program.uri != snapshot.uri {
+                // An included file runs with its program only.
+                lenses.retain(|lens| lens.run.is_none());
+            }
+            let lenses = lenses.into_iter();
+            Ok(Some(lenses.map(|lens| outgoing::lens(&snapshot.index, &program.uri, lens)).collect()))
         })
         .await
     }
