@@ -1,8 +1,8 @@
 //! The long run of the random tests, for the night: many more cases than the test command has time for.
 //!
 //! The random tests take their number of cases from the environment: `PROPTEST_CASES` per form of a definition,
-//! `APT_CASES` for random motion. Unless a seed is given the run draws new cases every time and prints its seed, so that
-//! a red run can be repeated.
+//! `APT_CASES` for random motion of each pair of surfaces. Unless a seed is given the run draws new cases every time and
+//! prints its seed, so that a red run can be repeated.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -11,7 +11,7 @@ use crate::whole::{Run, cargo};
 
 /// Cases per form of a definition.
 pub(crate) const DEFINITION_CASES: u32 = 10_000;
-/// Random motions.
+/// Random motions of each pair of surfaces.
 pub(crate) const MOTION_CASES: u32 = 2_000;
 
 /// How long the run is and what it draws.
@@ -36,8 +36,10 @@ pub(crate) fn run(extent: Extent) -> Outcome {
             .run_counting(count)
     });
     run.step("random motion", |count| {
-        cargo(&["test", "--release", "--locked", "--package", "arelem"])
+        // What tests print is shown even when they pass: the share of motions that were computed and proven.
+        cargo(&["test", "--release", "--locked", "--package", "arelem", "--", "--show-output"])
             .env("PROPTEST_RNG_SEED", &seed)
+            .env("APT_SEED", &seed)
             .env("APT_CASES", extent.motion_cases.to_string())
             .run_counting(count)
     });
@@ -47,4 +49,14 @@ pub(crate) fn run(extent: Extent) -> Outcome {
 /// The seconds since 1970: another number every night.
 fn seed_of_the_day() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_night_has_ten_thousand_cases_per_form_and_two_thousand_motions_per_pair() {
+        assert_eq!((DEFINITION_CASES, MOTION_CASES), (10_000, 2_000));
+    }
 }
