@@ -328,7 +328,7 @@ fn later_functions_have_their_values_in_free_form_and_are_arrays_on_cards() {
         let found = values.iter().find(|(name, _)| name == "X").map(|(_, value)| value.clone());
         match found {
             Some(apt_program::Value::Scalar(value)) => {
-                assert!((value - expected).abs() < 1e-9, "{call}: {value}")
+                assert!((value - expected).abs() < 1e-9, "{call}: {value}");
             }
             other => panic!("{call}: {other:?}"),
         }

@@ -554,6 +554,12 @@ pub enum FindingKind {
         /// The word.
         word: SmolStr,
     },
+    /// READ/2 in a loop or macro.
+    #[error("READ/2 in a loop or macro")]
+    SegmentInRegion,
+    /// READ/2 in a block of statements that a READ/2 has put in.
+    #[error("READ/2 in a block of statements from the library")]
+    SegmentInSegment,
     /// INCLUD of a file that cannot be found.
     #[error("{name} cannot be included")]
     IncludeNotFound {

@@ -102,6 +102,8 @@ impl FindingKind {
             Self::Cards { fault: CardFault::Format { .. } } => 2000,
             Self::Cards { fault: CardFault::Missing } => 2002,
             Self::CardSort { .. } => 2001,
+            Self::SegmentInRegion => 37,
+            Self::SegmentInSegment => 30,
             Self::EndMissing => 23,
             Self::Unused { .. }
             | Self::WordBecomesName { .. }

@@ -5,13 +5,12 @@ use apt_syntax::statement::{Argument, Expression};
 use super::Major;
 use crate::{
     evaluator::{Evaluator, Flow, Region},
-    finding::{Expected, Found},
+    finding::{Expected, FindingKind, Found},
 };
 
 /// The first number of a READ that puts in a segment of statements.
 const READ_SEGMENT: f64 = 2.0;
-/// APT III: READ/2 inside a loop or macro, READ/2 with too many operands (language reference 9.2).
-const READ_IN_REGION: u16 = 37;
+/// APT III: READ/2 with too many operands (language reference 9.2).
 const READ_COUNT: u16 = 34;
 
 /// The name in `READ/2,name`, and what follows it.
@@ -28,7 +27,12 @@ impl Evaluator<'_> {
     /// READ/2,name: puts in a stored segment of statements, which is looked for as an included file is.
     pub(super) fn read_segment(&mut self, major: Major<'_>, name: &Argument, rest: &[Argument]) -> Flow {
         if self.here.region != Region::Top {
-            self.wrong_operand(major, Expected::Nothing, Found::Text, READ_IN_REGION, major.range);
+            self.report(FindingKind::SegmentInRegion, major.range);
+            return Flow::Next;
+        }
+        // Files may include files; only the library of the cards is read one block after the other.
+        if self.dialect.bounded_tables && self.here.source.is_some() {
+            self.report(FindingKind::SegmentInSegment, major.range);
             return Flow::Next;
         }
         if !rest.is_empty() {

@@ -244,6 +244,13 @@ fn whole(kind: &Kind) -> Text {
         }
         Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
         Kind::Unreachable => say("APT0903", "this statement is never reached"),
+        Kind::SegmentInRegion => say("APT0913", "READ/2 cannot stand in a loop or macro").hint(
+            "put the statements in before the loop or macro, or make them a macro of their own and call it",
+        ),
+        Kind::SegmentInSegment => {
+            say("APT0914", "the statements that READ/2 puts in cannot hold another READ/2")
+                .hint("read both blocks in the program; the dialect free puts in blocks within blocks")
+        }
         Kind::MotionSkipped => say("APT0911", "no motion is computed, because PTONLY/1 says so")
             .hint("remove the statement to get the cutter path"),
         Kind::RestartNotAvailable { number } => say(
