@@ -485,10 +485,10 @@ fn alternatives(parameters: &[Parameter], path: &str) -> BTreeSet<String> {
         match parameter {
             Parameter::Scalar(_) | Parameter::Word(_) => {}
             Parameter::Selector(words) => {
-                all.extend(words.iter().map(|word| format!("{path} {}", word.word())))
+                all.extend(words.iter().map(|word| format!("{path} {}", word.word())));
             }
             Parameter::Entity(_, kinds) => {
-                all.extend(kinds.iter().map(|kind| format!("{path} {}", kind.word())))
+                all.extend(kinds.iter().map(|kind| format!("{path} {}", kind.word())));
             }
             Parameter::Choice(sequences) => {
                 for (index, sequence) in sequences.iter().enumerate() {
