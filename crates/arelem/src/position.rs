@@ -81,9 +81,19 @@ pub(crate) fn solve(
     conditions: &[Condition<'_>],
     start: &Vec3,
 ) -> Result<Solution, Unsolved> {
+    solve_within(attitude, conditions, start, MAX_ITERATIONS)
+}
+
+/// As [`solve`], with at most so many corrections.
+pub(crate) fn solve_within(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    corrections: u32,
+) -> Result<Solution, Unsolved> {
     let mut tip = *start;
     let mut rows = evaluate(attitude, conditions, &tip);
-    for iteration in 0..MAX_ITERATIONS {
+    for iteration in 0..corrections {
         let (worst, row) = rows.greatest();
         let scale = size(attitude.tool(), &tip);
         if worst <= RESOLUTION * scale {
@@ -102,9 +112,9 @@ pub(crate) fn solve(
     }
     let (residual, row) = rows.greatest();
     if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
-        return Ok(Solution { tip, corrections: MAX_ITERATIONS });
+        return Ok(Solution { tip, corrections });
     }
-    Err(Unsolved { residual, row, tip, iterations: MAX_ITERATIONS })
+    Err(Unsolved { residual, row, tip, iterations: corrections })
 }
 
 /// Where a number of corrections lead, each made in full whether it helps or not; the last place that has coordinates.

@@ -1,5 +1,6 @@
 //! Start-up motions (STRTUP): GO with one to three surfaces, and OFFSET.
 
+mod around;
 mod directed;
 mod plane;
 mod side;
@@ -16,7 +17,7 @@ use crate::{
     attitude::{Attitude, Law},
     clearance::{Shape, Tool},
     error::{MotionFailure, RoleName},
-    position::{self, Condition},
+    position::{self, Condition, Unsolved},
     role::Working,
     section2::{StartUpRule, State, required_position},
     sequence::{CutSequence, Stop, ToolPosition},
@@ -32,6 +33,8 @@ pub(crate) struct StartUp<'a> {
     pub(crate) tip: Vec3,
     /// Drive, part, check, as far as they take part.
     pub(crate) roles: Vec<Working>,
+    /// Whether to give up.
+    pub(crate) cancel: &'a dyn Fn() -> bool,
 }
 
 /// GO (class 7000/1).
@@ -49,7 +52,7 @@ pub(crate) fn start(
     if cancel() {
         return Err(MotionFailure::Cancelled);
     }
-    let mut work = StartUp::new(state, surfaces)?;
+    let mut work = StartUp::new(state, surfaces, cancel)?;
     let closed = match state.start_up {
         StartUpRule::Apt3 => plane::solve(&mut work)?,
         StartUpRule::Apt4 => None,
@@ -64,7 +67,7 @@ pub(crate) fn start(
 /// By which route a GO finds its position.
 pub(crate) fn route(state: &State, surfaces: &[StartSurface]) -> Route {
     let closed = state.start_up == StartUpRule::Apt3
-        && StartUp::new(state, surfaces).is_ok_and(|work| plane::applies(&work));
+        && StartUp::new(state, surfaces, &|| false).is_ok_and(|work| plane::applies(&work));
     if closed { Route::ClosedForm } else { Route::Iteration }
 }
 
@@ -81,7 +84,7 @@ pub(crate) fn offset(
     if cancel() {
         return Err(MotionFailure::Cancelled);
     }
-    let mut work = StartUp::new(state, surfaces)?;
+    let mut work = StartUp::new(state, surfaces, cancel)?;
     let Some(direction) = state.directions[0] else { return Err(MotionFailure::OffsetWithoutDirection) };
     let direction = directed::unit_direction(&direction, &work.tip)?;
     side::assign(&mut work, None)?;
@@ -137,7 +140,11 @@ pub(crate) fn across(direction: &Vec3) -> (Vec3, Vec3) {
 }
 
 impl<'a> StartUp<'a> {
-    fn new(state: &'a State, surfaces: &[StartSurface]) -> Result<Self, MotionFailure> {
+    fn new(
+        state: &'a State,
+        surfaces: &[StartSurface],
+        cancel: &'a dyn Fn() -> bool,
+    ) -> Result<Self, MotionFailure> {
         let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: true })?;
         let ToolPosition { tip, axis } = required_position(state)?;
         let names = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
@@ -153,7 +160,7 @@ impl<'a> StartUp<'a> {
         }
         let tool = Tool::new(cutter, axis);
         let attitude = Attitude::fixed(tool.clone());
-        Ok(Self { state, tool, attitude, tip, roles })
+        Ok(Self { state, tool, attitude, tip, roles, cancel })
     }
 
     fn sequence(&self, tip: Vec3) -> Result<CutSequence, MotionFailure> {
@@ -252,7 +259,8 @@ fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Resul
     }
 }
 
-/// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side.
+/// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side; if that
+/// fails too, Newton from places all about the start.
 pub(crate) fn converge(
     work: &StartUp<'_>,
     conditions: &[Condition<'_>],
@@ -269,32 +277,48 @@ pub(crate) fn converge(
             Condition::Plane(normal, _) => normal.dot(start),
         });
     }
+    let last = match staged(work, conditions, &begin, start) {
+        Ok(tip) => return Ok(tip),
+        Err(unsolved) => unsolved,
+    };
+    // A turning axis has its own way to every position: what cannot be followed from the start is not looked for.
+    if !is_following(work)
+        && let Some(tip) = around::solve(&work.attitude, conditions, start, work.cancel)?
+    {
+        return Ok(tip);
+    }
+    Err(MotionFailure::StartUpDiverges {
+        residual: last.residual.min(first.residual),
+        role: work.roles.get(last.row).map_or(RoleName::Drive, |r| r.name),
+        tip: last.tip,
+        iterations: first.iterations + last.iterations,
+    })
+}
+
+/// The homotopy: the values that the conditions have at the start go over to those wanted by stages.
+fn staged(
+    work: &StartUp<'_>,
+    conditions: &[Condition<'_>],
+    begin: &[f64],
+    start: &Vec3,
+) -> Result<Vec3, Unsolved> {
     let mut tip = *start;
-    for step in 1..=HOMOTOPY_STEPS {
+    for step in 1..HOMOTOPY_STEPS {
         let share = f64::from(step) / f64::from(HOMOTOPY_STEPS);
-        let staged: Vec<Condition<'_>> = conditions
+        let stage: Vec<Condition<'_>> = conditions
             .iter()
-            .zip(&begin)
+            .zip(begin)
             .map(|(condition, from)| match condition {
                 Condition::Clearance(gauge, to) => Condition::Clearance(gauge, from + (to - from) * share),
                 Condition::Plane(normal, to) => Condition::Plane(*normal, from + (to - from) * share),
             })
             .collect();
-        match position::solve(&work.attitude, &staged, &tip) {
-            Ok(solution) => tip = solution.tip,
-            Err(unsolved) if step == HOMOTOPY_STEPS => {
-                let role = work.roles.get(unsolved.row).map_or(RoleName::Drive, |r| r.name);
-                return Err(MotionFailure::StartUpDiverges {
-                    residual: unsolved.residual.min(first.residual),
-                    role,
-                    tip: unsolved.tip,
-                    iterations: first.iterations + unsolved.iterations,
-                });
-            }
-            Err(unsolved) => tip = unsolved.tip,
-        }
+        tip = match position::solve(&work.attitude, &stage, &tip) {
+            Ok(solution) => solution.tip,
+            Err(unsolved) => unsolved.tip,
+        };
     }
-    Ok(tip)
+    position::solve(&work.attitude, conditions, &tip).map(|solution| solution.tip)
 }
 
 /// Stages of the homotopy.

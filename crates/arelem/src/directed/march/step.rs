@@ -200,10 +200,15 @@ impl<'a> Stepper<'a> {
         self.judge(here, vertex, chord, reached)
     }
 
-    /// How long a vector may be that rounds a corner: over the vertex of a cone the path may have one.
+    /// How long a vector may be that rounds a corner. The path has one over the vertex of a cone, and, while the axis stands
+    /// still, wherever the tool comes to touch a surface at a second place.
     fn corner(&self) -> f64 {
-        let cones = self.roles().into_iter().filter(|role| matches!(role.gauge.surface, Surface::Cone(_)));
-        CORNER_BANDS * cones.map(Working::band).sum::<f64>()
+        let turns = self.prepared.attitude.turns();
+        let may_turn = |role: &&Working| match role.gauge.surface {
+            Surface::Cone(_) => true,
+            _ => !turns && role.shape != Shape::Flat,
+        };
+        CORNER_BANDS * self.roles().into_iter().filter(may_turn).map(Working::band).sum::<f64>()
     }
 
     fn shorter(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2], before: f64) -> Option<Trial> {
