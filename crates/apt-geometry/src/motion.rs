@@ -125,6 +125,17 @@ pub enum AxisAngle {
     Lead(f64),
 }
 
+/// What settles an axis that lies along the drive surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum AxisTangency {
+    /// The plane across the line of motion (TANDS).
+    Across,
+    /// The plane perpendicular to this vector (PERPTO).
+    PerpendicularTo(Vec3),
+    /// The axis turns evenly from the present one to the one that TANDS gives at the end of the motion (FAN).
+    Fan,
+}
+
 /// TLAXIS in its forms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum ToolAxis {
@@ -150,6 +161,13 @@ pub enum ToolAxis {
         angle: f64,
         /// What settles the remaining freedom.
         mode: AxisAngle,
+    },
+    /// Along the drive surface.
+    Tangent {
+        /// Height above the tool end at which the axis is parallel to the surface, in program units.
+        height: f64,
+        /// What settles the remaining freedom.
+        mode: AxisTangency,
     },
 }
 

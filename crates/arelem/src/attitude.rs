@@ -1,5 +1,5 @@
 //! The tool axis along a path: fixed, or a function of the tool end that follows the part or drive surface (TLAXIS with
-//! NORMPS, NORMDS and ATANGL, language reference 6.9).
+//! NORMPS, NORMDS, PARLEL and ATANGL, language reference 6.9; PERPTO, TANDS and FAN as later systems have them).
 //!
 //! The axis depends on the position alone. That makes every clearance a function of the tool end again; its gradient gets
 //! a share from the turning tool: a point of the tool at `q` from the tool end moves by `(A × dA) × q`.
@@ -46,6 +46,13 @@ impl Attitude {
         Self { tool: tool.clone(), law: Some(law) }
     }
 
+    /// The same surfaces with an axis that turns evenly from one position to another, each an axis and a tool end. A fixed
+    /// axis stays as it is.
+    pub(crate) fn fanned(&self, from: (&Vec3, &Vec3), to: (&Vec3, &Vec3)) -> Result<Self, AxisFailure> {
+        let law = self.law.as_ref().map(|law| law.fan(from, to)).transpose()?;
+        Ok(Self { tool: self.tool.clone(), law })
+    }
+
     /// The cutter, whatever its axis.
     pub(crate) fn tool(&self) -> &Tool {
         &self.tool
@@ -76,6 +83,9 @@ impl Attitude {
 
     /// Derivatives of the axis by the coordinates of the tool end, as columns; `None` at the brink of the law's domain.
     fn rate(&self, law: &Law, tip: &Vec3) -> Option<Matrix3<f64>> {
+        if let Some(rate) = law.rate(tip) {
+            return Some(rate);
+        }
         let step = DERIVATIVE_STEP * crate::position::size(&self.tool, tip);
         let mut columns = [Vec3::zeros(); 3];
         for (k, column) in columns.iter_mut().enumerate() {

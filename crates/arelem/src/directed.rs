@@ -1,6 +1,7 @@
 //! Directed motions (AREPRE, ARLM2, ARLM3): from the tool's position along the drive and part surface until a check
 //! surface stops it.
 
+mod fan;
 mod gouge;
 mod march;
 mod plane_route;
@@ -10,7 +11,7 @@ mod stop;
 
 use apt_geometry::{
     Vec3,
-    motion::{CheckSurface, NamedSurface, Relation, Turn},
+    motion::{AxisTangency, CheckSurface, NamedSurface, Relation, ToolAxis, Turn},
 };
 
 pub(crate) use self::prepare::Prepared;
@@ -44,15 +45,36 @@ pub(crate) fn run(
         return Err(MotionFailure::SurfaceCount { found: 1 });
     }
     let prepared = prepare::prepare(state, turn, drive, checks, warnings)?;
-    let path = match plane_route::run(state, &prepared, checks, cancel)? {
-        Some(path) => path,
-        None => march::run(state, &prepared, checks, cancel).inspect_err(|failure| {
-            if state.gouge_check {
-                warnings.extend(gouge::where_stuck(&prepared, failure));
-            }
-        })?,
+    let (prepared, path) = match state.axis_mode {
+        ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => {
+            fan::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?
+        }
+        _ => {
+            let path = follow(state, &prepared, checks, warnings, cancel)?;
+            (prepared, path)
+        }
     };
-    sequence(state, &prepared, checks, path)
+    let sequence = sequence(state, &prepared, checks, path)?;
+    if state.gouge_check {
+        warnings.extend(gouge::along(&prepared, &sequence));
+    }
+    Ok(sequence)
+}
+
+/// The path of a motion whose axis is settled.
+fn follow(
+    state: &State,
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    warnings: &mut Vec<MotionWarning>,
+    cancel: &dyn Fn() -> bool,
+) -> Result<Path, MotionFailure> {
+    let path = plane_route::run(state, prepared, checks, cancel).transpose();
+    path.unwrap_or_else(|| march::run(state, prepared, checks, cancel)).inspect_err(|failure| {
+        if state.gouge_check {
+            warnings.extend(gouge::where_stuck(prepared, failure));
+        }
+    })
 }
 
 /// By which route a directed motion is computed.

@@ -32,6 +32,23 @@ pub enum Iteration {
     FinalVector,
 }
 
+/// How it is known that a path never meets its check surface. Lengths in program units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Course {
+    /// The positions are the solutions of an equation that has none.
+    Analytic,
+    /// The path closes on itself and meets nothing in a turn of this length.
+    Closed {
+        /// Length of a turn.
+        length: f64,
+    },
+    /// The path leaves everything behind that has an extent.
+    Away {
+        /// How far it was followed.
+        travelled: f64,
+    },
+}
+
 /// Where the tool and a surface come nearest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoints {
@@ -66,6 +83,9 @@ pub enum AxisFailure {
     /// The sign of an angle cannot be told: the two surfaces are tangent, or nothing is ahead (861).
     #[error("the sign of the angle cannot be resolved")]
     SignUnresolved,
+    /// Over the vertex of a cone the normal has no one direction: the axis would have to turn on the spot (855).
+    #[error("the axis would turn about the vertex of a cone")]
+    Vertex,
     /// A surface that the mode needs takes no part in the motion (850).
     #[error("a surface that the axis depends on takes no part")]
     NoSurface,
@@ -84,7 +104,7 @@ impl AxisFailure {
             Self::NotRuled => 852,
             Self::ImpossibleAngles { .. } => 859,
             Self::NoPlane => 854,
-            Self::NoNormal | Self::NotSettled { .. } => 855,
+            Self::NoNormal | Self::Vertex | Self::NotSettled { .. } => 855,
             Self::SignUnresolved => 861,
             Self::NoSurface => 850,
         }
@@ -250,6 +270,8 @@ pub enum MotionFailure {
         nearest: f64,
         /// Where.
         at: Vec3,
+        /// How that is known.
+        course: Course,
     },
     /// There are stopping positions, but none ahead with the relation and count asked for (724).
     #[error("no stopping position ahead; {found} elsewhere")]
@@ -374,15 +396,17 @@ pub enum MotionWarning {
         /// Angle of the tool axis from z, radians.
         tilt: f64,
     },
-    /// GOUGCK/ON: a little ahead of where the path ends the tool would cut into a surface at another place than the one it
-    /// follows.
+    /// GOUGCK/ON: the tool cuts deeper than INTOL into a surface at another place than the one it follows, or would do so a
+    /// little ahead of where the path ends.
     Gouge {
-        /// Part or drive surface.
+        /// Part, drive or check surface.
         role: RoleName,
         /// How deep, THICK included.
         depth: f64,
         /// Tool end, the deepest point of the tool, and the point of the surface next to it.
         contact: ContactPoints,
+        /// True where the motion failed, and this is what lies ahead.
+        ahead: bool,
     },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {

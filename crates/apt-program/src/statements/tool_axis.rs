@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     Vec3,
-    motion::{AxisAngle, MotionCommand, ToolAxis},
+    motion::{AxisAngle, AxisTangency, MotionCommand, ToolAxis},
 };
 
 use super::Major;
@@ -60,7 +60,7 @@ impl Evaluator<'_> {
         None
     }
 
-    /// NORMPS, NORMDS, PARLEL and ATANGL.
+    /// NORMPS, NORMDS, PARLEL, ATANGL and the forms that APT III does not document.
     fn axis_by_word(&mut self, major: Major<'_>, word: &'static str, rest: &[Item]) -> Option<ToolAxis> {
         match (word, rest) {
             ("NORMPS", []) => Some(ToolAxis::Normal { part: true }),
@@ -83,10 +83,10 @@ impl Evaluator<'_> {
                 None
             }
             ("NORMPS" | "NORMDS" | "PERPTO" | "TANDS" | "FAN", _) => {
-                // Forms that APT III accepts without documenting what they do: an error, not a guess.
+                let axis = self.axis_of_later_systems(major, word, rest)?;
                 let word = smol_str::SmolStr::new_static(word);
                 self.report(FindingKind::AxisUndocumented { word }, major.range);
-                None
+                Some(axis)
             }
             _ => {
                 let found = Found::Word(smol_str::SmolStr::new_static(word));
@@ -94,6 +94,45 @@ impl Evaluator<'_> {
                 None
             }
         }
+    }
+
+    /// The forms that APT III accepts without documenting what they do, with the meaning that later systems gave them:
+    /// NORMPS and NORMDS with a vector keep the axis in planes perpendicular to it, PERPTO with a vector and TANDS lay it
+    /// along the drive surface, FAN turns it evenly to the position of TANDS at the end. A number behind is the height of
+    /// tangency; the normal has none.
+    fn axis_of_later_systems(&mut self, major: Major<'_>, word: &str, rest: &[Item]) -> Option<ToolAxis> {
+        let (vector, height) = match (word, rest) {
+            ("TANDS" | "FAN", _) => (&rest[..0], rest),
+            (_, [vector, height @ ..]) if vector.vector().is_some() => (std::slice::from_ref(vector), height),
+            _ => rest.split_at(rest.len().min(3)),
+        };
+        let height = match height {
+            [] => 0.0,
+            [item] => match item.scalar() {
+                Some(height) => height,
+                None => {
+                    self.wrong_operand(major, Expected::Scalar, item.found(), 129, item.range);
+                    return None;
+                }
+            },
+            _ => {
+                self.wrong_count(major, rest.len(), "a vector and a number", 129);
+                return None;
+            }
+        };
+        if matches!(word, "TANDS" | "FAN") {
+            let mode = if word == "FAN" { AxisTangency::Fan } else { AxisTangency::Across };
+            return Some(ToolAxis::Tangent { height, mode });
+        }
+        let vector = self.axis_vector(major, vector)?;
+        let Some(ToolAxis::Fixed(vector)) = self.fixed_axis(major, vector) else { return None };
+        Some(match word {
+            "PERPTO" => ToolAxis::Tangent { height, mode: AxisTangency::PerpendicularTo(vector) },
+            _ => {
+                let mode = AxisAngle::PerpendicularTo(vector);
+                ToolAxis::AtAngle { part: word == "NORMPS", angle: 0.0, mode }
+            }
+        })
     }
 
     /// 1 for the part surface, 2 for the drive surface.

@@ -8,7 +8,7 @@ use apt_geometry::{
     motion::Relation,
 };
 use arelem::{
-    error::{AxisFailure, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
+    error::{AxisFailure, Course, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
     verify::{Evidence, Rule, VerifyError},
 };
 
@@ -105,6 +105,7 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
         }
         AxisFailure::NoNormal => "the surface that guides the axis has no normal here".to_owned(),
         AxisFailure::SignUnresolved => "to which side ATANGL tilts the axis is not settled here".to_owned(),
+        AxisFailure::Vertex => "over the vertex of a cone the axis would have to turn on the spot".to_owned(),
         AxisFailure::NoSurface => "a surface that TLAXIS needs takes no part in this motion".to_owned(),
         AxisFailure::NotSettled { .. } => {
             "the surface that guides the axis is too hollow for this tool".to_owned()
@@ -233,7 +234,7 @@ fn path(failure: &Failure) -> Text {
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
         )
         .hint("choose a drive surface that stands on the part surface"),
-        Failure::NeverMet { relation: wanted, nearest, at, .. } => say(
+        Failure::NeverMet { relation: wanted, nearest, at, course, .. } => say(
             "APT0641",
             format!(
                 "the surface to stop at is never met: the nearest approach to {} is {} at {}",
@@ -242,7 +243,15 @@ fn path(failure: &Failure) -> Text {
                 place(at)
             ),
         )
-        .hint("check the direction and the surface"),
+        .hint(match course {
+            Course::Analytic => "check the direction and the surface".to_owned(),
+            Course::Closed { length } => {
+                format!("the path closes after {}: check the surface", number(*length))
+            }
+            Course::Away { travelled } => {
+                format!("it was followed for {}: check the direction and the surface", number(*travelled))
+            }
+        }),
         Failure::NoneAhead { relation: wanted, found, .. } => {
             let there = match found {
                 0 => "there is no such position elsewhere".to_owned(),
@@ -385,10 +394,11 @@ fn warning_text(warning: &Warning) -> Text {
             ),
         )
         .hint("give the part surface by PSIS"),
-        Warning::Gouge { role: name, depth, contact } => say(
+        Warning::Gouge { role: name, depth, contact, ahead } => say(
             "APT0665",
             format!(
-                "going on, the tool would cut {} deep into the {} at {}",
+                "{} {} deep into the {} at {}",
+                if *ahead { "going on, the tool would cut" } else { "the tool cuts" },
                 number(*depth),
                 role(*name),
                 place(&contact.surface)

@@ -2,9 +2,11 @@
 
 use apt_geometry::{
     Vec3,
-    motion::{AxisAngle, ToolAxis},
-    surface::Surface,
+    motion::{AxisAngle, AxisTangency, ToolAxis},
+    surface::{Surface, perpendicular},
 };
+
+use nalgebra::Matrix3;
 
 use crate::{
     clearance::{Gauge, Tool},
@@ -15,14 +17,18 @@ use crate::{
 const MAX_ITERATIONS: u32 = 80;
 /// A change of the axis below this ends it.
 const RESOLUTION: f64 = 1e-15;
-/// The change that rounding may leave.
-const ACCEPTABLE: f64 = 1e-11;
+/// The change that may be left: nearest points of ruled and polyconic surfaces are known to about a tenth of it.
+const ACCEPTABLE: f64 = 1e-9;
 /// |cos| between axis and normal above which an axis ON a surface keeps to its side of it.
 const LEAST_COSINE: f64 = 0.05;
 /// Sine between two directions below which they span no plane.
 const SAME_DIRECTION: f64 = 1e-6;
 /// Sine of the angle between drive normal and four-axis plane below which alpha is a lead angle.
 const LEAD_SINE: f64 = 1e-3;
+/// Distance, relative to the size of the coordinates, within which a point is the vertex of a cone.
+const ON_VERTEX: f64 = 1e-12;
+/// Share of the way by which an axis that fans goes on turning before and behind it, for trials beyond the end.
+const BEYOND: f64 = 0.5;
 /// Angles below this (radians) are zero.
 const ZERO_ANGLE: f64 = 1e-12;
 
@@ -36,6 +42,18 @@ struct Directed {
 impl Directed {
     fn normal(&self, p: &Vec3) -> Vec3 {
         self.surface.foot(p).normal * self.sign
+    }
+
+    /// True where the nearest point is the vertex of a cone: the normal there goes with the place, not with the surface.
+    fn at_vertex(&self, p: &Vec3) -> bool {
+        let Surface::Cone(cone) = &self.surface else { return false };
+        let foot = self.surface.foot(p).point;
+        (foot - cone.vertex).norm() <= ON_VERTEX * (1.0 + cone.vertex.norm())
+    }
+
+    /// Derivatives of the normal by the coordinates, as columns.
+    fn normal_rate(&self, p: &Vec3) -> Matrix3<f64> {
+        self.surface.foot_and_hessian(p).1 * self.sign
     }
 }
 
@@ -51,6 +69,22 @@ enum Mode {
     /// Along the rulings of the controlling surface, in their own sense (+1) or against it (−1).
     Parallel {
         sense: f64,
+    },
+    /// Along the controlling surface as it is at a height above the tool end: in the plane across a unit vector, or across
+    /// the line of motion; in one of the two senses.
+    Tangent {
+        height: f64,
+        vector: Option<Vec3>,
+        sense: f64,
+    },
+    /// From one axis to another about a unit vector, evenly with the way along a straight line.
+    Fan {
+        from: Vec3,
+        about: Vec3,
+        angle: f64,
+        origin: Vec3,
+        /// Direction of the line divided by its length.
+        line: Vec3,
     },
     /// In the plane across a unit vector, turned about that vector by an angle with this cosine and sine.
     Across {
@@ -90,6 +124,7 @@ impl Law {
     ) -> Result<Option<Self>, AxisFailure> {
         let controlled_by_part = match mode {
             ToolAxis::Fixed(_) | ToolAxis::Keep => return Ok(None),
+            ToolAxis::Tangent { .. } => false,
             ToolAxis::Normal { part } | ToolAxis::Parallel { part } | ToolAxis::AtAngle { part, .. } => *part,
         };
         let (base, other) = if controlled_by_part { (part, drive) } else { (drive, part) };
@@ -113,7 +148,42 @@ impl Law {
             }
             law.mode = Mode::Parallel { sense: cosine.signum() };
         }
+        if let ToolAxis::Tangent { height, mode } = mode {
+            let vector = match mode {
+                AxisTangency::PerpendicularTo(vector) => {
+                    Some(vector.try_normalize(0.0).ok_or(AxisFailure::NoPlane)?)
+                }
+                AxisTangency::Across | AxisTangency::Fan => None,
+            };
+            law.mode = Mode::Tangent { height: *height, vector, sense: 1.0 };
+            // Both senses are tangent: the axis keeps to the one in which it points.
+            let place = tip + tool.axis * *height;
+            let cosine = law.towards(&law.base.normal(&place), tip)?.dot(&tool.axis);
+            if cosine.abs() <= SAME_DIRECTION {
+                return Err(AxisFailure::SignUnresolved);
+            }
+            law.mode = Mode::Tangent { height: *height, vector, sense: cosine.signum() };
+        }
         Ok(Some(law))
+    }
+
+    /// The law of an axis that turns evenly from one position to another: by the share of the straight way between both
+    /// that the tool end has made.
+    pub(crate) fn fan(
+        &self,
+        (from, origin): (&Vec3, &Vec3),
+        (to, end): (&Vec3, &Vec3),
+    ) -> Result<Self, AxisFailure> {
+        let way = end - origin;
+        let square = way.norm_squared();
+        let across = from.cross(to);
+        let angle = across.norm().atan2(from.dot(to));
+        let about = across.try_normalize(0.0).unwrap_or_else(|| perpendicular(from));
+        if square <= 0.0 || angle >= std::f64::consts::PI - SAME_DIRECTION {
+            return Err(AxisFailure::SignUnresolved);
+        }
+        let mode = Mode::Fan { from: *from, about, angle, origin: *origin, line: way / square };
+        Ok(Self { mode, ..self.clone() })
     }
 
     fn angles(&self, angle: f64, mode: &AxisAngle, tip: &Vec3, ahead: &Vec3) -> Result<Mode, AxisFailure> {
@@ -163,30 +233,49 @@ impl Law {
     /// True if every surface that counts is a plane.
     pub(crate) fn is_constant(&self) -> bool {
         let plane = |directed: &Directed| matches!(directed.surface, Surface::Plane(_));
-        let alone = matches!(self.mode, Mode::Normal | Mode::Across { .. });
+        let alone = match self.mode {
+            Mode::Fan { .. } => return false,
+            Mode::Normal | Mode::Across { .. } | Mode::Tangent { vector: Some(_), .. } => true,
+            _ => false,
+        };
         plane(&self.base) && (alone || self.other.as_ref().is_some_and(plane))
+    }
+
+    /// Derivatives of the axis by the coordinates of the tool end, as columns, where they have a closed form.
+    pub(crate) fn rate(&self, tip: &Vec3) -> Option<Matrix3<f64>> {
+        matches!(self.mode, Mode::Normal).then(|| self.base.normal_rate(tip))
     }
 
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
-        if let Mode::Parallel { sense } = self.mode {
-            return self.ruling(tip).map(|ruling| ruling * sense);
+        match self.mode {
+            Mode::Parallel { sense } => return self.ruling(tip).map(|ruling| ruling * sense),
+            Mode::Fan { .. } => return self.towards(&Vec3::zeros(), tip),
+            _ => {}
         }
         let mut normal = self.base.normal(tip);
         let mut axis = self.towards(&normal, tip)?;
         if matches!(self.mode, Mode::Normal) {
-            return Ok(axis);
+            return if self.base.at_vertex(tip) { Err(AxisFailure::Vertex) } else { Ok(axis) };
         }
+        let mut place = *tip;
         // The angles hold at the contact, which moves with the axis.
         let mut change = f64::INFINITY;
         for _ in 0..MAX_ITERATIONS {
-            normal = self.base.normal(&corner(tool, tip, &axis, &normal));
+            place = match self.mode {
+                Mode::Tangent { height, .. } => tip + axis * height,
+                _ => corner(tool, tip, &axis, &normal),
+            };
+            normal = self.base.normal(&place);
             let next = self.towards(&normal, tip)?;
             change = (next - axis).norm();
             axis = next;
             if change <= RESOLUTION {
                 break;
             }
+        }
+        if self.base.at_vertex(&place) {
+            return Err(AxisFailure::Vertex);
         }
         if change <= ACCEPTABLE { Ok(axis) } else { Err(AxisFailure::NotSettled { change }) }
     }
@@ -195,6 +284,15 @@ impl Law {
         let axis = match self.mode {
             Mode::Normal => *normal,
             Mode::Parallel { sense } => self.ruling(tip)? * sense,
+            Mode::Tangent { vector: Some(vector), sense, .. } => {
+                normal.cross(&vector).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::NoPlane)? * sense
+            }
+            Mode::Tangent { vector: None, sense, .. } => self.frame(normal, tip)?.1 * sense,
+            Mode::Fan { from, about, angle, origin, line } => {
+                let share = line.dot(&(tip - origin)).clamp(-BEYOND, 1.0 + BEYOND);
+                let (sin, cos) = (angle * share).sin_cos();
+                from * cos + about.cross(&from) * sin
+            }
             Mode::Tilted { cosine, sine } => {
                 let (_, aside) = self.frame(normal, tip)?;
                 normal * cosine + aside * sine

@@ -1,18 +1,18 @@
-//! PARLEL: the axis along the rulings of the surface that the flank cuts.
+//! Axes along the surface that the flank cuts: PARLEL, PERPTO, TANDS and FAN.
 
 use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, RuledSurface},
-    motion::{DriveSide, MotionCommand, Relation, ToolAxis, Turn},
+    motion::{AxisTangency, DriveSide, MotionCommand, Relation, ToolAxis, Turn},
     surface::Surface,
 };
 
 use crate::{
     clearance::{Gauge, Tool},
     error::{AxisFailure, MotionFailure},
-    tests::{Program, circle, plane, start, v},
+    tests::{Program, circle, plane, sphere, start, v},
 };
 
 /// A wall that leans inward: from a circle of radius 6 at z=0 to one of radius 5 at z=4, both about (3, −6).
@@ -97,4 +97,74 @@ fn plane_wall() -> Geometry {
         ]
     };
     Geometry::RuledSurface(Arc::new(RuledSurface { parts: [curve(0.0), curve(4.0)].concat() }))
+}
+
+/// A ball end round a dome that stands on the floor, with an axis that follows it.
+fn round_the_dome(mode: ToolAxis) -> Program {
+    let (dome, floor) = (sphere(0.0, 0.0, -1.0, 4.0), plane(0.0, 0.0, 1.0, 0.5));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-0.4, -5.0, 0.5).run(&MotionCommand::ToolAxis(mode));
+    p.part_side(apt_geometry::motion::PartSide::On);
+    p.go(&[(Relation::To, &dome), (Relation::On, &floor), (Relation::On, &plane(1.0, 0.0, 0.0, -0.4))]);
+    p.side(DriveSide::Left).indirv(-1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &dome, Relation::On, &plane(0.0, 1.0, 0.0, -0.4));
+    p
+}
+
+fn verified(p: &Program) {
+    for sequence in &p.sequences {
+        let evidence = crate::verify::verify(sequence, &|| false).expect("a judgement");
+        assert!(evidence.verified, "{:?}", evidence.violations);
+    }
+}
+
+#[test]
+fn an_axis_along_the_drive_surface_is_perpendicular_to_its_normal() {
+    let hill = Surface::from_geometry(&sphere(0.0, 0.0, -1.0, 4.0)).expect("a surface");
+    let across = Vec3::new(1.0, -1.0, 0.0).normalize();
+    for height in [0.0, 0.7] {
+        let modes = [AxisTangency::Across, AxisTangency::PerpendicularTo(across)];
+        for mode in modes {
+            let p = round_the_dome(ToolAxis::Tangent { height, mode });
+            assert!(p.last().points.len() > 3, "{}", p.last().points.len());
+            for point in &p.last().points {
+                let normal = hill.foot(&(point.tip + point.axis * height)).normal;
+                assert!(point.axis.dot(&normal).abs() < 1e-9 && point.axis.z > 0.0, "{point:?}");
+                let plane = match mode {
+                    AxisTangency::PerpendicularTo(vector) => vector,
+                    // Across the motion: in the plane of both normals.
+                    _ => normal.cross(&Vec3::z()).normalize(),
+                };
+                assert!(point.axis.dot(&plane).abs() < 1e-9, "{point:?}");
+            }
+            verified(&p);
+        }
+    }
+}
+
+#[test]
+fn a_fan_turns_evenly_with_the_way() {
+    // Along a wall that leans by 20° from the upright; the tool begins upright.
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    let (wall, floor) = (plane(0.0, cosine, -sine, 0.0), plane(0.0, 0.0, 1.0, 0.0));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5]).from(0.0, 2.0, 1.0);
+    p.go(&[(Relation::To, &wall), (Relation::On, &floor), (Relation::On, &plane(1.0, 0.0, 0.0, 0.0))]);
+    p.part_side(apt_geometry::motion::PartSide::On).side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height: 0.0, mode: AxisTangency::Fan }));
+    p.drive(Turn::Forward, &wall, Relation::On, &plane(1.0, 0.0, 0.0, 4.0));
+    let sequence = p.last();
+    let (begin, end) = (sequence.start, sequence.points[sequence.points.len() - 1]);
+    assert_eq!(begin.axis, Vec3::z());
+    assert!((end.axis - v(0.0, sine, cosine)).norm() < 1e-9, "{end:?}");
+    let way = end.tip - begin.tip;
+    for point in &sequence.points {
+        let share = (point.tip - begin.tip).dot(&way) / way.norm_squared();
+        let angle = begin.axis.cross(&point.axis).norm().atan2(begin.axis.dot(&point.axis));
+        assert!((angle - share * 20f64.to_radians()).abs() < 1e-9, "{share} {angle}");
+    }
+    verified(&p);
+    // Round a dome, too, where the end depends on the axis there.
+    let p = round_the_dome(ToolAxis::Tangent { height: 0.0, mode: AxisTangency::Fan });
+    verified(&p);
 }

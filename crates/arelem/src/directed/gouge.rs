@@ -1,13 +1,19 @@
 //! Where the tool would cut into a surface besides the contact that the path follows: in a neck, or in a corner narrower than
-//! the tool. GOUGCK/ON asks for it where no cut vector goes on.
+//! the tool. GOUGCK/ON asks for it, where no cut vector goes on and over the length of a motion that was computed.
+//!
+//! Cut vectors keep the bands of part and drive surface with the whole tool. What they are not bound to is looked at here: the
+//! body of a tool whose end is ON the part surface, a check surface on the way to a tangency with it, and the tool at a
+//! surface whose cut vectors are not proven.
 
 use apt_geometry::Vec3;
 
-use super::Prepared;
+use super::{Prepared, is_tangent, stop::graze::least};
 use crate::{
-    clearance::Tool,
-    error::{ContactPoints, Iteration, MotionFailure, MotionWarning, RoleName},
-    role::Working,
+    attitude::Sweep,
+    clearance::{Contact, Gauge, Tool},
+    error::{ContactPoints, MotionFailure, MotionWarning, RoleName},
+    role::{ROUNDING, Working},
+    sequence::CutSequence,
 };
 
 /// How far ahead is looked, as a share of the tool's radius.
@@ -25,16 +31,104 @@ struct Cut {
     tool: Vec3,
 }
 
-/// What keeps the tool from going on, where a motion failed because no cut vector was found.
+/// What keeps the tool from going on, where a motion failed on its way.
 pub(super) fn where_stuck(prepared: &Prepared, failure: &MotionFailure) -> Vec<MotionWarning> {
     match failure {
         MotionFailure::NoAdmissibleVector { role, tip, .. } => ahead(prepared, *role, tip),
-        MotionFailure::IterationLimit { iteration: Iteration::StepLength, tip, .. } => {
+        MotionFailure::IterationLimit { tip, .. } => {
             let roles = [RoleName::Part, RoleName::Drive];
             roles.into_iter().flat_map(|role| ahead(prepared, role, tip)).collect()
         }
         _ => Vec::new(),
     }
+}
+
+/// Least step along a vector, as a share of its length.
+const LEAST_STEP: f64 = 1.0 / 128.0;
+
+/// The places where the tool cuts deeper than INTOL into a surface that its cut vectors are not bound to, the deepest of
+/// every stretch.
+pub(super) fn along(prepared: &Prepared, sequence: &CutSequence) -> Vec<MotionWarning> {
+    let mut found = Vec::new();
+    let check = sequence.stop.as_ref().and_then(|stop| Some((prepared.checks.get(stop.index)?, stop)));
+    if prepared.part.gauge.on {
+        found.extend(stretches(prepared, &prepared.part, prepared.part.gauge.side, sequence));
+    }
+    if let Some((check, stop)) = check
+        && is_tangent(check.relation)
+        && !check.gauge.on
+    {
+        found.extend(stretches(prepared, check, stop.role.side, sequence));
+    }
+    for role in [&prepared.part, &prepared.drive] {
+        if !role.gauge.on && sampled_only(role) {
+            found.extend(stretches(prepared, role, role.gauge.side, sequence));
+        }
+    }
+    found.sort_by(|a, b| depth_of(b).total_cmp(&depth_of(a)));
+    found.truncate(MOST);
+    found
+}
+
+fn depth_of(warning: &MotionWarning) -> f64 {
+    match warning {
+        MotionWarning::Gouge { depth, .. } => *depth,
+        _ => 0.0,
+    }
+}
+
+/// True for surfaces whose distances bend by an unknown amount.
+fn sampled_only(role: &Working) -> bool {
+    matches!(
+        role.gauge.surface,
+        apt_geometry::surface::Surface::Ruled(_) | apt_geometry::surface::Surface::PolyConic(_)
+    )
+}
+
+/// Every stretch of the motion on which the whole tool is deeper than INTOL in a surface.
+fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSequence) -> Vec<MotionWarning> {
+    let surface = role.gauge.surface.clone();
+    let gauge =
+        Gauge { surface, on: false, side, thickness: role.gauge.thickness, memory: Default::default() };
+    let limit = -role.inside - ROUNDING * prepared.size;
+    let mut found = Vec::new();
+    let mut worst: Option<(f64, Contact, Vec3)> = None;
+    let mut from = &sequence.start;
+    for to in &sequence.points {
+        let sweep = Sweep::new(&prepared.tool, (&from.tip, &from.axis), (&to.tip, &to.axis));
+        let contact = |x: f64| {
+            let (tip, tool) = sweep.at(x);
+            (gauge.contact(&tool, &tip), tip)
+        };
+        let floor = LEAST_STEP * sweep.length;
+        let (mut before, mut x) = (0.0, 0.0);
+        loop {
+            let (here, tip) = contact(x);
+            if here.clearance < limit {
+                if worst.as_ref().is_none_or(|known| here.clearance < known.0) {
+                    let around = [before, (x + floor).min(sweep.length)];
+                    let deepest = least(around, &|x| Some(contact(x).0.clearance));
+                    let (at, tip) = deepest.map_or((here, tip), |(x, _)| contact(x));
+                    worst = Some((at.clearance.min(here.clearance), at, tip));
+                }
+            } else if let Some(known) = worst.take() {
+                found.push(told(role.name, known));
+            }
+            if x >= sweep.length {
+                break;
+            }
+            before = x;
+            x = (x + ((here.clearance - limit) / sweep.stretch()).max(floor)).min(sweep.length);
+        }
+        from = to;
+    }
+    found.extend(worst.map(|known| told(role.name, known)));
+    found
+}
+
+fn told(role: RoleName, (clearance, contact, tip): (f64, Contact, Vec3)) -> MotionWarning {
+    let contact = ContactPoints { tip, tool: contact.tool, surface: contact.surface };
+    MotionWarning::Gouge { role, depth: -clearance, contact, ahead: false }
 }
 
 /// The places where the tool would cut deeper than INTOL into a role's surface a little ahead of a position, the deepest
@@ -58,7 +152,7 @@ pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<Moti
     let warning = |cut: Cut| {
         let surface = role.gauge.surface.foot(&cut.tool).point;
         let contact = ContactPoints { tip: at, tool: cut.tool, surface };
-        MotionWarning::Gouge { role: name, depth: cut.depth, contact }
+        MotionWarning::Gouge { role: name, depth: cut.depth, contact, ahead: true }
     };
     cuts.into_iter().map(warning).collect()
 }
@@ -141,7 +235,9 @@ mod tests {
             .warnings
             .iter()
             .filter_map(|warning| match warning {
-                MotionWarning::Gouge { role: RoleName::Drive, depth, contact } => Some((*depth, *contact)),
+                MotionWarning::Gouge { role: RoleName::Drive, depth, contact, ahead: true } => {
+                    Some((*depth, *contact))
+                }
                 _ => None,
             })
             .collect();

@@ -2,19 +2,19 @@
 //! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
 
 mod finish;
-mod progress;
+mod scout;
 mod step;
 mod straight;
 mod tangency;
 
 use apt_geometry::{Vec3, motion::CheckSurface};
 
-use self::step::Stepper;
+use self::{scout::Outlook, step::Stepper};
 use super::{Path, Prepared, stop::Watcher};
 use crate::{
     attitude::Sweep,
     clearance::{Contact, Shape},
-    error::{Iteration, MotionFailure},
+    error::{Course, Iteration, MotionFailure},
     section2::State,
 };
 
@@ -68,6 +68,10 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
 const TANGENT_SINE: f64 = 1e-7;
 /// How often a vector that ends at the check surface is shortened before giving up.
 const MAX_FINALS: u32 = 60;
+/// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
+const WITHOUT_AXIS: f64 = 0.25;
+/// Cut vectors after which it is first looked whether a check surface lies ahead.
+const FIRST_LOOK: usize = 100;
 /// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
 const LEAST_FORWARD: f64 = 0.5;
 /// Share of the way to the stop for the vertex before it, when one vector cannot reach it.
@@ -92,7 +96,7 @@ pub(super) fn run(
         watcher: Watcher::new(prepared, checks),
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),
-        progress: progress::Progress::new(),
+        look: FIRST_LOOK,
         revolutions: 0,
         before: None,
     };
@@ -115,7 +119,8 @@ struct March<'a> {
     watcher: Watcher<'a>,
     tangency: tangency::Watch<'a>,
     points: Vec<Vec3>,
-    progress: progress::Progress,
+    /// Number of cut vectors after which it is time to look ahead.
+    look: usize,
     revolutions: u32,
     before: Option<Before<'a>>,
 }
@@ -130,9 +135,11 @@ impl<'a> March<'a> {
             if cancel() {
                 return Err(MotionFailure::Cancelled);
             }
-            let next = self.stepper.advance(&here, cap)?;
+            let advanced = self.stepper.advance(&here, cap);
+            let next = advanced.map_err(|failure| self.without_axis(&here).unwrap_or(failure))?;
             let before = self.snapshot(&here);
-            let event = match self.watcher.scan(&here.sweep(self.prepared, &next)) {
+            let sweep = here.sweep(self.prepared, &next);
+            let event = match self.watcher.scan(&sweep) {
                 Some(event) => Some(event),
                 None => self.tangency.scan(&here, &next)?,
             };
@@ -140,14 +147,13 @@ impl<'a> March<'a> {
                 self.before = Some(before);
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
-                if self.progress.is_lost(self.watcher.nearest.0, &here, &next, self.prepared.size) {
-                    return Err(self.never_met());
-                }
+                self.look_ahead(&next, cancel)?;
                 here = next;
                 cap = self.state.maximum_step;
                 continue;
             };
-            let end = finish::locate(self.prepared, self.checks, &event, &next.tangent)?;
+            let end =
+                finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &event, &next.tangent)?;
             if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
                 self.straighten_end(&start)?;
@@ -175,11 +181,40 @@ impl<'a> March<'a> {
                 return Ok(self.path(&end));
             }
         }
+        if let Outlook::Nothing { course, nearest } = self.outlook(&here, cancel)? {
+            return Err(self.never_met(nearest, course));
+        }
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
             remaining: self.watcher.nearest.0.min(self.tangency.nearest.abs()),
             at: here.tip,
         })
+    }
+
+    /// From time to time, while the check surfaces come no nearer: ends a motion that cannot meet any.
+    fn look_ahead(&mut self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
+        if self.points.len() < self.look {
+            return Ok(());
+        }
+        self.look *= 2;
+        if let Outlook::Nothing { course, nearest } = self.outlook(from, cancel)? {
+            return Err(self.never_met(nearest, course));
+        }
+        Ok(())
+    }
+
+    /// What lies ahead, as far as the cut vectors that are left can reach.
+    fn outlook(&self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<Outlook, MotionFailure> {
+        let left = (self.state.maximum_points as usize).saturating_sub(self.points.len());
+        let reach = left as f64 * self.state.maximum_step;
+        scout::ahead(self.prepared, self.checks, (&self.watcher, &self.tangency), from, reach, cancel)
+    }
+
+    /// Where no vector goes on because the axis has no direction a little ahead: that.
+    fn without_axis(&self, here: &Vertex) -> Option<MotionFailure> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let ahead = here.tip + here.tangent * (WITHOUT_AXIS * (part.band() + drive.band()));
+        attitude.tool_at(&ahead).err()
     }
 
     fn snapshot(&self, vertex: &Vertex) -> Before<'a> {
@@ -261,15 +296,34 @@ impl<'a> March<'a> {
         self.revolutions += 1;
         let wanted = self.checks.iter().map(|c| c.occurrence).max().unwrap_or(1);
         if self.watcher.met == 0 && self.tangency.met == 0 || self.revolutions > wanted {
-            return Err(self.never_met());
+            let vertices = std::iter::once(&start.tip).chain(&self.points);
+            let length = vertices.clone().zip(vertices.skip(1)).map(|(a, b)| (b - a).norm()).sum();
+            let nothing = (f64::INFINITY, start.tip, 0);
+            return Err(self.never_met(nothing, Course::Closed { length }));
         }
         Ok(())
     }
 
-    fn never_met(&self) -> MotionFailure {
-        if self.watcher.nearest.0.is_finite() {
-            let (nearest, at, check) = self.watcher.nearest;
-            return MotionFailure::NeverMet { check, relation: self.checks[check].relation, nearest, at };
+    /// The evidence: the nearest approach on the cut vectors made and on the way ahead of them.
+    fn never_met(&self, ahead: (f64, Vec3, usize), course: Course) -> MotionFailure {
+        let mut watcher = Watcher::new(self.prepared, self.checks).thorough();
+        let mut here = Vertex::start(self.prepared);
+        for point in &self.points {
+            let next = Vertex::at(self.prepared, *point, &self.prepared.tangent);
+            if let (Ok(from), Ok(to)) = (&here, &next) {
+                watcher.scan(&from.sweep(self.prepared, to));
+            }
+            here = next;
+        }
+        let (nearest, at, check) = if watcher.nearest.0 <= ahead.0 { watcher.nearest } else { ahead };
+        if nearest.is_finite() {
+            return MotionFailure::NeverMet {
+                check,
+                relation: self.checks[check].relation,
+                nearest,
+                at,
+                course,
+            };
         }
         MotionFailure::NotTangent { check: self.tangency.check, gap: self.tangency.nearest }
     }

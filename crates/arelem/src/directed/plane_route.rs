@@ -10,7 +10,7 @@ use apt_geometry::{
 
 use super::{Path, Prepared};
 use crate::{
-    error::MotionFailure,
+    error::{Course, MotionFailure},
     plane_curve::{Curve, flat},
     role::GUARD,
     section2::State,
@@ -80,6 +80,31 @@ impl Track {
                 }
             }
         }
+    }
+
+    /// Where on the way ahead a distance from a curve that is never zero is least.
+    fn nearest(&self, stop: &Curve, distance: &dyn Fn(f64) -> f64) -> (f64, f64) {
+        let mut places = vec![0.0];
+        match (&self.curve, stop) {
+            (TrackCurve::Line { direction }, Curve::Circle { center, .. }) => {
+                places.push((center - self.from).dot(direction).max(0.0));
+            }
+            (TrackCurve::Line { .. }, Curve::Line { .. }) => {}
+            (TrackCurve::Circle { center, .. }, _) => {
+                let towards = stop.parallel_directions(center, &self.axis);
+                places.extend(
+                    towards.iter().flat_map(|w| [0.0, std::f64::consts::PI].map(|half| self.angle(w, half))),
+                );
+            }
+        }
+        let mut best = (0.0, f64::INFINITY);
+        for x in places {
+            let found = distance(x);
+            if found < best.1 {
+                best = (x, found);
+            }
+        }
+        best
     }
 
     /// Angle of travel to a direction turned by another angle, in [0, 2π).
@@ -221,11 +246,13 @@ fn crossing(
     };
     let start = value(0.0);
     if all.is_empty() {
+        let (x, nearest) = track.nearest(stop, &|x| value(x).abs());
         return Err(MotionFailure::NeverMet {
             check: 0,
             relation: check.relation,
-            nearest: start.abs(),
-            at: track.from,
+            nearest,
+            at: track.at(x),
+            course: Course::Analytic,
         });
     }
     let found = all.len();

@@ -7,6 +7,7 @@ mod ledger;
 
 use apt_geometry::Vec3;
 
+pub(super) use self::course::lowest;
 pub(crate) use self::ledger::Ledger;
 use crate::{
     attitude::Sweep,

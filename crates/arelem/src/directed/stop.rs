@@ -1,15 +1,19 @@
 //! Check surfaces as events along the path (ACHECK, CHECK1 to CHECK3 made safe): clearance changes by no more than the
-//! distance moved, so stepping by the clearance itself can never jump over a position.
+//! distance moved, so stepping by the clearance itself can never jump over a position. Where the path runs along the check
+//! surface the steps are longer: a bound of the second derivative shows that there is no position between two samples.
+
+pub(super) mod graze;
 
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
+    surface::Bend,
 };
 
-use super::{Prepared, is_tangent};
+use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
-    clearance::{Tool, separation},
+    clearance::{Gauge, Memory, Tool, separation, upward_bend},
     role::Working,
 };
 
@@ -17,6 +21,10 @@ use crate::{
 const MAX_STEPS: u32 = 4000;
 /// Steps after which near-contact is followed in coarse steps.
 const FINE_STEPS: u32 = 400;
+/// Steps by the clearance alone after which longer ones are looked for.
+const PLAIN_STEPS: u32 = 48;
+/// Bound of the halvings of a longer step.
+const HALVINGS: u32 = 12;
 /// Least step, as a share of the check surface's band.
 const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
@@ -40,6 +48,8 @@ struct Watch {
     count: u32,
     /// A position and the radius around it in which nothing happens.
     quiet: (Vec3, f64),
+    /// In its band the path was still coming nearer at the end of the last vector.
+    falling: bool,
 }
 
 /// A stopping position found on a cut vector.
@@ -52,6 +62,8 @@ pub(super) struct Event {
     pub(super) x: f64,
     /// Side of the check surface on which the tool stands there.
     pub(super) side: f64,
+    /// The path touches the check surface there without crossing it: the position is on the path already.
+    pub(super) grazed: bool,
 }
 
 /// Watches all check surfaces of a motion.
@@ -64,12 +76,20 @@ pub(super) struct Watcher<'a> {
     pub(super) met: usize,
     /// Least distance from a relation, where and of which check surface.
     pub(super) nearest: (f64, Vec3, usize),
+    /// Looks for the nearest approach on every vector, also where no position is within reach.
+    thorough: bool,
 }
 
 impl<'a> Watcher<'a> {
     pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
-        let mut watcher =
-            Self { prepared, checks, watches: Vec::new(), met: 0, nearest: (f64::INFINITY, prepared.tip, 0) };
+        let mut watcher = Self {
+            prepared,
+            checks,
+            watches: Vec::new(),
+            met: 0,
+            nearest: (f64::INFINITY, prepared.tip, 0),
+            thorough: false,
+        };
         for (index, check) in checks.iter().enumerate() {
             let value = if is_tangent(check.relation) {
                 f64::INFINITY
@@ -85,9 +105,14 @@ impl<'a> Watcher<'a> {
             } else {
                 Status::Inside
             };
-            watcher.watches.push(Watch { status, count: 0, quiet: (prepared.tip, 0.0) });
+            watcher.watches.push(Watch { status, count: 0, quiet: (prepared.tip, 0.0), falling: false });
         }
         watcher
+    }
+
+    /// The same watcher, but one that notes the nearest approach wherever that is.
+    pub(super) fn thorough(&self) -> Self {
+        Self { thorough: true, ..self.clone() }
     }
 
     fn working(&self, index: usize) -> &Working {
@@ -122,7 +147,8 @@ impl<'a> Watcher<'a> {
             }
             let watch = self.watches[index];
             let (quiet, radius) = watch.quiet;
-            if !sweep.turns() && (from - quiet).norm() < radius && (to - quiet).norm() < radius {
+            let within = (from - quiet).norm() < radius && (to - quiet).norm() < radius;
+            if !self.thorough && !sweep.turns() && within {
                 continue;
             }
             let (event, next) = self.follow(index, watch, sweep);
@@ -147,38 +173,100 @@ impl<'a> Watcher<'a> {
         let working = self.working(index);
         let (band, size) = (working.inside.max(working.outside), self.prepared.size);
         let least = (LEAST_STEP * working.band()).max(1e-10 * size);
+        let on = working.gauge.on;
         let relation = self.checks[index].relation;
         let wanted = self.checks[index].occurrence.max(1);
         let mut watch = watch;
-        let (mut x, mut value) = (0.0, self.value_at(index, sweep, 0.0).0);
-        self.note(index, value, &sweep.at(0.0).0);
+        let mut trail = Trail::new(self.value_at(index, sweep, 0.0).0);
+        let mut crossed = false;
+        self.note(index, trail.value, &sweep.at(0.0).0);
         for step in 0..MAX_STEPS {
-            if x >= length {
+            if trail.x >= length {
                 break;
             }
+            let (x, value) = (trail.x, trail.value);
             let floor = if step < FINE_STEPS { least } else { least.max(length / 64.0) };
-            let next_x = (x + value.abs().max(floor) / stretch).min(length);
+            let plain = (x + value.abs().max(floor) / stretch).min(length);
+            let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, (x, value), plain) };
+            let next_x = leap.unwrap_or(plain);
             let (tip, tool) = sweep.at(next_x);
             let (next, side) = self.value(index, &tool, &tip);
             self.note(index, next, &tip);
-            let label =
-                transition(&mut watch.status, next, band + 1e-9 * size, working_on(self.working(index)));
+            let label = transition(&mut watch.status, next, band + 1e-9 * size, on);
             if let Some(label) = label {
+                crossed = true;
                 watch.count += u32::from(label == relation);
                 if label == relation && watch.count >= wanted {
                     let (at, side) = self.bracket(index, sweep, [x, next_x], value > 0.0, (label, side));
-                    return (Some(Event { check: index, tip: sweep.at(at).0, x: at, side }), watch);
+                    let tip = sweep.at(at).0;
+                    return (Some(Event { check: index, tip, x: at, side, grazed: false }), watch);
                 }
             }
-            (x, value) = (next_x, next);
+            if let Some(bracket) = trail.step(next_x, next) {
+                self.refine_nearest(index, sweep, bracket, next);
+            }
         }
-        watch.quiet = (sweep.at(length).0, value.abs());
+        if !crossed && let Some(event) = self.grazed(index, &mut watch, sweep, &trail, wanted) {
+            return (Some(event), watch);
+        }
+        watch.quiet = (sweep.at(length).0, trail.value.abs());
         (None, watch)
+    }
+
+    /// A longer step than by the clearance alone, over which the bound of the second derivative leaves no room for a
+    /// position; or over which the samples at its ends say all that there is to say.
+    fn leap(&self, index: usize, sweep: &Sweep<'_>, (x, value): (f64, f64), plain: f64) -> Option<f64> {
+        let working = self.working(index);
+        let on = working.gauge.on;
+        if value <= 0.0 && !on {
+            return None;
+        }
+        let (band, stretch) = (working.inside.max(working.outside), sweep.stretch());
+        let mut end = sweep.length;
+        for _ in 0..HALVINGS {
+            let step = end - x;
+            if step <= 2.0 * (plain - x) {
+                return None;
+            }
+            let (tip, tool) = sweep.at(end);
+            let (next, side) = self.value(index, &tool, &tip);
+            if (next > 0.0) == (value > 0.0) {
+                let Gauge { surface, on, thickness, .. } = &working.gauge;
+                let thickness = if *on { 0.0 } else { *thickness };
+                let gauge =
+                    Gauge { surface: surface.clone(), on: *on, side, thickness, memory: Memory::default() };
+                let way = step * stretch;
+                let (middle, tool) = sweep.at(x + 0.5 * step);
+                let base = if *on { 0.0 } else { thickness + working.rest() };
+                let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
+                let range = [low - way + base, high + 2.0 * way + base];
+                if let Bend::AtMost(bend) = upward_bend(&gauge, &tool, &middle, 0.5 * way, range) {
+                    let bend = if *on { bend } else { bend * stretch * stretch + sweep.swing() };
+                    let clear = lowest((value.abs(), next.abs()), bend, step) > band;
+                    if clear || bend * step * step / 8.0 <= LEAST_STEP * working.band() {
+                        return Some(end);
+                    }
+                }
+            }
+            end = x + 0.5 * step;
+        }
+        None
     }
 
     fn note(&mut self, index: usize, value: f64, tip: &Vec3) {
         if value.abs() < self.nearest.0 {
             self.nearest = (value.abs(), *tip, index);
+        }
+    }
+
+    /// The least distance between two samples about a third that is nearer, if it is nearer than all before.
+    fn refine_nearest(&mut self, index: usize, sweep: &Sweep<'_>, [low, high]: [f64; 2], last: f64) {
+        if last.abs() - (high - low) * sweep.stretch() >= self.nearest.0 {
+            return;
+        }
+        let level = |x: f64| Some(self.value_at(index, sweep, x).0.abs());
+        if let Some((x, value)) = graze::least([low, high], &level) {
+            self.note(index, value, &sweep.at(x).0);
         }
     }
 
@@ -211,8 +299,30 @@ impl<'a> Watcher<'a> {
     }
 }
 
-fn working_on(working: &Working) -> bool {
-    working.gauge.on
+/// The last samples along a vector.
+struct Trail {
+    x: f64,
+    value: f64,
+    /// The place before, and whether the way from there came nearer.
+    before: (f64, bool),
+    /// Least distance from the relation.
+    least: f64,
+}
+
+impl Trail {
+    fn new(value: f64) -> Self {
+        Self { x: 0.0, value, before: (0.0, false), least: value.abs() }
+    }
+
+    /// Takes the next sample; the stretch about the last one if that was nearer than both its neighbours.
+    fn step(&mut self, x: f64, value: f64) -> Option<[f64; 2]> {
+        let nearer = value.abs() < self.value.abs();
+        let valley = (self.before.1 && !nearer).then_some([self.before.0, x]);
+        self.before = (self.x, nearer);
+        (self.x, self.value) = (x, value);
+        self.least = self.least.min(value.abs());
+        valley
+    }
 }
 
 /// Follows the sign; the relation that is reached when it changes.

@@ -5,7 +5,7 @@ use apt_geometry::{Vec3, motion::Relation, surface::Surface};
 
 use super::{StartUp, directed::unit_direction, side};
 use crate::{
-    error::{MotionFailure, RoleName},
+    error::{Course, MotionFailure, RoleName},
     plane_curve::Curve,
     role::Working,
 };
@@ -117,6 +117,7 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
             relation,
             nearest: work.roles[0].gauge.surface.signed_distance(&work.tip).abs(),
             at: work.tip,
+            course: Course::Analytic,
         });
     }
     let found = candidates.len();

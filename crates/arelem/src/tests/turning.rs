@@ -65,3 +65,25 @@ fn angles_that_exclude_each_other_are_named() {
     };
     assert_eq!(failure.apt3(), Some(859));
 }
+
+#[test]
+fn an_axis_that_would_turn_on_the_vertex_of_a_cone_is_named() {
+    // In a plane through the axis of the cone, up one side; on the vertex itself the normal jumps to the other side.
+    let (hill, middle) = (cone(v(0.0, 0.0, 3.0), v(0.0, 0.0, -1.0), 60.0), plane(0.0, 1.0, 0.0, 0.0));
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let mut p = program(&[0.5], ToolAxis::Normal { part: true });
+    p.go(&[(Relation::On, &middle), (Relation::To, &hill), (Relation::On, &x(-1.0))]);
+    p.indirv(1.0, 0.0, 0.0);
+    let command = motion(Turn::Forward, &middle, &[(Relation::On, 1, &x(1.0))]);
+    let failure = p.attempt(&command).expect_err("the axis jumps");
+    let MotionFailure::AxisUndetermined { cause: AxisFailure::Vertex, tip } = failure else {
+        panic!("{failure:?}")
+    };
+    assert!((tip - v(0.0, 0.0, 3.0)).norm() < 0.01, "{tip:?}");
+    assert_eq!(failure.apt3(), Some(855));
+    // Up to it there is no difficulty.
+    let mut p = program(&[0.5], ToolAxis::Normal { part: true });
+    p.go(&[(Relation::On, &middle), (Relation::To, &hill), (Relation::On, &x(-1.0))]);
+    p.indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &middle, Relation::On, &x(-0.1));
+    proven(&p);
+}

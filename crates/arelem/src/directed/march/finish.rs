@@ -3,7 +3,11 @@
 use apt_geometry::{Vec3, motion::CheckSurface};
 
 use crate::{
-    directed::{Prepared, is_tangent, stop::Event},
+    attitude::Sweep,
+    directed::{
+        Prepared, is_tangent,
+        stop::{Event, Watcher},
+    },
     error::{Iteration, MotionFailure},
     position::{self, Condition},
 };
@@ -15,14 +19,29 @@ pub(in crate::directed) struct End {
     pub(in crate::directed) side: f64,
 }
 
+/// The end of a motion at an event found on a straight vector: where the path only touches the check surface, the place of
+/// contact.
+pub(in crate::directed) fn end(
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    (watcher, sweep): (&Watcher<'_>, &Sweep<'_>),
+    event: &Event,
+    tangent: &Vec3,
+) -> Result<End, MotionFailure> {
+    locate(prepared, checks, event, tangent).or_else(|failure| {
+        let touch = watcher.touch(event.check, sweep).ok_or(failure)?;
+        Ok(End { tip: touch.tip, check: touch.check, side: touch.side })
+    })
+}
+
 /// The exact position of an event found on a straight vector.
-pub(in crate::directed) fn locate(
+fn locate(
     prepared: &Prepared,
     checks: &[CheckSurface],
     event: &Event,
     tangent: &Vec3,
 ) -> Result<End, MotionFailure> {
-    if is_tangent(checks[event.check].relation) {
+    if event.grazed || is_tangent(checks[event.check].relation) {
         return Ok(End { tip: event.tip, check: event.check, side: event.side });
     }
     let mut check = prepared.checks[event.check].clone();

@@ -5,7 +5,7 @@ use apt_geometry::motion::CheckSurface;
 use super::{Vertex, finish, tangency};
 use crate::{
     directed::{Path, Prepared, is_tangent, stop::Watcher},
-    error::MotionFailure,
+    error::{Course, MotionFailure},
 };
 
 /// How far ahead a stop is looked for, relative to the size of the coordinates and surfaces.
@@ -17,7 +17,7 @@ pub(super) fn run(
     cancel: &dyn Fn() -> bool,
 ) -> Result<Path, MotionFailure> {
     let here = Vertex::at(prepared, prepared.tip, &prepared.tangent)?;
-    let mut watcher = Watcher::new(prepared, checks);
+    let mut watcher = Watcher::new(prepared, checks).thorough();
     let mut tangency = tangency::Watch::new(prepared, checks);
     let mut from = here;
     let mut length = prepared.size;
@@ -28,12 +28,13 @@ pub(super) fn run(
             return Err(MotionFailure::Cancelled);
         }
         let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent)?;
-        let event = match watcher.scan(&from.sweep(prepared, &to)) {
+        let sweep = from.sweep(prepared, &to);
+        let event = match watcher.scan(&sweep) {
             Some(event) => Some(event),
             None => tangency.scan(&from, &to)?,
         };
         if let Some(event) = event {
-            let end = finish::locate(prepared, checks, &event, &here.tangent)?;
+            let end = finish::end(prepared, checks, (&watcher, &sweep), &event, &here.tangent)?;
             return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side });
         }
         travelled += length;
@@ -47,6 +48,12 @@ pub(super) fn run(
     Err(if watcher.met > 0 {
         MotionFailure::NoneAhead { check, relation: checks[check].relation, found: watcher.met }
     } else {
-        MotionFailure::NeverMet { check, relation: checks[check].relation, nearest, at }
+        MotionFailure::NeverMet {
+            check,
+            relation: checks[check].relation,
+            nearest,
+            at,
+            course: Course::Away { travelled },
+        }
     })
 }

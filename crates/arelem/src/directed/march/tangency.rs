@@ -68,7 +68,7 @@ impl<'a> Watch<'a> {
             }
             let x = (vertex.tip - from.tip).norm();
             if first.is_none_or(|best| x < best.x) {
-                first = Some(Event { check: index, tip: vertex.tip, x, side });
+                first = Some(Event { check: index, tip: vertex.tip, x, side, grazed: false });
             }
         }
         if let Some(event) = first {

@@ -161,7 +161,7 @@ impl Course<'_, '_> {
 }
 
 /// Least value on a stretch of the chord between the end values, sagging with the given second derivative.
-fn lowest((left, right): (f64, f64), bend: f64, length: f64) -> f64 {
+pub(in crate::directed) fn lowest((left, right): (f64, f64), bend: f64, length: f64) -> f64 {
     let sag = 0.5 * bend * length;
     // Slope of chord and sag at both ends: −sag and +sag besides that of the chord.
     let slope = (right - left) / length;

@@ -1,0 +1,204 @@
+//! Progress towards the check surfaces: whether one can be met at all on the way ahead. The path is followed far ahead in
+//! long steps without regard to tolerances, until it meets a check surface, closes on itself, or leaves everything behind.
+//!
+//! A step and the path between its ends are apart by no more than the sag of the step; a check surface that stays farther
+//! away than that is not met.
+
+use apt_geometry::{Vec3, motion::CheckSurface};
+
+use super::{Vertex, tangency};
+use crate::{
+    directed::{Prepared, is_tangent, stop::Watcher},
+    error::{Course, MotionFailure},
+    position::{self, Condition},
+};
+
+/// Bound of the steps of one look ahead.
+const MAX_STEPS: u32 = 3000;
+/// First step, relative to the size of the coordinates.
+const FIRST: f64 = 0.01;
+/// Turn of the path, radians, that steps aim at, and the greatest allowed.
+const TURN: [f64; 2] = [0.06, 0.12];
+/// Greatest growth from one step to the next.
+const GROWTH: f64 = 3.0;
+/// How many times its sag a step must stay away from the check surfaces.
+const MARGIN: f64 = 4.0;
+/// Steps are not shortened below this share of the size of the coordinates.
+const LEAST: f64 = 1e-7;
+/// How far the path is followed, relative to the size of the coordinates.
+const REACH: f64 = 1e5;
+/// The longest way that is followed because NUMPTS and MAXDP allow it, relative to the size of the coordinates.
+const LONGEST: f64 = 1e8;
+/// Turn, radians, over the last nine tenths of the way below which the path does not come back.
+const STRAIGHT: f64 = 0.05;
+/// Distance, relative to the size of the coordinates, within which the path has come back to a place.
+const SAME: f64 = 1e-6;
+
+/// What lies ahead.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Outlook {
+    /// No check surface: the nearest approach on the way, and how the way ends.
+    Nothing { course: Course, nearest: (f64, Vec3, usize) },
+    /// A check surface, or nothing that could be told.
+    Open,
+}
+
+/// A path being looked along.
+struct Scout<'a> {
+    prepared: &'a Prepared,
+    watcher: Watcher<'a>,
+    tangency: tangency::Watch<'a>,
+    nearest: (f64, Vec3, usize),
+    /// Distance travelled and angle turned at every step so far.
+    log: Vec<[f64; 2]>,
+}
+
+/// Looks along the path ahead of a vertex. `least` is the way that must have been followed at least before a path that does
+/// not close counts as lost.
+pub(super) fn ahead(
+    prepared: &Prepared,
+    checks: &[CheckSurface],
+    (watcher, tangency): (&Watcher<'_>, &tangency::Watch<'_>),
+    from: &Vertex,
+    least: f64,
+    cancel: &dyn Fn() -> bool,
+) -> Result<Outlook, MotionFailure> {
+    let nearest = (f64::INFINITY, from.tip, 0);
+    let mut scout = Scout {
+        prepared,
+        watcher: watcher.thorough(),
+        tangency: tangency.clone(),
+        nearest,
+        log: vec![[0.0; 2]],
+    };
+    let Some(start) = scout.settled(&from.tip, &from.tangent) else { return Ok(Outlook::Open) };
+    let met = scout.met();
+    let least = least.clamp(REACH * prepared.size, LONGEST * prepared.size);
+    let (mut here, mut step) = (start, FIRST * prepared.size);
+    let tangent = checks.iter().any(|check| is_tangent(check.relation));
+    for _ in 0..MAX_STEPS {
+        if cancel() {
+            return Err(MotionFailure::Cancelled);
+        }
+        let Some((to, turn)) = scout.leg(&here, &mut step) else { return Ok(Outlook::Open) };
+        let sweep = here.sweep(prepared, &to);
+        let sag = sweep.length * turn / 8.0;
+        scout.watcher.nearest.0 = f64::INFINITY;
+        let before = scout.watcher.clone();
+        if scout.watcher.scan(&sweep).is_some() || scout.tangency.scan(&here, &to)?.is_some() {
+            return Ok(Outlook::Open);
+        }
+        let approach = scout.watcher.nearest;
+        if !tangent && approach.0 <= MARGIN * sag {
+            step = 0.25 * sweep.length;
+            scout.watcher = before;
+            if step <= LEAST * prepared.size {
+                return Ok(Outlook::Open);
+            }
+            continue;
+        }
+        if approach.0 < scout.nearest.0 {
+            scout.nearest = approach;
+        }
+        scout.note(sweep.length, turn);
+        let closed = scout.log.len() > 3 && scout.passes(&start, &here, &to);
+        let course = if closed { Some(scout.turn()) } else { scout.left_behind(least) };
+        if let Some(course) = course {
+            let found = if closed { scout.met() > met } else { scout.met() > 0 };
+            return Ok(if found {
+                Outlook::Open
+            } else {
+                Outlook::Nothing { course, nearest: scout.nearest }
+            });
+        }
+        step = sweep.length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);
+        here = to;
+    }
+    Ok(Outlook::Open)
+}
+
+impl Scout<'_> {
+    /// The position on both surfaces next to a place, with the path in a given sense.
+    fn settled(&self, place: &Vec3, sense: &Vec3) -> Option<Vertex> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let conditions = [
+            Condition::Clearance(&part.gauge, part.rest()),
+            Condition::Clearance(&drive.gauge, drive.rest()),
+        ];
+        let tip = position::solve(attitude, &conditions, place).ok()?.tip;
+        Vertex::at(self.prepared, tip, sense).ok()
+    }
+
+    /// The next place and the turn of the path on the way; shortens the step until the path is followed.
+    fn leg(&self, here: &Vertex, step: &mut f64) -> Option<(Vertex, f64)> {
+        while *step > LEAST * self.prepared.size {
+            if let Some(to) = self.settled(&(here.tip + here.tangent * *step), &here.tangent) {
+                let chord = to.tip - here.tip;
+                let length = chord.norm();
+                let turn = here.tangent.cross(&to.tangent).norm().atan2(here.tangent.dot(&to.tangent));
+                let ahead = chord.dot(&here.tangent) > (1.0 - TURN[1]) * length;
+                if length > 0.0 && ahead && turn <= TURN[1] && length <= 2.0 * *step {
+                    return Some((to, turn));
+                }
+            }
+            *step *= 0.5;
+        }
+        None
+    }
+
+    fn met(&self) -> usize {
+        self.watcher.met + self.tangency.met
+    }
+
+    fn note(&mut self, length: f64, turn: f64) {
+        let [travelled, turned] = self.log.last().copied().unwrap_or_default();
+        self.log.push([travelled + length, turned + turn]);
+    }
+
+    fn travelled(&self) -> f64 {
+        self.log.last().map_or(0.0, |[travelled, _]| *travelled)
+    }
+
+    fn turn(&self) -> Course {
+        Course::Closed { length: self.travelled() }
+    }
+
+    /// Whether a step passes the place where the path was entered.
+    fn passes(&self, start: &Vertex, from: &Vertex, to: &Vertex) -> bool {
+        let chord = to.tip - from.tip;
+        let length = chord.norm();
+        if length <= 0.0 || to.tangent.dot(&start.tangent) <= 0.5 {
+            return false;
+        }
+        let direction = chord / length;
+        let along = (start.tip - from.tip).dot(&direction);
+        if along <= 0.0
+            || along > length
+            || (start.tip - from.tip - direction * along).norm() > TURN[1] * length
+        {
+            return false;
+        }
+        let Prepared { attitude, part, drive, size, .. } = self.prepared;
+        let conditions = [
+            Condition::Clearance(&part.gauge, part.rest()),
+            Condition::Clearance(&drive.gauge, drive.rest()),
+            Condition::Plane(start.tangent, start.tangent.dot(&start.tip)),
+        ];
+        let there = position::solve(attitude, &conditions, &(from.tip + direction * along));
+        there.is_ok_and(|found| (found.tip - start.tip).norm() <= SAME * size)
+    }
+
+    /// The path has gone far and is straight by now.
+    fn left_behind(&self, least: f64) -> Option<Course> {
+        let [travelled, turned] = *self.log.last()?;
+        if travelled < least {
+            return None;
+        }
+        let tenth = self.log.partition_point(|[at, _]| *at < 0.1 * travelled);
+        let lately = turned - self.log.get(tenth)?[1];
+        (lately < STRAIGHT).then_some(Course::Away { travelled })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,130 @@
+//! Check surfaces that the path touches without crossing them: where it comes nearest, and in tolerance, the tool is
+//! properly positioned, which is what TO and ON ask for (language reference 6.6).
+
+use apt_geometry::motion::Relation;
+
+use super::{Event, Status, Trail, Watch, Watcher};
+use crate::{
+    attitude::Sweep,
+    directed::march::Vertex,
+    position::{self, Condition},
+};
+
+/// How many times the bands of all surfaces a vector must come near for the path to be followed.
+const NEAR: f64 = 4.0;
+/// Bound of the search for the least value.
+const MAX_ITERATIONS: u32 = 80;
+/// Share of the stretch at which it ends.
+const RESOLUTION: f64 = 1e-9;
+/// Share of the vector at its ends that belongs to its neighbours.
+const END: f64 = 1e-6;
+
+/// Where a function of one valley is least on a stretch, by golden sections; `None` where it has no value.
+pub(in crate::directed) fn least(
+    [low, high]: [f64; 2],
+    value: &dyn Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = (low, high);
+    let (mut x, mut y) = (b - golden * (b - a), a + golden * (b - a));
+    let (mut at_x, mut at_y) = (value(x)?, value(y)?);
+    for _ in 0..MAX_ITERATIONS {
+        if b - a <= RESOLUTION * (high - low) {
+            break;
+        }
+        if at_x <= at_y {
+            (b, y, at_y) = (y, x, at_x);
+            x = b - golden * (b - a);
+            at_x = value(x)?;
+        } else {
+            (a, x, at_x) = (x, y, at_y);
+            y = a + golden * (b - a);
+            at_y = value(y)?;
+        }
+    }
+    Some(if at_x <= at_y { (x, at_x) } else { (y, at_y) })
+}
+
+impl Watcher<'_> {
+    /// The stop where the path along a vector that crosses nothing comes nearest to a check surface, if that is in the band.
+    pub(super) fn grazed(
+        &mut self,
+        index: usize,
+        watch: &mut Watch,
+        sweep: &Sweep<'_>,
+        trail: &Trail,
+        wanted: u32,
+    ) -> Option<Event> {
+        let was_falling = std::mem::take(&mut watch.falling);
+        let relation = self.checks[index].relation;
+        let prepared = self.prepared;
+        let near = NEAR * (prepared.part.band() + prepared.drive.band() + self.working(index).band());
+        let waiting = match relation {
+            Relation::To => watch.status == Status::Clear,
+            Relation::On => watch.status != Status::Touching,
+            _ => false,
+        };
+        if !waiting || trail.least > near || sweep.length <= 0.0 {
+            return None;
+        }
+        let (x, value) = least([0.0, sweep.length], &|x| self.on_path(index, sweep, x).map(|found| found.1))?;
+        let [low, high] = self.room(index);
+        if value > high {
+            return None;
+        }
+        if x >= sweep.length * (1.0 - END) {
+            watch.falling = true;
+            return None;
+        }
+        if x <= sweep.length * END && !was_falling {
+            return None;
+        }
+        watch.status = Status::Touching;
+        watch.count += 1;
+        let (vertex, _, side) = self.on_path(index, sweep, x)?;
+        self.note(index, value.abs(), &vertex.tip);
+        let grazed = value >= low;
+        (watch.count >= wanted).then_some(Event { check: index, tip: vertex.tip, x, side, grazed })
+    }
+
+    /// Where a vector that crosses the check surface's relation belongs to a path that only touches it: vectors run
+    /// elsewhere in their bands than the path that ends on part and drive surface.
+    pub(in crate::directed) fn touch(&self, index: usize, sweep: &Sweep<'_>) -> Option<Event> {
+        if !matches!(self.checks[index].relation, Relation::To | Relation::On) || sweep.length <= 0.0 {
+            return None;
+        }
+        let at = |x: f64| self.on_path(index, sweep, x).map(|found| found.1);
+        let (x, value) = least([0.0, sweep.length], &at)?;
+        let [low, high] = self.room(index);
+        let (vertex, _, side) = self.on_path(index, sweep, x)?;
+        let event = Event { check: index, tip: vertex.tip, x, side, grazed: true };
+        (value >= low && value <= high).then_some(event)
+    }
+
+    /// The band about a check surface's relation, measured from where the tool rests in it.
+    fn room(&self, index: usize) -> [f64; 2] {
+        let working = self.working(index);
+        if working.gauge.on {
+            return [0.0, working.inside.max(working.outside)];
+        }
+        [-working.inside - working.rest(), working.outside - working.rest()]
+    }
+
+    /// The position on part and drive surface next to a place of a vector, how far the check surface is from its relation
+    /// there, and the side of it.
+    fn on_path(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> Option<(Vertex, f64, f64)> {
+        let prepared = self.prepared;
+        let conditions = [
+            Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
+            Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),
+        ];
+        let tip = position::solve(&prepared.attitude, &conditions, &sweep.at(x).0).ok()?.tip;
+        let vertex = Vertex::at(prepared, tip, &sweep.direction).ok()?;
+        let tool = prepared.attitude.tool_at(&tip).ok()?;
+        let (value, side) = self.value(index, &tool, &tip);
+        Some((vertex, if self.working(index).gauge.on { value.abs() } else { value }, side))
+    }
+}
+
+#[cfg(test)]
+mod tests;
