@@ -208,11 +208,11 @@ fn profile(tool: &Tool) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use apt_geometry::motion::{DriveSide, MotionCommand, Relation, Turn};
+    use apt_geometry::motion::{DriveSide, MotionCommand, PartSide, Relation, Turn};
 
     use crate::{
         error::{MotionWarning, RoleName},
-        tests::{Program, line, motion, plane, quadric},
+        tests::{Program, cylinder, line, motion, plane, quadric, v},
     };
 
     /// A tool of radius .75 inside the ellipse x²/16 + y² = 1, whose ends have a radius of curvature of .25.
@@ -256,5 +256,31 @@ mod tests {
     fn nothing_is_told_unless_it_is_asked_for() {
         let (p, number) = into_the_narrow_end(false);
         assert_eq!((number, p.warnings.len()), (801, 0));
+    }
+
+    /// A flat tool whose end is ON the bottom of a hollow cylinder of radius 5.
+    fn along_a_trough(check: bool) -> Program {
+        let (trough, middle) = (cylinder(v(0.0, 0.0, 5.0), v(1.0, 0.0, 0.0), 5.0), plane(0.0, 1.0, 0.0, 0.0));
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(-1.0, 0.0, 1.0).run(&MotionCommand::GougeCheck(check));
+        p.part_side(PartSide::On);
+        p.go(&[(Relation::On, &middle), (Relation::On, &trough), (Relation::On, &x(0.0))]);
+        p.indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &middle, Relation::On, &x(2.0));
+        p
+    }
+
+    #[test]
+    fn the_body_of_a_tool_on_a_hollow_part_surface_is_told() {
+        let p = along_a_trough(true);
+        let [MotionWarning::Gouge { role: RoleName::Part, depth, contact, ahead: false }] = p.warnings[..]
+        else {
+            panic!("{:?}", p.warnings)
+        };
+        // The edge of the bottom is .25 from the middle.
+        let expected = 5f64 - (25f64 - 0.0625).sqrt();
+        assert!((depth - expected).abs() < 0.002, "{depth} {expected}");
+        assert!((contact.tool.y.abs() - 0.25).abs() < 1e-6, "{contact:?}");
+        assert_eq!(along_a_trough(false).warnings, []);
     }
 }
