@@ -309,10 +309,10 @@ fn lints_are_set_per_code_per_line_and_per_file() {
     assert_eq!(told(&folder, &[]), (both("error"), 1));
     folder.write("apt-lsp.toml", "");
     // Per statement and per file.
-    folder.write("a.apt", &twice.replacen("2,3", "2,3 $$ apt-lsp: allow APT0952", 1));
+    folder.write("a.apt", twice.replacen("2,3", "2,3 $$ apt-lsp: allow APT0952", 1));
     assert_eq!(told(&folder, &[]), (vec![level(2, "warning")], 0));
-    folder.write("a.apt", &format!("$$ apt-lsp: allow APT0952\n{twice}"));
+    folder.write("a.apt", format!("$$ apt-lsp: allow APT0952\n{twice}"));
     assert_eq!(told(&folder, &[]), (vec![level(3, "warning")], 0));
-    folder.write("a.apt", &format!("{twice}$$ apt-lsp: allow-file APT0952\n"));
+    folder.write("a.apt", format!("{twice}$$ apt-lsp: allow-file APT0952\n"));
     assert_eq!(told(&folder, &[]), (Vec::new(), 0));
 }

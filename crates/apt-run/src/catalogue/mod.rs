@@ -124,7 +124,7 @@ pub fn worst(
     // Settings and comments name codes, and words that become names are judged one with the other.
     let judged = |finding: &&Finding| matches!(finding.kind, FindingKind::WordBecomesName { .. });
     if total > most && settings.severity.is_empty() && allowances.is_empty() && !findings.iter().any(judged) {
-        findings = gravest(findings, most);
+        findings = gravest(&findings, most);
     }
     let unworded = total - findings.len();
     let list = findings.into_iter().map(of_program).collect();
@@ -134,7 +134,7 @@ pub fn worst(
 }
 
 /// The gravest of more than `most` findings; of equally grave ones those that come first.
-fn gravest(findings: Vec<&Finding>, most: usize) -> Vec<&Finding> {
+fn gravest<'a>(findings: &[&'a Finding], most: usize) -> Vec<&'a Finding> {
     let gravity = |(number, finding): (usize, &&Finding)| {
         let (isn, range) = finding.origin.place_in_program();
         (Reverse(finding.severity), isn, range.start(), number)

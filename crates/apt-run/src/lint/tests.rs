@@ -244,8 +244,14 @@ fn many_long_statements_are_told_by_some() {
     assert!(long[49].wording.message.contains("further"), "{:?}", long[49]);
 }
 
+/// Codes and texts of findings.
+type Told = Vec<(&'static str, String)>;
+
+/// The tool ends of each CL record.
+type Path = Vec<Vec<Vec<f64>>>;
+
 /// Codes and places of all findings except some, and the path.
-fn others_and_path(text: &str, except: &str) -> (Vec<(&'static str, String)>, Vec<Vec<Vec<f64>>>) {
+fn others_and_path(text: &str, except: &str) -> (Told, Path) {
     let settings = Arc::new(Settings { dialect: Some("free".to_owned()), ..Settings::default() });
     let document = Document::new(text, None, &settings);
     let found = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
