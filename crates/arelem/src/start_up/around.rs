@@ -42,7 +42,9 @@ pub(super) fn solve(
                 return Err(MotionFailure::Cancelled);
             }
             let place = start + direction * (shell * reach);
-            let Ok(found) = position::solve_within(attitude, conditions, &place, CORRECTIONS) else { continue };
+            let Ok(found) = position::solve_within(attitude, conditions, &place, CORRECTIONS) else {
+                continue;
+            };
             if nearest.is_none_or(|best| (found.tip - start).norm() < (best - start).norm()) {
                 nearest = Some(found.tip);
             }

@@ -1,0 +1,339 @@
+//! One random motion: a tool at a place, surfaces laid against it, and the commands that a part program would give.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{Geometry, Matrix},
+    cutter::Cutter,
+    motion::{
+        CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PartSide, PerRole, Relation,
+        StartSurface, Turn,
+    },
+    surface::Surface,
+};
+use nalgebra::{Rotation3, Unit};
+
+use crate::{
+    kinds::{self, Kind},
+    search::{Reader, Wanted},
+    support::{Random, named, plane},
+    tools,
+};
+
+/// Share of the motions whose surfaces are laid anywhere near the tool, so that nothing says that there is a path.
+const LOOSE: f64 = 0.15;
+/// Sine between part and drive surface at least, and between drive surface and tool axis plane.
+const LEAST_SINE: f64 = 0.3;
+/// Further draws of a check surface when it is one to which distances are searched for.
+const SLOW_DRAWS: u32 = 2;
+/// Draws of a case before another seed is taken.
+const DRAWS: u32 = 200;
+/// Draws of a place to come from.
+const APPROACHES: u32 = 40;
+
+/// A surface in its role.
+#[derive(Debug, Clone)]
+pub(crate) struct Placed {
+    pub(crate) geometry: Geometry,
+    pub(crate) relation: Relation,
+    /// Side of the natural normal on which the tool ends.
+    pub(crate) side: f64,
+}
+
+/// A motion, and what is asked of it. Lengths in program units.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    pub(crate) cutter: Vec<f64>,
+    pub(crate) shape: &'static str,
+    pub(crate) axis: Vec3,
+    /// Where the tool comes from.
+    pub(crate) from: Vec3,
+    /// Where it is meant to touch part and drive surface first.
+    pub(crate) place: Vec3,
+    pub(crate) part: Placed,
+    pub(crate) drive: Placed,
+    /// The plane that the start-up ends on.
+    pub(crate) first: Placed,
+    pub(crate) stop: Placed,
+    /// Distances to the check surface are searched for.
+    pub(crate) has_slow_stop: bool,
+    pub(crate) inside: f64,
+    pub(crate) outside: f64,
+    pub(crate) thickness: f64,
+    pub(crate) drive_side: DriveSide,
+    pub(crate) forward: Vec3,
+    /// How far along the path the check surface was laid.
+    pub(crate) reach: f64,
+    pub(crate) maximum_step: f64,
+    /// True if `place` satisfies the start-up.
+    pub(crate) is_certain: bool,
+}
+
+impl Case {
+    /// The motion that a seed stands for; None if no draw was a case.
+    pub(crate) fn draw(part: Kind, drive: Kind, seed: u64) -> Option<Self> {
+        let mut random = Random(seed);
+        (0..DRAWS).find_map(|_| Self::attempt(part, drive, &mut random))
+    }
+
+    fn attempt(part_kind: Kind, drive_kind: Kind, random: &mut Random) -> Option<Self> {
+        let (shape, numbers) = tools::draw(random);
+        let cutter = Cutter::from_numbers(&numbers, 1.0).ok()?;
+        let is_certain = random.next() >= LOOSE;
+        let place =
+            Vec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
+        let (axis, up) = axis_and_part_normal(part_kind, random)?;
+        let out = drive_normal(drive_kind, &axis, &up, random)?;
+        let along = up.cross(&out).normalize() * random.pick(&[1.0, -1.0]);
+        let sine = along.cross(&out).dot(&axis);
+        if sine.abs() < LEAST_SINE {
+            return None;
+        }
+        let part_on = random.next() < 0.15;
+        let drive_on = random.next() < 0.25;
+        let thickness = if random.next() < 0.25 { random.between(0.01, 0.2) } else { 0.0 };
+        let (inside, outside) = random.pick(&[
+            (0.0, 0.001),
+            (0.001, 0.001),
+            (0.0005, 0.0),
+            (0.01, 0.005),
+            (0.0, 0.0001),
+            (0.00002, 0.00003),
+        ]);
+        let relation = |on: bool| if on { Relation::On } else { Relation::To };
+        let laid = |kind: Kind, normal: &Vec3, relation: Relation, tip: &Vec3, random: &mut Random| {
+            let mut touch = *tip;
+            if relation != Relation::On {
+                touch += tools::support(&cutter, &axis, &-normal) - normal * thickness;
+            }
+            if !is_certain {
+                touch += normal * random.between(-0.5, 0.1);
+            }
+            let (geometry, side) = kinds::through(kind, random, &touch, normal)?;
+            Some(Placed { geometry, relation, side })
+        };
+        let part = laid(part_kind, &up, relation(part_on), &place, random)?;
+        let drive = laid(drive_kind, &out, relation(drive_on), &place, random)?;
+        let across = plane(along.x, along.y, along.z, along.dot(&place));
+        let first = Placed { geometry: across, relation: Relation::On, side: 1.0 };
+        let reach = random.between(0.2, 2.5);
+        let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
+        // Where distances are searched for, a motion takes a hundred times as long.
+        let stop_kind = (0..SLOW_DRAWS).fold(random.pick(&Kind::ALL), |kind, _| {
+            if kind.is_slow() { random.pick(&Kind::ALL) } else { kind }
+        });
+        let facing = facing(stop_kind, &along, random)? * if until == Relation::Past { 1.0 } else { -1.0 };
+        let stop = laid(stop_kind, &facing, until, &(place + along * reach), random)?;
+        let mut case = Self {
+            cutter: numbers,
+            shape,
+            axis,
+            from: place,
+            place,
+            part,
+            drive,
+            first,
+            stop,
+            has_slow_stop: stop_kind.is_slow(),
+            inside,
+            outside,
+            thickness,
+            drive_side: match (drive_on, sine > 0.0) {
+                (true, _) => DriveSide::On,
+                (false, true) => DriveSide::Left,
+                (false, false) => DriveSide::Right,
+            },
+            forward: along,
+            reach,
+            maximum_step: 10.0,
+            is_certain,
+        };
+        case.approach(&cutter, random, [&up, &out, &along])?;
+        (!is_certain || case.stands_at_place()).then_some(case)
+    }
+
+    /// Finds a place to come from with the observer on the sides on which the tool is meant to end.
+    fn approach(&mut self, cutter: &Cutter, random: &mut Random, [up, out, along]: [&Vec3; 3]) -> Option<()> {
+        let middle = self.axis * (0.5 * cutter.height);
+        let roles: Vec<(Surface, f64)> = [&self.part, &self.drive]
+            .iter()
+            .map(|role| Some((Surface::from_geometry(&role.geometry).ok()?, role.side)))
+            .collect::<Option<_>>()?;
+        for _ in 0..APPROACHES {
+            let from = self.place
+                + up * random.between(0.0, 1.0)
+                + out * random.between(0.0, 1.0)
+                + along * random.between(-0.6, 0.3);
+            let sees =
+                |(surface, side): &(Surface, f64)| surface.signed_distance(&(from + middle)) * side > 1e-3;
+            if roles.iter().all(sees) {
+                self.from = from;
+                return Some(());
+            }
+        }
+        None
+    }
+
+    /// Whether the whole tool is clear of both surfaces but for the contacts at the place.
+    fn stands_at_place(&self) -> bool {
+        let reader = Reader::new(self);
+        let read = reader.read(&self.place, Wanted::PathOnly);
+        read.is_some_and(|[part, drive, _]| part.abs() < 1e-5 && drive.abs() < 1e-5)
+    }
+
+    /// Commands up to the start-up, and the directed motion.
+    pub(crate) fn commands(&self) -> Vec<MotionCommand> {
+        let mut commands = self.settings();
+        commands.push(MotionCommand::From {
+            position: self.from,
+            axis: Some(self.axis),
+            name: String::new(),
+        });
+        let start = |name: &str, role: &Placed| StartSurface {
+            relation: role.relation,
+            surface: named(name, role.geometry.clone()),
+        };
+        commands.push(MotionCommand::Start(vec![
+            start("DS", &self.drive),
+            start("PS", &self.part),
+            start("ST", &self.first),
+        ]));
+        commands.extend(self.onward(&self.forward, &self.stop));
+        commands
+    }
+
+    pub(crate) fn settings(&self) -> Vec<MotionCommand> {
+        let part_side = if self.part.relation == Relation::On { PartSide::On } else { PartSide::Offset };
+        vec![
+            MotionCommand::Cutter(self.cutter.clone()),
+            MotionCommand::InsideTolerance(PerRole::all(self.inside)),
+            MotionCommand::OutsideTolerance(PerRole::all(self.outside)),
+            MotionCommand::Thickness(PerRole::all(self.thickness)),
+            MotionCommand::MaximumStep(self.maximum_step),
+            MotionCommand::MaximumPoints(POINTS),
+            MotionCommand::PartSide(part_side),
+        ]
+    }
+
+    /// The directed motion, from where the tool is.
+    pub(crate) fn onward(&self, forward: &Vec3, stop: &Placed) -> Vec<MotionCommand> {
+        vec![
+            MotionCommand::DriveSide(self.drive_side),
+            MotionCommand::Direction([Some(Direction::Vector(*forward)), None, None]),
+            MotionCommand::Drive {
+                turn: Turn::Forward,
+                drive: named("DS", self.drive.geometry.clone()),
+                checks: vec![CheckSurface {
+                    relation: stop.relation,
+                    occurrence: 1,
+                    surface: named("CS", stop.geometry.clone()),
+                    label: None,
+                }],
+            },
+        ]
+    }
+
+    /// The numbers of the cutter in a unit of which one old unit has `factor`.
+    fn cutter_times(&self, factor: f64) -> Vec<f64> {
+        let cutter = Cutter::from_numbers(&self.cutter, 1.0).expect("a cutter");
+        let lengths = [cutter.diameter, cutter.corner_radius, cutter.corner_offset, cutter.corner_height];
+        let mut numbers: Vec<f64> = lengths.iter().map(|x| x * factor).collect();
+        numbers.extend([cutter.alpha.to_degrees(), cutter.beta.to_degrees(), cutter.height * factor]);
+        numbers
+    }
+
+    /// The case after a rigid motion, a reflection or a change of scale of everything in it.
+    pub(crate) fn under(&self, matrix: &Matrix) -> Self {
+        let factor = matrix.linear().determinant().abs().cbrt();
+        let mirrored = matrix.linear().determinant() < 0.0;
+        let image = |role: &Placed| {
+            let geometry = role.geometry.transform(matrix).expect("an image");
+            Placed { geometry, ..role.clone() }
+        };
+        let direction = |v: &Vec3| matrix.apply_vector(v).normalize();
+        Self {
+            cutter: if factor == 1.0 { self.cutter.clone() } else { self.cutter_times(factor) },
+            axis: direction(&self.axis),
+            from: matrix.apply_point(&self.from),
+            place: matrix.apply_point(&self.place),
+            part: image(&self.part),
+            drive: image(&self.drive),
+            first: image(&self.first),
+            stop: image(&self.stop),
+            inside: self.inside * factor,
+            outside: self.outside * factor,
+            thickness: self.thickness * factor,
+            drive_side: if mirrored { other(self.drive_side) } else { self.drive_side },
+            forward: direction(&self.forward),
+            reach: self.reach * factor,
+            maximum_step: self.maximum_step * factor,
+            ..self.clone()
+        }
+    }
+}
+
+/// NUMPTS of every motion: what bounds its time.
+pub(crate) const POINTS: u32 = 1500;
+
+/// The other side of the drive surface.
+pub(crate) fn other(side: DriveSide) -> DriveSide {
+    match side {
+        DriveSide::Left => DriveSide::Right,
+        DriveSide::Right => DriveSide::Left,
+        DriveSide::On => DriveSide::On,
+    }
+}
+
+pub(crate) fn surface(role: &Placed) -> NamedSurface {
+    named("", role.geometry.clone())
+}
+
+/// A unit vector at most `degrees` away.
+fn near(direction: &Vec3, degrees: f64, random: &mut Random) -> Vec3 {
+    let across = apt_geometry::surface::perpendicular(direction);
+    let about = Rotation3::from_axis_angle(
+        &Unit::new_normalize(*direction),
+        random.between(0.0, std::f64::consts::TAU),
+    );
+    let angle = random.between(0.0, degrees.to_radians());
+    (direction * angle.cos() + about * across * angle.sin()).normalize()
+}
+
+/// The normal of the part surface is within 65° of the tool axis, which is upright in most cases.
+fn axis_and_part_normal(kind: Kind, random: &mut Random) -> Option<(Vec3, Vec3)> {
+    if kind.is_upright() {
+        let angle = random.between(0.0, std::f64::consts::TAU);
+        let up = Vec3::new(angle.cos(), angle.sin(), 0.0);
+        return Some((near(&up, 60.0, random), up));
+    }
+    let axis = if random.next() < 0.6 { Vec3::z() } else { near(&Vec3::z(), 60.0, random) };
+    let up = if random.next() < 0.2 { axis } else { near(&axis, 65.0, random) };
+    Some((axis, up))
+}
+
+/// The normal of the drive surface lies within 40° of the plane across the tool axis, and not along the part's normal.
+fn drive_normal(kind: Kind, axis: &Vec3, up: &Vec3, random: &mut Random) -> Option<Vec3> {
+    for _ in 0..20 {
+        let angle = random.between(0.0, std::f64::consts::TAU);
+        let flat = if kind.is_upright() {
+            Vec3::new(angle.cos(), angle.sin(), 0.0)
+        } else {
+            let u = apt_geometry::surface::perpendicular(axis);
+            u * angle.cos() + axis.cross(&u) * angle.sin()
+        };
+        let wall = random.next() < 0.5 || kind.is_upright();
+        let out = if wall { flat } else { near(&flat, 40.0, random) };
+        if up.cross(&out).norm() >= LEAST_SINE && out.dot(axis).abs() < 0.7 {
+            return Some(out);
+        }
+    }
+    None
+}
+
+/// The direction in which the check surface faces the path, up to its sense.
+fn facing(kind: Kind, along: &Vec3, random: &mut Random) -> Option<Vec3> {
+    if !kind.is_upright() {
+        return Some(near(along, 35.0, random));
+    }
+    let flat = Vec3::new(along.x, along.y, 0.0);
+    flat.try_normalize(0.5)
+}

@@ -1,0 +1,148 @@
+//! Random motions of every pair of part and drive surface: what the engine delivers is proven by the verifier, what it
+//! refuses has no solution by a search of the verifier's own clearances, and motions obey the laws of motion: moved,
+//! scaled, mirrored, reversed and subdivided they stay what they are.
+//!
+//! Surfaces are laid against a tool at a random place, so that the start-up has a solution; a share is laid anywhere.
+//!
+//! `APT_CASES` sets the number of motions of each pair, `APT_SEED` the seed, `APT_PAIR` (`sphere/cone`) looks at one pair,
+//! and `APT_CASE` at one motion of it.
+
+mod case;
+mod judge;
+mod kinds;
+mod laws;
+mod search;
+#[path = "../support/mod.rs"]
+mod support;
+mod tools;
+#[path = "../support/wave.rs"]
+mod wave;
+
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use case::Case;
+use judge::Tally;
+use kinds::Kind;
+use support::Random;
+
+/// Seeds of the test command: of the motions, and of those that the laws are tried on.
+const SEEDS: [u64; 2] = [1, 19_610_315];
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok()?.parse().ok()
+}
+
+/// The pairs that are looked at.
+fn pairs() -> Vec<(Kind, Kind)> {
+    let wanted = std::env::var("APT_PAIR").ok();
+    let is_wanted = |part: Kind, drive: Kind| match wanted.as_deref().and_then(|w| w.split_once('/')) {
+        Some((p, d)) => (p == "*" || part.name() == p) && (d == "*" || drive.name() == d),
+        None => true,
+    };
+    Kind::ALL
+        .into_iter()
+        .flat_map(|part| Kind::ALL.into_iter().map(move |drive| (part, drive)))
+        .filter(|(part, drive)| is_wanted(*part, *drive))
+        .collect()
+}
+
+/// The seed of one motion of a pair.
+fn seed(base: u64, part: Kind, drive: Kind, index: u64) -> u64 {
+    let pair = part as u64 * 64 + drive as u64;
+    base.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        ^ pair.wrapping_mul(0xbf58_476d_1ce4_e5b9)
+        ^ index.wrapping_mul(0x94d0_49bb_1331_11eb)
+}
+
+fn describe(pairs: &BTreeMap<(Kind, Kind), Tally>) -> String {
+    let mut report = String::new();
+    let mut all = Tally::default();
+    for ((part, drive), tally) in pairs {
+        let _ = writeln!(report, "{} along {}: {}", part.name(), drive.name(), tally.counts());
+        all.add(tally);
+    }
+    let _ = writeln!(report, "all: {}", all.counts());
+    for ((part, drive), tally) in pairs {
+        for line in &tally.faults {
+            let _ = writeln!(report, "{}/{} {line}", part.name(), drive.name());
+        }
+    }
+    report
+}
+
+/// Looks at so many motions of every pair; sparing ones leave out surfaces to which distances are searched for.
+#[expect(clippy::print_stdout, reason = "the long run tells what is done")]
+fn every_pair(
+    standard: u64,
+    cases: u64,
+    sparing: bool,
+    mut look: impl FnMut(u64, &Case, &mut Tally),
+) -> BTreeMap<(Kind, Kind), Tally> {
+    let base = number("APT_SEED").unwrap_or(standard);
+    let one = number("APT_CASE");
+    let mut tallies: BTreeMap<(Kind, Kind), Tally> = BTreeMap::new();
+    for (part, drive) in pairs() {
+        let slow = part.is_slow() || drive.is_slow();
+        if slow && sparing {
+            continue;
+        }
+        let tally = tallies.entry((part, drive)).or_default();
+        // Where distances are searched for, a motion takes a hundred times as long.
+        let cases = if slow { cases.div_ceil(SLOW_SHARE) } else { cases };
+        for index in one.map_or(0..cases, |index| index..index + 1) {
+            match Case::draw(part, drive, seed(base, part, drive, index)) {
+                Some(case) if sparing && case.has_slow_stop => tally.left_out += 1,
+                Some(case) => look(index, &case, tally),
+                None => tally.undrawn += 1,
+            }
+        }
+        if cases > TELLING {
+            println!(
+                "{} along {}: {}\n{}",
+                part.name(),
+                drive.name(),
+                tally.counts(),
+                tally.faults.join("\n")
+            );
+        }
+    }
+    tallies
+}
+
+/// Of the pairs with surfaces to which distances are searched for, the long run looks at one motion in so many; the test
+/// command leaves them to `curved_pairs`.
+const SLOW_SHARE: u64 = 20;
+/// With more motions than this of each pair, every pair is told as it is done.
+const TELLING: u64 = 20;
+
+#[test]
+fn motions_of_every_pair_are_proven_or_refused_rightly() {
+    let cases = number("APT_CASES").unwrap_or(2);
+    let tallies = every_pair(SEEDS[0], cases, cases <= 2, |index, case, tally| {
+        let verdict = judge::judge(case);
+        if number("APT_CASE").is_some() {
+            println!("{case:#?}\n{verdict:?}");
+        }
+        tally.note(index, case, verdict);
+    });
+    let report = describe(&tallies);
+    println!("{report}");
+    assert!(tallies.values().all(|t| t.faults.is_empty()), "\n{report}");
+    let proven: usize = tallies.values().map(|t| t.proven).sum();
+    assert!(proven > 0, "\n{report}");
+}
+
+/// A share of the motions: each is run nine times.
+#[test]
+fn motions_of_every_pair_obey_the_laws_of_motion() {
+    let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(10));
+    let tallies = every_pair(SEEDS[1], cases, cases <= 1, |index, case, tally| {
+        let mut random = Random(index);
+        let faults = laws::broken(case, &mut random);
+        tally.proven += usize::from(faults.is_empty());
+        tally.faults.extend(faults.into_iter().map(|words| format!("#{index} {}: {words}", case.shape)));
+    });
+    let report = describe(&tallies);
+    println!("{report}");
+    assert!(tallies.values().all(|t| t.faults.is_empty()), "\n{report}");
+}

@@ -1,0 +1,251 @@
+//! A search for a path that uses the verifier's clearances alone: it decides whether a motion that the engine refuses has a
+//! solution. Gradients are differences, steps are short, nothing is clever.
+
+use apt_geometry::{
+    Vec3,
+    cutter::Cutter,
+    motion::{DriveSide, Relation},
+};
+use arelem::{
+    sequence::{CutSequence, Role, Stop, ToolPosition},
+    verify::verify,
+};
+
+use crate::case::{self, Case, Placed};
+
+/// Step of the differences, relative to the band.
+const DIFFERENCE: f64 = 0.05;
+/// Corrections for one position.
+const CORRECTIONS: u32 = 25;
+/// Steps to the place where the check surface was laid.
+const STEPS_TO_STOP: f64 = 60.0;
+/// The path is followed this many times as far as the check surface was laid.
+const FAR: f64 = 3.0;
+/// A step is halved this often before the path counts as ended.
+const HALVINGS: u32 = 6;
+
+/// Whether the check surface is read too.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Wanted {
+    PathOnly,
+    /// The plane that the start-up ends on.
+    First,
+    /// The check surface, on this side.
+    Stop(f64),
+}
+
+/// Reads clearances of a case.
+pub(crate) struct Reader<'a> {
+    case: &'a Case,
+    cutter: Cutter,
+}
+
+/// What the search found.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Found {
+    /// The stop is reached, after a length of path.
+    Path(f64),
+    /// There is no start position.
+    NoStart,
+    /// The path ends, or leaves a band, after a length.
+    Ends(f64),
+    /// The check surface is not met.
+    NotMet,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(case: &'a Case) -> Self {
+        let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
+        Self { case, cutter }
+    }
+
+    fn role(&self, placed: &Placed, side: f64) -> Role {
+        Role {
+            surface: case::surface(placed),
+            relation: if placed.relation == Relation::Past { Relation::To } else { placed.relation },
+            side,
+            inside_tolerance: 1e3,
+            outside_tolerance: 1e3,
+            thickness: self.case.thickness,
+        }
+    }
+
+    /// Clearances to part, drive and, if wanted, check surface at a place; None where there are none.
+    pub(crate) fn read(&self, tip: &Vec3, wanted: Wanted) -> Option<[f64; 3]> {
+        let Case { part, drive, first, stop, axis, .. } = self.case;
+        let place = ToolPosition { tip: *tip, axis: *axis };
+        let check = match wanted {
+            Wanted::PathOnly => None,
+            Wanted::First => Some(self.role(first, 1.0)),
+            Wanted::Stop(side) => Some(self.role(stop, side)),
+        };
+        let sequence = CutSequence {
+            start: place,
+            points: vec![place],
+            cutter: self.cutter,
+            part: Some(self.role(part, part.side)),
+            drive: Some(self.role(drive, drive.side)),
+            stop: check.map(|role| Stop { role, occurrence: 1, index: 0 }),
+            drive_side: DriveSide::On,
+            start_up: true,
+            forward: Vec3::zeros(),
+            maximum_step: 1e3,
+            minimum: None,
+        };
+        let evidence = verify(&sequence, &|| false).ok()?;
+        let check = evidence.check.map_or(0.0, |c| c.min);
+        Some([evidence.part?.min, evidence.drive?.min, check])
+    }
+
+    fn band(&self) -> [f64; 2] {
+        [-self.case.inside, self.case.outside]
+    }
+
+    /// How far a clearance is from the middle of the band, in halves of the band.
+    fn miss(&self, clearance: f64) -> f64 {
+        let [low, high] = self.band();
+        (clearance - 0.5 * (low + high)) / (0.5 * (high - low))
+    }
+
+    fn rows(&self, tip: &Vec3, wanted: Wanted, guide: Option<(Vec3, f64)>) -> Option<[f64; 3]> {
+        let [part, drive, check] = self.read(tip, wanted)?;
+        let third = guide.map_or(self.miss(check), |(normal, distance)| {
+            (normal.dot(tip) - distance) / (self.case.inside + self.case.outside)
+        });
+        Some([self.miss(part), self.miss(drive), third])
+    }
+
+    /// A position in all bands near a place: Newton's method with gradients from differences; the third condition is the
+    /// check surface or a plane.
+    fn settle(&self, from: &Vec3, wanted: Wanted, guide: Option<(Vec3, f64)>) -> Option<Vec3> {
+        let step = DIFFERENCE * (self.case.inside + self.case.outside);
+        let mut tip = *from;
+        let mut rows = self.rows(&tip, wanted, guide)?;
+        for _ in 0..CORRECTIONS {
+            let worst = worst_of(&rows);
+            if worst < 0.9 {
+                return Some(tip);
+            }
+            let mut slopes = nalgebra::Matrix3::zeros();
+            for k in 0..3 {
+                let mut ahead = tip;
+                ahead[k] += step;
+                let moved = self.rows(&ahead, wanted, guide)?;
+                for (row, (a, b)) in moved.iter().zip(&rows).enumerate() {
+                    slopes[(row, k)] = (a - b) / step;
+                }
+            }
+            let residual = Vec3::new(rows[0], rows[1], rows[2]);
+            let full = slopes.lu().solve(&residual)?;
+            let mut share = 1.0;
+            let better = loop {
+                let next = tip - full * share;
+                if let Some(next_rows) = self.rows(&next, wanted, guide)
+                    && worst_of(&next_rows) < worst
+                {
+                    break Some((next, next_rows));
+                }
+                share *= 0.5;
+                if share < 1e-3 {
+                    break None;
+                }
+            };
+            (tip, rows) = better?;
+        }
+        (worst_of(&rows) < 1.0).then_some(tip)
+    }
+
+    /// A position where the start-up may end.
+    fn start(&self) -> Option<Vec3> {
+        let case = self.case;
+        if case.is_certain {
+            return Some(case.place);
+        }
+        let mut places = vec![case.from, case.place];
+        for k in 0..27 {
+            let [i, j, l] = [k % 3, k / 3 % 3, k / 9].map(|x| f64::from(x) - 1.0);
+            places.push(case.place + Vec3::new(i, j, l) * 0.6);
+        }
+        places.iter().find_map(|place| self.settle(place, Wanted::First, None))
+    }
+
+    /// Unit tangent of the path in a sense.
+    fn tangent(&self, tip: &Vec3, sense: &Vec3) -> Option<Vec3> {
+        let step = DIFFERENCE * (self.case.inside + self.case.outside);
+        let mut slopes = [Vec3::zeros(); 2];
+        for k in 0..3 {
+            let (mut ahead, mut behind) = (*tip, *tip);
+            ahead[k] += step;
+            behind[k] -= step;
+            let (a, b) = (self.read(&ahead, Wanted::PathOnly)?, self.read(&behind, Wanted::PathOnly)?);
+            for (role, slope) in slopes.iter_mut().enumerate() {
+                slope[k] = a[role] - b[role];
+            }
+        }
+        let tangent = slopes[0].cross(&slopes[1]).try_normalize(0.0)?;
+        Some(if tangent.dot(sense) < 0.0 { -tangent } else { tangent })
+    }
+
+    /// The function whose sign tells on which side of the check surface the tool is.
+    fn check(&self, tip: &Vec3) -> Option<f64> {
+        let above = self.read(tip, Wanted::Stop(1.0))?[2];
+        if self.case.stop.relation == Relation::On || above >= 0.0 {
+            return Some(above);
+        }
+        Some(above.max(self.read(tip, Wanted::Stop(-1.0))?[2]))
+    }
+
+    /// Whether the motion from a start (or from where the search finds one) has a solution.
+    pub(crate) fn search(&self, start: Option<Vec3>) -> Found {
+        let Some(mut tip) = start.or_else(|| self.start()) else { return Found::NoStart };
+        let Some(mut sense) = self.tangent(&tip, &self.case.forward) else { return Found::Ends(0.0) };
+        let band = self.case.inside.max(self.case.outside);
+        let long = self.case.reach / STEPS_TO_STOP;
+        let mut length = 0.0;
+        let mut status: Option<bool> = None;
+        while length < FAR * self.case.reach + 1.0 {
+            let Some(value) = self.check(&tip) else { return Found::Ends(length) };
+            let now = value > 0.0;
+            match status {
+                None if value.abs() <= band => {}
+                None => status = Some(now),
+                Some(before) if before != now => {
+                    let wanted = match self.case.stop.relation {
+                        Relation::To => before,
+                        Relation::Past => now,
+                        _ => true,
+                    };
+                    if wanted {
+                        return Found::Path(length);
+                    }
+                    status = Some(now);
+                }
+                Some(_) => {}
+            }
+            let Some((next, next_sense)) = self.step(&tip, &sense, long) else { return Found::Ends(length) };
+            length += (next - tip).norm();
+            (tip, sense) = (next, next_sense);
+        }
+        Found::NotMet
+    }
+
+    fn step(&self, tip: &Vec3, sense: &Vec3, long: f64) -> Option<(Vec3, Vec3)> {
+        let mut length = long;
+        for _ in 0..=HALVINGS {
+            let goal = tip + sense * length;
+            let guide = Some((*sense, sense.dot(&goal)));
+            if let Some(next) = self.settle(&goal, Wanted::PathOnly, guide)
+                && (next - tip).norm() < 3.0 * length
+                && let Some(next_sense) = self.tangent(&next, &(next - tip))
+            {
+                return Some((next, next_sense));
+            }
+            length *= 0.5;
+        }
+        None
+    }
+}
+
+fn worst_of(rows: &[f64; 3]) -> f64 {
+    rows.iter().fold(0.0, |w: f64, r| if r.is_nan() { f64::INFINITY } else { w.max(r.abs()) })
+}
