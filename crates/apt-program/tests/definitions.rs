@@ -175,6 +175,14 @@ fn nests_define_what_they_name_and_arrays_are_listed_by_their_ends() {
             ("RESERV/A,5\nA(5)=5\nP=POINT/A(5,THRU,3),6,7", "P", &[5.0, 6.0, 7.0]),
             ("RESERV/A,5\nA(2)=2\nA(3)=3\nI=2\nP=POINT/A(I,THRU,I+1)", "P", &[2.0, 3.0, 0.0]),
             ("RESERV/Q,2\nQ(1)=POINT/0,0\nQ(2)=POINT/3,4\nL=LINE/Q(ALL)", "L", &[0.8, -0.6, 0.0, 0.0]),
+            // Types of single installations are stored as they are given.
+            ("L=LOFT/CANON,1,2,3,4,5,6,7,8", "L", &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]),
+            ("L=LOFT/CANON,1,2,3,4,5,6,7,8\nOBTAIN,LOFT/L,,,,,,,,X", "X", &[8.0]),
+            (
+                "L=LOFT/CANON,1,2,3,4,5,6,7,8\nM=LOFT/L,CANON,,9",
+                "M",
+                &[1.0, 9.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0],
+            ),
         ],
     );
 }
@@ -202,6 +210,7 @@ const MISTAKES: &[(&str, &[(u32, u16)])] = &[
     ("P=PATERN/CANON,1,2,3", &[(1, 1000)]),
     ("L=LOFT/1,2,3,4,5,6,7,8", &[(1, 1000)]),
     ("L=LOFT/1,2,3,4,5,6,7,8,9", &[(1, 1000)]),
+    ("L=LOFT/CANON,1,2,3,4,5,6,7", &[(1, 84)]),
     ("L=MESH/1,2,3", &[(1, 1000)]),
     ("L=CONSEC/1,2,3", &[(1, 1000)]),
     ("L=ELMSRF/1,2,3", &[(1, 1000)]),

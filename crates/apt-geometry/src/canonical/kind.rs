@@ -4,7 +4,7 @@ use super::GeometryKind;
 
 /// Every kind with its word, the number that APT III adds to 3000 for its surface code, and the count of canonical
 /// values where that is fixed (language reference 3.3).
-const KINDS: [(GeometryKind, &str, u16, Option<usize>); 18] = [
+const KINDS: [(GeometryKind, &str, u16, Option<usize>); 19] = [
     (GeometryKind::Point, "POINT", 1, Some(3)),
     (GeometryKind::Line, "LINE", 2, Some(4)),
     (GeometryKind::Plane, "PLANE", 3, Some(4)),
@@ -20,6 +20,7 @@ const KINDS: [(GeometryKind, &str, u16, Option<usize>); 18] = [
     (GeometryKind::Sphere, "SPHERE", 13, Some(4)),
     (GeometryKind::Quadric, "QADRIC", 14, Some(10)),
     (GeometryKind::PolyConic, "POLCON", 15, Some(79)),
+    (GeometryKind::Loft, "LOFT", 16, Some(8)),
     (GeometryKind::TabulatedCylinder, "TABCYL", 50, None),
     (GeometryKind::RuledSurface, "RLDSRF", 53, None),
     (GeometryKind::Pattern, "PATERN", 18, None),
@@ -75,7 +76,7 @@ mod tests {
             assert_eq!(GeometryKind::from_word(kind.word()), Some(kind));
             assert!(kind.surface_code() > 3000);
         }
-        assert_eq!(GeometryKind::all().count(), 18);
+        assert_eq!(GeometryKind::all().count(), 19);
         assert_eq!(GeometryKind::from_word("GOTO"), None);
     }
 }

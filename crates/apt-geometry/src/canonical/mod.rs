@@ -162,6 +162,7 @@ pub enum GeometryKind {
     Sphere,
     Quadric,
     PolyConic,
+    Loft,
     TabulatedCylinder,
     RuledSurface,
     Pattern,
@@ -187,6 +188,8 @@ pub enum Geometry {
     Quadric(Quadric),
     /// The 79 canonical values.
     PolyConic(Arc<Vec<f64>>),
+    /// The eight canonical values; what they mean is known to the installation that had the type.
+    Loft(Arc<Vec<f64>>),
     TabulatedCylinder(Arc<TabulatedCylinder>),
     RuledSurface(Arc<RuledSurface>),
     Pattern(Arc<Pattern>),
@@ -211,6 +214,7 @@ impl Geometry {
             Geometry::Sphere(_) => GeometryKind::Sphere,
             Geometry::Quadric(_) => GeometryKind::Quadric,
             Geometry::PolyConic(_) => GeometryKind::PolyConic,
+            Geometry::Loft(_) => GeometryKind::Loft,
             Geometry::TabulatedCylinder(_) => GeometryKind::TabulatedCylinder,
             Geometry::RuledSurface(_) => GeometryKind::RuledSurface,
             Geometry::Pattern(_) => GeometryKind::Pattern,

@@ -32,7 +32,7 @@ pub enum TransformError {
         /// Relative difference between the scales of the section, 0 for a similarity.
         distortion: f64,
     },
-    /// This type is not moved (MATRIX, or a POLCON whose values have no meaning).
+    /// This type is not moved (MATRIX, LOFT, or a POLCON whose values have no meaning).
     #[error("a {kind:?} is not moved")]
     NotMoved {
         /// The type.
@@ -83,7 +83,7 @@ impl Geometry {
             Geometry::PolyConic(values) => {
                 Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?))
             }
-            Geometry::Matrix(_) => return Err(TransformError::NotMoved { kind }),
+            Geometry::Matrix(_) | Geometry::Loft(_) => return Err(TransformError::NotMoved { kind }),
         })
     }
 }

@@ -82,7 +82,7 @@ impl Geometry {
             | Geometry::LoftConic(quadric)
             | Geometry::Quadric(quadric) => quadric.coefficients.to_vec(),
             Geometry::Matrix(matrix) => matrix.rows.concat(),
-            Geometry::PolyConic(values) => values.to_vec(),
+            Geometry::PolyConic(values) | Geometry::Loft(values) => values.to_vec(),
             Geometry::TabulatedCylinder(surface) => tabulated_values(surface),
             Geometry::RuledSurface(surface) => surface.parts.iter().flat_map(coded_values).collect(),
             Geometry::Pattern(pattern) => pattern_values(pattern),
@@ -123,6 +123,7 @@ impl Geometry {
                 rows: std::array::from_fn(|row| std::array::from_fn(|column| at(4 * row + column))),
             }),
             GeometryKind::PolyConic => Geometry::PolyConic(Arc::new(values.to_vec())),
+            GeometryKind::Loft => Geometry::Loft(Arc::new(values.to_vec())),
             GeometryKind::TabulatedCylinder => Geometry::TabulatedCylinder(Arc::new(tabulated_from(values)?)),
             GeometryKind::Pattern => Geometry::Pattern(Arc::new(pattern_from(values)?)),
             GeometryKind::RuledSurface => return Err(CanonicalError::NoRow { kind }),

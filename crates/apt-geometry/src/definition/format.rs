@@ -69,7 +69,7 @@ pub fn formats(kind: GeometryKind) -> &'static [Format] {
         GeometryKind::Quadric => super::conic::QUADRIC_FORMATS,
         GeometryKind::Vector => super::vector::FORMATS,
         GeometryKind::Matrix => super::matrix::FORMATS,
-        GeometryKind::PolyConic => &[],
+        GeometryKind::PolyConic | GeometryKind::Loft => &[],
         GeometryKind::TabulatedCylinder => super::tabulated::FORMATS,
         GeometryKind::RuledSurface => super::ruled::FORMATS,
         GeometryKind::Pattern => super::pattern::FORMATS,

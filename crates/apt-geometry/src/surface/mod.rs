@@ -140,9 +140,11 @@ impl Surface {
             Geometry::PolyConic(values) => {
                 PolyConicSheet::new(values).map(|sheet| Self::PolyConic(Box::new(sheet))).ok_or(degenerate)
             }
-            Geometry::Point(_) | Geometry::Vector(_) | Geometry::Matrix(_) | Geometry::Pattern(_) => {
-                Err(SurfaceError::Unsupported { kind })
-            }
+            Geometry::Point(_)
+            | Geometry::Vector(_)
+            | Geometry::Matrix(_)
+            | Geometry::Loft(_)
+            | Geometry::Pattern(_) => Err(SurfaceError::Unsupported { kind }),
         }
     }
 

@@ -145,7 +145,12 @@ fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
     let type_word = kind.word();
     match error {
         DefinitionError::UnknownFormat { .. } => {
-            say("APT0301", format!("{type_word} has no form with these parameters")).maybe(forms(kind))
+            let hint = if kind == GeometryKind::Loft {
+                Some("single installations had its definition; CANON stores its eight numbers".to_owned())
+            } else {
+                forms(kind)
+            };
+            say("APT0301", format!("{type_word} has no form with these parameters")).maybe(hint)
         }
         DefinitionError::WrongModifier { found, expected, .. } => {
             let expected: Vec<_> = expected.iter().map(|modifier| modifier.word()).collect();
