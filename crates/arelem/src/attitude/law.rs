@@ -18,7 +18,7 @@ const MAX_ITERATIONS: u32 = 80;
 /// A change of the axis below this ends it.
 const RESOLUTION: f64 = 1e-15;
 /// The change that may be left: nearest points of ruled and polyconic surfaces are known to about a tenth of it.
-const ACCEPTABLE: f64 = 1e-9;
+const ACCEPTABLE: f64 = 1e-8;
 /// |cos| between axis and normal above which an axis ON a surface keeps to its side of it.
 const LEAST_COSINE: f64 = 0.05;
 /// Sine between two directions below which they span no plane.
