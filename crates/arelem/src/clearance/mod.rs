@@ -126,6 +126,12 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
     closed_form::contact(tool, &gauge.surface, gauge.side, tip).is_some()
 }
 
+#[cfg(test)]
+thread_local! {
+    /// Clearances that this thread has computed.
+    pub(crate) static EVALUATIONS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// Distance between the tool body and the surface, with the tool on the given side; and how much less it may be.
 fn offset_contact(
     tool: &Tool,
@@ -134,6 +140,8 @@ fn offset_contact(
     tip: &Vec3,
     memory: Option<&Memory>,
 ) -> (Contact, f64) {
+    #[cfg(test)]
+    EVALUATIONS.set(EVALUATIONS.get() + 1);
     if let Some(contact) = closed_form::contact(tool, surface, side, tip) {
         return (contact, 0.0);
     }

@@ -36,6 +36,8 @@ const LARGEST_STEP: f64 = 0.5;
 const TO_POLE: f64 = 0.9;
 /// Gap between contact and tangent plane, relative to the sizes, that is rounding.
 const GAP: f64 = 1e-13;
+/// Bound of the parts of the corner's arc that are looked at.
+const MAX_ARCS: u32 = 60;
 /// Bound of the parts into which a flank of the tool is cut.
 const MAX_PARTS: u32 = 200;
 
@@ -257,10 +259,11 @@ impl<'a> Posed<'a> {
         let profile = &self.tool.profile;
         let Some(sharp) = self.bound(level, steepness, &towards) else { return false };
         let corner = if profile.arc > 0.0 {
-            level + profile.arc > 0.0
-                && self
-                    .bound(level + profile.arc, steepness, &towards)
-                    .is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
+            let balls = (level + profile.arc > 0.0)
+                .then(|| self.bound(level + profile.arc, steepness, &towards))
+                .flatten();
+            balls.is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
+                || self.arcs(level, steepness, &towards)
         } else {
             self.floor(&sharp, &profile.lower, &towards) >= sharp.target
         };
@@ -286,6 +289,27 @@ impl<'a> Posed<'a> {
             tip: self.tip + towards * (least - distance),
             target: least * steepness,
         })
+    }
+
+    /// Whether the corner keeps a distance, where its whole balls stand out from the tool: the patches between points of its
+    /// arc keep what the arc bulges more.
+    fn arcs(&self, level: f64, steepness: f64, towards: &Vec3) -> bool {
+        let profile = &self.tool.profile;
+        let at = |polar: f64| ProfilePoint {
+            radius: profile.center.radius + profile.arc * polar.sin(),
+            height: profile.center.height - profile.arc * polar.cos(),
+        };
+        let mut open = vec![profile.fan];
+        for _ in 0..MAX_ARCS {
+            let Some([from, to]) = open.pop() else { return true };
+            let bulge = profile.arc * (1.0 - (0.5 * (to - from)).cos());
+            let bound = self.bound(level + bulge, steepness, towards);
+            if !bound.is_some_and(|bound| self.flank(&bound, [&at(from), &at(to)], towards)) {
+                let middle = 0.5 * (from + to);
+                open.extend([[middle, to], [from, middle]]);
+            }
+        }
+        open.is_empty()
     }
 
     /// A lower bound of a function over a circle about the axis.

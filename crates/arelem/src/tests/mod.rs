@@ -2,6 +2,7 @@
 
 mod corpus_plane;
 mod corpus_space;
+mod cost;
 mod economy;
 mod properties;
 mod sheets;

@@ -26,6 +26,8 @@ const SLACK: f64 = 1e-10;
 const PLANE_SLACK: f64 = 1e-12;
 /// Halvings of one straight piece.
 const HALVINGS: usize = 60;
+/// Parts of the arc of the corner looked at.
+const ARCS: usize = 60;
 /// Rounding of the fan of the corner arc, as a sine.
 const NEARLY_IN_FAN: f64 = 1e-9;
 
@@ -48,6 +50,8 @@ struct Touch {
     /// Half the gradient of F at the foot.
     steepness: f64,
     foot: Vec3,
+    /// Where on the meridian of the tool, a ball's centre for the corner.
+    meridian: Meridian,
 }
 
 /// What is asked of all points of the tool: a bound of their squared distances, from a place of the tool end.
@@ -77,25 +81,37 @@ pub(super) fn at(
     let size = tool.profile.reach();
     let corner = tool.profile.corner();
     let edges = tool.profile.edges().map(|p| (p, 0.0));
+    let [lower, upper, top] = tool.profile.edges();
+    let convex = shape == Shape::Convex;
+    let error = if convex { PLANE_SLACK } else { SLACK } * size;
+    let proven = |touch: &Touch, ball: f64| {
+        let value = touch.distance - ball;
+        let holds = if convex {
+            place.is_beyond_plane(touch, value - error)
+        } else {
+            place.keeps(value - error, touch)
+        };
+        holds.then(|| Reading { value, normal: quadric.turned_out(&touch.normal), error })
+    };
+    // The tool end is in contact only where the bottom rises from it.
+    let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
     let mut done: Option<Meridian> = None;
-    for (p, ball) in corner.into_iter().chain(edges) {
+    for (p, ball) in corner.into_iter().chain(tip).chain(edges) {
         if done == Some(p) {
             continue;
         }
         done = Some(p);
-        let Some(touch) = place.touch(p, ball) else { continue };
-        let value = touch.distance - ball;
-        let (proven, error) = if shape == Shape::Convex {
-            let gap = PLANE_SLACK * size;
-            (place.is_beyond_plane(&touch, value - gap), gap)
-        } else {
-            (place.keeps(value - SLACK * size, &touch), SLACK * size)
-        };
-        if proven {
-            return Some(Reading { value, normal: quadric.turned_out(&touch.normal), error });
+        if let Some(touch) = place.touch(p, ball)
+            && let Some(reading) = proven(&touch, ball)
+        {
+            return Some(reading);
         }
     }
-    None
+    let pieces = [([0.0; 2], lower), (upper, top)];
+    pieces.into_iter().filter(|(a, b)| a != b).find_map(|(a, b)| {
+        let touch = place.touch_piece([a, b])?;
+        proven(&touch, 0.0)
+    })
 }
 
 impl Place<'_> {
@@ -137,7 +153,7 @@ impl Place<'_> {
                 let grow = -value / matrix[(1, 1)];
                 let next = multiplier + grow;
                 if grow.abs() * curved.amax() <= LAST_STEP {
-                    return self.finished(&p, next, ball);
+                    return self.finished([rho, height], &p, next, ball);
                 }
                 lambda = Some(next);
                 continue;
@@ -149,13 +165,75 @@ impl Place<'_> {
             phi += step.x.clamp(-0.5, 0.5);
             lambda = Some(multiplier + step.y);
             if step.x.abs() <= LAST_STEP && step.y.abs() * curved.amax() <= LAST_STEP {
-                return self.finished(&(center + self.on_circle(phi)[0] * rho), multiplier + step.y, ball);
+                let p = center + self.on_circle(phi)[0] * rho;
+                return self.finished([rho, height], &p, multiplier + step.y, ball);
             }
         }
         None
     }
 
-    fn finished(&self, p: &Vec3, multiplier: f64, ball: f64) -> Option<Touch> {
+    /// The contact within the piece between two circles: azimuth, place on the straight line and multiplier.
+    fn touch_piece(&self, [a, b]: [Meridian; 2]) -> Option<Touch> {
+        let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
+        let middle = self.tip + self.axis * (a[1] + 0.5 * rise);
+        let facing = self.quadric.slope(&middle) * -self.side;
+        let mut phi = facing.dot(&self.across[1]).atan2(facing.dot(&self.across[0]));
+        let mut t = 0.5;
+        let mut lambda = None;
+        for _ in 0..STEPS {
+            let [out, round] = self.on_circle(phi);
+            let rho = a[0] + t * spread;
+            let p = self.tip + self.axis * (a[1] + t * rise) + out * rho;
+            let multiplier = match lambda {
+                Some(known) => known,
+                None => self.quadric.first_multiplier(&p)?,
+            };
+            let k = self.quadric.shrink(multiplier);
+            if k.min() <= 0.0 {
+                return None;
+            }
+            let foot = self.quadric.foot(&p, multiplier);
+            let g = self.quadric.slope(&foot);
+            let (around, along) = (round * rho, out * spread + self.axis * rise);
+            let curved = self.quadric.squares().component_mul(&k);
+            let bend = |v: &Vec3, w: &Vec3| curved.component_mul(v).dot(w);
+            let kg = k.component_mul(&g);
+            let twist = bend(&around, &along) + spread * g.dot(&round);
+            let matrix = Matrix3::new(
+                bend(&around, &around) - rho * g.dot(&out),
+                twist,
+                -bend(&g, &around),
+                twist,
+                bend(&along, &along),
+                -bend(&g, &along),
+                2.0 * kg.dot(&around),
+                2.0 * kg.dot(&along),
+                -2.0 * kg.dot(&g),
+            );
+            let wrong = Vec3::new(-g.dot(&around), -g.dot(&along), -self.quadric.value(&foot));
+            let step = matrix.try_inverse()? * wrong;
+            if !step.iter().all(|x| x.is_finite()) {
+                return None;
+            }
+            phi += step.x.clamp(-0.5, 0.5);
+            t += step.y.clamp(-0.5, 0.5);
+            lambda = Some(multiplier + step.z);
+            if !(-1.0..=2.0).contains(&t) {
+                return None;
+            }
+            if step.x.abs().max(step.y.abs()).max(step.z.abs() * curved.amax()) <= LAST_STEP {
+                if !(0.0..=1.0).contains(&t) {
+                    return None;
+                }
+                let meridian = [a[0] + t * spread, a[1] + t * rise];
+                let p = self.tip + self.axis * meridian[1] + self.on_circle(phi)[0] * meridian[0];
+                return self.finished(meridian, &p, multiplier + step.z, 0.0);
+            }
+        }
+        None
+    }
+
+    fn finished(&self, meridian: Meridian, p: &Vec3, multiplier: f64, ball: f64) -> Option<Touch> {
         if self.quadric.shrink(multiplier).min() <= 0.0 {
             return None;
         }
@@ -167,7 +245,7 @@ impl Place<'_> {
         if !distance.is_finite() || ball > 0.0 && !self.in_fan(distance, &normal) {
             return None;
         }
-        Some(Touch { distance, normal, steepness, foot })
+        Some(Touch { distance, normal, steepness, foot, meridian })
     }
 
     /// Whether a ball of the corner has this contact normal on its arc.
@@ -194,10 +272,9 @@ impl Place<'_> {
         let corner = match profile.corner() {
             // The balls of the corner hold the ends of its arc.
             Some((center, radius)) => {
-                least + radius > 0.0
-                    && self
-                        .demand(least + radius, touch)
-                        .is_some_and(|demand| self.circle(&demand, center, touch) >= demand.least)
+                let balls = (least + radius > 0.0).then(|| self.demand(least + radius, touch)).flatten();
+                balls.is_some_and(|demand| self.circle(&demand, center, touch) >= demand.least)
+                    || self.arcs(least, touch)
             }
             None => self.circle(&sharp, lower, touch) >= sharp.least,
         };
@@ -209,6 +286,30 @@ impl Place<'_> {
                     self.disc(&sharp, lower, touch)
                 })
             && (upper == top || self.piece(&sharp, [upper, top], touch))
+    }
+
+    /// Whether the arc of the corner keeps a distance, where its whole balls stand out from the tool: the pieces between
+    /// points of it do by what the arc bulges more.
+    fn arcs(&self, least: f64, touch: &Touch) -> bool {
+        let Some((center, radius)) = self.tool.profile.corner() else { return true };
+        let [lower, upper, _] = self.tool.profile.edges();
+        let angle = |p: Meridian| (p[0] - center[0]).atan2(center[1] - p[1]);
+        let at = |angle: f64| [center[0] + radius * angle.sin(), center[1] - radius * angle.cos()];
+        let mut open = vec![([angle(lower), angle(upper)], [lower, upper])];
+        for _ in 0..ARCS {
+            let Some(([from, to], ends)) = open.pop() else { return true };
+            let bulge = radius * (1.0 - (0.5 * (to - from)).cos());
+            let demand = self.demand(least + bulge, touch);
+            let facing = self.facing(touch);
+            let keeps =
+                demand.is_some_and(|demand| self.best_between(&demand, ends, touch, &facing) >= demand.least);
+            if !keeps {
+                let middle = 0.5 * (from + to);
+                let p = at(middle);
+                open.extend([([middle, to], [p, ends[1]]), ([from, middle], [ends[0], p])]);
+            }
+        }
+        open.is_empty()
     }
 
     /// For a distance to keep, the bound of squared distances; for a depth allowed, F itself with the tool moved out by it.
@@ -282,13 +383,14 @@ impl Place<'_> {
     /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from
     /// the axis and for staying between the circles.
     fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch) -> bool {
+        if ends[0][0] <= 0.0 && self.rises_from_apex(demand, ends) {
+            return true;
+        }
         let facing = self.facing(touch);
         let mut open = vec![ends];
         for _ in 0..HALVINGS {
             let Some([a, b]) = open.pop() else { return true };
-            let best =
-                self.between(demand, [a, b], &facing, false).max(self.between(demand, [a, b], &facing, true));
-            if best < demand.least {
+            if self.best_between(demand, [a, b], touch, &facing) < demand.least {
                 let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                 open.extend([[middle, b], [a, middle]]);
             }
@@ -296,10 +398,51 @@ impl Place<'_> {
         open.is_empty()
     }
 
-    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: &Vector2<f64>, upper: bool) -> f64 {
+    /// Whether the bound rises, or falls by too little, along every straight line of a piece that begins on the axis.
+    fn rises_from_apex(&self, demand: &Demand, [a, b]: [Meridian; 2]) -> bool {
         let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
-        let at = if upper || a[0] <= 0.0 { 1.0 } else { 0.0 };
+        let (apex, lower) = (demand.tip + self.axis * a[1], &demand.lower);
+        let slope = lower.slope(&apex);
+        let [u, v] = &self.across;
+        let least_slope = rise * slope.dot(&self.axis) - spread * slope.dot(u).hypot(slope.dot(v));
+        let form = self.form(lower);
+        let least_form = 0.5 * form.trace() - (0.5 * (form.m11 - form.m22)).hypot(form.m12);
+        let twist = lower.form(u, &self.axis).hypot(lower.form(v, &self.axis));
+        let bend = rise * rise * lower.form(&self.axis, &self.axis) - 2.0 * (rise * spread).abs() * twist
+            + spread * spread * least_form;
+        lower.at(&apex) + (2.0 * least_slope + bend.min(0.0)).min(0.0) >= demand.least
+    }
+
+    /// The best of the bounds with the multipliers of either end and, if contact is in between, of the contact.
+    fn best_between(
+        &self,
+        demand: &Demand,
+        ends: [Meridian; 2],
+        touch: &Touch,
+        facing: &Vector2<f64>,
+    ) -> f64 {
+        let mut best = f64::NEG_INFINITY;
+        for at in [0.0, 1.0] {
+            best = best.max(self.between(demand, ends, facing, at));
+            if best >= demand.least {
+                return best;
+            }
+        }
+        let [a, b] = ends;
+        let way = [b[0] - a[0], b[1] - a[1]];
+        let from = [touch.meridian[0] - a[0], touch.meridian[1] - a[1]];
+        let at = (from[0] * way[0] + from[1] * way[1]) / (way[0] * way[0] + way[1] * way[1]);
+        if at > 0.0 && at < 1.0 { best.max(self.between(demand, ends, facing, at)) } else { best }
+    }
+
+    /// A lower bound on the piece between two circles, with the multipliers of the place `at` of 0 … 1 on the line that
+    /// faces the contact.
+    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: &Vector2<f64>, at: f64) -> f64 {
+        let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
         let rho = a[0] + spread * at;
+        if rho <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
         let start = demand.tip + self.axis * a[1];
         let way = self.axis * rise;
         let [u, v] = &self.across;
@@ -310,7 +453,13 @@ impl Place<'_> {
         let place = facing * rho;
         let mu = -(form * place + g + cross * at).dot(&place) / (rho * rho);
         let climb = slope.dot(&way) + cross.dot(&place) + lower.form(&way, &way) * at - mu * spread * rho;
-        let nu = (if at > 0.0 { -2.0 * climb } else { 2.0 * climb }).max(0.0);
+        let nu = if at <= 0.0 {
+            (2.0 * climb).max(0.0)
+        } else if at >= 1.0 {
+            (-2.0 * climb).max(0.0)
+        } else {
+            0.0
+        };
         let bent = lower.form(&way, &way) - mu * spread * spread + nu;
         let matrix = Matrix3::new(
             form.m11 + mu,

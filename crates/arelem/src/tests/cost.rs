@@ -1,0 +1,104 @@
+//! What motions cost, counted in clearances: linear in their cut vectors, and never many between two questions whether to
+//! go on.
+
+use std::cell::Cell;
+
+use super::*;
+use crate::clearance::EVALUATIONS;
+
+/// Clearances that the engine may compute before it asks again whether to go on. The slowest of them, on quadrics, take a
+/// microsecond in a release build: 5 ms are thousands of them.
+const BETWEEN_QUESTIONS: u64 = 1500;
+
+/// Surfaces of every kind with a clearance of its own, and the side that the tool comes from.
+fn parts() -> Vec<(&'static str, Geometry)> {
+    vec![
+        ("sphere", sphere(0.0, 0.0, 0.0, 3.0)),
+        ("bowl", sphere(0.0, 0.0, 9.0, 6.0)),
+        ("cylinder", cylinder(Vec3::zeros(), v(0.2, 1.0, 0.1), 3.0)),
+        ("hollow cylinder", cylinder(v(0.0, 0.0, 9.0), v(0.2, 1.0, 0.1), 6.0)),
+        ("cone", cone(v(0.0, 0.0, 3.0), v(0.1, 0.1, -1.0), 50.0)),
+        ("ellipsoid", quadric([1.0 / 16.0, 1.0 / 9.0, 0.25, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
+        ("dish", quadric([0.1, 0.05, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.5])),
+        ("saddle", quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])),
+    ]
+}
+
+const CUTTERS: [&[f64]; 2] = [&[0.5, 0.25], &[0.5, 0.1]];
+
+/// A pass over a part surface, ready for its last command.
+fn pass(part: &Geometry, cutter: &[f64], step: f64) -> (Program, MotionCommand) {
+    let drive = plane(0.0, 1.0, 0.0, 0.4);
+    let wall = |x: f64| plane(1.0, 0.0, 0.0, x);
+    let mut p = Program::new();
+    p.tolerance(0.0, 1e-3).cutter(cutter);
+    p.run(&MotionCommand::MaximumPoints(100_000)).run(&MotionCommand::MaximumStep(step));
+    p.from(-1.5, 0.4, 6.0);
+    p.go(&[(Relation::On, &drive), (Relation::To, part), (Relation::On, &wall(-1.2))]);
+    p.indirv(1.0, 0.0, 0.0).side(DriveSide::On);
+    let check =
+        CheckSurface { relation: Relation::On, occurrence: 1, surface: named(&wall(1.2)), label: None };
+    (p, MotionCommand::Drive { turn: Turn::Forward, drive: named(&drive), checks: vec![check] })
+}
+
+/// Number of cut vectors and of clearances.
+fn cost(part: &Geometry, cutter: &[f64], step: f64) -> (usize, u64) {
+    let (mut p, command) = pass(part, cutter, step);
+    let before = EVALUATIONS.get();
+    p.run(&command);
+    (p.last().points.len(), EVALUATIONS.get() - before)
+}
+
+#[test]
+fn cost_is_linear_in_the_number_of_cut_vectors() {
+    for (name, part) in parts() {
+        for cutter in CUTTERS {
+            let ((few, little), (many, much)) = (cost(&part, cutter, 0.02), cost(&part, cutter, 0.0025));
+            assert!(many >= 7 * few, "{name}: {many} and {few} vectors");
+            let each = [little as f64 / few as f64, much as f64 / many as f64];
+            assert!(each[1] <= 1.15 * each[0], "{name}, cutter {cutter:?}: {each:?} clearances a vector");
+            assert!(each[1] <= 30.0, "{name}, cutter {cutter:?}: {each:?} clearances a vector");
+        }
+    }
+}
+
+#[test]
+fn the_engine_asks_often_whether_to_go_on() {
+    for (name, part) in parts() {
+        for cutter in CUTTERS {
+            let (p, command) = pass(&part, cutter, 10.0);
+            let (last, longest) = (Cell::new(EVALUATIONS.get()), Cell::new(0));
+            let ask = || {
+                let now = EVALUATIONS.get();
+                longest.set(longest.get().max(now - last.get()));
+                last.set(now);
+                false
+            };
+            let execution = execute(&p.state, &command, &ask);
+            assert!(execution.failure.is_none(), "{name}: {:?}", execution.failure);
+            let longest = longest.get().max(EVALUATIONS.get() - last.get());
+            assert!(longest > 0 && longest <= BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {longest}");
+        }
+    }
+}
+
+#[test]
+fn a_cancelled_motion_computes_nothing_more() {
+    for (name, part) in parts() {
+        let (p, command) = pass(&part, CUTTERS[1], 0.02);
+        let (questions, at) = (Cell::new(0), Cell::new(0));
+        let ask = || {
+            questions.set(questions.get() + 1);
+            at.set(EVALUATIONS.get());
+            questions.get() >= 5
+        };
+        let execution = execute(&p.state, &command, &ask);
+        assert!(
+            matches!(execution.failure, Some(MotionFailure::Cancelled)),
+            "{name}: {:?}",
+            execution.failure
+        );
+        assert_eq!(questions.get(), 5, "{name}: asked again after the answer");
+        assert_eq!(EVALUATIONS.get(), at.get(), "{name}");
+    }
+}
