@@ -1,7 +1,7 @@
 //! How strongly the distance from a surface bends over a ball: strict upper bounds of its second derivatives. With
 //! such a bound finitely many distances prove an inequality for all points between them.
 
-use super::{ConeForm, Foot, Surface};
+use super::{ConeForm, Foot, Surface, part::Survey};
 use crate::Vec3;
 
 /// An upper bound of the second derivative, along any unit direction, of the distance from a surface.
@@ -29,6 +29,14 @@ pub struct Region {
     pub highest: f64,
 }
 
+impl Region {
+    /// The foot of a point that matters is not farther from the centre than this.
+    fn reach(&self, foot: &Foot) -> f64 {
+        let away = (foot.distance.abs() + self.radius).min(self.highest.abs().max(self.lowest.abs()));
+        self.radius + away
+    }
+}
+
 impl Surface {
     /// A bound for `side · signed distance` over the points of a region, given the foot of its centre.
     ///
@@ -47,12 +55,18 @@ impl Surface {
             Self::Cone(cone) => cone_bend(cone, region, nearest),
             Self::Quadric(quadric) => quadric.bend(side, foot, region, nearest),
             Self::Tabulated(curve) => {
-                // The foot of a point that matters is not farther from the centre than this.
-                let away =
-                    (foot.distance.abs() + region.radius).min(region.highest.abs().max(region.lowest.abs()));
-                parallel_bend(curve.greatest_curvature(side, &region.center, region.radius + away), nearest)
+                parallel_bend(curve.greatest_curvature(side, &region.center, region.reach(foot)), nearest)
             }
-            _ => return Bend::Unknown,
+            Self::Ruled(sheet) => {
+                let extent = [region.radius, region.reach(foot)];
+                return sheet.survey(Survey::new(&region.center, extent, side, &foot.normal)).bend(nearest);
+            }
+            Self::PolyConic(sheet) => {
+                // Off a surface that lies at a thickness from its conics distances bend as those from the conics.
+                let stock = side * sheet.thickness();
+                let extent = [region.radius, region.reach(foot) + stock.abs()];
+                return sheet.survey(&region.center, extent, side, &foot.normal).bend(nearest + stock);
+            }
         };
         let least = near.min(far);
         if least.is_finite() { Bend::AtMost(least) } else { Bend::Unbounded }
@@ -71,10 +85,20 @@ impl Surface {
             _ => None,
         }
     }
+
+    /// Unit direction that all straight lines of a ruled or polyconic surface have, if they have one; along it the surface
+    /// may be shifted without change, but it ends.
+    pub fn common_ruling(&self) -> Option<Vec3> {
+        match self {
+            Self::Ruled(sheet) => sheet.common_ruling(),
+            Self::PolyConic(sheet) => sheet.common_ruling(),
+            _ => None,
+        }
+    }
 }
 
 /// Greatest bend of surfaces parallel to one that bends by at most `curvature`, at least `nearest` away from it.
-fn parallel_bend(curvature: f64, nearest: f64) -> f64 {
+pub(super) fn parallel_bend(curvature: f64, nearest: f64) -> f64 {
     let stretch = 1.0 + nearest * curvature;
     if curvature <= 0.0 {
         0.0

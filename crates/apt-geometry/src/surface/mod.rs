@@ -4,6 +4,8 @@
 mod bend;
 mod cone;
 mod directed;
+mod interval;
+mod part;
 mod poly_conic;
 mod quadric;
 mod quadric_bound;
@@ -284,6 +286,8 @@ pub fn perpendicular(v: &Vec3) -> Vec3 {
     v.cross(&other).normalize()
 }
 
+#[cfg(test)]
+mod sheet_bend_tests;
 #[cfg(test)]
 mod sheet_tests;
 #[cfg(test)]

@@ -5,10 +5,15 @@
 //! station 0. Each conic goes on straight beyond its ends, the family by [`POLYCONIC_STATIONS_BEYOND`] beyond its own. The nearest
 //! point is found over a tree of cells, each bounded by a ball.
 
+mod bounds;
+
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
-    Foot, perpendicular,
+    Foot,
+    interval::Number,
+    part::{Part, Rectangle},
+    perpendicular,
     sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{
@@ -23,10 +28,6 @@ use crate::{
 const STATION_CELLS: usize = 24;
 const CONIC_CELLS: usize = 12;
 const END_CELLS: usize = 4;
-/// Samples to each side of a cell for its radius.
-const SAMPLES: u32 = 4;
-/// Share by which a radius is enlarged for what lies between the samples.
-const ENLARGED: f64 = 0.12;
 /// First step, in halves of a cell, beyond which the nearest place is that of another cell.
 const STRAYING: f64 = 6.0;
 /// Distance of two places, in halves of a cell, at which they belong to one valley of the distance.
@@ -42,10 +43,10 @@ const NEAR: f64 = 1e-2;
 const MAX_STEPS: u32 = 4000;
 
 /// A function of the parameter with two derivatives.
-type Course = [f64; 3];
+type Course<T = f64> = [T; 3];
 
 /// A rectangle of parameters and a ball that holds its part of the surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Cell {
     center: Vec3,
     radius: f64,
@@ -53,6 +54,8 @@ struct Cell {
     middle: [f64; 2],
     /// Half its sides.
     half: [f64; 2],
+    /// The curvature of a leaf.
+    part: Option<Box<Part>>,
 }
 
 /// A polyconic surface ready for distance questions.
@@ -69,13 +72,42 @@ pub struct PolyConicSheet {
     curvature: f64,
 }
 
-/// A point of a section plane with derivatives by the station parameter.
-#[derive(Clone, Copy)]
-struct Control([Vector2<f64>; 3]);
+/// Both coordinates in a section plane.
+type Flat<T> = [T; 2];
 
-impl Control {
-    fn of(y: Course, z: Course) -> Self {
-        Self(std::array::from_fn(|k| Vector2::new(y[k], z[k])))
+/// A point of a section plane with derivatives by the station parameter.
+type Control<T> = [Flat<T>; 3];
+
+/// The three control points of a conic from A, B, C, D, L, H.
+fn controls<T: Number>([a, b, c, d, l, h]: [Course<T>; 6]) -> [Control<T>; 3] {
+    let sum = |x: Course<T>, y: Course<T>| -> Course<T> { std::array::from_fn(|k| x[k] + y[k]) };
+    let of = |y: Course<T>, z: Course<T>| -> Control<T> { std::array::from_fn(|k| [y[k], z[k]]) };
+    let (y1, z1) = (sum(l, c), sum(h, b));
+    [of(l, h), of(y1, z1), of(sum(y1, a), sum(z1, d))]
+}
+
+/// Weight of the middle control point from the fullness `p`: `(2p − 1)/(2(1 − p))`.
+fn weight<T: Number>([p, p1, p2]: Course<T>) -> Course<T> {
+    let half = T::from(0.5);
+    let rest = T::from(1.0) - p;
+    let slope = half / (rest * rest);
+    [half / rest - T::from(1.0), slope * p1, slope * p2 + p1 * p1 / (rest * rest * rest)]
+}
+
+/// The place of a conic parameter on the section through a station, with its derivatives: value, t, s, tt, ts, ss.
+fn section<T: Number>(
+    controls: &[Control<T>; 3],
+    weight: &Course<T>,
+    t: T,
+    [before, after]: [bool; 2],
+) -> [Flat<T>; 6] {
+    let [p0, p1, p2] = controls;
+    if before {
+        straight(p0, p1, t, 1.0)
+    } else if after {
+        straight(p2, p1, T::from(1.0) - t, -1.0)
+    } else {
+        conic(controls, weight, t)
     }
 }
 
@@ -123,38 +155,17 @@ impl PolyConicSheet {
     fn weight(&self, s: f64) -> Course {
         let [p, p1, p2] = self.course(6, s);
         let held = p.clamp(LEAST_FULLNESS, GREATEST_FULLNESS);
-        let (p1, p2) = if held == p { (p1, p2) } else { (0.0, 0.0) };
-        let rest = 1.0 - held;
-        let slope = 0.5 / (rest * rest);
-        [(2.0 * held - 1.0) / (2.0 * rest), slope * p1, slope * p2 + p1 * p1 / (rest * rest * rest)]
-    }
-
-    /// The three control points of the conic of a station.
-    fn controls(&self, s: f64) -> [Control; 3] {
-        let [a, b, c, d, l, h] = std::array::from_fn(|k| self.course(k, s));
-        let sum = |x: Course, y: Course| -> Course { std::array::from_fn(|k| x[k] + y[k]) };
-        let (y1, z1) = (sum(l, c), sum(h, b));
-        [Control::of(l, h), Control::of(y1, z1), Control::of(sum(y1, a), sum(z1, d))]
+        weight(if held == p { [p, p1, p2] } else { [held, 0.0, 0.0] })
     }
 
     /// The place of parameters in the surface's own coordinates: `u` runs along the conic, `v` along the stations.
     fn jet(&self, t: f64, s: f64) -> Jet {
-        let [p0, p1, p2] = self.controls(s);
-        let [flat, dt, ds, dtt, dts, dss] = if t < 0.0 {
-            straight(&p0, &p1, t, 1.0)
-        } else if t > 1.0 {
-            straight(&p2, &p1, 1.0 - t, -1.0)
-        } else {
-            conic(&[p0, p1, p2], &self.weight(s), t)
-        };
-        let station: Course = match self.form.roots {
-            Some(_) => [s * s, 2.0 * s, 2.0],
-            None => [s, 1.0, 0.0],
-        };
-        let lift = |x: f64, flat: Vector2<f64>| Vec3::new(x, flat.x, flat.y);
+        let controls = controls(std::array::from_fn(|k| self.course(k, s)));
+        let [flat, dt, ds, dtt, dts, dss] = section(&controls, &self.weight(s), t, [t < 0.0, t > 1.0]);
+        let station = self.station(s);
+        let lift = |x: f64, flat: Flat<f64>| Vec3::new(x, flat[0], flat[1]);
         let length = self.form.length;
-        // Before the nose the station falls with the parameter; the natural normal follows the station.
-        let turned = if self.form.roots.is_some() && s < 0.0 { -1.0 } else { 1.0 };
+        let turned = self.turned(s);
         Jet {
             point: lift(self.form.base + length * station[0], flat),
             du: lift(0.0, dt),
@@ -165,24 +176,24 @@ impl PolyConicSheet {
         }
     }
 
+    /// The station of a station parameter.
+    fn station(&self, s: f64) -> Course {
+        match self.form.roots {
+            Some(_) => [s * s, 2.0 * s, 2.0],
+            None => [s, 1.0, 0.0],
+        }
+    }
+
+    /// Before the nose the station falls with the parameter; the natural normal follows the station.
+    fn turned(&self, s: f64) -> f64 {
+        if self.form.roots.is_some() && s < 0.0 { -1.0 } else { 1.0 }
+    }
+
     fn cell(&self, t: [f64; 2], s: [f64; 2]) -> Cell {
-        let middle = [0.5 * (t[0] + t[1]), 0.5 * (s[0] + s[1])];
-        let center = self.jet(middle[0], middle[1]).point;
-        let mut radius: f64 = 0.0;
-        for i in 0..=SAMPLES {
-            for j in 0..=SAMPLES {
-                let at = |range: [f64; 2], k: u32| {
-                    range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(SAMPLES)
-                };
-                radius = radius.max((self.jet(at(t, i), at(s, j)).point - center).norm());
-            }
-        }
-        Cell {
-            center,
-            radius: radius * (1.0 + ENLARGED),
-            middle,
-            half: [0.5 * (t[1] - t[0]), 0.5 * (s[1] - s[0])],
-        }
+        let rectangle = Rectangle::between(t, s);
+        let part = Part::new(self, rectangle);
+        let Rectangle { middle, half } = rectangle;
+        Cell { center: *part.center(), radius: part.radius(), middle, half, part: Some(Box::new(part)) }
     }
 
     /// Cuts the surface into cells and builds the tree over them.
@@ -198,8 +209,9 @@ impl PolyConicSheet {
         let stations = even(low, high, STATION_CELLS);
         let cells = halved(&conic, &stations);
         let leaves = cells.len().next_power_of_two();
-        let empty = Cell { center: Vec3::zeros(), radius: -1.0, middle: [0.0; 2], half: [0.0; 2] };
-        let mut nodes = vec![empty; leaves - 1];
+        let empty =
+            Cell { center: Vec3::zeros(), radius: -1.0, middle: [0.0; 2], half: [0.0; 2], part: None };
+        let mut nodes = vec![empty.clone(); leaves - 1];
         nodes.extend(cells.iter().map(|&(i, j)| self.cell(conic[i], stations[j])));
         nodes.resize(2 * leaves - 1, empty);
         for node in (0..leaves - 1).rev() {
@@ -417,37 +429,53 @@ impl PolyConicSheet {
 
 /// A straight end: from a control point away from where the end tangents meet. `x` is negative; it grows with the
 /// parameter in the given sense.
-fn straight(end: &Control, meet: &Control, x: f64, sense: f64) -> [Vector2<f64>; 6] {
-    let way: [Vector2<f64>; 3] = std::array::from_fn(|k| (meet.0[k] - end.0[k]) * POLYCONIC_ENDS_BEYOND);
-    let at = |k: usize| end.0[k] + way[k] * x;
-    [at(0), way[0] * sense, at(1), Vector2::zeros(), way[1] * sense, at(2)]
+fn straight<T: Number>(end: &Control<T>, meet: &Control<T>, x: T, sense: f64) -> [Flat<T>; 6] {
+    let beyond = T::from(POLYCONIC_ENDS_BEYOND);
+    let way: Control<T> = std::array::from_fn(|k| std::array::from_fn(|i| (meet[k][i] - end[k][i]) * beyond));
+    let at = |k: usize| -> Flat<T> { std::array::from_fn(|i| end[k][i] + way[k][i] * x) };
+    let along = |k: usize| way[k].map(|w| w * T::from(sense));
+    [at(0), along(0), at(1), [T::from(0.0); 2], along(1), at(2)]
 }
 
 /// The rational conic with its derivatives: value, t, s, tt, ts, ss.
-fn conic(controls: &[Control; 3], weight: &Course, t: f64) -> [Vector2<f64>; 6] {
-    let r = 1.0 - t;
+fn conic<T: Number>(controls: &[Control<T>; 3], weight: &Course<T>, t: T) -> [Flat<T>; 6] {
+    let number = T::from;
+    let two = number(2.0);
+    let r = number(1.0) - t;
     // Basis by t: value, first, second derivative.
-    let basis = [[r * r, 2.0 * t * r, t * t], [-2.0 * r, 2.0 - 4.0 * t, 2.0 * t], [2.0, -4.0, 2.0]];
-    // Weighted middle point with derivatives by s.
+    let basis = [
+        [r * r, two * t * r, t * t],
+        [number(-2.0) * r, two - number(4.0) * t, two * t],
+        [two, number(-4.0), two],
+    ];
     let [w, w1, w2] = *weight;
-    let [p, p1, p2] = controls[1].0;
-    let middle = [p * w, p1 * w + p * w1, p2 * w + p1 * (2.0 * w1) + p * w2];
-    let numerator = |i: usize, k: usize| {
-        controls[0].0[k] * basis[i][0] + middle[k] * basis[i][1] + controls[2].0[k] * basis[i][2]
-    };
     let denominator = |i: usize, k: usize| {
-        let ends = if k == 0 { basis[i][0] + basis[i][2] } else { 0.0 };
-        ends + weight[k] * basis[i][1]
+        let [start, middle, end] = basis[i];
+        let ends = if k == 0 { start + end } else { number(0.0) };
+        ends + weight[k] * middle
     };
     let d = denominator(0, 0);
-    let (dt, ds) = (denominator(1, 0), denominator(0, 1));
-    let value = numerator(0, 0) / d;
-    let by_t = (numerator(1, 0) - value * dt) / d;
-    let by_s = (numerator(0, 1) - value * ds) / d;
-    let tt = (numerator(2, 0) - value * denominator(2, 0) - by_t * (2.0 * dt)) / d;
-    let ts = (numerator(1, 1) - value * denominator(1, 1) - by_t * ds - by_s * dt) / d;
-    let ss = (numerator(0, 2) - value * denominator(0, 2) - by_s * (2.0 * ds)) / d;
-    [value, by_t, by_s, tt, ts, ss]
+    let (dt, ds, dtt, dts, dss) =
+        (denominator(1, 0), denominator(0, 1), denominator(2, 0), denominator(1, 1), denominator(0, 2));
+    let mut found = [[number(0.0); 2]; 6];
+    for c in 0..2 {
+        // Weighted middle point with derivatives by s.
+        let [p, p1, p2] = [0, 1, 2].map(|k: usize| controls[1][k][c]);
+        let middle = [p * w, p1 * w + p * w1, p2 * w + two * p1 * w1 + p * w2];
+        let numerator = |i: usize, k: usize| {
+            controls[0][k][c] * basis[i][0] + middle[k] * basis[i][1] + controls[2][k][c] * basis[i][2]
+        };
+        let value = numerator(0, 0) / d;
+        let by_t = (numerator(1, 0) - value * dt) / d;
+        let by_s = (numerator(0, 1) - value * ds) / d;
+        let tt = (numerator(2, 0) - value * dtt - by_t * two * dt) / d;
+        let ts = (numerator(1, 1) - value * dts - by_t * ds - by_s * dt) / d;
+        let ss = (numerator(0, 2) - value * dss - by_s * two * ds) / d;
+        for (all, one) in found.iter_mut().zip([value, by_t, by_s, tt, ts, ss]) {
+            all[c] = one;
+        }
+    }
+    found
 }
 
 /// Step of Newton's method, damped; where the second derivatives are no minimum's the metric takes their place.
@@ -499,13 +527,14 @@ fn halved(rows: &[[f64; 2]], columns: &[[f64; 2]]) -> Vec<(usize, usize)> {
 /// The smallest ball about two.
 fn joined(a: &Cell, b: &Cell) -> Cell {
     let apart = (b.center - a.center).norm();
+    let about =
+        |center: Vec3, radius: f64| Cell { center, radius, middle: a.middle, half: a.half, part: None };
     if b.radius < 0.0 || a.radius >= apart + b.radius {
-        return *a;
+        return about(a.center, a.radius);
     }
     if a.radius < 0.0 || b.radius >= apart + a.radius {
-        return *b;
+        return about(b.center, b.radius);
     }
     let radius = 0.5 * (apart + a.radius + b.radius);
-    let center = a.center + (b.center - a.center) * ((radius - a.radius) / apart);
-    Cell { center, radius, ..*a }
+    about(a.center + (b.center - a.center) * ((radius - a.radius) / apart), radius)
 }

@@ -4,10 +4,16 @@
 //! beyond the curves, and the curves straight beyond their ends, for [`RULED_BEYOND`] times their length, but not to where
 //! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by its middle ruling.
 
+mod bounds;
+
 use nalgebra::Matrix3;
 
+use self::bounds::ranges;
 use super::{
-    Foot, perpendicular,
+    Foot,
+    interval::Interval,
+    part::{Later, Part},
+    perpendicular,
     section_curve::{CurvePoint, SectionCurve},
     sheet::{Jet, ON_SURFACE, Rest},
 };
@@ -31,10 +37,8 @@ const MAX_PIECES: usize = 4096;
 const STRIPS: f64 = 48.0;
 /// How much wider strips of the extensions are.
 const COARSER: f64 = 8.0;
-/// Samples across a strip for its radius.
+/// Pieces of a strip in which crossings with a ray are looked for.
 const SAMPLES: u32 = 6;
-/// Share by which a radius is enlarged for what lies between the samples.
-const ENLARGED: f64 = 0.07;
 /// Step of the parameter below which its effect on the distance is far below rounding.
 const RESOLUTION: f64 = 1e-13;
 /// Bound of the bracketed iteration for the nearest ruling.
@@ -56,10 +60,13 @@ struct Piece {
 struct Strip {
     piece: usize,
     range: [f64; 2],
+    shares: [f64; 2],
     /// The middle ruling: a point and the way to its other end.
     middle: [Vec3; 2],
     /// No point of the strip is farther from its middle ruling.
     radius: f64,
+    /// The curvature of a leaf.
+    part: Later<Box<Part>>,
 }
 
 /// A ruled surface ready for distance questions: `E(t) + v·(F(t) − E(t))`.
@@ -70,6 +77,8 @@ pub struct RuledSheet {
     bands: Vec<Vec<Strip>>,
     /// Range of the parameter and of the share along the rulings.
     limits: [[f64; 2]; 2],
+    /// Unit direction of the ruling between the beginnings of the chords.
+    ruling: Vec3,
     size: f64,
     curvature: f64,
 }
@@ -145,8 +154,14 @@ impl RuledSheet {
             }
         };
         let range = [-RULED_BEYOND, 1.0 + RULED_BEYOND];
+        let other = match &end {
+            RuledEnd::Curve(second) => second.start,
+            RuledEnd::Apex(apex) => *apex,
+        };
+        let ruling = (other - first.start).try_normalize(0.0)?;
         let pieces = pieces(&edges, range, ACCURACY * size)?;
-        let mut sheet = Self { pieces, bands: Vec::new(), limits: [range, [0.0, 1.0]], size, curvature: 0.0 };
+        let limits = [range, [0.0, 1.0]];
+        let mut sheet = Self { pieces, bands: Vec::new(), limits, ruling, size, curvature: 0.0 };
         sheet.limits[1] = sheet.shares();
         sheet.grow();
         Some(sheet)
@@ -240,8 +255,10 @@ impl RuledSheet {
         let empty = Strip {
             piece: usize::MAX,
             range: [0.0; 2],
+            shares,
             middle: [Vec3::zeros(); 2],
             radius: f64::NEG_INFINITY,
+            part: Later::new(),
         };
         let mut nodes = vec![empty.clone(); leaves - 1];
         nodes.extend(ranges.iter().map(|&(piece, range)| self.strip(piece, range, shares)));
@@ -258,14 +275,16 @@ impl RuledSheet {
         let middle = 0.5 * (range[0] + range[1]);
         let ends = shares.map(|v| self.jet(piece, middle, v).point);
         let mut radius: f64 = 0.0;
-        for j in 0..=SAMPLES {
-            let t = range[0] + (range[1] - range[0]) * f64::from(j) / f64::from(SAMPLES);
-            for (v, end) in shares.iter().zip(&ends) {
-                radius = radius.max((self.jet(piece, t, *v).point - end).norm());
+        if let Some(curves) = self.pieces.get(piece) {
+            // Along a ruling distances from its place on the middle ruling are greatest at an end.
+            for v in shares {
+                let [places, ..] =
+                    ranges(curves, middle, 0.5 * (range[1] - range[0]), |e, f| e + (f - e) * v);
+                radius = radius.max(Vec3::from(places.0.map(Interval::radius)).norm());
             }
         }
-        let radius = radius * (1.0 + ENLARGED) + 1e-13 * self.size;
-        Strip { piece, range, middle: [ends[0], ends[1] - ends[0]], radius }
+        let radius = radius + 1e-13 * self.size;
+        Strip { piece, range, shares, middle: [ends[0], ends[1] - ends[0]], radius, part: Later::new() }
     }
 
     /// Two neighbouring strips about the ruling between them. Points at the same share of two rulings are farthest apart
@@ -282,8 +301,10 @@ impl RuledSheet {
         Strip {
             piece: b.piece,
             range: [a.range[0], b.range[1]],
+            shares,
             middle: [ends[0], ends[1] - ends[0]],
             radius: reach(a).max(reach(b)),
+            part: Later::new(),
         }
     }
 

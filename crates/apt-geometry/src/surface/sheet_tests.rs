@@ -53,14 +53,14 @@ fn cone_piece() -> Geometry {
 }
 
 /// Over the diameter of a circle to a straight line.
-fn half_pipe() -> Geometry {
+pub(super) fn half_pipe() -> Geometry {
     ruled(
         curve(circle(0.0, 0.0, 2.0), v(-2.0, 0.0, 0.0), v(2.0, 0.0, 0.0), Vec3::y()),
         curve(plane(Vec3::y(), 1.0), v(-2.0, 1.0, 4.0), v(2.0, 1.0, 4.0), Vec3::y()),
     )
 }
 
-fn sheets() -> Vec<Geometry> {
+pub(super) fn sheets() -> Vec<Geometry> {
     vec![twisted(), between_arcs(), cone_piece(), tube(1.0), bullet(), loft()]
 }
 
@@ -117,7 +117,7 @@ fn sheet(which: usize) -> &'static Surface {
     &MADE.get_or_init(|| sheets().iter().map(surface).collect())[which]
 }
 
-fn surface(geometry: &Geometry) -> Surface {
+pub(super) fn surface(geometry: &Geometry) -> Surface {
     Surface::from_geometry(geometry).expect("a surface")
 }
 

@@ -5,7 +5,11 @@
 //! and a bound of the second ones covers the rest. The linear part is minimised over the patch in closed form, so that
 //! the tool's own curvature counts in full. Patches that this does not clear are halved.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
+use std::{
+    cmp::Ordering,
+    collections::BinaryHeap,
+    f64::consts::{FRAC_PI_2, FRAC_PI_3, PI},
+};
 
 use apt_geometry::{
     Vec3,
@@ -16,7 +20,9 @@ use apt_geometry::{
 use super::{Contact, Tool};
 
 /// Bound of the patches looked at. A proof takes some dozens; where contact is nearly flat, a few hundred.
-const MAX_PATCHES: u32 = 4000;
+const MAX_PATCHES: u32 = 1500;
+/// Share of the coordinates that is rounding of a distance.
+const ROUNDING: f64 = 1e-15;
 /// Half a range of azimuth (radians) below which the ball of a corner is left for the corner itself.
 const NARROW: f64 = 0.02;
 /// How far (radians) from the corner's own fan a normal may point while its whole ball is looked at.
@@ -74,7 +80,35 @@ pub(crate) struct Face<'a> {
     pub(crate) side: f64,
 }
 
-/// Examines whether the distance from a surface is nowhere on some patches of the tool below a level.
+/// A patch that is not cleared yet; the one that may be lowest is the greatest, among equals the one seen first.
+struct Open {
+    patch: Patch,
+    judged: Judged,
+    number: u32,
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.judged.least.total_cmp(&self.judged.least).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Open {}
+
+/// Examines whether the distance from a surface is nowhere on some patches of the tool below a level. The patch that may be
+/// lowest is halved first: where the level is not kept that leads down to a lower point.
 pub(super) fn certify(
     face: Face<'_>,
     tool: &Tool,
@@ -82,22 +116,27 @@ pub(super) fn certify(
     level: f64,
     mut patches: Vec<Patch>,
 ) -> Certificate {
+    let mut open: BinaryHeap<Open> = BinaryHeap::new();
     let mut seen = 0;
-    while let Some(patch) = patches.pop() {
-        seen += 1;
+    let cleared = level - ROUNDING * (tip.amax() + tool.radius() + tool.profile.top.height);
+    loop {
+        for patch in patches.drain(..) {
+            seen += 1;
+            let Some(judged) = judge(face, tool, tip, &patch) else { return Certificate::Unknown };
+            if judged.least >= cleared {
+                continue;
+            }
+            if judged.sample.clearance < level {
+                return Certificate::Lower(judged.sample);
+            }
+            open.push(Open { patch, judged, number: seen });
+        }
+        let Some(Open { patch, judged, .. }) = open.pop() else { return Certificate::Holds };
         if seen > MAX_PATCHES {
             return Certificate::Undecided;
         }
-        let Some(judged) = judge(face, tool, tip, &patch) else { return Certificate::Unknown };
-        if judged.least >= level {
-            continue;
-        }
-        if judged.sample.clearance < level {
-            return Certificate::Lower(judged.sample);
-        }
         split(&mut patches, tool, &patch, &judged);
     }
-    Certificate::Holds
 }
 
 /// The patches that may hold points nearer than a far level. They are as large as the proof of the near level allows.

@@ -12,6 +12,8 @@ use super::{Contact, Tool};
 
 /// Sine of the angle between two axes below which they are parallel.
 const PARALLEL: f64 = 1e-13;
+/// Sine of the angle to the plane across the tool below which a normal lies in it.
+const LEVEL: f64 = 1e-9;
 
 /// The clearance on one side, if the configuration has a closed form.
 pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<Contact> {
@@ -28,8 +30,21 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
             let parallel = surface.generator()?.cross(&tool.axis).norm() <= PARALLEL;
             parallel.then(|| along_generators(tool, surface, side, tip))
         }
+        Surface::Ruled(_) | Surface::PolyConic(_) => {
+            let parallel = surface.common_ruling()?.cross(&tool.axis).norm() <= PARALLEL;
+            // Beyond the ends of the rulings the nearest point is no longer beside the tool.
+            let contact = parallel.then(|| along_generators(tool, surface, side, tip))?;
+            (contact.gradient.dot(&tool.axis).abs() <= LEVEL).then_some(contact)
+        }
         _ => None,
     }
+}
+
+/// Distance of the tool end from the surface at contact where the tool is a disc seen along the rulings of a surface that
+/// ends: there is no bound about its ends.
+pub(super) fn disc(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<f64> {
+    let curve = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_));
+    (curve && contact(tool, surface, side, tip).is_some()).then(|| tool.profile.support(1.0, 0.0).0)
 }
 
 /// Seen along generators that are parallel to the tool, the surface is a plane curve and the tool a disc.

@@ -9,10 +9,12 @@ use apt_geometry::{
     surface::{Bend, Region},
 };
 
-use super::{Gauge, Tool};
+use super::{Gauge, Tool, closed_form};
 
 /// Bound of the boxes into which the tool is cut.
 const MAX_BOXES: u32 = 600;
+/// The same where some box has no bound yet.
+const MAX_BOXES_UNBOUNDED: u32 = 2400;
 /// A box is small enough when its bound exceeds that of its centre by this factor at most.
 const CLOSE: f64 = 1.25;
 
@@ -31,9 +33,15 @@ pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, r
     if gauge.on {
         return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
     }
+    if let Some(reach) = closed_form::disc(tool, &gauge.surface, gauge.side, tip) {
+        // All of the tool is as near as its end, less its radius.
+        let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };
+        return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region);
+    }
     let (radius, height) = (tool.radius(), tool.profile.top.height);
     let mut cells = vec![Cell { middle: [0.0, 0.0, 0.5 * height], half: [radius, radius, 0.5 * height] }];
-    let (mut greatest, mut seen) = (0.0_f64, 0);
+    // What the bound is, and what it is at least.
+    let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
     while let Some(cell) = cells.pop() {
         seen += 1;
         if cell.beside(radius) {
@@ -51,14 +59,17 @@ pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, r
         }
         let found = gauge.surface.bend(gauge.side, &foot, &region(center, reach));
         let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
+        if let Bend::AtMost(least) = at_best {
+            needed = needed.max(least);
+        }
         let enough = match (found, at_best) {
             (Bend::Unknown, _) => return Bend::Unknown,
-            (Bend::AtMost(bound), _) if bound <= greatest => true,
-            (Bend::AtMost(bound), Bend::AtMost(least)) => bound <= CLOSE * least,
+            (Bend::AtMost(bound), _) => bound <= greatest.max(CLOSE * needed),
             _ => false,
         };
         let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
-        if enough || small || seen >= MAX_BOXES {
+        let limit = if found == Bend::Unbounded { MAX_BOXES_UNBOUNDED } else { MAX_BOXES };
+        if enough || small || seen >= limit {
             match found {
                 Bend::AtMost(bound) => greatest = greatest.max(bound),
                 other => return other,

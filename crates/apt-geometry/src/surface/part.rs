@@ -1,0 +1,352 @@
+//! Parts of parametric surfaces with bounds that hold over all of them: of their extent, their curvature and the turn of
+//! their normal. Parts are halved where a question needs closer bounds; what was found stays with them.
+
+use std::sync::OnceLock;
+
+use super::{
+    bend::{Bend, parallel_bend},
+    interval::{Box3, Interval},
+    sheet::Jet,
+};
+use crate::Vec3;
+
+/// Change of the tangent plane over a part, relative to its frame, above which nothing is said of its curvature.
+const STEADY: f64 = 0.4;
+/// Excess of a bound over the curvature in the middle, as a share of the greatest curvature there, that is close enough.
+const CLOSE: f64 = 0.15;
+/// Sag of a part, relative to its radius, that no bound needs to tell from flat.
+const FLAT: f64 = 1e-5;
+/// Size of a part, as a share of the reach of a question, from which on it is not halved.
+const FINE: f64 = 0.125;
+/// Cosine of the angle between normals up to which a sheet counts as one that faces one way.
+const LEAST_COSINE: f64 = 0.5;
+/// Bound of the halvings of a part.
+const MAX_DEPTH: u32 = 24;
+/// Bound of the parts that one question looks at.
+const MAX_PARTS: u32 = 3000;
+
+/// A rectangle of parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rectangle {
+    pub(super) middle: [f64; 2],
+    /// Half its sides.
+    pub(super) half: [f64; 2],
+}
+
+impl Rectangle {
+    pub(super) fn between(u: [f64; 2], v: [f64; 2]) -> Self {
+        let of = |f: fn([f64; 2]) -> f64| [f(u), f(v)];
+        Self { middle: of(|r| 0.5 * (r[0] + r[1])), half: of(|r| 0.5 * (r[1] - r[0])) }
+    }
+
+    /// Both halves of one side.
+    fn halves(&self, side: usize) -> [Self; 2] {
+        [-0.5, 0.5].map(|sense| {
+            let mut part = *self;
+            part.half[side] *= 0.5;
+            part.middle[side] += sense * self.half[side];
+            part
+        })
+    }
+
+    /// First and last parameter of a side.
+    pub(super) fn range(&self, side: usize) -> [f64; 2] {
+        [self.middle[side] - self.half[side], self.middle[side] + self.half[side]]
+    }
+}
+
+/// The partial derivatives in the middle of a rectangle, and the second ones over all of it.
+#[derive(Debug, Clone)]
+pub(super) struct Enclosure {
+    pub(super) jet: Jet,
+    pub(super) duu: Box3,
+    pub(super) duv: Box3,
+    pub(super) dvv: Box3,
+    /// No place of the rectangle is farther from that in its middle; infinite if that is best told by the derivatives.
+    pub(super) reach: f64,
+    /// Whether there is an edge or a crease that stands out to the natural side, or to the other.
+    pub(super) sharp: [bool; 2],
+    /// Whether the surface ends in the rectangle, or its natural normal turns over.
+    pub(super) ends: bool,
+}
+
+/// A surface whose derivatives can be enclosed.
+pub(super) trait Enclose {
+    fn enclose(&self, rectangle: &Rectangle) -> Enclosure;
+}
+
+/// Bounds over a part of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    rectangle: Rectangle,
+    center: Vec3,
+    /// No place is farther from the centre.
+    radius: f64,
+    /// Greatest curvature seen from the natural side (positive where the surface curves away from it), and from the other.
+    curvature: [f64; 2],
+    /// The same in the middle.
+    least: [f64; 2],
+    /// Excess of the bounds that is close enough.
+    close: f64,
+    /// Natural normal in the middle, if it has one.
+    normal: Option<Vec3>,
+    /// No natural normal differs from that by a longer vector.
+    spread: f64,
+    /// Whether the surface ends here.
+    ends: bool,
+    /// The side to halve, if that is not a matter of trial.
+    halved: Option<usize>,
+    halves: Later<Box<[Part; 2]>>,
+}
+
+/// Something made when it is first asked for. It tells no surfaces apart.
+#[derive(Debug, Clone)]
+pub(super) struct Later<T>(OnceLock<T>);
+
+impl<T> Later<T> {
+    pub(super) fn new() -> Self {
+        Self(OnceLock::new())
+    }
+
+    pub(super) fn get(&self, make: impl FnOnce() -> T) -> &T {
+        self.0.get_or_init(make)
+    }
+}
+
+impl<T> PartialEq for Later<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// What is asked of a surface about the places of a ball, and what has been found.
+#[derive(Debug)]
+pub(super) struct Survey {
+    center: Vec3,
+    radius: f64,
+    /// How far from the centre the nearest places of the surface can be.
+    reach: f64,
+    /// The side of the natural normal that it is seen from.
+    side: f64,
+    normal: Vec3,
+    seen: u32,
+    /// Greatest curvature within reach.
+    curvature: f64,
+    /// Least cosine between the normal asked about and those within reach that may be seen from the other side.
+    cosine: f64,
+    /// Whether the signed distance may jump from one side to the other.
+    jumps: bool,
+}
+
+impl Survey {
+    /// Asks about the surface within reach of the points of a ball, as seen from a side; `normal` is that at the foot of its
+    /// centre.
+    pub(super) fn new(center: &Vec3, [radius, reach]: [f64; 2], side: f64, normal: &Vec3) -> Self {
+        Self {
+            center: *center,
+            radius,
+            reach,
+            side,
+            normal: *normal,
+            seen: 0,
+            curvature: f64::NEG_INFINITY,
+            cosine: 1.0,
+            jumps: false,
+        }
+    }
+
+    pub(super) fn center(&self) -> &Vec3 {
+        &self.center
+    }
+
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Bound of the second derivatives of the distance over places at least `nearest` from the surface (negative: so far
+    /// beyond it).
+    ///
+    /// Beyond the surface the nearest place must not jump. It does not while all normals within reach point the same way
+    /// within an angle and no place is farther beyond than the shortest radius of curvature times its cosine: two
+    /// feet of one place would be nearer to each other than their normals allow. Before the surface a jump of the
+    /// nearest place lets the slope only fall, but to places that face the other way.
+    pub(super) fn bend(&self, nearest: f64) -> Bend {
+        let far = if nearest > 0.0 { 1.0 / nearest } else { f64::INFINITY };
+        let beyond = nearest.min(0.0);
+        let alone = self.cosine >= LEAST_COSINE && 1.0 + beyond * self.curvature.max(0.0) / self.cosine > 0.0;
+        if self.jumps || beyond < 0.0 && !alone {
+            return Bend::Unbounded;
+        }
+        let near = if self.curvature.is_finite() { parallel_bend(self.curvature, nearest) } else { far };
+        let least = if self.curvature == f64::NEG_INFINITY { 0.0 } else { near.min(far) };
+        if least.is_finite() { Bend::AtMost(least) } else { Bend::Unbounded }
+    }
+
+    /// Whether a part faces the ball, so that no point of it can be beyond that part.
+    fn faced_by(&self, part: &Part) -> bool {
+        let height =
+            part.normal.map_or(f64::NEG_INFINITY, |n| self.side * n.dot(&(self.center - part.center)));
+        height > self.radius + part.radius + self.reach * part.spread
+    }
+}
+
+/// Greatest eigenvalue of a symmetric matrix.
+fn greatest(xx: f64, xy: f64, yy: f64) -> f64 {
+    0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
+}
+
+/// Curvatures and normals over a rectangle.
+struct Bounds {
+    curvature: [f64; 2],
+    least: [f64; 2],
+    close: f64,
+    normal: Option<Vec3>,
+    spread: f64,
+    /// How much each side of the rectangle changes the frame and the curvature.
+    loose: [f64; 2],
+}
+
+impl Bounds {
+    /// In an orthonormal frame of the tangent plane in the middle all other frames differ by little, and second derivatives
+    /// become curvatures up to that.
+    fn of(enclosure: &Enclosure, half: [f64; 2]) -> Self {
+        let Enclosure { jet, duu, duv, dvv, .. } = enclosure;
+        let unknown = Self {
+            curvature: [f64::INFINITY; 2],
+            least: [f64::INFINITY; 2],
+            close: 0.0,
+            normal: None,
+            spread: 2.0,
+            loose: [half[0] * jet.du.norm(), half[1] * jet.dv.norm()],
+        };
+        let Some(normal) = jet.du.cross(&jet.dv).try_normalize(0.0) else { return unknown };
+        let Some(x) = jet.du.try_normalize(0.0) else { return unknown };
+        let y = normal.cross(&x);
+        let (a, b, c) = (jet.du.norm(), jet.dv.dot(&x), jet.dv.dot(&y));
+        // Second derivatives by the coordinates of the frame.
+        let xx = duu.scaled(1.0 / (a * a));
+        let xy = duv.plus(&duu.scaled(-b / a)).scaled(1.0 / (a * c));
+        let yy = dvv.plus(&duv.scaled(-2.0 * b / a)).plus(&duu.scaled(b * b / (a * a))).scaled(1.0 / (c * c));
+        let [uu, uv, vv] = [duu.length(), duv.length(), dvv.length()];
+        let change = |hu: f64, hv: f64| {
+            let (u, v) = (uu * hu + uv * hv, uv * hu + vv * hv);
+            (u / a).hypot(v / c.abs() + u * b.abs() / (a * c.abs()))
+        };
+        let loose = [change(half[0], 0.0), change(0.0, half[1])];
+        let change = change(half[0], half[1]);
+        let bends = [xx.dot(&normal), xy.dot(&normal), yy.dot(&normal)];
+        let [p, q, r] = bends.map(Interval::middle);
+        let center = |d: &Vec3, e: &Vec3, f: &Vec3| {
+            let (l, m, n) = (d.dot(&normal), e.dot(&normal), f.dot(&normal));
+            [l / (a * a), (m - l * b / a) / (a * c), (n - 2.0 * m * b / a + l * b * b / (a * a)) / (c * c)]
+        };
+        let [l, m, n] = center(&jet.duu, &jet.duv, &jet.dvv);
+        let least = [greatest(-l, -m, -n), greatest(l, m, n)];
+        let close = CLOSE * least[0].abs().max(least[1].abs());
+        if change.is_nan() || change > STEADY {
+            return Self { least, close, normal: Some(normal), loose, ..unknown };
+        }
+        // Sine of the angle between the tangent planes, and the chord of that angle.
+        let sine = change / (1.0 - change);
+        let spread = 2.0 * (0.5 * sine.asin()).sin();
+        let size = greatest(xx.length(), xy.length(), yy.length());
+        let [dp, dq, dr] = bends.map(Interval::radius);
+        let error = greatest(dp, dq, dr) + spread * size;
+        let curvature = [greatest(-p, -q, -r), greatest(p, q, r)].map(|bend| {
+            let most = bend + error;
+            let stretch = if most > 0.0 { 1.0 - change } else { 1.0 + change };
+            most / (stretch * stretch)
+        });
+        Self { curvature, least, close, normal: Some(normal), spread, loose }
+    }
+}
+
+impl Part {
+    pub(super) fn new(sheet: &impl Enclose, rectangle: Rectangle) -> Self {
+        let enclosure = sheet.enclose(&rectangle);
+        let [hu, hv] = rectangle.half;
+        let Enclosure { jet, duu, duv, dvv, reach, sharp, ends } = &enclosure;
+        let (u, v) = (jet.du * hu, jet.dv * hv);
+        let bent = 0.5 * (duu.length() * hu * hu + dvv.length() * hv * hv) + duv.length() * hu * hv;
+        let radius = (u + v).norm().max((u - v).norm()) + bent;
+        let radius = if radius.is_nan() { *reach } else { radius.min(*reach) };
+        let mut bounds = Bounds::of(&enclosure, rectangle.half);
+        for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
+            if *sharp || curvature.is_nan() {
+                *curvature = f64::INFINITY;
+            }
+        }
+        // What stands out sharply is told from the rest by its place.
+        let lengths = [u.norm(), v.norm()];
+        let tried = bounds.curvature.iter().all(|k| k.is_finite());
+        let sizes = if sharp.contains(&true) { lengths } else { bounds.loose };
+        Self {
+            rectangle,
+            center: jet.point,
+            radius,
+            curvature: bounds.curvature,
+            least: bounds.least,
+            close: bounds.close.max(FLAT / radius),
+            normal: bounds.normal,
+            spread: bounds.spread,
+            ends: *ends,
+            halved: (!tried).then_some(usize::from(sizes[1] > sizes[0])),
+            halves: Later::new(),
+        }
+    }
+
+    /// Both halves: of the side whose halves have the closer bounds.
+    fn halved(&self, sheet: &impl Enclose) -> [Self; 2] {
+        let cut = |side: usize| self.rectangle.halves(side).map(|half| Self::new(sheet, half));
+        if let Some(side) = self.halved {
+            return cut(side);
+        }
+        let [first, second] = [0, 1].map(cut);
+        let excess = |parts: &[Self; 2]| {
+            let of = |part: &Self| (part.curvature[0] - part.least[0]).max(part.curvature[1] - part.least[1]);
+            of(&parts[0]).max(of(&parts[1]))
+        };
+        if excess(&first) <= excess(&second) { first } else { second }
+    }
+
+    pub(super) fn center(&self) -> &Vec3 {
+        &self.center
+    }
+
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Adds what this part means for a question.
+    pub(super) fn survey(&self, sheet: &impl Enclose, survey: &mut Survey) {
+        let side = if survey.side > 0.0 { 0 } else { 1 };
+        let mut open = vec![(self, 0u32)];
+        while let Some((part, depth)) = open.pop() {
+            if survey.jumps {
+                return;
+            }
+            survey.seen += 1;
+            if (part.center - survey.center).norm() > survey.reach + part.radius {
+                continue;
+            }
+            let bound = part.curvature[side];
+            let faced = survey.faced_by(part);
+            let cosine =
+                if faced { 1.0 } else { part.normal.map_or(-1.0, |n| n.dot(&survey.normal) - part.spread) };
+            let jumps = !faced && (part.ends || cosine < LEAST_COSINE);
+            if bound <= survey.curvature && cosine >= survey.cosine && !jumps {
+                continue;
+            }
+            let close = bound <= part.least[side] + part.close && !jumps;
+            let fine = part.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+            if close || fine {
+                survey.curvature = survey.curvature.max(bound);
+                survey.cosine = survey.cosine.min(cosine);
+                survey.jumps |= jumps;
+            } else {
+                let halves = part.halves.get(|| Box::new(part.halved(sheet)));
+                open.extend(halves.iter().map(|half| (half, depth + 1)));
+            }
+        }
+    }
+}

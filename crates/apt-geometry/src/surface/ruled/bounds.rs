@@ -1,0 +1,158 @@
+//! Bounds of the derivatives of a ruled surface over its strips: those of the polynomials that its curves are.
+
+use super::{
+    super::{
+        interval::{Box3, Interval, shifted, taylor_ranges},
+        part::{Enclose, Enclosure, Part, Rectangle, Survey},
+    },
+    Piece, RuledSheet,
+};
+use crate::Vec3;
+
+/// Distance from the end of a range, relative to a piece, that is rounding.
+const AT_END: f64 = 1e-9;
+/// How far curves may be from being shifted copies of each other, relative to the surface.
+const SHIFTED: f64 = 1e-10;
+/// Length of the difference of two unit normals below which pieces join smoothly.
+const SMOOTH: f64 = 1e-7;
+
+/// Places, first and second derivatives by the parameter of a combination of both curves, over all parameters within `half`
+/// of a middle.
+pub(super) fn ranges(
+    piece: &Piece,
+    middle: f64,
+    half: f64,
+    combine: impl Fn(&Vec3, &Vec3) -> Vec3,
+) -> [Box3; 3] {
+    let [e, f] = &piece.curves;
+    let curve: [Vec3; 6] = std::array::from_fn(|k| combine(&e[k], &f[k]));
+    let place = (middle - piece.from) / piece.width;
+    let mut found = [Box3::zero(); 3];
+    for i in 0..3 {
+        let course = taylor_ranges(&shifted(&curve.map(|c| c[i]), place), half / piece.width);
+        for (range, value) in found.iter_mut().zip(course) {
+            range.0[i] = value;
+        }
+    }
+    let [places, first, second] = found;
+    let rate = 1.0 / piece.width;
+    [places, first.scaled(rate), second.scaled(rate * rate)]
+}
+
+/// One piece of the curves with the rulings between them.
+struct Stretch<'a> {
+    sheet: &'a RuledSheet,
+    piece: usize,
+}
+
+impl Enclose for Stretch<'_> {
+    fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
+        let Rectangle { middle: [t, v], half: [along, across] } = *rectangle;
+        let jet = self.sheet.jet(self.piece, t, v);
+        let Some(piece) = self.sheet.pieces.get(self.piece) else {
+            let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);
+            return Enclosure {
+                jet,
+                duu: all,
+                duv: all,
+                dvv: all,
+                reach: f64::INFINITY,
+                sharp: [true; 2],
+                ends: true,
+            };
+        };
+        let [_, _, bent] = ranges(piece, t, along, |e, f| e + (f - e) * v);
+        let [_, duv, turned] = ranges(piece, t, along, |e, f| f - e);
+        let beside = Box3(turned.0.map(|x| Interval::about(0.0, across * x.magnitude())));
+        let duu = bent.plus(&beside);
+        // Along a ruling places are farthest from the middle at an end.
+        let ends = rectangle.range(1).map(|end| {
+            let [places, ..] = ranges(piece, t, along, |e, f| e + (f - e) * end);
+            places.farthest(&jet.point)
+        });
+        let reach = ends[0].max(ends[1]);
+        let ends = self.ends(piece, rectangle);
+        let sharp = if ends { [true; 2] } else { self.sharp(piece, rectangle) };
+        Enclosure { jet, duu, duv, dvv: Box3::zero(), reach, sharp, ends }
+    }
+}
+
+impl Stretch<'_> {
+    /// Whether the surface ends at a side of a rectangle.
+    fn ends(&self, piece: &Piece, rectangle: &Rectangle) -> bool {
+        let ([first, last], [low, high]) = (rectangle.range(0), rectangle.range(1));
+        let [[from, to], [least, greatest]] = self.sheet.limits;
+        let slack = AT_END * piece.width;
+        low <= least + AT_END || high >= greatest - AT_END || first <= from + slack || last >= to - slack
+    }
+
+    /// Whether creases of the surface at the limits of a rectangle stand out to its sides.
+    fn sharp(&self, piece: &Piece, rectangle: &Rectangle) -> [bool; 2] {
+        let ([first, last], [low, high]) = (rectangle.range(0), rectangle.range(1));
+        let slack = AT_END * piece.width;
+        let mut sharp = [false; 2];
+        let joints = [
+            (first <= piece.from + slack).then(|| (self.piece.checked_sub(1), Some(self.piece), piece.from)),
+            (last >= piece.from + piece.width - slack)
+                .then(|| (Some(self.piece), Some(self.piece + 1), piece.from + piece.width)),
+        ];
+        for (before, after, t) in joints.into_iter().flatten() {
+            for v in [low, 0.5 * (low + high), high] {
+                let found = self.crease(before, after, t, v);
+                sharp = [sharp[0] || found[0], sharp[1] || found[1]];
+            }
+        }
+        sharp
+    }
+
+    /// Whether the surface stands out at a joint of two pieces; to both sides where it has no normal.
+    fn crease(&self, before: Option<usize>, after: Option<usize>, t: f64, v: f64) -> [bool; 2] {
+        let last = self.sheet.pieces.len();
+        let known = |piece: Option<usize>| piece.filter(|k| *k < last).map(|k| self.sheet.jet(k, t, v));
+        let (Some(before), Some(after)) = (known(before), known(after)) else { return [true; 2] };
+        let normals = [&before, &after].map(|jet| jet.du.cross(&jet.dv).try_normalize(0.0));
+        let [Some(a), Some(b)] = normals else { return [true; 2] };
+        if (a - b).norm() <= SMOOTH {
+            return [false; 2];
+        }
+        let turn = (after.du.normalize() - before.du.normalize()).dot(&(a + b));
+        [turn <= 0.0, turn >= 0.0]
+    }
+}
+
+impl RuledSheet {
+    /// The direction of all rulings, if both curves are the same but for their place.
+    pub(in super::super) fn common_ruling(&self) -> Option<Vec3> {
+        let first = self.pieces.first()?;
+        let way = first.curves[1][0] - first.curves[0][0];
+        let same = self.pieces.iter().all(|piece| {
+            let [e, f] = &piece.curves;
+            let apart = |k: usize| f[k] - e[k] - if k == 0 { way } else { Vec3::zeros() };
+            (0..6).all(|k| apart(k).norm() <= SHIFTED * self.size)
+        });
+        same.then_some(self.ruling)
+    }
+
+    /// Answers a question about the curvature near a place.
+    pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
+        for nodes in &self.bands {
+            let mut open = vec![0usize];
+            while let Some(node) = open.pop() {
+                let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };
+                if strip.bound(survey.center()) > survey.reach() {
+                    continue;
+                }
+                if 2 * node + 1 < nodes.len() {
+                    open.extend([2 * node + 2, 2 * node + 1]);
+                    continue;
+                }
+                let stretch = Stretch { sheet: self, piece: strip.piece };
+                let part = strip
+                    .part
+                    .get(|| Box::new(Part::new(&stretch, Rectangle::between(strip.range, strip.shares))));
+                part.survey(&stretch, &mut survey);
+            }
+        }
+        survey
+    }
+}
