@@ -64,6 +64,9 @@ proptest! {
         share in prop_oneof![-30.0..-0.5f64, -0.5..0.2f64, 4.0..40.0f64],
         on in any::<bool>(),
     ) {
+        // The tool begins clear of the check surface.
+        let half_width = (2.2 * (radius + BALL) * (-share * BAND).max(0.0)).sqrt();
+        prop_assume!(half_width < at + 0.95);
         let top = if curved { sphere(0.0, 0.0, 0.0, 2.0) } else { cylinder(v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), 2.0) };
         let relation = if on { Relation::On } else { Relation::To };
         let (p, check, stopped) = beside(&top, curved, at, radius, share * BAND, relation);
