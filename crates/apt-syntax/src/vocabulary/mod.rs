@@ -232,15 +232,11 @@ mod tests {
         let open: Vec<&str> =
             of_apt_iii.filter(|word| word.status == WordStatus::Parsed).map(|word| word.spelling).collect();
         assert!(open.is_empty(), "{open:?}");
-        // Without effect are system flags only; reserved without a meaning are types of installations and two forms of
-        // TLAXIS.
+        // Without effect are system flags only; reserved without a meaning are types of installations and CLDATF.
         for word in words() {
             let fits = match word.status {
                 WordStatus::NoEffect => word.class == WordClass::SystemFlag,
-                WordStatus::Reported => {
-                    word.class == WordClass::GeometricType
-                        || ["TANDS", "FAN", "CLDATF"].contains(&word.spelling)
-                }
+                WordStatus::Reported => word.class == WordClass::GeometricType || word.spelling == "CLDATF",
                 _ => true,
             };
             assert!(fits, "{}", word.spelling);
