@@ -96,6 +96,23 @@ fn each_finding_has_its_fixes() {
 }
 
 #[test]
+fn a_word_that_becomes_a_name_gets_another_one_where_its_uses_are_sure() {
+    let found = |text: &str| {
+        let found = diagnostics(text, "apt4");
+        found.into_iter().find(|one| one.wording.code == "APT0111").expect("a shadowed word")
+    };
+    let text = "P=POINT/1,2,3\nPOINT1=5\nPOINT=3\nGOTO/P\nGOTO/POINT,POI$ x\nNT1,POINT\nFINI\n";
+    let [fix] = &found(text).fixes[..] else { panic!("one fix") };
+    assert_eq!((&*fix.title, fix.preferred), ("Call it POINT2", false));
+    let new = applied(text, &fix.edits);
+    assert_eq!(new, "P=POINT/1,2,3\nPOINT1=5\nPOINT2=3\nGOTO/P\nGOTO/POINT2,POI$ x\nNT1,POINT2\nFINI\n");
+    assert_eq!(diagnostics(&new, "apt4"), []);
+    // What is executed in another order than it is written in may mean the word or the name.
+    let jumping = "P=POINT/1,2,3\nPOINT=3\nIF(POINT.EQ.3)GOTO/P\nGOTO/POINT,0,0\nFINI\n";
+    assert!(found(jumping).fixes.is_empty());
+}
+
+#[test]
 fn a_name_that_resembles_several_has_a_fix_for_each_and_none_is_preferred() {
     let found =
         diagnostics("PNT1=POINT/1,2\nPNT2=POINT/3,4\nGOTO/PNT3\nGOTO/PNT1\nGOTO/PNT2\nFINI\n", "apt3");

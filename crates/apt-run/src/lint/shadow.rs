@@ -6,13 +6,18 @@
 use std::collections::BTreeMap;
 
 use apt_program::Origin;
-use apt_syntax::{SyntaxTree, statement::ElementKind};
+use apt_syntax::{SyntaxTree, statement::ElementKind, vocabulary};
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Fix, statement_range};
 
 /// The code of a word that becomes a name.
 const WORD_BECOMES_NAME: &str = "APT0111";
+/// Letters of a name that every dialect takes.
+const SHORT_NAME: usize = 6;
+/// Words that let statements be executed in another order than they are written in.
+const OUT_OF_ORDER: [&str; 7] = ["MACRO", "LOOPST", "IF", "JUMPTO", "DO", "READ", "LIBRY"];
 
 /// Keeps the findings about words that have been used as words before, and shows where.
 pub(crate) fn keep_shadowing(tree: &SyntaxTree, findings: &mut Vec<Diagnostic>) {
@@ -37,11 +42,44 @@ pub(crate) fn keep_shadowing(tree: &SyntaxTree, findings: &mut Vec<Diagnostic>) 
         match before.filter(|before| before.isn < finding.origin.isn) {
             Some(before) => {
                 finding.related.push(("it is used as a word here".to_owned(), before));
+                finding.fixes.extend(other_name(tree, &finding.origin));
                 true
             }
             None => false,
         }
     });
+}
+
+/// Another name for what a word becomes the name of, where it is sure which of its uses mean the name: all from the
+/// definition on.
+fn other_name(tree: &SyntaxTree, origin: &Origin) -> Option<Fix> {
+    let is_plain = origin.source.is_none() && origin.frame.is_none();
+    let word = is_plain.then(|| word(tree, origin)).filter(|word| !word.is_empty())?;
+    let mut taken = FxHashSet::default();
+    let mut edits = Vec::new();
+    for view in tree.statements() {
+        for element in &view.parsed().elements {
+            if element.kind == ElementKind::Word && OUT_OF_ORDER.contains(&element.text.as_str()) {
+                return None;
+            }
+            if element.kind == ElementKind::Word && element.text == word {
+                if (view.isn(), element.range.start()) < (origin.isn, origin.range.start()) {
+                    continue;
+                }
+                edits.push(statement_range(tree, view.isn(), element.range));
+            } else if !taken.contains(&element.text) {
+                taken.insert(element.text.clone());
+            }
+        }
+    }
+    let stem: String = word.chars().take(SHORT_NAME - 1).collect();
+    let is_free = |name: &String| !taken.contains(name.as_str()) && vocabulary::lookup(name).is_none();
+    let name = (1..10).map(|number| format!("{stem}{number}")).find(is_free)?;
+    Some(Fix {
+        title: format!("Call it {name}"),
+        edits: edits.into_iter().map(|range| (range, name.clone())).collect(),
+        preferred: false,
+    })
 }
 
 /// The element at a place, as the language spells it.
