@@ -2,9 +2,12 @@
 //! distance over the one-parameter family of surface normals (arelem reference 5.2). The function is unimodal where it
 //! matters, and its derivative is read off the support point.
 
+use std::f64::consts::{PI, TAU};
+
 use apt_geometry::{
     Vec3,
     canonical::Cylinder,
+    cutter::ProfilePoint,
     surface::{ConeForm, Surface, perpendicular},
 };
 
@@ -36,6 +39,30 @@ impl Family {
     fn normal(&self, angle: f64) -> (Vec3, Vec3) {
         let (sin, cos) = angle.sin_cos();
         (self.fixed + self.a * cos + self.b * sin, self.b * cos - self.a * sin)
+    }
+
+    /// Angles between which the distance is smooth and has one hump: a scan, the normals across the straight lines of the
+    /// profile, at which contact jumps from one end of the line to the other, and those nearest to the tool axis.
+    fn angles(&self, tool: &Tool) -> Vec<f64> {
+        let step = TAU / SCAN as f64;
+        let mut angles: Vec<f64> = (0..SCAN).map(|k| step * k as f64).collect();
+        let [middle, a, b] = [self.fixed, self.a, self.b].map(|v| v.dot(&tool.axis));
+        let (swing, towards) = (a.hypot(b), b.atan2(a));
+        let profile = &tool.profile;
+        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
+        let lines = [(tip, profile.lower), (profile.upper, profile.top)];
+        let across = lines.into_iter().filter_map(|(from, to)| {
+            let (out, up) = (to.radius - from.radius, to.height - from.height);
+            // Cosine of the angle between tool axis and inward normal.
+            let turn = ((out / out.hypot(up) - middle) / swing).acos();
+            turn.is_finite().then_some(turn)
+        });
+        for turn in across.flat_map(|turn| [turn, -turn]).chain([0.0, PI]) {
+            angles.push((towards + turn).rem_euclid(TAU));
+        }
+        angles.sort_by(f64::total_cmp);
+        angles.dedup();
+        angles
     }
 
     /// Support distance, its derivative, the normal and the tool's contact point.
@@ -105,19 +132,31 @@ fn support(tool: &Tool, normal: &Vec3) -> f64 {
 }
 
 fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
-    let step = std::f64::consts::TAU / SCAN as f64;
-    let values: [f64; SCAN] = std::array::from_fn(|k| family.sample(tool, tip, step * k as f64).0);
-    let mut best: Option<Contact> = None;
-    for k in 0..SCAN {
-        // A slight cut has several candidates; the one with the greatest distance is the way out.
-        if values[k] >= values[(k + 1) % SCAN] && values[k] > values[(k + SCAN - 1) % SCAN] {
-            let contact = refine(tool, family, tip, step * k as f64, step);
-            if best.is_none_or(|found| contact.clearance > found.clearance) {
-                best = Some(contact);
+    let ends: Vec<End> =
+        family.angles(tool).into_iter().map(|angle| End::at(tool, family, tip, angle)).collect();
+    let size = tool.radius() + tool.cutter.height + (tip - family.origin).norm();
+    let resolution = SLOPE_RESOLUTION * size;
+    let around = ends.first().map(|first| End { angle: first.angle + TAU, ..*first });
+    let mut best: Option<End> = None;
+    for (low, high) in ends.iter().zip(ends.iter().skip(1).chain(&around)) {
+        // Where it rises at first and falls at last there is a greatest distance in between. A slight cut has several
+        // candidates; the one with the greatest distance is the way out.
+        if low.slope > 0.0 && high.slope < 0.0 {
+            let found = refine(tool, family, tip, [*low, *high], [size, resolution]);
+            if best.is_none_or(|best| found.value > best.value) {
+                best = Some(found);
             }
         }
     }
-    best.unwrap_or_else(|| refine(tool, family, tip, 0.0, step))
+    for end in &ends {
+        // At a kink the slope is that of either side.
+        if best.is_none_or(|best| end.value > best.value + resolution) {
+            best = Some(*end);
+        }
+    }
+    let angle = best.map_or(0.0, |best| best.angle);
+    let (clearance, _, normal, contact) = family.sample(tool, tip, angle);
+    Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
 }
 
 /// A place of the bracket: angle, distance there, and its derivative.
@@ -145,15 +184,12 @@ impl End {
     }
 }
 
-/// The greatest distance near a scan point.
-fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Contact {
-    let at = |angle: f64| End::at(tool, family, tip, angle);
-    let (mut low, mut high) = (at(start - step), at(start + step));
+/// The greatest distance in a bracket, lengths being of a size and slopes below a resolution being rounding.
+fn refine(tool: &Tool, family: &Family, tip: &Vec3, bracket: [End; 2], [size, resolution]: [f64; 2]) -> End {
+    let [mut low, mut high] = bracket;
     // Slopes for the Illinois rule: an end that stays twice is weighed half, so that both ends move.
     let (mut weight_low, mut weight_high) = (low.slope, high.slope);
-    let size = tool.radius() + tool.cutter.height + (tip - family.origin).norm();
-    let resolution = SLOPE_RESOLUTION * size;
-    let (mut here, mut last) = (at(start), 0.0);
+    let (mut here, mut last) = (if high.value > low.value { high } else { low }, 0.0);
     let mut best = here;
     for iteration in 0..MAX_ITERATIONS {
         let narrow = high.angle - low.angle <= RESOLUTION * (1.0 + here.angle.abs());
@@ -197,8 +233,7 @@ fn refine(tool: &Tool, family: &Family, tip: &Vec3, start: f64, step: f64) -> Co
         if next == here.angle {
             break;
         }
-        here = at(next);
+        here = End::at(tool, family, tip, next);
     }
-    let (clearance, _, normal, contact) = family.sample(tool, tip, best.angle);
-    Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
+    best
 }

@@ -4,6 +4,7 @@ mod corpus_plane;
 mod corpus_space;
 mod cost;
 mod economy;
+mod found;
 mod properties;
 mod sheets;
 mod turning;

@@ -103,7 +103,7 @@ impl Pencil {
             let (reach, p) = tool.support(&-n);
             (n.dot(&w) - self.radius - reach, self.normal_rate(phi).dot(&(w + p)))
         };
-        let mut best = self.search(&plane, &w);
+        let mut best = self.search(&plane, &w, &self.knees(tool));
         self.raise_by_vertex(&w, tool, &mut best);
         best
     }
@@ -115,26 +115,53 @@ impl Pencil {
         ours.then_some(Found { value, normal, error })
     }
 
+    /// Where `plane` for a tool outside may bend sharply: the angles at which it lies on a straight part of the tool, and
+    /// those at which it is most nearly square to the tool axis. The parts between are smooth.
+    fn knees(&self, tool: &Tool<'_>) -> Vec<f64> {
+        let (fixed, first, second) = (
+            -self.sine * self.axis.dot(&tool.axis),
+            self.cosine * self.frame[0].dot(&tool.axis),
+            self.cosine * self.frame[1].dot(&tool.axis),
+        );
+        let swing = first.hypot(second);
+        let toward = second.atan2(first);
+        let mut knees = vec![toward, toward + std::f64::consts::PI];
+        for (a, b) in tool.profile.lines() {
+            let [out, up] = [b[0] - a[0], b[1] - a[1]];
+            // n·axis = −(outward normal of the straight part)·axis
+            let turn = ((out / out.hypot(up) - fixed) / swing).acos();
+            if turn.is_finite() {
+                knees.extend([toward + turn, toward - turn]);
+            }
+        }
+        knees
+    }
+
     /// The greatest value of `plane` (value and derivative): each sector in which it rises first and falls last is
-    /// bisected.
-    fn search(&self, plane: &dyn Fn(f64) -> (f64, f64), w: &Vec3) -> Found {
-        let step = std::f64::consts::TAU / SECTORS as f64;
+    /// bisected. Sectors end at the given angles, too; at a sharp crest either derivative will do.
+    fn search(&self, plane: &dyn Fn(f64) -> (f64, f64), w: &Vec3, knees: &[f64]) -> Found {
+        let turn = std::f64::consts::TAU;
+        let step = turn / SECTORS as f64;
         // Start the sectors at the side the tool end is on, where the answer mostly is.
         let first = w.dot(&self.frame[1]).atan2(w.dot(&self.frame[0])) - 0.5 * step;
-        let samples: Vec<(f64, f64, f64)> = (0..SECTORS)
-            .map(|k| {
-                let phi = first + step * k as f64;
+        let mut angles: Vec<f64> = (0..SECTORS).map(|k| first + step * k as f64).collect();
+        angles.extend(knees.iter().map(|phi| first + (phi - first).rem_euclid(turn)));
+        angles.sort_by(f64::total_cmp);
+        let mut samples: Vec<(f64, f64, f64)> = angles
+            .into_iter()
+            .map(|phi| {
                 let (value, rate) = plane(phi);
                 (phi, value, rate)
             })
             .collect();
+        samples.extend(samples.first().map(|&(phi, value, rate)| (phi + turn, value, rate)));
         let scale = w.norm() + self.radius;
         let mut best = Found { value: f64::NEG_INFINITY, normal: self.axis, error: 0.0 };
-        for (k, &(phi, value, rate)) in samples.iter().enumerate() {
-            let (_, _, next_rate) = samples[(k + 1) % SECTORS];
+        for pair in samples.windows(2) {
+            let &[(phi, value, rate), (next, _, next_rate)] = pair else { continue };
             self.keep(&mut best, phi, value, 0.0);
             if rate > 0.0 && next_rate < 0.0 {
-                let (phi, value, width) = crest(plane, [phi, phi + step], [rate, next_rate]);
+                let (phi, value, width) = crest(plane, [phi, next], [rate, next_rate]);
                 self.keep(&mut best, phi, value, width * scale);
             }
         }
@@ -167,7 +194,7 @@ impl Pencil {
             let (reach, p) = tool.support(&n);
             (n.dot(&w) + reach, self.normal_rate(phi).dot(&(w + p)))
         };
-        let mut best = self.search(&plane, &w);
+        let mut best = self.search(&plane, &w, &[]);
         let ahead = if self.sine > 0.0 {
             self.sine * (self.axis.dot(&w) + tool.support(&self.axis).0).max(0.0)
         } else {

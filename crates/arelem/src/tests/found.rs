@@ -1,0 +1,141 @@
+//! Motions in which the random motions once found a fault.
+
+use apt_geometry::cutter::Cutter;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{sequence::ToolPosition, verify::verify};
+
+/// Runs commands and has every sequence proven by sampling and by the verifier.
+fn proven(program: &mut Program, commands: &[MotionCommand]) {
+    for command in commands {
+        program.run(command);
+    }
+    for sequence in &program.sequences {
+        let evidence = verify(sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{evidence:?}");
+        assert_in_tolerance(sequence);
+    }
+}
+
+/// Clearances of a tool outside a cone, from the engine and from the verifier.
+fn outside_cone(geometry: &Geometry, cutter: Cutter, place: ToolPosition) -> [f64; 2] {
+    let role = Role {
+        surface: named(geometry),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.0,
+    };
+    let engine = gauge(&role).contact(&Tool::new(cutter, place.axis), &place.tip).clearance;
+    let sequence = CutSequence {
+        start: place,
+        points: vec![place],
+        cutter,
+        part: Some(role),
+        drive: None,
+        stop: None,
+        drive_side: DriveSide::On,
+        start_up: true,
+        forward: Vec3::zeros(),
+        maximum_step: 1.0,
+        minimum: None,
+    };
+    let verifier = verify(&sequence, &|| false).expect("evidence").part.expect("an extent").min;
+    [engine, verifier]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+    /// Every tangent plane bounds the clearance of a tool outside a cone from below, however near to each other those two
+    /// are which touch the flank of the tool along its whole length.
+    #[test]
+    fn no_plane_tangent_to_a_cone_leaves_more_than_the_clearance(
+        degrees in 10.0..80.0f64, lean in prop::array::uniform2(-1.5..1.5f64), which in 0usize..4,
+        sector in -0.6..0.6f64, ahead in -1.0..3.0f64, depth in -0.02..0.02f64,
+    ) {
+        let numbers: [&[f64]; 4] = [
+            &[0.8844, 0.0, 0.4422, 0.2657, 31.0, 0.0, 3.7726],
+            &[0.5],
+            &[0.4, 0.0, 0.2, 0.0, 0.0, 8.0, 3.0],
+            &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0],
+        ];
+        let cutter = Cutter::from_numbers(numbers[which], 1.0).expect("a cutter");
+        let axis = v(lean[0], lean[1], 1.0).normalize();
+        let tool = Tool::new(cutter, axis);
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let geometry = cone(Vec3::zeros(), -Vec3::z(), degrees);
+        let normal = |angle: f64| v(angle.cos() * cosine, angle.sin() * cosine, sine);
+        let left = |tip: &Vec3, angle: f64| {
+            let n = normal(angle);
+            let (along, across, _) = tool.split(&n);
+            n.dot(tip) - tool.profile.support(across, -along).0
+        };
+        // Near the planes that the flank of the tool can lie on.
+        let facing = lean[1].atan2(lean[0]) + std::f64::consts::FRAC_PI_2 + sector;
+        let generator = v(facing.cos() * sine, facing.sin() * sine, -cosine);
+        let tip = generator * ahead;
+        let tip = tip + normal(facing) * (depth - left(&tip, facing));
+        let greatest = (0..20_000)
+            .map(|k| left(&tip, std::f64::consts::TAU * f64::from(k) / 20_000.0))
+            .fold(f64::NEG_INFINITY, f64::max);
+        for clearance in outside_cone(&geometry, cutter, ToolPosition { tip, axis }) {
+            prop_assert!(clearance >= greatest - 1e-12, "{clearance} {greatest}");
+        }
+    }
+}
+
+/// A drill along a cone past its vertex: two planes tangent to the cone, 19° apart, touch the flank of the drill along its
+/// whole length, and one of them is the clearance.
+#[test]
+fn a_drill_passes_the_vertex_of_a_cone() {
+    let part = Geometry::Hyperbola(Quadric {
+        coefficients: [
+            0.07274261771128547,
+            -0.06956315942470848,
+            0.0,
+            -0.5550884899371203,
+            0.0,
+            0.0,
+            0.002231886536947203,
+            -0.22023533788837232,
+            -0.13105261021221443,
+            0.0,
+        ],
+    });
+    let drive = Geometry::Cone(Cone {
+        vertex: v(0.49415490247587607, 0.41257809925150524, 0.6986597706118892),
+        axis: v(-0.13451435698309713, 0.2857749578480342, -0.9488090225289693),
+        cosine: 0.4773341581357904,
+    });
+    let forward = v(-0.20048836044701732, 0.7549417448947716, 0.624393609144508);
+    let first = Geometry::Plane(Plane { normal: forward, distance: -0.7846698388628192 });
+    let stop = quadric([
+        0.12612125748981895,
+        0.5479106385346321,
+        0.5040120530690814,
+        2.5806445654722148,
+        0.15559470561902497,
+        0.06887196534673373,
+        0.07610869277271223,
+        -0.1527457237253949,
+        -0.835639300160445,
+        -1.2576573123499746,
+    ]);
+    let mut program = Program::new();
+    let drill =
+        [0.8844008956193401, 0.0, 0.44220044780967005, 0.26570083480518275, 31.0, 0.0, 3.7726040579003244];
+    program.tolerance(0.001, 0.001).cutter(&drill).part_side(PartSide::Offset);
+    let axis = v(0.700328072880832, 0.46747389101454895, 0.5394522699504914);
+    let position = v(-0.34367752431162096, -1.1279433173126625, -0.07924665882035954);
+    let commands = [
+        MotionCommand::MaximumStep(10.0),
+        MotionCommand::From { position, axis: Some(axis), name: String::new() },
+        start(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &first)]),
+        MotionCommand::DriveSide(DriveSide::Left),
+        MotionCommand::Direction([Some(Direction::Vector(forward)), None, None]),
+        motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)]),
+    ];
+    proven(&mut program, &commands);
+}
