@@ -4,7 +4,7 @@
 //! INDEX/n,NOMORE or, without one, the COPY itself; the k-th copy carries k steps of the transform. A TRACUT that was
 //! in force when INDEX was met acts on the copies last, a TRACUT given inside the range acts on its records first.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use apt_geometry::{Vec3, canonical::Matrix};
 use smol_str::SmolStr;
@@ -18,6 +18,8 @@ use crate::{
 pub const MAXIMUM_NESTING: usize = 3;
 /// Most COPY statements that may name one INDEX.
 pub const MAXIMUM_COPIES_PER_INDEX: usize = 3;
+/// Most INDEX statements of a program in APT III: its table holds 80, and the end of the program takes one of them.
+pub const MAXIMUM_INDEXES: usize = 79;
 /// Most records that one edit may make, so that a slip in a count ends in a diagnostic and not in a full memory.
 pub const MAXIMUM_RECORDS: usize = 4_000_000;
 /// Relative deviation from a similarity below which a circle is still a circle after a transform.
@@ -125,11 +127,17 @@ pub enum EditErrorKind {
         /// The inner range that is still open.
         open: i64,
     },
-    /// INDEX with a number whose range is still open.
-    #[error("INDEX {number} is already open")]
+    /// INDEX with a number that an INDEX before it has.
+    #[error("INDEX {number} was given before")]
     IndexReused {
         /// Index number.
         number: i64,
+    },
+    /// More INDEX statements than allowed.
+    #[error("more than {limit} INDEX statements")]
+    TooManyIndexes {
+        /// How many are allowed.
+        limit: usize,
     },
     /// More COPY statements for one INDEX than allowed.
     #[error("more than {MAXIMUM_COPIES_PER_INDEX} COPY statements name INDEX {number}")]
@@ -172,6 +180,7 @@ impl EditErrorKind {
     /// The number of the APT III edit phase message, where there is one.
     pub fn apt3(&self) -> Option<u16> {
         match self {
+            EditErrorKind::TooManyIndexes { .. } => Some(4),
             EditErrorKind::NestedTooDeep { .. } => Some(5),
             EditErrorKind::CopyWithoutIndex { .. }
             | EditErrorKind::EndWithoutIndex { .. }
@@ -189,10 +198,16 @@ impl EditErrorKind {
 
 /// Executes the edit statements. The list comes back whole, also with errors: a faulty statement has no effect.
 pub fn edit(items: Vec<EditItem>) -> (Vec<ClRecord>, Vec<EditError>) {
+    edit_within(items, usize::MAX)
+}
+
+/// Executes the edit statements of a program that may have so many INDEX statements and no more.
+pub fn edit_within(items: Vec<EditItem>, most_indexes: usize) -> (Vec<ClRecord>, Vec<EditError>) {
     // VTLAXS changes the path itself; TRACUT and COPY transform what it makes.
     let (items, errors) = tilt(items);
     let spans = spans(&items);
-    let mut editor = Editor { levels: vec![Level::base()], errors, made: 0 };
+    let (levels, indexes) = (vec![Level::base()], BTreeSet::new());
+    let mut editor = Editor { levels, errors, made: 0, indexes, most_indexes };
     for (at, item) in items.into_iter().enumerate() {
         editor.item(item, spans.get(&at).copied());
     }
@@ -275,6 +290,9 @@ struct Editor {
     levels: Vec<Level>,
     errors: Vec<EditError>,
     made: usize,
+    /// The numbers of all INDEX statements met, and how many there may be.
+    indexes: BTreeSet<i64>,
+    most_indexes: usize,
 }
 
 impl Editor {
@@ -317,7 +335,12 @@ impl Editor {
     }
 
     fn open_index(&mut self, number: i64, copied: bool, isn: u32, source: u32) {
-        if self.levels.iter().any(|level| level.number == Some(number)) {
+        if self.indexes.len() >= self.most_indexes {
+            let limit = self.most_indexes;
+            return self.error(isn, source, EditErrorKind::TooManyIndexes { limit });
+        }
+        // Also a number whose range has been copied is taken for the rest of the program.
+        if !self.indexes.insert(number) {
             return self.error(isn, source, EditErrorKind::IndexReused { number });
         }
         if !copied {
@@ -334,11 +357,10 @@ impl Editor {
         let innermost = self.levels.last().and_then(|level| level.number);
         let open = self.levels.iter().any(|level| level.number == Some(number));
         match innermost {
-            Some(inner) if inner == number => {
-                if let Some(level) = self.levels.last_mut() {
-                    level.end.get_or_insert(level.held.len());
-                }
-            }
+            Some(inner) if inner == number => match self.levels.last_mut() {
+                Some(level) if level.end.is_none() => level.end = Some(level.held.len()),
+                _ => self.error(isn, source, EditErrorKind::EndWithoutIndex { number }),
+            },
             Some(inner) if open => self.error(isn, source, EditErrorKind::Overlap { number, open: inner }),
             _ => self.error(isn, source, EditErrorKind::EndWithoutIndex { number }),
         }

@@ -1,10 +1,12 @@
 //! Cutter-location data: records, their writers and readers, and the transforms of Section 3.
 //!
 //! [`record`] is the one shape that everything above works with. [`text`] reads and writes APT CL text, [`cltape`]
-//! the binary CLTAPE of APT III, [`edit`] executes TRACUT, INDEX and COPY, [`tilt`] VTLAXS, and [`totals`] sums a path up.
+//! the binary CLTAPE of APT III, [`edit`] executes TRACUT, INDEX and COPY, [`tilt`] VTLAXS
+//! and WCORN, and [`totals`] sums a path up.
 
 pub mod cltape;
 pub mod codes;
+mod corner;
 pub mod edit;
 pub mod geometry;
 pub mod record;

@@ -12,12 +12,17 @@ use std::{collections::BTreeSet, f64::consts::PI};
 use apt_geometry::Vec3;
 
 use crate::{
+    corner::{self, Corner},
     edit::{EditError, EditErrorKind, EditItem},
-    record::{ClKind, ClRecord, ClWord},
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
 };
 
 /// Largest tilt, degrees.
 pub const LARGEST_TILT: f64 = 80.0;
+/// Length of an inch in millimeters.
+const INCH: f64 = 25.4;
+/// A tool position: end and axis.
+pub(crate) type Pose = (Vec3, Vec3);
 /// Relative difference below which the corner radius is the radius of the cutter.
 const RADIUS_FRACTION: f64 = 1e-12;
 
@@ -77,9 +82,43 @@ pub enum TiltError {
     /// WCORN outside of the range.
     #[error("WCORN outside of VTLAXS/ON and VTLAXS/OFF")]
     CornerOutside,
-    /// WCORN itself: how the corner is cleaned out is not computed.
-    #[error("the corner of WCORN is not computed")]
-    CornerNotMade,
+    /// The path turns towards the wall, or not at all.
+    #[error("WCORN where the walls make no inside corner")]
+    CornerOpen,
+    /// No starting position settles.
+    #[error("no starting position for WCORN")]
+    NoStartOfCorner,
+    /// Neither starting nor ending position settle.
+    #[error("no starting and ending position for WCORN")]
+    NoWayThroughCorner,
+    /// No ending position settles.
+    #[error("no ending position for WCORN")]
+    NoEndOfCorner,
+    /// The path before the corner is too short.
+    #[error("the path before WCORN is {length} long, and {wanted} are needed")]
+    ShortBeforeCorner {
+        /// Length that is needed.
+        wanted: f64,
+        /// Length of the path.
+        length: f64,
+    },
+    /// The path behind the corner is too short.
+    #[error("the path behind WCORN is {length} long, and {wanted} are needed")]
+    ShortAfterCorner {
+        /// Length that is needed.
+        wanted: f64,
+        /// Length of the path.
+        length: f64,
+    },
+    /// With ZSMALL the tool leans over one wall and away from the other.
+    #[error("WCORN with ZSMALL leans over one wall and away from the other")]
+    CornerBothSides,
+    /// More steps than [`corner::MOST_STEPS`].
+    #[error("WCORN with {steps} steps, at most {} are possible", corner::MOST_STEPS)]
+    CornerSteps {
+        /// Steps that are asked for.
+        steps: f64,
+    },
     /// A copied INDEX between the last motion and VTLAXS/ON.
     #[error("INDEX between the last motion and VTLAXS/ON")]
     IndexBefore,
@@ -114,14 +153,19 @@ impl TiltError {
             TiltError::RoundedEdge { .. } => 22,
             TiltError::NoMotion => 23,
             TiltError::CornerTwice => 24,
-            TiltError::NoMotionBeforeCorner => 29,
-            TiltError::NoMotionAfterCorner => 30,
+            TiltError::CornerOpen => 25,
+            TiltError::NoStartOfCorner => 26,
+            TiltError::NoWayThroughCorner => 27,
+            TiltError::NoEndOfCorner => 28,
+            TiltError::NoMotionBeforeCorner | TiltError::ShortBeforeCorner { .. } => 29,
+            TiltError::NoMotionAfterCorner | TiltError::ShortAfterCorner { .. } => 30,
             TiltError::IndexBefore => 31,
             TiltError::Transform => 32,
             TiltError::Copy => 33,
             TiltError::Vertical => 37,
             TiltError::Index => 39,
-            TiltError::CornerOutside | TiltError::CornerNotMade | TiltError::Form(_) => return None,
+            TiltError::CornerBothSides => 41,
+            TiltError::CornerOutside | TiltError::CornerSteps { .. } | TiltError::Form(_) => return None,
         })
     }
 }
@@ -148,27 +192,27 @@ pub(crate) fn tilt(items: Vec<EditItem>) -> (Vec<EditItem>, Vec<EditError>) {
 }
 
 /// A position of the path with its place in the stream.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct PathPoint {
     item: usize,
     index: usize,
     position: Vec3,
-    /// Where the tilted tool stands, once known: its end and axis.
-    tilted: Option<(Vec3, Vec3)>,
+    /// What stands in its place with a tilted tool, once known: in a corner none or several positions.
+    tilted: Option<Vec<Pose>>,
 }
 
 /// The statement VTLAXS/ON.
 #[derive(Debug, Clone, Copy)]
-struct Order {
+pub(crate) struct Order {
     /// Tilt at the start, degrees, to the left positive.
-    start: f64,
+    pub start: f64,
     /// Radius of the cutter and of its corner.
-    radius: f64,
+    pub radius: f64,
     corner: f64,
     /// 1 with the cutter on the right of the wall, -1 on its left.
-    side: f64,
+    pub side: f64,
     /// ZSMALL.
-    below: bool,
+    pub below: bool,
 }
 
 /// A range that is open.
@@ -180,8 +224,8 @@ struct Range {
     place: (u32, u32),
     /// Number of positions before it, at least one.
     before: usize,
-    /// Number of positions when WCORN came, and its place.
-    corner: Option<(usize, (u32, u32))>,
+    /// WCORN, the number of positions when it came, and its place.
+    corner: Option<(Corner, usize, (u32, u32))>,
 }
 
 /// Where the stream is with respect to VTLAXS.
@@ -202,6 +246,8 @@ struct Tilter {
     copied: BTreeSet<i64>,
     /// Whether an INDEX that is copied came after the last position.
     indexed: bool,
+    /// Whether lengths are in millimeters.
+    millimeters: bool,
     /// Items from VTLAXS/ON to VTLAXS/OFF: circles in them are none any more.
     ranges: Vec<std::ops::Range<usize>>,
     errors: Vec<EditError>,
@@ -245,7 +291,7 @@ impl Tilter {
                     self.error(range.place, TiltError::NoAxes);
                     self.state = State::Broken;
                 }
-                let point = |(index, point): (usize, &crate::record::ClPoint)| PathPoint {
+                let point = |(index, point): (usize, &ClPoint)| PathPoint {
                     item: at,
                     index,
                     position: point.position,
@@ -259,7 +305,8 @@ impl Tilter {
                 Some(ClWord::Word(word)) if word == "OFF" => self.switch_off(at, place, arguments),
                 _ => self.error(place, TiltError::Form("VTLAXS")),
             },
-            ClKind::Postprocessor { word, .. } if word == "WCORN" => self.corner(place),
+            ClKind::Postprocessor { word, arguments, .. } if word == "WCORN" => self.corner(place, arguments),
+            ClKind::Units(units) => self.millimeters = *units == Units::Millimeters,
             _ => {}
         }
     }
@@ -283,7 +330,7 @@ impl Tilter {
         };
     }
 
-    fn corner(&mut self, place: (u32, u32)) {
+    fn corner(&mut self, place: (u32, u32), arguments: &[ClWord]) {
         let count = self.points.len();
         let State::On(range) = &mut self.state else {
             if matches!(self.state, State::Off) {
@@ -296,8 +343,13 @@ impl Tilter {
         } else if range.before == count {
             TiltError::NoMotionBeforeCorner
         } else {
-            range.corner = Some((count, place));
-            return;
+            match cleaned(&range.order, arguments) {
+                Ok(corner) => {
+                    range.corner = Some((corner, count, place));
+                    return;
+                }
+                Err(error) => error,
+            }
         };
         self.error(place, error);
         self.state = State::Broken;
@@ -312,48 +364,32 @@ impl Tilter {
         let [_, ClWord::Word(side), ClWord::Number(end)] = arguments else {
             return self.error(place, TiltError::Form("VTLAXS"));
         };
-        match range.corner {
-            Some((count, _)) if count == self.points.len() => {
-                return self.error(place, TiltError::NoMotionAfterCorner);
-            }
-            Some((_, corner)) => return self.error(corner, TiltError::CornerNotMade),
-            None => {}
-        }
         let end = if side == "RIGHT" { -end } else { *end };
-        match self.tilted(&range, end) {
-            Ok(positions) => {
-                let places = self.points.iter_mut().skip(range.before.saturating_sub(1));
-                for (point, tilted) in places.zip(positions) {
-                    point.tilted = Some(tilted);
+        let first = range.before.saturating_sub(1);
+        let path: Vec<Vec3> = self.points.iter().skip(first).map(|point| point.position).collect();
+        let tilted = match range.corner {
+            None => tilted(&range.order, path, end).map_err(|error| (place, error)),
+            Some((_, count, _)) if count == self.points.len() => Err((place, TiltError::NoMotionAfterCorner)),
+            Some((corner, count, corner_place)) => {
+                let inch = if self.millimeters { INCH } else { 1.0 };
+                let at = count.saturating_sub(range.before);
+                corner::tilted(&range.order, &corner, &path, at, end, inch)
+                    .map_err(|error| (corner_place, error))
+            }
+        };
+        match tilted {
+            Ok(poses) => {
+                for (point, poses) in self.points.iter_mut().skip(first).zip(poses) {
+                    // The last position of a range before becomes the first of this one.
+                    let mut before = point.tilted.take().unwrap_or_default();
+                    before.pop();
+                    before.extend(poses);
+                    point.tilted = Some(before);
                 }
                 self.ranges.push(range.item..at);
             }
-            Err(error) => self.error(place, error),
+            Err((place, error)) => self.error(place, error),
         }
-    }
-
-    /// The positions of a range from the one before it to its last.
-    fn tilted(&self, range: &Range, end: f64) -> Result<Vec<(Vec3, Vec3)>, TiltError> {
-        let path: Vec<Vec3> =
-            self.points.iter().skip(range.before.saturating_sub(1)).map(|point| point.position).collect();
-        let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        let first = path.windows(2).map(|pair| pair[1] - pair[0]).find(|step| step.norm() > 0.0);
-        let Some(mut direction) = first.filter(|_| length > 0.0) else { return Err(TiltError::NoMotion) };
-        let mut travelled = 0.0;
-        let mut tilted = Vec::with_capacity(path.len());
-        let mut before: Option<Vec3> = None;
-        for position in path {
-            let step = before.map_or_else(Vec3::zeros, |before| position - before);
-            travelled += step.norm();
-            // A position that repeats the one before keeps its direction.
-            if step.norm() > 0.0 {
-                direction = step;
-            }
-            let degrees = range.order.start + (end - range.order.start) * (travelled / length);
-            tilted.push(range.order.tilted(position, direction, degrees)?);
-            before = Some(position);
-        }
-        Ok(tilted)
     }
 
     fn end(&mut self) {
@@ -365,7 +401,8 @@ impl Tilter {
     /// The stream with the tilted positions. The last position before a range gets a record of its own, since it
     /// leaves the circle of its record.
     fn applied(&self, items: Vec<EditItem>) -> Vec<EditItem> {
-        let mut tilted = self.points.iter().filter_map(|point| Some((point, point.tilted?))).peekable();
+        let tilted = self.points.iter().filter_map(|point| Some((point, point.tilted.as_ref()?)));
+        let mut tilted = tilted.peekable();
         let mut result = Vec::with_capacity(items.len() + self.ranges.len());
         let mut ranges = self.ranges.iter().peekable();
         for (at, item) in items.into_iter().enumerate() {
@@ -378,22 +415,29 @@ impl Tilter {
             match &mut record.kind {
                 ClKind::Arc { .. } if inside => continue,
                 ClKind::Motion { from, surface, points } => {
-                    let first =
-                        tilted.peek().filter(|(point, _)| point.item == at).map(|(point, _)| point.index);
-                    while let Some((point, (position, axis))) = tilted.next_if(|(point, _)| point.item == at)
-                    {
-                        if let Some(point) = points.get_mut(point.index) {
-                            (point.position, point.axis, point.with_axis) = (position, axis, true);
+                    let first = tilted.peek().filter(|(point, _)| point.item == at);
+                    let Some(first) = first.map(|(point, _)| point.index) else {
+                        result.push(EditItem::Record(record));
+                        continue;
+                    };
+                    let mut poses = Vec::new();
+                    for (index, point) in points.split_off(first.min(points.len())).into_iter().enumerate() {
+                        let place = (at, first + index);
+                        match tilted.next_if(|(point, _)| (point.item, point.index) == place) {
+                            Some((_, tilted)) => poses.extend(tilted.iter().copied().map(pose_point)),
+                            None => poses.push(point),
                         }
                     }
-                    if let Some(first) = first.filter(|first| *first > 0 && !inside) {
-                        let rest = points.split_off(first);
-                        let kind = ClKind::Motion { from: *from, surface: surface.clone(), points: rest };
-                        let (isn, source) = (record.isn, record.source);
+                    let kind = ClKind::Motion { from: *from, surface: surface.clone(), points: poses };
+                    let rest = ClRecord { isn: record.isn, source: record.source, kind };
+                    if first > 0 {
                         result.push(EditItem::Record(record));
-                        result.push(EditItem::Record(ClRecord { isn, source, kind }));
-                        continue;
                     }
+                    // A record inside of a corner may have lost all its positions.
+                    if !matches!(&rest.kind, ClKind::Motion { points, .. } if points.is_empty()) {
+                        result.push(EditItem::Record(rest));
+                    }
+                    continue;
                 }
                 _ => {}
             }
@@ -401,6 +445,64 @@ impl Tilter {
         }
         result
     }
+}
+
+fn pose_point((position, axis): Pose) -> ClPoint {
+    ClPoint { position, axis, with_axis: true }
+}
+
+/// The positions of a range without corner from the one before it to its last.
+fn tilted(order: &Order, path: Vec<Vec3>, end: f64) -> Result<Vec<Vec<Pose>>, TiltError> {
+    let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let first = path.windows(2).map(|pair| pair[1] - pair[0]).find(|step| step.norm() > 0.0);
+    let Some(mut direction) = first.filter(|_| length > 0.0) else { return Err(TiltError::NoMotion) };
+    let mut travelled = 0.0;
+    let mut tilted = Vec::with_capacity(path.len());
+    let mut before: Option<Vec3> = None;
+    for position in path {
+        let step = before.map_or_else(Vec3::zeros, |before| position - before);
+        travelled += step.norm();
+        // A position that repeats the one before keeps its direction.
+        if step.norm() > 0.0 {
+            direction = step;
+        }
+        let degrees = order.start + (end - order.start) * (travelled / length);
+        tilted.push(vec![order.tilted(position, direction, degrees)?]);
+        before = Some(position);
+    }
+    Ok(tilted)
+}
+
+/// Reads `side,alpha,side,beta,h[,n]` of WCORN.
+fn cleaned(order: &Order, arguments: &[ClWord]) -> Result<Corner, TiltError> {
+    let [
+        ClWord::Word(first),
+        ClWord::Number(alpha),
+        ClWord::Word(second),
+        ClWord::Number(beta),
+        ClWord::Number(height),
+        rest @ ..,
+    ] = arguments
+    else {
+        return Err(TiltError::Form("WCORN"));
+    };
+    let steps = match rest {
+        [] => None,
+        [ClWord::Number(steps)] => Some(*steps),
+        _ => return Err(TiltError::Form("WCORN")),
+    };
+    if ![first, second].into_iter().all(|word| matches!(word.as_str(), "RIGHT" | "LEFT")) {
+        return Err(TiltError::Form("WCORN"));
+    }
+    let incoming = if first == "RIGHT" { -alpha } else { *alpha };
+    let outgoing = if second == "RIGHT" { -beta.abs() } else { beta.abs() };
+    // Only a tool that leans away from a wall reaches below: it has to do so at both walls or at none.
+    let over = |tilt: f64| tilt * order.side >= 0.0;
+    let one_upright = (incoming == 0.0 && over(outgoing)) || (outgoing == 0.0 && over(incoming));
+    if order.below && first != second && !one_upright {
+        return Err(TiltError::CornerBothSides);
+    }
+    Ok(Corner { incoming, outgoing, height: *height, steps: Corner::steps(steps)? })
 }
 
 /// Reads `ON,side,alpha,d,r,side[,ZSMALL]`.
@@ -441,21 +543,41 @@ fn order(arguments: &[ClWord]) -> Result<Order, TiltError> {
 impl Order {
     /// Where the tool stands, end and axis, that stood vertically at a position and arrived in a direction, tilted by
     /// some degrees to the left.
-    fn tilted(&self, position: Vec3, direction: Vec3, degrees: f64) -> Result<(Vec3, Vec3), TiltError> {
-        if degrees.is_nan() || degrees.abs() > LARGEST_TILT {
-            return Err(TiltError::TooFar { degrees });
-        }
-        // From the cutter towards the wall, level.
-        let wall = (Vec3::z() * self.side).cross(&direction);
-        let wall = wall.try_normalize(direction.norm() * f64::EPSILON).ok_or(TiltError::Vertical)?;
-        let angle = degrees * PI / 180.0;
-        // How far the axis leans over the wall.
-        let (sine, cosine) = (self.side * angle.sin(), angle.cos());
+    pub(crate) fn tilted(&self, position: Vec3, direction: Vec3, degrees: f64) -> Result<Pose, TiltError> {
+        let wall = self.wall(direction)?;
+        let (sine, cosine) = self.lean(degrees)?;
+        let across = wall * cosine - Vec3::z() * sine;
+        let axis = (direction.cross(&across) * self.side).try_normalize(0.0).ok_or(TiltError::Vertical)?;
         let lift = self.corner * (1.0 - cosine) + (self.radius - self.corner) * sine.abs();
         let lift = if self.below && sine < 0.0 { -lift } else { lift };
         let shift = self.radius - (self.radius - sine * lift) / cosine;
-        let across = wall * cosine - Vec3::z() * sine;
-        let axis = (direction.cross(&across) * self.side).try_normalize(0.0).ok_or(TiltError::Vertical)?;
         Ok((position + wall * shift + Vec3::z() * lift, axis))
+    }
+
+    /// Where the axis of the tilted tool meets the height of the vertical one.
+    pub(crate) fn foot(&self, position: Vec3, direction: Vec3, degrees: f64) -> Result<Vec3, TiltError> {
+        let (_, cosine) = self.lean(degrees)?;
+        Ok(position - self.wall(direction)? * (self.radius / cosine - self.radius))
+    }
+
+    /// How far above the height of its lowest point the end of the tool lies, or below with `below`.
+    pub(crate) fn lift(&self, axis: &Vec3, below: bool) -> f64 {
+        let lift = self.corner * (1.0 - axis.z) + (self.radius - self.corner) * axis.x.hypot(axis.y);
+        if below { -lift } else { lift }
+    }
+
+    /// Level unit direction from the cutter towards the wall.
+    pub(crate) fn wall(&self, direction: Vec3) -> Result<Vec3, TiltError> {
+        let wall = (Vec3::z() * self.side).cross(&direction);
+        wall.try_normalize(direction.norm() * f64::EPSILON).ok_or(TiltError::Vertical)
+    }
+
+    /// Sine and cosine of how far the axis leans over the wall.
+    fn lean(&self, degrees: f64) -> Result<(f64, f64), TiltError> {
+        if degrees.is_nan() || degrees.abs() > LARGEST_TILT {
+            return Err(TiltError::TooFar { degrees });
+        }
+        let angle = degrees * PI / 180.0;
+        Ok((self.side * angle.sin(), angle.cos()))
     }
 }

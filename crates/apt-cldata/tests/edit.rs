@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{EditErrorKind, EditItem, edit},
+    edit::{EditErrorKind, EditItem, MAXIMUM_INDEXES, edit, edit_within},
     record::{ClKind, ClPoint, ClRecord, ClWord},
 };
 use apt_geometry::{
@@ -222,7 +222,19 @@ fn mistakes_have_their_numbers() {
         copy(5, 1, None, 1),
         copy(6, 1, None, 1),
     ];
-    let cases: [(Vec<EditItem>, u32, EditErrorKind, Option<u16>); 8] = [
+    let again = vec![
+        index(1, 1, false),
+        motion(2, [0.0; 3]),
+        copy(3, 1, None, 1),
+        index(4, 1, false),
+        motion(5, [1.0; 3]),
+        copy(6, 1, None, 1),
+    ];
+    let ended_twice = vec![index(1, 1, false), index(2, 1, true), index(3, 1, true), copy(4, 1, None, 1)];
+    let cases: [(Vec<EditItem>, u32, EditErrorKind, Option<u16>); 11] = [
+        (again, 4, EditErrorKind::IndexReused { number: 1 }, Some(11)),
+        (vec![index(1, 1, false), index(2, 1, false)], 2, EditErrorKind::IndexReused { number: 1 }, Some(11)),
+        (ended_twice, 3, EditErrorKind::EndWithoutIndex { number: 1 }, Some(11)),
         (deep, 4, EditErrorKind::NestedTooDeep { number: 4, depth: 4 }, Some(5)),
         (overlap, 4, EditErrorKind::Overlap { number: 1, open: 2 }, Some(11)),
         (many, 6, EditErrorKind::TooManyCopies { number: 1 }, Some(11)),
@@ -252,6 +264,18 @@ fn mistakes_have_their_numbers() {
         assert_eq!(errors.len(), 1, "{errors:?}");
         assert_eq!((errors[0].isn, errors[0].kind, errors[0].apt3()), (isn, kind, apt3));
     }
+}
+
+#[test]
+fn the_table_of_indexes_has_an_end_in_apt3() {
+    let indexes = |count: u32| (1..=count).map(|number| index(number, i64::from(number), false)).collect();
+    let most = MAXIMUM_INDEXES as u32;
+    assert_eq!(edit_within(indexes(most), MAXIMUM_INDEXES).1, vec![]);
+    let (records, errors) = edit_within(indexes(most + 1), MAXIMUM_INDEXES);
+    assert_eq!(records.len(), MAXIMUM_INDEXES + 1, "the records stay");
+    assert_eq!(errors.len(), 1);
+    assert_eq!((errors[0].isn, errors[0].apt3()), (most + 1, Some(4)));
+    assert_eq!(edit(indexes(500)).1, vec![], "other dialects have no such table");
 }
 
 #[test]

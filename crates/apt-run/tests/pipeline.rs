@@ -165,6 +165,42 @@ fn copies_and_transformations_are_in_the_final_path() {
 }
 
 #[test]
+fn a_fraction_of_a_copy_is_one_copy() {
+    for (count, copies) in [("0", 0), (".5", 1), ("1.9", 1), ("2", 2)] {
+        let text = format!("INDEX/1\nGOTO/1,0,0\nCOPY/1,TRANSL,1,0,0,{count}\nFINI\n");
+        assert_eq!(ends(&run(&document(&text))).len(), 1 + copies, "COPY with {count}");
+    }
+}
+
+#[test]
+fn numbers_of_index_are_used_once_and_their_table_ends_in_apt3() {
+    let again = "INDEX/1\nGOTO/1,0,0\nCOPY/1,SAME,1\nINDEX/1\nGOTO/2,0,0\nCOPY/1,SAME,1\nFINI\n";
+    assert_eq!(codes(&document(again)), [("APT0714", 4)]);
+    let many = |count: u32| (1..=count).map(|n| format!("INDEX/{n}\n")).collect::<String>() + "FINI\n";
+    assert_eq!(codes(&document_in(&many(79), "apt3")), []);
+    assert_eq!(codes(&document_in(&many(80), "apt3")), [("APT0715", 80)]);
+    assert_eq!(codes(&document_in(&many(80), "free")), []);
+}
+
+#[test]
+fn a_corner_of_leaning_walls_is_cleaned_out() {
+    let text = "MULTAX\nFROM/0,0,0\nVTLAXS/ON,LEFT,0,2,0,RIGHT\nGOTO/8,0,0\nWCORN/LEFT,0,RIGHT,45,2\nGOTO/8,-8,0\n\
+                VTLAXS/OFF,RIGHT,45\nFINI\n";
+    let document = document(text);
+    assert_eq!(codes(&document), []);
+    let result = run(&document);
+    let of = |record: &apt_cldata::record::ClRecord| match &record.kind {
+        ClKind::Motion { points, .. } if record.isn == 4 => {
+            points.iter().map(|point| point.position).collect()
+        }
+        _ => Vec::new(),
+    };
+    let in_corner: Vec<_> = result.records.iter().flat_map(of).collect();
+    assert_eq!(in_corner.len(), 7);
+    assert!((in_corner[0][0] - 5.85).abs() < 1e-12, "{in_corner:?}");
+}
+
+#[test]
 fn cancelled_work_leaves_nothing_and_can_be_started_again() {
     let document = document(&TWO_CHECKS.replace("FFF", "0"));
     assert_eq!(document.program(&|| true).unwrap_err(), Cancelled);

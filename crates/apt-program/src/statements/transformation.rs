@@ -83,7 +83,8 @@ impl Evaluator<'_> {
             return self.report(finding, last.range);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "range checked above")]
-        let count = count.trunc() as u32;
+        // A fraction of a copy is one copy; beyond one the fraction is cut off.
+        let count = if count > 0.0 { (count.trunc() as u32).max(1) } else { 0 };
         self.emit(RecordKind::Copy { number, step, count }, major.range);
     }
 

@@ -479,7 +479,11 @@ fn edit(kind: &EditErrorKind) -> Text {
             say("APT0713", format!("the range of INDEX/{number} overlaps that of INDEX/{open}"))
                 .hint("ranges must lie inside each other or apart")
         }
-        EditErrorKind::IndexReused { number } => say("APT0714", format!("INDEX/{number} is open already")),
+        EditErrorKind::IndexReused { number } => say("APT0714", format!("INDEX/{number} was given before"))
+            .hint("every INDEX of a program needs a number of its own"),
+        EditErrorKind::TooManyIndexes { limit } => {
+            say("APT0715", format!("a program can have {limit} INDEX statements"))
+        }
         EditErrorKind::TooManyCopies { number } => {
             say("APT0715", format!("too many COPY statements name INDEX/{number}"))
         }

@@ -50,14 +50,36 @@ pub(super) fn word(error: &TiltError) -> Text {
                 .hint("VTLAXS is for paths of constant height")
         }
         TiltError::Form(word) => {
-            say("APT0726", format!("the parameters of {word} are not those of its form"))
-                .hint("VTLAXS/ON,LEFT,alpha,d,r,RIGHT and VTLAXS/OFF,LEFT,beta")
+            let form = match *word {
+                "WCORN" => "WCORN/LEFT,alpha,LEFT,beta,h,n",
+                _ => "VTLAXS/ON,LEFT,alpha,d,r,RIGHT and VTLAXS/OFF,LEFT,beta",
+            };
+            say("APT0726", format!("the parameters of {word} are not those of its form")).hint(form)
         }
-        TiltError::CornerNotMade => {
-            say("APT0727", "the corner of WCORN is not computed, and the path is not tilted")
-                .hint("end VTLAXS at the corner, clean it out by GOTO with axes, and begin again behind it")
+        TiltError::CornerOpen => corner("the walls make no inside corner: the path turns towards its wall"),
+        TiltError::NoStartOfCorner => corner("no starting position is found before the corner"),
+        TiltError::NoWayThroughCorner => {
+            corner("no starting and ending position are found before and behind the corner")
+        }
+        TiltError::NoEndOfCorner => corner("no ending position is found behind the corner"),
+        TiltError::CornerBothSides => {
+            corner("with ZSMALL the tool cannot lean over one wall and away from the other")
+        }
+        TiltError::ShortBeforeCorner { wanted, length } => short("VTLAXS/ON and WCORN", *wanted, *length),
+        TiltError::ShortAfterCorner { wanted, length } => short("WCORN and VTLAXS/OFF", *wanted, *length),
+        TiltError::CornerSteps { steps } => {
+            say("APT0726", format!("WCORN with {} steps into the corner, which is too many", number(*steps)))
         }
     }
+}
+
+fn corner(what: &str) -> Text {
+    say("APT0727", format!("{what}, and the path is not tilted"))
+}
+
+fn short(place: &str, wanted: f64, length: f64) -> Text {
+    let (wanted, length) = (number(wanted), number(length));
+    say("APT0722", format!("the path between {place} is {length} long, and the corner takes {wanted} of it"))
 }
 
 fn inside(word: &str) -> Text {

@@ -10,7 +10,7 @@ use apt_cldata::{
     totals::{Totals, totals},
 };
 use apt_program::{Origin, Program};
-use apt_syntax::SyntaxTree;
+use apt_syntax::{SyntaxTree, dialect::DialectName};
 use arelem::{
     cure::Remedy,
     error::{MotionFailure, MotionWarning},
@@ -119,7 +119,11 @@ pub fn run(
         section2.record(record)?;
     }
     let output = section2.finish();
-    let (mut records, edit_errors) = apt_cldata::edit::edit(output.items);
+    let most_indexes = match tree.dialect().name {
+        DialectName::Apt3 => apt_cldata::edit::MAXIMUM_INDEXES,
+        _ => usize::MAX,
+    };
+    let (mut records, edit_errors) = apt_cldata::edit::edit_within(output.items, most_indexes);
     let mut findings = output.findings;
     findings.extend(edit_errors.into_iter().map(|error| {
         let origin = output.origins.get(error.source as usize).cloned();
