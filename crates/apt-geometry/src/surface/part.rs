@@ -15,9 +15,9 @@ const STEADY: f64 = 0.4;
 /// Excess of a bound over the curvature in the middle, as a share of the greatest curvature there, that is close enough.
 const CLOSE: f64 = 0.15;
 /// Sag of a part, relative to its radius, that no bound needs to tell from flat.
-const FLAT: f64 = 1e-5;
+pub(super) const FLAT: f64 = 1e-5;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
-const FINE: f64 = 0.125;
+pub(super) const FINE: f64 = 0.125;
 /// Cosine of the angle between normals up to which a sheet counts as one that faces one way.
 const LEAST_COSINE: f64 = 0.5;
 /// Bound of the halvings of a part.
