@@ -234,7 +234,8 @@ fn crossing(
 ) -> Result<Candidate, MotionFailure> {
     let on = check.relation == Relation::On;
     let reach = if on { 0.0 } else { prepared.tool.radius() };
-    let levels: &[f64] = if reach == 0.0 { &[0.0] } else { &[reach, -reach] };
+    // A tool without width is TO and PAST a line at the same place.
+    let levels: &[f64] = if on { &[0.0] } else { &[reach, -reach] };
     let mut all: Vec<Candidate> = Vec::new();
     for &level in levels {
         all.extend(track.crossings(stop, level).into_iter().map(|x| Candidate { x, level }));

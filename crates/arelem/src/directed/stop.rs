@@ -29,6 +29,8 @@ const HALVINGS: u32 = 12;
 const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
 const BISECTIONS: u32 = 60;
+/// Distance, relative to the size of the coordinates, at which tool and check surface touch but for rounding.
+const SAME_PLACE: f64 = 1e-9;
 
 /// Where the tool stands to a check surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -136,6 +138,12 @@ impl<'a> Watcher<'a> {
         self.value(index, &tool, &tip)
     }
 
+    /// How far the function is above what it is where the tool just touches the check surface.
+    fn apart(&self, index: usize, value: f64) -> f64 {
+        let working = self.working(index);
+        if working.gauge.on { value.abs() } else { value + working.gauge.thickness + working.rest() }
+    }
+
     /// The first stop on a straight vector; without one the vector counts as travelled.
     pub(super) fn scan(&mut self, sweep: &Sweep<'_>) -> Option<Event> {
         let (from, to) = (sweep.at(0.0).0, sweep.at(sweep.length).0);
@@ -177,17 +185,17 @@ impl<'a> Watcher<'a> {
         let relation = self.checks[index].relation;
         let wanted = self.checks[index].occurrence.max(1);
         let mut watch = watch;
-        let mut trail = Trail::new(self.value_at(index, sweep, 0.0).0);
+        let mut trail = Trail::new(self.value_at(index, sweep, 0.0));
         let mut crossed = false;
         self.note(index, trail.value, &sweep.at(0.0).0);
         for step in 0..MAX_STEPS {
             if trail.x >= length {
                 break;
             }
-            let (x, value) = (trail.x, trail.value);
+            let (x, value, side_before) = (trail.x, trail.value, trail.side);
             let floor = if step < FINE_STEPS { least } else { least.max(length / 64.0) };
             let plain = (x + value.abs().max(floor) / stretch).min(length);
-            let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, (x, value), plain) };
+            let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, &trail, plain) };
             let next_x = leap.unwrap_or(plain);
             let (tip, tool) = sweep.at(next_x);
             let (next, side) = self.value(index, &tool, &tip);
@@ -202,20 +210,39 @@ impl<'a> Watcher<'a> {
                     return (Some(Event { check: index, tip, x: at, side, grazed: false }), watch);
                 }
             }
-            if let Some(bracket) = trail.step(next_x, next) {
+            let clear = watch.status == Status::Clear && value > 0.0 && next > 0.0;
+            if clear
+                && side != side_before
+                && !on
+                && let Some(at) = self.passage(index, sweep, [x, next_x], side_before)
+            {
+                crossed = true;
+                watch.count += u32::from(relation != Relation::On);
+                if relation != Relation::On && watch.count >= wanted {
+                    let side = if relation == Relation::Past { side } else { side_before };
+                    return (
+                        Some(Event { check: index, tip: sweep.at(at).0, x: at, side, grazed: false }),
+                        watch,
+                    );
+                }
+            }
+            if let Some(bracket) = trail.step(next_x, (next, side)) {
                 self.refine_nearest(index, sweep, bracket, next);
             }
         }
         if !crossed && let Some(event) = self.grazed(index, &mut watch, sweep, &trail, wanted) {
             return (Some(event), watch);
         }
-        watch.quiet = (sweep.at(length).0, trail.value.abs());
+        let clear_of =
+            if trail.value > 0.0 { self.apart(index, trail.value).max(0.0) } else { f64::INFINITY };
+        watch.quiet = (sweep.at(length).0, trail.value.abs().min(clear_of));
         (None, watch)
     }
 
     /// A longer step than by the clearance alone, over which the bound of the second derivative leaves no room for a
     /// position; or over which the samples at its ends say all that there is to say.
-    fn leap(&self, index: usize, sweep: &Sweep<'_>, (x, value): (f64, f64), plain: f64) -> Option<f64> {
+    fn leap(&self, index: usize, sweep: &Sweep<'_>, trail: &Trail, plain: f64) -> Option<f64> {
+        let &Trail { x, value, side: side_before, .. } = trail;
         let working = self.working(index);
         let on = working.gauge.on;
         if value <= 0.0 && !on {
@@ -230,7 +257,8 @@ impl<'a> Watcher<'a> {
             }
             let (tip, tool) = sweep.at(end);
             let (next, side) = self.value(index, &tool, &tip);
-            if (next > 0.0) == (value > 0.0) {
+            // Between two sides of the check surface there is a position, however clear of it the tool is at both ends.
+            if (next > 0.0) == (value > 0.0) && side == side_before {
                 let Gauge { surface, on, thickness, .. } = &working.gauge;
                 let thickness = if *on { 0.0 } else { *thickness };
                 let gauge =
@@ -251,6 +279,28 @@ impl<'a> Watcher<'a> {
             end = x + 0.5 * step;
         }
         None
+    }
+
+    /// Where the tool goes through the check surface between two samples at which it is clear of it, on one side and on the
+    /// other: a tool thinner than the steps, or than the place in the band where it stops. It is a TO and a PAST position.
+    /// `None` where it only gets to the other side around the edge of the surface.
+    fn passage(&self, index: usize, sweep: &Sweep<'_>, [low, high]: [f64; 2], side: f64) -> Option<f64> {
+        let (mut low, mut high) = (low, high);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.value_at(index, sweep, middle).1 == side {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let touching = SAME_PLACE * self.prepared.size;
+        let through =
+            [low, high].iter().any(|x| self.apart(index, self.value_at(index, sweep, *x).0) <= touching);
+        through.then_some(0.5 * (low + high))
     }
 
     fn note(&mut self, index: usize, value: f64, tip: &Vec3) {
@@ -303,6 +353,8 @@ impl<'a> Watcher<'a> {
 struct Trail {
     x: f64,
     value: f64,
+    /// Side of the check surface.
+    side: f64,
     /// The place before, and whether the way from there came nearer.
     before: (f64, bool),
     /// Least distance from the relation.
@@ -310,16 +362,16 @@ struct Trail {
 }
 
 impl Trail {
-    fn new(value: f64) -> Self {
-        Self { x: 0.0, value, before: (0.0, false), least: value.abs() }
+    fn new((value, side): (f64, f64)) -> Self {
+        Self { x: 0.0, value, side, before: (0.0, false), least: value.abs() }
     }
 
     /// Takes the next sample; the stretch about the last one if that was nearer than both its neighbours.
-    fn step(&mut self, x: f64, value: f64) -> Option<[f64; 2]> {
+    fn step(&mut self, x: f64, (value, side): (f64, f64)) -> Option<[f64; 2]> {
         let nearer = value.abs() < self.value.abs();
         let valley = (self.before.1 && !nearer).then_some([self.before.0, x]);
         self.before = (self.x, nearer);
-        (self.x, self.value) = (x, value);
+        (self.x, self.value, self.side) = (x, value, side);
         self.least = self.least.min(value.abs());
         valley
     }
@@ -345,3 +397,6 @@ fn transition(status: &mut Status, value: f64, band: f64, on: bool) -> Option<Re
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -199,6 +199,17 @@ impl Clearance<'_> {
         self.surface.shape(self.side)
     }
 
+    /// How the clearance varies along a straight move with a fixed axis.
+    pub(super) fn shape_along(&self, ends: [&Vec3; 2], axis: &Vec3) -> Shape {
+        match self.surface {
+            Surface::Quadric(quadric) => {
+                let tool = Tool { profile: self.profile, axis: *axis };
+                quadric_clearance::shape(quadric, self.side, ends, &tool)
+            }
+            _ => self.shape(),
+        }
+    }
+
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real
     /// points, or a position that is not finite).
     pub(super) fn at(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {

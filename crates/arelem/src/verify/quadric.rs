@@ -11,6 +11,11 @@ use nalgebra::{Matrix3, SymmetricEigen};
 const NEGLIGIBLE: f64 = 1e-13;
 /// Newton with bisection behind it: the bracket alone needs fewer steps than this to reach round-off.
 const ROOT_STEPS: usize = 200;
+/// Distance from the pole of the secular equation, relative to where it starts, below which the search goes to it in long
+/// steps: the root is as near to it as the point is to a symmetry plane.
+const NEAR_POLE: f64 = 1e-3;
+/// Below this distance from the pole, at which squares of the foot are about to overflow, the point is on the plane.
+const AT_POLE: f64 = 1e-140;
 
 /// Which of the two regions of space, `F < 0` and `F > 0`, is made of convex pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,6 +105,17 @@ impl PrincipalQuadric {
         let local = self.axes.transpose() * direction;
         // A direction given to full precision; anything else takes the general route.
         (0..3).all(|i| local[i].abs() <= 1e-12 || (self.a[i] == 0.0 && self.b[i] == 0.0))
+    }
+
+    /// Of two convex bodies, the plane between them that each is the mirror image of the other by: unit normal and distance.
+    pub(super) fn mirror(&self) -> Option<(Vec3, f64)> {
+        let single = match self.convexity {
+            Convexity::InnerPair => -1.0,
+            Convexity::OuterPair => 1.0,
+            _ => return None,
+        };
+        let k = (0..3).find(|k| self.a[*k] * single > 0.0)?;
+        Some((self.axes.column(k).into_owned(), -self.b[k] / self.a[k]))
     }
 
     /// `k (ρ² − r²) − l z²` about an axis through the origin.
@@ -206,39 +222,34 @@ impl PrincipalQuadric {
     fn nearest(&self, p: &Vec3, value: f64, slope: &Vec3) -> Option<Vec3> {
         // F(q(λ)) decreases: the root is at λ > 0 where F > 0.
         let toward = value.signum();
-        let critical = (0..3)
-            .filter(|i| self.a[*i] * toward < 0.0)
-            .map(|i| -1.0 / self.a[i])
-            .min_by(|x, y| x.abs().total_cmp(&y.abs()));
-        let f = |lambda: f64| self.value(&self.foot(p, lambda));
         let size = slope.norm();
         let first = if size > 0.0 { value / (2.0 * size * size) } else { toward };
+        let pole = (0..3)
+            .filter(|i| self.a[*i] * toward < 0.0)
+            .max_by(|i, j| self.a[*i].abs().total_cmp(&self.a[*j].abs()));
+        match pole {
+            Some(pole) => self.nearest_before_pole(p, pole, toward, first),
+            None => self.nearest_without_pole(p, toward, first, slope),
+        }
+    }
+
+    /// Every λ on the way is allowed.
+    fn nearest_without_pole(&self, p: &Vec3, toward: f64, first: f64, slope: &Vec3) -> Option<Vec3> {
+        let f = |lambda: f64| self.value(&self.foot(p, lambda));
         // Bracket: `inside` has the sign of F(p), `outside` the other.
         let mut inside = 0.0;
-        let mut outside = None;
         let mut trial = first;
+        let mut outside = None;
         for _ in 0..ROOT_STEPS {
-            if let Some(end) = critical
-                && trial.abs() >= end.abs()
-            {
-                trial = 0.5 * (inside + end);
-                if (end - inside).abs() <= 4.0 * f64::EPSILON * end.abs() {
-                    return self.hard_case(p, end);
-                }
-            }
             let at = f(trial);
             if !at.is_finite() || at * toward <= 0.0 {
                 outside = Some(trial);
                 break;
             }
             inside = trial;
-            trial = if critical.is_some() { inside + (inside - 0.0) * 0.5 } else { trial * 8.0 };
+            trial *= 8.0;
         }
-        let mut outside = match (outside, critical) {
-            (Some(x), _) => x,
-            (None, Some(end)) => return self.hard_case(p, end),
-            (None, None) => return None,
-        };
+        let mut outside = outside?;
         let mut lambda =
             first.abs().clamp(inside.abs().min(outside.abs()), inside.abs().max(outside.abs())) * toward;
         for _ in 0..ROOT_STEPS {
@@ -260,6 +271,57 @@ impl PrincipalQuadric {
             lambda = next;
         }
         Some(self.foot(p, lambda))
+    }
+
+    /// λ ends at the pole of one principal axis. The root can be so near to it that λ itself has no digits left for the
+    /// difference; so μ = 1 + λa of that axis is looked for, from one down to zero.
+    fn nearest_before_pole(&self, p: &Vec3, pole: usize, toward: f64, first: f64) -> Option<Vec3> {
+        let steepest = self.a[pole];
+        let shrunk =
+            |mu: f64| Vec3::from_fn(|i, _| (steepest - self.a[i]) / steepest + mu * (self.a[i] / steepest));
+        let offset = Vec3::from_fn(|i, _| p[i] + self.b[i] / steepest);
+        let foot = |mu: f64| {
+            let rise = Vec3::from_fn(|i, _| mu * (self.b[i] / steepest));
+            (offset - rise).component_div(&shrunk(mu))
+        };
+        // Bracket: F has the sign of F(p) at `inside`, the other at `outside`.
+        let (mut inside, mut outside) = (1.0, None);
+        let mut trial = 1.0 + first * steepest;
+        for _ in 0..ROOT_STEPS {
+            if trial <= 0.0 || trial >= inside {
+                trial = if inside > NEAR_POLE { 0.5 * inside } else { NEAR_POLE * inside };
+            }
+            if trial < AT_POLE {
+                break;
+            }
+            let at = self.value(&foot(trial));
+            if !at.is_finite() || at * toward <= 0.0 {
+                outside = Some(trial);
+                break;
+            }
+            inside = trial;
+        }
+        let Some(mut outside) = outside else { return self.hard_case(p, -1.0 / steepest) };
+        let mut mu = (outside * inside).sqrt();
+        for _ in 0..ROOT_STEPS {
+            let q = foot(mu);
+            let at = self.value(&q);
+            if at * toward > 0.0 {
+                inside = mu;
+            } else {
+                outside = mu;
+            }
+            // dF/dλ, and dλ/dμ = 1/a.
+            let gradient = self.slope(&q);
+            let rate = -2.0 * gradient.component_div(&shrunk(mu)).dot(&gradient) / steepest;
+            let newton = mu - at / rate;
+            let next = if newton > outside && newton < inside { newton } else { (outside * inside).sqrt() };
+            if (next - mu).abs() <= 4.0 * f64::EPSILON * next {
+                return Some(foot(next));
+            }
+            mu = next;
+        }
+        Some(foot(mu))
     }
 
     /// The point is on a symmetry plane beyond the centre of curvature: the foot leaves that plane.

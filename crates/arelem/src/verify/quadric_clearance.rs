@@ -49,6 +49,21 @@ struct Search<'a> {
     gap: f64,
 }
 
+/// How the clearance of a tool varies over its places and along a straight move. Distance is concave inside each of two
+/// convex bodies, and not in both together: a tool that has parts in one and in the other is deep in what lies between.
+pub(super) fn shape(quadric: &PrincipalQuadric, side: f64, ends: [&Vec3; 2], tool: &Tool<'_>) -> Shape {
+    let shape = quadric.convexity.shape(side);
+    match quadric.mirror() {
+        Some((normal, distance)) if shape == Shape::Concave => {
+            let heights = ends.map(|tip| normal.dot(tip) - distance);
+            let low = heights[0].min(heights[1]) - tool.support(&-normal).0;
+            let high = heights[0].max(heights[1]) + tool.support(&normal).0;
+            if low < 0.0 && high > 0.0 { Shape::Free } else { shape }
+        }
+        _ => shape,
+    }
+}
+
 /// The clearance; None where the quadric has no distance.
 pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
     if quadric.is_ruled_along(&tool.axis) {
@@ -57,7 +72,7 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error: 0.0 });
     }
-    let shape = quadric.convexity.shape(side);
+    let shape = shape(quadric, side, [tip, tip], tool);
     if let Some(reading) = circle_contact::at(quadric, shape, side, tip, tool) {
         return Some(reading);
     }

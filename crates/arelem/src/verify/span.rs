@@ -107,7 +107,11 @@ impl Span<'_> {
         let (first, last) = (self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?);
         let error = first.error.max(last.error);
         let (low, high) = (first.value.min(last.value), first.value.max(last.value));
-        let shape = if self.turns() { Shape::Free } else { self.clearance.shape() };
+        let shape = if self.turns() {
+            Shape::Free
+        } else {
+            self.clearance.shape_along([&self.from.tip, &self.to.tip], &self.from.axis)
+        };
         match shape {
             Shape::Linear => Some(Extremes { min: low, max: high, error }),
             Shape::Convex => {

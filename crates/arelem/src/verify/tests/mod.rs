@@ -1,5 +1,6 @@
 //! Tests of the verifier against closed forms, dense sampling and deliberately broken sequences.
 
+mod branches;
 mod clearances;
 mod mutations;
 mod paths;

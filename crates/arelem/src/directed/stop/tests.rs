@@ -1,0 +1,82 @@
+//! Tools so thin that a step, or the place in the band where they stop, is wider: they go through a check surface without
+//! ever being in it, and are TO and PAST it all the same.
+
+use apt_geometry::{
+    Vec3,
+    canonical::Geometry,
+    motion::{MotionCommand, Relation, Turn},
+};
+
+use crate::{
+    error::MotionFailure,
+    tests::{Program, circle, cylinder, motion, plane, sphere, v},
+    verify::verify,
+};
+
+/// A needle a thousandth high in the planes y = 0 and z = 0.3 x, at x = −3, looking along +x.
+fn needle(inside: f64, outside: f64) -> Program {
+    let mut p = Program::new();
+    p.tolerance(inside, outside).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001]).from(-3.0, 0.0, 0.0);
+    let slope = plane(-0.3 / 1.09f64.sqrt(), 0.0, 1.0 / 1.09f64.sqrt(), 0.0);
+    p.go(&[
+        (Relation::On, &plane(0.0, 1.0, 0.0, 0.0)),
+        (Relation::To, &slope),
+        (Relation::On, &plane(1.0, 0.0, 0.0, -3.0)),
+    ]);
+    p.indirv(1.0, 0.0, 0.0);
+    p
+}
+
+/// Where the needle ends along y = 0.
+fn end(p: &mut Program, relation: Relation, occurrence: u32, check: &Geometry) -> Vec3 {
+    let command = motion(Turn::Forward, &plane(0.0, 1.0, 0.0, 0.0), &[(relation, occurrence, check)]);
+    p.run(&command);
+    assert!(verify(p.last(), &|| false).unwrap().verified);
+    p.tip()
+}
+
+#[test]
+fn a_needle_stops_to_and_past_what_it_goes_through() {
+    // Bands that leave rests outside, on and inside the surface.
+    for (inside, outside) in [(0.01, 0.005), (0.0, 0.001), (0.001, 0.001), (0.0005, 0.0)] {
+        let band = inside + outside + 0.001;
+        let upright = [plane(1.0, 0.0, 0.0, 1.25), circle(1.75, 0.0, 0.5)];
+        let leaning = [
+            plane(0.8, 0.6, 0.0, 1.0),
+            sphere(1.75, 0.0, 0.525, 0.5),
+            cylinder(v(1.75, 0.0, 0.525), v(0.0, 1.0, 0.0), 0.5),
+        ];
+        for check in upright.iter().chain(&leaning) {
+            for relation in [Relation::To, Relation::Past] {
+                for force in [false, true] {
+                    let mut p = needle(inside, outside);
+                    p.run(&MotionCommand::ForceIteration(force));
+                    let at = end(&mut p, relation, 1, check).x;
+                    // Of the sphere and the lying cylinder about (1.75, 0.525) the slope meets the near side here.
+                    let near = if matches!(check, Geometry::Sphere(_) | Geometry::Cylinder(_)) {
+                        1.75 - 0.5 / 1.09f64.sqrt()
+                    } else {
+                        1.25
+                    };
+                    assert!((at - near).abs() <= 1.3 * band, "{check:?} {relation:?} {force}: {at}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_needle_counts_both_walls_of_a_post() {
+    for (relation, force) in
+        [(Relation::To, false), (Relation::Past, false), (Relation::To, true), (Relation::Past, true)]
+    {
+        let mut p = needle(0.01, 0.005);
+        p.run(&MotionCommand::ForceIteration(force));
+        let at = end(&mut p, relation, 2, &circle(1.75, 0.0, 0.5)).x;
+        assert!((at - 2.25).abs() <= 0.02, "{relation:?}: {at}");
+        let third =
+            motion(Turn::Forward, &plane(0.0, 1.0, 0.0, 0.0), &[(relation, 3, &circle(4.0, 0.0, 0.5))]);
+        let refused = p.attempt(&third);
+        assert!(matches!(refused, Err(MotionFailure::NoneAhead { .. })), "{refused:?}");
+    }
+}

@@ -1,0 +1,84 @@
+//! Surfaces of two branches: a tool, or a straight move, that reaches from one branch to the other.
+
+use apt_geometry::{
+    Vec3,
+    motion::{DriveSide, Relation},
+};
+
+use super::{
+    clearances::{clearance, samples},
+    cutter,
+    paths::sequence,
+    plane, quadric, role,
+};
+use crate::verify::{clearance::Surface, verify};
+
+/// x² − y² = ¼, and the surface of revolution that it makes about x.
+const TWO_BRANCHES: [[f64; 10]; 2] = [
+    [1.0, -1.0, 0.0, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, -1.0, -1.0, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+];
+
+#[test]
+fn a_tool_that_reaches_into_both_branches_is_deep_between_them() {
+    let flat = cutter(&[1.0, 0.0]);
+    for form in TWO_BRANCHES {
+        // From (0, ½) the feet are at y = ¼: ¼ + 2/16 away.
+        let (value, ..) = clearance(&flat, &quadric(form), 1.0, [-2.5, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        assert!((value + 0.375f64.sqrt()).abs() < 1e-9, "{value}");
+    }
+}
+
+#[test]
+fn distance_is_true_however_near_a_point_is_to_the_plane_between_the_branches() {
+    for form in TWO_BRANCHES {
+        let surface = Surface::of(&quadric(form)).unwrap();
+        for k in 0..40 {
+            let x = if k == 0 { 0.0 } else { 10f64.powf(-0.5 * f64::from(k)) };
+            for y in [0.0, 1e-9, 0.3, 0.5] {
+                // At x = 0 the distance is √(¼ + y²/2), and it falls no faster than the point moves.
+                let (distance, normal) = surface.point_distance(&Vec3::new(x, y, 0.0)).unwrap();
+                let off = (distance + (0.25 + 0.5 * y * y).sqrt()).abs();
+                assert!(off <= x + 1e-9 && (normal.norm() - 1.0).abs() < 1e-9, "{x:e} {y}: {distance}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_point_of_a_tool_is_deeper_than_its_clearance() {
+    let shapes =
+        [cutter(&[0.75, 0.17]), cutter(&[0.68, 0.34]), cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 3.0])];
+    for tool in shapes {
+        for form in TWO_BRANCHES {
+            for (k, axis) in [[1.0, 0.2, 0.1], [0.6, 0.5, -0.3], [1.0, -0.7, 0.9]].into_iter().enumerate() {
+                let tip = [-1.6 + 0.3 * k as f64, 0.2, -0.1];
+                let (value, ..) = clearance(&tool, &quadric(form), 1.0, tip, axis);
+                let surface = Surface::of(&quadric(form)).unwrap();
+                let deepest = samples(&tool, Vec3::from(tip), Vec3::from(axis).normalize())
+                    .iter()
+                    .map(|p| surface.point_distance(p).unwrap().0)
+                    .fold(f64::INFINITY, f64::min);
+                assert!(value < 0.0 && value <= deepest + 1e-9, "{form:?} {axis:?}: {value}, {deepest}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_vector_from_one_branch_to_the_other_is_out_of_tolerance() {
+    let form = quadric(TWO_BRANCHES[0]);
+    let tips = [Vec3::new(-0.6, 0.0, 0.0), Vec3::new(0.6, 0.0, 0.0)];
+    let ball = cutter(&[0.2, 0.1]);
+    let [part, wall, stop] = [
+        (plane([0.0, 0.0, 1.0], 0.0), Relation::To),
+        (form, Relation::To),
+        (plane([1.0, 0.0, 0.0], 0.6), Relation::On),
+    ]
+    .map(|(surface, relation)| role(surface, relation, 1.0, 0.001, 0.001));
+    let path = sequence(&tips, ball, part, wall, stop, DriveSide::Left);
+    let evidence = verify(&path, &|| false).unwrap();
+    // Half way the ball is 0.6 deep; what is far beyond the band is not looked into further.
+    let least = evidence.drive.unwrap().min;
+    assert!(!evidence.verified && least < -0.25, "{least}");
+}
