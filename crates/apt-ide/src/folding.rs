@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use apt_syntax::{
     statement::{Body, Clause},
-    tree::StatementView,
+    tree::{StatementView, SyntaxTree},
 };
 
 use crate::{Analysis, search::contains};
@@ -44,20 +44,15 @@ impl Analysis {
                 range: bytes(region.first).start..bytes(region.last).end,
             })
             .collect();
+        // The clause that ends a branch stays in sight.
+        folds.extend(branches(tree).into_iter().map(|branch| Fold {
+            kind: FoldKind::Region,
+            range: bytes(branch.start).start..bytes(branch.end).start,
+        }));
         let mut comment: Option<Range<usize>> = None;
-        // The clauses that opened the branches which are open, innermost last.
-        let mut open: Vec<usize> = Vec::new();
         for view in tree.statements() {
             let text = view.text();
             let range = bytes(view.index);
-            let ends = branch_ends(&view).filter(|_| tree.dialect().structured_if);
-            if let Some((opens, closes)) = ends {
-                let first = if closes { open.pop() } else { None };
-                // The clause that ends a branch stays in sight.
-                let branch = first.map(|first| bytes(first).start..range.start);
-                folds.extend(branch.map(|range| Fold { kind: FoldKind::Region, range }));
-                open.extend(opens.then_some(view.index));
-            }
             if text.trim_start().starts_with("$$") {
                 comment = Some(comment.map_or(range.clone(), |run| run.start..range.end));
                 continue;
@@ -71,6 +66,24 @@ impl Analysis {
         folds.sort_by_key(|fold| (fold.range.start, std::cmp::Reverse(fold.range.end)));
         folds
     }
+}
+
+/// The branches of all IFs over several statements: from the clause that opens a branch to the one that ends it.
+/// Branches that nothing ends are left out.
+pub(crate) fn branches(tree: &SyntaxTree) -> Vec<Range<usize>> {
+    let mut branches = Vec::new();
+    if !tree.dialect().structured_if {
+        return branches;
+    }
+    // The clauses that opened the branches which are open, innermost last.
+    let mut open: Vec<usize> = Vec::new();
+    for view in tree.statements() {
+        let Some((opens, closes)) = branch_ends(&view) else { continue };
+        let first = if closes { open.pop() } else { None };
+        branches.extend(first.map(|first| first..view.index));
+        open.extend(opens.then_some(view.index));
+    }
+    branches
 }
 
 /// Whether a statement opens and whether it closes a branch of an IF over several statements; nothing if neither.
@@ -89,7 +102,7 @@ fn branch_ends(view: &StatementView) -> Option<(bool, bool)> {
 }
 
 /// Ends a run of comment lines; one line alone is no fold.
-fn close(folds: &mut Vec<Fold>, tree: &apt_syntax::tree::SyntaxTree, comment: &mut Option<Range<usize>>) {
+fn close(folds: &mut Vec<Fold>, tree: &SyntaxTree, comment: &mut Option<Range<usize>>) {
     let Some(range) = comment.take() else { return };
     let text = tree.slice(apt_syntax::TextRange::new((range.start as u32).into(), (range.end as u32).into()));
     if text.trim_end().contains('\n') {

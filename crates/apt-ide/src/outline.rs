@@ -1,10 +1,10 @@
-//! The outline of a program: definitions, macros and loops, nested, and the sections that PARTNO and LOADTL begin.
+//! The outline of a program: definitions, macros, loops and branches of IFs, nested, and the sections that PARTNO and LOADTL begin.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
-use apt_syntax::statement::Body;
+use apt_syntax::statement::{Body, Clause};
 
-use crate::{Analysis, absolute};
+use crate::{Analysis, absolute, folding::branches};
 
 /// The kind of an outline entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +13,7 @@ pub enum OutlineKind {
     Part,
     Macro,
     Loop,
+    Branch,
     Geometry,
     Scalar,
     Array,
@@ -46,11 +47,14 @@ impl Analysis {
         let mut stack: Vec<(usize, OutlineEntry)> = Vec::new();
         let mut top = Vec::new();
         let mut count = 0;
+        let branches: BTreeMap<usize, usize> =
+            branches(tree).into_iter().map(|branch| (branch.start, branch.end)).collect();
         for view in tree.statements() {
             while stack.last().is_some_and(|(last, _)| *last < view.index) {
                 pop(&mut stack, &mut top);
             }
-            if count >= GREATEST_OUTLINE || !may_define(view.text()) {
+            let branch = branches.get(&view.index);
+            if count >= GREATEST_OUTLINE || (branch.is_none() && !may_define(view.text())) {
                 continue;
             }
             let parsed = view.parsed();
@@ -59,13 +63,19 @@ impl Analysis {
                 let Some(mut entry) = entry(&view, &part.body, whole.clone()) else { continue };
                 count += 1;
                 let region = self.regions().iter().find(|region| region.first == view.index);
-                match (entry.kind, region) {
-                    (OutlineKind::Macro | OutlineKind::Loop, Some(region)) => {
-                        let end = usize::from(tree.statement(region.last).range().end());
+                let last = match entry.kind {
+                    OutlineKind::Macro | OutlineKind::Loop => region.map(|region| region.last),
+                    // The clause that ends a branch belongs to the next one, or to none.
+                    OutlineKind::Branch => branch.map(|end| end.saturating_sub(1)),
+                    _ => None,
+                };
+                match last {
+                    Some(last) => {
+                        let end = usize::from(tree.statement(last).range().end());
                         entry.range = whole.start..end.max(whole.end);
-                        stack.push((region.last, entry));
+                        stack.push((last, entry));
                     }
-                    _ => match stack.last_mut() {
+                    None => match stack.last_mut() {
                         Some((_, parent)) => parent.children.push(entry),
                         None => top.push(entry),
                     },
@@ -117,6 +127,18 @@ fn entry(view: &apt_syntax::tree::StatementView, body: &Body, range: Range<usize
         }
         Body::Assignment { target, .. } => {
             named(&target.name.text, "", OutlineKind::Scalar, absolute(view, target.range))
+        }
+        Body::Clause { word, clause: clause @ (Clause::If(_) | Clause::ElseIf(_) | Clause::Else) } => {
+            let text = view.text();
+            let condition =
+                text.find('(').zip(text.rfind(')')).and_then(|(open, end)| text.get(open + 1..end));
+            let name = match clause {
+                Clause::If(_) => "IF",
+                Clause::ElseIf(_) => "ELSEIF",
+                _ => "ELSE",
+            };
+            let detail = condition.filter(|_| name != "ELSE").unwrap_or("");
+            named(name, detail, OutlineKind::Branch, absolute(view, word.range))
         }
         Body::Major { word, .. } => match word.word.spelling {
             "LOOPST" => named("LOOPST", "", OutlineKind::Loop, absolute(view, word.range)),

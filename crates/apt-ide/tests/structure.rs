@@ -58,6 +58,27 @@ fn the_outline_nests_macros_and_loops() {
 }
 
 #[test]
+fn the_outline_nests_the_branches_of_an_if() {
+    let text = "A=1\nIF(A.EQ.1)THEN\nB=1\nIF(A.EQ.2)THEN\nC=3\nENDIF\nELSEIF(A.GT.2)THEN\nP1=POINT/1,2\nELSE\nD=2\n\
+                ENDIF\nE=1\nIF(A.EQ.3)THEN\nFINI\n";
+    let mut shown = String::new();
+    outline(&analysis(text).outline(), 0, text, &mut shown);
+    expect![[r#"
+        Scalar A  (1 lines)
+        Branch IF A.EQ.1 (5 lines)
+          Scalar B  (1 lines)
+          Branch IF A.EQ.2 (2 lines)
+            Scalar C  (1 lines)
+        Branch ELSEIF A.GT.2 (2 lines)
+          Geometry P1 POINT (1 lines)
+        Branch ELSE  (2 lines)
+          Scalar D  (1 lines)
+        Scalar E  (1 lines)
+    "#]]
+    .assert_eq(&shown);
+}
+
+#[test]
 fn the_branches_of_an_if_fold() {
     let text = "A=1\nIF(A.EQ.1)THEN\nB=1\nIF(A.EQ.2)THEN\nB=3\nENDIF\nELSE\nB=2\nENDIF\nENDIF\nFINI\n";
     let lines = |offset: usize| text[..offset].matches('\n').count();

@@ -279,7 +279,7 @@ fn symbol_kind(kind: OutlineKind) -> lsp::SymbolKind {
     match kind {
         OutlineKind::Part => lsp::SymbolKind::MODULE,
         OutlineKind::Macro => lsp::SymbolKind::FUNCTION,
-        OutlineKind::Loop => lsp::SymbolKind::NAMESPACE,
+        OutlineKind::Loop | OutlineKind::Branch => lsp::SymbolKind::NAMESPACE,
         OutlineKind::Geometry => lsp::SymbolKind::OBJECT,
         OutlineKind::Array => lsp::SymbolKind::ARRAY,
         OutlineKind::Scalar => lsp::SymbolKind::NUMBER,

@@ -19,7 +19,7 @@ pub(super) struct Line {
     pub(super) comment: Option<String>,
     /// The sequence field.
     pub(super) sequence: Option<String>,
-    /// The line end.
+    /// The line end, or `;`.
     pub(super) line_end: String,
 }
 
@@ -96,10 +96,11 @@ pub(super) struct Atom {
     pub(super) may_break: bool,
 }
 
-/// The lines of a statement at a depth.
+/// The lines of a statement at a depth. With `inside_line` another statement stands before it on its first line.
 pub(super) fn lines(
     records: &[Record<'_>],
     depth: usize,
+    inside_line: bool,
     options: &FormatOptions,
     layout: &Layout,
 ) -> Vec<Line> {
@@ -109,14 +110,20 @@ pub(super) fn lines(
     let mut lines = Vec::with_capacity(records.len());
     for (number, record) in records.iter().enumerate() {
         let first = number == 0;
-        let atoms = atoms(record, first, indent, options, layout);
+        let atoms = atoms(record, first, if inside_line { 0 } else { indent }, options, layout);
         let start = match (first, has_label(record)) {
+            // Behind the `;` of the statement before.
+            (true, _) if inside_line => 1,
             (true, true) => 0,
             (true, false) => indent,
             (false, _) => further,
         };
         let mut codes = match (atoms.is_empty(), options.wrap.filter(|_| !layout.sequence_field)) {
-            (true, _) => vec![if record.at_margin { String::new() } else { " ".repeat(start) }],
+            (true, _) => vec![if record.at_margin && !(first && inside_line) {
+                String::new()
+            } else {
+                " ".repeat(start)
+            }],
             (false, None) => vec![wrap::joined(start, &atoms)],
             (false, Some(limit)) => wrap::broken(start, further, &atoms, record.continued, limit),
         };

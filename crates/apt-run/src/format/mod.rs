@@ -95,7 +95,9 @@ pub fn format_range(tree: &SyntaxTree, range: Range<usize>, options: &FormatOpti
 pub fn wrap_statement(tree: &SyntaxTree, view: &StatementView) -> Vec<Edit> {
     let text = view.text();
     let before = view.index.checked_sub(1).map(|index| tree.statement(index));
-    if before.is_some_and(|before| !before.text().ends_with(['\n', '\r'])) {
+    let shares = |text: &str| !text.ends_with(['\n', '\r']);
+    let has_next = view.index + 1 < tree.statement_count();
+    if before.is_some_and(|before| shares(before.text())) || (has_next && shares(text)) {
         return Vec::new();
     }
     let indent = text.chars().take_while(|character| record::BLANKS.contains(character)).count();
@@ -108,7 +110,7 @@ pub fn wrap_statement(tree: &SyntaxTree, view: &StatementView) -> Vec<Edit> {
     };
     let layout = tree.layout();
     // One level deep, so that the indentation is the one that is there.
-    let Ok(lines) = laid_out(text, 1, &options, &layout) else { return Vec::new() };
+    let Ok(lines) = laid_out(text, 1, false, &options, &layout) else { return Vec::new() };
     if lines.is_empty() {
         return Vec::new();
     }
@@ -147,20 +149,28 @@ pub fn plan(tree: &SyntaxTree, options: &FormatOptions) -> Plan {
 struct Laid {
     view: StatementView,
     lines: Vec<Line>,
+    /// Whether it shares a line with another statement.
+    shared: bool,
 }
 
 fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: &FormatOptions) -> Plan {
     let layout = tree.layout();
     let mut plan = Plan::default();
-    let mut shared = false;
+    let not_wrapped = FormatOptions { wrap: None, ..*options };
+    let last = tree.statement_count().saturating_sub(1);
+    let mut inside_next = false;
     let mut all = Vec::with_capacity(tree.statement_count());
     for (view, place) in tree.statements().zip(structure::places(tree)) {
         let text = view.text();
-        let begins_inside_line = std::mem::replace(&mut shared, !text.ends_with(['\n', '\r']));
-        let laid = match (place.off, begins_inside_line) {
+        let ends_inside = !text.ends_with(['\n', '\r']) && view.index < last;
+        let inside = std::mem::replace(&mut inside_next, ends_inside);
+        let shared = inside || ends_inside;
+        let laid = match (place.off, shared) {
             (true, _) => Ok(Vec::new()),
-            (false, true) => Err(KeptReason::SharedLine),
-            (false, false) => laid_out(text, place.depth, options, &layout),
+            // How long the line is depends on all its statements.
+            (false, true) if layout.sequence_field => Err(KeptReason::SharedLine),
+            (false, true) => laid_out(text, place.depth, inside, &not_wrapped, &layout),
+            (false, false) => laid_out(text, place.depth, false, options, &layout),
         };
         let lines = laid.unwrap_or_else(|reason| {
             if wanted.contains(&view.index) {
@@ -168,7 +178,7 @@ fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: 
             }
             Vec::new()
         });
-        all.push(Laid { view, lines });
+        all.push(Laid { view, lines, shared });
     }
     for (view, new) in written(&all, options, &layout) {
         if wanted.contains(&view.index) {
@@ -189,6 +199,7 @@ fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: 
 fn laid_out(
     text: &str,
     depth: usize,
+    inside_line: bool,
     options: &FormatOptions,
     layout: &Layout,
 ) -> Result<Vec<Line>, KeptReason> {
@@ -197,7 +208,7 @@ fn laid_out(
         Division::Verbatim => return Ok(Vec::new()),
         Division::Kept(reason) => return Err(reason),
     };
-    let lines = line::lines(&records, depth, options, layout);
+    let lines = line::lines(&records, depth, inside_line, options, layout);
     if lines.iter().any(|line| line.length(line.own_column()) > line.limit(layout)) {
         return Err(KeptReason::TooLong);
     }
@@ -218,10 +229,10 @@ fn written<'a>(
     options: &FormatOptions,
     layout: &Layout,
 ) -> Vec<(&'a StatementView, String)> {
-    // A statement that stays divides its neighbours, as an empty line does.
+    // A statement that stays divides its neighbours, as an empty line does; so does one that shares a line.
     let lines = all.iter().flat_map(|laid| {
         let none = laid.lines.is_empty().then_some(None);
-        laid.lines.iter().map(Some).chain(none)
+        laid.lines.iter().map(|line| Some(line).filter(|_| !laid.shared)).chain(none)
     });
     let mut columns = align::columns(lines, options.align_comments, layout).into_iter();
     let mut texts = Vec::new();
@@ -232,7 +243,8 @@ fn written<'a>(
         }
         let mut text = String::with_capacity(laid.view.text().len());
         for line in &laid.lines {
-            line.write(columns.next().unwrap_or_else(|| line.own_column()), &mut text);
+            let column = columns.next().filter(|_| !laid.shared);
+            line.write(column.unwrap_or_else(|| line.own_column()), &mut text);
         }
         texts.push((&laid.view, text));
     }

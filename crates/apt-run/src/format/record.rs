@@ -34,6 +34,7 @@ pub(super) struct Record<'a> {
     pub(super) comment: Option<&'a str>,
     /// The sequence field without trailing blanks.
     pub(super) sequence: Option<&'a str>,
+    /// What ends it: the end of a line, or the `;` before the next statement on it.
     pub(super) line_end: &'a str,
 }
 
@@ -67,9 +68,8 @@ pub(super) fn divide<'a>(text: &'a str, layout: &Layout) -> Division<'a> {
                 return Division::Kept(KeptReason::SequenceNumber);
             }
             SyntaxKind::SequenceField => record.sequence = not_blank(piece),
-            SyntaxKind::Semicolon => return Division::Kept(KeptReason::SharedLine),
             SyntaxKind::Bad => return Division::Kept(KeptReason::IllegalCharacter),
-            SyntaxKind::LineEnd => {
+            SyntaxKind::LineEnd | SyntaxKind::Semicolon => {
                 record.line_end = piece;
                 let rest = text.get(range.end..).unwrap_or("");
                 records.push(std::mem::replace(

@@ -54,7 +54,6 @@ fn texts_and_what_is_no_program_stay() {
         "PARTNO  a  part ,  with blanks   \n",
         "PPRINTfoo = 1 \n",
         "REMARK = 5\n",
-        "a ; b = 1\n",
         "X = 1..2\n",
         "",
         "   ",
@@ -89,8 +88,26 @@ fn reasons_are_told() {
 }
 
 #[test]
-fn statements_on_one_line_stay() {
-    assert_eq!(free("A = 1;B = 2\nC = 3\n"), "A = 1;B = 2\nC=3\n");
+fn statements_on_one_line_are_spaced_each() {
+    let cases = [
+        ("A = 1;B = 2\nC = 3\n", "A=1; B=2\nC=3\n"),
+        ("  a = 1 ;   b=2 ; goto / 1 , 2,3 $$ there\n", "A=1; B=2; GOTO/1,2,3 $$ there\n"),
+        ("A=1;L1 ) B = 2\n", "A=1; L1) B=2\n"),
+        ("A = 1;PPRINT  x  ; y\n", "A=1;PPRINT  x  ; y\n"),
+        ("A = 1 ;\nB = 2", "A=1;\nB=2"),
+        ("A = 1 ; $$ one\nB=22 $$ two\n", "A=1; $$ one\nB=22 $$ two\n"),
+        ("A = 1 ; GOTO / 1 , $\n2,3 ; B = 3\n", "A=1; GOTO/1,$\n     2,3; B=3\n"),
+        (
+            "LOOPST ; L1) A = 1\nIF ( A ) L1,L2,L2\nL2 ) LOOPND\n",
+            "LOOPST; L1) A=1\n     IF(A)L1,L2,L2\nL2) LOOPND\n",
+        ),
+        (";; A = 1 ;;\n", ";; A=1;;\n"),
+    ];
+    for (text, expected) in cases {
+        let once = free(text);
+        assert_eq!(once, expected, "{text}");
+        assert_eq!(free(&once), once, "{text} once more");
+    }
 }
 
 #[test]
