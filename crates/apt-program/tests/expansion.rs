@@ -218,6 +218,19 @@ fn a_label_that_the_path_may_go_on_at_stays() {
 }
 
 #[test]
+fn texts_are_read_again_as_they_were() {
+    let text = "  PPRINT/HELLO\nPPRINT/HI\nPPRINT YO\n  PPRINT/ FAR\n\tPPRINT// X\nFINI\n";
+    let unrolled = unroll(text, None, None).text();
+    assert_eq!(unrolled, " PPRINT/HELLO\nPPRINT/HI\nPPRINT YO\nPPRINT FAR\nPPRINT/ X\nFINI\n");
+    let texts = |text: &str| -> Vec<RecordKind> {
+        motions(text).into_iter().filter(|kind| matches!(kind, RecordKind::Text { .. })).collect()
+    };
+    assert_eq!(texts(text).len(), 5);
+    assert_eq!(texts(text), texts(&unrolled));
+    assert_eq!(unroll(&unrolled, None, None).text(), unrolled);
+}
+
+#[test]
 fn labels_of_check_surfaces_in_macros_and_loops_stay_apart() {
     let text = "L=LINE/XAXIS\nC1=CIRCLE/5,0,1\nC2=CIRCLE/9,0,1\nZL0001=1\n\
                 M=MACRO/Y\nGOFWD/L,TO,C1,A,TO,C2,B\nA)GOTO/Y,ZL0001\nTRANTO/B\nGOTO/Y,2\nB)GOTO/Y,3\nTERMAC\n\

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use apt_syntax::{
     SyntaxTree,
+    dialect::TextWords,
     statement::{Element, ElementKind},
 };
 use smol_str::SmolStr;
@@ -79,7 +80,7 @@ pub fn expand(
     let lines = lines
         .into_iter()
         .filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)))
-        .map(expanded_line)
+        .map(|line| expanded_line(line, tree.dialect().text_words))
         .collect();
     Expansion { lines }
 }
@@ -122,12 +123,13 @@ fn called_macro(elements: &[Element]) -> Option<SmolStr> {
 }
 
 /// The text of an executed statement.
-fn expanded_line(line: TracedLine) -> ExpandedLine {
-    ExpandedLine { text: canonical_text(&line.elements), origin: line.origin }
+fn expanded_line(line: TracedLine, text_words: TextWords) -> ExpandedLine {
+    ExpandedLine { text: canonical_text(&line.elements, text_words), origin: line.origin }
 }
 
-/// Elements without blanks; the text after a text word stands as it was written.
-fn canonical_text(elements: &[Element]) -> String {
+/// Elements without blanks; the text after a text word stands so that it is read as it was: a blank counts, but where
+/// text words may stand anywhere.
+fn canonical_text(elements: &[Element], text_words: TextWords) -> String {
     let mut text = String::new();
     for (index, element) in elements.iter().enumerate() {
         if element.kind == ElementKind::Text
@@ -135,7 +137,15 @@ fn canonical_text(elements: &[Element]) -> String {
             && !text.ends_with(['/', ','])
             && !element.text.starts_with(' ')
         {
-            text.push(' ');
+            match text_words {
+                TextWords::Anywhere => text.push(' '),
+                // Behind the word in its columns the text would begin with the slash.
+                TextWords::Indented if index == 1 && !element.text.starts_with('/') => {
+                    text.insert(0, ' ');
+                    text.push('/');
+                }
+                TextWords::Indented | TextWords::InColumnOne => {}
+            }
         }
         text.push_str(&element.text);
     }
