@@ -4,7 +4,7 @@ use apt_geometry::cutter::Cutter;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{sequence::ToolPosition, verify::verify};
+use crate::{clearance::EVALUATIONS, sequence::ToolPosition, verify::verify};
 
 /// Runs commands and has every sequence proven by sampling and by the verifier.
 fn proven(program: &mut Program, commands: &[MotionCommand]) {
@@ -138,4 +138,55 @@ fn a_drill_passes_the_vertex_of_a_cone() {
         motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)]),
     ];
     proven(&mut program, &commands);
+}
+
+/// A tapered tool along a quadric that it touches at many places in turn: a vector that leaves the band is refused without
+/// a look at each of them.
+#[test]
+fn a_refused_vector_is_not_looked_at_in_full() {
+    let part = cylinder(
+        v(-0.02393729740386008, 1.904729646343306, -0.6621311819675073),
+        v(0.883359421242827, -0.465064821357597, -0.05823096115610914),
+        2.1759724640537748,
+    );
+    let drive = quadric([
+        -0.12965525394616864,
+        0.09333213822222539,
+        0.07875072961869502,
+        0.9401421290291097,
+        -0.01934398732717536,
+        0.019073390984080507,
+        -0.04136036043681648,
+        0.1811041466495679,
+        -0.27515096832916286,
+        -0.054510444527340614,
+    ]);
+    let forward = v(0.5101290440834747, 0.8572334348160595, -0.07013698465104552);
+    let first = plane(forward.x, forward.y, forward.z, 1.6670267110349115);
+    let stop = plane(0.6657384335185813, 0.6675261162298478, 0.3334684727036748, 5.767582181830138);
+    let mut program = Program::new();
+    program.tolerance(0.01, 0.005).part_side(PartSide::Offset);
+    program.cutter(&[
+        0.8986549495735254,
+        0.0,
+        0.4493274747867627,
+        0.0,
+        0.0,
+        3.03950760023086,
+        4.51907387104421,
+    ]);
+    program.run(&MotionCommand::Thickness(PerRole::all(0.020833878154289033)));
+    program.run(&MotionCommand::MaximumStep(10.0));
+    let axis = v(0.08266568898929015, 0.03230162705506617, 0.9960537077655609);
+    let position = v(0.4699269514807328, 1.6543139293681843, 2.2747193817349025);
+    program.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
+    program.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &first)]);
+    program.side(DriveSide::Right).indirv(forward.x, forward.y, forward.z);
+    let before = EVALUATIONS.get();
+    let outcome = program.attempt(&motion(Turn::Forward, &drive, &[(Relation::To, 1, &stop)]));
+    let count = EVALUATIONS.get() - before;
+    assert!(count < 5_000, "{count} clearances: {outcome:?}");
+    for sequence in &program.sequences {
+        assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
+    }
 }

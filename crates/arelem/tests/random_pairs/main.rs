@@ -119,9 +119,13 @@ const TELLING: u64 = 20;
 fn motions_of_every_pair_are_proven_or_refused_rightly() {
     let cases = number("APT_CASES").unwrap_or(2);
     let tallies = every_pair(SEEDS[0], cases, cases <= 2, |index, case, tally| {
+        let told = number("APT_CASE").is_some();
+        if told {
+            println!("{case:#?}");
+        }
         let verdict = judge::judge(case);
-        if number("APT_CASE").is_some() {
-            println!("{case:#?}\n{verdict:?}");
+        if told {
+            println!("{verdict:?}");
         }
         tally.note(index, case, verdict);
     });

@@ -17,6 +17,8 @@ const JUMP: f64 = 2e-3;
 const MAX_DEPTH: u32 = 10;
 /// Bound of the samples on one vector.
 const MAX_SAMPLES: usize = 400;
+/// The same once one of them is out of the band: the vector is refused, and so many tell how much shorter it must be.
+const MAX_SAMPLES_REFUSED: usize = 48;
 /// Share of what is left of the band below a sample that the proof of its depth may leave open.
 const OPEN: f64 = 0.1;
 /// What it may leave open at least, as a share of the band.
@@ -24,7 +26,8 @@ const LEAST_OPEN: f64 = 1e-5;
 
 /// Every interior extreme between two samples, and the proof that there are no others beyond the band.
 pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
-    let mut course = Course { line, size, samples: vec![a], least: ends.least, greatest: ends.greatest };
+    let (least, greatest) = (ends.least, ends.greatest);
+    let mut course = Course { line, size, samples: vec![a], least, greatest, is_exhausted: false };
     let unknown = course.bend(&a, &b) == Bend::Unknown;
     let pieces = if unknown { PIECES_UNKNOWN } else { PIECES };
     let mut from = a;
@@ -34,7 +37,8 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, si
         course.samples.push(to);
         from = to;
     }
-    let proven = ends.proven && course.holds() && (unknown || course.prove());
+    let found = !course.is_exhausted && course.holds();
+    let proven = ends.proven && found && (unknown || course.prove());
     Extremes { least: course.least, greatest: course.greatest, proven }
 }
 
@@ -44,6 +48,8 @@ struct Course<'a, 'b> {
     samples: Vec<Sample>,
     least: f64,
     greatest: f64,
+    /// Samples ran out: extremes may have been missed.
+    is_exhausted: bool,
 }
 
 impl Course<'_, '_> {
@@ -64,6 +70,11 @@ impl Course<'_, '_> {
         let band = self.line.role.band();
         let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
         if misfit.abs() > JUMP * band && depth < MAX_DEPTH {
+            let limit = if self.holds() { MAX_SAMPLES } else { MAX_SAMPLES_REFUSED };
+            if self.samples.len() >= limit {
+                self.is_exhausted = true;
+                return;
+            }
             let middle = self.line.sample(0.5 * (a.x + b.x));
             self.between(a, middle, depth + 1);
             self.samples.push(middle);
