@@ -183,6 +183,25 @@ fn numbers_of_index_are_used_once_and_their_table_ends_in_apt3() {
 }
 
 #[test]
+fn a_loft_is_no_surface_of_a_motion() {
+    let program = |motion: &str| {
+        format!(
+            "S1=LOFT/CANON,1,2,3,4,5,6,7,8\nP1=PLANE/0,0,1,0\nL1=LINE/XAXIS\nCUTTER/1\nFROM/0,-5,0\n{motion}\nFINI\n"
+        )
+    };
+    let said = |motion: &str| {
+        let document = document_in(&program(motion), "apt3");
+        let list = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
+        // Not every motion has a use for every definition.
+        let told = list.iter().filter(|one| one.wording.code != "APT0110");
+        told.map(|one| (one.wording.code, one.wording.message.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(said("GO/TO,S1"), [("APT0608", "a LOFT cannot be a drive surface".to_owned())]);
+    assert_eq!(said("GO/TO,L1,TO,S1"), [("APT0608", "a LOFT cannot be a part surface".to_owned())]);
+    assert_eq!(said("GO/TO,L1,TO,P1"), []);
+}
+
+#[test]
 fn a_corner_of_leaning_walls_is_cleaned_out() {
     let text = "MULTAX\nFROM/0,0,0\nVTLAXS/ON,LEFT,0,2,0,RIGHT\nGOTO/8,0,0\nWCORN/LEFT,0,RIGHT,45,2\nGOTO/8,-8,0\n\
                 VTLAXS/OFF,RIGHT,45\nFINI\n";

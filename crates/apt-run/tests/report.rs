@@ -66,6 +66,17 @@ fn what_the_program_lists_is_reported() {
 }
 
 #[test]
+fn the_numbers_of_a_loft_are_listed() {
+    let value = report("S1=LOFT/CANON,1,2,3,4,5,6,7,8\nPRINT/3,S1\nFINI\n", None);
+    let lines = json!([
+        "S1 LOFT 8",
+        "  1.000000 2.000000 3.000000 4.000000 5.000000 6.000000 7.000000",
+        "  8.000000"
+    ]);
+    assert_eq!(value["listing"], json!([{ "isn": 2, "lines": lines }]));
+}
+
+#[test]
 fn a_diagnostic_says_where_it_is_and_how_it_came_there() {
     let value = report(PROGRAM, None);
     let errors: Vec<&Value> = value["diagnostics"]
