@@ -50,14 +50,9 @@ fn blanks_inside_of_names_and_numbers_stay_as_evidence() {
 
 #[test]
 fn texts_and_what_is_no_program_stay() {
-    for text in [
-        "PARTNO  a  part ,  with blanks   \n",
-        "PPRINTfoo = 1 \n",
-        "REMARK = 5\n",
-        "X = 1..2\n",
-        "",
-        "   ",
-    ] {
+    for text in
+        ["PARTNO  a  part ,  with blanks   \n", "PPRINTfoo = 1 \n", "REMARK = 5\n", "X = 1..2\n", "", "   "]
+    {
         assert_eq!(free(text), text);
     }
 }
