@@ -110,11 +110,12 @@ pub(super) fn contact(
         }
     }
     let missed = if convex {
-        (posed.is_way_out(surface, &contact) && (fan.is_some() || posed.touches_by_plane(&contact, tip)))
-            .then_some(0.0)?
+        // Also on the corner: the ball may face the surface from inside the tool, above its flat bottom.
+        (posed.is_way_out(surface, &contact) && posed.touches_by_plane(&contact, tip)).then_some(0.0)?
     } else {
         let slack = MISSED * (tool.radius() + tool.profile.top.height);
-        posed.clears(contact.clearance - slack, &contact).then_some(slack)?
+        (posed.is_way_out(surface, &contact) && posed.clears(contact.clearance - slack, &contact))
+            .then_some(slack)?
     };
     let point = contact.tool - tip;
     memory.remember(tool, side, tip, Place { piece: place.piece, point, start: Some(start) });
@@ -229,8 +230,8 @@ impl<'a> Posed<'a> {
         next
     }
 
-    /// Whether a contact with a cone is one with this nappe, and not one where the tool cuts in near the vertex: there
-    /// another way out may be shorter.
+    /// Whether a contact with a cone is one with this nappe (F has the other one too), and not one where the tool cuts in near
+    /// the vertex: there another way out may be shorter.
     fn is_way_out(&self, surface: &Surface, contact: &Contact) -> bool {
         let Surface::Cone(cone) = surface else { return true };
         let foot = contact.surface - cone.vertex;
@@ -272,7 +273,7 @@ impl<'a> Posed<'a> {
             && if profile.lower.height > 0.0 {
                 self.flank(&sharp, [&tip, &profile.lower], &towards)
             } else {
-                self.bottom(&sharp, profile.lower.radius)
+                self.bottom(&sharp, &profile.lower, &towards)
             }
             && (profile.top.height <= profile.upper.height
                 || self.flank(&sharp, [&profile.upper, &profile.top], &towards))
@@ -332,12 +333,21 @@ impl<'a> Posed<'a> {
         if coarse >= bound.target { coarse } else { waves.floor([-towards.dot(u), -towards.dot(v)]) }
     }
 
-    /// Whether a function is nowhere inside the flat bottom below its target, if it is not on its edge: inside there is a
-    /// least value only where the function is bowl-shaped.
-    fn bottom(&self, bound: &Bound, radius: f64) -> bool {
+    /// Whether a function is nowhere on the flat bottom below its target: not on its edge, and inside there is a least value
+    /// only where the function is bowl-shaped. That the edge keeps its distance as part of the corner is not enough, for
+    /// this function may be lower there than the one that shows it.
+    fn bottom(&self, bound: &Bound, edge: &ProfilePoint, towards: &Vec3) -> bool {
         let [uu, vv, uv] = bound.across;
         let determinant = uu * vv - uv * uv;
-        if radius == 0.0 || determinant <= 0.0 || uu + vv <= 0.0 {
+        let radius = edge.radius;
+        if radius == 0.0 {
+            // It is the edge, and the corner's.
+            return true;
+        }
+        if self.floor(bound, edge, towards) < bound.target {
+            return false;
+        }
+        if determinant <= 0.0 || uu + vv <= 0.0 {
             return true;
         }
         let slope = bound.function.half_gradient(&bound.tip);

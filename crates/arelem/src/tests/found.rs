@@ -190,3 +190,94 @@ fn a_refused_vector_is_not_looked_at_in_full() {
         assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
     }
 }
+
+/// What was read before changes what a clearance costs, never what it is: also where contact goes from the corner of the
+/// tool into its flat bottom.
+#[test]
+fn remembered_contacts_change_no_clearance() {
+    let coefficients = [
+        0.1297279357339584,
+        0.12476985557554342,
+        0.010160598964577099,
+        2.333897378778821,
+        -0.03558560739798311,
+        -0.013772976651118755,
+        0.05215052975278034,
+        0.03901630241961035,
+        -0.21962231325793002,
+        0.5845250478487963,
+    ];
+    // A dome that the bottom of the tool touches.
+    let geometry = Geometry::Quadric(Quadric { coefficients });
+    let role = |thickness| Role {
+        surface: named(&geometry),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 0.0,
+        outside_tolerance: 1e-4,
+        thickness,
+    };
+    let tool = Tool::new(Cutter::from_numbers(&[0.555_143_27, 0.082_817_995], 1.0).unwrap(), Vec3::z());
+    let end = v(-1.1945026, 1.7694686, -1.6608008);
+    let mut worst = 0.0_f64;
+    for from in
+        [v(-1.391_426_8, 2.377_159_6, -0.894_264_7), v(-1.19448, 1.76945, -1.65821), v(-1.0, 1.5, -1.2)]
+    {
+        let remembering = gauge(&role(0.0599));
+        for k in 0..=200 {
+            let tip = from + (end - from) * (f64::from(k) / 200.0);
+            let fresh = gauge(&role(0.0599)).contact(&tool, &tip).clearance;
+            let known = remembering.contact(&tool, &tip).clearance;
+            worst = worst.max((fresh - known).abs());
+        }
+    }
+    assert!(worst < 1e-9, "{worst}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+    /// The same on all kinds of quadrics, from both sides, for tools of all shapes.
+    #[test]
+    fn remembered_contacts_change_no_clearance_of_any_quadric(
+        which in 0usize..8, side in prop::bool::ANY, shape in 0usize..5, lean in prop::array::uniform2(-0.8..0.8f64),
+        from in prop::array::uniform3(-2.0..2.0f64), way in prop::array::uniform3(-0.3..0.3f64),
+    ) {
+        let quadric = |coefficients| Geometry::Quadric(Quadric { coefficients });
+        let geometry = match which {
+            0 => quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]),
+            1 => quadric([1.0, 0.6, 0.3, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, -1.5]),
+            2 => quadric([0.3, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, -0.5, 0.0]),
+            3 => quadric([1.0, 0.8, -0.7, -1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0]),
+            4 => quadric([1.0, 0.8, -0.7, 1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0]),
+            5 => cylinder(Vec3::zeros(), v(0.3, 1.0, 0.2).normalize(), 1.2),
+            6 => cone(Vec3::zeros(), -Vec3::z(), 35.0),
+            _ => quadric([0.13, 0.12, 0.01, 2.3, -0.036, -0.014, 0.05, 0.04, -0.22, 0.58]),
+        };
+        let numbers: [&[f64]; 5] = [
+            &[0.5],
+            &[0.5, 0.25],
+            &[0.55, 0.083],
+            &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0],
+            &[0.8844, 0.0, 0.4422, 0.2657, 31.0, 0.0, 3.7726],
+        ];
+        let axis = v(lean[0], lean[1], 1.0).normalize();
+        let tool = Tool::new(Cutter::from_numbers(numbers[shape], 1.0).unwrap(), axis);
+        let role = Role {
+            surface: named(&geometry),
+            relation: Relation::To,
+            side: if side { 1.0 } else { -1.0 },
+            inside_tolerance: 0.0,
+            outside_tolerance: 1e-4,
+            thickness: 0.0,
+        };
+        let remembering = gauge(&role);
+        for k in 0..12 {
+            let tip = Vec3::from(from) + Vec3::from(way) * f64::from(k);
+            let fresh = gauge(&role).contact(&tool, &tip).clearance;
+            let known = remembering.contact(&tool, &tip).clearance;
+            // How deep a tool is that is deep inside, nobody asks.
+            let deep = fresh.max(known) < -0.1;
+            prop_assert!(deep || (fresh - known).abs() < 1e-7, "step {k}: {fresh} fresh, {known} remembered");
+        }
+    }
+}
