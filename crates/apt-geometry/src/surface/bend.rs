@@ -12,8 +12,6 @@ pub enum Bend {
     /// No bound can be given for so large a region: it may hold an edge, a vertex, or a point where nearest points
     /// jump. A smaller region may have one.
     Unbounded,
-    /// Bounds are not known for this kind of surface.
-    Unknown,
 }
 
 /// The points for which a bound is asked.

@@ -37,8 +37,6 @@ pub(crate) enum Certificate {
     Lower(Contact),
     /// The patches ran out.
     Undecided,
-    /// Nothing is known of the surface's curvature.
-    Unknown,
 }
 
 /// A stretch of the profile.
@@ -122,7 +120,7 @@ pub(super) fn certify(
     loop {
         for patch in patches.drain(..) {
             seen += 1;
-            let Some(judged) = judge(face, tool, tip, &patch) else { return Certificate::Unknown };
+            let judged = judge(face, tool, tip, &patch);
             if judged.least >= cleared {
                 continue;
             }
@@ -148,7 +146,7 @@ pub(super) fn outline(face: Face<'_>, tool: &Tool, tip: &Vec3, [near, far]: [f64
         if seen > MAX_PATCHES {
             return None;
         }
-        let judged = judge(face, tool, tip, &patch)?;
+        let judged = judge(face, tool, tip, &patch);
         if judged.least >= far {
             continue;
         }
@@ -231,8 +229,8 @@ impl Stretch {
     }
 }
 
-/// The distance over a patch from its middle; `None` if the surface tells nothing of its curvature.
-fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Option<Judged> {
+/// The distance over a patch from its middle.
+fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Judged {
     let (sin, cos) = patch.azimuth.sin_cos();
     let radial = tool.across[0] * cos + tool.across[1] * sin;
     let place = |p: [f64; 2]| tip + tool.axis * p[1] + radial * p[0];
@@ -257,7 +255,7 @@ fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Option<Judge
     if round {
         // From a point of the axis: nothing is farther from it than this.
         let reach = radius.hypot(0.5 * patch.stretch.length());
-        return Some(Judged { least: distance - reach - ball, sample, length: patch.stretch.length() });
+        return Judged { least: distance - reach - ball, sample, length: patch.stretch.length() };
     }
     let chord = if patch.half >= PI { 0.0 } else { 2.0 * radius * (0.5 * patch.half).sin() };
     let half = 0.5 * patch.stretch.length();
@@ -273,12 +271,11 @@ fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Option<Judge
     let length = 2.0 * half;
     let farthest = distance - reach - ball;
     if reach == 0.0 {
-        return Some(Judged { least: farthest, sample, length });
+        return Judged { least: farthest, sample, length };
     }
     let bend = match downward_bend(face, &foot, &p, reach) {
         Bend::AtMost(bend) => bend,
-        Bend::Unbounded => return Some(Judged { least: farthest, sample, length }),
-        Bend::Unknown => return None,
+        Bend::Unbounded => return Judged { least: farthest, sample, length },
     };
     let tangent = tool.axis.cross(&radial);
     // Of |a + b|² ≤ 2a² + 2b² one part goes to each direction; alone, a part needs no factor.
@@ -306,7 +303,7 @@ fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Option<Judge
         }
         Stretch::Ball { .. } => 0.0,
     };
-    Some(Judged { least: farthest.max(distance + around + along - ball), sample, length })
+    Judged { least: farthest.max(distance + around + along - ball), sample, length }
 }
 
 /// A point of the tool near the middle of a patch: of a ball, its point towards the surface if it belongs to the tool.

@@ -63,7 +63,6 @@ pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, r
             needed = needed.max(least);
         }
         let enough = match (found, at_best) {
-            (Bend::Unknown, _) => return Bend::Unknown,
             (Bend::AtMost(bound), _) => bound <= greatest.max(CLOSE * needed),
             _ => false,
         };

@@ -139,7 +139,7 @@ impl Search<'_> {
                     self.descend(&(point.tool - self.tip), None);
                 }
                 Certificate::Holds => return Proof::Within(slack),
-                Certificate::Undecided | Certificate::Unknown => return Proof::None,
+                Certificate::Undecided => return Proof::None,
             }
         }
         Proof::None

@@ -9,8 +9,6 @@ use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample};
 
 /// Pieces into which a vector is cut at first.
 const PIECES: usize = 3;
-/// Pieces where nothing is known of the surface's curvature.
-const PIECES_UNKNOWN: usize = 6;
 /// Misfit between values and slopes, as a share of the band, above which contact may jump in between.
 const JUMP: f64 = 2e-3;
 /// Bound of the halvings where it does.
@@ -28,17 +26,14 @@ const LEAST_OPEN: f64 = 1e-5;
 pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
     let (least, greatest) = (ends.least, ends.greatest);
     let mut course = Course { line, size, samples: vec![a], least, greatest, is_exhausted: false };
-    let unknown = course.bend(&a, &b) == Bend::Unknown;
-    let pieces = if unknown { PIECES_UNKNOWN } else { PIECES };
     let mut from = a;
-    for k in 1..=pieces {
-        let to = if k == pieces { b } else { line.sample(b.x * k as f64 / pieces as f64) };
+    for k in 1..=PIECES {
+        let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
         course.between(from, to, 0);
         course.samples.push(to);
         from = to;
     }
-    let found = !course.is_exhausted && course.holds();
-    let proven = ends.proven && found && (unknown || course.prove());
+    let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
     Extremes { least: course.least, greatest: course.greatest, proven }
 }
 

@@ -55,7 +55,6 @@ impl Ledger {
                 Bend::AtMost(bend)
             }
             Bend::Unbounded => upward_bend(gauge, tool, tip, spread, range),
-            Bend::Unknown => Bend::Unknown,
         }
     }
 
@@ -73,7 +72,6 @@ impl Ledger {
                 self.levels.set([Some(Level { tip: *tip, axis: tool.axis, level }), known[0]]);
                 true
             }
-            Certificate::Unknown => true,
             Certificate::Lower(_) | Certificate::Undecided => false,
         }
     }
