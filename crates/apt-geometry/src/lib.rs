@@ -8,6 +8,7 @@ pub mod canonical;
 pub mod cutter;
 pub mod definition;
 pub mod motion;
+pub mod regional;
 pub mod surface;
 
 /// A point or vector in part-program coordinates.
