@@ -8,6 +8,7 @@ pub mod canonical;
 pub mod cutter;
 pub mod definition;
 pub mod motion;
+pub mod parametric;
 pub mod regional;
 pub mod surface;
 

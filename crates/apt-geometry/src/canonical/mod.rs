@@ -12,6 +12,7 @@ mod plane;
 mod poly_conic;
 mod quadric;
 mod ruled;
+mod sculptured;
 mod tabulated;
 mod transform;
 mod values;
@@ -26,7 +27,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Vec3;
+use crate::{
+    Vec3,
+    parametric::{SculpturedSurface, SpaceCurve},
+};
 
 /// `n·x = d`, with `n` a unit vector unless it was entered by CANON.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -166,6 +170,8 @@ pub enum GeometryKind {
     TabulatedCylinder,
     RuledSurface,
     Pattern,
+    Sculptured,
+    SpaceCurve,
 }
 
 /// A defined geometric entity.
@@ -193,6 +199,8 @@ pub enum Geometry {
     TabulatedCylinder(Arc<TabulatedCylinder>),
     RuledSurface(Arc<RuledSurface>),
     Pattern(Arc<Pattern>),
+    Sculptured(Arc<SculpturedSurface>),
+    SpaceCurve(Arc<SpaceCurve>),
 }
 
 impl Geometry {
@@ -218,6 +226,8 @@ impl Geometry {
             Geometry::TabulatedCylinder(_) => GeometryKind::TabulatedCylinder,
             Geometry::RuledSurface(_) => GeometryKind::RuledSurface,
             Geometry::Pattern(_) => GeometryKind::Pattern,
+            Geometry::Sculptured(_) => GeometryKind::Sculptured,
+            Geometry::SpaceCurve(_) => GeometryKind::SpaceCurve,
         }
     }
 }

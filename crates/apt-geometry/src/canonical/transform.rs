@@ -80,6 +80,14 @@ impl Geometry {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),
                 ..Pattern::clone(pattern)
             })),
+            Geometry::Sculptured(surface) => {
+                inverse()?;
+                Geometry::Sculptured(Arc::new(surface.transformed(matrix)))
+            }
+            Geometry::SpaceCurve(curve) => {
+                inverse()?;
+                Geometry::SpaceCurve(Arc::new(curve.transformed(matrix)))
+            }
             Geometry::PolyConic(values) => {
                 Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?))
             }

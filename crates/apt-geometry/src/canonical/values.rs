@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     Arrangement, Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Quadric, Sphere,
-    TabulatedCylinder,
+    TabulatedCylinder, sculptured,
 };
 use crate::Vec3;
 
@@ -62,7 +62,8 @@ impl Geometry {
     ///
     /// A TABCYL gives the number of its points (extensions included), nine numbers of the axes, seven numbers per
     /// interval and the last point; a PATERN its arrangement (1 LINEAR, 2 ARC, 3 RANDOM, 4 PARLEL), the number of
-    /// points, the points per column and the points; a RLDSRF each of its parts, preceded by the surface code.
+    /// points, the points per column and the points; a RLDSRF each of its parts, preceded by the surface code; SSURF and
+    /// SCURV their heads and control points.
     pub fn canonical_values(&self) -> Vec<f64> {
         match self {
             Geometry::Point(place) | Geometry::Vector(place) => place.iter().copied().collect(),
@@ -86,6 +87,8 @@ impl Geometry {
             Geometry::TabulatedCylinder(surface) => tabulated_values(surface),
             Geometry::RuledSurface(surface) => surface.parts.iter().flat_map(coded_values).collect(),
             Geometry::Pattern(pattern) => pattern_values(pattern),
+            Geometry::Sculptured(surface) => sculptured::surface_values(surface),
+            Geometry::SpaceCurve(curve) => sculptured::curve_values(curve),
         }
     }
 
@@ -126,6 +129,8 @@ impl Geometry {
             GeometryKind::Loft => Geometry::Loft(Arc::new(values.to_vec())),
             GeometryKind::TabulatedCylinder => Geometry::TabulatedCylinder(Arc::new(tabulated_from(values)?)),
             GeometryKind::Pattern => Geometry::Pattern(Arc::new(pattern_from(values)?)),
+            GeometryKind::Sculptured => Geometry::Sculptured(Arc::new(sculptured::surface_from(values)?)),
+            GeometryKind::SpaceCurve => Geometry::SpaceCurve(Arc::new(sculptured::curve_from(values)?)),
             GeometryKind::RuledSurface => return Err(CanonicalError::NoRow { kind }),
         })
     }
@@ -171,7 +176,7 @@ fn pattern_values(pattern: &Pattern) -> Vec<f64> {
 }
 
 /// A count at `position`, or the error that says that it is none.
-fn count(kind: GeometryKind, values: &[f64], position: usize) -> Result<usize, CanonicalError> {
+pub(super) fn count(kind: GeometryKind, values: &[f64], position: usize) -> Result<usize, CanonicalError> {
     let missing = CanonicalError::Count { kind, expected: position + 1, found: values.len() };
     let value = *values.get(position).ok_or(missing)?;
     // More values than the row has is impossible, so the row's length bounds the count.

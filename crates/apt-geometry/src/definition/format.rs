@@ -69,7 +69,11 @@ pub fn formats(kind: GeometryKind) -> &'static [Format] {
         GeometryKind::Quadric => super::conic::QUADRIC_FORMATS,
         GeometryKind::Vector => super::vector::FORMATS,
         GeometryKind::Matrix => super::matrix::FORMATS,
-        GeometryKind::PolyConic | GeometryKind::Loft => &[],
+        GeometryKind::PolyConic
+        | GeometryKind::Loft
+        // Their statements have qualifiers that come in any number and order: no list of formats holds them.
+        | GeometryKind::Sculptured
+        | GeometryKind::SpaceCurve => &[],
         GeometryKind::TabulatedCylinder => super::tabulated::FORMATS,
         GeometryKind::RuledSurface => super::ruled::FORMATS,
         GeometryKind::Pattern => super::pattern::FORMATS,

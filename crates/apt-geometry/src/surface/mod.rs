@@ -146,7 +146,9 @@ impl Surface {
             | Geometry::Vector(_)
             | Geometry::Matrix(_)
             | Geometry::Loft(_)
-            | Geometry::Pattern(_) => Err(SurfaceError::Unsupported { kind }),
+            | Geometry::Pattern(_)
+            | Geometry::Sculptured(_)
+            | Geometry::SpaceCurve(_) => Err(SurfaceError::Unsupported { kind }),
         }
     }
 

@@ -1,6 +1,10 @@
 //! Canonical forms in words: what each number means.
 
-use apt_geometry::canonical::{Geometry, GeometryKind};
+use apt_geometry::{
+    Vec3,
+    canonical::{Geometry, GeometryKind},
+    parametric::{CurveArc, Patch},
+};
 use apt_program::symbols::Value;
 
 /// A name's value in canonical form.
@@ -166,7 +170,29 @@ fn sentence(geometry: &Geometry) -> String {
             format!("ruled surface made from {} entities", surface.parts.len())
         }
         Geometry::Pattern(pattern) => format!("pattern of {} points", pattern.points.len()),
+        Geometry::Sculptured(surface) => {
+            let arrangement = surface.grid.map_or(String::new(), |(u, v)| format!(", {u} by {v}"));
+            let points = surface.patches.iter().flat_map(Patch::points).flatten();
+            format!(
+                "sculptured surface of {} patches{arrangement}, inside {}",
+                surface.patches.len(),
+                within(points)
+            )
+        }
+        Geometry::SpaceCurve(curve) => {
+            let points = curve.arcs.iter().flat_map(CurveArc::points);
+            format!("space curve of {} arcs, inside {}", curve.arcs.len(), within(points))
+        }
     }
+}
+
+/// The box of points, in words.
+fn within(points: impl Iterator<Item = Vec3>) -> String {
+    let (low, high) = points
+        .fold((Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)), |(low, high), point| {
+            (low.inf(&point), high.sup(&point))
+        });
+    format!("{} … {}", triple(&low), triple(&high))
 }
 
 fn plane(plane: &apt_geometry::canonical::Plane) -> String {

@@ -258,6 +258,8 @@ impl Evaluator<'_> {
                 | GeometryKind::RuledSurface
                 | GeometryKind::PolyConic
                 | GeometryKind::Pattern
+                | GeometryKind::Sculptured
+                | GeometryKind::SpaceCurve
         );
         if is_large {
             self.report(FindingKind::ObtainLarge { kind: found }, range);

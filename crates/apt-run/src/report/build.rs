@@ -138,7 +138,9 @@ fn symbols(program: &Program) -> Map<String, Value> {
 fn geometry_value(geometry: &Geometry) -> Value {
     let word = geometry.kind().word();
     match geometry {
-        Geometry::Pattern(_) => json!({ "type": word, "canonical": null }),
+        Geometry::Pattern(_) | Geometry::Sculptured(_) | Geometry::SpaceCurve(_) => {
+            json!({ "type": word, "canonical": null })
+        }
         Geometry::RuledSurface(surface) => {
             let parts: Vec<_> = surface.parts.iter().map(geometry_value).collect();
             json!({ "type": word, "canonical": null, "parts": parts })

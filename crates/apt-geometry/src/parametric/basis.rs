@@ -1,0 +1,69 @@
+//! Cubic Bernstein polynomials: values, halving, and the conversions of other cubic forms to control points.
+
+use nalgebra::Vector4;
+
+use crate::Vec3;
+
+/// A point in homogeneous coordinates `(wx, wy, wz, w)`.
+pub(super) type Homogeneous = Vector4<f64>;
+
+/// Four control points of a cubic, and the value with two derivatives at `t`.
+pub(super) fn cubic(control: &[Homogeneous; 4], t: f64) -> [Homogeneous; 3] {
+    let [a, b, c, d] = control;
+    let s = 1.0 - t;
+    let value = a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t);
+    let first = ((b - a) * (s * s) + (c - b) * (2.0 * s * t) + (d - c) * (t * t)) * 3.0;
+    let second = ((c - b * 2.0 + a) * s + (d - c * 2.0 + b) * t) * 6.0;
+    [value, first, second]
+}
+
+/// Both parts of a cubic cut at `t` (de Casteljau).
+pub(super) fn cut(control: &[Homogeneous; 4], t: f64) -> [[Homogeneous; 4]; 2] {
+    let between = |a: &Homogeneous, b: &Homogeneous| a + (b - a) * t;
+    let [a, b, c, d] = control;
+    let (ab, bc, cd) = (between(a, b), between(b, c), between(c, d));
+    let (abc, bcd) = (between(&ab, &bc), between(&bc, &cd));
+    let middle = between(&abc, &bcd);
+    [[*a, ab, abc, middle], [middle, bcd, cd, *d]]
+}
+
+/// Control points of `P0 + P1 t + P2 t² + P3 t³`.
+pub(super) fn from_power(c: &[Homogeneous; 4]) -> [Homogeneous; 4] {
+    let third = 1.0 / 3.0;
+    [c[0], c[0] + c[1] * third, c[0] + c[1] * (2.0 * third) + c[2] * third, c[0] + c[1] + c[2] + c[3]]
+}
+
+/// Control points of the cubic from `p` to `q` with the derivatives `dp` and `dq` there.
+pub(super) fn from_hermite(
+    p: &Homogeneous,
+    q: &Homogeneous,
+    dp: &Homogeneous,
+    dq: &Homogeneous,
+) -> [Homogeneous; 4] {
+    [*p, p + dp / 3.0, q - dq / 3.0, *q]
+}
+
+/// Control points of one span of a uniform cubic B-spline.
+pub(super) fn from_uniform(d: &[Homogeneous; 4]) -> [Homogeneous; 4] {
+    [
+        (d[0] + d[1] * 4.0 + d[2]) / 6.0,
+        (d[1] * 2.0 + d[2]) / 3.0,
+        (d[1] + d[2] * 2.0) / 3.0,
+        (d[1] + d[2] * 4.0 + d[3]) / 6.0,
+    ]
+}
+
+/// A place with weight 1.
+pub(super) fn place(point: &Vec3) -> Homogeneous {
+    Vector4::new(point.x, point.y, point.z, 1.0)
+}
+
+/// A direction: weight 0.
+pub(super) fn direction(vector: &Vec3) -> Homogeneous {
+    Vector4::new(vector.x, vector.y, vector.z, 0.0)
+}
+
+/// The quotient `A/w` of a homogeneous value.
+pub(super) fn project(value: &Homogeneous) -> Vec3 {
+    value.xyz() / value.w
+}
