@@ -110,7 +110,7 @@ fn neighbour_from(word: f64, patches: usize) -> Option<Option<Neighbour>> {
     if word == -1.0 {
         return Some(None);
     }
-    if !(word >= 0.0 && word < 4.0 * NEIGHBOUR_BIT && word.fract() == 0.0) {
+    if !(0.0..4.0 * NEIGHBOUR_BIT).contains(&word) || word.fract() != 0.0 {
         return None;
     }
     let (bits, number) = ((word / NEIGHBOUR_BIT) as u8, (word % NEIGHBOUR_BIT) as usize);

@@ -12,6 +12,7 @@ mod given;
 mod line;
 mod matrix;
 mod modifier;
+mod parametric_error;
 mod pattern;
 mod plane;
 mod plane_conic_points;
@@ -19,7 +20,10 @@ mod point;
 mod round;
 mod ruled;
 mod ruled_fit;
+mod sculptured;
+mod sculptured_query;
 mod solve;
+mod space_curve;
 mod tabulated;
 mod tabulated_curve;
 mod tabulated_newton;
@@ -28,7 +32,19 @@ mod vector;
 
 pub use format::{ArgumentKind, Format, Parameter, first_mismatch, formats, matching_format, type_of_next};
 pub use modifier::Modifier;
+pub use parametric_error::ParametricError;
 pub use ruled_fit::{RuledFault, ruled_faults};
+pub use sculptured::{
+    AxisInput, CurveProduct, MeshRestriction, PatchForm, SculpturedDefinition, SurfaceRange, SurfaceShape,
+    Turning,
+};
+pub use sculptured_query::{
+    CurveParameter, ParametricCount, ParametricDirection, ParametricPlace, ParametricQuery,
+};
+pub use space_curve::{
+    CurveShape, Defined, FlowInput, FlowMeasure, LineOrCircle, ParametricNode, SegmentInput, SegmentSide,
+    SpaceCurveDefinition,
+};
 
 use crate::canonical::{CanonicalError, Geometry, GeometryKind};
 
