@@ -15,6 +15,8 @@ use super::{Gauge, Tool, closed_form};
 const MAX_BOXES: u32 = 600;
 /// The same where some box has no bound yet.
 const MAX_BOXES_UNBOUNDED: u32 = 2400;
+/// Boxes that are looked at between two questions whether to give up.
+const BOXES_A_QUESTION: u32 = 64;
 /// A box is small enough when its bound exceeds that of its centre by this factor at most.
 const CLOSE: f64 = 1.25;
 
@@ -27,8 +29,16 @@ struct Cell {
 
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
-/// strays farther than `spread` from its place for the given tool end.
-pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Bend {
+/// strays farther than `spread` from its place for the given tool end. There is none once `cancel`, asked once in
+/// [`BOXES_A_QUESTION`] boxes, says true.
+pub(crate) fn upward_bend(
+    gauge: &Gauge,
+    tool: &Tool,
+    tip: &Vec3,
+    spread: f64,
+    range: [f64; 2],
+    cancel: &dyn Fn() -> bool,
+) -> Bend {
     let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
     if gauge.on {
         return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
@@ -44,6 +54,9 @@ pub(crate) fn upward_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, r
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
     while let Some(cell) = cells.pop() {
         seen += 1;
+        if seen % BOXES_A_QUESTION == 0 && cancel() {
+            return Bend::Unbounded;
+        }
         if cell.beside(radius) {
             continue;
         }

@@ -92,7 +92,7 @@ pub(super) fn run(
         state,
         prepared,
         checks,
-        stepper: Stepper::new(prepared, state.maximum_step),
+        stepper: Stepper::new(prepared, state.maximum_step, cancel),
         watcher: Watcher::new(prepared, checks),
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),

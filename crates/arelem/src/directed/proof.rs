@@ -43,6 +43,7 @@ struct Line<'a> {
     sweep: &'a Sweep<'a>,
     role: &'a Working,
     ledger: &'a Ledger,
+    cancel: &'a dyn Fn() -> bool,
     /// −1 turns a concave clearance into a convex one.
     sign: f64,
 }
@@ -66,7 +67,8 @@ impl Line<'_> {
     }
 }
 
-/// Least and greatest clearance over the straight move between two positions with known contacts.
+/// Least and greatest clearance over the straight move between two positions with known contacts. Once `cancel` says true,
+/// nothing more is proven.
 pub(crate) fn extremes(
     sweep: &Sweep<'_>,
     role: &Working,
@@ -74,20 +76,21 @@ pub(crate) fn extremes(
     from: (&Vec3, &Contact),
     to: (&Vec3, &Contact),
     size: f64,
+    cancel: &dyn Fn() -> bool,
 ) -> Extremes {
     let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
     let length = sweep.length;
     let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
     if length > 0.0 && sweep.turns() && !role.gauge.on {
         // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
-        let line = Line { sweep, role, ledger, sign: 1.0 };
+        let line = Line { sweep, role, ledger, cancel, sign: 1.0 };
         return course::extremes(&line, line.sample(0.0), line.sample(length), ends, size);
     }
     if role.shape == Shape::Flat || length <= 0.0 {
         return ends;
     }
     let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
-    let line = Line { sweep, role, ledger, sign };
+    let line = Line { sweep, role, ledger, cancel, sign };
     let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
     match role.shape {
         Shape::Flat => ends,
@@ -116,6 +119,9 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f
     let (mut a, mut b) = (a, b);
     let mut value = a.value.min(b.value);
     for _ in 0..MAX_ITERATIONS {
+        if (line.cancel)() {
+            return (value, f64::NEG_INFINITY);
+        }
         let (x, bound) = tangents_meet(a, b);
         if value - bound <= enough {
             return (value, bound);

@@ -268,7 +268,7 @@ impl<'a> Watcher<'a> {
                 let base = if *on { 0.0 } else { thickness + working.rest() };
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
-                if let Bend::AtMost(bend) = upward_bend(&gauge, &tool, &middle, 0.5 * way, range) {
+                if let Bend::AtMost(bend) = upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|| false) {
                     let bend = if *on { bend } else { bend * stretch * stretch + sweep.swing() };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;
                     if clear || bend * step * step / 8.0 <= LEAST_STEP * working.band() {

@@ -1,13 +1,17 @@
 //! Runs a motion through the engine and says what became of it.
 
-use std::{cell::Cell, collections::BTreeMap};
+use std::{
+    cell::Cell,
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
 
 use apt_geometry::motion::MotionCommand;
 use arelem::{
     MotionFailure,
     section2::{Output, State, execute},
     sequence::CutSequence,
-    verify::verify,
+    verify::{VerifyError, verify},
 };
 
 use crate::{
@@ -15,8 +19,8 @@ use crate::{
     search::{Found, Reader},
 };
 
-/// How often a motion may ask whether it is cancelled: the budget of its iterations.
-const BUDGET: u32 = 20_000;
+/// How often a motion may ask whether it is cancelled: the budget of its clearances, more or less, in engine and verifier.
+const BUDGET: u32 = 100_000;
 
 /// What became of a motion.
 #[derive(Debug, Clone)]
@@ -29,6 +33,8 @@ pub(crate) enum Verdict {
     WronglyRefused(String),
     /// Delivered, and the verifier does not accept it.
     Wrong(String),
+    /// Neither delivered nor refused within the budget.
+    Slow(String),
 }
 
 /// Counts for a pair of surfaces.
@@ -42,13 +48,18 @@ pub(crate) struct Tally {
     refused: usize,
     wrongly_refused: usize,
     wrong: usize,
+    slow: usize,
+    /// What it took; it decides nothing.
+    time: Duration,
     pub(crate) faults: Vec<String>,
     /// What was said of motions that were rightly refused, and how often.
     refusals: BTreeMap<String, usize>,
 }
 
 impl Tally {
-    pub(crate) fn note(&mut self, index: u64, case: &Case, verdict: Verdict) {
+    /// Counts a verdict, and what it took since `began`.
+    pub(crate) fn note(&mut self, index: u64, case: &Case, (verdict, began): (Verdict, Instant)) {
+        self.time += began.elapsed();
         match verdict {
             Verdict::Proven(vectors) => {
                 self.proven += 1;
@@ -66,6 +77,10 @@ impl Tally {
                 self.wrong += 1;
                 self.faults.push(format!("#{index} {}: wrong: {words}", case.shape));
             }
+            Verdict::Slow(words) => {
+                self.slow += 1;
+                self.faults.push(format!("#{index} {}: too slow: {words}", case.shape));
+            }
         }
     }
 
@@ -77,24 +92,39 @@ impl Tally {
         self.refused += other.refused;
         self.wrongly_refused += other.wrongly_refused;
         self.wrong += other.wrong;
+        self.slow += other.slow;
+        self.time += other.time;
         for (words, count) in &other.refusals {
             *self.refusals.entry(words.clone()).or_default() += count;
         }
     }
 
-    pub(crate) fn counts(&self) -> String {
-        let run = self.proven + self.refused + self.wrongly_refused + self.wrong;
-        format!(
-            "{run} run, {} proven ({} vectors), {} rightly refused {:?}, {} wrongly refused, {} wrong, {} not drawn, {} left out",
+    /// Names of the columns of [`Tally::row`].
+    pub(crate) const COLUMNS: &'static str =
+        "run, proven, vectors, rightly refused, wrongly refused, wrong, slow, not drawn, left out, ms each";
+
+    pub(crate) fn row(&self) -> String {
+        let run = self.proven + self.refused + self.wrongly_refused + self.wrong + self.slow;
+        let each = self.time.as_secs_f64() * 1e3 / run.max(1) as f64;
+        let counts = [
+            run,
             self.proven,
             self.vectors,
             self.refused,
-            self.refusals,
             self.wrongly_refused,
             self.wrong,
+            self.slow,
             self.undrawn,
-            self.left_out
-        )
+            self.left_out,
+        ];
+        let mut row: String = counts.iter().map(|count| format!("{count:>9}")).collect();
+        row += &format!("{each:>9.1}");
+        row
+    }
+
+    /// What was said of the motions that were rightly refused.
+    pub(crate) fn refusals(&self) -> String {
+        self.refusals.iter().map(|(words, count)| format!("{words} {count}")).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -110,13 +140,14 @@ impl Runner {
         Self { state: State::new(1.0), sequences: Vec::new(), left: Cell::new(BUDGET) }
     }
 
+    fn spent(&self) -> bool {
+        self.left.set(self.left.get().saturating_sub(1));
+        self.left.get() == 0
+    }
+
     pub(crate) fn run(&mut self, commands: &[MotionCommand]) -> Result<(), MotionFailure> {
         for command in commands {
-            let spent = || {
-                self.left.set(self.left.get().saturating_sub(1));
-                self.left.get() == 0
-            };
-            let execution = execute(&self.state, command, &spent);
+            let execution = execute(&self.state, command, &|| self.spent());
             self.state = execution.state;
             if let Some(failure) = execution.failure {
                 return Err(failure);
@@ -141,8 +172,16 @@ pub(crate) fn fault(sequence: &CutSequence) -> Option<String> {
 pub(crate) fn judge(case: &Case) -> Verdict {
     let mut runner = Runner::new();
     let outcome = runner.run(&case.commands());
-    if let Some(words) = runner.sequences.iter().find_map(fault) {
-        return Verdict::Wrong(words);
+    for sequence in &runner.sequences {
+        let vectors = sequence.points.len();
+        match verify(sequence, &|| runner.spent()) {
+            Ok(evidence) if evidence.verified => {}
+            Err(VerifyError::Cancelled) => return Verdict::Slow(format!("{vectors} vectors to verify")),
+            _ => return Verdict::Wrong(fault(sequence).unwrap_or_default()),
+        }
+    }
+    if matches!(outcome, Err(MotionFailure::Cancelled)) {
+        return Verdict::Slow(format!("after {} sequences", runner.sequences.len()));
     }
     let Err(failure) = outcome else {
         return Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum());

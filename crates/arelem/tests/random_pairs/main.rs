@@ -5,7 +5,7 @@
 //! Surfaces are laid against a tool at a random place, so that the start-up has a solution; a share is laid anywhere.
 //!
 //! `APT_CASES` sets the number of motions of each pair, `APT_SEED` the seed, `APT_PAIR` (`sphere/cone`) looks at one pair,
-//! and `APT_CASE` at one motion of it.
+//! and `APT_CASE` at one motion of it; `APT_PAIRS` (`2/5`) looks at the second of five parts of the pairs.
 
 mod case;
 mod judge;
@@ -18,7 +18,7 @@ mod tools;
 #[path = "../support/wave.rs"]
 mod wave;
 
-use std::{collections::BTreeMap, fmt::Write as _};
+use std::{collections::BTreeMap, fmt::Write as _, time::Instant};
 
 use case::Case;
 use judge::Tally;
@@ -39,11 +39,21 @@ fn pairs() -> Vec<(Kind, Kind)> {
         Some((p, d)) => (p == "*" || part.name() == p) && (d == "*" || drive.name() == d),
         None => true,
     };
+    let [slice, slices] = slice().unwrap_or([1, 1]);
     Kind::ALL
         .into_iter()
         .flat_map(|part| Kind::ALL.into_iter().map(move |drive| (part, drive)))
-        .filter(|(part, drive)| is_wanted(*part, *drive))
+        .enumerate()
+        .filter(|(k, (part, drive))| k % slices + 1 == slice && is_wanted(*part, *drive))
+        .map(|(_, pair)| pair)
         .collect()
+}
+
+/// Which part of the pairs, of how many.
+fn slice() -> Option<[usize; 2]> {
+    let words = std::env::var("APT_PAIRS").ok()?;
+    let (slice, slices) = words.split_once('/')?;
+    Some([slice.parse().ok()?, slices.parse().ok().filter(|n| *n > 0)?])
 }
 
 /// The seed of one motion of a pair.
@@ -54,20 +64,27 @@ fn seed(base: u64, part: Kind, drive: Kind, index: u64) -> u64 {
         ^ index.wrapping_mul(0x94d0_49bb_1331_11eb)
 }
 
+/// A table of counts, a row per pair, and every fault.
 fn describe(pairs: &BTreeMap<(Kind, Kind), Tally>) -> String {
     let mut report = String::new();
     let mut all = Tally::default();
-    for ((part, drive), tally) in pairs {
-        let _ = writeln!(report, "{} along {}: {}", part.name(), drive.name(), tally.counts());
+    let _ = writeln!(report, "{}", Tally::COLUMNS);
+    for (pair, tally) in pairs {
+        let _ = writeln!(report, "{:<22}{}", name(*pair), tally.row());
         all.add(tally);
     }
-    let _ = writeln!(report, "all: {}", all.counts());
-    for ((part, drive), tally) in pairs {
+    let _ = writeln!(report, "{:<22}{}", "all", all.row());
+    let _ = writeln!(report, "rightly refused: {}", all.refusals());
+    for (pair, tally) in pairs {
         for line in &tally.faults {
-            let _ = writeln!(report, "{}/{} {line}", part.name(), drive.name());
+            let _ = writeln!(report, "{} {line}", name(*pair));
         }
     }
     report
+}
+
+fn name((part, drive): (Kind, Kind)) -> String {
+    format!("{}/{}", part.name(), drive.name())
 }
 
 /// Looks at so many motions of every pair; sparing ones leave out surfaces to which distances are searched for.
@@ -90,20 +107,20 @@ fn every_pair(
         // Where distances are searched for, a motion takes a hundred times as long.
         let cases = if slow { cases.div_ceil(SLOW_SHARE) } else { cases };
         for index in one.map_or(0..cases, |index| index..index + 1) {
+            let told = tally.faults.len();
             match Case::draw(part, drive, seed(base, part, drive, index)) {
                 Some(case) if sparing && case.has_slow_stop => tally.left_out += 1,
                 Some(case) => look(index, &case, tally),
                 None => tally.undrawn += 1,
             }
+            if cases > TELLING {
+                for line in &tally.faults[told..] {
+                    println!("{} {line}", name((part, drive)));
+                }
+            }
         }
         if cases > TELLING {
-            println!(
-                "{} along {}: {}\n{}",
-                part.name(),
-                drive.name(),
-                tally.counts(),
-                tally.faults.join("\n")
-            );
+            println!("{:<22}{}", name((part, drive)), tally.row());
         }
     }
     tallies
@@ -123,17 +140,18 @@ fn motions_of_every_pair_are_proven_or_refused_rightly() {
         if told {
             println!("{case:#?}");
         }
+        let began = Instant::now();
         let verdict = judge::judge(case);
         if told {
             println!("{verdict:?}");
         }
-        tally.note(index, case, verdict);
+        tally.note(index, case, (verdict, began));
     });
     let report = describe(&tallies);
     println!("{report}");
     assert!(tallies.values().all(|t| t.faults.is_empty()), "\n{report}");
     let proven: usize = tallies.values().map(|t| t.proven).sum();
-    assert!(proven > 0, "\n{report}");
+    assert!(proven > 0 || number("APT_CASE").is_some(), "\n{report}");
 }
 
 /// A share of the motions: each is run nine times.

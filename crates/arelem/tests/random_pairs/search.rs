@@ -203,8 +203,17 @@ impl<'a> Reader<'a> {
         let long = self.case.reach / STEPS_TO_STOP;
         let mut length = 0.0;
         let mut status: Option<bool> = None;
+        // No part of the tool moves farther than the tool end: so far the check surface need not be read again.
+        let mut last: Option<(Vec3, f64)> = None;
         while length < FAR * self.case.reach + 1.0 {
-            let Some(value) = self.check(&tip) else { return Found::Ends(length) };
+            let value = match last {
+                Some((at, value)) if (tip - at).norm() + band < value.abs() => value,
+                _ => {
+                    let Some(value) = self.check(&tip) else { return Found::Ends(length) };
+                    last = Some((tip, value));
+                    value
+                }
+            };
             let now = value > 0.0;
             match status {
                 None if value.abs() <= band => {}

@@ -35,6 +35,7 @@ const PROBE: f64 = 1e-4;
 pub(super) struct Stepper<'a> {
     prepared: &'a Prepared,
     maximum: f64,
+    cancel: &'a dyn Fn() -> bool,
     /// Second derivative of each clearance along the path: part, drive.
     curvature: Option<[f64; 2]>,
     /// How much longer than predicted the last vector came out.
@@ -55,8 +56,8 @@ struct Trial {
 }
 
 impl<'a> Stepper<'a> {
-    pub(super) fn new(prepared: &'a Prepared, maximum: f64) -> Self {
-        Self { prepared, maximum, curvature: None, correction: 1.0, ledgers: Default::default() }
+    pub(super) fn new(prepared: &'a Prepared, maximum: f64, cancel: &'a dyn Fn() -> bool) -> Self {
+        Self { prepared, maximum, cancel, curvature: None, correction: 1.0, ledgers: Default::default() }
     }
 
     fn roles(&self) -> [&Working; 2] {
@@ -79,6 +80,9 @@ impl<'a> Stepper<'a> {
         for _ in 0..MAX_TRIALS {
             if length <= least {
                 break;
+            }
+            if (self.cancel)() {
+                return Err(MotionFailure::Cancelled);
             }
             let Some(trial) = self.attempt(here, length, cap, &bends) else {
                 shortest_bad = shortest_bad.min(length);
@@ -135,9 +139,10 @@ impl<'a> Stepper<'a> {
         let Prepared { part, drive, size, .. } = self.prepared;
         let sweep = from.sweep(self.prepared, to);
         let [for_part, for_drive] = &self.ledgers;
+        let over = |role, ledger, a, b| proof::extremes(&sweep, role, ledger, a, b, *size, self.cancel);
         [
-            proof::extremes(&sweep, part, for_part, (&from.tip, &from.part), (&to.tip, &to.part), *size),
-            proof::extremes(&sweep, drive, for_drive, (&from.tip, &from.drive), (&to.tip, &to.drive), *size),
+            over(part, for_part, (&from.tip, &from.part), (&to.tip, &to.part)),
+            over(drive, for_drive, (&from.tip, &from.drive), (&to.tip, &to.drive)),
         ]
     }
 

@@ -66,7 +66,7 @@ impl Course<'_, '_> {
         let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
         if misfit.abs() > JUMP * band && depth < MAX_DEPTH {
             let limit = if self.holds() { MAX_SAMPLES } else { MAX_SAMPLES_REFUSED };
-            if self.samples.len() >= limit {
+            if self.samples.len() >= limit || (self.line.cancel)() {
                 self.is_exhausted = true;
                 return;
             }
@@ -115,7 +115,7 @@ impl Course<'_, '_> {
             }
             let x = 0.5 * (a.x + b.x);
             count += 1;
-            if count > MAX_SAMPLES || x <= a.x || x >= b.x {
+            if count > MAX_SAMPLES || x <= a.x || x >= b.x || (self.line.cancel)() {
                 return false;
             }
             let middle = self.line.sample(x);
@@ -142,7 +142,7 @@ impl Course<'_, '_> {
 
     /// Bound of the second derivative along the stretch between two samples.
     fn bend(&self, a: &Sample, b: &Sample) -> Bend {
-        let Line { sweep, role, ledger, .. } = self.line;
+        let Line { sweep, role, ledger, cancel, .. } = self.line;
         let stretch = if role.gauge.on { 1.0 } else { sweep.stretch() };
         let way = (b.x - a.x) * stretch;
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
@@ -150,7 +150,7 @@ impl Course<'_, '_> {
         // A point that is in contact on the way is nowhere farther from contact than the way is long.
         let range = [low - way + thickness, high + 2.0 * way + thickness];
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
-        match ledger.bend(&role.gauge, &tool, &tip, 0.5 * way, range) {
+        match ledger.bend(&role.gauge, &tool, (&tip, 0.5 * way), range, cancel) {
             Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend),
             Bend::AtMost(bend) => Bend::AtMost(bend * stretch * stretch + sweep.swing()),
             other => other,

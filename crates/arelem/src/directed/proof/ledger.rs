@@ -19,6 +19,24 @@ struct Bound {
     bend: f64,
 }
 
+/// A region about a place over which there is no bound: nor is there over a greater one.
+#[derive(Debug, Clone, Copy)]
+struct Gap {
+    tip: Vec3,
+    axis: Vec3,
+    spread: f64,
+    range: [f64; 2],
+}
+
+impl Gap {
+    fn lies_in(&self, tip: &Vec3, axis: &Vec3, spread: f64, range: [f64; 2]) -> bool {
+        (tip - self.tip).norm() + self.spread <= spread
+            && *axis == self.axis
+            && range[0] <= self.range[0]
+            && range[1] >= self.range[1]
+    }
+}
+
 /// A level that the clearance at a place is not below.
 #[derive(Debug, Clone, Copy)]
 struct Level {
@@ -31,14 +49,22 @@ struct Level {
 #[derive(Debug, Default)]
 pub(crate) struct Ledger {
     bound: Cell<Option<Bound>>,
+    gap: Cell<Option<Gap>>,
     /// The last two: where a vector begins and where it ends.
     levels: Cell<[Option<Level>; 2]>,
 }
 
 impl Ledger {
     /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
-    /// distances of the points of contact are in `range`.
-    pub(super) fn bend(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Bend {
+    /// distances of the points of contact are in `range`. There is none once `cancel` says true.
+    pub(super) fn bend(
+        &self,
+        gauge: &Gauge,
+        tool: &Tool,
+        (tip, spread): (&Vec3, f64),
+        range: [f64; 2],
+        cancel: &dyn Fn() -> bool,
+    ) -> Bend {
         if let Some(bound) = self.bound.get()
             && (tip - bound.tip).norm() + spread <= bound.spread
             && tool.axis == bound.axis
@@ -49,13 +75,20 @@ impl Ledger {
         }
         let ample = FORESIGHT * spread;
         let wide = [range[0] - ample, range[1] + ample];
-        match upward_bend(gauge, tool, tip, ample, wide) {
-            Bend::AtMost(bend) => {
-                self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread: ample, range: wide, bend }));
-                Bend::AtMost(bend)
+        for (spread, range) in [(ample, wide), (spread, range)] {
+            let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
+            if self.gap.get().is_some_and(|known| known.lies_in(tip, &tool.axis, spread, range)) {
+                continue;
             }
-            Bend::Unbounded => upward_bend(gauge, tool, tip, spread, range),
+            match upward_bend(gauge, tool, tip, spread, range, cancel) {
+                Bend::AtMost(bend) => {
+                    self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread, range, bend }));
+                    return Bend::AtMost(bend);
+                }
+                Bend::Unbounded => self.gap.set(Some(gap)),
+            }
         }
+        Bend::Unbounded
     }
 
     /// True if no part of the tool is nearer to the surface than a level.
