@@ -5,17 +5,38 @@ use std::collections::BTreeMap;
 use cargo_metadata::{DependencyKind, MetadataCommand};
 
 /// Crates of this workspace that a crate may use.
-const MAY_USE: [(&str, &[&str]); 9] = [
+const MAY_USE: [(&str, &[&str]); 10] = [
     ("apt-syntax", &[]),
     ("apt-geometry", &[]),
     ("apt-cldata", &["apt-geometry"]),
     ("apt-program", &["apt-syntax", "apt-geometry"]),
     ("arelem", &["apt-geometry"]),
+    ("apt-sculptured", &["apt-geometry"]),
     ("apt-post", &["apt-cldata", "apt-geometry"]),
-    ("apt-run", &["apt-syntax", "apt-geometry", "apt-cldata", "apt-program", "arelem", "apt-post"]),
+    (
+        "apt-run",
+        &[
+            "apt-syntax",
+            "apt-geometry",
+            "apt-cldata",
+            "apt-program",
+            "arelem",
+            "apt-sculptured",
+            "apt-post",
+        ],
+    ),
     (
         "apt-ide",
-        &["apt-syntax", "apt-geometry", "apt-cldata", "apt-program", "arelem", "apt-post", "apt-run"],
+        &[
+            "apt-syntax",
+            "apt-geometry",
+            "apt-cldata",
+            "apt-program",
+            "arelem",
+            "apt-sculptured",
+            "apt-post",
+            "apt-run",
+        ],
     ),
     ("apt-lsp", &["apt-ide", "apt-run"]),
 ];
@@ -23,7 +44,7 @@ const MAY_USE: [(&str, &[&str]); 9] = [
 /// Libraries that belong to one floor: (library, the only crates that may use it).
 const BELONGS_TO: [(&str, &[&str]); 6] = [
     ("rowan", &["apt-syntax"]),
-    ("nalgebra", &["apt-geometry", "arelem"]),
+    ("nalgebra", &["apt-geometry", "arelem", "apt-sculptured"]),
     ("tower-lsp-server", &["apt-lsp"]),
     ("tokio", &["apt-lsp"]),
     ("clap", &["apt-lsp", "xtask"]),
