@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use apt_geometry::{canonical::Matrix, motion::MotionCommand};
+use apt_geometry::{canonical::Matrix, motion::MotionCommand, regional::RegionalMilling};
 use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
@@ -97,6 +97,8 @@ pub struct Record {
 pub enum RecordKind {
     /// A command to Section 2. A trailing feed rate has become a FEDRAT record before it.
     Motion(Box<MotionCommand>),
+    /// SMIL with the conditions of SCON and the switches in force.
+    Regional(Box<RegionalMilling>),
     /// A post-processor statement (class 2000).
     Postprocessor {
         /// The word.

@@ -17,13 +17,13 @@ syntax match aptCalled /\%(\<CALL\s*\/\s*\)\@<=\w\+/
 
 syntax keyword aptText INSERT PARTNO PPRINT REMARK TITLES TPRINT
 
-syntax keyword aptMotion GOBACK GODLTA GODOWN INDIRP INDIRV OFFSET POCKET SRFVCT GOFWD GOLFT
-syntax keyword aptMotion GORGT FROM GOTO GOUP PSIS SMIL GO
+syntax keyword aptMotion GCLEAR GOBACK GODLTA GODOWN GOMILL INDIRP INDIRV OFFSET POCKET SRFVCT
+syntax keyword aptMotion GOFWD GOLFT GORGT FROM GOTO GOUP PSIS SMIL GO
 
 syntax keyword aptToolPosition TLNDON TLOFPS TLONPS TLLFT TLRGT TLON
 
-syntax keyword aptPathParameter AVCTRL CHKSRF CUTTER NUMPTS OUTTOL TLAXIS INTOL MAXDP THICK TOLER
-syntax keyword aptPathParameter SCON
+syntax keyword aptPathParameter AVCTRL CHKSRF CUTTER INTSEC NUMPTS OUTTOL TLAXIS INTOL MAXDP THICK
+syntax keyword aptPathParameter TOLER SCON
 
 syntax keyword aptPathControl 2DCALC 3DCALC AUTOPS BEVELS DNTCUT GOUGCK MULTAX NDTEST DMILL NOPS
 syntax keyword aptPathControl CUT
@@ -38,7 +38,8 @@ syntax keyword aptTransformation MACHIN TRACUT INDEX COPY
 syntax keyword aptInputOutput INCLUD PRINT PUNCH READ
 
 syntax keyword aptSystemFlag CLPRNT DYNDMP LIBPRT NOPLOT NOPOST PTONLY SSTEST TABPRT TANCRV TUNEUP
-syntax keyword aptSystemFlag AVPRT DEBUG SSPRT CLTV CMIT SEC1 SEC2 DAC LTV MIT
+syntax keyword aptSystemFlag AVMSG AVPRT DEBUG SSPRT CLTV CMIT SEC1 SEC2 DAC LTV
+syntax keyword aptSystemFlag MIT
 
 syntax keyword aptGeometricType CIRCLE CONSEC CYLNDR ELLIPS ELMSRF GCONIC HYPERB LCONIC MATRIX PATERN
 syntax keyword aptGeometricType POLCON QADRIC RLDSRF SPHERE TABCYL VECTOR PLANE POINT SCURV SSURF
@@ -79,16 +80,16 @@ syntax keyword aptMinor CROSS CSINK DEPTH DITTO DRILL DSTAN FEDTO FLOOD FRONT GR
 syntax keyword aptMinor INTOF LARGE LIGHT LIMIT MINUS NIXIE PARAB PARAM PATCH PERSP
 syntax keyword aptMinor PSTAN RANGE RAPTO RIGHT RULED SCALE SLOPE SMALL SMESH SOLID
 syntax keyword aptMinor START TANDS TANON TANTO TIMES TWOPT XAXIS XYROT YAXIS YZROT
-syntax keyword aptMinor ZAXIS ZXROT AUTO BLUE BORE BOTH CCLW DARK DASH DECR
-syntax keyword aptMinor DEEP DOWN FACE FEED FLOW FULL GRID HIGH INCH INCR
-syntax keyword aptMinor INIT LAST LEFT LITE LOCK MAIN MILL MIST MMPM MMPR
-syntax keyword aptMinor NEGX NEGY NEGZ NEXT OMIT OPEN PART PAST PLUS POSN
-syntax keyword aptMinor POSX POSY POSZ RAIL REAM REAR SAME SIDE STEP THEN
-syntax keyword aptMinor THRU TRAV TURN TYPE UNIT 5PT ALL ARC BCD CAM
-syntax keyword aptMinor CLW FAN FPM FPR IPM IPR LOW MED NOW NOX
-syntax keyword aptMinor NOY NOZ OFF OUT PEN RED REV RPM SEG SFM
-syntax keyword aptMinor SMM TAP TPI XYZ AT CM IN MM ON TO
-syntax keyword aptMinor UP
+syntax keyword aptMinor ZAXIS ZXROT AUTO AXIS BLUE BORE BOTH CCLW DARK DASH
+syntax keyword aptMinor DECR DEEP DOWN FACE FEED FLOW FULL GRID HIGH INCH
+syntax keyword aptMinor INCR INIT LAST LEAD LEFT LITE LOCK MAIN MILL MIST
+syntax keyword aptMinor MMPM MMPR NEGX NEGY NEGZ NEXT OMIT OPEN PART PAST
+syntax keyword aptMinor PATH PLUS POSN POSX POSY POSZ RAIL REAM REAR SAME
+syntax keyword aptMinor SIDE STEP THEN THRU TRAV TURN TYPE UNIT 5PT ALL
+syntax keyword aptMinor ARC BCD CAM CLW FAN FPM FPR IPM IPR LAG
+syntax keyword aptMinor LOW MED NOW NOX NOY NOZ OFF OUT PEN RED
+syntax keyword aptMinor REV RPM SEG SFM SMM TAP TPI XYZ AT CM
+syntax keyword aptMinor DS IN MM ON PS TO UP
 
 " The rest of the card is text: behind columns 1-6, or in CL files behind a blank or slash.
 syntax match aptTextLine /\%(^\%(INSERT\|PARTNO\|PPRINT\|REMARK\|TITLES\|TPRINT\)\)\@<=.*$/

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use apt_geometry::{canonical::Plane, motion::DriveSide};
 use smol_str::SmolStr;
 
-use crate::symbols::{ReferenceSystem, Symbol, SymbolTable};
+use crate::{
+    statements::RegionalState,
+    symbols::{ReferenceSystem, Symbol, SymbolTable},
+};
 
 /// The state of Section 1 between two statements.
 #[derive(Debug, Clone)]
@@ -39,6 +42,8 @@ pub(crate) struct State {
     pub(crate) reached: usize,
     /// Labels of check surfaces whose statements are still to come: Section 2 may go on there.
     pub(crate) open_checks: imbl::OrdSet<SmolStr>,
+    /// The conditions and switches of regional milling.
+    pub(crate) regional: Arc<RegionalState>,
     /// FINI has been executed.
     pub(crate) ended: bool,
 }
@@ -69,6 +74,7 @@ impl Default for State {
             repeated: 0,
             reached: 0,
             open_checks: imbl::OrdSet::new(),
+            regional: Arc::default(),
             ended: false,
         }
     }
@@ -89,6 +95,7 @@ impl State {
             && self.exhausted == other.exhausted
             && self.repeated == other.repeated
             && self.open_checks == other.open_checks
+            && (Arc::ptr_eq(&self.regional, &other.regional) || self.regional == other.regional)
             && self.ended == other.ended
     }
 

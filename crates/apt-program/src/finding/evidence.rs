@@ -55,4 +55,61 @@ pub enum Expected {
     Integer,
     Pattern,
     Nothing,
+    /// One of these words.
+    Words(&'static [&'static str]),
+    SculpturedSurface,
+    /// A sculptured surface or a space curve.
+    SculpturedElement,
+    GuideSurface,
+    FeedsOrPlane,
+    DistanceVectorOrPlane,
+    /// PS or a sculptured surface, and ON or OFF.
+    CheckedAndSwitch,
+}
+
+/// A block of conditions that SCON sets and SMIL needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ConditionBlock {
+    /// SCON/DS.
+    Guide,
+    /// SCON/PS.
+    Part,
+    /// SCON/AXIS.
+    Axis,
+    /// SCON/FEED with four feed rates.
+    Feed,
+    /// SCON/FEED with a plane.
+    Clearance,
+    /// SCON/STEPOV.
+    Stepover,
+}
+
+impl ConditionBlock {
+    /// All blocks.
+    pub const ALL: [ConditionBlock; 6] =
+        [Self::Guide, Self::Part, Self::Axis, Self::Feed, Self::Clearance, Self::Stepover];
+
+    /// The statement that sets the block.
+    pub fn statement(self) -> &'static str {
+        match self {
+            Self::Guide => "SCON/DS",
+            Self::Part => "SCON/PS",
+            Self::Axis => "SCON/AXIS",
+            Self::Feed => "SCON/FEED",
+            Self::Clearance => "SCON/FEED,plane",
+            Self::Stepover => "SCON/STEPOV",
+        }
+    }
+
+    /// The statement with the places of its operands.
+    pub fn template(self) -> &'static str {
+        match self {
+            Self::Guide => "SCON/DS,surface,PARAM,ulo,uhi,vlo,vhi,ON,vector",
+            Self::Part => "SCON/PS,TO,surface,PLUS,0",
+            Self::Axis => "SCON/AXIS,vector",
+            Self::Feed => "SCON/FEED,cutting,stepover,plunge,rapid",
+            Self::Clearance => "SCON/FEED,plane",
+            Self::Stepover => "SCON/STEPOV,height,greatest,lift,passes",
+        }
+    }
 }

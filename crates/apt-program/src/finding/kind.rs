@@ -7,7 +7,7 @@ use apt_geometry::{
 use apt_syntax::error::SyntaxErrorKind;
 use smol_str::SmolStr;
 
-use super::{Expected, Found, SynonymFault};
+use super::{ConditionBlock, Expected, Found, SynonymFault};
 use crate::listing::cards::CardFault;
 
 /// The kinds of findings. [`FindingKind::apt3`] gives the APT III number where one exists.
@@ -693,6 +693,64 @@ pub enum FindingKind {
     #[error("{word} gives an axis while MULTAX is off")]
     AxisDropped {
         /// GOTO or FROM.
+        word: SmolStr,
+    },
+
+    // Regional milling of sculptured surfaces.
+    /// A command without one of the conditions that it needs.
+    #[error("SMIL/{word} without {missing:?}")]
+    ConditionMissing {
+        /// The command.
+        word: SmolStr,
+        /// The blocks that it needs and that are not valid.
+        missing: Vec<ConditionBlock>,
+        /// Those of them whose last statement has a mistake.
+        spoiled: Vec<ConditionBlock>,
+        /// The blocks that are valid.
+        valid: Vec<ConditionBlock>,
+    },
+    /// Limits in the wrong order.
+    #[error("{statement}: {low} is above {high}")]
+    RangeReversed {
+        /// The word of the statement.
+        statement: SmolStr,
+        /// What should be the lower limit.
+        low: f64,
+        /// What should be the upper limit.
+        high: f64,
+    },
+    /// The range of SCON/DS reaches beyond the guide element.
+    #[error("the range {low} to {high} of {parameter} reaches beyond {name}")]
+    GuideBeyond {
+        /// The guide element, empty for a nest.
+        name: SmolStr,
+        /// `u` or `v`.
+        parameter: char,
+        /// Lower limit of the range.
+        low: f64,
+        /// Upper limit of the range.
+        high: f64,
+        /// The greatest parameter of the element; the least is 0.
+        extent: f64,
+    },
+    /// AVCTRL is on and no surface is checked.
+    #[error("avoidance without a check")]
+    AvoidanceWithoutCheck,
+    /// A lift of AVCTRL without LIMIT.
+    #[error("a lift without limit")]
+    LiftWithoutLimit,
+    /// A spelling that the public system does not take.
+    #[error("{word} is now {present}")]
+    OlderSpelling {
+        /// The word.
+        word: SmolStr,
+        /// What the public system calls it.
+        present: SmolStr,
+    },
+    /// A word of which only the name is public.
+    #[error("only the name of {word} is known")]
+    NameOnly {
+        /// The word.
         word: SmolStr,
     },
 

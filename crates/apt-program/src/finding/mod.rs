@@ -8,7 +8,7 @@ use apt_syntax::dialect::DialectName;
 
 use crate::record::Origin;
 
-pub use evidence::{Expected, Found, SynonymFault};
+pub use evidence::{ConditionBlock, Expected, Found, SynonymFault};
 pub use kind::FindingKind;
 
 /// Something to tell the programmer.

@@ -105,7 +105,14 @@ impl FindingKind {
             Self::SegmentInRegion => 37,
             Self::SegmentInSegment => 30,
             Self::EndMissing => 23,
-            Self::Unused { .. }
+            Self::ConditionMissing { .. }
+            | Self::RangeReversed { .. }
+            | Self::GuideBeyond { .. }
+            | Self::AvoidanceWithoutCheck
+            | Self::LiftWithoutLimit
+            | Self::OlderSpelling { .. }
+            | Self::NameOnly { .. }
+            | Self::Unused { .. }
             | Self::WordBecomesName { .. }
             | Self::NotFinite
             | Self::Untransformable { .. }
@@ -180,6 +187,9 @@ impl FindingKind {
             Self::UnknownMacroVariable { .. } => 1020,
             Self::MacroVariableMissing { .. } | Self::MacroValueMissing { .. } => 2055,
             Self::AxisDropped { .. } => 22300,
+            Self::ConditionMissing { .. } => 3565,
+            Self::RangeReversed { .. } => 3523,
+            Self::NameOnly { .. } => 1007,
             Self::Unreachable => 1009,
             _ => return None,
         })
@@ -202,6 +212,10 @@ impl FindingKind {
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::AxisDropped { .. }
+            | Self::GuideBeyond { .. }
+            | Self::AvoidanceWithoutCheck
+            | Self::LiftWithoutLimit
+            | Self::OlderSpelling { .. }
             | Self::Unreachable => Severity::Warning,
             Self::Syntax(kind) if kind.is_warning() => Severity::Warning,
             _ => Severity::Error,

@@ -71,7 +71,7 @@ impl ChunkData {
 /// Whether a record moves the tool, or would if its statement had no error.
 fn moves_the_tool(kind: &RecordKind) -> bool {
     match kind {
-        RecordKind::Gap => true,
+        RecordKind::Gap | RecordKind::Regional(_) => true,
         RecordKind::Motion(command) => matches!(
             **command,
             MotionCommand::From { .. }

@@ -115,7 +115,7 @@ impl Evaluator<'_> {
             self.state.print_all = switch.word.spelling == "ON";
             return;
         }
-        if self.is_apt4() && Self::is_part_switch(major.arguments) {
+        if self.is_apt4() && (self.print_avoidance(major) || Self::is_part_switch(major.arguments)) {
             return;
         }
         let allowed: &[f64] = if self.is_apt4() { &APT4_PRINT_NUMBERS } else { &[0.0, 1.0, 2.0, 3.0, 4.0] };

@@ -10,6 +10,7 @@ mod parameter;
 mod pattern;
 mod pocket;
 mod postprocessor;
+mod sculptured;
 mod system_flag;
 mod tool_axis;
 mod transformation;
@@ -22,12 +23,13 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 pub(crate) use library::segment;
+pub(crate) use sculptured::RegionalState;
 
 use crate::{
     evaluator::{Evaluator, Flow, Region},
     expression::Items,
     finding::{Expected, FindingKind, Found},
-    record::RecordKind,
+    record::{Record, RecordKind},
 };
 
 /// A major word with its parameters.
@@ -74,6 +76,9 @@ pub(crate) fn leaves_motion(word: &str) -> bool {
             | "GOUP"
             | "GODOWN"
             | "POCKET"
+            | "SMIL"
+            | "GOMILL"
+            | "GCLEAR"
             | "PSIS"
             | "TLAXIS"
             | "CUTTER"
@@ -170,7 +175,9 @@ impl Evaluator<'_> {
         let failed = self.errors + self.unknown_values > failures;
         if failed && leaves_motion(major.spelling()) {
             let new = self.output.records.get(records..).unwrap_or_default();
-            if !new.iter().any(|record| matches!(record.kind, RecordKind::Motion(_))) {
+            let moves =
+                |record: &Record| matches!(record.kind, RecordKind::Motion(_) | RecordKind::Regional(_));
+            if !new.iter().any(moves) {
                 self.gap(major.range);
             }
         }
@@ -225,10 +232,16 @@ impl Evaluator<'_> {
             "CUTTER" => self.cutter(major),
             "INTOL" | "OUTTOL" | "TOLER" | "THICK" => self.per_role(major),
             "MAXDP" | "NUMPTS" => self.limit(major),
-            "CUT" | "DNTCUT" | "2DCALC" | "3DCALC" | "NDTEST" | "AUTOPS" | "NOPS" | "MULTAX" | "GOUGCK" => {
+            "CUT" | "DNTCUT" | "2DCALC" | "3DCALC" | "NDTEST" | "AUTOPS" | "NOPS" | "MULTAX" => {
                 self.path_control(major);
             }
+            "GOUGCK" => self.gouge_check(major),
             "DMILL" | "BEVELS" => self.accepted_control(major),
+            "SCON" => self.condition_statement(major),
+            "SMIL" => self.regional_milling(major),
+            "CHKSRF" => self.checked_surface(major),
+            "AVCTRL" => self.avoidance_control(major),
+            "GOMILL" | "GCLEAR" | "INTSEC" => self.undocumented_milling(major),
             "ZSURF" => self.z_surface(major),
             "REFSYS" => self.reference_system(major),
             "CANON" => self.canon_switch(major),

@@ -120,8 +120,9 @@ fn ruled_curve(fault: &RuledFault) -> Text {
     }
 }
 
-fn wanted(expected: Expected) -> &'static str {
-    match expected {
+fn wanted(expected: Expected) -> String {
+    let text = match expected {
+        Expected::Words(words) => return one_of(words),
         Expected::Scalar => "a number",
         Expected::Surface => "a surface",
         Expected::Plane => "a plane",
@@ -138,6 +139,22 @@ fn wanted(expected: Expected) -> &'static str {
         Expected::Integer => "a whole number",
         Expected::Pattern => "a pattern",
         Expected::Nothing => "nothing",
+        Expected::SculpturedSurface => "a sculptured surface",
+        Expected::SculpturedElement => "a sculptured surface or a space curve",
+        Expected::GuideSurface => "a guide surface",
+        Expected::FeedsOrPlane => "four feed rates or a plane",
+        Expected::DistanceVectorOrPlane => "a distance, a vector or a plane",
+        Expected::CheckedAndSwitch => "PS or one sculptured surface, and ON or OFF",
+    };
+    text.to_owned()
+}
+
+/// `A`, `A or B`, `A, B or C`.
+fn one_of(words: &[&str]) -> String {
+    match words {
+        [] => "nothing".to_owned(),
+        [one] => format!("the word {one}"),
+        [most @ .., last] => format!("{} or {last}", most.join(", ")),
     }
 }
 

@@ -14,6 +14,7 @@ mod pocket;
 mod postprocessor;
 mod program;
 pub(crate) mod remedy;
+mod sculptured;
 mod story;
 mod syntax;
 mod tilt;

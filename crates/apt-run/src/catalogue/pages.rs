@@ -33,12 +33,13 @@ struct File {
 }
 
 /// The files, in the order of their codes.
-const FILES: [&str; 12] = [
+const FILES: [&str; 13] = [
     include_str!("pages/syntax.toml"),
     include_str!("pages/names.toml"),
     include_str!("pages/definitions.toml"),
     include_str!("pages/blocks.toml"),
     include_str!("pages/motion.toml"),
+    include_str!("pages/sculptured.toml"),
     include_str!("pages/element.toml"),
     include_str!("pages/path.toml"),
     include_str!("pages/reading.toml"),

@@ -4,7 +4,7 @@
 use apt_program::finding::{FindingKind as Kind, SynonymFault};
 use smol_str::SmolStr;
 
-use super::{Text, a_kind, definitions, names, number, say, similar, syntax};
+use super::{Text, a_kind, definitions, names, number, say, sculptured, similar, syntax};
 
 /// The words of a finding of Section 1.
 pub(super) fn word(kind: &Kind) -> Text {
@@ -16,6 +16,7 @@ pub(super) fn word(kind: &Kind) -> Text {
         .or_else(|| jump(kind))
         .or_else(|| macro_call(kind))
         .or_else(|| motion(kind))
+        .or_else(|| sculptured::word(kind))
         .or_else(|| postprocessor(kind))
         .unwrap_or_else(|| whole(kind))
 }

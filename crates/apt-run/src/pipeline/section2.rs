@@ -153,7 +153,7 @@ impl<'a> Section2<'a> {
                 );
             }
             // Section 1 has said why there is no motion here: what follows from it is passed over as after a failure.
-            RecordKind::Gap => {
+            RecordKind::Gap | RecordKind::Regional(_) => {
                 self.state.restart = Restart::Waiting;
                 self.state.forward = None;
             }
