@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Vec3, canonical::Geometry};
+use crate::{Vec3, canonical::Geometry, cutter::Disk};
 
 /// How the tool stands to a surface: TO, ON, PAST, TANTO (tangent to the drive surface; also DSTAN) or PSTAN.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -171,6 +171,15 @@ pub enum ToolAxis {
     },
 }
 
+/// The disk of CUTTER/OPTION and the surface for which it takes the place of the cutter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RoleDisk {
+    /// Part surface if true (`OPTION,1`), else drive surface (`OPTION,2`).
+    pub part: bool,
+    /// The disk.
+    pub disk: Disk,
+}
+
 /// POCKET, as the statement gives it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pocket {
@@ -238,6 +247,8 @@ pub enum MotionCommand {
     NoPartSurface,
     /// CUTTER with one, two or seven numbers, angles in degrees as the statement gives them.
     Cutter(Vec<f64>),
+    /// CUTTER/OPTION: a disk in place of the cutter for one surface (`None`: OFF). The last one holds.
+    Disk(Option<RoleDisk>),
     /// INTOL.
     InsideTolerance(PerRole),
     /// OUTTOL.

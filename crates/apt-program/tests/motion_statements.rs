@@ -164,8 +164,9 @@ fn cutter_and_tolerances() {
         ("CUTTER/0", GOOD),
         ("CUTTER/1,.25", GOOD),
         ("CUTTER/1,.25,.25,.25,0,0,2", GOOD),
-        // The disk is not computed, which is told.
-        ("CUTTER/OPTION,1,2,3", &[0]),
+        ("CUTTER/OPTION,1,2,3", GOOD),
+        ("CUTTER/OPTION,2,2,-3", GOOD),
+        ("CUTTER/OPTION,1,-2,3", &[129]),
         ("CUTTER/OPTION,2,OFF", GOOD),
         ("CUTTER/1,2,3", &[129]),
         ("CUTTER/P1", &[129]),

@@ -145,6 +145,11 @@ impl<'a> Sweep<'a> {
         Self { tool, from: *from.0, direction, length, axis: *from.1, turn }
     }
 
+    /// The tool, with the axis that it was given.
+    pub(crate) fn tool(&self) -> &Tool {
+        self.tool
+    }
+
     pub(crate) fn turns(&self) -> bool {
         self.turn.is_some()
     }
@@ -175,23 +180,21 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Greatest acceleration of a point of the tool, per square of the distance of the tool end.
-    pub(crate) fn swing(&self) -> f64 {
+    /// Greatest acceleration of a point within `reach` of the tool end, per square of the distance of the tool end.
+    pub(crate) fn swing(&self, reach: f64) -> f64 {
         match self.turn {
             Some((_, angle)) if self.length > 0.0 => {
                 let rate = angle / self.length;
-                rate * rate * (self.tool.cutter.height + self.tool.radius())
+                rate * rate * reach
             }
             _ => 0.0,
         }
     }
 
-    /// Greatest distance that a point of the tool moves per unit of distance of the tool end.
-    pub(crate) fn stretch(&self) -> f64 {
+    /// Greatest distance that a point within `reach` of the tool end moves per unit of distance of the tool end.
+    pub(crate) fn stretch(&self, reach: f64) -> f64 {
         match self.turn {
-            Some((_, angle)) if self.length > 0.0 => {
-                1.0 + angle * (self.tool.cutter.height + self.tool.radius()) / self.length
-            }
+            Some((_, angle)) if self.length > 0.0 => 1.0 + angle * reach / self.length,
             _ => 1.0,
         }
     }

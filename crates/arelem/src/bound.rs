@@ -123,6 +123,9 @@ fn whole(x: f64) -> u32 {
 
 /// The ring to which one role confines the tool end, given the other.
 fn ring(prepared: &Prepared, role: &Working, other: &Working) -> Option<Ring> {
+    if role.gauge.disk.is_some() {
+        return None;
+    }
     let tool = &prepared.tool;
     let axis = tool.axis;
     let on = role.gauge.on;

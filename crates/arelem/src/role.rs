@@ -71,7 +71,13 @@ impl Working {
             return Err(MotionFailure::NoTolerance { role: name, inside, outside });
         }
         let thickness = if on { 0.0 } else { pick(&state.thickness) };
-        let gauge = Gauge { surface, on, side: 1.0, thickness, memory: Memory::default() };
+        let disk = state.disk.filter(|of| match name {
+            RoleName::Part => of.part,
+            RoleName::Drive => !of.part,
+            RoleName::Check(_) => false,
+        });
+        let disk = disk.filter(|_| !on).map(|of| of.disk);
+        let gauge = Gauge { surface, on, side: 1.0, thickness, disk, memory: Memory::default() };
         let shape = gauge.shape();
         let inner = state.start_up == StartUpRule::Apt4 && matches!(gauge.surface, Surface::Tabulated(_));
         Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0, inner })
@@ -160,6 +166,7 @@ impl Working {
             inside_tolerance: self.inside,
             outside_tolerance: self.outside,
             thickness: self.gauge.thickness,
+            disk: self.gauge.disk,
         }
     }
 }

@@ -31,6 +31,8 @@ pub struct Role {
     pub outside_tolerance: f64,
     /// THICK of this role.
     pub thickness: f64,
+    /// The disk that takes the place of the cutter for this surface (CUTTER/OPTION); it does not count for ON.
+    pub disk: Option<apt_geometry::cutter::Disk>,
 }
 
 /// What stopped a sequence.

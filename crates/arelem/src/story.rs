@@ -195,7 +195,8 @@ impl<'a> Teller<'a> {
             let surface = Surface::from_geometry(&role.surface.geometry).ok()?;
             let on = role.relation == Relation::On;
             let memory = Memory::default();
-            let gauge = Gauge { surface, on, side: role.side, thickness: role.thickness, memory };
+            let (side, thickness, disk) = (role.side, role.thickness, role.disk);
+            let gauge = Gauge { surface, on, side, thickness, disk, memory };
             Some(Told { name, role, gauge })
         });
         Self { sequence, told: told.collect() }

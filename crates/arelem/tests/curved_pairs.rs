@@ -181,6 +181,7 @@ impl Motion {
             inside_tolerance: 1.0,
             outside_tolerance: 1.0,
             thickness: 0.0,
+            disk: None,
         };
         let place = ToolPosition { tip, axis: Vec3::z() };
         let sequence = CutSequence {

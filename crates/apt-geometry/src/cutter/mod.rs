@@ -27,6 +27,35 @@ pub struct Cutter {
     pub height: f64,
 }
 
+/// A thin disk across the tool axis that takes the place of the cutter (CUTTER/OPTION, language reference 6.7).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Disk {
+    /// Its radius, ≥ 0, in the part program's unit.
+    pub radius: f64,
+    /// How far it is above the tool end, along the tool axis; negative below it.
+    pub height: f64,
+}
+
+impl Disk {
+    /// The disk as a cutter whose end is the middle of the disk: a flat one without height.
+    pub fn cutter(&self) -> Cutter {
+        Cutter {
+            diameter: 2.0 * self.radius,
+            corner_radius: 0.0,
+            corner_offset: 0.0,
+            corner_height: 0.0,
+            alpha: 0.0,
+            beta: 0.0,
+            height: 0.0,
+        }
+    }
+
+    /// Greatest distance of a point of the disk from the tool end.
+    pub fn reach(&self) -> f64 {
+        self.radius.hypot(self.height)
+    }
+}
+
 impl Cutter {
     /// Half the diameter, where lower and upper line meet.
     pub fn radius(&self) -> f64 {

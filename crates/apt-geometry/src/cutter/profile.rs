@@ -130,7 +130,8 @@ impl Profile {
                 best = (d, point);
             }
         };
-        let mut inside = true;
+        // A disk has no inside.
+        let mut inside = self.top.height > 0.0;
         for (a, b) in [(tip, self.lower), (self.upper, self.top), (self.top, axis_top)] {
             let (dx, dz) = (b.radius - a.radius, b.height - a.height);
             let length = dx.hypot(dz);

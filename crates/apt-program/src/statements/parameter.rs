@@ -1,6 +1,9 @@
 //! Path parameters and path control: CUTTER, tolerances, limits, switches (language reference 6.5, 6.7, 6.8).
 
-use apt_geometry::motion::{MotionCommand, PerRole};
+use apt_geometry::{
+    cutter::Disk,
+    motion::{MotionCommand, PerRole, RoleDisk},
+};
 use smol_str::SmolStr;
 
 use super::Major;
@@ -29,29 +32,24 @@ impl Evaluator<'_> {
 
     /// CUTTER/OPTION: a disk that replaces the cutter for the part surface (1) or the drive surface (2).
     fn disk(&mut self, major: Major<'_>, items: &Items) {
+        const EXPECTED: &str = "OPTION, 1 or 2, and a radius and height or OFF";
         let numbers: Vec<f64> = items.iter().skip(1).map_while(Item::scalar).collect();
         let off = items.get(2).is_some_and(|item| item.word() == Some("OFF"));
-        match *numbers.as_slice() {
-            [role, ..] if role != 1.0 && role != 2.0 => {
-                let finding =
-                    FindingKind::OperandRange { statement: major.name(), value: role, number: Some(129) };
-                return self.report(finding, major.range);
+        let out_of_range =
+            |value: f64| FindingKind::OperandRange { statement: major.name(), value, number: Some(129) };
+        let disk = match *numbers.as_slice() {
+            [role, ..] if role != 1.0 && role != 2.0 => return self.report(out_of_range(role), major.range),
+            [_, radius, _] if items.len() == 4 && radius < 0.0 => {
+                return self.report(out_of_range(radius), major.range);
             }
-            [_, _, _] if items.len() == 4 => {
-                let word = SmolStr::new_static("CUTTER/OPTION");
-                self.report(FindingKind::NoEffect { word }, major.range);
+            [role, radius, height] if items.len() == 4 => {
+                Some(RoleDisk { part: role == 1.0, disk: Disk { radius, height } })
             }
-            [_] if off && items.len() == 3 => {}
-            _ => {
-                return self.wrong_count(
-                    major,
-                    items.len(),
-                    "OPTION, 1 or 2, and a radius and height or OFF",
-                    129,
-                );
-            }
-        }
+            [_] if off && items.len() == 3 => None,
+            _ => return self.wrong_count(major, items.len(), EXPECTED, 129),
+        };
         self.control(major, items, [6000, 6]);
+        self.motion(MotionCommand::Disk(disk), major.range);
     }
 
     /// INTOL, OUTTOL, TOLER and THICK: missing values repeat the last one.

@@ -55,6 +55,7 @@ fn the_axis_follows_the_rulings_of_the_drive_surface() {
         on: false,
         side: drive.side,
         thickness: 0.0,
+        disk: None,
         memory: Default::default(),
     };
     for point in &sequence.points {

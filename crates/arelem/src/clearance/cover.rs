@@ -43,6 +43,7 @@ pub(crate) fn upward_bend(
     if gauge.on {
         return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
     }
+    let (tool, tip) = &gauge.body(tool, tip);
     if let Some(reach) = closed_form::disc(tool, &gauge.surface, gauge.side, tip) {
         // All of the tool is as near as its end, less its radius.
         let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };

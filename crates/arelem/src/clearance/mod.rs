@@ -12,8 +12,11 @@ mod search;
 mod tool;
 mod waves;
 
+use std::borrow::Cow;
+
 use apt_geometry::{
     Vec3,
+    cutter::Disk,
     surface::{Convexity, Surface},
 };
 
@@ -60,6 +63,8 @@ pub struct Gauge {
     pub side: f64,
     /// THICK.
     pub thickness: f64,
+    /// The disk that is measured in place of the tool; it does not count for ON.
+    pub disk: Option<Disk>,
     /// Where contact was last.
     pub memory: Memory,
 }
@@ -85,15 +90,35 @@ impl Gauge {
         if self.on { (self.contact(tool, tip), 0.0) } else { self.offset_contact(tool, tip) }
     }
 
+    /// What is measured, and where its end is: the tool, or the disk in its place.
+    pub(crate) fn body<'a>(&self, tool: &'a Tool, tip: &Vec3) -> (Cow<'a, Tool>, Vec3) {
+        match &self.disk {
+            Some(disk) if !self.on => {
+                (Cow::Owned(Tool::new(disk.cutter(), tool.axis)), tip + tool.axis * disk.height)
+            }
+            _ => (Cow::Borrowed(tool), *tip),
+        }
+    }
+
+    /// A distance from the tool end beyond which there is nothing that is measured.
+    pub(crate) fn reach(&self, tool: &Tool) -> f64 {
+        match &self.disk {
+            Some(disk) if !self.on => disk.reach(),
+            _ => tool.reach(),
+        }
+    }
+
     fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
         let Self { surface, side, thickness, memory, .. } = self;
-        let (mut contact, missed) = offset_contact(tool, surface, *side, tip, Some(memory));
+        let (tool, tip) = self.body(tool, tip);
+        let (mut contact, missed) = offset_contact(&tool, surface, *side, &tip, Some(memory));
         contact.clearance -= thickness;
         (contact, missed)
     }
 
     /// Whether the clearance is nowhere on the tool below a level.
     pub(crate) fn certify(&self, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
+        let (tool, tip) = &self.body(tool, tip);
         let (face, level) = (Face { surface: &self.surface, side: self.side }, level + self.thickness);
         if let Some(posed) = quadric::Posed::new(tool, &self.surface, self.side, tip) {
             let contact = offset_contact(tool, &self.surface, self.side, tip, Some(&self.memory)).0;
@@ -123,7 +148,8 @@ fn shape(surface: &Surface, side: f64) -> Shape {
 
 /// True if the clearance needs no search: it is then the least one for certain.
 pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
-    closed_form::contact(tool, &gauge.surface, gauge.side, tip).is_some()
+    let (tool, tip) = gauge.body(tool, tip);
+    closed_form::contact(&tool, &gauge.surface, gauge.side, &tip).is_some()
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ fn gauge(geometry: &Geometry, side: f64) -> Gauge {
         on: false,
         side,
         thickness: 0.0,
+        disk: None,
         memory: Memory::default(),
     }
 }

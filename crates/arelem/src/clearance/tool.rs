@@ -49,6 +49,11 @@ impl Tool {
         self.profile.greatest_radius()
     }
 
+    /// A distance from the tool end beyond which there is no point of the body.
+    pub(crate) fn reach(&self) -> f64 {
+        self.cutter.height + self.radius()
+    }
+
     /// The point half way up the tool, from which sides are judged.
     pub fn observer(&self, tip: &Vec3) -> Vec3 {
         tip + self.axis * (0.5 * self.cutter.height)

@@ -88,8 +88,7 @@ fn sampled_only(role: &Working) -> bool {
 /// Every stretch of the motion on which the whole tool is deeper than INTOL in a surface.
 fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSequence) -> Vec<MotionWarning> {
     let surface = role.gauge.surface.clone();
-    let gauge =
-        Gauge { surface, on: false, side, thickness: role.gauge.thickness, memory: Default::default() };
+    let gauge = Gauge { surface, on: false, side, memory: Default::default(), ..role.gauge.clone() };
     let limit = -role.inside - ROUNDING * prepared.size;
     let mut found = Vec::new();
     let mut worst: Option<(f64, Contact, Vec3)> = None;
@@ -118,7 +117,8 @@ fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSeque
                 break;
             }
             before = x;
-            x = (x + ((here.clearance - limit) / sweep.stretch()).max(floor)).min(sweep.length);
+            x = (x + ((here.clearance - limit) / sweep.stretch(gauge.reach(&prepared.tool))).max(floor))
+                .min(sweep.length);
         }
         from = to;
     }
@@ -159,6 +159,7 @@ pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<Moti
 
 /// The places around the tool where it is deepest below the surface.
 fn cuts(tool: &Tool, role: &Working, tip: &Vec3) -> Vec<Cut> {
+    let (tool, tip) = &role.gauge.body(tool, tip);
     let profile = profile(tool);
     let around: Vec<Cut> = (0..AROUND)
         .map(|index| {

@@ -170,6 +170,7 @@ fn eligible(state: &State, prepared: &Prepared, check: &CheckSurface) -> Option<
     let axis = &prepared.tool.axis;
     let Surface::Plane(part) = &prepared.part.gauge.surface else { return None };
     let applies = !state.force_iteration
+        && prepared.part.gauge.disk.or(prepared.drive.gauge.disk).is_none()
         && !prepared.attitude.turns()
         && axis.z.abs() >= VERTICAL
         && prepared.tool.cutter.beta == 0.0

@@ -177,8 +177,9 @@ impl<'a> Watcher<'a> {
     }
 
     fn follow(&mut self, index: usize, watch: Watch, sweep: &Sweep<'_>) -> (Option<Event>, Watch) {
-        let (length, stretch) = (sweep.length, sweep.stretch());
         let working = self.working(index);
+        let stretch = sweep.stretch(working.gauge.reach(&self.prepared.tool));
+        let length = sweep.length;
         let (band, size) = (working.inside.max(working.outside), self.prepared.size);
         let least = (LEAST_STEP * working.band()).max(1e-10 * size);
         let on = working.gauge.on;
@@ -248,7 +249,8 @@ impl<'a> Watcher<'a> {
         if value <= 0.0 && !on {
             return None;
         }
-        let (band, stretch) = (working.inside.max(working.outside), sweep.stretch());
+        let reach = working.gauge.reach(&self.prepared.tool);
+        let (band, stretch) = (working.inside.max(working.outside), sweep.stretch(reach));
         let mut end = sweep.length;
         for _ in 0..HALVINGS {
             let step = end - x;
@@ -259,17 +261,16 @@ impl<'a> Watcher<'a> {
             let (next, side) = self.value(index, &tool, &tip);
             // Between two sides of the check surface there is a position, however clear of it the tool is at both ends.
             if (next > 0.0) == (value > 0.0) && side == side_before {
-                let Gauge { surface, on, thickness, .. } = &working.gauge;
-                let thickness = if *on { 0.0 } else { *thickness };
-                let gauge =
-                    Gauge { surface: surface.clone(), on: *on, side, thickness, memory: Memory::default() };
+                let Gauge { surface, on, thickness, disk, .. } = working.gauge.clone();
+                let thickness = if on { 0.0 } else { thickness };
+                let gauge = Gauge { surface, on, side, thickness, disk, memory: Memory::default() };
                 let way = step * stretch;
                 let (middle, tool) = sweep.at(x + 0.5 * step);
-                let base = if *on { 0.0 } else { thickness + working.rest() };
+                let base = if on { 0.0 } else { thickness + working.rest() };
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
                 if let Bend::AtMost(bend) = upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|| false) {
-                    let bend = if *on { bend } else { bend * stretch * stretch + sweep.swing() };
+                    let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;
                     if clear || bend * step * step / 8.0 <= LEAST_STEP * working.band() {
                         return Some(end);
@@ -311,7 +312,8 @@ impl<'a> Watcher<'a> {
 
     /// The least distance between two samples about a third that is nearer, if it is nearer than all before.
     fn refine_nearest(&mut self, index: usize, sweep: &Sweep<'_>, [low, high]: [f64; 2], last: f64) {
-        if last.abs() - (high - low) * sweep.stretch() >= self.nearest.0 {
+        let reach = self.working(index).gauge.reach(&self.prepared.tool);
+        if last.abs() - (high - low) * sweep.stretch(reach) >= self.nearest.0 {
             return;
         }
         let level = |x: f64| Some(self.value_at(index, sweep, x).0.abs());

@@ -3,8 +3,8 @@
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, Plane},
-    cutter::Cutter,
-    motion::{Delta, Direction, MotionCommand, NamedSurface, PerRole, ToolAxis},
+    cutter::{Cutter, CutterError, Disk},
+    motion::{Delta, Direction, MotionCommand, NamedSurface, PerRole, RoleDisk, ToolAxis},
 };
 
 use super::{Output, State};
@@ -105,6 +105,16 @@ fn set_modal(
             let (cutter, doubts) = Cutter::with_warnings(numbers, state.units)?;
             warnings.extend(doubts.into_iter().map(MotionWarning::Cutter));
             state.cutter = Some(cutter);
+        }
+        MotionCommand::Disk(disk) => {
+            if let Some(RoleDisk { disk: Disk { radius, height }, .. }) = disk {
+                scalar(*radius)?;
+                scalar(*height)?;
+                if *radius < 0.0 {
+                    return Err(CutterError::Diameter { diameter: 2.0 * radius }.into());
+                }
+            }
+            state.disk = *disk;
         }
         MotionCommand::InsideTolerance(values) => state.inside = tolerance(values, warnings)?,
         MotionCommand::OutsideTolerance(values) => state.outside = tolerance(values, warnings)?,

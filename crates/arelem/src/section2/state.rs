@@ -4,7 +4,7 @@ use apt_geometry::{
     Vec3,
     canonical::{Geometry, Plane},
     cutter::Cutter,
-    motion::{Direction, DriveSide, NamedSurface, PartSide, PerRole, ToolAxis},
+    motion::{Direction, DriveSide, NamedSurface, PartSide, PerRole, RoleDisk, ToolAxis},
 };
 
 use super::Restart;
@@ -59,6 +59,8 @@ pub struct State {
     pub drive_side: DriveSide,
     /// The cutter, once defined.
     pub cutter: Option<Cutter>,
+    /// CUTTER/OPTION.
+    pub disk: Option<RoleDisk>,
     /// INTOL.
     pub inside: PerRole,
     /// OUTTOL.
@@ -105,6 +107,7 @@ impl State {
             part_side: PartSide::Offset,
             drive_side: DriveSide::On,
             cutter: None,
+            disk: None,
             inside: PerRole::all(0.0),
             outside: PerRole::all(DEFAULT_OUTSIDE_INCHES * units),
             thickness: PerRole::all(0.0),

@@ -49,6 +49,7 @@ fn eligible(work: &StartUp<'_>) -> Option<Curve> {
     let state = work.state;
     let axis = work.tool.axis;
     let plain = axis.z.abs() >= VERTICAL
+        && work.roles.iter().all(|role| role.gauge.disk.is_none())
         && !super::is_following(work)
         && work.tool.cutter.beta == 0.0
         && !state.force_iteration

@@ -27,6 +27,7 @@ fn outside_cone(geometry: &Geometry, cutter: Cutter, place: ToolPosition) -> [f6
         inside_tolerance: 1.0,
         outside_tolerance: 1.0,
         thickness: 0.0,
+        disk: None,
     };
     let engine = gauge(&role).contact(&Tool::new(cutter, place.axis), &place.tip).clearance;
     let sequence = CutSequence {
@@ -216,6 +217,7 @@ fn remembered_contacts_change_no_clearance() {
         inside_tolerance: 0.0,
         outside_tolerance: 1e-4,
         thickness,
+        disk: None,
     };
     let tool = Tool::new(Cutter::from_numbers(&[0.555_143_27, 0.082_817_995], 1.0).unwrap(), Vec3::z());
     let end = v(-1.1945026, 1.7694686, -1.6608008);
@@ -269,6 +271,7 @@ proptest! {
             inside_tolerance: 0.0,
             outside_tolerance: 1e-4,
             thickness: 0.0,
+            disk: None,
         };
         let remembering = gauge(&role);
         for k in 0..12 {

@@ -3,6 +3,7 @@
 mod corpus_plane;
 mod corpus_space;
 mod cost;
+mod disk;
 mod economy;
 mod found;
 mod properties;
@@ -188,6 +189,7 @@ fn gauge(role: &Role) -> Gauge {
         on: role.relation == Relation::On,
         side: role.side,
         thickness: role.thickness,
+        disk: role.disk,
         memory: Memory::default(),
     }
 }

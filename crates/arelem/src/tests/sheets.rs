@@ -201,7 +201,7 @@ fn upright_cylinders_of_any_section_are_met_by_discs() {
     let elliptic = quadric([1.0 / 16.0, 0.25, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     for (geometry, side) in [(elliptic.clone(), 1.0), (elliptic, -1.0), (super::economy::table(), 1.0)] {
         let surface = apt_geometry::surface::Surface::from_geometry(&geometry).expect("a surface");
-        let gauge = Gauge { surface, on: false, side, thickness: 0.0, memory: Memory::default() };
+        let gauge = Gauge { surface, on: false, side, thickness: 0.0, disk: None, memory: Memory::default() };
         for k in 0..12 {
             let angle = 0.5 * f64::from(k);
             let out = if side > 0.0 { 5.0 } else { 0.8 };

@@ -73,6 +73,7 @@ fn w22_three_surfaces() {
         on,
         side: 1.0,
         thickness: 0.0,
+        disk: None,
         memory: Memory::default(),
     };
     let part = gauge(sphere(0.0, 0.0, 0.0, 2.0), false);
@@ -156,6 +157,7 @@ fn w33_start_on_a_cone() {
         on: false,
         side: 1.0,
         thickness: 0.0,
+        disk: None,
         memory: Memory::default(),
     };
     let (drive, part) = (gauge(&cn), gauge(&ground()));

@@ -188,6 +188,8 @@ impl Surface {
 pub(super) struct Clearance<'a> {
     pub(super) surface: &'a Surface,
     pub(super) profile: &'a Profile,
+    /// How far the profile is above the tool end, along the axis.
+    pub(super) raise: f64,
     /// +1 or −1, with regard to the natural normal.
     pub(super) side: f64,
     /// Stock added to the surface.
@@ -204,16 +206,22 @@ impl Clearance<'_> {
         match self.surface {
             Surface::Quadric(quadric) => {
                 let tool = Tool { profile: self.profile, axis: *axis };
-                quadric_clearance::shape(quadric, self.side, ends, &tool)
+                let [from, to] = ends.map(|tip| tip + axis * self.raise);
+                quadric_clearance::shape(quadric, self.side, [&from, &to], &tool)
             }
             _ => self.shape(),
         }
     }
 
+    /// A distance from the tool end beyond which there is nothing of the tool.
+    pub(super) fn reach(&self) -> f64 {
+        self.profile.reach() + self.raise.abs()
+    }
+
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real
     /// points, or a position that is not finite).
     pub(super) fn at(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
-        let mut reading = self.bare(tip, axis)?;
+        let mut reading = self.bare(&(tip + axis * self.raise), axis)?;
         reading.value -= self.thickness;
         (reading.value.is_finite() && reading.error.is_finite()).then_some(reading)
     }

@@ -36,6 +36,8 @@ struct Bound<'a> {
     role: &'a Role,
     surface: Surface,
     profile: Profile,
+    /// How far the profile is above the tool end.
+    raise: f64,
     on: bool,
     intol: f64,
     outtol: f64,
@@ -50,11 +52,18 @@ impl<'a> Bound<'a> {
         if !numbers.iter().all(|x| x.is_finite()) {
             return Err(VerifyError::NotFinite);
         }
+        let (profile, raise) = match role.disk {
+            _ if on => (Profile::tool_end(), 0.0),
+            None => (profile.clone(), 0.0),
+            Some(disk) if disk.height.is_finite() => (Profile::disk(disk.radius)?, disk.height),
+            Some(_) => return Err(VerifyError::NotFinite),
+        };
         let wider = role.inside_tolerance.max(role.outside_tolerance);
         Ok(Self {
             role,
             surface: Surface::of(&role.surface.geometry)?,
-            profile: if on { Profile::tool_end() } else { profile.clone() },
+            profile,
+            raise,
             on,
             intol: if on { wider } else { role.inside_tolerance },
             outtol: if on { wider } else { role.outside_tolerance },
@@ -86,6 +95,7 @@ impl<'a> Bound<'a> {
         Clearance {
             surface: &self.surface,
             profile: &self.profile,
+            raise: self.raise,
             side: if self.role.side < 0.0 { -1.0 } else { 1.0 },
             thickness: if self.on { 0.0 } else { self.role.thickness },
         }

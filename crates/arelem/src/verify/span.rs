@@ -166,8 +166,7 @@ impl Span<'_> {
     /// Subdivision until second differences say that no piece hides more than `tolerance`; a piece shorter than that cannot
     /// hide more, because clearance changes by no more than the tool moves.
     fn free(&self, first: Sample, last: Sample, tolerance: f64) -> Option<Extremes> {
-        let swing =
-            if self.turns() { turning(&self.from, &self.to) * self.clearance.profile.reach() } else { 0.0 };
+        let swing = if self.turns() { turning(&self.from, &self.to) * self.clearance.reach() } else { 0.0 };
         let length = (self.to.tip - self.from.tip).norm() + swing;
         let mut found =
             Extremes { min: first.value.min(last.value), max: first.value.max(last.value), error: 0.0 };

@@ -56,8 +56,9 @@ pub(super) fn replay(
         // A tool thinner than the band is never in violation beyond doubt.
         return Some(Ok(()));
     }
-    let make =
-        |side: f64| Clearance { surface, profile, side, thickness: if on { 0.0 } else { role.thickness } };
+    let thickness = if on { 0.0 } else { role.thickness };
+    // The cutter itself stops at check surfaces, whatever disk there is for the others.
+    let make = |side: f64| Clearance { surface, profile, raise: 0.0, side, thickness };
     let (natural, opposite) = (make(1.0), make(-1.0));
     let measure = |p: &ToolPosition| -> Option<f64> {
         let first = natural.at(&p.tip, &p.axis)?.value;

@@ -91,6 +91,18 @@ impl Profile {
         Self { lower: [0.0; 2], upper: [0.0; 2], top: [0.0; 2], center: [0.0; 2], radius: 0.0 }
     }
 
+    /// A disk across the axis about the tool end.
+    ///
+    /// # Errors
+    /// [`VerifyError::Cutter`] when the radius is negative or not finite.
+    pub(super) fn disk(radius: f64) -> Result<Self, VerifyError> {
+        if !(radius.is_finite() && radius >= 0.0) {
+            return Err(VerifyError::Cutter);
+        }
+        let rim = [radius, 0.0];
+        Ok(Self { lower: rim, upper: rim, top: rim, center: rim, radius: 0.0 })
+    }
+
     /// True for the profile of a single point.
     pub(super) fn is_point(&self) -> bool {
         self.top == [0.0; 2] && self.lower == [0.0; 2] && self.radius <= 0.0

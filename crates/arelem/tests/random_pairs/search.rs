@@ -67,6 +67,7 @@ impl<'a> Reader<'a> {
             inside_tolerance: 1e3,
             outside_tolerance: 1e3,
             thickness: self.case.thickness,
+            disk: None,
         }
     }
 

@@ -143,7 +143,8 @@ impl Course<'_, '_> {
     /// Bound of the second derivative along the stretch between two samples.
     fn bend(&self, a: &Sample, b: &Sample) -> Bend {
         let Line { sweep, role, ledger, cancel, .. } = self.line;
-        let stretch = if role.gauge.on { 1.0 } else { sweep.stretch() };
+        let reach = role.gauge.reach(sweep.tool());
+        let stretch = if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
         let way = (b.x - a.x) * stretch;
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
         let thickness = role.gauge.thickness;
@@ -152,7 +153,7 @@ impl Course<'_, '_> {
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
         match ledger.bend(&role.gauge, &tool, (&tip, 0.5 * way), range, cancel) {
             Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend),
-            Bend::AtMost(bend) => Bend::AtMost(bend * stretch * stretch + sweep.swing()),
+            Bend::AtMost(bend) => Bend::AtMost(bend * stretch * stretch + sweep.swing(reach)),
             other => other,
         }
     }

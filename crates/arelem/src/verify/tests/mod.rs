@@ -113,5 +113,6 @@ pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64
         inside_tolerance: intol,
         outside_tolerance: outtol,
         thickness: 0.0,
+        disk: None,
     }
 }
