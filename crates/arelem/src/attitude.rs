@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 
 use apt_geometry::Vec3;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Rotation3};
 
 pub(crate) use self::law::Law;
 use crate::{
@@ -167,6 +167,21 @@ impl<'a> Sweep<'a> {
                 (tip, Cow::Owned(self.tool.turned(axis)))
             }
         }
+    }
+
+    /// The vector about which the tool turns, by its length per unit of distance.
+    pub(crate) fn rate(&self) -> Vec3 {
+        match self.turn {
+            Some((about, angle)) if self.length > 0.0 => about * (angle / self.length),
+            _ => Vec3::zeros(),
+        }
+    }
+
+    /// Where a point of the tool comes to be, from one distance from the start to another.
+    pub(crate) fn carried(&self, point: &Vec3, from: f64, to: f64) -> Vec3 {
+        let arm = point - self.from - self.direction * from;
+        let turned = Rotation3::from_scaled_axis(self.rate() * (to - from)) * arm;
+        self.from + self.direction * to + turned
     }
 
     /// How fast a clearance changes per unit of distance.

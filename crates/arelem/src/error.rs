@@ -83,8 +83,8 @@ pub enum AxisFailure {
     /// The sign of an angle cannot be told: the two surfaces are tangent, or nothing is ahead (861).
     #[error("the sign of the angle cannot be resolved")]
     SignUnresolved,
-    /// Over the vertex of a cone the normal has no one direction: the axis would have to turn on the spot (855).
-    #[error("the axis would turn about the vertex of a cone")]
+    /// In the vertex of a hollow cone the normal jumps: the axis would have to turn on the spot (855).
+    #[error("the axis would turn in the vertex of a hollow cone")]
     Vertex,
     /// A surface that the mode needs takes no part in the motion (850).
     #[error("a surface that the axis depends on takes no part")]

@@ -232,8 +232,8 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3) -> Result<(), MotionFai
     let mut modal = Working::new(state, RoleName::Part, &state.part, Relation::To, false)?;
     let observed = modal.gauge.surface.signed_distance(&work.tool.observer(&tip));
     modal.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
-    let find = |name: RoleName| work.roles.iter().find(|r| r.name == name).map(|r| &r.gauge);
-    let part = find(RoleName::Part).unwrap_or(&modal.gauge);
+    let find = |name: RoleName| work.roles.iter().find(|r| r.name == name);
+    let part = find(RoleName::Part).unwrap_or(&modal);
     let law = Law::new(&state.axis_mode, Some(part), find(RoleName::Drive), (&work.tool, &tip, ahead))
         .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip })?;
     if let Some(law) = law {

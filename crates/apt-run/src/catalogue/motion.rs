@@ -105,7 +105,7 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
         }
         AxisFailure::NoNormal => "the surface that guides the axis has no normal here".to_owned(),
         AxisFailure::SignUnresolved => "to which side ATANGL tilts the axis is not settled here".to_owned(),
-        AxisFailure::Vertex => "over the vertex of a cone the axis would have to turn on the spot".to_owned(),
+        AxisFailure::Vertex => "in the vertex of a hollow cone the axis would have to turn on the spot".to_owned(),
         AxisFailure::NoSurface => "a surface that TLAXIS needs takes no part in this motion".to_owned(),
         AxisFailure::NotSettled { .. } => {
             "the surface that guides the axis is too hollow for this tool".to_owned()

@@ -8,10 +8,7 @@ use apt_geometry::{
 
 use nalgebra::Matrix3;
 
-use crate::{
-    clearance::{Gauge, Tool},
-    error::AxisFailure,
-};
+use crate::{clearance::Tool, error::AxisFailure, role::Working};
 
 /// Bound of the iteration for the normal at the contact.
 const MAX_ITERATIONS: u32 = 80;
@@ -37,23 +34,35 @@ const ZERO_ANGLE: f64 = 1e-12;
 struct Directed {
     surface: Surface,
     sign: f64,
+    /// From a place to where the normal is taken: along the axis of a cone that the tool stands outside of, a little way
+    /// out. Elsewhere the normal there is the same; about the vertex it turns evenly from one side of the cone to the
+    /// other, for a tool anywhere in the band.
+    lift: Vec3,
 }
 
 impl Directed {
-    fn normal(&self, p: &Vec3) -> Vec3 {
-        self.surface.foot(p).normal * self.sign
+    fn new(role: &Working, sign: f64) -> Self {
+        let lift = match &role.gauge.surface {
+            Surface::Cone(cone) if sign > 0.0 => cone.axis * (-role.band() / cone.sine),
+            _ => Vec3::zeros(),
+        };
+        Self { surface: role.gauge.surface.clone(), sign, lift }
     }
 
-    /// True where the nearest point is the vertex of a cone: the normal there goes with the place, not with the surface.
+    fn normal(&self, p: &Vec3) -> Vec3 {
+        self.surface.foot(&(p + self.lift)).normal * self.sign
+    }
+
+    /// True where the nearest point is the vertex of a cone, for a tool inside of it: the normal jumps there.
     fn at_vertex(&self, p: &Vec3) -> bool {
         let Surface::Cone(cone) = &self.surface else { return false };
         let foot = self.surface.foot(p).point;
-        (foot - cone.vertex).norm() <= ON_VERTEX * (1.0 + cone.vertex.norm())
+        self.sign < 0.0 && (foot - cone.vertex).norm() <= ON_VERTEX * (1.0 + cone.vertex.norm())
     }
 
     /// Derivatives of the normal by the coordinates, as columns.
     fn normal_rate(&self, p: &Vec3) -> Matrix3<f64> {
-        self.surface.foot_and_hessian(p).1 * self.sign
+        self.surface.foot_and_hessian(&(p + self.lift)).1 * self.sign
     }
 }
 
@@ -118,8 +127,8 @@ impl Law {
     /// that surface's own normal if the tool end is ON it.
     pub(crate) fn new(
         mode: &ToolAxis,
-        part: Option<&Gauge>,
-        drive: Option<&Gauge>,
+        part: Option<&Working>,
+        drive: Option<&Working>,
         (tool, tip, ahead): (&Tool, &Vec3, &Vec3),
     ) -> Result<Option<Self>, AxisFailure> {
         let controlled_by_part = match mode {
@@ -129,13 +138,11 @@ impl Law {
         };
         let (base, other) = if controlled_by_part { (part, drive) } else { (drive, part) };
         let base = base.ok_or(AxisFailure::NoSurface)?;
-        let cosine = base.surface.foot(tip).normal.dot(&tool.axis);
-        let sign = if base.on && cosine.abs() > LEAST_COSINE { cosine.signum() } else { base.side };
-        let base = Directed { surface: base.surface.clone(), sign };
-        let other = other.map(|gauge| Directed {
-            surface: gauge.surface.clone(),
-            sign: if gauge.on { 1.0 } else { gauge.side },
-        });
+        let cosine = base.gauge.surface.foot(tip).normal.dot(&tool.axis);
+        let sign =
+            if base.gauge.on && cosine.abs() > LEAST_COSINE { cosine.signum() } else { base.gauge.side };
+        let base = Directed::new(base, sign);
+        let other = other.map(|role| Directed::new(role, if role.gauge.on { 1.0 } else { role.gauge.side }));
         let mut law = Self { base, other, mode: Mode::Normal };
         if let ToolAxis::AtAngle { angle, mode, .. } = mode {
             law.mode = law.angles(*angle, mode, tip, ahead)?;

@@ -10,9 +10,9 @@ use apt_geometry::{
 };
 
 use crate::{
-    clearance::{Gauge, Tool},
+    clearance::{EVALUATIONS, Gauge, Tool},
     error::{AxisFailure, MotionFailure},
-    tests::{Program, circle, plane, sphere, start, v},
+    tests::{Program, circle, cone, plane, sphere, start, v},
 };
 
 /// A wall that leans inward: from a circle of radius 6 at z=0 to one of radius 5 at z=4, both about (3, −6).
@@ -168,4 +168,48 @@ fn a_fan_turns_evenly_with_the_way() {
     // Round a dome, too, where the end depends on the axis there.
     let p = round_the_dome(ToolAxis::Tangent { height: 0.0, mode: AxisTangency::Fan });
     verified(&p);
+}
+
+/// A flank along the rulings of a cone that stands on its vertex or on its base, from outside and inside.
+fn along_the_rulings(upward: f64, inside: bool, height: f64, mode: AxisTangency) -> Program {
+    // Of radius 5 at z=0.
+    let (half, floor) = (20f64.to_radians(), plane(0.0, 0.0, 1.0, 0.0));
+    let wall = cone(v(0.0, 0.0, -upward * 5.0 / half.tan()), v(0.0, 0.0, upward), 20.0);
+    let begin = if inside { 4.0 } else { 6.0 };
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5]).from(0.3, -begin, 0.0);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height, mode }));
+    p.part_side(apt_geometry::motion::PartSide::On);
+    p.go(&[(Relation::To, &wall), (Relation::On, &floor), (Relation::On, &plane(1.0, 0.0, 0.0, 0.3))]);
+    let side = if inside { DriveSide::Left } else { DriveSide::Right };
+    p.side(side).indirv(1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &wall, Relation::On, &plane(1.0, 0.0, 0.0, 2.0));
+    p
+}
+
+/// Most clearances that one cut vector along the rulings may cost; contacts that jump from end to end of the flank, which
+/// the vectors were once measured with, cost thousands.
+const MOST_CLEARANCES: u64 = 150;
+
+#[test]
+fn a_flank_along_the_rulings_of_a_cone_costs_a_bounded_number_of_clearances() {
+    let modes = [AxisTangency::Across, AxisTangency::PerpendicularTo(v(1.0, 0.0, 0.0))];
+    for (upward, inside, height) in
+        [(1.0, false, 0.0), (1.0, true, 0.5), (-1.0, false, 0.5), (-1.0, false, 0.0), (-1.0, true, 0.5)]
+    {
+        for mode in modes {
+            let before = EVALUATIONS.get();
+            let p = along_the_rulings(upward, inside, height, mode);
+            let (spent, vectors) = (EVALUATIONS.get() - before, p.last().points.len() as u64);
+            assert!((4..12).contains(&vectors), "{upward} {inside} {height} {mode:?}: {vectors} vectors");
+            assert!(spent <= MOST_CLEARANCES * vectors, "{upward} {inside} {height} {mode:?}: {spent}");
+            if matches!(mode, AxisTangency::Across) {
+                // Along the ruling: it leans by the half angle, and points to the vertex or away from it.
+                for point in &p.last().points {
+                    assert!((point.axis.z - 20f64.to_radians().cos()).abs() < 1e-9, "{point:?}");
+                }
+            }
+            verified(&p);
+        }
+    }
 }

@@ -155,8 +155,21 @@ fn greatest(tool: &Tool, family: &Family, tip: &Vec3) -> Contact {
         }
     }
     let angle = best.map_or(0.0, |best| best.angle);
-    let (clearance, _, normal, contact) = family.sample(tool, tip, angle);
+    let (clearance, slope, normal, contact) = family.sample(tool, tip, angle);
+    let contact = if slope.abs() <= resolution {
+        contact
+    } else {
+        between(tool, family, tip, angle).unwrap_or(contact)
+    };
     Contact { clearance, gradient: normal, tool: contact, surface: contact - normal * clearance }
+}
+
+/// The contact where a straight edge of the tool lies along the solid: of its two ends, which the normals on either side
+/// see, the place at which the distance is greatest. How the clearance changes while the tool turns depends on it.
+fn between(tool: &Tool, family: &Family, tip: &Vec3, angle: f64) -> Option<Vec3> {
+    let [before, after] = [-KINK_RESOLUTION, KINK_RESOLUTION].map(|by| family.sample(tool, tip, angle + by));
+    let (rising, falling) = (before.1, after.1);
+    (rising > 0.0 && falling < 0.0).then(|| before.3 + (after.3 - before.3) * (rising / (rising - falling)))
 }
 
 /// A place of the bracket: angle, distance there, and its derivative.

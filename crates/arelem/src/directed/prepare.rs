@@ -101,7 +101,7 @@ fn attitude(
     tip: &Vec3,
     wanted: &Vec3,
 ) -> Result<Attitude, MotionFailure> {
-    let law = Law::new(&state.axis_mode, Some(&part.gauge), Some(&drive.gauge), (tool, tip, wanted))
+    let law = Law::new(&state.axis_mode, Some(part), Some(drive), (tool, tip, wanted))
         .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip: *tip })?;
     let Some(law) = law else { return Ok(Attitude::fixed(tool.clone())) };
     let constant = law.is_constant();

@@ -4,6 +4,7 @@
 
 mod course;
 mod ledger;
+mod support;
 
 use apt_geometry::Vec3;
 
@@ -81,7 +82,14 @@ pub(crate) fn extremes(
     let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
     let length = sweep.length;
     let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
-    if length > 0.0 && sweep.turns() && !role.gauge.on {
+    let turns = sweep.turns() && !role.gauge.on;
+    if length > 0.0
+        && (turns || role.shape == Shape::General)
+        && let Some(found) = support::extremes(sweep, role, ends, size)
+    {
+        return found;
+    }
+    if length > 0.0 && turns {
         // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
         let line = Line { sweep, role, ledger, cancel, sign: 1.0 };
         return course::extremes(&line, line.sample(0.0), line.sample(length), ends, size);
