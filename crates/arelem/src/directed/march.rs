@@ -68,6 +68,8 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
 const TANGENT_SINE: f64 = 1e-7;
 /// How often a vector that ends at the check surface is shortened before giving up.
 const MAX_FINALS: u32 = 60;
+/// After so many of them the end is looked for where in the bands the last vertex is.
+const PATIENT_FINALS: u32 = 12;
 /// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
 const WITHOUT_AXIS: f64 = 0.25;
 /// Cut vectors after which it is first looked whether a check surface lies ahead.
@@ -135,7 +137,7 @@ impl<'a> March<'a> {
             if cancel() {
                 return Err(MotionFailure::Cancelled);
             }
-            let advanced = self.stepper.advance(&here, cap);
+            let advanced = self.stepper.advance(&mut here, cap);
             let next = advanced.map_err(|failure| self.without_axis(&here).unwrap_or(failure))?;
             let before = self.snapshot(&here);
             let sweep = here.sweep(self.prepared, &next);
@@ -152,8 +154,11 @@ impl<'a> March<'a> {
                 cap = self.state.maximum_step;
                 continue;
             };
-            let end =
-                finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &event, &next.tangent)?;
+            // An end at rest in the band may lie farther across the path than a last vector may be long: then where the
+            // path is.
+            let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);
+            let towards = finish::Towards { event: &event, tangent: &next.tangent, held };
+            let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
             if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
                 self.straighten_end(&start)?;

@@ -7,6 +7,7 @@ mod disk;
 mod economy;
 mod found;
 mod properties;
+mod refused;
 mod sheets;
 mod turning;
 mod worked;

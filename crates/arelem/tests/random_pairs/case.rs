@@ -23,8 +23,8 @@ use crate::{
 const LOOSE: f64 = 0.15;
 /// Sine between part and drive surface at least, and between drive surface and tool axis plane.
 const LEAST_SINE: f64 = 0.3;
-/// Further draws of a check surface when it is one to which distances are searched for.
-const SLOW_DRAWS: u32 = 2;
+/// Share of the check surfaces to which distances are searched for: with one of them a motion takes a hundred times as long.
+const SLOW_STOPS: f64 = 0.01;
 /// Draws of a case before another seed is taken.
 const DRAWS: u32 = 200;
 /// Draws of a place to come from.
@@ -117,10 +117,9 @@ impl Case {
         let first = Placed { geometry: across, relation: Relation::On, side: 1.0 };
         let reach = random.between(0.2, 2.5);
         let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
-        // Where distances are searched for, a motion takes a hundred times as long.
-        let stop_kind = (0..SLOW_DRAWS).fold(random.pick(&Kind::ALL), |kind, _| {
-            if kind.is_slow() { random.pick(&Kind::ALL) } else { kind }
-        });
+        let is_slow = random.next() < SLOW_STOPS;
+        let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| kind.is_slow() == is_slow).collect();
+        let stop_kind = random.pick(&kinds);
         let facing = facing(stop_kind, &along, random)? * if until == Relation::Past { 1.0 } else { -1.0 };
         let stop = laid(stop_kind, &facing, until, &(place + along * reach), random)?;
         let mut case = Self {

@@ -246,6 +246,7 @@ impl<'a> Reader<'a> {
             let guide = Some((*sense, sense.dot(&goal)));
             if let Some(next) = self.settle(&goal, Wanted::PathOnly, guide)
                 && (next - tip).norm() < 3.0 * length
+                && (next - tip).dot(sense) > 0.0
                 && let Some(next_sense) = self.tangent(&next, &(next - tip))
             {
                 return Some((next, next_sense));

@@ -19,16 +19,25 @@ pub(in crate::directed) struct End {
     pub(in crate::directed) side: f64,
 }
 
+/// What an end is looked for by.
+pub(in crate::directed) struct Towards<'a> {
+    pub(in crate::directed) event: &'a Event,
+    /// Direction of the path there.
+    pub(in crate::directed) tangent: &'a Vec3,
+    /// Clearances of part and drive surface to end with, instead of those at rest.
+    pub(in crate::directed) held: Option<[f64; 2]>,
+}
+
 /// The end of a motion at an event found on a straight vector: where the path only touches the check surface, the place of
 /// contact.
 pub(in crate::directed) fn end(
     prepared: &Prepared,
     checks: &[CheckSurface],
     (watcher, sweep): (&Watcher<'_>, &Sweep<'_>),
-    event: &Event,
-    tangent: &Vec3,
+    towards: &Towards<'_>,
 ) -> Result<End, MotionFailure> {
-    locate(prepared, checks, event, tangent).or_else(|failure| {
+    let event = towards.event;
+    locate(prepared, checks, towards).or_else(|failure| {
         let touch = watcher.touch(event.check, sweep).ok_or(failure)?;
         Ok(End { tip: touch.tip, check: touch.check, side: touch.side })
     })
@@ -38,8 +47,7 @@ pub(in crate::directed) fn end(
 fn locate(
     prepared: &Prepared,
     checks: &[CheckSurface],
-    event: &Event,
-    tangent: &Vec3,
+    &Towards { event, tangent, held }: &Towards<'_>,
 ) -> Result<End, MotionFailure> {
     if event.grazed || is_tangent(checks[event.check].relation) {
         return Ok(End { tip: event.tip, check: event.check, side: event.side });
@@ -51,9 +59,10 @@ fn locate(
     let (mut part, mut drive) = (prepared.part.clone(), prepared.drive.clone());
     part.look_along(&event.tip, tangent);
     drive.look_along(&event.tip, tangent);
+    let [at_part, at_drive] = held.unwrap_or([part.rest(), drive.rest()]);
     let conditions = [
-        Condition::Clearance(&part.gauge, part.rest()),
-        Condition::Clearance(&drive.gauge, drive.rest()),
+        Condition::Clearance(&part.gauge, at_part),
+        Condition::Clearance(&drive.gauge, at_drive),
         Condition::Clearance(&check.gauge, check.rest()),
     ];
     match position::solve(&prepared.attitude, &conditions, &event.tip) {

@@ -26,6 +26,12 @@ const GREATEST_GROWTH: f64 = 4.0;
 const LEAST_TURN_COSINE: f64 = 0.5;
 /// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
 const CORNER_BANDS: f64 = 20.0;
+/// How many times the width of the bands ahead of a place without a way on it is looked for another contact.
+const CORNER_PROBES: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
+/// Sine between the normals of two contacts above which they are not the same one.
+const OTHER_CONTACT_SINE: f64 = 0.05;
+/// Cosine between two directions above which both need not be tried.
+const SAME_TANGENT_COSINE: f64 = 0.999;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
@@ -64,8 +70,41 @@ impl<'a> Stepper<'a> {
         [&self.prepared.part, &self.prepared.drive]
     }
 
-    /// The next vertex, at most `cap` away.
-    pub(super) fn advance(&mut self, here: &Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+    /// The next vertex, at most `cap` away. Where the path turns sharply because the tool comes to touch a surface at a second
+    /// place, the tangent of the vertex becomes that of the path beyond.
+    pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+        let failure = match self.onward(here, cap) {
+            Err(failure) if failure != MotionFailure::Cancelled => failure,
+            found => return found,
+        };
+        let places: Vec<SecondPlace> =
+            CORNER_PROBES.iter().filter_map(|share| self.second_place(here, *share)).collect();
+        for tangent in tangents_beyond(here, &places) {
+            let turned = Vertex { tangent, ..*here };
+            self.curvature = None;
+            if let Ok(next) = self.onward(&turned, cap) {
+                *here = turned;
+                return Ok(next);
+            }
+        }
+        Err(match (failure, places.first()) {
+            (MotionFailure::IterationLimit { .. }, Some(place)) => place.prevents(self.prepared, here),
+            (failure, _) => failure,
+        })
+    }
+
+    /// The contacts so many bands ahead, if one of them is another than here.
+    fn second_place(&self, here: &Vertex, bands: f64) -> Option<SecondPlace> {
+        let Prepared { part, drive, .. } = self.prepared;
+        let reach = bands * (part.band() + drive.band());
+        let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent).ok()?;
+        let is_other = |a: &Contact, b: &Contact| a.gradient.cross(&b.gradient).norm() > OTHER_CONTACT_SINE;
+        let others = [is_other(&here.part, &ahead.part), is_other(&here.drive, &ahead.drive)];
+        others.contains(&true).then_some(SecondPlace { ahead, others })
+    }
+
+    /// The next vertex along the tangent, at most `cap` away.
+    fn onward(&mut self, here: &Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         let cap = cap.min(self.maximum);
         let curvature = match self.curvature {
             Some(known) => known,
@@ -252,6 +291,46 @@ impl<'a> Stepper<'a> {
         }
         Some(trial)
     }
+}
+
+/// A place ahead at which the tool touches a surface elsewhere.
+struct SecondPlace {
+    ahead: Vertex,
+    /// Whether the contacts with part and drive surface are others.
+    others: [bool; 2],
+}
+
+impl SecondPlace {
+    /// What is told where the path cannot go on along the second contact.
+    fn prevents(&self, prepared: &Prepared, here: &Vertex) -> MotionFailure {
+        let (role, clearance) = match self.others {
+            [true, _] => (prepared.part.name, self.ahead.part.clearance),
+            _ => (prepared.drive.name, self.ahead.drive.clearance),
+        };
+        MotionFailure::NoAdmissibleVector { role, clearance, tip: here.tip }
+    }
+}
+
+/// Directions in which the path may go on from a corner: along the second contact and away from the present one, but not
+/// back. Where a second wall would lead the tool back the path ends.
+fn tangents_beyond(here: &Vertex, places: &[SecondPlace]) -> Vec<Vec3> {
+    let mut found: Vec<Vec3> = Vec::new();
+    for SecondPlace { ahead, others } in places {
+        for [part_turns, drive_turns] in [[true, false], [false, true], [true, true]] {
+            if (part_turns && !others[0]) || (drive_turns && !others[1]) {
+                continue;
+            }
+            let part = if part_turns { &ahead.part } else { &here.part };
+            let drive = if drive_turns { &ahead.drive } else { &here.drive };
+            let along = tangent(part, drive, &here.tangent);
+            let away = |turns: bool, contact: &Contact| !turns || contact.gradient.dot(&along) >= 0.0;
+            let is_known = found.iter().any(|t| t.dot(&along) > SAME_TANGENT_COSINE);
+            if away(part_turns, &here.part) && away(drive_turns, &here.drive) && !is_known {
+                found.push(along);
+            }
+        }
+    }
+    found
 }
 
 /// Factor by which the length may grow until the sag fills the band, taking the sag as quadratic in the length.

@@ -34,7 +34,8 @@ pub(super) fn run(
             None => tangency.scan(&from, &to)?,
         };
         if let Some(event) = event {
-            let end = finish::end(prepared, checks, (&watcher, &sweep), &event, &here.tangent)?;
+            let towards = finish::Towards { event: &event, tangent: &here.tangent, held: None };
+            let end = finish::end(prepared, checks, (&watcher, &sweep), &towards)?;
             return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side });
         }
         travelled += length;

@@ -1,0 +1,245 @@
+//! Random motions that end where the path does, and what is told about it.
+
+use std::cell::Cell;
+
+use super::*;
+use crate::{error::RoleName, verify::verify};
+
+/// A start-up and a directed motion.
+struct Found {
+    cutter: &'static [f64],
+    axis: Vec3,
+    from: Vec3,
+    /// INTOL and OUTTOL.
+    band: [f64; 2],
+    thickness: f64,
+    drive_side: DriveSide,
+    forward: Vec3,
+    part: (Relation, Geometry),
+    drive: (Relation, Geometry),
+    first: (Relation, Geometry),
+    stop: (Relation, Geometry),
+}
+
+impl Found {
+    /// Runs both, asking at most so often whether to give up; what they found is proven.
+    fn run(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+        let ahead = Some(Direction::Vector(self.forward));
+        let [part, drive, first, stop] = [&self.part, &self.drive, &self.first, &self.stop]
+            .map(|(relation, surface)| (*relation, surface));
+        let commands = [
+            MotionCommand::Cutter(self.cutter.to_vec()),
+            MotionCommand::InsideTolerance(PerRole::all(self.band[0])),
+            MotionCommand::OutsideTolerance(PerRole::all(self.band[1])),
+            MotionCommand::Thickness(PerRole::all(self.thickness)),
+            MotionCommand::MaximumStep(10.0),
+            MotionCommand::MaximumPoints(1500),
+            MotionCommand::From { position: self.from, axis: Some(self.axis), name: String::new() },
+            start(&[drive, part, first]),
+            MotionCommand::DriveSide(self.drive_side),
+            MotionCommand::Direction([ahead, None, None]),
+            motion(Turn::Forward, drive.1, &[(stop.0, 1, stop.1)]),
+        ];
+        let left = Cell::new(questions);
+        let spent = || {
+            left.set(left.get().saturating_sub(1));
+            left.get() == 0
+        };
+        let mut state = State::new(1.0);
+        let mut sequences = Vec::new();
+        for command in &commands {
+            let execution = execute(&state, command, &spent);
+            state = execution.state;
+            if let Some(failure) = execution.failure {
+                return Err(failure);
+            }
+            if let Some(Output::Sequence(sequence)) = execution.output {
+                let evidence = verify(&sequence, &|| false).expect("evidence");
+                assert!(evidence.verified, "{evidence:?}");
+                sequences.push(sequence);
+            }
+        }
+        Ok(sequences)
+    }
+}
+
+/// More questions than any of these motions needs.
+const AMPLE: u32 = 20_000;
+
+fn is_stopped_by_its_part_surface(motion: &Found) {
+    match motion.run(AMPLE) {
+        Err(MotionFailure::NoAdmissibleVector { role: RoleName::Part, clearance, .. }) => {
+            assert!(clearance < -motion.band[0] || clearance > motion.band[1], "{clearance}");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Its end touches one wall, then its shank the other, and the way along that wall leads back.
+#[test]
+fn a_ball_cutter_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
+    let part = Geometry::Ellipse(Quadric {
+        coefficients: [
+            0.08993875338833873,
+            0.09697819719383527,
+            0.0,
+            0.40908312280705683,
+            0.0,
+            0.0,
+            -0.010654530733057749,
+            -0.11385923486863764,
+            -0.3344702964321053,
+            0.0,
+        ],
+    });
+    let drive = Geometry::Sphere(Sphere {
+        center: v(-2.833153384380343, 1.8982225094385798, -5.14141965309226),
+        radius: 7.087251577006694,
+    });
+    let motion = Found {
+        cutter: &[0.7659524331191407, 0.38297621655957037],
+        axis: v(-0.2925123745516589, 0.9459075545547606, -0.1403403326573745),
+        from: v(0.7972180822494815, 1.287651878704031, 0.17207748472717954),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.8117789464284786, 0.12705107546912783, 0.569976285785301),
+        part: (Relation::To, part),
+        drive: (Relation::To, drive),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.8117789464284787, 0.12705107546912786, 0.5699762857853011),
+                distance: -0.49575257652258403,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.08280748333809697,
+                    0.017694854094106406,
+                    0.11384437344540137,
+                    0.02150312081886452,
+                    -0.04488038466814519,
+                    -0.0030401139255012994,
+                    0.0008072484545385565,
+                    0.2885076799798757,
+                    0.019802285240807547,
+                    -0.05367473764578081,
+                ],
+            }),
+        ),
+    };
+    is_stopped_by_its_part_surface(&motion);
+}
+
+/// The same with a flat cutter along a hollow cone.
+#[test]
+fn a_flat_cutter_that_leans_in_a_hollow_cylinder_is_told_what_stops_it() {
+    let part = Geometry::Circle(Cylinder {
+        point: v(1.6691746439091308, 1.0544464952541002, -0.786633375219504),
+        axis: v(0.0, 0.0, 1.0),
+        radius: 2.822530737917733,
+    });
+    let drive = Geometry::Cone(Cone {
+        vertex: v(-0.25657765617754547, -0.22541540282291628, 0.7507825083163797),
+        axis: v(-0.26888991764169795, 0.23544823665512177, -0.9339498594928075),
+        cosine: 0.5479868478559156,
+    });
+    let motion = Found {
+        cutter: &[0.7013812468619891],
+        axis: v(0.9169756586669205, 0.15801591654638333, -0.3663149076005147),
+        from: v(-0.041968308896993316, 0.507035852677432, -1.2226762575659251),
+        band: [0.001, 0.001],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(0.026439008433103508, -0.9392041776425804, 0.34233973116160327),
+        part: (Relation::To, part),
+        drive: (Relation::To, drive),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(0.026439008433103508, -0.9392041776425804, 0.34233973116160327),
+                distance: -1.008499851064969,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Cylinder(Cylinder {
+                point: v(4.025675255187121, -4.55022260167686, 1.0748215302051451),
+                axis: v(-0.3480913881966068, -0.4614869546505911, -0.81600378439728),
+                radius: 6.852050178876079,
+            }),
+        ),
+    };
+    is_stopped_by_its_part_surface(&motion);
+}
+
+/// The same with a tapered one whose end is on the drive surface.
+#[test]
+fn a_tapered_tool_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
+    let part = Geometry::Circle(Cylinder {
+        point: v(1.5561240421288838, 0.2714733427062874, -2.026735291973663),
+        axis: v(0.0, 0.0, 1.0),
+        radius: 2.6394492273198127,
+    });
+    let drive = Geometry::Cylinder(Cylinder {
+        point: v(-2.6782719951385268, 1.7504619140295699, -5.262570638664751),
+        axis: v(-0.5854468739132258, -0.8001503785143145, -0.13042748785678093),
+        radius: 4.248717274375101,
+    });
+    let motion = Found {
+        cutter: &[
+            0.3565450764054637,
+            0.0,
+            0.17827253820273184,
+            0.0,
+            0.0,
+            14.009751277796518,
+            3.6300934448475353,
+        ],
+        axis: v(0.8677055179280312, 0.44041207837362034, -0.23048716966433372),
+        from: v(-0.33602123705888204, -0.7309648142077111, -1.3446521609616595),
+        band: [0.01, 0.005],
+        thickness: 0.14458833454033673,
+        drive_side: DriveSide::On,
+        forward: v(-0.09758924730023891, 0.8410008684989092, 0.5321596358194157),
+        part: (Relation::To, part),
+        drive: (Relation::On, drive),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.09758924730023892, 0.8410008684989093, 0.5321596358194158),
+                distance: -1.0670171365017742,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Sphere(Sphere {
+                center: v(0.38853317226964235, 8.02683895935386, 0.21969122602797597),
+                radius: 7.012504146120578,
+            }),
+        ),
+    };
+    is_stopped_by_its_part_surface(&motion);
+}
+
+/// MAXDP far below the band on a saddle: the end at rest in the band lies farther across the path than one vector may go.
+#[test]
+fn a_longest_vector_far_below_the_band_ends_where_the_path_is() {
+    let part = quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]);
+    let drive = plane(0.0, 1.0, 0.0, 0.3);
+    let wall = |x: f64| plane(1.0, 0.0, 0.0, x);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.05).cutter(&[0.5, 0.25]).run(&MotionCommand::MaximumPoints(1000));
+    p.from(-1.5, 0.3, 6.0);
+    p.go(&[(Relation::On, &drive), (Relation::To, &part), (Relation::On, &wall(-1.2))]);
+    p.run(&MotionCommand::MaximumStep(0.004));
+    p.indirv(1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &drive, Relation::On, &wall(-0.9)).verified();
+    for sequence in &p.sequences {
+        assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
+    }
+    assert!((p.tip().x + 0.9).abs() < 1e-9);
+}
