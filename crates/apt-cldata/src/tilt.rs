@@ -137,6 +137,9 @@ pub enum TiltError {
     /// Parameters missing or of the wrong kind.
     #[error("the parameters of {0} are incomplete")]
     Form(&'static str),
+    /// A word that the statement does not take there.
+    #[error("a word that {0} does not take")]
+    Modifier(&'static str),
 }
 
 impl TiltError {
@@ -165,6 +168,7 @@ impl TiltError {
             TiltError::Vertical => 37,
             TiltError::Index => 39,
             TiltError::CornerBothSides => 41,
+            TiltError::Modifier(_) => 14,
             TiltError::CornerOutside | TiltError::CornerSteps { .. } | TiltError::Form(_) => return None,
         })
     }
@@ -303,6 +307,7 @@ impl Tilter {
             ClKind::Postprocessor { word, arguments, .. } if word == "VTLAXS" => match arguments.first() {
                 Some(ClWord::Word(word)) if word == "ON" => self.switch_on(at, place, arguments),
                 Some(ClWord::Word(word)) if word == "OFF" => self.switch_off(at, place, arguments),
+                Some(ClWord::Word(_)) => self.error(place, TiltError::Modifier("VTLAXS")),
                 _ => self.error(place, TiltError::Form("VTLAXS")),
             },
             ClKind::Postprocessor { word, arguments, .. } if word == "WCORN" => self.corner(place, arguments),
@@ -364,6 +369,9 @@ impl Tilter {
         let [_, ClWord::Word(side), ClWord::Number(end)] = arguments else {
             return self.error(place, TiltError::Form("VTLAXS"));
         };
+        if !matches!(side.as_str(), "RIGHT" | "LEFT") {
+            return self.error(place, TiltError::Modifier("VTLAXS"));
+        }
         let end = if side == "RIGHT" { -end } else { *end };
         let first = range.before.saturating_sub(1);
         let path: Vec<Vec3> = self.points.iter().skip(first).map(|point| point.position).collect();
@@ -492,7 +500,7 @@ fn cleaned(order: &Order, arguments: &[ClWord]) -> Result<Corner, TiltError> {
         _ => return Err(TiltError::Form("WCORN")),
     };
     if ![first, second].into_iter().all(|word| matches!(word.as_str(), "RIGHT" | "LEFT")) {
-        return Err(TiltError::Form("WCORN"));
+        return Err(TiltError::Modifier("WCORN"));
     }
     let incoming = if first == "RIGHT" { -alpha } else { *alpha };
     let outgoing = if second == "RIGHT" { -beta.abs() } else { beta.abs() };
@@ -522,11 +530,12 @@ fn order(arguments: &[ClWord]) -> Result<Order, TiltError> {
     let below = match rest {
         [] => false,
         [ClWord::Word(word)] if word == "ZSMALL" => true,
+        [ClWord::Word(_)] => return Err(TiltError::Modifier("VTLAXS")),
         _ => return Err(TiltError::Form("VTLAXS")),
     };
     let right_or_left = |word: &str| matches!(word, "RIGHT" | "LEFT");
     if !right_or_left(tilt) || !right_or_left(cutter) {
-        return Err(TiltError::Form("VTLAXS"));
+        return Err(TiltError::Modifier("VTLAXS"));
     }
     let (radius, corner) = (diameter.abs() / 2.0, *corner);
     if corner > radius * (1.0 + RADIUS_FRACTION) {

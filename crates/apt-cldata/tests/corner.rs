@@ -153,7 +153,7 @@ fn mistakes_are_told_at_the_corner() {
         ("WCORN/LEFT,5,LEFT,5,1", "", -8.0, Some(25)),
         ("WCORN/LEFT,5,LEFT,5,1,20000", "", 8.0, None),
         ("WCORN/LEFT,5,LEFT,5", "", 8.0, None),
-        ("WCORN/LEFT,5,ON,5,1", "", 8.0, None),
+        ("WCORN/LEFT,5,ON,5,1", "", 8.0, Some(14)),
     ];
     for (wcorn, zsmall, down, number) in cases {
         let mut items = program(&format!("VTLAXS/ON,LEFT,0,2,0,RIGHT{zsmall}"), wcorn, "VTLAXS/OFF,LEFT,0");

@@ -196,8 +196,10 @@ fn mistakes_have_their_numbers() {
         (vec![a(), word(2, ON), index(9), b(), word(10, OFF)], 9, TiltError::Index, Some(39)),
         (vec![a(), word(6, "WCORN/LEFT,5,LEFT,5,1"), b()], 6, TiltError::CornerOutside, None),
         (vec![a(), word(2, "VTLAXS/ON,LEFT,5"), b(), word(5, OFF)], 2, TiltError::Form("VTLAXS"), None),
+        (vec![a(), word(2, ON), b(), word(5, "VTLAXS/OFF,UP,0")], 5, TiltError::Modifier("VTLAXS"), Some(14)),
         (vec![a(), word(2, ON), b(), word(5, "VTLAXS/OFF")], 5, TiltError::Form("VTLAXS"), None),
-        (vec![a(), word(2, "VTLAXS/UP,5"), b()], 2, TiltError::Form("VTLAXS"), None),
+        (vec![a(), word(2, "VTLAXS/UP,5"), b()], 2, TiltError::Modifier("VTLAXS"), Some(14)),
+        (vec![a(), word(2, "VTLAXS/5"), b()], 2, TiltError::Form("VTLAXS"), None),
     ];
     for (items, isn, kind, apt3) in cases {
         let before = items.iter().filter(|item| matches!(item, EditItem::Record(_))).count();

@@ -15,6 +15,7 @@ impl IncludeResolver for Library {
         let text = match name {
             "OUTER" => "READ/2,INNER\n",
             "INNER" => "B=2\n",
+            "CALLER" => "CALL/SYSMAC,X=4\n",
             "SYSMAC" => "SYSMAC=MACRO/X\nC=X\nTERMAC\n",
             _ => return Err(IncludeFailure::NotFound { searched: Vec::new() }),
         };
@@ -80,6 +81,9 @@ const RULES: &[Rule] = &[
     ("READ/2 in a loop", "LOOPST\nREAD/2,INNER\nLOOPND", &[(2, Some(37))]),
     ("READ/2 in a macro", "M=MACRO\nREAD/2,INNER\nTERMAC\nCALL/M", &[(2, Some(37))]),
     ("READ/2 in a segment", "READ/2,OUTER", &[(1, Some(30))]),
+    ("the first CALL of a system macro in a segment", "LIBRY/SYSMAC\nREAD/2,CALLER", &[(1, Some(38))]),
+    ("a later CALL of a system macro in a segment", "LIBRY/SYSMAC\nCALL/SYSMAC,X=1\nREAD/2,CALLER", &[]),
+    ("a CALL of another macro in a segment", "SYSMAC=MACRO/X\nC=X\nTERMAC\nREAD/2,CALLER", &[]),
     ("READ/2 of nothing", "READ/2,NIX", &[(1, Some(31))]),
     ("READ/2 of two", "READ/2,INNER,OUTER", &[(1, Some(34))]),
     ("LIBRY of nothing", "LIBRY/NIX", &[(1, Some(31))]),

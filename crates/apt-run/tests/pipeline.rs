@@ -183,10 +183,10 @@ fn numbers_of_index_are_used_once_and_their_table_ends_in_apt3() {
 }
 
 #[test]
-fn a_loft_is_no_surface_of_a_motion() {
+fn surfaces_of_single_installations_are_no_surfaces_of_a_motion() {
     let program = |motion: &str| {
         format!(
-            "S1=LOFT/CANON,1,2,3,4,5,6,7,8\nP1=PLANE/0,0,1,0\nL1=LINE/XAXIS\nCUTTER/1\nFROM/0,-5,0\n{motion}\nFINI\n"
+            "S1=LOFT/CANON,1,2,3,4,5,6,7,8\nS2=MESH/CANON,1,2,3\nS3=ELMSRF/CANON,1\nP1=PLANE/0,0,1,0\nL1=LINE/XAXIS\nCUTTER/1\nFROM/0,-5,0\n{motion}\nFINI\n"
         )
     };
     let said = |motion: &str| {
@@ -198,6 +198,8 @@ fn a_loft_is_no_surface_of_a_motion() {
     };
     assert_eq!(said("GO/TO,S1"), [("APT0608", "a LOFT cannot be a drive surface".to_owned())]);
     assert_eq!(said("GO/TO,L1,TO,S1"), [("APT0608", "a LOFT cannot be a part surface".to_owned())]);
+    assert_eq!(said("GO/TO,S2"), [("APT0608", "a MESH cannot be a drive surface".to_owned())]);
+    assert_eq!(said("GO/TO,S3"), [("APT0608", "an ELMSRF cannot be a drive surface".to_owned())]);
     assert_eq!(said("GO/TO,L1,TO,P1"), []);
 }
 

@@ -4,7 +4,7 @@ use super::GeometryKind;
 
 /// Every kind with its word, the number that APT III adds to 3000 for its surface code, and the count of canonical
 /// values where that is fixed (language reference 3.3).
-const KINDS: [(GeometryKind, &str, u16, Option<usize>); 21] = [
+const KINDS: [(GeometryKind, &str, u16, Option<usize>); 23] = [
     (GeometryKind::Point, "POINT", 1, Some(3)),
     (GeometryKind::Line, "LINE", 2, Some(4)),
     (GeometryKind::Plane, "PLANE", 3, Some(4)),
@@ -24,6 +24,8 @@ const KINDS: [(GeometryKind, &str, u16, Option<usize>); 21] = [
     (GeometryKind::TabulatedCylinder, "TABCYL", 50, None),
     (GeometryKind::RuledSurface, "RLDSRF", 53, None),
     (GeometryKind::Pattern, "PATERN", 18, None),
+    (GeometryKind::Mesh, "MESH", 51, None),
+    (GeometryKind::ElementSurface, "ELMSRF", 54, None),
     (GeometryKind::Sculptured, "SSURF", 29, None),
     (GeometryKind::SpaceCurve, "SCURV", 30, None),
 ];
@@ -82,7 +84,7 @@ mod tests {
             assert_eq!(GeometryKind::from_word(kind.word()), Some(kind));
             assert!(kind.surface_code() > 3000);
         }
-        assert_eq!(GeometryKind::all().count(), 21);
+        assert_eq!(GeometryKind::all().count(), 23);
         assert_eq!(GeometryKind::from_word("GOTO"), None);
     }
 }

@@ -170,6 +170,8 @@ pub enum GeometryKind {
     TabulatedCylinder,
     RuledSurface,
     Pattern,
+    Mesh,
+    ElementSurface,
     Sculptured,
     SpaceCurve,
 }
@@ -199,6 +201,10 @@ pub enum Geometry {
     TabulatedCylinder(Arc<TabulatedCylinder>),
     RuledSurface(Arc<RuledSurface>),
     Pattern(Arc<Pattern>),
+    /// The canonical values, as many as there are; what they mean is known to the installation that had the type.
+    Mesh(Arc<Vec<f64>>),
+    /// As for [`Geometry::Mesh`].
+    ElementSurface(Arc<Vec<f64>>),
     Sculptured(Arc<SculpturedSurface>),
     SpaceCurve(Arc<SpaceCurve>),
 }
@@ -226,6 +232,8 @@ impl Geometry {
             Geometry::TabulatedCylinder(_) => GeometryKind::TabulatedCylinder,
             Geometry::RuledSurface(_) => GeometryKind::RuledSurface,
             Geometry::Pattern(_) => GeometryKind::Pattern,
+            Geometry::Mesh(_) => GeometryKind::Mesh,
+            Geometry::ElementSurface(_) => GeometryKind::ElementSurface,
             Geometry::Sculptured(_) => GeometryKind::Sculptured,
             Geometry::SpaceCurve(_) => GeometryKind::SpaceCurve,
         }

@@ -91,7 +91,9 @@ impl Geometry {
             Geometry::PolyConic(values) => {
                 Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?))
             }
-            Geometry::Matrix(_) | Geometry::Loft(_) => return Err(TransformError::NotMoved { kind }),
+            Geometry::Matrix(_) | Geometry::Loft(_) | Geometry::Mesh(_) | Geometry::ElementSurface(_) => {
+                return Err(TransformError::NotMoved { kind });
+            }
         })
     }
 }

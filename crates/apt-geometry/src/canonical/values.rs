@@ -83,7 +83,10 @@ impl Geometry {
             | Geometry::LoftConic(quadric)
             | Geometry::Quadric(quadric) => quadric.coefficients.to_vec(),
             Geometry::Matrix(matrix) => matrix.rows.concat(),
-            Geometry::PolyConic(values) | Geometry::Loft(values) => values.to_vec(),
+            Geometry::PolyConic(values)
+            | Geometry::Loft(values)
+            | Geometry::Mesh(values)
+            | Geometry::ElementSurface(values) => values.to_vec(),
             Geometry::TabulatedCylinder(surface) => tabulated_values(surface),
             Geometry::RuledSurface(surface) => surface.parts.iter().flat_map(coded_values).collect(),
             Geometry::Pattern(pattern) => pattern_values(pattern),
@@ -127,6 +130,11 @@ impl Geometry {
             }),
             GeometryKind::PolyConic => Geometry::PolyConic(Arc::new(values.to_vec())),
             GeometryKind::Loft => Geometry::Loft(Arc::new(values.to_vec())),
+            GeometryKind::Mesh | GeometryKind::ElementSurface if values.is_empty() => {
+                return Err(CanonicalError::Count { kind, expected: 1, found: 0 });
+            }
+            GeometryKind::Mesh => Geometry::Mesh(Arc::new(values.to_vec())),
+            GeometryKind::ElementSurface => Geometry::ElementSurface(Arc::new(values.to_vec())),
             GeometryKind::TabulatedCylinder => Geometry::TabulatedCylinder(Arc::new(tabulated_from(values)?)),
             GeometryKind::Pattern => Geometry::Pattern(Arc::new(pattern_from(values)?)),
             GeometryKind::Sculptured => Geometry::Sculptured(Arc::new(sculptured::surface_from(values)?)),
@@ -255,8 +263,13 @@ mod tests {
         tabulated.extend([0.0, 1.0, 0.5, 0.5, 2.0, -0.25, -0.125]);
         tabulated.extend((0..9).map(f64::from));
         let pattern = vec![4.0, 2.0, 1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-        for (kind, values) in [(GeometryKind::TabulatedCylinder, tabulated), (GeometryKind::Pattern, pattern)]
-        {
+        let stored = vec![1.0, -2.0, 3.5];
+        for (kind, values) in [
+            (GeometryKind::TabulatedCylinder, tabulated),
+            (GeometryKind::Pattern, pattern),
+            (GeometryKind::Mesh, stored.clone()),
+            (GeometryKind::ElementSurface, stored),
+        ] {
             let geometry = Geometry::from_canonical(kind, &values).expect("a canonical row");
             assert_eq!(geometry.canonical_values(), values);
         }
@@ -266,6 +279,10 @@ mod tests {
     fn heads_that_promise_something_else_are_refused() {
         let kind = GeometryKind::TabulatedCylinder;
         assert!(matches!(Geometry::from_canonical(kind, &[]), Err(CanonicalError::Count { .. })));
+        assert!(matches!(
+            Geometry::from_canonical(GeometryKind::Mesh, &[]),
+            Err(CanonicalError::Count { .. })
+        ));
         assert!(matches!(Geometry::from_canonical(kind, &[1e9, 0.0]), Err(CanonicalError::Value { .. })));
         assert!(matches!(Geometry::from_canonical(kind, &[f64::NAN]), Err(CanonicalError::Value { .. })));
         assert!(matches!(

@@ -71,6 +71,8 @@ pub fn formats(kind: GeometryKind) -> &'static [Format] {
         GeometryKind::Matrix => super::matrix::FORMATS,
         GeometryKind::PolyConic
         | GeometryKind::Loft
+        | GeometryKind::Mesh
+        | GeometryKind::ElementSurface
         // Their statements have qualifiers that come in any number and order: no list of formats holds them.
         | GeometryKind::Sculptured
         | GeometryKind::SpaceCurve => &[],

@@ -146,6 +146,8 @@ impl Surface {
             | Geometry::Vector(_)
             | Geometry::Matrix(_)
             | Geometry::Loft(_)
+            | Geometry::Mesh(_)
+            | Geometry::ElementSurface(_)
             | Geometry::Pattern(_)
             | Geometry::Sculptured(_)
             | Geometry::SpaceCurve(_) => Err(SurfaceError::Unsupported { kind }),

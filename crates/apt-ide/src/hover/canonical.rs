@@ -165,7 +165,9 @@ fn sentence(geometry: &Geometry) -> String {
             )
         }
         Geometry::PolyConic(_) => "polyconic surface".to_owned(),
-        Geometry::Loft(_) => "surface of a single installation".to_owned(),
+        Geometry::Loft(_) | Geometry::Mesh(_) | Geometry::ElementSurface(_) => {
+            "surface of a single installation".to_owned()
+        }
         Geometry::RuledSurface(surface) => {
             format!("ruled surface made from {} entities", surface.parts.len())
         }

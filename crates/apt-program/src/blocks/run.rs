@@ -84,6 +84,8 @@ impl Evaluator<'_> {
                 statements.map(|statement| activation.bindings.apply(statement, &self.dialect)).collect();
             self.enter_region(substituted.iter().map(|statement| &**statement));
         }
+        // A jump of Section 2 can name them, and is told when they carry no motion.
+        self.output.inner_labels.extend(activation.block.labels().map(SmolStr::new));
         let flow = self.run_statements(activation);
         self.leave_region();
         self.here = outer;

@@ -36,6 +36,8 @@ pub(crate) struct Output {
     pub(crate) lists_all: bool,
     /// Labels that TRANTO and check surfaces name, for a check at the end.
     pub(crate) transfers: Vec<(SmolStr, Origin)>,
+    /// Labels of the statements in loops and macros that were executed.
+    pub(crate) inner_labels: FxHashSet<SmolStr>,
 }
 
 impl Output {

@@ -42,6 +42,8 @@ pub(crate) struct State {
     pub(crate) reached: usize,
     /// Labels of check surfaces whose statements are still to come: Section 2 may go on there.
     pub(crate) open_checks: imbl::OrdSet<SmolStr>,
+    /// Macros of the library that have been called (dialects with bounded tables).
+    pub(crate) library_calls: imbl::OrdSet<SmolStr>,
     /// The conditions and switches of regional milling.
     pub(crate) regional: Arc<RegionalState>,
     /// FINI has been executed.
@@ -74,6 +76,7 @@ impl Default for State {
             repeated: 0,
             reached: 0,
             open_checks: imbl::OrdSet::new(),
+            library_calls: imbl::OrdSet::new(),
             regional: Arc::default(),
             ended: false,
         }
@@ -95,6 +98,8 @@ impl State {
             && self.exhausted == other.exhausted
             && self.repeated == other.repeated
             && self.open_checks == other.open_checks
+            && self.library_calls == other.library_calls
+            && self.intersection == other.intersection
             && (Arc::ptr_eq(&self.regional, &other.regional) || self.regional == other.regional)
             && self.ended == other.ended
     }

@@ -560,6 +560,12 @@ pub enum FindingKind {
     /// READ/2 in a block of statements that a READ/2 has put in.
     #[error("READ/2 in a block of statements from the library")]
     SegmentInSegment,
+    /// The first CALL of a macro of the library in a block of statements that a READ/2 has put in.
+    #[error("the first CALL of {name} in a block of statements from the library")]
+    SystemMacroInSegment {
+        /// The macro.
+        name: SmolStr,
+    },
     /// INCLUD of a file that cannot be found.
     #[error("{name} cannot be included")]
     IncludeNotFound {

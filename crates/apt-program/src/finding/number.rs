@@ -104,6 +104,7 @@ impl FindingKind {
             Self::CardSort { .. } => 2001,
             Self::SegmentInRegion => 37,
             Self::SegmentInSegment => 30,
+            Self::SystemMacroInSegment { .. } => 38,
             Self::EndMissing => 23,
             Self::ConditionMissing { .. }
             | Self::RangeReversed { .. }

@@ -31,6 +31,8 @@ pub(super) struct ChunkData {
     pub(super) listing: Vec<ListingEntry>,
     pub(super) definitions: Vec<DefinitionEvent>,
     pub(super) transfers: Vec<(SmolStr, Origin)>,
+    /// Labels of the statements in loops and macros that were executed.
+    pub(super) inner_labels: FxHashSet<SmolStr>,
     /// Names whose meaning changed.
     pub(super) touched: FxHashSet<SmolStr>,
     /// Names that were used.
@@ -62,6 +64,7 @@ impl ChunkData {
             listing: output.listing,
             definitions: output.definitions,
             transfers: output.transfers,
+            inner_labels: output.inner_labels,
             touched: output.touched,
             used: output.used,
         }
@@ -220,6 +223,11 @@ impl Chunk {
     /// Labels that records carry; these do not move.
     pub(super) fn record_labels(&self) -> impl Iterator<Item = &SmolStr> {
         self.data.records.iter().filter_map(|record| record.label.as_ref())
+    }
+
+    /// Whether a statement in a loop or macro that it executed carries a label; these do not move.
+    pub(super) fn has_inner_label(&self, label: &SmolStr) -> bool {
+        self.data.inner_labels.contains(label)
     }
 
     /// The same chunk after statements before it were inserted or removed, and after names that it does not depend on

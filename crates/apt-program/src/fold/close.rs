@@ -55,7 +55,8 @@ fn add_unknown_transfers(chunks: &[Chunk], end: &State, dialect: DialectName, fi
     carried.extend(chunks.iter().flat_map(Chunk::record_labels).cloned());
     for (label, origin) in transfers {
         if !carried.contains(label) {
-            let kind = if matches!(end.symbol(label).map(|symbol| &symbol.meaning), Some(Meaning::Label)) {
+            let at_top = matches!(end.symbol(label).map(|symbol| &symbol.meaning), Some(Meaning::Label));
+            let kind = if at_top || chunks.iter().any(|chunk| chunk.has_inner_label(label)) {
                 FindingKind::UnknownTransfer { name: label.clone() }
             } else {
                 FindingKind::UnknownLabel { name: label.clone(), similar: Vec::new() }

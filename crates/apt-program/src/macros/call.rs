@@ -47,6 +47,18 @@ impl Evaluator<'_> {
             self.gap(range);
             return Flow::Next;
         };
+        if self.is_first_call_in_segment(&definition, &name.text) {
+            let related = vec![(RelatedKind::Macro, origin)];
+            self.report_related(
+                FindingKind::SystemMacroInSegment { name: name.text.clone() },
+                name.range,
+                related,
+            );
+            if definition.body.moves() {
+                self.gap(range);
+            }
+            return Flow::Next;
+        }
         let Some(bindings) = self.bind(&definition, name, arguments, &origin) else {
             if definition.body.moves() {
                 self.gap(range);
@@ -61,6 +73,23 @@ impl Evaluator<'_> {
         }
         let frame = self.frame(FrameKind::Macro, name.text.clone(), range);
         self.run_block(&Activation { block: &definition.body, bindings, region: Region::Macro, frame })
+    }
+
+    /// Whether a macro of the library is called for the first time, and that in a segment of the library: there the library
+    /// of the cards is being read already.
+    fn is_first_call_in_segment(&mut self, definition: &MacroDefinition, name: &SmolStr) -> bool {
+        let Some(library) = definition.body.source.as_ref().filter(|_| self.dialect.bounded_tables) else {
+            return false;
+        };
+        if self.state.library_calls.contains(name) {
+            return false;
+        }
+        let segment = self.here.source.as_ref().filter(|_| self.here.region == Region::Top);
+        if segment.is_some_and(|segment| segment != library) {
+            return true;
+        }
+        self.state.library_calls.insert(name.clone());
+        false
     }
 
     /// Reports a CALL of something that is not a macro.

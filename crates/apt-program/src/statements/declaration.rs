@@ -258,6 +258,8 @@ impl Evaluator<'_> {
                 | GeometryKind::RuledSurface
                 | GeometryKind::PolyConic
                 | GeometryKind::Pattern
+                | GeometryKind::Mesh
+                | GeometryKind::ElementSurface
                 | GeometryKind::Sculptured
                 | GeometryKind::SpaceCurve
         );

@@ -128,11 +128,25 @@ impl Evaluator<'_> {
         self.motion(command, major.range);
     }
 
-    /// DMILL and BEVELS: accepted by the translator, kept on the CL file (language reference 6.8).
+    /// DMILL and BEVELS: the translator takes one word and makes a record, to which the motion phase of APT III gives no
+    /// meaning (language reference 6.8).
     pub(crate) fn accepted_control(&mut self, major: Major<'_>) {
-        let subclass = if major.spelling() == "DMILL" { 11 } else { 2 };
-        if let Some(items) = self.operands(major.arguments) {
-            self.control(major, &items, [6000, subclass]);
+        let (subclass, words): (u16, &[&str]) = match major.spelling() {
+            "DMILL" => (11, &["DSTAN", "PSTAN", "NOMORE"]),
+            _ => (2, &["ON", "OFF"]),
+        };
+        let Some(items) = self.operands_of(major, "1", 132) else { return };
+        match items.as_slice() {
+            [item] if item.word().is_some_and(|word| words.contains(&word)) => {
+                self.report(FindingKind::NoEffect { word: major.name() }, major.word.range);
+                self.control(major, &items, [6000, subclass]);
+            }
+            [item] => {
+                let number = if item.word().is_some() { 133 } else { 132 };
+                let expected = if words.len() == 2 { Expected::OnOrOff } else { Expected::Word };
+                self.wrong_operand(major, expected, item.found(), number, item.range);
+            }
+            _ => self.wrong_count(major, items.len(), "1", 132),
         }
     }
 

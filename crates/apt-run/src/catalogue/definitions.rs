@@ -162,10 +162,14 @@ fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
     let type_word = kind.word();
     match error {
         DefinitionError::UnknownFormat { .. } => {
-            let hint = if kind == GeometryKind::Loft {
-                Some("single installations had its definition; CANON stores its eight numbers".to_owned())
-            } else {
-                forms(kind)
+            let hint = match kind {
+                GeometryKind::Loft => {
+                    Some("single installations had its definition; CANON stores its eight numbers".to_owned())
+                }
+                GeometryKind::Mesh | GeometryKind::ElementSurface => {
+                    Some("single installations had its definition; CANON stores its numbers".to_owned())
+                }
+                _ => forms(kind),
             };
             say("APT0301", format!("{type_word} has no form with these parameters")).maybe(hint)
         }

@@ -252,6 +252,11 @@ fn whole(kind: &Kind) -> Text {
             say("APT0914", "the statements that READ/2 puts in cannot hold another READ/2")
                 .hint("read both blocks in the program; the dialect free puts in blocks within blocks")
         }
+        Kind::SystemMacroInSegment { name } => say(
+            "APT0915",
+            format!("the statements that READ/2 puts in cannot hold the first CALL of {name}, a macro of the library"),
+        )
+        .hint("call the macro once before; the dialect free takes it anywhere"),
         Kind::MotionSkipped => say("APT0911", "no motion is computed, because PTONLY/1 says so")
             .hint("remove the statement to get the cutter path"),
         Kind::RestartNotAvailable { number } => say(

@@ -49,7 +49,7 @@ pub(super) fn word(error: &TiltError) -> Text {
             say("APT0725", "a cut vector runs along z, so that there is no side to tilt to")
                 .hint("VTLAXS is for paths of constant height")
         }
-        TiltError::Form(word) => {
+        TiltError::Form(word) | TiltError::Modifier(word) => {
             let form = match *word {
                 "WCORN" => "WCORN/LEFT,alpha,LEFT,beta,h,n",
                 _ => "VTLAXS/ON,LEFT,alpha,d,r,RIGHT and VTLAXS/OFF,LEFT,beta",
