@@ -11,9 +11,9 @@ use crate::{
     },
 };
 
-/// Numbers before the patches of a surface: patches, columns and rows of the grid (0 without one), side, splines and
-/// cross splines.
-const SURFACE_HEAD: usize = 6;
+/// Numbers before the breaks and patches of a surface: patches, columns and rows of the grid (0 without one), side, splines
+/// and cross splines, breaks.
+const SURFACE_HEAD: usize = 7;
 /// Numbers of a patch: 16 control points of four coordinates, and four words of neighbours.
 const PATCH_VALUES: usize = 68;
 /// Numbers before the arcs of a curve: arcs, ranges and segments of the flow.
@@ -37,7 +37,8 @@ pub(super) fn surface_values(surface: &SculpturedSurface) -> Vec<f64> {
     let mut values: Vec<f64> =
         [surface.patches.len(), columns, rows].iter().map(|&number| number as f64).collect();
     values.push(surface.side);
-    values.extend([splines as f64, cross_splines as f64]);
+    values.extend([splines as f64, cross_splines as f64, surface.breaks.len() as f64]);
+    values.extend(&surface.breaks);
     for (index, patch) in surface.patches.iter().enumerate() {
         values.extend(patch.control.iter().flatten().flat_map(|point| point.iter().copied()));
         let neighbours = surface.neighbours.get(index).copied().unwrap_or_default();
@@ -56,7 +57,9 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
     let head = |position: usize| count(kind, values, position);
     let (patches, columns, rows) = (head(0)?, head(1)?, head(2)?);
     let mesh = Mesh { splines: head(4)?, cross_splines: head(5)? };
-    let expected = SURFACE_HEAD + PATCH_VALUES.saturating_mul(patches);
+    let breaks = head(6)?;
+    let patch_first = SURFACE_HEAD + breaks;
+    let expected = patch_first + PATCH_VALUES.saturating_mul(patches);
     if values.len() != expected {
         return Err(CanonicalError::Count { kind, expected, found: values.len() });
     }
@@ -67,18 +70,24 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
     if grid.is_some() && columns.saturating_mul(rows) != patches {
         return Err(CanonicalError::Value { kind, position: 1, value: columns as f64 });
     }
+    let whole = if columns > 0 { columns } else { patches };
+    let ends: Vec<f64> = (SURFACE_HEAD..patch_first).map(at).collect();
+    let grow =
+        ends.first().is_none_or(|first| *first == 0.0) && ends.windows(2).all(|pair| pair[0] < pair[1]);
+    if !(breaks == 0 || breaks == whole + 1 && grow) {
+        return Err(CanonicalError::Value { kind, position: 6, value: breaks as f64 });
+    }
     if at(3).abs() != 1.0 {
         return Err(CanonicalError::Value { kind, position: 3, value: at(3) });
     }
     let patch = |index: usize| {
-        let first = SURFACE_HEAD + PATCH_VALUES * index;
+        let first = patch_first + PATCH_VALUES * index;
         let control = std::array::from_fn(|i| {
             std::array::from_fn(|j| Vector4::from_fn(|axis, _| at(first + 16 * i + 4 * j + axis)))
         });
         Patch { control }
     };
-    let weights =
-        |index: usize| (0..16).map(move |point| SURFACE_HEAD + PATCH_VALUES * index + 4 * point + 3);
+    let weights = |index: usize| (0..16).map(move |point| patch_first + PATCH_VALUES * index + 4 * point + 3);
     if let Some(position) = (0..patches).flat_map(weights).find(|&position| at(position) <= 0.0) {
         return Err(CanonicalError::Value { kind, position, value: at(position) });
     }
@@ -86,7 +95,7 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
     for index in 0..patches {
         let mut own = [None; 4];
         for (edge, place) in own.iter_mut().enumerate() {
-            let position = SURFACE_HEAD + PATCH_VALUES * index + 64 + edge;
+            let position = patch_first + PATCH_VALUES * index + 64 + edge;
             *place = neighbour_from(at(position), patches).ok_or(CanonicalError::Value {
                 kind,
                 position,
@@ -95,7 +104,14 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
         }
         neighbours.push(own);
     }
-    Ok(SculpturedSurface { patches: (0..patches).map(patch).collect(), grid, neighbours, side: at(3), mesh })
+    Ok(SculpturedSurface {
+        patches: (0..patches).map(patch).collect(),
+        grid,
+        breaks: ends,
+        neighbours,
+        side: at(3),
+        mesh,
+    })
 }
 
 fn neighbour_word(neighbour: &Option<Neighbour>) -> f64 {

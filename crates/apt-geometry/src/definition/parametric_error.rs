@@ -131,6 +131,9 @@ pub enum ParametricError {
         /// How many.
         patches: usize,
     },
+    /// Patches with different sign words in one surface.
+    #[error("the sign words of the patches differ")]
+    MixedSigns,
     /// Knots that are not those of a B-spline.
     #[error("the knots are not those of {points} points of degree {degree}")]
     Knots {

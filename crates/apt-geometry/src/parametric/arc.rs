@@ -47,11 +47,11 @@ impl CurveArc {
         CurveArc::from_hermite(p, q, &(q - p), &(q - p))
     }
 
-    /// The conic arc with three control points, the middle one of weight `weight` (a circle of angle 2φ has cos φ),
-    /// raised to a cubic.
-    pub fn conic(p: &Vec3, middle: &Vec3, weight: f64, q: &Vec3) -> CurveArc {
-        let (first, last) = (basis::place(p), basis::place(q));
-        let middle = basis::place(middle) * weight;
+    /// The conic arc with three control points and their weights, raised to a cubic. A circle of angle 2φ has the weights
+    /// 1, cos φ and 1.
+    pub fn conic(p: &Vec3, middle: &Vec3, weights: [f64; 3], q: &Vec3) -> CurveArc {
+        let [first, middle, last] = [(p, weights[0]), (middle, weights[1]), (q, weights[2])]
+            .map(|(at, weight)| basis::place(at) * weight);
         CurveArc { control: [first, (first + middle * 2.0) / 3.0, (middle * 2.0 + last) / 3.0, last] }
     }
 
@@ -67,6 +67,21 @@ impl CurveArc {
     /// The parts before and after `t`.
     pub fn cut(&self, t: f64) -> [CurveArc; 2] {
         basis::cut(&self.control, t).map(|control| CurveArc { control })
+    }
+
+    /// The part between two parameters.
+    pub fn between(&self, from: f64, to: f64) -> CurveArc {
+        let [before, _] = self.cut(to);
+        if from <= 0.0 || to <= 0.0 {
+            return before;
+        }
+        let [_, part] = before.cut(from / to);
+        part
+    }
+
+    /// The arc moved by a vector.
+    pub fn shifted(&self, by: &Vec3) -> CurveArc {
+        CurveArc { control: self.control.map(|point| point + basis::direction(&(by * point.w))) }
     }
 
     /// The arc that runs the other way.

@@ -68,6 +68,21 @@ impl SpaceCurve {
         self.arcs.get(index).map(|arc| arc.evaluate(t))
     }
 
+    /// Greatest distance of a control point from the first one.
+    pub fn size(&self) -> f64 {
+        let mut points = self.arcs.iter().flat_map(CurveArc::points);
+        let Some(first) = points.next() else { return 0.0 };
+        points.map(|point| (point - first).norm()).fold(0.0, f64::max)
+    }
+
+    /// Whether all numbers are finite and all weights positive.
+    pub fn is_finite(&self) -> bool {
+        let points = self.arcs.iter().flat_map(|arc| arc.control);
+        let cross = self.cross.iter().flatten();
+        points.into_iter().all(|point| point.iter().all(|number| number.is_finite()) && point.w > 0.0)
+            && cross.into_iter().all(|vector| vector.iter().all(|number| number.is_finite()))
+    }
+
     /// The image under an affine map.
     pub fn transformed(&self, matrix: &Matrix) -> SpaceCurve {
         SpaceCurve {

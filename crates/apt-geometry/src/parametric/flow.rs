@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{arc::CurveArc, curve::SpaceCurve};
 use crate::Vec3;
 
 /// What the flow of a range of arcs measures.
@@ -66,4 +67,172 @@ pub struct Flow {
     pub ranges: Vec<FlowRange>,
     /// The segments in order.
     pub segments: Vec<FlowSegment>,
+}
+
+/// Halvings that find the place of an amount of flow: as many as the digits of a parameter.
+const HALVINGS: usize = 60;
+/// Pieces per arc over which a length is integrated.
+const LENGTH_PIECES: usize = 8;
+/// Places per arc at which a flow is tested for growth.
+const GROWTH_PLACES: usize = 32;
+/// Abscissae and weights of the Gauss rule of order five on −1 to 1.
+const GAUSS: [(f64, f64); 5] = [
+    (0.0, 128.0 / 225.0),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+];
+
+impl FlowKind {
+    /// How much of this is between two parameters of an arc.
+    pub fn amount(&self, arc: &CurveArc, from: f64, to: f64) -> f64 {
+        match self {
+            FlowKind::Param => to - from,
+            FlowKind::Arc { .. } => length(arc, from, to),
+            FlowKind::Chord { direction } => {
+                direction.dot(&(arc.evaluate(to).position - arc.evaluate(from).position))
+            }
+            FlowKind::Angle { center, axis } => {
+                let ray = |t: f64| {
+                    let ray = arc.evaluate(t).position - center;
+                    ray - axis * axis.dot(&ray)
+                };
+                // In pieces of less than half a turn.
+                let place = |piece: usize| from + (to - from) * piece as f64 / LENGTH_PIECES as f64;
+                (0..LENGTH_PIECES)
+                    .map(|piece| {
+                        let (a, b) = (ray(place(piece)), ray(place(piece + 1)));
+                        a.cross(&b).dot(axis).atan2(a.dot(&b))
+                    })
+                    .sum()
+            }
+        }
+    }
+}
+
+/// The length of an arc between two parameters.
+fn length(arc: &CurveArc, from: f64, to: f64) -> f64 {
+    let half = 0.5 * (to - from) / LENGTH_PIECES as f64;
+    let mut sum = 0.0;
+    for piece in 0..LENGTH_PIECES {
+        let middle = from + (2.0 * piece as f64 + 1.0) * half;
+        for (place, weight) in GAUSS {
+            sum += weight * arc.evaluate(middle + place * half).first.norm();
+        }
+    }
+    sum * half
+}
+
+impl Flow {
+    /// Whether every range grows all along, or the index of the first that does not.
+    ///
+    /// # Errors
+    /// The index of the range.
+    pub fn check(&self, curve: &SpaceCurve) -> Result<(), usize> {
+        for (index, range) in self.ranges.iter().enumerate() {
+            let mut sense = 0.0;
+            for arc in curve.arcs.get(range.first..range.last).unwrap_or_default() {
+                for place in 0..GROWTH_PLACES {
+                    let at = |place: usize| place as f64 / GROWTH_PLACES as f64;
+                    let amount = range.kind.amount(arc, at(place), at(place + 1));
+                    if sense == 0.0 {
+                        sense = amount.signum();
+                    }
+                    // A collapsed curve flows by its parameter alone.
+                    let still = curve.size() == 0.0;
+                    if !still && (amount * sense <= 0.0 || !amount.is_finite()) {
+                        return Err(index);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The flow between two global parameters of the arcs.
+    pub fn amount(&self, curve: &SpaceCurve, from: f64, to: f64) -> f64 {
+        let mut sum = 0.0;
+        for range in &self.ranges {
+            for index in range.first..range.last {
+                let Some(arc) = curve.arcs.get(index) else { break };
+                let (low, high) = ((from - index as f64).max(0.0), (to - index as f64).min(1.0));
+                if low < high {
+                    sum += range.kind.amount(arc, low, high).abs();
+                }
+            }
+        }
+        sum
+    }
+
+    /// The global parameter of the arcs at a local parameter of a segment (index); `None` if there is no such segment.
+    pub fn arc_parameter(&self, curve: &SpaceCurve, segment: usize, local: f64) -> Option<f64> {
+        let segment = self.segments.get(segment)?;
+        let along = |share: f64| segment.first + (segment.last - segment.first) * share;
+        let total = self.amount(curve, segment.first, segment.last);
+        if segment.measure == SegmentMeasure::Param || total <= 0.0 || local <= 0.0 || local >= 1.0 {
+            return Some(along(local.clamp(0.0, 1.0)));
+        }
+        let (mut low, mut high) = (segment.first, segment.last);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if self.amount(curve, segment.first, middle) < local * total {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(0.5 * (low + high))
+    }
+
+    /// The flow of a curve in equal parts.
+    pub fn even(curve: &SpaceCurve, parts: usize, measure: SegmentMeasure) -> Flow {
+        let (arcs, step) = (curve.arcs.len(), curve.extent() / parts.max(1) as f64);
+        let part = |index: usize| FlowSegment {
+            measure,
+            first: index as f64 * step,
+            last: if index + 1 == parts { arcs as f64 } else { (index + 1) as f64 * step },
+        };
+        Flow {
+            ranges: vec![FlowRange { kind: FlowKind::Param, first: 0, last: arcs }],
+            segments: (0..parts).map(part).collect(),
+        }
+    }
+
+    /// Derivative of the arcs' parameter by the local parameter of a segment, at a place of an arc (index).
+    pub fn pace(&self, curve: &SpaceCurve, segment: usize, arc: usize, t: f64) -> f64 {
+        let Some(part) = self.segments.get(segment) else { return 0.0 };
+        let even = part.last - part.first;
+        let total = self.amount(curve, part.first, part.last);
+        let range = self.ranges.iter().find(|range| (range.first..range.last).contains(&arc));
+        let (Some(range), Some(arc), SegmentMeasure::Length) = (range, curve.arcs.get(arc), part.measure)
+        else {
+            return even;
+        };
+        let at = arc.evaluate(t);
+        let rate = match range.kind {
+            FlowKind::Param => 1.0,
+            FlowKind::Arc { .. } => at.first.norm(),
+            FlowKind::Chord { direction } => direction.dot(&at.first).abs(),
+            FlowKind::Angle { center, axis } => {
+                let ray = at.position - center;
+                let ray = ray - axis * axis.dot(&ray);
+                (ray.cross(&at.first).dot(&axis) / ray.norm_squared()).abs()
+            }
+        };
+        if total > 0.0 && rate > 0.0 { total / rate } else { even }
+    }
+
+    /// The global parameter of the flow at a global parameter of the arcs; `None` outside the segments.
+    pub fn flow_parameter(&self, curve: &SpaceCurve, parameter: f64) -> Option<f64> {
+        let inside = |segment: &FlowSegment| (segment.first..=segment.last).contains(&parameter);
+        let index = self.segments.iter().position(inside)?;
+        let segment = self.segments.get(index)?;
+        let total = self.amount(curve, segment.first, segment.last);
+        let local = match segment.measure {
+            SegmentMeasure::Length if total > 0.0 => self.amount(curve, segment.first, parameter) / total,
+            _ => (parameter - segment.first) / (segment.last - segment.first),
+        };
+        Some(index as f64 + local)
+    }
 }

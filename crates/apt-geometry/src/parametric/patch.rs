@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::basis::{self, Homogeneous};
+use super::{
+    arc::CurveArc,
+    basis::{self, Homogeneous},
+    topology::Edge,
+};
 use crate::{Vec3, canonical::Matrix};
 
 /// Length of a cross product, as a share of the lengths of its factors, below which a patch has no normal there.
@@ -81,6 +85,33 @@ impl Patch {
     pub fn from_uniform(points: &[[Vec3; 4]; 4]) -> Patch {
         let rows = points.map(|row| row.map(|point| basis::place(&point)));
         Patch { control: both_ways(&rows, basis::from_uniform) }
+    }
+
+    /// The patch of straight rulings from one arc (v = 0) to another one of the same weights (v = 1).
+    pub fn between(first: &CurveArc, last: &CurveArc) -> Patch {
+        Patch {
+            control: std::array::from_fn(|i| {
+                let (a, b) = (first.control[i], last.control[i]);
+                [a, (a * 2.0 + b) / 3.0, (a + b * 2.0) / 3.0, b]
+            }),
+        }
+    }
+
+    /// The control points along v of the curve at a value of u.
+    pub fn at_u(&self, u: f64) -> [Homogeneous; 4] {
+        let columns = transposed(&self.control);
+        columns.map(|column| basis::cubic(&column, u)[0])
+    }
+
+    /// The edge of a number as an arc that runs with the parameter that varies.
+    pub fn edge(&self, edge: Edge) -> CurveArc {
+        let control = match edge {
+            Edge::LowU => self.control[0],
+            Edge::HighU => self.control[3],
+            Edge::LowV => self.control.map(|row| row[0]),
+            Edge::HighV => self.control.map(|row| row[3]),
+        };
+        CurveArc { control }
     }
 
     /// The place at (u, v) and its derivatives.

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     patch::{Patch, PatchNormal, PatchPoint},
-    topology::Neighbour,
+    topology::{self, Neighbour},
 };
-use crate::canonical::Matrix;
+use crate::{Vec3, canonical::Matrix};
 
 /// A parameter that lies outside its range by less than this belongs to its end: operands are decimal numbers.
 const PARAMETER_SLACK: f64 = 1e-12;
@@ -28,6 +28,9 @@ pub struct SculpturedSurface {
     /// Number of patches along u (columns) and along v (rows), if they form a grid whose global parameters run
     /// through. Other surfaces count their patches along u.
     pub grid: Option<(usize, usize)>,
+    /// Global values of u where the columns end, beginning with 0; empty where each column is one unit long. Several
+    /// columns may make one segment of a lofted surface: its patches are counted as one.
+    pub breaks: Vec<f64>,
     /// What lies beyond the edges of each patch, by the number of the edge.
     pub neighbours: Vec<[Option<Neighbour>; 4]>,
     /// The sign word of the definition: +1 where `∂u × ∂v` is the natural normal, −1 where it is turned over.
@@ -37,31 +40,124 @@ pub struct SculpturedSurface {
 }
 
 impl SculpturedSurface {
+    /// A surface with its topology.
+    pub fn assembled(
+        patches: Vec<Patch>,
+        grid: Option<(usize, usize)>,
+        breaks: Vec<f64>,
+        side: f64,
+        mesh: Mesh,
+    ) -> SculpturedSurface {
+        let neighbours = topology::neighbours(&patches);
+        SculpturedSurface { patches, grid, breaks, neighbours, side, mesh }
+    }
+
+    fn columns_rows(&self) -> (usize, usize) {
+        self.grid.unwrap_or((self.patches.len(), 1))
+    }
+
     /// The greatest global parameters; they begin at 0.
     pub fn extent(&self) -> [f64; 2] {
-        let (columns, rows) = self.grid.unwrap_or((self.patches.len(), 1));
-        [columns as f64, rows as f64]
+        let (columns, rows) = self.columns_rows();
+        [self.breaks.last().copied().unwrap_or(columns as f64), rows as f64]
+    }
+
+    /// First and last global u of a column.
+    fn column_range(&self, column: usize) -> [f64; 2] {
+        match (self.breaks.get(column), self.breaks.get(column + 1)) {
+            (Some(first), Some(last)) => [*first, *last],
+            _ => [column as f64, column as f64 + 1.0],
+        }
+    }
+
+    /// The global values of u where the patches end, one after the other in a single row.
+    pub fn flat_breaks(&self) -> Vec<f64> {
+        let (columns, rows) = self.columns_rows();
+        let [width, _] = self.extent();
+        let mut breaks = vec![0.0];
+        for row in 0..rows {
+            breaks.extend((0..columns).map(|column| row as f64 * width + self.column_range(column)[1]));
+        }
+        breaks
     }
 
     /// The patch (index) and its local parameters at global ones; `None` outside the surface.
     pub fn locate(&self, u: f64, v: f64) -> Option<(usize, f64, f64)> {
-        let (columns, rows) = self.grid.unwrap_or((self.patches.len(), 1));
-        let (column, u) = cell(u, columns)?;
+        let (columns, rows) = self.columns_rows();
         let (row, v) = cell(v, rows)?;
+        let (column, u) = if self.breaks.is_empty() {
+            cell(u, columns)?
+        } else {
+            let [width, _] = self.extent();
+            if !(u >= -PARAMETER_SLACK && u <= width + PARAMETER_SLACK * width.max(1.0)) {
+                return None;
+            }
+            let inside = self.breaks.partition_point(|end| *end <= u);
+            let column = inside.clamp(1, columns) - 1;
+            let [first, last] = self.column_range(column);
+            (column, ((u - first) / (last - first)).clamp(0.0, 1.0))
+        };
         let index = row * columns + column;
         (index < self.patches.len()).then_some((index, u, v))
     }
 
     /// The global parameters of local ones of a patch (index).
     pub fn globally(&self, patch: usize, u: f64, v: f64) -> [f64; 2] {
-        let columns = self.grid.map_or(self.patches.len(), |grid| grid.0).max(1);
-        [(patch % columns) as f64 + u, (patch / columns) as f64 + v]
+        let columns = self.columns_rows().0.max(1);
+        let [first, last] = self.column_range(patch % columns);
+        [first + (last - first) * u, (patch / columns) as f64 + v]
+    }
+
+    /// How many patches the language counts: those of a segment are one.
+    pub fn count(&self) -> usize {
+        let [u, v] = self.extent();
+        (u * v).round() as usize
+    }
+
+    /// The number that the language gives a patch (from 1) and the local parameters there, from global parameters.
+    pub fn numbered(&self, u: f64, v: f64) -> Option<(usize, [f64; 2])> {
+        let [width, rows] = self.extent();
+        let (columns, rows) = (width.round() as usize, rows as usize);
+        let ((column, u), (row, v)) = (cell(u, columns)?, cell(v, rows)?);
+        Some((row * columns + column + 1, [u, v]))
+    }
+
+    /// The global parameters of local ones of a patch as the language numbers it (from 1).
+    pub fn unnumbered(&self, number: usize, u: f64, v: f64) -> [f64; 2] {
+        let columns = (self.extent()[0].round() as usize).max(1);
+        let index = number.saturating_sub(1);
+        [(index % columns) as f64 + u, (index / columns) as f64 + v]
+    }
+
+    /// Greatest extent of the box of the control points.
+    pub fn size(&self) -> f64 {
+        let [low, high] = self.bounds();
+        (high - low).norm()
+    }
+
+    /// The box of the control points, which holds the surface: least and greatest coordinates.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let start = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
+        let points = self.patches.iter().flat_map(Patch::points).flatten();
+        points.fold(start, |[low, high], point| [low.inf(&point), high.sup(&point)])
+    }
+
+    /// Whether all numbers are finite and all weights positive.
+    pub fn is_finite(&self) -> bool {
+        let mut points = self.patches.iter().flat_map(|patch| patch.control).flatten();
+        points.all(|point| point.iter().all(|number| number.is_finite()) && point.w > 0.0)
     }
 
     /// The place at global parameters with the derivatives by them; `None` outside the surface.
     pub fn evaluate_global(&self, u: f64, v: f64) -> Option<PatchPoint> {
-        let (patch, u, v) = self.locate(u, v)?;
-        self.patches.get(patch).map(|patch| patch.evaluate(u, v))
+        let (index, u, v) = self.locate(u, v)?;
+        let mut at = self.patches.get(index)?.evaluate(u, v);
+        let [first, last] = self.column_range(index % self.columns_rows().0.max(1));
+        let pace = 1.0 / (last - first);
+        if pace != 1.0 {
+            (at.du, at.duv, at.duu) = (at.du * pace, at.duv * pace, at.duu * (pace * pace));
+        }
+        Some(at)
     }
 
     /// The unit normal at global parameters, along `∂u × ∂v`: the side is not applied.

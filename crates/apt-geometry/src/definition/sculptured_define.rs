@@ -1,0 +1,134 @@
+//! SSURF: from typed arguments to a surface.
+
+use std::sync::Arc;
+
+use super::{
+    parametric_error::ParametricError,
+    sculptured::{AxisInput, CurveProduct, SculpturedDefinition, SurfaceShape},
+    sculptured_convert, sculptured_knots, sculptured_loft, sculptured_mesh, sculptured_patch,
+    sculptured_revolved,
+    space_curve::Defined,
+};
+use crate::{
+    Vec3,
+    parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SpaceCurve},
+};
+
+/// How far RULED reaches to either side of its curve, in units of the program, whatever the length of its vector.
+const RULED_REACH: f64 = 10.0;
+
+impl SculpturedDefinition {
+    /// A definition without TRFORM.
+    pub fn plain(shape: SurfaceShape) -> SculpturedDefinition {
+        SculpturedDefinition { shape, matrix: None }
+    }
+
+    /// The surface, in the coordinates of the arguments.
+    ///
+    /// # Errors
+    /// [`ParametricError`] says what cannot be made.
+    pub fn define(&self) -> Result<Defined<SculpturedSurface>, ParametricError> {
+        let mut warnings = Vec::new();
+        let mut surface = shape(&self.shape, &mut warnings)?;
+        if let Some(matrix) = &self.matrix {
+            matrix.inverse().ok_or(ParametricError::SingularMatrix)?;
+            surface = surface.transformed(matrix);
+        }
+        if !surface.is_finite() {
+            return Err(ParametricError::NotFinite);
+        }
+        Ok(Defined { geometry: surface, warnings })
+    }
+}
+
+fn shape(
+    shape: &SurfaceShape,
+    warnings: &mut Vec<ParametricError>,
+) -> Result<SculpturedSurface, ParametricError> {
+    match shape {
+        SurfaceShape::Curves { curves, cross } => sculptured_loft::surface(curves, cross),
+        SurfaceShape::Ruled { curve, axis } => ruled(curve, axis),
+        SurfaceShape::Revolved { curve, axis, turning, angles } => {
+            sculptured_revolved::surface(curve, axis, *turning, *angles)
+        }
+        SurfaceShape::Mesh { restriction, rows } => sculptured_mesh::surface(*restriction, rows),
+        SurfaceShape::Product { product, profile, control } => Ok(multiplied(*product, profile, control)),
+        SurfaceShape::Patches { form, patches } => sculptured_patch::surface(*form, patches, warnings),
+        SurfaceShape::Combined { surfaces } => combined(surfaces),
+        SurfaceShape::BSpline { degrees, knots, points, weights } => {
+            let (patches, grid) = sculptured_knots::surface(*degrees, knots, points, weights)?;
+            Ok(meshed(patches, grid))
+        }
+        SurfaceShape::Converted { surface, range } => sculptured_convert::surface(surface, range),
+    }
+}
+
+/// A grid of patches whose edges are splines.
+pub(super) fn meshed(patches: Vec<Patch>, (columns, rows): (usize, usize)) -> SculpturedSurface {
+    let mesh = Mesh { splines: rows + 1, cross_splines: columns + 1 };
+    SculpturedSurface::assembled(patches, Some((columns, rows)), Vec::new(), 1.0, mesh)
+}
+
+/// The direction of an axis that has no place.
+fn axis_vector(axis: &AxisInput) -> Result<Vec3, ParametricError> {
+    let vector = match axis {
+        AxisInput::Vector(vector) => *vector,
+        AxisInput::Points(from, to) => to - from,
+        AxisInput::PointVector(..) => return Err(ParametricError::AxisForm),
+    };
+    vector.try_normalize(f64::MIN_POSITIVE).ok_or(ParametricError::ZeroVector)
+}
+
+fn ruled(curve: &SpaceCurve, axis: &AxisInput) -> Result<SculpturedSurface, ParametricError> {
+    let reach = axis_vector(axis)? * RULED_REACH;
+    let patch = |arc: &CurveArc| Patch::between(&arc.shifted(&-reach), &arc.shifted(&reach));
+    let patches: Vec<Patch> = curve.arcs.iter().map(patch).collect();
+    let columns = patches.len();
+    Ok(meshed(patches, (columns, 1)))
+}
+
+fn multiplied(product: CurveProduct, profile: &SpaceCurve, control: &SpaceCurve) -> SculpturedSurface {
+    let mut patches = Vec::with_capacity(profile.arcs.len() * control.arcs.len());
+    for across in &control.arcs {
+        for along in &profile.arcs {
+            let net = along.control.map(|a| {
+                across.control.map(|b| {
+                    let mut point = match product {
+                        CurveProduct::Scale => a.component_mul(&b),
+                        CurveProduct::Translate | CurveProduct::Turn(_) => a * b.w + b * a.w,
+                    };
+                    point.w = a.w * b.w;
+                    if let CurveProduct::Turn(plane) = product {
+                        let [x, y, _] = plane.axes();
+                        (point[x], point[y]) = (a[x] * b[x] - a[y] * b[y], a[x] * b[y] + a[y] * b[x]);
+                    }
+                    point
+                })
+            });
+            patches.push(Patch { control: net });
+        }
+    }
+    meshed(patches, (profile.arcs.len(), control.arcs.len()))
+}
+
+fn combined(surfaces: &[Arc<SculpturedSurface>]) -> Result<SculpturedSurface, ParametricError> {
+    match surfaces {
+        [] => Err(ParametricError::TooFew { least: 1, found: 0 }),
+        // A copy keeps its grid.
+        [single] => Ok(SculpturedSurface::clone(single)),
+        [first, ..] => {
+            if surfaces.iter().any(|surface| surface.side != first.side) {
+                return Err(ParametricError::MixedSigns);
+            }
+            let patches: Vec<Patch> =
+                surfaces.iter().flat_map(|surface| surface.patches.iter().copied()).collect();
+            let mut breaks = vec![0.0];
+            for surface in surfaces {
+                let before = breaks.last().copied().unwrap_or(0.0);
+                let ends = surface.flat_breaks();
+                breaks.extend(ends.iter().skip(1).map(|end| before + end));
+            }
+            Ok(SculpturedSurface::assembled(patches, None, breaks, first.side, Mesh::default()))
+        }
+    }
+}

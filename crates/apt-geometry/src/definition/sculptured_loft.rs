@@ -1,0 +1,150 @@
+//! SSURF/GENCUR: a surface through curves, whose segments of flow correspond.
+//!
+//! Two curves without cross directions make a ruled surface. Otherwise the ends of the segments are joined by splines
+//! across, and between them the derivatives across have a direction and a length that blend from one spline to the next.
+//! Segments may hold several arcs and run with a flow: such strips are cut into columns of patches, each within a share of
+//! the size of the surface from the exact one; segments keep their whole parameters.
+
+use std::sync::Arc;
+
+use super::{
+    parametric_error::ParametricError,
+    sculptured_strip::{Strand, Strip, blend},
+    spline::{self, Condition},
+};
+use crate::{
+    Vec3,
+    parametric::{Flow, Mesh, SculpturedSurface, SegmentMeasure, SpaceCurve},
+};
+
+/// Distance of a cross curve's end from the curve it should meet, as a share of the size of all curves.
+const GAP: f64 = 1e-6;
+
+/// The surface.
+///
+/// # Errors
+/// Fewer than two curves, curves without segments or with different numbers of them, cross curves that do not meet them.
+pub(super) fn surface(
+    curves: &[Arc<SpaceCurve>],
+    cross: &[Arc<SpaceCurve>],
+) -> Result<SculpturedSurface, ParametricError> {
+    if curves.len() < 2 {
+        return Err(ParametricError::TooFew { least: 2, found: curves.len() });
+    }
+    let mut strands = Vec::with_capacity(curves.len());
+    for (index, curve) in curves.iter().enumerate() {
+        let flow = curve.flow.as_ref().ok_or(ParametricError::NoFlow { curve: index + 1 })?;
+        strands.push(Strand { curve, flow });
+    }
+    let segments = strands[0].flow.segments.len();
+    if let Some(index) = strands.iter().position(|strand| strand.flow.segments.len() != segments) {
+        let found = strands[index].flow.segments.len();
+        return Err(ParametricError::SegmentCount { curve: index + 1, expected: segments, found });
+    }
+    let size = curves.iter().map(|curve| curve.size()).fold(0.0, f64::max)
+        + (strands[0].boundary(0) - strands[strands.len() - 1].boundary(0)).norm();
+    let ties = Ties::of(&strands, segments)?;
+    let rims = rims(cross, &strands, segments, size)?;
+    let mut columns = Vec::new();
+    for segment in 0..segments {
+        let strip = Strip { strands: &strands, segment, ties: &ties, rims: rims.as_ref(), segments };
+        columns.extend(strip.columns(size));
+    }
+    let rows = curves.len() - 1;
+    let mut breaks = vec![0.0];
+    breaks.extend(columns.iter().map(|column| column.end));
+    let patches = (0..rows).flat_map(|row| columns.iter().map(move |column| column.patches[row])).collect();
+    let grid = Some((columns.len(), rows));
+    // Columns of whole segments need no list of their ends.
+    let breaks = if columns.len() == segments { Vec::new() } else { breaks };
+    let mesh = Mesh { splines: curves.len(), cross_splines: segments + 1 };
+    Ok(SculpturedSurface::assembled(patches, grid, breaks, 1.0, mesh))
+}
+
+/// The derivatives across at the ends of the segments: for each row of patches and each end, unit directions and lengths at
+/// its lower and its upper curve. None where the surface is ruled.
+pub(super) struct Ties(Option<Vec<Vec<Tie>>>);
+
+/// Direction and length at the lower and the upper curve of a row.
+type Tie = [(Vec3, f64); 2];
+
+impl Ties {
+    fn of(strands: &[Strand<'_>], segments: usize) -> Result<Ties, ParametricError> {
+        let mut given = false;
+        let mut ties = vec![Vec::with_capacity(segments + 1); strands.len() - 1];
+        for end in 0..=segments {
+            let points: Vec<Vec3> = strands.iter().map(|strand| strand.boundary(end)).collect();
+            let conditions: Vec<Condition> = strands
+                .iter()
+                .map(|strand| Condition { direction: strand.cross(end), across: None })
+                .collect();
+            given |= conditions.iter().any(|condition| condition.direction.is_some());
+            let ways = spline::directions(&points, &conditions)?;
+            for (row, tie) in ties.iter_mut().enumerate() {
+                let chord = points[row + 1] - points[row];
+                let lengths = spline::bending_lengths(&chord, &ways[row], &ways[row + 1]);
+                let split = |vector: &Vec3| {
+                    (vector.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vec3::zeros), vector.norm())
+                };
+                tie.push(lengths.map(|vector| split(&vector)));
+            }
+        }
+        Ok(Ties((strands.len() > 2 || given).then_some(ties)))
+    }
+
+    /// The derivatives across of a row at the lower and the upper curve, `local` along a segment; none of a ruled surface.
+    pub(super) fn across(&self, row: usize, segment: usize, local: f64) -> Option<[Vec3; 2]> {
+        let ends = self.0.as_ref()?.get(row)?;
+        let (before, after) = (ends.get(segment)?, ends.get(segment + 1)?);
+        let share = blend(local);
+        Some(std::array::from_fn(|side| {
+            let ((a, short), (b, long)) = (before[side], after[side]);
+            (a * (1.0 - share) + b * share) * (short * (1.0 - share) + long * share)
+        }))
+    }
+
+    /// Whether the surface is ruled between each pair of curves.
+    pub(super) fn is_ruled(&self) -> bool {
+        self.0.is_none()
+    }
+}
+
+/// The curves after CROSS, each as a strand with a segment for each row.
+pub(super) struct Rims {
+    /// The curve with its flow, and the end of segments of the surface it belongs to.
+    pub(super) rims: Vec<(SpaceCurve, Flow, usize)>,
+}
+
+fn rims(
+    cross: &[Arc<SpaceCurve>],
+    strands: &[Strand<'_>],
+    segments: usize,
+    size: f64,
+) -> Result<Option<Rims>, ParametricError> {
+    if cross.is_empty() {
+        return Ok(None);
+    }
+    // At the first and the last end, or at every end of the segments.
+    let ends: Vec<usize> = match cross.len() {
+        2 => vec![0, segments],
+        count if count == segments + 1 => (0..=segments).collect(),
+        found => return Err(ParametricError::SegmentCount { curve: 1, expected: 2, found }),
+    };
+    let rows = strands.len() - 1;
+    let mut rims = Vec::with_capacity(cross.len());
+    for (index, (curve, end)) in cross.iter().zip(ends).enumerate() {
+        let flow = match &curve.flow {
+            Some(flow) if flow.segments.len() == rows => flow.clone(),
+            _ => Flow::even(curve, rows, SegmentMeasure::Param),
+        };
+        let rim = Strand { curve, flow: &flow };
+        for (row, strand) in strands.iter().enumerate() {
+            let gap = (rim.boundary(row) - strand.boundary(end)).norm();
+            if gap > GAP * size {
+                return Err(ParametricError::CrossGap { curve: index + 1, gap });
+            }
+        }
+        rims.push((SpaceCurve::clone(curve), flow, end));
+    }
+    Ok(Some(Rims { rims }))
+}

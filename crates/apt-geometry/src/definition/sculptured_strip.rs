@@ -1,0 +1,253 @@
+//! One segment of a lofted surface as columns of bicubic patches.
+
+use nalgebra::Vector4;
+
+use super::sculptured_loft::{Rims, Ties};
+use crate::{
+    Vec3,
+    parametric::{ArcPoint, CurveArc, Flow, Patch, SegmentMeasure, SpaceCurve},
+};
+
+/// How far a column of patches may be from the exact surface, as a share of the size of the surface.
+const CLOSE: f64 = 2e-8;
+/// Halvings of a column before it is taken as it is.
+const MOST_HALVINGS: u32 = 8;
+/// Places in a column where it is compared with the exact surface.
+const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+/// Difference of weights, as a share, up to which two arcs are joined by exact rulings.
+const SAME_WEIGHT: f64 = 1e-12;
+/// Difference of parameters that are the same end of an arc.
+const SAME_PARAMETER: f64 = 1e-12;
+
+/// A curve with its flow.
+#[derive(Clone, Copy)]
+pub(super) struct Strand<'a> {
+    pub(super) curve: &'a SpaceCurve,
+    pub(super) flow: &'a Flow,
+}
+
+/// A segment of all curves.
+pub(super) struct Strip<'a> {
+    pub(super) strands: &'a [Strand<'a>],
+    pub(super) segment: usize,
+    pub(super) ties: &'a Ties,
+    pub(super) rims: Option<&'a Rims>,
+    pub(super) segments: usize,
+}
+
+/// The patches of a column, from the first row to the last.
+pub(super) struct Column {
+    pub(super) patches: Vec<Patch>,
+    /// Global parameter where it ends.
+    pub(super) end: f64,
+}
+
+/// The share of the later end at a parameter between two ends, level at both.
+pub(super) fn blend(local: f64) -> f64 {
+    local * local * (3.0 - 2.0 * local)
+}
+
+impl Strand<'_> {
+    /// Global arc parameter of an end of segments.
+    fn end(&self, end: usize) -> f64 {
+        let segments = &self.flow.segments;
+        match segments.get(end) {
+            Some(segment) => segment.first,
+            None => segments.last().map_or(0.0, |segment| segment.last),
+        }
+    }
+
+    /// The place at an end of segments.
+    pub(super) fn boundary(&self, end: usize) -> Vec3 {
+        self.curve.evaluate_global(self.end(end)).map_or_else(Vec3::zeros, |at| at.position)
+    }
+
+    /// The cross direction given there.
+    pub(super) fn cross(&self, end: usize) -> Option<Vec3> {
+        let parameter = self.end(end);
+        let index = parameter.round();
+        ((parameter - index).abs() <= SAME_PARAMETER)
+            .then(|| self.curve.cross.get(index as usize).copied().flatten())
+            .flatten()
+    }
+
+    /// Local parameters of a segment where arcs meet.
+    fn joints(&self, segment: usize) -> Vec<f64> {
+        let Some(part) = self.flow.segments.get(segment) else { return Vec::new() };
+        let first = part.first.floor() as usize + 1;
+        (first..self.curve.arcs.len())
+            .map(|joint| joint as f64)
+            .take_while(|joint| *joint < part.last - SAME_PARAMETER)
+            .filter(|joint| *joint > part.first + SAME_PARAMETER)
+            .filter_map(|joint| self.flow.flow_parameter(self.curve, joint))
+            .map(|flow| flow - segment as f64)
+            .collect()
+    }
+
+    /// The place and its derivative by the local parameter of a segment, on the arc that holds `within`.
+    fn at(&self, segment: usize, local: f64, within: f64) -> (Vec3, Vec3) {
+        let parameter = |local: f64| self.flow.arc_parameter(self.curve, segment, local).unwrap_or(0.0);
+        let index = self.curve.locate(parameter(within)).map_or(0, |found| found.0);
+        let Some(arc) = self.curve.arcs.get(index) else { return (Vec3::zeros(), Vec3::zeros()) };
+        let t = (parameter(local) - index as f64).clamp(0.0, 1.0);
+        let at: ArcPoint = arc.evaluate(t);
+        (at.position, at.first * self.flow.pace(self.curve, segment, index, t))
+    }
+
+    /// The arc of a part of a segment, where the segment follows the arcs' own parameters.
+    fn exact(&self, segment: usize, from: f64, to: f64) -> Option<CurveArc> {
+        let part = self.flow.segments.get(segment)?;
+        if part.measure != SegmentMeasure::Param {
+            return None;
+        }
+        let along = |local: f64| part.first + (part.last - part.first) * local;
+        let (index, _) = self.curve.locate(along(0.5 * (from + to)))?;
+        let local = |parameter: f64| (along(parameter) - index as f64).clamp(0.0, 1.0);
+        Some(self.curve.arcs.get(index)?.between(local(from), local(to)))
+    }
+}
+
+impl Strip<'_> {
+    /// The columns of the segment.
+    pub(super) fn columns(&self, size: f64) -> Vec<Column> {
+        let mut ends = vec![0.0, 1.0];
+        ends.extend(self.strands.iter().flat_map(|strand| strand.joints(self.segment)));
+        ends.sort_by(f64::total_cmp);
+        ends.dedup_by(|a, b| (*a - *b).abs() <= SAME_PARAMETER);
+        let mut columns = Vec::new();
+        for pair in ends.windows(2) {
+            self.fill(pair[0], pair[1], 0, size, &mut columns);
+        }
+        columns
+    }
+
+    /// The columns between two local parameters, halved until they are close.
+    fn fill(&self, from: f64, to: f64, depth: u32, size: f64, columns: &mut Vec<Column>) {
+        let end = self.segment as f64 + to;
+        if let Some(patches) = self.exact(from, to) {
+            columns.push(Column { patches, end });
+            return;
+        }
+        let patches: Vec<Patch> = (0..self.strands.len() - 1).map(|row| self.fitted(row, from, to)).collect();
+        if depth < MOST_HALVINGS && !self.is_close(&patches, from, to, size) {
+            let middle = 0.5 * (from + to);
+            self.fill(from, middle, depth + 1, size, columns);
+            self.fill(middle, to, depth + 1, size, columns);
+        } else {
+            columns.push(Column { patches, end });
+        }
+    }
+
+    /// Exact rulings between arcs of the same weights.
+    fn exact(&self, from: f64, to: f64) -> Option<Vec<Patch>> {
+        if !self.ties.is_ruled() || self.rims.is_some() {
+            return None;
+        }
+        let arcs: Vec<CurveArc> =
+            self.strands.iter().map(|strand| strand.exact(self.segment, from, to)).collect::<Option<_>>()?;
+        arcs.windows(2)
+            .map(|pair| {
+                let scale = pair[0].control[0].w / pair[1].control[0].w;
+                let second = CurveArc { control: pair[1].control.map(|point| point * scale) };
+                let alike = pair[0].control.iter().zip(&second.control);
+                alike
+                    .into_iter()
+                    .all(|(a, b)| (a.w - b.w).abs() <= SAME_WEIGHT * a.w)
+                    .then(|| Patch::between(&pair[0], &second))
+            })
+            .collect()
+    }
+
+    /// The four functions of u that make a row cubic in v, as control points along v, with their derivatives by u.
+    fn across(&self, row: usize, local: f64, within: f64) -> [(Vec3, Vec3); 4] {
+        let at = |index: usize| {
+            self.strands
+                .get(index)
+                .map_or((Vec3::zeros(), Vec3::zeros()), |strand| strand.at(self.segment, local, within))
+        };
+        let ((low, low_du), (high, high_du)) = (at(row), at(row + 1));
+        let (ways, ways_du) = self.ways(row, local);
+        let third = 1.0 / 3.0;
+        let [first, second] = ways.unwrap_or([high - low; 2]);
+        let [first_du, second_du] = if ways.is_some() { ways_du } else { [high_du - low_du; 2] };
+        let mut control = [
+            (low, low_du),
+            (low + first * third, low_du + first_du * third),
+            (high - second * third, high_du - second_du * third),
+            (high, high_du),
+        ];
+        self.pull(row, local, &mut control);
+        control
+    }
+
+    /// The derivatives across with their derivatives by u.
+    fn ways(&self, row: usize, local: f64) -> (Option<[Vec3; 2]>, [Vec3; 2]) {
+        // Central differences of a polynomial of degree six, exact far below the bound of the fit.
+        const STEP: f64 = 1e-4;
+        let at = |local: f64| self.ties.across(row, self.segment, local);
+        let slope = match (at(local - 2.0 * STEP), at(local - STEP), at(local + STEP), at(local + 2.0 * STEP))
+        {
+            (Some(a), Some(b), Some(c), Some(d)) => {
+                std::array::from_fn(|side| ((c[side] - b[side]) * 8.0 - (d[side] - a[side])) / (12.0 * STEP))
+            }
+            _ => [Vec3::zeros(); 2],
+        };
+        (at(local), slope)
+    }
+
+    /// Pulls the row onto the cross curves: their distance from it, falling off linearly from one to the next.
+    fn pull(&self, row: usize, local: f64, control: &mut [(Vec3, Vec3); 4]) {
+        let Some(rims) = self.rims else { return };
+        let global = self.segment as f64 + local;
+        let place = rims.rims.partition_point(|rim| (rim.2 as f64) <= global).clamp(1, rims.rims.len() - 1);
+        let (before, after) = (&rims.rims[place - 1], &rims.rims[place]);
+        let span = (after.2 - before.2) as f64;
+        let share = (global - before.2 as f64) / span;
+        let (near, far) = (self.misfit(row, before), self.misfit(row, after));
+        for (index, (point, slope)) in control.iter_mut().enumerate() {
+            *point += near[index] * (1.0 - share) + far[index] * share;
+            *slope += (far[index] - near[index]) / span;
+        }
+    }
+
+    /// The control points of a cross curve over a row less those of the row at that end.
+    fn misfit(&self, row: usize, rim: &(SpaceCurve, Flow, usize)) -> [Vec3; 4] {
+        let (curve, flow, end) = rim;
+        let strand = Strand { curve, flow };
+        let ((p, dp), (q, dq)) = (strand.at(row, 0.0, 0.5), strand.at(row, 1.0, 0.5));
+        let (segment, local) = if *end < self.segments { (*end, 0.0) } else { (end - 1, 1.0) };
+        let plain = Strip { segment, rims: None, ..*self };
+        let own = plain.across(row, local, 0.5).map(|pair| pair.0);
+        let wanted = [p, p + dp / 3.0, q - dq / 3.0, q];
+        std::array::from_fn(|index| wanted[index] - own[index])
+    }
+
+    /// The bicubic patch with the exact values and derivatives at both ends of a column.
+    fn fitted(&self, row: usize, from: f64, to: f64) -> Patch {
+        let middle = 0.5 * (from + to);
+        let (first, last) = (self.across(row, from, middle), self.across(row, to, middle));
+        let third = (to - from) / 3.0;
+        let mut points = [[Vec3::zeros(); 4]; 4];
+        for index in 0..4 {
+            let ((p, dp), (q, dq)) = (first[index], last[index]);
+            for (line, point) in points.iter_mut().zip([p, p + dp * third, q - dq * third, q]) {
+                line[index] = point;
+            }
+        }
+        Patch::from_points(&points)
+    }
+
+    fn is_close(&self, patches: &[Patch], from: f64, to: f64, size: f64) -> bool {
+        let middle = 0.5 * (from + to);
+        PROBES.iter().all(|&share| {
+            let exact = |row: usize| self.across(row, from + (to - from) * share, middle);
+            patches.iter().enumerate().all(|(row, patch)| {
+                let control = exact(row);
+                let lines = patch.at_u(share);
+                control.iter().zip(&lines).all(|((point, _), found): (_, &Vector4<f64>)| {
+                    (point - found.xyz() / found.w).norm() <= CLOSE * size
+                })
+            })
+        })
+    }
+}
