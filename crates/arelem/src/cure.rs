@@ -4,17 +4,19 @@
 //! where the tool then ends.
 
 mod attempt;
+mod earlier;
 #[cfg(test)]
 mod tests;
 
 use apt_geometry::{
     Vec3,
-    motion::{DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
+    motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
 };
 
 use self::attempt::Attempts;
+pub use self::earlier::{Earlier, earlier};
 use crate::{
-    error::{MotionFailure, RoleName},
+    error::{Iteration, MotionFailure, RoleName},
     section2::State,
 };
 
@@ -31,6 +33,13 @@ pub enum Cure {
     /// Another count before INTOF.
     Occurrence {
         /// Index of the check surface in the command.
+        check: usize,
+        /// The count to ask for.
+        occurrence: u32,
+    },
+    /// Another count before INTOF in the directed motion before.
+    EarlierOccurrence {
+        /// Index of the check surface in that command.
         check: usize,
         /// The count to ask for.
         occurrence: u32,
@@ -141,6 +150,13 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
         (MotionFailure::NoAdmissibleVector { role, clearance, .. }, _) => {
             wider(state, *role, *clearance).into_iter().collect()
         }
+        (
+            MotionFailure::IterationLimit {
+                iteration: Iteration::ThreeSurfaces | Iteration::FinalVector,
+                ..
+            },
+            MotionCommand::Drive { checks, .. },
+        ) => checks.iter().enumerate().flat_map(|(check, asked)| later(check, asked)).collect(),
         (MotionFailure::SideUnknown { role, .. }, MotionCommand::Start(_) | MotionCommand::Offset(_)) => {
             attempt::normals(state, command, *role)
                 .into_iter()
@@ -171,6 +187,17 @@ fn stops(check: usize, turn: Turn, asked: Option<(Relation, u32)>) -> Vec<Cure> 
     let fewer = (1..occurrence.min(4)).rev().map(|occurrence| Cure::Occurrence { check, occurrence });
     let others = others.into_iter().map(|relation| Cure::Relation { check, relation });
     fewer.chain([Cure::Turn(opposite(turn))]).chain(others).collect()
+}
+
+/// Where a position at a check surface cannot be taken: the next one, or the other side of it.
+fn later(check: usize, asked: &CheckSurface) -> Vec<Cure> {
+    let next = Cure::Occurrence { check, occurrence: asked.occurrence.max(1).saturating_add(1) };
+    let other = match asked.relation {
+        Relation::To => Some(Relation::Past),
+        Relation::Past => Some(Relation::To),
+        Relation::On | Relation::TangentToDrive | Relation::TangentToPart => None,
+    };
+    [next].into_iter().chain(other.map(|relation| Cure::Relation { check, relation })).collect()
 }
 
 /// The tool is out of tolerance where a cut begins.
