@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use apt_cldata::record::ClKind;
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{motion::MotionCommand, regional::Guide};
 use apt_program::record::RecordKind;
 use apt_run::{
     catalogue::story_lines,
@@ -84,7 +84,18 @@ impl Analysis {
         let mut surfaces = Vec::new();
         let mut cutter_diameter = None;
         for record in program.records() {
-            let RecordKind::Motion(command) = &record.kind else { continue };
+            let command = match &record.kind {
+                RecordKind::Motion(command) => command,
+                RecordKind::Regional(milling) => {
+                    add(&mut surfaces, &milling.part.surface, "part");
+                    let (Guide::Surface { surface: guide, .. } | Guide::Curve { curve: guide, .. }) =
+                        &milling.guide.guide;
+                    add(&mut surfaces, guide, "drive");
+                    milling.checked.named.iter().for_each(|surface| add(&mut surfaces, surface, "check"));
+                    continue;
+                }
+                _ => continue,
+            };
             match &**command {
                 MotionCommand::Cutter(numbers) => {
                     cutter_diameter = numbers.first().copied().or(cutter_diameter);

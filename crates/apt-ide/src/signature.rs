@@ -69,7 +69,8 @@ impl Analysis {
     }
 
     fn word_signatures(&self, word: &'static Word, context: &Context<'_>) -> Option<SignatureHelp> {
-        let forms = forms_of(word);
+        let dialect = self.document().dialect();
+        let forms: Vec<&Form> = forms_of(word).iter().filter(|form| form.is_of(dialect)).collect();
         let kind_of = |name: &str| self.value_kind(name);
         let typed = context.typed(&kind_of);
         let begun = typed_parameter(context.begun(), &kind_of);
@@ -84,12 +85,12 @@ impl Analysis {
             (matched.all && (begun.is_none() || going > 0 || matched.more), matched.fits, going)
         };
         // Of forms that fit equally well the first is the most usual one.
-        let active = (0..forms.len()).max_by_key(|&index| (fit(&forms[index]), std::cmp::Reverse(index)))?;
+        let active = (0..forms.len()).max_by_key(|&index| (fit(forms[index]), std::cmp::Reverse(index)))?;
         let form = forms.get(active)?;
         let matched = form.matched(&typed);
         let likeness = |index: &usize| form.likeness(*index, begun, prefix);
         let parameter = matched.next.iter().copied().rev().max_by_key(likeness).filter(|_| matched.all);
-        let signature = |form: &Form| Signature {
+        let signature = |form: &&Form| Signature {
             label: form.text.to_owned(),
             parameters: form.parameters.iter().map(|parameter| parameter.range.clone()).collect(),
             documentation: word.help.to_owned(),

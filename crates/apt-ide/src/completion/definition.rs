@@ -31,6 +31,18 @@ pub(super) struct Next {
 }
 
 impl Next {
+    /// Both together.
+    pub(super) fn with(mut self, more: Next) -> Next {
+        self.modifiers.extend(
+            more.modifiers.iter().filter(|word| !self.modifiers.contains(word)).copied().collect::<Vec<_>>(),
+        );
+        self.kinds.extend(more.kinds);
+        self.scalar |= more.scalar;
+        self.anything |= more.anything;
+        self.labels |= more.labels;
+        self
+    }
+
     /// Whether a value can stand here.
     pub(super) fn takes(&self, value: &Value) -> bool {
         match value {

@@ -6,6 +6,7 @@ mod tests;
 
 use apt_program::symbols::Value;
 use apt_syntax::{
+    dialect::DialectName,
     statement::{Element, ElementKind},
     tree::StatementView,
     vocabulary::{Word, WordClass, words},
@@ -140,8 +141,14 @@ impl Analysis {
             };
         }
         let kind_of = |name: &str| self.kind_of(name);
-        let next = definition::next(before, kind_of)
-            .or_else(|| definition::next_by_forms(before, |name| self.value_kind(name)));
+        let by_forms = || definition::next_by_forms(before, |name| self.value_kind(name));
+        let next = match definition::next(before, kind_of) {
+            // The table of the definitions does not hold those of space curves and sculptured surfaces.
+            Some(next) if self.document().dialect() == DialectName::Apt4 => {
+                Some(by_forms().map_or(next.clone(), |more| next.with(more)))
+            }
+            next => next.or_else(by_forms),
+        };
         match (next, last.kind) {
             (Some(next), _) => Place::Definition(next),
             (None, ElementKind::Slash | ElementKind::Comma) if names_macro(before) => Place::NewName,

@@ -24,6 +24,9 @@ const NAMES: &str = "P1=POINT/1,2\nP2=POINT/3,5\nL1=LINE/P1,P2\nPL1=PLANE/0,0,1,
     MA=MATRIX/TRANSL,1,0,0\nPA=PATERN/LINEAR,P1,P2,3\nEL=ELLIPS/CENTER,P1,3,2,0\n\
     TC=TABCYL/NOZ,SPLINE,0,0,1,1,2,0,3,1\nA1=2\nM1=MACRO/X\nTERMAC\n";
 
+/// A name of each kind of value that only APT4 has.
+const SCULPTURED: &str = "P3=POINT/4,1\nCV=SCURV/SPLINE,P1,P2,P3\nSS=SSURF/RULED,CV,AXIS,V1\n";
+
 fn analysis(text: &str, dialect: DialectName) -> Analysis {
     let settings = Settings { dialect: Some(dialect.to_string()), ..Settings::default() };
     Analysis::new(text, Some("part.apt".to_owned()), &Arc::new(settings))
@@ -68,6 +71,8 @@ fn first_parameters(word: &Word) -> Vec<String> {
                             "MATRIX" => "MA",
                             "PATERN" => "PA",
                             "TABCYL" => "TC",
+                            "SCURV" => "CV",
+                            "SSURF" => "SS",
                             _ => "EL",
                         };
                         name.to_owned()
@@ -117,9 +122,10 @@ fn places(word: &Word) -> Vec<String> {
 
 /// The program with the names and an open statement, evaluated, and the end of that statement.
 fn typing(place: &str, dialect: DialectName) -> (Analysis, usize) {
-    let analysis = analysis(&format!("{NAMES}{place}\nFINI\n"), dialect);
+    let more = if dialect == DialectName::Apt4 { SCULPTURED } else { "" };
+    let analysis = analysis(&format!("{NAMES}{more}{place}\nFINI\n"), dialect);
     analysis.program(&|| false).unwrap();
-    (analysis, NAMES.len() + place.len())
+    (analysis, NAMES.len() + more.len() + place.len())
 }
 
 #[test]
@@ -151,7 +157,7 @@ fn every_word_with_parameters_shows_its_forms() {
             let (analysis, offset) = typing(&place, dialect);
             let help = analysis.signature_help(offset);
             let shown = help.map_or(0, |help| help.signatures.len());
-            if shown != forms_of(word).len() {
+            if shown != forms_of(word).iter().filter(|form| form.is_of(dialect)).count() {
                 without.push(word.spelling);
             }
         }

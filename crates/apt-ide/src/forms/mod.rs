@@ -8,7 +8,10 @@ mod matching;
 use std::{ops::Range, sync::OnceLock};
 
 use apt_geometry::canonical::GeometryKind;
-use apt_syntax::vocabulary::{Word, words};
+use apt_syntax::{
+    dialect::DialectName,
+    vocabulary::{Word, lookup, words},
+};
 use rustc_hash::FxHashMap;
 
 pub(crate) use matching::{Typed, ValueKind};
@@ -81,6 +84,17 @@ impl Form {
         let mut reader = Reader { text, at: start, end, parameters: Vec::new(), steps: Vec::new() };
         reader.alternatives(None);
         Some(Self { text, parameters: reader.parameters, steps: reader.steps })
+    }
+
+    /// Whether a dialect has the form: those of sculptured surfaces hold words that only APT4 has. CL files are not asked:
+    /// their words take what other systems write.
+    pub(crate) fn is_of(&self, dialect: DialectName) -> bool {
+        let foreign = |parameter: &Parameter| match parameter.atom {
+            Atom::Word(word) => lookup(word).is_some_and(|word| word.dialects == [DialectName::Apt4]),
+            Atom::Placeholder(name) => matches!(name, "ssurf" | "scurv"),
+            Atom::Number(_) => false,
+        };
+        matches!(dialect, DialectName::Apt4 | DialectName::Cl) || !self.parameters.iter().any(foreign)
     }
 
     /// The form as a snippet: what can be left out left out, of several the first, values as places to fill in.
@@ -159,6 +173,8 @@ pub(crate) fn kinds_of(placeholder: &str) -> Option<&'static [GeometryKind]> {
         "matrix" => &[Kind::Matrix],
         "pattern" => &[Kind::Pattern],
         "tabcyl" => &[Kind::TabulatedCylinder],
+        "ssurf" => &[Kind::Sculptured],
+        "scurv" => &[Kind::SpaceCurve],
         "conic" => &[Kind::Ellipse, Kind::Hyperbola, Kind::GeneralConic, Kind::LoftConic],
         "ds" | "ps" | "cs" | "surface" => SURFACES,
         "geometry" | "name" | "names" | "list" | "value" | "values" | "variable" | "macro" | "routine"

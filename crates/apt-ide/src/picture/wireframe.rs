@@ -3,6 +3,7 @@
 use apt_geometry::{
     Vec3,
     canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere, TabulatedCylinder},
+    parametric::{SculpturedSurface, SpaceCurve},
 };
 
 use super::projection::{Bounds, Point};
@@ -15,6 +16,9 @@ const RULINGS: usize = 12;
 const CELLS: usize = 56;
 /// Pieces per interval of a tabulated cylinder.
 const CUBIC_PIECES: usize = 8;
+
+/// Lines along each parameter of a patch besides its edges: one in the middle.
+const PATCH_LINES: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// Lines of a surface, each a polyline inside the box. Geometry that is no surface has none.
 pub(super) fn lines(geometry: &Geometry, bounds: &Bounds) -> Vec<Vec<Point>> {
@@ -29,6 +33,8 @@ pub(super) fn lines(geometry: &Geometry, bounds: &Bounds) -> Vec<Vec<Point>> {
         | Geometry::LoftConic(q)
         | Geometry::Quadric(q) => quadric(q, bounds),
         Geometry::TabulatedCylinder(t) => tabulated(t, bounds),
+        Geometry::Sculptured(surface) => sculptured(surface),
+        Geometry::SpaceCurve(curve) => space_curve(curve),
         _ => Vec::new(),
     };
     raw.iter().flat_map(|line| clip(line, bounds)).collect()
@@ -239,4 +245,44 @@ fn tabulated(table: &TabulatedCylinder, bounds: &Bounds) -> Vec<Vec<Point>> {
         [low, high].iter().map(|w| curve.iter().map(|uv| lift(uv, *w)).collect()).collect();
     lines.extend(curve.iter().step_by(CUBIC_PIECES + 1).map(|uv| vec![lift(uv, low), lift(uv, high)]));
     lines
+}
+
+/// The edges and middle lines of each patch. An edge that two patches share is drawn once.
+fn sculptured(surface: &SculpturedSurface) -> Vec<Vec<Point>> {
+    let mut lines = Vec::new();
+    for (index, patch) in surface.patches.iter().enumerate() {
+        // Edges are numbered u=0, u=1, v=0, v=1.
+        let drawn = |edge: usize| {
+            let neighbour =
+                surface.neighbours.get(index).and_then(|edges| edges.get(edge).copied().flatten());
+            neighbour.is_some_and(|neighbour| neighbour.patch < index)
+        };
+        let share = |k: usize| k as f64 / CUBIC_PIECES as f64;
+        for (number, at) in PATCH_LINES.into_iter().enumerate() {
+            let last = number + 1 == PATCH_LINES.len();
+            let edges = if number == 0 {
+                Some([0, 2])
+            } else if last {
+                Some([1, 3])
+            } else {
+                None
+            };
+            if !edges.is_some_and(|[u, _]| drawn(u)) {
+                lines
+                    .push((0..=CUBIC_PIECES).map(|k| point(patch.evaluate(at, share(k)).position)).collect());
+            }
+            if !edges.is_some_and(|[_, v]| drawn(v)) {
+                lines
+                    .push((0..=CUBIC_PIECES).map(|k| point(patch.evaluate(share(k), at).position)).collect());
+            }
+        }
+    }
+    lines
+}
+
+fn space_curve(curve: &SpaceCurve) -> Vec<Vec<Point>> {
+    let along = |arc: &apt_geometry::parametric::CurveArc| -> Vec<Point> {
+        (0..=CUBIC_PIECES).map(|k| point(arc.evaluate(k as f64 / CUBIC_PIECES as f64).position)).collect()
+    };
+    curve.arcs.iter().map(along).collect()
 }

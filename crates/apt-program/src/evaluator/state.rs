@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use apt_geometry::{canonical::Plane, motion::DriveSide};
+use apt_geometry::{canonical::Plane, definition::ParametricPlace, motion::DriveSide};
 use smol_str::SmolStr;
 
 use crate::{
@@ -46,6 +46,8 @@ pub(crate) struct State {
     pub(crate) library_calls: imbl::OrdSet<SmolStr>,
     /// The conditions and switches of regional milling.
     pub(crate) regional: Arc<RegionalState>,
+    /// The place that the last INTOF of a space curve or a sculptured surface has found.
+    pub(crate) intersection: Option<Arc<ParametricPlace>>,
     /// FINI has been executed.
     pub(crate) ended: bool,
 }
@@ -78,6 +80,7 @@ impl Default for State {
             open_checks: imbl::OrdSet::new(),
             library_calls: imbl::OrdSet::new(),
             regional: Arc::default(),
+            intersection: None,
             ended: false,
         }
     }

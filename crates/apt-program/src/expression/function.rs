@@ -1,6 +1,7 @@
 //! The functions of the language (reference 2.6 and 10.4). Angles are in degrees at the language's edge. Those of geometry
 //! are in [`super::measure`].
 
+use apt_geometry::canonical::Geometry;
 use apt_syntax::{
     TextRange,
     statement::{Argument, WordUse},
@@ -62,6 +63,12 @@ fn apt4_substitute(name: &str, value: f64, compute: OneNumber) -> Option<f64> {
     }
 }
 
+/// Whether the first argument is a space curve or a sculptured surface.
+fn is_parametric(items: &[Item]) -> bool {
+    let first = items.first().and_then(Item::geometry);
+    matches!(first, Some(Geometry::SpaceCurve(_) | Geometry::Sculptured(_)))
+}
+
 /// A quotient, if its denominator is not zero.
 fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
     (denominator != 0.0).then(|| numerator / denominator)
@@ -78,7 +85,7 @@ impl Evaluator<'_> {
         self.refuse_inclusive(arguments)?;
         let name = function.word.spelling;
         if name == "PARMF" {
-            return Some(self.intersection_parameter(range));
+            return self.intersection_parameter(arguments, range);
         }
         let items = self.operands(arguments)?;
         let value = match name {
@@ -95,6 +102,7 @@ impl Evaluator<'_> {
             "ANGLF" => self.angle(name, &items, range)?.to_degrees(),
             "ANGLB" => self.angle(name, &items, range)?,
             "DISTF" => self.distance(&items, range)?,
+            "NUMF" if is_parametric(&items) => self.parametric_count(&items, range)?,
             "NUMF" => self.pattern_count(&items, range)?,
             "CANF" => self.canonical_number(&items, range)?,
             "CLDATF" => return self.location_data(name, range),

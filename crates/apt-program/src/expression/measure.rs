@@ -24,8 +24,7 @@ const APT4_PARALLEL_COSINE: f64 = 1e-6;
 const CENTER_DISTANCE: f64 = 1e-6;
 /// Squared length below which a vector has no direction in APT4.
 const APT4_SHORTEST_SQUARE: f64 = 1e-12;
-/// APT4: PARMF without an intersection before it, CLDATF without CL data.
-const APT4_NO_INTERSECTION: u16 = 42;
+/// APT4: CLDATF without CL data.
 const APT4_NO_CL_DATA: u16 = 93;
 
 /// What APT4 sees in the first three canonical numbers.
@@ -61,14 +60,6 @@ impl Leading {
 }
 
 impl Evaluator<'_> {
-    /// PARMF: the parameter that the last intersection with a space curve or a sculptured surface left. None of these has
-    /// been intersected, because no statement that does so is evaluated; APT4 then goes on with 0 and does not look at the
-    /// arguments.
-    pub(super) fn intersection_parameter(&mut self, range: TextRange) -> f64 {
-        self.without_result("PARMF", APT4_NO_INTERSECTION, range);
-        0.0
-    }
-
     /// CLDATF: numbers of the cutter locations, which Section 1 does not have.
     pub(super) fn location_data(&mut self, name: &'static str, range: TextRange) -> Option<f64> {
         self.without_result(name, APT4_NO_CL_DATA, range);

@@ -61,6 +61,8 @@ pub enum Expected {
     /// A sculptured surface or a space curve.
     SculpturedElement,
     GuideSurface,
+    SpaceCurve,
+    LineOrCircle,
     FeedsOrPlane,
     DistanceVectorOrPlane,
     /// PS or a sculptured surface, and ON or OFF.

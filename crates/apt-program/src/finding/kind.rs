@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     canonical::GeometryKind,
-    definition::{DefinitionError, RuledFault},
+    definition::{DefinitionError, ParametricError, RuledFault},
 };
 use apt_syntax::error::SyntaxErrorKind;
 use smol_str::SmolStr;
@@ -700,6 +700,24 @@ pub enum FindingKind {
     AxisDropped {
         /// GOTO or FROM.
         word: SmolStr,
+    },
+
+    // Space curves and sculptured surfaces.
+    /// A space curve, a sculptured surface, or a place on one that does not exist.
+    #[error("{statement}: {error}")]
+    Parametric {
+        /// The type or function.
+        statement: SmolStr,
+        /// Why not.
+        error: ParametricError,
+    },
+    /// One that exists although something is doubtful about it.
+    #[error("{statement}: {error}")]
+    ParametricDoubt {
+        /// The type.
+        statement: SmolStr,
+        /// What.
+        error: ParametricError,
     },
 
     // Regional milling of sculptured surfaces.

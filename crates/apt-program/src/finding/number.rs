@@ -106,7 +106,9 @@ impl FindingKind {
             Self::SegmentInSegment => 30,
             Self::SystemMacroInSegment { .. } => 38,
             Self::EndMissing => 23,
-            Self::ConditionMissing { .. }
+            Self::Parametric { .. }
+            | Self::ParametricDoubt { .. }
+            | Self::ConditionMissing { .. }
             | Self::RangeReversed { .. }
             | Self::GuideBeyond { .. }
             | Self::AvoidanceWithoutCheck
@@ -188,6 +190,7 @@ impl FindingKind {
             Self::UnknownMacroVariable { .. } => 1020,
             Self::MacroVariableMissing { .. } | Self::MacroValueMissing { .. } => 2055,
             Self::AxisDropped { .. } => 22300,
+            Self::Parametric { error, .. } | Self::ParametricDoubt { error, .. } => return error.number(),
             Self::ConditionMissing { .. } => 3565,
             Self::RangeReversed { .. } => 3523,
             Self::NameOnly { .. } => 1007,
@@ -213,6 +216,7 @@ impl FindingKind {
             | Self::MacroVariableTwice { .. }
             | Self::RoutineNotAvailable { .. }
             | Self::AxisDropped { .. }
+            | Self::ParametricDoubt { .. }
             | Self::GuideBeyond { .. }
             | Self::AvoidanceWithoutCheck
             | Self::LiftWithoutLimit

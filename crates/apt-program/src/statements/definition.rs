@@ -12,6 +12,7 @@ use apt_syntax::{
 };
 use smol_str::SmolStr;
 
+use super::sculptured::asks_parametric;
 use crate::{
     evaluator::{Evaluator, Synonym},
     expression::{Item, Operand, Resolved},
@@ -178,6 +179,12 @@ impl Evaluator<'_> {
         }
         if self.is_apt4() && has_canon(definition) {
             self.refuse_skipped(kind, &items, definition.range)?;
+        }
+        if asks_parametric(kind, &items) {
+            return self.intersection(kind, &items, definition.range).map(Arc::new);
+        }
+        if matches!(kind, GeometryKind::SpaceCurve | GeometryKind::Sculptured) && !has_canon(definition) {
+            return self.parametric_definition(kind, &items, definition.range).map(Arc::new);
         }
         let arguments = self.definition_arguments(kind, &items)?;
         let context = DefinitionContext { z_surface: self.state.z_surface };

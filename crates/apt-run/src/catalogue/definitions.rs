@@ -142,6 +142,8 @@ fn wanted(expected: Expected) -> String {
         Expected::SculpturedSurface => "a sculptured surface",
         Expected::SculpturedElement => "a sculptured surface or a space curve",
         Expected::GuideSurface => "a guide surface",
+        Expected::SpaceCurve => "a space curve",
+        Expected::LineOrCircle => "a line or a circle",
         Expected::FeedsOrPlane => "four feed rates or a plane",
         Expected::DistanceVectorOrPlane => "a distance, a vector or a plane",
         Expected::CheckedAndSwitch => "PS or one sculptured surface, and ON or OFF",

@@ -1,11 +1,22 @@
-//! Words for regional milling of sculptured surfaces (codes 052x).
+//! Words for space curves and sculptured surfaces (codes 0317 to 0319) and for their regional milling (codes 052x).
 
+use apt_geometry::definition::ParametricError as Error;
 use apt_program::finding::{ConditionBlock, FindingKind as Kind};
 
-use super::{Text, number, say};
+use super::{Text, a_kind, number, say};
 
 pub(super) fn word(kind: &Kind) -> Option<Text> {
     Some(match kind {
+        Kind::Parametric { statement, error } => match statement.as_str() {
+            "POINT" | "VECTOR" | "PARMF" => {
+                say("APT0318", format!("{statement} has no answer: {}", reason(error))).maybe(help(error))
+            }
+            _ => say("APT0317", format!("this {statement} does not exist: {}", reason(error)))
+                .maybe(help(error)),
+        },
+        Kind::ParametricDoubt { statement, error } => {
+            say("APT0319", format!("this {statement} is doubtful: {}", reason(error))).maybe(help(error))
+        }
         Kind::ConditionMissing { word, missing, spoiled, valid } => {
             condition_missing(word, missing, spoiled, valid)
         }
@@ -69,4 +80,85 @@ fn condition_missing(
         valid => format!("valid here: {}", names(valid)),
     });
     say("APT0520", format!("SMIL/{word} needs {}", names(missing))).hint(hint)
+}
+
+/// Why a space curve, a sculptured surface or a place on one does not exist, or is doubtful.
+fn reason(error: &Error) -> String {
+    match error {
+        Error::TooFew { least, found } => format!("{found} are given where it takes at least {least}"),
+        Error::TooManyConditions { greatest, found } => {
+            format!("a conic is settled by {greatest} conditions, and there are {found}")
+        }
+        Error::Coincident { first, second } => format!("points {first} and {second} coincide"),
+        Error::Collinear => "its points lie on one line".to_owned(),
+        Error::NotPlanar { distance } => {
+            format!("its data do not lie in one plane, {} is off", number(*distance))
+        }
+        Error::NoConicArc => "no conic arc runs through its data in their order".to_owned(),
+        Error::ZeroVector => "a vector has no direction".to_owned(),
+        Error::NotFinite => "a number is too large, or not a number".to_owned(),
+        Error::OutOfRange { value, least, greatest } => {
+            format!("{} does not lie between {} and {}", number(*value), number(*least), number(*greatest))
+        }
+        Error::NoFlow { curve } => format!("curve {curve} has no segments"),
+        Error::SegmentCount { curve, expected, found } => {
+            format!("curve {curve} has {found} segments and the first one {expected}")
+        }
+        Error::FlowWithoutSegments => "FLOW has no segments".to_owned(),
+        Error::SegmentsWithoutFlow => "SEG has no flow".to_owned(),
+        Error::RangeOrder { number } => format!("range {number} does not go on where the one before ends"),
+        Error::FlowNotMonotone { number } => {
+            format!("what range {number} of the flow measures does not grow all along the curve")
+        }
+        Error::AxisForm => "AXIS has a point and a vector".to_owned(),
+        Error::RowLength { row, expected, found } => {
+            format!("row {row} has {found} points and the first one {expected}")
+        }
+        Error::RowNotStraight { row } => {
+            format!("row {row} is not straight in the plane over which its points are heights")
+        }
+        Error::Gap { curve, gap } => {
+            format!("curve {curve} begins {} from the end of the one before", number(*gap))
+        }
+        Error::CrossGap { curve, gap } => {
+            format!("cross curve {curve} ends {} from the boundary curves", number(*gap))
+        }
+        Error::LoosePatches { patches } => format!("its {patches} patches do not know of each other"),
+        Error::Knots { degree, points } => {
+            format!("its knots are not those of {points} control points of degree {degree}")
+        }
+        Error::Weight { weight } => format!("the weight {} is not positive", number(*weight)),
+        Error::SingularMatrix => "the matrix of TRFORM has no inverse".to_owned(),
+        Error::NoIntersection => "the curve does not meet what bounds it".to_owned(),
+        Error::NotConvertible { kind } => format!("{} has no form in patches", a_kind(*kind)),
+        Error::NoSuchPart { number: asked, count } => {
+            format!("there is no number {}, there are {count}", number(*asked))
+        }
+        Error::NoPlace { miss } => format!("they do not meet, {} is missing", number(*miss)),
+        Error::NoDirection => "the geometry has no such direction there".to_owned(),
+        Error::MixedSigns => "its pieces have different sign words".to_owned(),
+        Error::NoPlaceYet => "no INTOF came before that has this parameter".to_owned(),
+    }
+}
+
+/// What would help.
+fn help(error: &Error) -> Option<String> {
+    let text = match error {
+        Error::NoFlow { .. } => "add FLOW and SEG to the curve, as in FLOW,PARAM,0,2,SEG,PARAM,0,2",
+        Error::SegmentCount { .. } => "segments of the same number are joined: give all curves as many",
+        Error::FlowWithoutSegments => "add SEG behind FLOW, as in SEG,PARAM,0,2",
+        Error::SegmentsWithoutFlow => "write FLOW before SEG, as in FLOW,PARAM,0,2,SEG,PARAM,0,2",
+        Error::RangeOrder { .. } => "ranges are numbers of arcs: 0 is the start of the first arc",
+        Error::AxisForm => "give a vector alone, or two points",
+        Error::RowNotStraight { .. } => "XYZ takes rows of any shape",
+        Error::Gap { .. } => "the curve is made with the gap",
+        Error::LoosePatches { .. } => "join surfaces of one patch by COMBIN",
+        Error::Knots { degree, points } => {
+            return Some(format!("they are {} numbers that do not fall", degree + points + 1));
+        }
+        Error::NoSuchPart { .. } => "numbers begin at 1; 0 takes the parameters of the whole",
+        Error::NoPlaceYet => "POINT/INTOF or VECTOR/INTOF of the curve or surface comes first",
+        _ => return None,
+    };
+    Some(text.to_owned())
 }

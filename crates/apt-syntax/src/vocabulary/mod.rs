@@ -240,7 +240,7 @@ mod tests {
                     word.class == WordClass::SystemFlag || matches!(word.spelling, "DMILL" | "BEVELS")
                 }
                 WordStatus::Reported => {
-                    let names_only = ["CLDATF", "GOMILL", "GCLEAR", "INTSEC"];
+                    let names_only = ["CLDATF", "GOMILL", "GCLEAR", "INTSEC", "FETCH"];
                     word.class == WordClass::GeometricType || names_only.contains(&word.spelling)
                 }
                 _ => true,

@@ -4,17 +4,30 @@
 mod avoidance;
 mod command;
 mod condition;
+mod curve;
+mod place;
 mod reader;
 mod state;
+mod surface;
 
 pub(crate) use state::RegionalState;
 
-use reader::Misfit;
+use std::sync::Arc;
+
+use apt_geometry::{
+    canonical::{Geometry, GeometryKind},
+    definition::{Defined, ParametricError},
+};
+use apt_syntax::TextRange;
+use smol_str::SmolStr;
+
+pub(super) use place::asks_parametric;
+use reader::{Misfit, Reader};
 
 use super::Major;
 use crate::{
     evaluator::Evaluator,
-    expression::Items,
+    expression::{Item, Items},
     finding::{FindingKind, Found},
 };
 
@@ -47,21 +60,25 @@ mod number {
 impl Evaluator<'_> {
     /// Reports why a statement fits no form, with the number of the public system.
     fn misfit(&mut self, major: Major<'_>, misfit: Misfit) {
+        self.misfit_of(major.name(), misfit);
+    }
+
+    /// The same of a definition or function by its word.
+    fn misfit_of(&mut self, statement: SmolStr, misfit: Misfit) {
         let (kind, number, range) = match misfit {
             Misfit::Operand { expected, found, number, range } => {
-                let statement = major.name();
                 (FindingKind::Operand { statement, expected, found, number }, Some(number), range)
             }
             Misfit::Surplus { found, range } => {
-                let (statement, number) = (major.name(), number::SURPLUS);
+                let number = number::SURPLUS;
                 let expected = crate::finding::Expected::Nothing;
                 (FindingKind::Operand { statement, expected, found, number }, Some(number), range)
             }
             Misfit::Value { value, number, range } => {
-                (FindingKind::OperandRange { statement: major.name(), value, number }, number, range)
+                (FindingKind::OperandRange { statement, value, number }, number, range)
             }
             Misfit::Range { low, high, number, range } => {
-                (FindingKind::RangeReversed { statement: major.name(), low, high }, number, range)
+                (FindingKind::RangeReversed { statement, low, high }, number, range)
             }
         };
         let mut finding = self.finding(kind, range);
@@ -71,7 +88,11 @@ impl Evaluator<'_> {
 
     /// The operands of a statement that must have some; an empty list is reported as no form.
     fn regional_operands(&mut self, major: Major<'_>, number: u16) -> Option<Items> {
-        let items = self.operands(major.arguments)?;
+        // A name without value makes a statement of no form, as in definitions.
+        self.definition_depth += 1;
+        let items = self.operands(major.arguments);
+        self.definition_depth -= 1;
+        let items = items?;
         if items.is_empty() {
             let expected = crate::finding::Expected::Word;
             self.misfit(
@@ -83,8 +104,48 @@ impl Evaluator<'_> {
         Some(items)
     }
 
+    /// A space curve or a sculptured surface from the operands of its definition; mistakes are reported.
+    pub(super) fn parametric_definition(
+        &mut self,
+        kind: GeometryKind,
+        items: &[Item],
+        range: TextRange,
+    ) -> Option<Geometry> {
+        let statement = SmolStr::new_static(kind.word());
+        let mut reader = Reader::new(items, range);
+        let made = if kind == GeometryKind::SpaceCurve {
+            let read = curve::definition(&mut reader, self.state.z_surface);
+            read.map(|definition| definition.define().map(|made| boxed(made, Geometry::SpaceCurve)))
+        } else {
+            let read = surface::definition(&mut reader);
+            read.map(|definition| definition.define().map(|made| boxed(made, Geometry::Sculptured)))
+        };
+        match made {
+            Ok(Ok((geometry, warnings))) => {
+                for error in warnings {
+                    let statement = statement.clone();
+                    self.report(FindingKind::ParametricDoubt { statement, error }, range);
+                }
+                Some(geometry)
+            }
+            Ok(Err(error)) => {
+                self.report(FindingKind::Parametric { statement, error }, range);
+                None
+            }
+            Err(misfit) => {
+                self.misfit_of(statement, misfit);
+                None
+            }
+        }
+    }
+
     /// GOMILL, GCLEAR and INTSEC: only their names are public.
     pub(crate) fn undocumented_milling(&mut self, major: Major<'_>) {
         self.report(FindingKind::NameOnly { word: major.name() }, major.word.range);
     }
+}
+
+/// What a definition has made, as geometry, with its warnings.
+fn boxed<T>(made: Defined<T>, wrap: fn(Arc<T>) -> Geometry) -> (Geometry, Vec<ParametricError>) {
+    (wrap(Arc::new(made.geometry)), made.warnings)
 }

@@ -1,9 +1,12 @@
 //! Reads operands in order and says what is missing where they fit no form.
 
+use std::sync::Arc;
+
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, Plane},
     motion::NamedSurface,
+    parametric::{SculpturedSurface, SpaceCurve},
     regional::Sense,
 };
 use apt_syntax::TextRange;
@@ -188,6 +191,93 @@ impl<'a> Reader<'a> {
         };
         self.at += 1;
         Ok(element)
+    }
+
+    /// One of some words, whose absence has a number of its own.
+    pub(super) fn word_or(&mut self, words: &'static [&'static str], number: u16) -> Read<&'static str> {
+        let outer = std::mem::replace(&mut self.number, number);
+        let word = self.word(words);
+        self.number = outer;
+        word
+    }
+
+    /// A point.
+    pub(super) fn point(&mut self) -> Read<Vec3> {
+        let point = self.peek().and_then(Item::point).ok_or_else(|| self.misfit(Expected::Point))?;
+        self.at += 1;
+        Ok(point)
+    }
+
+    /// A vector, perhaps null: what that means depends on the definition.
+    pub(super) fn any_vector(&mut self) -> Read<Vec3> {
+        let vector = self.peek().and_then(Item::vector).ok_or_else(|| self.misfit(Expected::Vector))?;
+        self.at += 1;
+        Ok(vector)
+    }
+
+    /// The number that comes next, if it is one.
+    pub(super) fn perhaps_scalar(&mut self) -> Option<f64> {
+        let value = self.peek().and_then(Item::scalar)?;
+        self.at += 1;
+        Some(value)
+    }
+
+    /// A whole number that is not negative.
+    pub(super) fn count(&mut self) -> Read<usize> {
+        let value = self.not_negative(None)?;
+        if value.fract() != 0.0 {
+            return Err(self.bad_value(value, None));
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative; saturates"
+        )]
+        Ok(value as usize)
+    }
+
+    /// All numbers that come next.
+    pub(super) fn scalars(&mut self) -> Vec<f64> {
+        std::iter::from_fn(|| self.perhaps_scalar()).collect()
+    }
+
+    /// All points that come next, at least one.
+    pub(super) fn points(&mut self) -> Read<Vec<Vec3>> {
+        let mut points = vec![self.point()?];
+        while self.peek().and_then(Item::point).is_some() {
+            points.push(self.point()?);
+        }
+        Ok(points)
+    }
+
+    /// A space curve.
+    pub(super) fn curve(&mut self) -> Read<Arc<SpaceCurve>> {
+        match self.peek().and_then(Item::geometry) {
+            Some(Geometry::SpaceCurve(curve)) => {
+                self.at += 1;
+                Ok(Arc::clone(curve))
+            }
+            _ => Err(self.misfit(Expected::SpaceCurve)),
+        }
+    }
+
+    /// All space curves that come next, at least one.
+    pub(super) fn curves(&mut self) -> Read<Vec<Arc<SpaceCurve>>> {
+        let mut curves = vec![self.curve()?];
+        while let Some(Geometry::SpaceCurve(_)) = self.peek().and_then(Item::geometry) {
+            curves.push(self.curve()?);
+        }
+        Ok(curves)
+    }
+
+    /// All sculptured surfaces that come next, at least one.
+    pub(super) fn sculptured_surfaces(&mut self) -> Read<Vec<Arc<SculpturedSurface>>> {
+        let mut surfaces = Vec::new();
+        while let Some(Geometry::Sculptured(surface)) = self.peek().and_then(Item::geometry) {
+            surfaces.push(Arc::clone(surface));
+            self.at += 1;
+        }
+        if surfaces.is_empty() { Err(self.misfit(Expected::SculpturedSurface)) } else { Ok(surfaces) }
     }
 
     /// The end of the statement.
