@@ -4,7 +4,7 @@ use apt_geometry::{
     Vec3,
     canonical::GeometryKind,
     cutter::{CutterError, CutterWarning},
-    motion::Relation,
+    motion::{DriveSide, Relation},
 };
 
 use crate::pocket::PocketFailure;
@@ -388,6 +388,8 @@ pub enum MotionWarning {
     WrongSideOfDrive {
         /// Sine of the angle between the drive normal and the direction of motion, about the tool axis.
         sine: f64,
+        /// Where the tool is.
+        side: DriveSide,
     },
     /// Doubtful cutter (415, 416).
     Cutter(CutterWarning),

@@ -18,7 +18,7 @@ use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 /// The words, the severity and the APT III number of a finding of Sections 2 and 3.
 pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     match kind {
-        RunFindingKind::Failure { failure, remedies } => {
+        RunFindingKind::Failure { failure, remedies, .. } => {
             let text = failure_text(failure).maybe(remedy::hint(remedies));
             (text, Severity::Error, failure.apt3())
         }
@@ -105,7 +105,9 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
         }
         AxisFailure::NoNormal => "the surface that guides the axis has no normal here".to_owned(),
         AxisFailure::SignUnresolved => "to which side ATANGL tilts the axis is not settled here".to_owned(),
-        AxisFailure::Vertex => "in the vertex of a hollow cone the axis would have to turn on the spot".to_owned(),
+        AxisFailure::Vertex => {
+            "in the vertex of a hollow cone the axis would have to turn on the spot".to_owned()
+        }
         AxisFailure::NoSurface => "a surface that TLAXIS needs takes no part in this motion".to_owned(),
         AxisFailure::NotSettled { .. } => {
             "the surface that guides the axis is too hollow for this tool".to_owned()
@@ -376,9 +378,12 @@ fn cutter(error: &CutterError) -> Text {
 
 fn warning_text(warning: &Warning) -> Text {
     match warning {
-        Warning::WrongSideOfDrive { .. } => {
+        Warning::WrongSideOfDrive { side, .. } => {
+            let word = remedy::drive_side_word(*side);
             say("APT0660", "the tool is on the other side of the drive surface than TLLFT or TLRGT says")
-                .hint("check TLLFT and TLRGT, and the direction word")
+                .hint(format!(
+                    "seen along the motion it is where {word} says; or the direction word is wrong"
+                ))
         }
         Warning::Cutter(CutterWarning::ArcReachesAxis) => {
             say("APT0661", "the corner arc of the cutter reaches the tool axis")

@@ -26,6 +26,9 @@ fn what(cure: &Cure) -> String {
     match cure {
         Cure::Relation { relation: other, .. } => format!("{} here", relation(*other)),
         Cure::Occurrence { occurrence, .. } => format!("{occurrence},INTOF"),
+        Cure::EarlierOccurrence { occurrence, .. } => {
+            format!("the motion before it with {occurrence},INTOF lets this one through, which then")
+        }
         Cure::Turn(turn) => turn_word(*turn).to_owned(),
         Cure::DriveSide(side) => drive_side_word(*side).to_owned(),
         Cure::PartSide(side) => part_side_word(*side).to_owned(),
@@ -63,9 +66,11 @@ pub(crate) fn statement(cure: &Cure) -> Option<String> {
         Cure::Points(count) => format!("NUMPTS/{count}"),
         Cure::DriveSide(side) => drive_side_word(*side).to_owned(),
         Cure::PartSide(side) => part_side_word(*side).to_owned(),
-        Cure::Relation { .. } | Cure::Occurrence { .. } | Cure::Turn(_) | Cure::WithoutDirection => {
-            return None;
-        }
+        Cure::Relation { .. }
+        | Cure::Occurrence { .. }
+        | Cure::EarlierOccurrence { .. }
+        | Cure::Turn(_)
+        | Cure::WithoutDirection => return None,
     })
 }
 

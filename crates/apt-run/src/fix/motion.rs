@@ -5,7 +5,7 @@ use apt_syntax::{
     SyntaxTree, TextRange,
     statement::{Element, ElementKind},
 };
-use arelem::cure::Cure;
+use arelem::{cure::Cure, error::MotionWarning};
 
 use super::Here;
 use crate::{
@@ -22,15 +22,22 @@ const RELATIONS: &[&str] = &["TO", "ON", "PAST", "TANTO", "DSTAN", "PSTAN"];
 
 /// The fixes of a finding of Section 2, the likeliest first.
 pub(crate) fn of_run(tree: &SyntaxTree, finding: &RunFinding) -> Vec<Fix> {
-    let RunFindingKind::Failure { remedies, .. } = &finding.kind else { return Vec::new() };
-    let origin = &finding.origin;
-    if origin.source.is_some() || tree.statement_count() == 0 {
-        return Vec::new();
+    let here = Here::of(tree, &finding.origin);
+    match &finding.kind {
+        RunFindingKind::Failure { remedies, earlier, .. } => {
+            let before = earlier.as_ref().and_then(|origin| Here::of(tree, origin));
+            let place = |cure: &Cure| match cure {
+                Cure::EarlierOccurrence { .. } => before.as_ref(),
+                _ => here.as_ref(),
+            };
+            remedies.iter().filter_map(|remedy| place(&remedy.cure)?.cured(&remedy.cure)).collect()
+        }
+        RunFindingKind::Warning(MotionWarning::WrongSideOfDrive { side, .. }) => {
+            // The motion keeps the side where the tool is: the other word changes nothing but what is said.
+            here.and_then(|here| here.cured(&Cure::DriveSide(*side))).into_iter().collect()
+        }
+        _ => Vec::new(),
     }
-    let index = (origin.isn.max(1) as usize - 1).min(tree.statement_count() - 1);
-    let view = tree.statement(index);
-    let here = Here { tree, parsed: view.parsed(), view, origin };
-    remedies.iter().filter_map(|remedy| here.cured(&remedy.cure)).collect()
 }
 
 impl Here<'_> {
@@ -47,9 +54,14 @@ impl Here<'_> {
                 self.replaced(PART_SIDES, word).or_else(|| self.before(word))
             }
             Cure::Relation { check: 0, relation } => self.related(*relation),
-            Cure::Occurrence { check: 0, occurrence } => self.counted(*occurrence),
+            Cure::Occurrence { check: 0, occurrence } | Cure::EarlierOccurrence { check: 0, occurrence } => {
+                self.counted(*occurrence)
+            }
             // With two check surfaces it is not sure which place is meant; and INDIRV may stand anywhere before the GO.
-            Cure::Relation { .. } | Cure::Occurrence { .. } | Cure::WithoutDirection => None,
+            Cure::Relation { .. }
+            | Cure::Occurrence { .. }
+            | Cure::EarlierOccurrence { .. }
+            | Cure::WithoutDirection => None,
             Cure::MoveTo { forward: Some(forward), .. } => {
                 let direction = format!("{}INDIRV/{}", self.line_end(), triple(forward));
                 self.before(&(statement(cure)? + &direction))
@@ -81,15 +93,23 @@ impl Here<'_> {
         Some(self.edit(at, &format!("{word},"), format!("Insert {word}")))
     }
 
-    /// Another count before INTOF.
+    /// Another count before INTOF, or the first one.
     fn counted(&self, occurrence: u32) -> Option<Fix> {
         let elements = &self.parsed.elements;
-        let intof = elements.iter().position(|element| is_word(element, &["INTOF"]))?;
-        let number = elements.get(intof.checked_sub(2)?)?;
-        (number.kind == ElementKind::Number).then(|| {
-            let title = format!("Replace {},INTOF by {occurrence},INTOF", number.text);
-            self.edit(number.range, &occurrence.to_string(), title)
-        })
+        let count = format!("{occurrence},INTOF");
+        if let Some(intof) = elements.iter().position(|element| is_word(element, &["INTOF"])) {
+            let number = elements.get(intof.checked_sub(2)?)?;
+            let title = format!("Replace {},INTOF by {count}", number.text);
+            return (number.kind == ElementKind::Number)
+                .then(|| self.edit(number.range, &occurrence.to_string(), title));
+        }
+        let place = self.check_place()?;
+        let title = format!("Insert {count}");
+        if is_word(place, RELATIONS) {
+            let after = TextRange::empty(place.range.end());
+            return Some(self.edit(after, &format!(",{count}"), title));
+        }
+        Some(self.edit(TextRange::empty(place.range.start()), &format!("TO,{count},"), title))
     }
 
     /// What stands behind the drive surface: the first element of the part about the check surface.
@@ -202,6 +222,45 @@ mod tests {
             let Some((_, fixed)) = hit else { panic!("{code}: no {title:?} in {made:?}") };
             assert!(fixed.contains(expected), "{code}: {fixed}");
         }
+    }
+
+    /// Round a circle to the line x=1, which it meets above and below; then along the line.
+    const ROUND: &str =
+        "CUTTER/.5\nC9=CIRCLE/0,0,2\nL8=LINE/1,-9,1,9\nL7=LINE/-9,6,9,6\nFROM/-5,0,0\nGO/TO,C9\n";
+
+    #[test]
+    fn a_count_is_put_into_the_motion_before_where_a_later_crossing_was_meant() {
+        // From above the way to the right leads down, from below it leads up, to L7.
+        let text = format!("{ROUND}TLLFT,GOLFT/C9,ON,L8\nTLON,GORGT/L8,TO,L7\nFINI\n");
+        let made = fixes(&text, "APT0642");
+        let fixed =
+            made.iter().find(|(title, _)| title == "Insert 2,INTOF").unwrap_or_else(|| panic!("{made:?}"));
+        assert!(fixed.1.contains("TLLFT,GOLFT/C9,ON,2,INTOF,L8\nTLON,GORGT/L8,TO,L7"), "{fixed:?}");
+        let hint = found(&text).into_iter().find_map(|one| one.wording.hint).unwrap_or_default();
+        assert!(hint.contains("the motion before it with 2,INTOF"), "{hint}");
+        // A count that is there is raised; a relation that is implied is said. Other statements may stand in between.
+        for (first, expected) in [
+            ("GOLFT/C9,ON,1,INTOF,L8", "GOLFT/C9,ON,2,INTOF,L8"),
+            ("GOLFT/C9,ON,L8\nFEDRAT/10\nTOLER/.001", "GOLFT/C9,ON,2,INTOF,L8\nFEDRAT/10"),
+        ] {
+            let text = format!("{ROUND}TLLFT,{first}\nTLON,GORGT/L8,TO,L7\nFINI\n");
+            let made = fixes(&text, "APT0642");
+            assert!(made.iter().any(|(_, fixed)| fixed.contains(expected)), "{expected}: {made:?}");
+        }
+        // Where the tool was moved in between the motion before has no part in it.
+        let text = format!(
+            "{ROUND}TLLFT,GOLFT/C9,ON,L8\nGODLTA/0,0,0.1\nGODLTA/0,0,-0.1\nTLON,GORGT/L8,TO,L7\nFINI\n"
+        );
+        assert!(found(&text).iter().all(|one| one.fixes.iter().all(|fix| !fix.title.contains("INTOF"))));
+    }
+
+    #[test]
+    fn the_side_that_is_said_is_turned_to_where_the_tool_is() {
+        let text = format!("{ROUND}TLRGT,GOLFT/C9,ON,L8\nFINI\n");
+        let made = fixes(&text, "APT0660");
+        assert_eq!(made.len(), 1, "{made:?}");
+        assert_eq!(made[0].0, "Replace TLRGT by TLLFT");
+        assert!(made[0].1.contains("TLLFT,GOLFT/C9,ON,L8"), "{made:?}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Runs the sections in order over an evaluated program: motion, edit, totals.
 
+mod earlier;
 mod section2;
 
 use std::sync::Arc;
@@ -49,6 +50,8 @@ pub enum RunFindingKind {
         failure: MotionFailure,
         /// What was found to cure it, the likeliest first.
         remedies: Vec<Remedy>,
+        /// The directed motion before, where one of the remedies changes that.
+        earlier: Option<Origin>,
     },
     /// The engine did, with a doubt.
     Warning(MotionWarning),

@@ -21,7 +21,7 @@ use arelem::{
 };
 use smol_str::SmolStr;
 
-use super::{Motion, RunFinding, RunFindingKind};
+use super::{Motion, RunFinding, RunFindingKind, earlier::Before};
 use crate::{
     Cancel, Cancelled,
     memo::{Computation, MotionMemo},
@@ -62,8 +62,16 @@ pub(super) struct Section2<'a> {
     /// First statement passed over in restart mode, how many so far and the last.
     skipped: Option<(Origin, u32, u32)>,
     tool: Option<ToolPosition>,
+    /// The directed motion that led to where the tool is.
+    before: Option<Before>,
     output_on: bool,
     with_axis: bool,
+}
+
+/// What would cure a failed command, and where the motion before it stands if that is one of the cures.
+struct Cures {
+    remedies: Vec<Remedy>,
+    earlier: Option<Origin>,
 }
 
 impl<'a> Section2<'a> {
@@ -87,6 +95,7 @@ impl<'a> Section2<'a> {
             transfer: None,
             skipped: None,
             tool: None,
+            before: None,
             output_on: true,
             with_axis: false,
         }
@@ -177,7 +186,7 @@ impl<'a> Section2<'a> {
 
     fn command(&mut self, command: &MotionCommand, origin: &Origin, source: u32) -> Result<(), Cancelled> {
         self.parameter_record(command, origin.isn, source);
-        let (execution, remedies) = if is_costly(command) {
+        let (execution, mut remedies) = if is_costly(command) {
             let computed = {
                 let (state, cancel) = (&self.state, self.cancel);
                 self.memo.get_or_compute(state, command, || compute(state, command, cancel))
@@ -191,11 +200,47 @@ impl<'a> Section2<'a> {
         } else {
             (execute(&self.state, command, &self.cancel), Vec::new())
         };
+        let earlier = self.earlier(command, &execution, &mut remedies);
         if (self.cancel)() {
             return Err(Cancelled);
         }
-        self.take(execution, remedies, command, origin, source);
+        self.remember(command, &execution, origin);
+        self.take(execution, Cures { remedies, earlier }, command, origin, source);
         Ok(())
+    }
+
+    /// Adds what in the motion before would cure a failure; gives the place of that motion then.
+    fn earlier(
+        &self,
+        command: &MotionCommand,
+        execution: &Execution,
+        remedies: &mut Vec<Remedy>,
+    ) -> Option<Origin> {
+        let (failure, before) = (execution.failure.as_ref()?, self.before.as_ref()?);
+        let (memo, cancel) = (self.memo, self.cancel);
+        let mut carry_out = |state: &State, command: &MotionCommand| {
+            if !is_costly(command) {
+                return Some(execute(state, command, &cancel));
+            }
+            let computed = memo.get_or_compute(state, command, || compute(state, command, cancel));
+            computed.map(|computed| computed.execution.clone())
+        };
+        let remedy = before.remedy(command, failure, &mut carry_out)?;
+        remedies.push(remedy);
+        Some(before.origin.clone())
+    }
+
+    /// Keeps the last directed motion as long as the tool stays where it ended. Comes before the state changes.
+    fn remember(&mut self, command: &MotionCommand, execution: &Execution, origin: &Origin) {
+        let before = self.before.take();
+        self.before = match (command, &execution.output) {
+            _ if execution.failure.is_some() => None,
+            (MotionCommand::Drive { .. }, Some(Output::Sequence(_))) => {
+                Some(Before::new(self.state.clone(), command, origin))
+            }
+            (_, None) => before.and_then(|before| before.and(command)),
+            _ => None,
+        };
     }
 
     fn judge(&mut self, evidence: &Option<Result<Evidence, VerifyError>>, origin: &Origin) {
@@ -210,7 +255,7 @@ impl<'a> Section2<'a> {
     fn take(
         &mut self,
         execution: Execution,
-        remedies: Vec<Remedy>,
+        Cures { remedies, earlier }: Cures,
         command: &MotionCommand,
         origin: &Origin,
         source: u32,
@@ -219,7 +264,7 @@ impl<'a> Section2<'a> {
         // Section 1 has told of a negative tolerance, where the statement stands.
         let is_news = |warning: &MotionWarning| !matches!(warning, MotionWarning::NegativeTolerance { .. });
         let warnings = execution.warnings.into_iter().filter(is_news).map(RunFindingKind::Warning);
-        let failure = execution.failure.map(|failure| RunFindingKind::Failure { failure, remedies });
+        let failure = execution.failure.map(|failure| RunFindingKind::Failure { failure, remedies, earlier });
         for kind in warnings.chain(failure) {
             self.output.findings.push(RunFinding { kind, origin: origin.clone() });
         }

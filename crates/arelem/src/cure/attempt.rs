@@ -80,6 +80,8 @@ fn applied(state: &State, command: &MotionCommand, cure: &Cure) -> Option<(State
             let MotionCommand::Drive { checks, .. } = &mut command else { return None };
             checks.get_mut(*check)?.occurrence = *occurrence;
         }
+        // It is tried with the motion before.
+        Cure::EarlierOccurrence { .. } => return None,
         Cure::Turn(other) => {
             let MotionCommand::Drive { turn, .. } = &mut command else { return None };
             *turn = *other;

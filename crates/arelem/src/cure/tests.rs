@@ -4,9 +4,10 @@ use Relation::{On, Past, TangentToDrive as Tanto, To};
 use Turn::{Forward, Left as GoLft, Right as GoRgt};
 use apt_geometry::motion::{DriveSide, MotionCommand, NamedSurface, PartSide, Relation, StartSurface, Turn};
 
-use super::{Cure, Remedy, remedies};
+use super::{Cure, Earlier, Remedy, earlier, remedies};
 use crate::{
     error::RoleName,
+    section2::{State, execute},
     tests::{Program, circle, line, motion, plane, start, v},
 };
 
@@ -168,4 +169,47 @@ fn what_cannot_be_cured_gets_no_remedy() {
     let wrong = motion(GoRgt, &line(0.0, 0.0, 1.0, 0.0), &[(To, 1, &line(6.0, 0.0, 6.0, 1.0))]);
     let failure = p.attempt(&wrong).expect_err("must fail");
     assert_eq!(remedies(&state, &wrong, &failure, &|| true), []);
+}
+
+#[test]
+fn the_next_position_is_offered_where_one_cannot_be_taken() {
+    // The first crossing of the circle is not the trouble here, but what a trouble with it suggests must work.
+    let mut p = beside();
+    let command = motion(GoLft, &line(0.0, 0.0, 1.0, 0.0), &[(On, 1, &circle(6.0, 0.5, 1.0))]);
+    let iteration = crate::error::Iteration::ThreeSurfaces;
+    let failure = crate::error::MotionFailure::IterationLimit { iteration, limit: 60, tip: p.tip() };
+    let found = remedies(&p.state, &command, &failure, &|| false);
+    assert_eq!(cures(&found), [Cure::Occurrence { check: 0, occurrence: 2 }]);
+    p.run(&command);
+    assert!(p.tip().x < 6.0 && found[0].end.x > 6.0, "{found:?}");
+    // TO a wall: past it the same way.
+    let mut p = beside();
+    let command = motion(GoLft, &line(0.0, 0.0, 1.0, 0.0), &[(To, 1, &line(6.0, 0.0, 6.0, 1.0))]);
+    let found = remedies(&p.state, &command, &failure, &|| false);
+    assert_eq!(cures(&found), [Cure::Relation { check: 0, relation: Past }]);
+    p.run(&command);
+    assert!((found[0].end.x - p.tip().x - 0.5).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn a_later_crossing_in_the_motion_before_is_found() {
+    let (round, upright, above) =
+        (circle(0.0, 0.0, 2.0), line(1.0, -9.0, 1.0, 9.0), line(-9.0, 6.0, 9.0, 6.0));
+    let mut p = Program::new();
+    p.cutter(&[0.5]).from(-5.0, 0.0, 0.0).go(&[(To, &round)]).side(DriveSide::Left);
+    let (state, first) = (p.state.clone(), motion(GoLft, &round, &[(On, 1, &upright)]));
+    p.run(&first);
+    let between = [MotionCommand::DriveSide(DriveSide::On)];
+    p.run(&between[0]);
+    let second = motion(GoRgt, &upright, &[(To, 1, &above)]);
+    let failure = p.attempt(&second).expect_err("it leads down");
+    let before = Earlier { state: &state, command: &first, between: &between };
+    let mut carry_out = |state: &State, command: &MotionCommand| Some(execute(state, command, &|| false));
+    let found = earlier(before, &second, &failure, &mut carry_out).expect("a remedy");
+    assert_eq!(found.cure, Cure::EarlierOccurrence { check: 0, occurrence: 2 });
+    assert!((found.end - v(1.0, 5.75, 0.0)).norm() < 1e-9, "{found:?}");
+    // Cancelled, or with a failure that has nothing to do with places: none.
+    assert_eq!(earlier(before, &second, &failure, &mut |_, _| None), None);
+    let other = crate::error::MotionFailure::NoCutter { start_up: false };
+    assert_eq!(earlier(before, &second, &other, &mut carry_out), None);
 }

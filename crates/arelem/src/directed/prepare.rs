@@ -206,7 +206,7 @@ fn judge_side(
         DriveSide::On => (false, DriveSide::On),
     };
     if wrong {
-        warnings.push(MotionWarning::WrongSideOfDrive { sine });
+        warnings.push(MotionWarning::WrongSideOfDrive { sine, side: other });
         return other;
     }
     state.drive_side

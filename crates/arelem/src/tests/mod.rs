@@ -1,5 +1,6 @@
 //! Motion programs as hand-built commands: worked cases, the shapes of the oracle corpus, and properties.
 
+mod axis_modes;
 mod corpus_plane;
 mod corpus_space;
 mod cost;

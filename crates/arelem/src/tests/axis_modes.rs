@@ -1,0 +1,214 @@
+//! Every axis mode with drive surfaces of every kind, on part and on drive surface: at every position the axis is what its
+//! law says, and the independent verifier proves the bands of the turning tool.
+
+use std::sync::Arc;
+
+use apt_geometry::{
+    canonical::RuledSurface,
+    motion::{AxisAngle, AxisTangency, ToolAxis},
+    surface::Surface,
+};
+use proptest::prelude::*;
+
+use super::*;
+use crate::verify::verify;
+
+/// Radius of the ball end.
+const BALL: f64 = 0.25;
+/// How exactly the angles hold at the positions.
+const EXACT: f64 = 1e-9;
+
+fn surface(geometry: &Geometry) -> Surface {
+    Surface::from_geometry(geometry).expect("a surface")
+}
+
+fn proven(p: &Program) -> Result<(), TestCaseError> {
+    for sequence in &p.sequences {
+        let evidence = verify(sequence, &|| false).expect("a judgement");
+        prop_assert!(evidence.verified, "{:?}", evidence.violations);
+    }
+    Ok(())
+}
+
+/// A round hill under a tool that comes from above.
+fn hill(kind: usize, shape: f64, turn: f64) -> Geometry {
+    let along = v(turn.cos(), turn.sin(), 0.0);
+    match kind {
+        0 => plane(0.1 * shape, -0.1 * turn, 1.0, 4.0),
+        1 => sphere(0.0, 0.0, 0.0, 3.0 + 4.0 * shape),
+        2 => cylinder(v(0.0, 0.0, 0.0), along, 3.0 + 4.0 * shape),
+        _ => cone(v(-6.0 * along.x, -6.0 * along.y, 6.0), v(along.x, along.y, -0.8 - shape), 40.0),
+    }
+}
+
+/// A wall that passes the origin at the height of the hills, or a little beside it for a tool TO it.
+fn wall(kind: usize, slant: f64, relation: Relation) -> Geometry {
+    let beside = if relation == Relation::On { 0.0 } else { 0.8 };
+    let normal = v(-slant.sin(), slant.cos(), 0.0);
+    let away = |radius: f64| normal * (radius + beside);
+    match kind {
+        0 => plane(normal.x, normal.y, normal.z, beside),
+        1 => cylinder(away(12.0), Vec3::z(), 12.0),
+        2 => cone(away(12.0) + Vec3::z() * 30.0, -Vec3::z(), 25f64.atan2(50.0).to_degrees()),
+        _ => sphere(away(20.0).x, away(20.0).y, 3.0, 20.0),
+    }
+}
+
+/// The angle conditions of an axis that stands on a surface: what is left of them.
+fn misfit(mode: &ToolAxis, base: &Surface, other: &Surface, tip: &Vec3, axis: &Vec3, ahead: &Vec3) -> f64 {
+    let facing = |p: &Vec3| {
+        let normal = base.foot(p).normal;
+        if normal.dot(axis) < 0.0 { -normal } else { normal }
+    };
+    let normal = facing(&(tip + axis * BALL));
+    match mode {
+        ToolAxis::AtAngle { angle, mode: AxisAngle::Plain, .. } => {
+            let aside = other.foot(tip).normal;
+            // In the plane of both normals.
+            let across = normal.cross(&aside).normalize();
+            (normal.dot(axis) - angle.cos()).abs().max(across.dot(axis).abs())
+        }
+        ToolAxis::AtAngle { angle, mode: AxisAngle::Lead(lead), .. } => {
+            let tangent = normal.cross(&other.foot(tip).normal).normalize();
+            let tangent = if tangent.dot(ahead) < 0.0 { -tangent } else { tangent };
+            (normal.dot(axis) - angle.cos()).abs().max((tangent.dot(axis) - lead.sin()).abs())
+        }
+        ToolAxis::AtAngle { angle, mode: AxisAngle::PerpendicularTo(vector), .. } => {
+            let vector = vector.normalize();
+            let flat = (normal - vector * normal.dot(&vector)).normalize();
+            vector.dot(axis).abs().max((flat.dot(axis) - angle.cos()).abs())
+        }
+        _ => (axis - facing(tip)).norm(),
+    }
+}
+
+fn axis_mode(part: bool, kind: usize, angle: f64, lead: f64, across: Vec3) -> ToolAxis {
+    let radians = angle.to_radians();
+    let mode = match kind {
+        0 => return ToolAxis::Normal { part },
+        1 => AxisAngle::Plain,
+        2 => AxisAngle::PerpendicularTo(across),
+        _ => AxisAngle::Lead(lead * angle.abs().to_radians()),
+    };
+    ToolAxis::AtAngle { part, angle: radians, mode }
+}
+
+/// The last motion of a program holds its angles at every position but its start, where the move before it ended.
+fn holds(p: &Program, mode: &ToolAxis, base: &Geometry, other: &Geometry) -> Result<(), TestCaseError> {
+    let (base, other) = (surface(base), surface(other));
+    let mut from = p.last().start.tip;
+    for point in &p.last().points {
+        let off = misfit(mode, &base, &other, &point.tip, &point.axis, &(point.tip - from));
+        prop_assert!(off <= EXACT, "{:e} at {:?}", off, point);
+        from = point.tip;
+    }
+    proven(p)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// On the part surface, along drive surfaces that are curved too, ON them and TO them.
+    #[test]
+    fn axes_that_follow_the_part_surface_along_any_drive_surface(
+        (hills, walls, modes) in (0usize..4, 0usize..4, 0usize..4),
+        on in any::<bool>(),
+        (shape, turn, slant) in (0.1..1.0f64, -0.5..0.5f64, -0.3..0.3f64),
+        angle in prop_oneof![-20.0..-3.0f64, 3.0..20.0f64],
+        lead in -0.8..0.8f64,
+    ) {
+        let relation = if on { Relation::On } else { Relation::To };
+        let (part, drive) = (hill(hills, shape, turn), wall(walls, slant, relation));
+        let mode = axis_mode(true, modes, angle, lead, v(0.1, 1.0, 0.2));
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, BALL]).from(-3.0, 0.0, 9.0);
+        p.run(&MotionCommand::ToolAxis(mode));
+        p.go(&[(relation, &drive), (Relation::To, &part), (Relation::On, &x(-1.0))]);
+        p.side(if on { DriveSide::On } else { DriveSide::Right });
+        p.indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(0.8));
+        holds(&p, &mode, &part, &drive)?;
+    }
+
+    /// On the drive surface, with the tool end ON a level part surface.
+    #[test]
+    fn axes_that_follow_the_drive_surface(
+        (walls, modes) in (0usize..4, 0usize..4),
+        slant in -0.3..0.3f64,
+        angle in 20.0..60.0f64,
+        lead in -0.5..0.5f64,
+    ) {
+        let (floor, drive) = (plane(0.0, 0.0, 1.0, 4.0), wall(walls, slant, Relation::To));
+        let mode = axis_mode(false, modes, angle, lead, v(1.0, 0.1, 0.2));
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, BALL]).from(-3.0, -3.0, 4.0);
+        p.run(&MotionCommand::ToolAxis(mode)).part_side(PartSide::On);
+        p.go(&[(Relation::To, &drive), (Relation::On, &floor), (Relation::On, &x(-1.0))]);
+        p.side(DriveSide::Right).indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(0.8));
+        holds(&p, &mode, &drive, &floor)?;
+    }
+
+    /// Along the drive surface: PERPTO, TANDS and FAN.
+    #[test]
+    fn axes_along_any_drive_surface(
+        (walls, modes) in (0usize..4, 0usize..3),
+        (slant, height) in (-0.3..0.3f64, prop_oneof![Just(0.0), 0.2..1.0f64]),
+    ) {
+        let (floor, drive) = (plane(0.0, 0.0, 1.0, 4.0), wall(walls, slant, Relation::To));
+        let across = v(1.0, 0.2, 0.1).normalize();
+        let mode = [AxisTangency::Across, AxisTangency::PerpendicularTo(across), AxisTangency::Fan][modes];
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, BALL]).from(-3.0, -3.0, 4.0);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height, mode })).part_side(PartSide::On);
+        p.go(&[(Relation::To, &drive), (Relation::On, &floor), (Relation::On, &x(-1.0))]);
+        p.side(DriveSide::Right).indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(0.8));
+        let (hill, last) = (surface(&drive), p.last().points.len() - 1);
+        for (index, point) in p.last().points.iter().enumerate() {
+            let normal = hill.foot(&(point.tip + point.axis * height)).normal;
+            let plane = match mode {
+                AxisTangency::PerpendicularTo(vector) => vector,
+                _ => normal.cross(&Vec3::z()).normalize(),
+            };
+            let off = point.axis.dot(&normal).abs().max(point.axis.dot(&plane).abs());
+            prop_assert!(mode == AxisTangency::Fan && index < last || off <= EXACT, "{:e} at {:?}", off, point);
+        }
+        proven(&p)?;
+    }
+}
+
+/// PARLEL on the part and on the drive surface: along the rulings of a wall between two arcs.
+#[test]
+fn axes_along_the_rulings_of_either_surface() {
+    for (part, lower, upper, height, floor) in [(true, 6.0, 5.0, 4.0, 0.3), (false, 7.0, 4.8, 3.5, 0.2)] {
+        // Arcs about (3, −6), cut off at x=−1 and x=7.
+        let arc = |radius: f64, z: f64| {
+            let far = (radius * radius - 16.0f64).sqrt() - 6.0;
+            let [first, second] = [-1.0, 7.0].map(|x| Geometry::Point(v(x, far, z)));
+            [circle(3.0, -6.0, radius), first, second, Geometry::Vector(Vec3::y())]
+        };
+        let parts = [arc(lower, 0.0), arc(upper, height)].concat();
+        let wall = Geometry::RuledSurface(Arc::new(RuledSurface { parts }));
+        let Surface::Ruled(sheet) = surface(&wall) else { panic!("not ruled") };
+        let level = plane(0.0, 0.0, 1.0, floor);
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.01, 0.01).cutter(&[0.5]).from(1.0, 5.0, 0.5);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Parallel { part }));
+        if part {
+            p.go(&[(Relation::On, &level), (Relation::To, &wall), (Relation::On, &x(2.0))]);
+            p.indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &level, Relation::On, &x(2.4));
+        } else {
+            p.part_side(PartSide::On);
+            p.go(&[(Relation::To, &wall), (Relation::On, &level), (Relation::On, &x(2.0))]);
+            p.side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
+            p.drive(Turn::Forward, &wall, Relation::On, &x(2.4));
+        }
+        for point in &p.last().points {
+            let ruling = sheet.ruling(&point.tip).expect("a ruling");
+            assert!(point.axis.z > 0.5 && point.axis.cross(&ruling).norm() <= EXACT, "{point:?}");
+        }
+        proven(&p).expect("in its bands");
+    }
+}
