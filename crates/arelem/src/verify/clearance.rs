@@ -15,6 +15,7 @@ use super::{
     ruled::RuledStrips,
     ruling::Ruling,
     ruling_clearance::{self, Ruled},
+    span::Bend,
     tool::{Profile, Tool},
 };
 
@@ -216,6 +217,17 @@ impl Clearance<'_> {
     /// A distance from the tool end beyond which there is nothing of the tool.
     pub(super) fn reach(&self) -> f64 {
         self.profile.reach() + self.raise.abs()
+    }
+
+    /// How its slope can grow along a straight move with a fixed axis, from the readings at both ends; None where that is not
+    /// known.
+    pub(super) fn bend_along(&self, tips: [&Vec3; 2], ends: &[Reading; 2], axis: &Vec3) -> Option<Bend> {
+        let tool = Tool { profile: self.profile, axis: *axis };
+        let bare = [ends[0].value + self.thickness, ends[1].value + self.thickness];
+        match self.surface {
+            Surface::Ruled(surface) => surface.bend(self.side, tips, bare, &ends[0].normal, &tool),
+            _ => None,
+        }
     }
 
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real

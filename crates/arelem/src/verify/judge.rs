@@ -107,8 +107,8 @@ impl<'a> Bound<'a> {
 
     /// The measured clearance that is farthest out of the band, and how far out it is; the error term counts against it.
     fn excess(&self, found: &Extremes, guard: f64) -> Option<(f64, f64)> {
-        let below = -self.intol - guard - (found.min - found.error);
-        let above = found.max + found.error - self.outtol - guard;
+        let below = -self.intol - guard - found.low;
+        let above = found.high - self.outtol - guard;
         if below <= 0.0 && above <= 0.0 {
             None
         } else if below > above {
@@ -125,7 +125,7 @@ impl<'a> Bound<'a> {
     fn at_point(&self, place: &ToolPosition, vector: usize) -> Result<Extremes, VerifyError> {
         let reading =
             self.clearance().at(&place.tip, &place.axis).ok_or(VerifyError::NoDistance { vector })?;
-        Ok(Extremes { min: reading.value, max: reading.value, error: reading.error })
+        Ok(Extremes::within(reading.error, reading.value, reading.value))
     }
 }
 
@@ -282,16 +282,18 @@ impl Judge<'_> {
         let [tolerance, last_tolerance] = shares.map(|s| (s * width).max(0.1 * guard));
         // A whole band outside is out of tolerance whatever else there is on the vector.
         let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
+        let allowed = [-bound.intol - guard, bound.outtol + guard];
         let mut all: Option<Extremes> = None;
         for (vector, pair) in self.positions.windows(2).enumerate() {
             if (self.cancel)() {
                 return Err(VerifyError::Cancelled);
             }
             let ends = [*bound.reading(vector)?, *bound.reading(vector + 1)?];
-            let span = Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond };
+            let span =
+                Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond, band: allowed };
             let lost = VerifyError::NoDistance { vector };
             let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
-            if bound.excess(&found, guard).is_some() && found.error > last_tolerance {
+            if bound.excess(&found, guard).is_some() && found.error() > last_tolerance {
                 // Let no error term decide that could be made smaller.
                 found = span.extremes(last_tolerance).ok_or(lost)?;
             }

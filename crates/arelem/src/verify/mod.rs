@@ -4,8 +4,10 @@
 //! The clearance of the whole tool is measured by tangent planes and supports, the extremes over a cut vector by
 //! convexity ([`span`]); the stop by replaying the path against the check surface ([`stop`]).
 
+mod bow;
 mod circle_contact;
 mod clearance;
+mod directrix;
 mod judge;
 mod pencil;
 mod pocket;
@@ -16,6 +18,7 @@ mod ruled;
 mod ruling;
 mod ruling_clearance;
 mod section;
+mod shadow;
 mod span;
 mod stop;
 mod strip;

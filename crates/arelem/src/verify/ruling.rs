@@ -2,7 +2,14 @@
 
 use apt_geometry::{Vec3, canonical::TabulatedCylinder};
 
-use super::strip::{Cubic, Strip, Touch, tangent};
+use super::{
+    bow::{Bow, Passing, bows},
+    directrix::{self, Piece},
+    shadow::{Flat, Shadow},
+    span::Bend,
+    strip::{Cubic, Touch, tangent},
+    tool::Tool,
+};
 
 /// Cosine that two axes of a frame may have to each other: canonical forms are written with a few decimals.
 const SKEW: f64 = 1e-5;
@@ -13,12 +20,20 @@ const JOINT: f64 = 1e-7;
 #[derive(Debug, Clone)]
 pub(super) struct Ruling {
     curve: Vec<Cubic>,
+    /// The same in its plane, across both unit vectors of the frame.
+    flat: Vec<Piece>,
+    frame: [Vec3; 2],
+    bows: Vec<Bow>,
     /// Unit direction of the rulings.
     pub(super) axis: Vec3,
     /// Whether the end tangents meet when drawn out; then the curve ends where the definition ends it.
     closed: bool,
     /// Greatest distance of the curve from the origin.
     pub(super) size: f64,
+}
+
+fn flat(frame: &[Vec3; 2], x: &Vec3) -> Flat {
+    Flat::new(frame[0].dot(x), frame[1].dot(x))
 }
 
 fn cross(a: &Vec3, b: &Vec3, axis: &Vec3) -> f64 {
@@ -51,7 +66,10 @@ impl Ruling {
         let y = cross(&(end - start), &back, &axis) / turn;
         let closed = x.is_finite() && y.is_finite() && x > 0.0 && y > 0.0;
         let size = curve.iter().flatten().map(|p| p.norm()).fold(0.0, f64::max);
-        Some(Self { curve, axis, closed, size })
+        let pieces = curve.iter().enumerate();
+        let flat: Vec<Piece> = pieces.map(|(k, c)| Piece::new(c.map(|p| flat(&frame, &p)), k)).collect();
+        let bows = flat.iter().flat_map(|piece| bows(piece.control())).collect();
+        Some(Self { curve, flat, frame, bows, axis, closed, size })
     }
 
     /// The pieces of the directrix in the plane through the origin.
@@ -59,28 +77,67 @@ impl Ruling {
         &self.curve
     }
 
-    /// The surface as far as a tool of a certain reach can be concerned with it.
-    pub(super) fn strips(&self, tip: &Vec3, reach: f64) -> Vec<Strip> {
-        let height = self.axis * self.axis.dot(tip);
-        let flat = tip - height;
-        let raise = [height - self.axis * reach, height + self.axis * reach];
-        let lift = |c: &Cubic| raise.map(|r| c.map(|p| p + r));
-        let mut strips: Vec<Strip> =
-            self.curve.iter().enumerate().map(|(piece, c)| Strip::new(lift(c), piece)).collect();
-        if self.closed {
-            return strips;
-        }
-        let last = self.curve.len() - 1;
-        for (piece, end, before) in [(0, 0, 1), (last, 3, 2)] {
-            let (from, inner) = (self.curve[piece][end], self.curve[piece][before]);
-            let out = from - inner;
-            let length = 2.0 * ((from - flat).norm() + reach) + out.norm();
+    /// The place of the surface nearest to a tool, to within `resolution`; one deeper in it than `deep` ends the search.
+    pub(super) fn nearest(&self, tip: &Vec3, tool: &Tool<'_>, resolution: f64, deep: f64) -> Option<Touch> {
+        let shadow = Shadow::new(tool, &self.frame, tip);
+        let rays = if self.closed { Vec::new() } else { self.rays(&shadow)?.to_vec() };
+        let found = directrix::nearest([&self.flat, &rays], &shadow, resolution, deep)?;
+        let [outward, place] = [found.level.normal, found.place].map(|x| self.lifted(&x));
+        let height = self.axis.dot(&(tip + tool.support(&outward).1));
+        Some(Touch {
+            value: found.value,
+            gap: found.gap,
+            outward,
+            point: place + self.axis * height,
+            piece: found.piece,
+            along: found.along,
+            across: 0.0,
+        })
+    }
+
+    /// How the slope of the clearance can grow from one position of the tool to another, where the surface's normal towards
+    /// the tool is `normal` at the start; the clearances are without thickness.
+    pub(super) fn bend(
+        &self,
+        side: f64,
+        [from, to]: [&Vec3; 2],
+        values: [f64; 2],
+        normal: &Vec3,
+        tool: &Tool<'_>,
+    ) -> Option<Bend> {
+        let shadow = Shadow::new(tool, &self.frame, from);
+        let way = to - from;
+        let length = flat(&self.frame, &way).norm();
+        let share = if length > 0.0 { length / way.norm() } else { 0.0 };
+        let natural = flat(&self.frame, &(normal * side)).try_normalize(0.0)?;
+        let run = Flat::new(natural.y, -natural.x);
+        let passing = Passing { shadow: &shadow, run, left: side > 0.0, length, values };
+        let bend = if self.closed {
+            let ends = [self.bows.first()?.start(), self.bows.last()?.end()];
+            passing.bend(&self.bows, &ends)?
+        } else {
+            let [before, after] = self.rays(&shadow)?.map(|ray| vec![Bow::straight(ray)]);
+            let before = before.into_iter().map(Bow::turned_round).collect();
+            let all = [before, self.bows.clone(), after].concat();
+            passing.bend(&all, &[])?
+        };
+        Some(Bend { rate: bend.rate * share * share, jumps: bend.jumps * share })
+    }
+
+    fn lifted(&self, x: &Flat) -> Vec3 {
+        self.frame[0] * x.x + self.frame[1] * x.y
+    }
+
+    /// What the tangents at both ends go on with, farther than the tool can be concerned.
+    fn rays(&self, shadow: &Shadow<'_>) -> Option<[Piece; 2]> {
+        let (count, first, last) = (self.curve.len(), self.curve.first()?, self.curve.last()?);
+        let ray = |from: Vec3, inner: Vec3, index: usize| {
+            let [from, out] = [from, from - inner].map(|x| flat(&self.frame, &x));
+            let length = 2.0 * ((from - shadow.middle).norm() + shadow.reach()) + out.norm();
             let step = out * (length / (3.0 * out.norm()));
-            let ray = [from, from + step, from + step * 2.0, from + step * 3.0];
-            let ray = if end == 0 { [ray[3], ray[2], ray[1], ray[0]] } else { ray };
-            strips.push(Strip::new(lift(&ray), if end == 0 { self.curve.len() } else { last + 2 }));
-        }
-        strips
+            Piece::new([from, from + step, from + step * 2.0, from + step * 3.0], index)
+        };
+        Some([ray(first[0], first[1], count), ray(last[3], last[2], count + 1)])
     }
 
     fn normal_at(&self, piece: usize, along: f64) -> Vec3 {

@@ -4,8 +4,6 @@
 //! that frees the tool (arelem reference 5.2): not less than the depth of any place of the surface in the tool, and of
 //! any place of the tool under the surface; and not more than a translation after which the tool is clear.
 
-use std::borrow::Cow;
-
 use apt_geometry::Vec3;
 
 use super::{
@@ -13,7 +11,8 @@ use super::{
     poly_conic::ConicStrips,
     ruled::RuledStrips,
     ruling::Ruling,
-    strip::{Strip, Touch, nearest},
+    span::Bend,
+    strip::{Touch, nearest},
     tool::{Meridian, Profile, Tool, perpendicular},
 };
 
@@ -63,12 +62,28 @@ impl Ruled {
         }
     }
 
-    /// The surface as far as a tool of a certain reach can be concerned with it.
-    fn strips(&self, tip: &Vec3, reach: f64) -> Cow<'_, [Strip]> {
+    /// The place nearest to a tool, to within `resolution`; one deeper in it than `deep` ends the search.
+    fn nearest(&self, tip: &Vec3, tool: &Tool<'_>, resolution: f64, deep: f64) -> Option<Touch> {
         match self {
-            Self::Parallel(ruling) => Cow::Owned(ruling.strips(tip, reach)),
-            Self::Joining(surface) => Cow::Borrowed(&surface.strips),
-            Self::Conics(surface) => Cow::Borrowed(&surface.strips),
+            Self::Parallel(ruling) => ruling.nearest(tip, tool, resolution, deep),
+            Self::Joining(surface) => nearest(&surface.strips, tip, tool, resolution, deep),
+            Self::Conics(surface) => nearest(&surface.strips, tip, tool, resolution, deep),
+        }
+    }
+
+    /// How the slope of the clearance can grow along a straight move from a reading at its start; None where that is not
+    /// known. The clearances at both ends are without thickness.
+    pub(super) fn bend(
+        &self,
+        side: f64,
+        ends: [&Vec3; 2],
+        values: [f64; 2],
+        normal: &Vec3,
+        tool: &Tool<'_>,
+    ) -> Option<Bend> {
+        match self {
+            Self::Parallel(ruling) => ruling.bend(side, ends, values, normal, tool),
+            Self::Joining(_) | Self::Conics(_) => None,
         }
     }
 
@@ -113,7 +128,7 @@ fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
 pub(super) fn point_distance(surface: &Ruled, x: &Vec3) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
     let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z) };
-    let touch = nearest(&surface.strips(x, 0.0), x, &tool, resolution(surface, x, 0.0), 0.0)?;
+    let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
@@ -161,7 +176,7 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
 
 impl Bodies<'_> {
     fn touch(&self, tip: &Vec3) -> Option<Touch> {
-        nearest(&self.surface.strips(tip, 2.0 * self.reach), tip, self.tool, self.resolution, self.deep)
+        self.surface.nearest(tip, self.tool, self.resolution, self.deep)
     }
 
     /// The direction that leads the tool away. Next to a sharp edge of the tool the difference of two places says little;

@@ -39,22 +39,45 @@ pub(super) fn turning(from: &ToolPosition, to: &ToolPosition) -> f64 {
     from.axis.cross(&to.axis).norm().atan2(from.axis.dot(&to.axis))
 }
 
-/// Least and greatest clearance found, and how far beyond them the true ones could be.
+/// Least and greatest clearance found, and what no clearance is below or above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extremes {
     pub(super) min: f64,
     pub(super) max: f64,
-    pub(super) error: f64,
+    /// Proven bounds.
+    pub(super) low: f64,
+    pub(super) high: f64,
 }
 
 impl Extremes {
+    /// Values that the true ones are no farther from than `error`.
+    pub(super) fn within(error: f64, min: f64, max: f64) -> Self {
+        Self { min, max, low: min - error, high: max + error }
+    }
+
     pub(super) fn join(self, other: Self) -> Self {
         Self {
             min: self.min.min(other.min),
             max: self.max.max(other.max),
-            error: self.error.max(other.error),
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
         }
     }
+
+    /// How far beyond those found the true ones could be.
+    pub(super) fn error(&self) -> f64 {
+        (self.min - self.low).max(self.high - self.max)
+    }
+}
+
+/// How the slope of a clearance can grow along a straight move with a fixed tool axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bend {
+    /// Bound of the second derivative, per unit of length squared: the clearance less half of it times the square of the way
+    /// is concave.
+    pub(super) rate: f64,
+    /// Bound of the sum of all sudden increases of the slope.
+    pub(super) jumps: f64,
 }
 
 /// Clearance, derivative by the parameter 0 … 1 and error at one place of the vector.
@@ -75,6 +98,8 @@ pub(super) struct Span<'a> {
     pub(super) ends: [Reading; 2],
     /// A clearance beyond these decides by itself: the search need not go on.
     pub(super) beyond: [f64; 2],
+    /// Least and greatest clearance allowed.
+    pub(super) band: [f64; 2],
 }
 
 impl Span<'_> {
@@ -113,16 +138,22 @@ impl Span<'_> {
             self.clearance.shape_along([&self.from.tip, &self.to.tip], &self.from.axis)
         };
         match shape {
-            Shape::Linear => Some(Extremes { min: low, max: high, error }),
+            Shape::Linear => Some(Extremes::within(error, low, high)),
             Shape::Convex => {
                 let (min, gap) = self.trough(first, last, 1.0, tolerance)?;
-                Some(Extremes { min: min.min(low), max: high, error: error.max(gap) })
+                Some(Extremes::within(error.max(gap), min.min(low), high))
             }
             Shape::Concave => {
                 let (depth, gap) = self.trough(first, last, -1.0, tolerance)?;
-                Some(Extremes { min: low, max: (-depth).max(high), error: error.max(gap) })
+                Some(Extremes::within(error.max(gap), low, (-depth).max(high)))
             }
-            Shape::Free => self.free(first, last, tolerance),
+            Shape::Free => {
+                let bend = if self.turns() { None } else { self.bend() };
+                match bend {
+                    Some(bend) => self.bent(first, last, bend, tolerance),
+                    None => self.free(first, last, tolerance),
+                }
+            }
         }
     }
 
@@ -163,13 +194,49 @@ impl Span<'_> {
         Some((least, gap + error))
     }
 
+    fn bend(&self) -> Option<Bend> {
+        self.clearance.bend_along([&self.from.tip, &self.to.tip], &self.ends, &self.from.axis)
+    }
+
+    /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the
+    /// band, or to hide no more than `tolerance`.
+    fn bent(&self, first: Sample, last: Sample, bend: Bend, tolerance: f64) -> Option<Extremes> {
+        let length = (self.to.tip - self.from.tip).norm();
+        // By the parameter from 0 to 1.
+        let (rate, jumps) = (bend.rate * length * length, bend.jumps * length);
+        let mut found: Option<Extremes> = None;
+        let mut open = vec![(first, last)];
+        let mut budget = FREE_EVALUATIONS;
+        while let Some((a, b)) = open.pop() {
+            let part = bounds([a, b], rate, jumps);
+            let is_whole = b.t - a.t >= 1.0;
+            let within = part.low >= self.band[0] && part.high <= self.band[1];
+            // Where the slope changes its sign, an extreme is looked at once.
+            let turn = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
+            let between = turn > a.t && turn < b.t && a.slope * b.slope < 0.0;
+            let settled = within || part.error() <= tolerance + a.error.max(b.error) || budget == 0;
+            let beyond = part.min < self.beyond[0] || part.max > self.beyond[1];
+            if beyond || settled && !(is_whole && between) {
+                found = Some(found.map_or(part, |f| f.join(part)));
+                if beyond {
+                    return found;
+                }
+                continue;
+            }
+            budget = budget.saturating_sub(1);
+            let middle = self.sample(if is_whole && between { turn } else { 0.5 * (a.t + b.t) })?;
+            open.extend([(middle, b), (a, middle)]);
+        }
+        found
+    }
+
     /// Subdivision until second differences say that no piece hides more than `tolerance`; a piece shorter than that cannot
     /// hide more, because clearance changes by no more than the tool moves.
     fn free(&self, first: Sample, last: Sample, tolerance: f64) -> Option<Extremes> {
         let swing = if self.turns() { turning(&self.from, &self.to) * self.clearance.reach() } else { 0.0 };
         let length = (self.to.tip - self.from.tip).norm() + swing;
-        let mut found =
-            Extremes { min: first.value.min(last.value), max: first.value.max(last.value), error: 0.0 };
+        let mut found = Extremes::within(0.0, first.value.min(last.value), first.value.max(last.value));
+        let mut error: f64 = 0.0;
         let mut pieces = Vec::with_capacity(2 * FIRST_PIECES);
         let mut left = first;
         for k in 1..=FIRST_PIECES {
@@ -182,11 +249,10 @@ impl Span<'_> {
             let width = b.t - a.t;
             let middle = self.sample(0.5 * (a.t + b.t))?;
             let reading = a.error.max(b.error).max(middle.error);
-            found = found.join(Extremes {
-                min: middle.value.min(a.value).min(b.value),
-                max: middle.value.max(a.value).max(b.value),
-                error: reading,
-            });
+            error = error.max(reading);
+            let (least, most) =
+                (middle.value.min(a.value).min(b.value), middle.value.max(a.value).max(b.value));
+            found = found.join(Extremes::within(0.0, least, most));
             // What the cubic through the ends misses at the middle, and what curvature can hide beside the three samples:
             // twice the bulge of a parabola with the observed change of slope over each half.
             let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
@@ -199,16 +265,42 @@ impl Span<'_> {
             let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
             let hidden = (bulge + surprise).min(0.5 * length * width);
             if found.min < self.beyond[0] || found.max > self.beyond[1] {
-                return Some(found);
+                return Some(Extremes::within(error, found.min, found.max));
             }
             if hidden <= tolerance || budget == 0 {
-                found.error = found.error.max(reading + hidden);
+                error = error.max(reading + hidden);
             } else {
                 budget -= 1;
                 pieces.push((a, middle));
                 pieces.push((middle, b));
             }
         }
-        Some(found)
+        Some(Extremes::within(error, found.min, found.max))
+    }
+}
+
+/// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
+/// by at most `jumps`: not below its chord less the bulge of a parabola, nor above what leads on from either end.
+fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
+    let width = b.t - a.t;
+    let (least, most) = (a.value.min(b.value), a.value.max(b.value));
+    let rise = (b.value - a.value) / width;
+    let low = if rise.abs() < 0.5 * rate * width {
+        let at = 0.5 * width - rise / rate;
+        a.value + rise * at - 0.5 * rate * at * (width - at)
+    } else {
+        least
+    };
+    // Where the parabolas from both ends meet.
+    let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
+        / (a.slope - b.slope + rate * width);
+    let high =
+        if at > 0.0 && at < width { most.max(a.value + a.slope * at + 0.5 * rate * at * at) } else { most };
+    let error = a.error.max(b.error);
+    Extremes {
+        min: least,
+        max: most,
+        low: low - 0.25 * jumps * width - error,
+        high: high + jumps * width + error,
     }
 }

@@ -113,6 +113,11 @@ impl Profile {
         self.support([1.0, 0.0]).0
     }
 
+    /// Height of the top above the tool end.
+    pub(super) fn top_height(&self) -> f64 {
+        self.top[1]
+    }
+
     /// Greatest distance of a point of the body from the tool end.
     pub(super) fn reach(&self) -> f64 {
         self.farthest([0.0, 0.0]).0

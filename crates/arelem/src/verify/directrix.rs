@@ -1,0 +1,377 @@
+//! Plane curves of cubics and their nearest place to the shadow of the tool: a tabulated cylinder seen along its rulings.
+//!
+//! At any place of the curve a half-plane that holds the shadow bounds the distance of every other place, by the least
+//! height of the control points over it. Parts whose bound is below the best place found are halved; the gap shrinks with
+//! the square of the part.
+
+use super::shadow::{Distance, Flat, Level, Shadow, left};
+
+/// Parts that one search may look at; what is left then goes into the gap.
+const PART_BUDGET: usize = 4_000;
+/// Steps by which a nearest place is closed in.
+const CLOSING_STEPS: usize = 24;
+/// Sine of the angle to the curve below which a nearest place has been found.
+const SQUARE: f64 = 1e-10;
+/// Share of the resolution to which a distance is found.
+const FINER: f64 = 0.25;
+
+/// A cubic in the plane, by its control points, in a circle.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    control: [Flat; 4],
+    /// Number by which the caller knows it.
+    index: usize,
+    center: Flat,
+    radius: f64,
+}
+
+impl Piece {
+    pub(super) fn new(control: [Flat; 4], index: usize) -> Self {
+        let center = (control[0] + control[3]) * 0.5;
+        let radius = control.iter().map(|p| (p - center).norm()).fold(0.0, f64::max);
+        Self { control, index, center, radius }
+    }
+
+    pub(super) fn control(&self) -> &[Flat; 4] {
+        &self.control
+    }
+
+    /// No place is less above a half-plane.
+    pub(super) fn least_above(&self, level: &Level) -> f64 {
+        least_above(level, &self.control)
+    }
+
+    /// Direction from a place to its middle.
+    pub(super) fn direction_from(&self, x: &Flat) -> Option<Flat> {
+        (self.center - x).try_normalize(0.0)
+    }
+
+    /// Distance of a point to its chord.
+    fn remoteness(&self, x: &Flat) -> f64 {
+        let along = self.control[3] - self.control[0];
+        let square = along.norm_squared();
+        let from = x - self.control[0];
+        let t = if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (from - along * t).norm()
+    }
+}
+
+fn lerp(a: &Flat, b: &Flat, t: f64) -> Flat {
+    a + (b - a) * t
+}
+
+/// The place at a parameter and a third of the derivative.
+fn at(c: &[Flat; 4], t: f64) -> [Flat; 2] {
+    let (ab, bc, cd) = (lerp(&c[0], &c[1], t), lerp(&c[1], &c[2], t), lerp(&c[2], &c[3], t));
+    let (abc, bcd) = (lerp(&ab, &bc, t), lerp(&bc, &cd, t));
+    [lerp(&abc, &bcd, t), bcd - abc]
+}
+
+fn halves(c: &[Flat; 4]) -> [[Flat; 4]; 2] {
+    let middle = |a: &Flat, b: &Flat| (a + b) * 0.5;
+    let (ab, bc, cd) = (middle(&c[0], &c[1]), middle(&c[1], &c[2]), middle(&c[2], &c[3]));
+    let (abc, bcd) = (middle(&ab, &bc), middle(&bc, &cd));
+    let all = middle(&abc, &bcd);
+    [[c[0], ab, abc, all], [all, bcd, cd, c[3]]]
+}
+
+/// The place of the curve nearest to the shadow, or deepest in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Nearest {
+    /// Distance to the shadow; negative inside.
+    pub(super) value: f64,
+    /// How much more or less the true least value could be.
+    pub(super) gap: f64,
+    /// The half-plane of the shadow that the place stands out of.
+    pub(super) level: Level,
+    /// Index of the piece, the parameter 0 … 1 on it, and the place.
+    pub(super) piece: usize,
+    pub(super) along: f64,
+    pub(super) place: Flat,
+}
+
+/// A part of a piece.
+struct Part {
+    control: [Flat; 4],
+    piece: usize,
+    start: f64,
+    width: f64,
+    /// No place of the part is nearer.
+    lower: f64,
+    /// About the distance of its middle.
+    middle: f64,
+}
+
+struct Search<'a> {
+    pieces: [&'a [Piece]; 2],
+    shadow: &'a Shadow<'a>,
+    resolution: f64,
+    best: Option<Nearest>,
+}
+
+fn least_above(level: &Level, control: &[Flat; 4]) -> f64 {
+    control.iter().map(|p| level.above(p)).fold(f64::INFINITY, f64::min)
+}
+
+impl<'a> Search<'a> {
+    fn piece(&self, k: usize) -> Option<&'a Piece> {
+        let [first, more] = self.pieces;
+        first.get(k).or_else(|| more.get(k - first.len()))
+    }
+
+    fn best_value(&self) -> f64 {
+        self.best.map_or(f64::INFINITY, |b| b.value)
+    }
+
+    /// Whether no place of a piece can be nearer than the best, by what little work shows it.
+    fn is_far(&self, piece: &Piece) -> bool {
+        let Some(best) = &self.best else { return false };
+        let enough = best.value - self.resolution;
+        if best.level.above(&piece.center) - piece.radius >= enough {
+            return true;
+        }
+        let away = piece.center - self.shadow.middle;
+        let size = away.norm();
+        size > 0.0 && self.shadow.level(away / size).above(&piece.center) - piece.radius >= enough
+    }
+
+    fn distance(&self, place: &Flat) -> Distance {
+        self.shadow.distance(place, FINER * self.resolution)
+    }
+
+    /// Keeps a place of a piece if it is the nearest so far.
+    fn offer(
+        &mut self,
+        piece: usize,
+        along: f64,
+        place: Flat,
+        Distance { value, gap, level }: Distance,
+    ) -> bool {
+        let better = value < self.best_value();
+        if better {
+            self.best = Some(Nearest { value, gap, level, piece, along, place });
+        }
+        better
+    }
+
+    fn consider(&mut self, piece: usize, along: f64) -> bool {
+        let Some(whole) = self.piece(piece) else { return false };
+        let [place, _] = at(&whole.control, along);
+        let found = self.distance(&place);
+        self.offer(piece, along, place, found)
+    }
+
+    /// Looks for the nearest place beside the best.
+    fn close_in_from(&mut self, piece: usize, t: f64, width: f64) {
+        if let Some(near) = self.closed_in(piece, t, width) {
+            self.consider(piece, near);
+        }
+    }
+
+    /// The parameter near `t` at which the shadow's place straight across from the curve is its support there.
+    fn closed_in(&self, piece: usize, t: f64, width: f64) -> Option<f64> {
+        let control = &self.piece(piece)?.control;
+        let outward = self.best.as_ref()?.level.normal;
+        // How far the support is behind along the curve, in thirds of the parameter.
+        let behind = |t: f64| {
+            let [place, run] = at(control, t);
+            let size = run.norm();
+            let across = left(&run) / size;
+            let across = if across.dot(&outward) < 0.0 { -across } else { across };
+            let off = (place - self.shadow.level(across).support).dot(&run) / size;
+            (off, off / (3.0 * size))
+        };
+        let (mut near, mut here) = (t, behind(t));
+        let mut bracket: Option<f64> = None;
+        let mut step = -here.1.clamp(-width, width);
+        for _ in 0..CLOSING_STEPS {
+            if !step.is_finite() || here.0.abs() <= SQUARE * self.shadow.reach() {
+                break;
+            }
+            let next = (near + step).clamp(0.0, 1.0);
+            if next == near {
+                break;
+            }
+            let there = behind(next);
+            if (there.0 < 0.0) != (here.0 < 0.0) {
+                bracket = Some(near);
+            }
+            let secant = next - there.0 * (next - near) / (there.0 - here.0);
+            (near, here) = (next, there);
+            let newton = next - there.1;
+            let wanted = if secant.is_finite() && (secant - next).abs() <= width { secant } else { newton };
+            step = match bracket {
+                Some(other) if (wanted < near.min(other)) || (wanted > near.max(other)) => {
+                    0.5 * (other - near)
+                }
+                _ => wanted - near,
+            };
+        }
+        Some(near)
+    }
+
+    fn part(&mut self, control: [Flat; 4], piece: usize, [start, width]: [f64; 2]) -> Part {
+        let best = self.best_value();
+        let mut lower = self.best.as_ref().map_or(f64::NEG_INFINITY, |b| least_above(&b.level, &control));
+        let mut middle = f64::INFINITY;
+        if lower < best - self.resolution {
+            let [place, run] = at(&control, 0.5);
+            let across = left(&run).try_normalize(0.0).unwrap_or_else(Flat::x);
+            let levels = [across, -across].map(|n| self.shadow.level(n));
+            let facing =
+                if levels[0].above(&place) >= levels[1].above(&place) { levels[0] } else { levels[1] };
+            middle = facing.above(&place);
+            lower = lower.max(least_above(&facing, &control));
+            if lower < best - self.resolution
+                && let Some(away) = (place - self.shadow.middle).try_normalize(0.0)
+            {
+                let away = self.shadow.level(away);
+                middle = middle.max(away.above(&place));
+                lower = lower.max(least_above(&away, &control));
+            }
+            // Where these half-planes do not even show the middle to be farther than the best place, its own does, or it is
+            // nearer.
+            if lower < best - self.resolution && middle < best - self.resolution {
+                let own = self.distance(&place);
+                middle = own.value;
+                lower = lower.max(least_above(&own.level, &control));
+                let t = start + 0.5 * width;
+                if self.offer(piece, t, place, own) {
+                    self.close_in_from(piece, t, 0.5 * width);
+                }
+            }
+        }
+        Part { control, piece, start, width, lower, middle }
+    }
+
+    /// Halves parts until none could hold a place nearer than the best, or one deeper than `deep` is found; gives the least
+    /// bound of those that the budget left unseen.
+    fn close_in(&mut self, piece: usize, deep: f64, budget: &mut usize) -> Option<f64> {
+        let control = self.piece(piece)?.control;
+        let mut lowest = f64::INFINITY;
+        let mut open = Vec::with_capacity(32);
+        open.push(self.part(control, piece, [0.0, 1.0]));
+        while let Some(part) = open.pop() {
+            let best = self.best_value();
+            if best < -deep {
+                break;
+            }
+            if part.lower >= best - self.resolution {
+                continue;
+            }
+            if *budget == 0 {
+                lowest = lowest.min(part.lower);
+                continue;
+            }
+            *budget -= 1;
+            let [first, last] = halves(&part.control);
+            let half = 0.5 * part.width;
+            let first = self.part(first, part.piece, [part.start, half]);
+            let last = self.part(last, part.piece, [part.start + half, half]);
+            // The nearer one is taken first.
+            if first.middle < last.middle {
+                open.extend([last, first]);
+            } else {
+                open.extend([first, last]);
+            }
+        }
+        Some(lowest)
+    }
+}
+
+/// The place of a curve, in two lists of pieces, nearest to the shadow, to within `resolution`; None without pieces or where
+/// a number is not finite. A place deeper in the shadow than `deep` ends the search.
+pub(super) fn nearest(
+    pieces: [&[Piece]; 2],
+    shadow: &Shadow<'_>,
+    resolution: f64,
+    deep: f64,
+) -> Option<Nearest> {
+    let mut search = Search { pieces, shadow, resolution, best: None };
+    let all = || pieces.into_iter().flatten();
+    let remote = all().map(|piece| piece.remoteness(&shadow.middle)).enumerate();
+    let first = remote.min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    let mut lowest = f64::INFINITY;
+    let mut budget = PART_BUDGET;
+    if search.consider(first, 0.5) {
+        search.close_in_from(first, 0.5, 0.5);
+    }
+    for piece in std::iter::once(first).chain((0..all().count()).filter(|k| *k != first)) {
+        if search.best_value() < -deep {
+            break;
+        }
+        if !search.is_far(search.piece(piece)?) {
+            lowest = lowest.min(search.close_in(piece, deep, &mut budget)?);
+        }
+    }
+    let mut found = search.best?;
+    found.piece = search.piece(found.piece)?.index;
+    found.gap = (found.gap + resolution).max(found.value - lowest);
+    (found.value.is_finite() && found.gap.is_finite()).then_some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::{Vec3, cutter::Cutter};
+    use proptest::prelude::*;
+
+    use super::{
+        super::tool::{Profile, Tool},
+        *,
+    };
+
+    /// A cubic with unit chords from node to node and slopes at them.
+    fn curve(slopes: &[f64]) -> Vec<Piece> {
+        let node = |k: usize| Flat::new(k as f64, 0.0);
+        let pieces = slopes.windows(2).enumerate().map(|(k, s)| {
+            let third = |slope: f64| Flat::new(1.0, slope) / 3.0;
+            let ends = [node(k), node(k + 1)];
+            Piece::new([ends[0], ends[0] + third(s[0]), ends[1] - third(s[1]), ends[1]], k)
+        });
+        pieces.collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        #[test]
+        fn no_place_of_the_curve_is_nearer(
+            slopes in proptest::collection::vec(-2.0..2.0f64, 3..7),
+            [diameter, share] in [0.05..1.5f64, 0.0..1.0f64],
+            lean in [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64],
+            at_place in [-0.5..5.0f64, -1.5..1.5f64],
+            point in any::<bool>(),
+        ) {
+            let radius = 0.5 * diameter * share;
+            let cutter = Cutter {
+                diameter,
+                corner_radius: radius,
+                corner_offset: 0.5 * diameter - radius,
+                corner_height: radius,
+                alpha: 0.0,
+                beta: 0.0,
+                height: 2.0,
+            };
+            let profile = if point { Profile::tool_end() } else { Profile::of(&cutter).unwrap() };
+            let axis = Vec3::new(lean[0], lean[1], lean[2] + 0.01).normalize();
+            let tool = Tool { profile: &profile, axis };
+            let frame = [Vec3::x(), Vec3::y()];
+            let shadow = Shadow::new(&tool, &frame, &Vec3::new(at_place[0], at_place[1], 0.3));
+            let pieces = curve(&slopes);
+            let (first, last) = pieces.split_at(1);
+            let resolution = 1e-10;
+            let found = nearest([first, last], &shadow, resolution, f64::INFINITY).unwrap();
+            let own = shadow.distance(&found.place, resolution);
+            prop_assert!((own.value - found.value).abs() <= 2.0 * resolution, "{own:?} {found:?}");
+            // Deep inside two sides of the shadow can be equally near.
+            let shallow = found.value > -0.1 * profile.widest();
+            prop_assert!(found.gap <= if shallow { 1e-9 } else { 1e-6 }, "{found:?}");
+            for piece in &pieces {
+                for k in 0..=200 {
+                    let [x, _] = at(&piece.control, f64::from(k) / 200.0);
+                    let there = shadow.distance(&x, resolution);
+                    prop_assert!(there.value + there.gap >= found.value - found.gap, "{x} {there:?} {found:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! The tool seen along a direction: a convex figure in the plane across it, and how far a point is from that.
+//!
+//! Every half-plane that holds the figure bounds the distance of a point from below, every two places of it bound what the
+//! half-planes between theirs can give from above. The arc of directions with the greatest bound is divided until both agree.
+
+use apt_geometry::Vec3;
+use nalgebra::Vector2;
+
+use super::tool::Tool;
+
+/// Arcs of directions looked at for one distance; what is left then is the gap.
+const ARCS: usize = 48;
+/// Two places nearer than this, relative to their distance from the point, are one.
+const SAME: f64 = 1e-15;
+
+/// A place or direction in the plane of the figure.
+pub(super) type Flat = Vector2<f64>;
+
+/// A tool seen along a direction.
+pub(super) struct Shadow<'a> {
+    tool: &'a Tool<'a>,
+    frame: &'a [Vec3; 2],
+    tip: Flat,
+    /// A place in the middle of it.
+    pub(super) middle: Flat,
+}
+
+/// A half-plane that holds the figure.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Level {
+    /// Outward, unit.
+    pub(super) normal: Flat,
+    /// The figure has no place with a greater product with the normal.
+    pub(super) height: f64,
+    /// The place of the figure that has it.
+    pub(super) support: Flat,
+}
+
+impl Level {
+    /// How far a place stands out of the half-plane.
+    pub(super) fn above(&self, x: &Flat) -> f64 {
+        self.normal.dot(x) - self.height
+    }
+}
+
+/// How far a point is from the figure.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Distance {
+    /// Negative inside; not more than the true distance.
+    pub(super) value: f64,
+    /// How much more the true distance may be.
+    pub(super) gap: f64,
+    /// The half-plane that shows it.
+    pub(super) level: Level,
+}
+
+/// Directions between those of two half-planes.
+#[derive(Debug, Clone, Copy)]
+struct Arc {
+    ends: [Level; 2],
+    /// No direction of the arc gives more, and the one that might.
+    bound: f64,
+    best: Flat,
+}
+
+/// A quarter turn to the left.
+pub(super) fn left(v: &Flat) -> Flat {
+    Flat::new(-v.y, v.x)
+}
+
+/// Greatest product with `d` between two directions, and the direction that has it.
+fn greatest(from: &Flat, to: &Flat, d: &Flat) -> (f64, Flat) {
+    if from.perp(d) > 0.0 && d.perp(to) > 0.0 {
+        let size = d.norm();
+        return (size, d / size);
+    }
+    let (first, last) = (from.dot(d), to.dot(d));
+    if first >= last { (first, *from) } else { (last, *to) }
+}
+
+impl Arc {
+    fn new(ends: [Level; 2], x: &Flat) -> Self {
+        let [first, last] = &ends;
+        let (a, b) = (first.normal, last.normal);
+        let (to_first, to_last) = (x - first.support, x - last.support);
+        let apart = first.support - last.support;
+        let cross = left(&apart);
+        let cross = if cross.dot(&(a + b)) < 0.0 { -cross } else { cross };
+        let size = cross.norm();
+        let (bound, best) = if size > SAME * (to_first.norm() + to_last.norm())
+            && a.perp(&cross) >= 0.0
+            && cross.perp(&b) >= 0.0
+        {
+            // Up to the direction in which both places are equally high the first one counts, then the last.
+            let cross = cross / size;
+            let (one, other) = (greatest(&a, &cross, &to_first), greatest(&cross, &b, &to_last));
+            if one.0 >= other.0 { one } else { other }
+        } else {
+            let (one, other) = (greatest(&a, &b, &to_first), greatest(&a, &b, &to_last));
+            if one.0 <= other.0 { one } else { other }
+        };
+        Self { ends, bound, best }
+    }
+}
+
+impl<'a> Shadow<'a> {
+    /// The tool with its end at `tip`, seen along the direction across both unit vectors of `frame`.
+    pub(super) fn new(tool: &'a Tool<'a>, frame: &'a [Vec3; 2], tip: &Vec3) -> Self {
+        let flat = |v: &Vec3| Flat::new(frame[0].dot(v), frame[1].dot(v));
+        let tip = flat(tip);
+        let middle = tip + flat(&tool.axis) * (0.5 * tool.profile.top_height());
+        Self { tool, frame, tip, middle }
+    }
+
+    /// Greatest distance of a place of the tool from its end.
+    pub(super) fn reach(&self) -> f64 {
+        self.tool.profile.reach()
+    }
+
+    /// The half-plane with an outward unit normal.
+    pub(super) fn level(&self, normal: Flat) -> Level {
+        let [u, v] = self.frame;
+        let (height, place) = self.tool.support(&(u * normal.x + v * normal.y));
+        let support = self.tip + Flat::new(u.dot(&place), v.dot(&place));
+        Level { normal, height: self.tip.dot(&normal) + height, support }
+    }
+
+    /// The distance of a point, to within `tolerance` if the budget allows.
+    pub(super) fn distance(&self, x: &Flat, tolerance: f64) -> Distance {
+        let first = (x - self.middle).try_normalize(0.0).unwrap_or_else(Flat::x);
+        let across = left(&first);
+        let levels = [first, across, -first, -across].map(|n| self.level(n));
+        let mut best = levels[0];
+        for level in &levels {
+            if level.above(x) > best.above(x) {
+                best = *level;
+            }
+        }
+        let quarter = |k: usize| Arc::new([levels[k], levels[(k + 1) % 4]], x);
+        let mut arcs: Vec<Arc> = (0..4).map(quarter).collect();
+        loop {
+            let value = best.above(x);
+            let Some(open) = arcs.iter_mut().max_by(|a, b| a.bound.total_cmp(&b.bound)) else {
+                return Distance { value, gap: 0.0, level: best };
+            };
+            let gap = (open.bound - value).max(0.0);
+            let known = open.ends.iter().any(|end| end.normal == open.best);
+            if gap <= tolerance || known {
+                return Distance { value, gap, level: best };
+            }
+            let middle = self.level(open.best);
+            if middle.above(x) > value {
+                best = middle;
+            }
+            let [from, to] = open.ends;
+            *open = Arc::new([from, middle], x);
+            if arcs.len() >= ARCS {
+                return Distance { value: best.above(x), gap, level: best };
+            }
+            arcs.push(Arc::new([middle, to], x));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::cutter::Cutter;
+    use proptest::prelude::*;
+
+    use super::{super::tool::Profile, *};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+        #[test]
+        fn a_distance_is_that_of_the_best_of_many_half_planes(
+            [diameter, share, height] in [0.1..2.0f64, 0.0..1.0f64, 1.0..3.0f64],
+            lean in [-1.0..1.0f64, -1.0..1.0f64],
+            at in [-3.0..3.0f64, -3.0..3.0f64],
+        ) {
+            let radius = 0.5 * diameter * share;
+            let cutter = Cutter {
+                diameter,
+                corner_radius: radius,
+                corner_offset: 0.5 * diameter - radius,
+                corner_height: radius,
+                alpha: 0.0,
+                beta: 0.0,
+                height,
+            };
+            let profile = Profile::of(&cutter).unwrap();
+            let tool = Tool { profile: &profile, axis: Vec3::new(lean[0], lean[1], 1.0).normalize() };
+            let frame = [Vec3::x(), Vec3::z()];
+            let shadow = Shadow::new(&tool, &frame, &Vec3::new(0.1, 0.2, 0.3));
+            let x = Flat::new(at[0], at[1]);
+            let found = shadow.distance(&x, 1e-10);
+            let count = 20_000;
+            let turn = std::f64::consts::TAU / f64::from(count);
+            let tried = (0..count).map(|k| {
+                let (s, c) = (turn * f64::from(k)).sin_cos();
+                shadow.level(Flat::new(c, s)).above(&x)
+            });
+            let most = tried.fold(f64::NEG_INFINITY, f64::max);
+            prop_assert!(found.gap <= 1e-10, "{found:?}");
+            prop_assert!(most <= found.value + found.gap + 1e-12 && found.value <= most + 1e-2, "{most} {found:?}");
+            prop_assert!((found.level.above(&x) - found.value).abs() < 1e-12);
+        }
+    }
+}
