@@ -8,6 +8,11 @@
 //! Lengths are in the part program's unit, angles in radians; normals point to the tool; depth is positive inside it.
 
 pub mod check;
+pub mod contact;
+pub mod curvature;
+pub mod error;
+pub mod guide;
+pub mod mill;
 pub mod tool;
 
 mod bounds;

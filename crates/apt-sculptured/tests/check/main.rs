@@ -26,7 +26,7 @@ fn mill(radius: f64, corner: f64, contact: Vec3, normal: Vec3, axis: Vec3) -> Mi
 fn asked(surface: &TestSurface, mill: &Mill, threshold: f64) -> Report {
     let e = mill.radius - mill.corner;
     let numbers = [2.0 * mill.radius, mill.corner, e, mill.corner, 0.0, 0.0, mill.length];
-    let tool = Tool::new(&Cutter::from_numbers(&numbers, 1.0).unwrap(), 0.0);
+    let tool = Tool::new(&Cutter::from_numbers(&numbers, 1.0).expect("a cutter"), 0.0);
     let obstacles = [Obstacle::new(surface.patches.clone())];
     let pose = Pose { end: mill.end, axis: mill.axis };
     check(&tool, &pose, &obstacles, &Question { threshold, gap: GAP })
@@ -103,8 +103,8 @@ fn t13_a_collapsed_edge() {
 
 /// A ball in contact at parameters of a surface with the axis along z.
 fn ball_at(surface: &TestSurface, radius: f64, u: f64, v: f64) -> Mill {
-    let at = surface.patches.evaluate_global(u, v).unwrap();
-    let normal = at.regular_normal().unwrap();
+    let at = surface.patches.evaluate_global(u, v).expect("inside");
+    let normal = at.regular_normal().expect("regular");
     mill(radius, radius, at.position, normal, Vec3::z())
 }
 

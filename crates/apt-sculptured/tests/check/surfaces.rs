@@ -26,8 +26,7 @@ pub(crate) struct TestSurface {
 type Profile = [[f64; 3]; 4];
 
 pub(crate) fn surface(patches: Vec<Patch>, grid: Option<(usize, usize)>) -> Arc<SculpturedSurface> {
-    let neighbours = vec![[None; 4]; patches.len()];
-    Arc::new(SculpturedSurface { patches, grid, neighbours, side: 1.0, mesh: Mesh::default() })
+    Arc::new(SculpturedSurface::assembled(patches, grid, Vec::new(), 1.0, Mesh::default()))
 }
 
 /// The patch of a polynomial `Σ c[i][j] uⁱ vʲ`.

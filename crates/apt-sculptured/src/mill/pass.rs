@@ -1,0 +1,132 @@
+//! One pass along the guide (SSPATH, sculptured surfaces reference 4.1).
+
+use apt_geometry::regional::FeedDirection;
+
+use super::{
+    Job, Sink,
+    station::{Course, Station},
+};
+use crate::error::{MillingError, Reduction};
+
+/// Most reductions of one step (3552).
+const MOST_REDUCTIONS: usize = 20;
+/// How a step shrinks when there is no location at its end.
+const WITHOUT_LOCATION: f64 = 0.5;
+/// How a step shrinks at least, and at most, when the tool moved too far.
+const SHRINK: [f64; 2] = [0.1, 0.75];
+/// A move so many times as long as allowed leads to another part of the surface.
+const JUMP: f64 = 5.0;
+/// How much longer than the last one a step may be.
+const GROWTH: f64 = 5.0;
+/// Share of a step that is not worth a step of its own at the end of a pass.
+const REST: f64 = 1e-3;
+/// Excess of a move over what is allowed that is rounding.
+const MOVE_SLACK: f64 = 1e-9;
+
+impl Job<'_> {
+    /// Follows the guide from a station, which is not put out, to a limit of the running parameter. All stations.
+    pub(super) fn pass(
+        &self,
+        first: Station,
+        course: &Course,
+        limit: f64,
+        sink: &mut Sink<'_>,
+    ) -> Result<Vec<Station>, MillingError> {
+        let mut stations = vec![first];
+        let mut last = first;
+        let mut step = self.intended_move(&first, course.stock) / first.guide.along.norm();
+        // All reductions since the last location, and those for want of a place since one was reached without: near the end
+        // of what the tool can reach each location comes after some.
+        let (mut reductions, mut dead_ends) = (0, 0);
+        loop {
+            let running = last.running(course.direction);
+            let left = (limit - running) * course.sign;
+            if left <= 0.0 {
+                return Ok(stations);
+            }
+            self.cancelled()?;
+            let target = self.target(running, step, limit, course);
+            let mut parameters = last.parameters;
+            match course.direction {
+                FeedDirection::Spline => parameters[0] = target,
+                FeedDirection::CrossSpline => parameters[1] = target,
+            }
+            let tried = (target - running).abs();
+            match self.try_step(&last, parameters, course) {
+                Ok((next, moved)) => {
+                    self.put(&next, course, sink)?;
+                    let pace = moved / tried;
+                    let intended = self.intended_move(&next, course.stock);
+                    step = if pace > 0.0 { intended / pace } else { GROWTH * tried };
+                    step = step.min(GROWTH * tried);
+                    if reductions == 0 {
+                        dead_ends = 0;
+                    }
+                    reductions = 0;
+                    last = next;
+                    stations.push(next);
+                }
+                Err((cause, factor)) => {
+                    reductions += 1;
+                    let jumped =
+                        matches!(cause, Reduction::TooFar { moved, allowed } if moved > JUMP * allowed);
+                    if jumped || matches!(cause, Reduction::Station(_) | Reduction::Misfit { .. }) {
+                        dead_ends += 1;
+                    }
+                    let stands = running + course.sign * tried * factor == running;
+                    if reductions.max(dead_ends) > MOST_REDUCTIONS || stands {
+                        let parameters = last.parameters;
+                        return Err(MillingError::TooManyReductions {
+                            parameters,
+                            reductions: MOST_REDUCTIONS,
+                            cause,
+                        });
+                    }
+                    step = tried * factor;
+                }
+            }
+        }
+    }
+
+    /// Where a step leads: not beyond the limit, nor beyond where arcs of a guide curve meet.
+    fn target(&self, running: f64, step: f64, limit: f64, course: &Course) -> f64 {
+        let mut target = limit;
+        if let Some(junction) = self.guide.junction(running, course.sign)
+            && (limit - junction) * course.sign > 0.0
+        {
+            target = junction;
+        }
+        if (target - running) * course.sign > step * (1.0 + REST) {
+            target = running + course.sign * step;
+        }
+        target
+    }
+
+    /// The next station and the move of the ball, or why not and by what the step shrinks.
+    fn try_step(
+        &self,
+        last: &Station,
+        parameters: [f64; 2],
+        course: &Course,
+    ) -> Result<(Station, f64), (Reduction, f64)> {
+        let next = self
+            .station(parameters, course, Some(last))
+            .map_err(|cause| (Reduction::Station(cause), WITHOUT_LOCATION))?;
+        let ball = self.ball_radius(course.stock);
+        let [sharpest, _] = next.contact.curvature().principal();
+        if !self.part_is_guide && sharpest * ball > 1.0 {
+            let cause = Reduction::Misfit { radius: 1.0 / sharpest, tool: ball };
+            return Err((cause, WITHOUT_LOCATION));
+        }
+        let allowed = self.greatest_move(last, &next, course.stock);
+        let moved = (next.center - last.center).norm();
+        if moved > allowed * (1.0 + MOVE_SLACK) {
+            let factor = (allowed / moved).clamp(SHRINK[0], SHRINK[1]);
+            return Err((Reduction::TooFar { moved, allowed }, factor));
+        }
+        if self.command.check_chords {
+            self.chord(last, &next, course)?;
+        }
+        Ok((next, moved))
+    }
+}
