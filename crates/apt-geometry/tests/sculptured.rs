@@ -6,8 +6,9 @@ use apt_geometry::{
     Vec3,
     canonical::matrix::CoordinatePlane,
     definition::{
-        AxisInput, CurveProduct, CurveShape, FlowInput, FlowMeasure, LineOrCircle, MeshRestriction,
-        ParametricError, ParametricNode, PatchForm, SculpturedDefinition, SegmentInput, SegmentSide,
+        AxisInput, CurveParameter, CurveProduct, CurveShape, FlowInput, FlowMeasure, LineOrCircle,
+        MeshRestriction, ParametricCount, ParametricDirection, ParametricError, ParametricNode,
+        ParametricPlace, ParametricQuery, PatchForm, SculpturedDefinition, SegmentInput, SegmentSide,
         SpaceCurveDefinition, SurfaceShape, Turning,
     },
     parametric::{SculpturedSurface, SegmentMeasure, SpaceCurve},
@@ -440,4 +441,72 @@ fn patches_by_tangents_and_by_points_on_them() {
         SurfaceShape::Patches { form: PatchForm::PointsOn, patches: vec![(1.0, points), (1.0, points)] };
     let warnings = SculpturedDefinition::plain(twice).define().expect("two patches").warnings;
     assert_eq!(warnings, vec![ParametricError::LoosePatches { patches: 2 }]);
+}
+
+fn found(query: &ParametricQuery) -> (Vec3, usize, [f64; 2]) {
+    match query.find().expect("a place") {
+        ParametricPlace::Surface { position, patch, local, .. } => (position, patch, local),
+        ParametricPlace::Curve { position, arc, local, .. } => (position, arc, [local, 0.0]),
+    }
+}
+
+#[test]
+fn places_by_lines_planes_and_points() {
+    let made = Arc::new(mesh(MeshRestriction::Free));
+    let line = |point: Vec3| ParametricQuery::SurfaceLine {
+        surface: made.clone(),
+        point,
+        direction: -Vec3::z(),
+        near: point,
+    };
+    let (place, patch, local) = found(&line(v(4.5, 3.0, 6.0)));
+    // The public system stops a few thousandths from the line.
+    near(place, [4.5, 3.0, 1.626], 0.02);
+    assert!((place.x - 4.5).abs() < 1e-11 && (place.y - 3.0).abs() < 1e-11);
+    assert_eq!(patch, 6);
+    assert!((local[0] - 0.229655).abs() < 0.01 && (local[1] - 0.490239).abs() < 0.01);
+    let (place, ..) = found(&line(v(1.0, 1.0, 6.0)));
+    near(place, [1.0, 1.0, 0.929505], 2e-4);
+    let normal = line(v(1.0, 1.0, 6.0)).direction(ParametricDirection::Normal, false).expect("a normal");
+    near(normal, [-2.206755, -0.904379, 4.099653], 2e-3);
+    let missed = line(v(7.0, 1.0, 6.0)).find().expect_err("beside the surface");
+    assert!(matches!(missed, ParametricError::NoPlace { miss } if miss.is_finite()));
+    let nearest = ParametricQuery::SurfaceNearest { surface: made.clone(), point: v(3.0, 2.0, 6.0) };
+    let (place, _, _) = found(&nearest);
+    let normal = nearest.direction(ParametricDirection::Normal, true).expect("a normal");
+    near((v(3.0, 2.0, 6.0) - place).normalize(), normal.into(), 1e-9);
+    let curve = Arc::new(spline(&ROWS[0]));
+    let plane = apt_geometry::canonical::Plane { normal: Vec3::x(), distance: 3.5 };
+    let query = ParametricQuery::CurvePlane { curve, plane, near: v(4.0, 0.0, 1.2) };
+    let (place, arc, local) = found(&query);
+    near(place, [3.5, 0.0, 1.227021], SYMBOL);
+    assert!(arc == 2 && (local[0] - 0.75074).abs() < SYMBOL);
+}
+
+#[test]
+fn places_by_parameters_and_directions() {
+    let points = [[0., 0., 0.], [2., 1., 0.], [5., 1., 1.], [8., 0., 0.]];
+    let curve = Arc::new(spline(&points));
+    let query = |value, number| ParametricQuery::CurveParameter {
+        curve: curve.clone(),
+        kind: CurveParameter::Param,
+        value,
+        number,
+    };
+    near(found(&query(0.5, -1.0)).0, [6.554019, 0.596239, 0.775408], SYMBOL);
+    near(found(&query(1.5, 0.0)).0, [3.488631, 1.180947, 0.544338], SYMBOL);
+    let direction = |kind| query(1.5, 0.0).direction(kind, true).expect("a direction");
+    near(direction(ParametricDirection::Normal), [0.356128, -0.356128, -0.863913], SYMBOL);
+    near(direction(ParametricDirection::Binormal), [0.379527, 0.242613, -0.892803], SYMBOL);
+    let fault = query(0.5, 4.0).find();
+    assert_eq!(fault, Err(ParametricError::NoSuchPart { number: 4.0, count: 3 }));
+    assert!(matches!(query(3.5, 0.0).find(), Err(ParametricError::OutOfRange { .. })));
+    let made = Arc::new(mesh(MeshRestriction::Free));
+    let place =
+        |u, v, patch| found(&ParametricQuery::SurfaceParameters { surface: made.clone(), u, v, patch });
+    assert_eq!(place(0.5, 0.25, 6.0), place(2.5, 1.25, 0.0));
+    assert_eq!(place(0.5, 0.25, 6.0).0, place(0.5, 0.25, -1.0).0);
+    let counted = [ParametricCount::Patches, ParametricCount::Splines, ParametricCount::CrossSplines];
+    assert_eq!(counted.map(|count| count.of_surface(&made)), [Some(6), Some(3), Some(4)]);
+    assert_eq!(ParametricCount::Arcs.of_curve(&curve), Some(3));
 }

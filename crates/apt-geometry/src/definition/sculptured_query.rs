@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
+use super::parametric_error::ParametricError;
 use crate::{
     Vec3,
     canonical::Plane,
     parametric::{SculpturedSurface, SpaceCurve},
 };
+
+/// A parameter that lies outside its range by less than this belongs to its end: operands are decimal numbers.
+const PARAMETER_SLACK: f64 = 1e-12;
 
 /// PARAM or FLOW.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,4 +130,203 @@ pub enum ParametricCount {
     Splines,
     /// CRSSPL: cross splines of a surface.
     CrossSplines,
+}
+
+/// A number of a part that is a whole number.
+fn part(number: f64, count: usize) -> Result<i64, ParametricError> {
+    let fault = ParametricError::NoSuchPart { number, count };
+    if number.fract() != 0.0 || number < -1.0 || number > count as f64 {
+        return Err(fault);
+    }
+    Ok(number as i64)
+}
+
+fn inside(value: f64, greatest: f64) -> Result<(), ParametricError> {
+    if value >= -PARAMETER_SLACK && value <= greatest + PARAMETER_SLACK * greatest.max(1.0) {
+        Ok(())
+    } else {
+        Err(ParametricError::OutOfRange { value, least: 0.0, greatest })
+    }
+}
+
+impl ParametricQuery {
+    /// The place that the question means.
+    ///
+    /// # Errors
+    /// Parameters or numbers outside the geometry, or no such place.
+    pub fn find(&self) -> Result<ParametricPlace, ParametricError> {
+        match self {
+            ParametricQuery::SurfaceParameters { surface, u, v, patch } => {
+                let number = part(*patch, surface.count())?;
+                let [u, v] = if number == 0 {
+                    let [width, height] = surface.extent();
+                    inside(*u, width)?;
+                    inside(*v, height)?;
+                    [*u, *v]
+                } else {
+                    inside(*u, 1.0)?;
+                    inside(*v, 1.0)?;
+                    let number = if number < 0 { surface.count() } else { number as usize };
+                    let place = surface.unnumbered(number, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+                    return surface_place(surface, place, Some((number, [*u, *v])));
+                };
+                surface_place(surface, [u, v], None)
+            }
+            ParametricQuery::CurveParameter { curve, kind, value, number } => {
+                curve_parameter(curve, *kind, *value, *number)
+            }
+            ParametricQuery::SurfaceNearest { surface, point } => {
+                let found = surface.nearest(point).map_err(|miss| ParametricError::NoPlace { miss })?;
+                surface_place(surface, surface.globally(found.patch, found.local[0], found.local[1]), None)
+            }
+            ParametricQuery::SurfaceLine { surface, point, direction, near } => {
+                if direction.norm() <= f64::MIN_POSITIVE {
+                    return Err(ParametricError::ZeroVector);
+                }
+                let found = surface
+                    .pierced(point, direction, near)
+                    .map_err(|miss| ParametricError::NoPlace { miss })?;
+                surface_place(surface, surface.globally(found.patch, found.local[0], found.local[1]), None)
+            }
+            ParametricQuery::CurvePlane { curve, plane, near } => {
+                if plane.normal.norm() <= f64::MIN_POSITIVE {
+                    return Err(ParametricError::ZeroVector);
+                }
+                let (arc, local) =
+                    curve.crossed(plane, near).map_err(|miss| ParametricError::NoPlace { miss })?;
+                curve_place(curve, arc, local)
+            }
+        }
+    }
+
+    /// A direction at the place that the question means: not of unit length unless `unit` asks for it.
+    ///
+    /// NORMAL of a surface is `∂u × ∂v` without the sign word. NORMAL of a curve is its cross direction × its tangent,
+    /// BINORM its first × its second derivative.
+    ///
+    /// # Errors
+    /// The place does not exist, or the geometry has no such direction there.
+    pub fn direction(&self, kind: ParametricDirection, unit: bool) -> Result<Vec3, ParametricError> {
+        let vector = match (self, self.find()?) {
+            (
+                ParametricQuery::SurfaceParameters { surface, .. }
+                | ParametricQuery::SurfaceNearest { surface, .. }
+                | ParametricQuery::SurfaceLine { surface, .. },
+                ParametricPlace::Surface { global: [u, v], .. },
+            ) => {
+                let at = surface.evaluate_global(u, v).ok_or(ParametricError::NoDirection)?;
+                match kind {
+                    ParametricDirection::Tangent => at.du,
+                    ParametricDirection::Cross => at.dv,
+                    ParametricDirection::Normal if at.regular_normal().is_some() => at.du.cross(&at.dv),
+                    ParametricDirection::Normal => {
+                        surface.normal_global(u, v).ok_or(ParametricError::NoDirection)?.direction
+                    }
+                    ParametricDirection::Binormal => return Err(ParametricError::NoDirection),
+                }
+            }
+            (
+                ParametricQuery::CurveParameter { curve, .. } | ParametricQuery::CurvePlane { curve, .. },
+                ParametricPlace::Curve { arc, local, global, .. },
+            ) => {
+                let at = curve.arcs.get(arc - 1).ok_or(ParametricError::NoDirection)?.evaluate(local);
+                match kind {
+                    ParametricDirection::Tangent => at.first,
+                    ParametricDirection::Cross => curve.cross_at(global),
+                    ParametricDirection::Normal => curve.cross_at(global).cross(&at.first),
+                    ParametricDirection::Binormal => at.frame().binormal * at.first.cross(&at.second).norm(),
+                }
+            }
+            _ => return Err(ParametricError::NoDirection),
+        };
+        let direction = vector.try_normalize(f64::MIN_POSITIVE).ok_or(ParametricError::NoDirection)?;
+        Ok(if unit { direction } else { vector })
+    }
+}
+
+fn surface_place(
+    surface: &SculpturedSurface,
+    [u, v]: [f64; 2],
+    numbered: Option<(usize, [f64; 2])>,
+) -> Result<ParametricPlace, ParametricError> {
+    let at = surface.evaluate_global(u, v).ok_or(ParametricError::NoDirection)?;
+    let (patch, local) = numbered.or_else(|| surface.numbered(u, v)).ok_or(ParametricError::NoDirection)?;
+    Ok(ParametricPlace::Surface { position: at.position, patch, local, global: [u, v] })
+}
+
+fn curve_parameter(
+    curve: &SpaceCurve,
+    kind: CurveParameter,
+    value: f64,
+    number: f64,
+) -> Result<ParametricPlace, ParametricError> {
+    match kind {
+        CurveParameter::Param => {
+            let count = curve.arcs.len();
+            let number = part(number, count)?;
+            if number == 0 {
+                inside(value, curve.extent())?;
+                let (arc, local) = curve.locate(value).ok_or(ParametricError::NoDirection)?;
+                return curve_place(curve, arc, local);
+            }
+            inside(value, 1.0)?;
+            let arc = if number < 0 { count } else { number as usize };
+            curve_place(curve, arc - 1, value.clamp(0.0, 1.0))
+        }
+        CurveParameter::Flow => {
+            let flow = curve.flow.as_ref().ok_or(ParametricError::NoFlow { curve: 1 })?;
+            let count = flow.segments.len();
+            let number = part(number, count)?;
+            let (segment, local) = if number == 0 {
+                inside(value, count as f64)?;
+                let value = value.clamp(0.0, count as f64);
+                let segment = (value as usize).min(count - 1);
+                (segment, value - segment as f64)
+            } else {
+                inside(value, 1.0)?;
+                (if number < 0 { count } else { number as usize } - 1, value)
+            };
+            let parameter = flow.arc_parameter(curve, segment, local).ok_or(ParametricError::NoDirection)?;
+            let (arc, local) = curve.locate(parameter).ok_or(ParametricError::NoDirection)?;
+            curve_place(curve, arc, local)
+        }
+    }
+}
+
+/// The place of an arc (index).
+fn curve_place(curve: &SpaceCurve, arc: usize, local: f64) -> Result<ParametricPlace, ParametricError> {
+    let at = curve.arcs.get(arc).ok_or(ParametricError::NoDirection)?.evaluate(local);
+    let global = arc as f64 + local;
+    let flow = curve.flow.as_ref().and_then(|flow| flow.flow_parameter(curve, global));
+    Ok(ParametricPlace::Curve { position: at.position, arc: arc + 1, local, global, flow })
+}
+
+impl ParametricPlace {
+    /// The place.
+    pub fn position(&self) -> Vec3 {
+        match self {
+            ParametricPlace::Surface { position, .. } | ParametricPlace::Curve { position, .. } => *position,
+        }
+    }
+}
+
+impl ParametricCount {
+    /// What NUMF gives of a curve; `None` if curves have no such number.
+    pub fn of_curve(self, curve: &SpaceCurve) -> Option<usize> {
+        match self {
+            ParametricCount::Arcs => Some(curve.arcs.len()),
+            ParametricCount::Segments => Some(curve.flow.as_ref().map_or(0, |flow| flow.segments.len())),
+            _ => None,
+        }
+    }
+
+    /// What NUMF gives of a surface; `None` if surfaces have no such number.
+    pub fn of_surface(self, surface: &SculpturedSurface) -> Option<usize> {
+        match self {
+            ParametricCount::Patches => Some(surface.count()),
+            ParametricCount::Splines => Some(surface.mesh.splines),
+            ParametricCount::CrossSplines => Some(surface.mesh.cross_splines),
+            _ => None,
+        }
+    }
 }

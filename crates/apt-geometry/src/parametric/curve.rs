@@ -38,6 +38,9 @@ pub struct CurveFrame {
 }
 
 impl SpaceCurve {
+    /// The cross direction of a curve that was given none: what the public system's normals of such curves are made with.
+    pub const DEFAULT_CROSS: Vec3 = Vec3::new(1.0, 1.0, 0.0);
+
     /// A curve of arcs without cross directions and flow.
     pub fn of_arcs(arcs: Vec<CurveArc>) -> SpaceCurve {
         let cross = vec![None; arcs.len() + 1];
@@ -66,6 +69,18 @@ impl SpaceCurve {
     pub fn evaluate_global(&self, parameter: f64) -> Option<ArcPoint> {
         let (index, t) = self.locate(parameter)?;
         self.arcs.get(index).map(|arc| arc.evaluate(t))
+    }
+
+    /// The cross direction at a global parameter: between the given ones of an arc in proportion, the one of an end where
+    /// only that is given, and [`SpaceCurve::DEFAULT_CROSS`] without any.
+    pub fn cross_at(&self, parameter: f64) -> Vec3 {
+        let Some((index, t)) = self.locate(parameter) else { return Self::DEFAULT_CROSS };
+        let given = |index: usize| self.cross.get(index).copied().flatten();
+        match (given(index), given(index + 1)) {
+            (Some(first), Some(last)) => first * (1.0 - t) + last * t,
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => Self::DEFAULT_CROSS,
+        }
     }
 
     /// Greatest distance of a control point from the first one.

@@ -8,13 +8,16 @@ mod arc;
 mod basis;
 mod curve;
 mod flow;
+mod nearest;
 mod patch;
+mod pierce;
 mod surface;
 mod topology;
 
 pub use arc::{ArcPoint, CurveArc};
 pub use curve::{CurveFrame, SpaceCurve};
 pub use flow::{Flow, FlowKind, FlowRange, FlowSegment, SegmentMeasure};
+pub use nearest::SurfacePlace;
 pub use patch::{Patch, PatchNormal, PatchPoint};
 pub use surface::{Mesh, SculpturedSurface};
 pub use topology::{Edge, Neighbour};
