@@ -134,7 +134,7 @@ impl Passing<'_> {
         let near = |bow: &Bow| {
             let over = |level: &Level| bow.piece.least_above(level) <= reach;
             over(&facing)
-                && bow.piece.direction_from(&self.shadow.middle).is_none_or(|n| over(&self.shadow.level(n)))
+                && self.shadow.direction_to(bow.piece.middle()).is_none_or(|n| over(&self.shadow.level(n)))
         };
         if ends.iter().any(|end| facing.above(end) <= reach) {
             return None;

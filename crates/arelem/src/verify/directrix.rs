@@ -41,9 +41,9 @@ impl Piece {
         least_above(level, &self.control)
     }
 
-    /// Direction from a place to its middle.
-    pub(super) fn direction_from(&self, x: &Flat) -> Option<Flat> {
-        (self.center - x).try_normalize(0.0)
+    /// A place in its middle.
+    pub(super) fn middle(&self) -> &Flat {
+        &self.center
     }
 
     /// Distance of a point to its chord.
@@ -130,9 +130,8 @@ impl<'a> Search<'a> {
         if best.level.above(&piece.center) - piece.radius >= enough {
             return true;
         }
-        let away = piece.center - self.shadow.middle;
-        let size = away.norm();
-        size > 0.0 && self.shadow.level(away / size).above(&piece.center) - piece.radius >= enough
+        let away = self.shadow.direction_to(&piece.center);
+        away.is_some_and(|n| self.shadow.level(n).above(&piece.center) - piece.radius >= enough)
     }
 
     fn distance(&self, place: &Flat) -> Distance {
@@ -223,7 +222,7 @@ impl<'a> Search<'a> {
             middle = facing.above(&place);
             lower = lower.max(least_above(&facing, &control));
             if lower < best - self.resolution
-                && let Some(away) = (place - self.shadow.middle).try_normalize(0.0)
+                && let Some(away) = self.shadow.direction_to(&place)
             {
                 let away = self.shadow.level(away);
                 middle = middle.max(away.above(&place));

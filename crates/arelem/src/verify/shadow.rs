@@ -23,6 +23,8 @@ pub(super) struct Shadow<'a> {
     tip: Flat,
     /// A place in the middle of it.
     pub(super) middle: Flat,
+    /// From that along the axis up and down, as far as the tool is about the same all round.
+    spine: Flat,
 }
 
 /// A half-plane that holds the figure.
@@ -108,8 +110,17 @@ impl<'a> Shadow<'a> {
     pub(super) fn new(tool: &'a Tool<'a>, frame: &'a [Vec3; 2], tip: &Vec3) -> Self {
         let flat = |v: &Vec3| Flat::new(frame[0].dot(v), frame[1].dot(v));
         let tip = flat(tip);
-        let middle = tip + flat(&tool.axis) * (0.5 * tool.profile.top_height());
-        Self { tool, frame, tip, middle }
+        let (half, axis) = (0.5 * tool.profile.top_height(), flat(&tool.axis));
+        let spine = axis * (half - tool.profile.widest()).max(0.0);
+        Self { tool, frame, tip, middle: tip + axis * half, spine }
+    }
+
+    /// About the direction in which a point is away from the figure.
+    pub(super) fn direction_to(&self, x: &Flat) -> Option<Flat> {
+        let from = x - self.middle;
+        let square = self.spine.norm_squared();
+        let t = if square > 0.0 { (from.dot(&self.spine) / square).clamp(-1.0, 1.0) } else { 0.0 };
+        (from - self.spine * t).try_normalize(0.0)
     }
 
     /// Greatest distance of a place of the tool from its end.
@@ -127,7 +138,7 @@ impl<'a> Shadow<'a> {
 
     /// The distance of a point, to within `tolerance` if the budget allows.
     pub(super) fn distance(&self, x: &Flat, tolerance: f64) -> Distance {
-        let first = (x - self.middle).try_normalize(0.0).unwrap_or_else(Flat::x);
+        let first = self.direction_to(x).unwrap_or_else(Flat::x);
         let across = left(&first);
         let levels = [first, across, -first, -across].map(|n| self.level(n));
         let mut best = levels[0];
