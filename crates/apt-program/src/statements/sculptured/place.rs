@@ -22,7 +22,6 @@ use crate::{
 const DIRECTIONS: &[&str] = &["TANSPL", "CRSSPL", "NORMAL", "BINORM"];
 
 /// What stands behind INTOF.
-#[expect(dead_code, reason = "places are not looked for yet")]
 struct Question {
     query: ParametricQuery,
     /// The direction of a VECTOR, and whether it is made unit.
@@ -55,11 +54,17 @@ impl Evaluator<'_> {
                 return None;
             }
         };
-        // Places are not looked for yet.
-        let Question { query: _, direction: _ } = question;
-        let word = SmolStr::new_static("INTOF");
-        self.report(FindingKind::UnknownType { word }, range);
-        None
+        match answer(&question) {
+            Ok((place, geometry)) => {
+                self.state.intersection = Some(Arc::new(place));
+                Some(geometry)
+            }
+            Err(error) => {
+                let statement = SmolStr::new_static(kind.word());
+                self.report(FindingKind::Parametric { statement, error }, range);
+                None
+            }
+        }
     }
 
     /// PARMF: a parameter of the last INTOF. Before any, APT4 goes on with 0 and does not look at the arguments.
@@ -95,6 +100,20 @@ impl Evaluator<'_> {
             }
         }
     }
+}
+
+/// The place and what the definition makes of it.
+fn answer(question: &Question) -> Result<(ParametricPlace, Geometry), ParametricError> {
+    let place = question.query.find()?;
+    let geometry = match question.direction {
+        Some((direction, unit)) => Geometry::Vector(question.query.direction(direction, unit)?),
+        None => {
+            let (ParametricPlace::Surface { position, .. } | ParametricPlace::Curve { position, .. }) =
+                &place;
+            Geometry::Point(*position)
+        }
+    };
+    Ok((place, geometry))
 }
 
 /// Reads what stands behind INTOF.
