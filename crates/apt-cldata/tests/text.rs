@@ -66,7 +66,13 @@ fn circles_of_all_simple_forms_become_points_on_the_arc() {
     let unsegmented = "GOTO/40,20,-3\nCIRCLE/40,45,-3,0,0,1,25\nGOTO/65,45,-3\nGOTO/65,90,-3\n";
     let inner = "GOTO / 40,20,-3\nCIRCLE / 40,45,-3, 0,0,1, 25\nGOTO / 57.6777,27.3223,-3\n65,45,-3\nGOTO / 65,90,-3\n";
     let stated = "GOTO/40,20,-3\nMOVARC/40,45,-3,0,0,1,25,ANGLE,90\nGOTO/65,45,-3\nGOTO/65,90,-3\n";
-    for (text, inner_points) in [(unsegmented, 18), (inner, 2), (stated, 18)] {
+    let data = "ARCDAT/40,45,-3,0,0,1,25\nGOTO/40,20,-3\nARCMOV/CCLW,65,45,-3,90\nGOTO/65,90,-3\n";
+    let turned = "ARCDAT/40,45,-3,0,0,-1,25\nGOTO/40,20,-3\nARCMOV/CLW,65,45,-3\nGOTO/65,90,-3\n";
+    let worded = "GOTO/40,20,-3\nCCW/0,0,1,40,20,-3,40,45,-3,65,45,-3,25\nGOTO/65,90,-3\n";
+    let first = "CW/0,0,-1,40,20,-3,40,45,-3,65,45,-3,25\nGOTO/65,90,-3\n";
+    for (text, inner_points) in
+        [(unsegmented, 18), (inner, 2), (stated, 18), (data, 18), (turned, 18), (worded, 18), (first, 18)]
+    {
         let (records, errors) = read_text(text);
         assert_eq!(errors, vec![]);
         assert!(matches!(records[1].kind, ClKind::Arc { radius: 25.0, .. }), "{text}");
@@ -78,6 +84,54 @@ fn circles_of_all_simple_forms_become_points_on_the_arc() {
         }));
         assert_eq!(points.last().unwrap().position, Vec3::new(65.0, 45.0, -3.0));
         assert_eq!(positions(&records[3..]), [[65.0, 90.0, -3.0]]);
+    }
+}
+
+#[test]
+fn a_clockwise_arc_goes_the_other_way_round() {
+    let text = "ARCDAT/0,0,0,0,0,1,10\nGOTO/10,0,0\nARCMOV/CLW,0,10,0,270\nARCMOV/CCLW,0,10,0,360\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    let lowest = |record: &ClRecord| match &record.kind {
+        ClKind::Motion { points, .. } => points.iter().map(|p| p.position.y).fold(f64::INFINITY, f64::min),
+        other => panic!("{other:?}"),
+    };
+    assert!((lowest(&records[2]) + 10.0).abs() < 1e-9, "by way of (0,-10): {records:?}");
+    let ClKind::Motion { points, .. } = &records[4].kind else { panic!("{records:?}") };
+    assert_eq!(points.len(), 72, "a full turn");
+}
+
+#[test]
+fn the_chords_of_a_nurbs_curve_are_its_path() {
+    let text = "GOTO/0,0,0\nMOVNRB/ON,3,4,1,0,1\nMOVNRB/1,0,0,0,1,1,1\nMOVNRB/2,1,2,3\nMOVNRB/NEXT\nGOTO/1,1,0\nGOTO/2,0,0\nMOVNRB/OFF\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    assert_eq!(positions(&records), [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.0, 0.0]]);
+    let words =
+        |record: &&ClRecord| matches!(&record.kind, ClKind::Postprocessor { word, .. } if word == "MOVNRB");
+    assert_eq!(records.iter().filter(words).count(), 5, "it passes through");
+    // Without chords the path has a gap.
+    let (_, errors) = read_text("GOTO/0,0,0\nMOVNRB/ON,3,4,1,0,1\nMOVNRB/OFF\nGOTO/1,0,0\n");
+    let [error] = &errors[..] else { panic!("{errors:?}") };
+    assert_eq!((error.line, &error.kind), (1, &ReadErrorKind::NotRead { word: "MOVNRB".into() }));
+}
+
+#[test]
+fn mistakes_in_arcs_by_words_are_reported() {
+    let cases = [
+        ("GOTO/0,0,0\nARCMOV/CLW,1,1,0", ReadErrorKind::NoCircle { word: "ARCMOV".into() }),
+        ("ARCDAT/0,0,0,0,0,0,1", ReadErrorKind::NoCircle { word: "ARCDAT".into() }),
+        ("ARCDAT/0,0,0,0,0,1", ReadErrorKind::WrongCount { word: "ARCDAT".into(), count: 6 }),
+        ("ARCMOV/1,2,3", ReadErrorKind::WrongCount { word: "ARCMOV".into(), count: 3 }),
+        ("ARCMOV/LEFT,1,2,3", ReadErrorKind::NotRead { word: "LEFT".into() }),
+        ("CW/1,2,3", ReadErrorKind::WrongCount { word: "CW".into(), count: 3 }),
+        ("MOVNRB/4", ReadErrorKind::WrongCount { word: "MOVNRB".into(), count: 1 }),
+        ("MOVNRB/UP", ReadErrorKind::NotRead { word: "UP".into() }),
+        ("GOTO/1,0,0\nARCDAT/0,0,0,0,0,1,1\nARCMOV/CLW,0,3,0", ReadErrorKind::OffCircle { distance: 2.0 }),
+    ];
+    for (text, expected) in cases {
+        let (_, errors) = read_text(text);
+        assert_eq!(errors.into_iter().map(|error| error.kind).collect::<Vec<_>>(), [expected], "{text}");
     }
 }
 

@@ -17,14 +17,15 @@ pub enum Treatment {
 }
 
 /// Words that the engine acts on.
-const ON_TAPE: [&str; 42] = [
-    "ARCSLP", "AUXFUN", "CLEARP", "CLRSRF", "COOLNT", "CUTCOM", "CYCLE", "DELAY", "DELETE", "DWELL", "END",
-    "FEDRAT", "GOCLER", "GOHOME", "INSERT", "ISTOP", "LOAD", "LOADTL", "MCHTOL", "MOVARC", "OFSTNO",
-    "OPSKIP", "OPSTOP", "ORIGIN", "PARTNO", "PLUNGE", "PPRINT", "PREFUN", "RAPID", "RETRCT", "REWIND",
-    "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT", "TRANS", "TURRET", "UNLOAD",
+const ON_TAPE: [&str; 44] = [
+    "ARCDAT", "ARCMOV", "ARCSLP", "AUXFUN", "CLEARP", "CLRSRF", "COOLNT", "CUTCOM", "CYCLE", "DELAY",
+    "DELETE", "DWELL", "END", "FEDRAT", "GOCLER", "GOHOME", "INSERT", "ISTOP", "LOAD", "LOADTL", "MCHTOL",
+    "MOVARC", "OFSTNO", "OPSKIP", "OPSTOP", "ORIGIN", "PARTNO", "PLUNGE", "PPRINT", "PREFUN", "RAPID",
+    "RETRCT", "REWIND", "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT", "TRANS",
+    "TURRET", "UNLOAD",
 ];
 /// Words of the processor, of listings, of plots and of the punch.
-const SILENT: [&str; 36] = [
+const SILENT: [&str; 37] = [
     "CALSUB",
     "CAMERA",
     "CLPRNT",
@@ -42,6 +43,8 @@ const SILENT: [&str; 36] = [
     "LPRINT",
     "MACHIN",
     "MCHFIN",
+    // Its chords are the path.
+    "MOVNRB",
     "MSYS",
     "NOPOST",
     "OVPLOT",
@@ -64,13 +67,12 @@ const SILENT: [&str; 36] = [
     "WCORN",
 ];
 /// Words for which a three-axis mill has nothing.
-const NOT_SUPPORTED: [&str; 57] = [
+const NOT_SUPPORTED: [&str; 54] = [
     "AIR", "ALIGN", "ASLOPE", "BREAK", "CAM", "CHECK", "CHUCK", "CLAMP", "CORNFD", "COUPLE", "DRESS",
     "FACEML", "HEAD", "IFRO", "INTCOD", "LINTOL", "LOCKX", "MAGTAP", "MAXDPM", "MAXVEL", "MDEND", "MDWRIT",
     "MODE", "MOVETO", "PALLET", "PBS", "PICKUP", "PITCH", "PIVOTZ", "POSITN", "POSMAP", "POSTN", "PPFUN",
     "PROBX", "PROBY", "QUILL", "RESET", "REVERS", "ROTABL", "ROTATE", "ROTHED", "SADDLE", "SAFETY", "SLOWDN",
-    "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS", "TMARK", "ULOCKX", "VACUUM", "ZERO", "ARCDAT",
-    "ARCMOV", "MOVNRB", "POD",
+    "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS", "TMARK", "ULOCKX", "VACUUM", "ZERO", "POD",
 ];
 
 /// What becomes of a word; `None` for one that the post-processor does not know.

@@ -106,13 +106,15 @@ pub enum ReadErrorKind {
 ///
 /// The record's `isn` is the statement's number (blank lines and remarks count, continuation lines do not), its
 /// `source` the zero-based line. Arcs without inner points (`CIRCLE/` before a single GOTO, `MOVARC/`) become a
-/// circle record and points on the arc, the form in which APT III writes them. Post-processor words have no code.
+/// circle record and points on the arc, the form in which APT III writes them; so do ARCMOV along the circle of ARCDAT, CW and CCW.
+/// MOVNRB passes through, and its chords are the path. Post-processor words have no code.
 pub fn read_text(text: &str) -> (Vec<ClRecord>, Vec<ReadError>) {
     let mut reader = Reader::default();
     for statement in statements(text) {
         reader.statement(&statement);
     }
     reader.end_arc();
+    reader.end_nurbs();
     (reader.records, reader.errors)
 }
 
@@ -126,6 +128,17 @@ struct Reader {
     axis: Option<Vec3>,
     multax: bool,
     arc: Option<PendingArc>,
+    /// What ARCDAT said last.
+    arc_data: Option<SpaceCircle>,
+    nurbs: Option<NurbsCurve>,
+}
+
+/// A MOVNRB that is not off yet.
+struct NurbsCurve {
+    isn: u32,
+    line: u32,
+    /// A position has come since MOVNRB/ON.
+    moved: bool,
 }
 
 /// A circle whose points are still coming in.
@@ -171,6 +184,10 @@ impl Reader {
         }
         match word.as_str() {
             "CIRCLE" | "MOVARC" => self.circle(word, &arguments),
+            "ARCDAT" => self.arc_data = self.circle_of(word, &arguments),
+            "ARCMOV" => self.arc_move(word, &arguments),
+            "CW" | "CCW" => self.worded_arc(word, &arguments),
+            "MOVNRB" => self.nurbs_curve(word, arguments),
             "MULTAX" => {
                 self.multax =
                     !arguments.iter().any(|argument| matches!(argument, ClWord::Word(off) if off == "OFF"));
@@ -185,8 +202,7 @@ impl Reader {
             "OUTTOL" => self.control(word, 5, arguments),
             "CUTTER" => self.control(word, 6, arguments),
             "INDIRV" | "INDIRP" | "TLON" | "TLLFT" | "TLRGT" | "GOFWD" | "GOLFT" | "GORGT" | "GOBACK"
-            | "GOUP" | "GODOWN" | "GO" | "AUTOPS" | "PSIS" | "MOVNRB" | "ARCDAT" | "ARCMOV" | "CW"
-            | "CCW" => {
+            | "GOUP" | "GODOWN" | "GO" | "AUTOPS" | "PSIS" => {
                 self.error(ReadErrorKind::NotRead { word: word.clone() });
             }
             _ => self.push(ClKind::Postprocessor { word: word.clone(), code: None, arguments }),
@@ -297,6 +313,9 @@ impl Reader {
 
     /// One more position; `fresh` for a statement of its own.
     fn goto(&mut self, point: ClPoint, fresh: bool) {
+        if let Some(curve) = &mut self.nurbs {
+            curve.moved = true;
+        }
         if let Some(arc) = &mut self.arc {
             let distance = arc.circle.deviation(&point.position);
             let belongs = distance.abs() <= arc.circle.radius * ON_CIRCLE_FRACTION;
@@ -317,19 +336,30 @@ impl Reader {
         self.push(ClKind::Motion { from: false, surface: SmolStr::default(), points: vec![point] });
     }
 
-    fn circle(&mut self, word: &SmolStr, arguments: &[ClWord]) {
+    /// Centre, axis and radius at the head of a list of arguments.
+    fn circle_of(&mut self, word: &SmolStr, arguments: &[ClWord]) -> Option<SpaceCircle> {
         let Some(head) = arguments.get(..CIRCLE_ARGUMENTS) else {
-            return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
+            self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
+            return None;
         };
-        let Some(numbers) = self.numbers(word, head) else { return };
-        let [x, y, z, i, j, k, radius] = numbers[..] else { return };
-        let axis = Vec3::new(i, j, k);
+        let numbers = self.numbers(word, head)?;
+        let [x, y, z, i, j, k, radius] = numbers[..] else { return None };
+        self.circle_about(word, Vec3::new(x, y, z), Vec3::new(i, j, k), radius)
+    }
+
+    fn circle_about(&mut self, word: &SmolStr, center: Vec3, axis: Vec3, radius: f64) -> Option<SpaceCircle> {
         let length = axis.norm();
         if !(length > 0.0 && length.is_finite() && radius > 0.0) {
-            return self.error(ReadErrorKind::NoCircle { word: word.clone() });
+            self.error(ReadErrorKind::NoCircle { word: word.clone() });
+            return None;
         }
+        Some(SpaceCircle { center, axis: axis / length, radius })
+    }
+
+    fn circle(&mut self, word: &SmolStr, arguments: &[ClWord]) {
+        let Some(circle) = self.circle_of(word, arguments) else { return };
         let mut sweep = None;
-        let mut rest = arguments[CIRCLE_ARGUMENTS..].iter();
+        let mut rest = arguments.get(CIRCLE_ARGUMENTS..).unwrap_or_default().iter();
         while let Some(argument) = rest.next() {
             match argument {
                 ClWord::Word(name) if name == "ANGLE" => match rest.next() {
@@ -341,10 +371,90 @@ impl Reader {
                 ClWord::Number(_) => {}
             }
         }
-        let circle = SpaceCircle { center: Vec3::new(x, y, z), axis: axis / length, radius };
-        let start = self.position;
-        self.arc =
-            Some(PendingArc { circle, start, sweep, points: Vec::new(), isn: self.isn, line: self.line });
+        self.begin_arc(circle, sweep);
+    }
+
+    fn begin_arc(&mut self, circle: SpaceCircle, sweep: Option<f64>) {
+        let (start, points) = (self.position, Vec::new());
+        self.arc = Some(PendingArc { circle, start, sweep, points, isn: self.isn, line: self.line });
+    }
+
+    /// `ARCMOV/CLW|CCLW,x,y,z[,a]`: from the present position to the point along the circle of ARCDAT, through `a` degrees
+    /// where that is said.
+    fn arc_move(&mut self, word: &SmolStr, arguments: &[ClWord]) {
+        let Some((ClWord::Word(direction), rest)) = arguments.split_first() else {
+            return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
+        };
+        let clockwise = match direction.as_str() {
+            "CLW" => true,
+            "CCLW" => false,
+            _ => return self.error(ReadErrorKind::NotRead { word: direction.clone() }),
+        };
+        let Some(numbers) = self.numbers(word, rest) else { return };
+        let (end, degrees) = match numbers[..] {
+            [x, y, z] => (Vec3::new(x, y, z), None),
+            [x, y, z, degrees] => (Vec3::new(x, y, z), Some(degrees)),
+            _ => return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() }),
+        };
+        let Some(circle) = self.arc_data else {
+            return self.error(ReadErrorKind::NoCircle { word: word.clone() });
+        };
+        self.turn(circle, clockwise, degrees, end);
+    }
+
+    /// `CW/` and `CCW/i,j,k,start,centre,end,radius`.
+    fn worded_arc(&mut self, word: &SmolStr, arguments: &[ClWord]) {
+        let Some(numbers) = self.numbers(word, arguments) else { return };
+        let [i, j, k, x, y, z, cx, cy, cz, ex, ey, ez, radius] = numbers[..] else {
+            return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: numbers.len() });
+        };
+        let (center, axis) = (Vec3::new(cx, cy, cz), Vec3::new(i, j, k));
+        let Some(circle) = self.circle_about(word, center, axis, radius) else { return };
+        let start = Vec3::new(x, y, z);
+        let away = self.position.map_or(f64::INFINITY, |position| (position - start).norm());
+        if away > circle.radius * ON_CIRCLE_FRACTION {
+            let point = self.at(start, false);
+            self.position = Some(start);
+            self.goto(point, true);
+        }
+        self.turn(circle, word == "CW", None, Vec3::new(ex, ey, ez));
+    }
+
+    /// An arc to a point; clockwise as seen against the axis.
+    fn turn(&mut self, circle: SpaceCircle, clockwise: bool, degrees: Option<f64>, end: Vec3) {
+        let axis = if clockwise { -circle.axis } else { circle.axis };
+        self.begin_arc(SpaceCircle { axis, ..circle }, degrees.map(|degrees| degrees.abs().to_radians()));
+        let point = self.at(end, false);
+        self.position = Some(end);
+        self.goto(point, true);
+        self.end_arc();
+    }
+
+    /// MOVNRB: the curve is data for a control that knows it; the positions between ON and OFF are its chords, and those
+    /// are the path here.
+    fn nurbs_curve(&mut self, word: &SmolStr, arguments: Vec<ClWord>) {
+        match arguments.first() {
+            Some(ClWord::Word(switch)) if switch == "ON" => {
+                self.end_nurbs();
+                self.nurbs = Some(NurbsCurve { isn: self.isn, line: self.line, moved: false });
+            }
+            Some(ClWord::Word(switch)) if switch == "OFF" => self.end_nurbs(),
+            Some(ClWord::Word(switch)) if switch == "NEXT" => {}
+            Some(ClWord::Number(1.0 | 2.0 | 3.0)) => {}
+            Some(ClWord::Word(other)) => return self.error(ReadErrorKind::NotRead { word: other.clone() }),
+            _ => {
+                return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
+            }
+        }
+        self.push(ClKind::Postprocessor { word: word.clone(), code: None, arguments });
+    }
+
+    /// A curve without chords has no path here.
+    fn end_nurbs(&mut self) {
+        if let Some(curve) = self.nurbs.take().filter(|curve| !curve.moved) {
+            let kind = ReadErrorKind::NotRead { word: SmolStr::new_static("MOVNRB") };
+            self.errors.push(ReadError { isn: curve.isn, line: curve.line, kind });
+        }
     }
 
     /// Turns a pending circle and its points into records.

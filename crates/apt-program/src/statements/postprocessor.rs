@@ -29,6 +29,32 @@ pub(crate) fn minor_code(word: &str) -> u16 {
     vocabulary::lookup(word).and_then(|word| word.code).unwrap_or(NO_CODE)
 }
 
+/// APT III: a statement with a wrong number of operands.
+const WRONG_FORM: u16 = 129;
+
+/// What a word of CL files for arcs and curves should have after it, if it has something else.
+fn curve_form(word: &str, items: &[Item]) -> Option<&'static str> {
+    let words = items.iter().map_while(Item::word).count();
+    let numbers = items.iter().skip(words).map_while(Item::scalar).count();
+    let whole = words + numbers == items.len();
+    let first = items.first();
+    let (fits, expected) = match word {
+        "ARCDAT" => (whole && (words, numbers) == (0, 7), "7 numbers: centre, axis and radius"),
+        "ARCMOV" => {
+            let direction = matches!(first.and_then(Item::word), Some("CLW" | "CCLW"));
+            let fits = whole && words == 1 && direction && matches!(numbers, 3 | 4);
+            (fits, "CLW or CCLW, a point and perhaps an angle")
+        }
+        "MOVNRB" => {
+            let switch = matches!(first.and_then(Item::word), Some("ON" | "OFF" | "NEXT"));
+            let part = first.and_then(Item::scalar).is_some_and(|part| matches!(part, 1.0 | 2.0 | 3.0));
+            (switch || part, "ON, OFF, NEXT, 1, 2 or 3 first")
+        }
+        _ => return None,
+    };
+    (!fits).then_some(expected)
+}
+
 /// What geometry a post-processor word takes: none, any surface, or one type.
 enum TakesGeometry {
     No,
@@ -67,6 +93,9 @@ impl Evaluator<'_> {
         }
         let takes_any_word = self.is_apt4() && major.spelling() == "UNITS";
         let Some(items) = self.post_operands(Some(major), major.arguments, takes_any_word) else { return };
+        if let Some(expected) = curve_form(major.spelling(), &items) {
+            return self.wrong_count(major, items.len(), expected, WRONG_FORM);
+        }
         self.emit_post(major, &items, Vec::with_capacity(items.len()));
     }
 
