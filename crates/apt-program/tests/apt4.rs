@@ -1,23 +1,13 @@
 //! The APT4 dialect: its numbers, and statement forms that it takes (language reference 10.4).
 
-use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, Value, evaluate};
+mod support;
+
+use apt_program::{FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use support::{problems, run_as, scalar};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt4));
-    evaluate(&tree, &Options::default(), &|| false)
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
-}
-
-fn scalar(program: &Program, name: &str) -> Option<f64> {
-    program.symbols().iter().find(|(known, _)| known == name).and_then(|(_, value)| match value {
-        Value::Scalar(value) => Some(*value),
-        Value::Geometry(_) => None,
-    })
+    run_as(text, DialectName::Apt4)
 }
 
 /// Statements, and the findings as (statement, APT4 number).

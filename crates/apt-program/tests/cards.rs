@@ -1,24 +1,14 @@
 //! Cards: columns, blanks, continuation, texts, numbers, names and labels as APT III reads them (language reference 1.1 to
 //! 1.9 and 2.1 to 2.5).
 
-use apt_program::{Finding, Options, Program, Severity, Value, evaluate};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+mod support;
+
+use apt_program::Program;
+use apt_syntax::DialectName;
+use support::{problems, run_as, scalar};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt3));
-    evaluate(&tree, &Options::default(), &|| false)
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
-}
-
-fn scalar(program: &Program, name: &str) -> Option<f64> {
-    program.symbols().iter().find(|(known, _)| known == name).and_then(|(_, value)| match value {
-        Value::Scalar(value) => Some(*value),
-        Value::Geometry(_) => None,
-    })
+    run_as(text, DialectName::Apt3)
 }
 
 /// A card: statement field and sequence field.

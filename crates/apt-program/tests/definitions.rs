@@ -1,24 +1,20 @@
 //! Definitions in whole programs: reference systems, ZSURF, nests, canonical forms, redefinition, subscripts (language
 //! reference 2.7, 2.8, 3.3, 4.0, 4.18 and 7.6). Numbers are worked out by hand.
 
+mod support;
+
 use apt_geometry::definition::RuledFault;
-use apt_program::{Finding, FindingKind, Options, Program, Severity, Value, evaluate};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use apt_program::{FindingKind, Program, Severity};
+use apt_syntax::DialectName;
+use support::{problems, run_as};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt3));
-    evaluate(&tree, &Options::default(), &|| false)
+    run_as(text, DialectName::Apt3)
 }
 
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
-}
-
-/// The numbers of a name.
+/// The numbers of a name; none where it has no value.
 fn numbers(program: &Program, name: &str) -> Vec<f64> {
-    let found = program.symbols().into_iter().find(|(known, _)| known == name);
-    found.map(|(_, value)| Value::canonical_values(&value)).unwrap_or_default()
+    support::numbers(program, name).unwrap_or_default()
 }
 
 /// Statements, a name, and its numbers; no finding.

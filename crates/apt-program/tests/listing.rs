@@ -1,12 +1,10 @@
 //! PRINT, PUNCH, READ, TITLES, REMARK and the system flags (language reference 1.5, 7.9, 7.10).
 
-use apt_program::{Finding, FindingKind, ListingKind, Options, Program, Severity, Value, evaluate};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+mod support;
 
-fn run_as(text: &str, dialect: DialectName) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(dialect));
-    evaluate(&tree, &Options::default(), &|| false)
-}
+use apt_program::{FindingKind, ListingKind, Program, Value};
+use apt_syntax::DialectName;
+use support::{problems, run_as};
 
 fn run(text: &str) -> Program {
     run_as(text, DialectName::Free)
@@ -14,11 +12,6 @@ fn run(text: &str) -> Program {
 
 fn listed(program: &Program) -> Vec<String> {
     program.listing().flat_map(apt_program::ListingEntry::lines).collect()
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
 }
 
 fn values(program: &Program) -> Vec<(String, Value)> {

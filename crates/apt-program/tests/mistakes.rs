@@ -1,19 +1,13 @@
 //! Mistakes and the findings they give: statement number and APT III number (language reference 9.5).
 
+mod support;
+
 use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use support::{problems, run_whole};
 
 fn run(text: &str) -> Program {
-    run_as(text, DialectName::Free)
-}
-
-fn run_as(text: &str, dialect: DialectName) -> Program {
-    evaluate(&SyntaxTree::parse(text, Dialect::named(dialect)), &Options::default(), &|| false)
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
+    run_whole(text, DialectName::Free)
 }
 
 /// Name, program without FINI, and the problems as (statement, APT III number).
@@ -181,7 +175,7 @@ fn each_mistake_is_reported_at_its_statement_with_its_number() {
     let cards = CARDS.iter().map(|case| (case, DialectName::Apt3));
     let mut wrong = String::new();
     for ((name, text, expected), dialect) in free.chain(cards) {
-        let program = run_as(&format!("{text}\nFINI\n"), dialect);
+        let program = run_whole(&format!("{text}\nFINI\n"), dialect);
         let found = problems(&program);
         let expected: Vec<(u32, Option<u16>)> =
             expected.iter().map(|(isn, number)| (*isn, Some(*number))).collect();
@@ -337,7 +331,7 @@ fn later_functions_have_their_values_in_free_form_and_are_arrays_on_cards() {
             other => panic!("{call}: {other:?}"),
         }
         let in_apt_iii = ["TANF", "ATAN2F", "LOG10F"].iter().any(|name| call.starts_with(name));
-        let cards = problems(&run_as(&format!("X={call}\nFINI\n"), DialectName::Apt3));
+        let cards = problems(&run_whole(&format!("X={call}\nFINI\n"), DialectName::Apt3));
         // APT III takes the nest in a subscript for a name without its slash.
         let number = if call.contains("VECTOR") { 155 } else { 108 };
         assert_eq!(cards, if in_apt_iii { vec![] } else { vec![(1, Some(number))] }, "{call}");
@@ -367,7 +361,7 @@ fn a_gap_stands_where_a_motion_is_missing() {
 #[test]
 fn words_of_other_dialects_are_told_as_such() {
     for text in ["DO/A,I=1,3", "IF(1.EQ.1)THEN", "ELSE", "ELSEIF(1.EQ.1)THEN", "ENDIF"] {
-        let program = run_as(&format!("{text}\nFINI\n"), DialectName::Apt3);
+        let program = run_whole(&format!("{text}\nFINI\n"), DialectName::Apt3);
         assert_eq!(problems(&program), [(1, Some(82))], "{text}");
     }
 }
@@ -401,7 +395,7 @@ type LabelCase = (DialectName, &'static str, &'static [(u32, Severity)]);
 #[test]
 fn a_label_that_is_nowhere_is_a_warning_until_a_jump_leads_there() {
     let severity = |text: &str, dialect: DialectName| -> Vec<(u32, Severity)> {
-        let program = run_as(&format!("{text}\nFINI\n"), dialect);
+        let program = run_whole(&format!("{text}\nFINI\n"), dialect);
         let unknown =
             program.findings().filter(|finding| matches!(finding.kind, FindingKind::UnknownLabel { .. }));
         unknown.map(|finding| (finding.origin.isn, finding.severity)).collect()

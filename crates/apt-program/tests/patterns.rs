@@ -1,18 +1,15 @@
 //! Patterns and the lists of their points, canonical values with skipped positions (language reference 4.17, 4.18, 6.2
 //! and 7.7): numbers worked out by hand.
 
+mod support;
+
 use apt_geometry::motion::MotionCommand;
-use apt_program::{Finding, Options, Program, RecordKind, Severity, Value, evaluate, record::PostArgument};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use apt_program::{Program, RecordKind, Value, record::PostArgument};
+use apt_syntax::DialectName;
+use support::{problems, run_as};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Free));
-    evaluate(&tree, &Options::default(), &|| false)
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
+    run_as(text, DialectName::Free)
 }
 
 /// Where the tool goes, as `x,y` or `x,y,z`, with the words of CYCLE between.

@@ -1,15 +1,14 @@
 //! What statements leave behind: the records for Sections 2 to 4.
 
-use apt_geometry::motion::{Delta, Direction, DriveSide, MotionCommand, Relation, ToolAxis};
-use apt_program::{Options, Program, RecordKind, Severity, evaluate, record::PostArgument};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+mod support;
 
-fn run_as(text: &str, dialect: DialectName) -> Program {
-    evaluate(&SyntaxTree::parse(text, Dialect::named(dialect)), &Options::default(), &|| false)
-}
+use apt_geometry::motion::{Delta, Direction, DriveSide, MotionCommand, Relation, ToolAxis};
+use apt_program::{Program, RecordKind, Severity, record::PostArgument};
+use apt_syntax::DialectName;
+use support::{problems, run_whole};
 
 fn run(text: &str) -> Program {
-    let program = run_as(&format!("{text}\nFINI\n"), DialectName::Free);
+    let program = run_whole(&format!("{text}\nFINI\n"), DialectName::Free);
     let serious: Vec<_> =
         program.findings().filter(|finding| finding.severity >= Severity::Warning).collect();
     assert!(serious.is_empty(), "{text}\n{serious:?}");
@@ -208,7 +207,7 @@ fn reference_systems_carry_what_is_used_under_another() {
 #[test]
 fn free_jumps_and_do_loops_of_apt4() {
     let text = "S=0\n10)S=S+1\nIF(S-3)10,20,20\n20)IF(S.EQ.3)GOTO/S,0,0\nFINI\n";
-    let program = run_as(text, DialectName::Apt4);
+    let program = run_whole(text, DialectName::Apt4);
     let errors: Vec<_> = program.findings().filter(|finding| finding.severity == Severity::Error).collect();
     assert!(errors.is_empty(), "{errors:?}");
     assert_eq!(short(&program), ["4:GOTO  3,0,0 false", "5:FINI"]);
@@ -229,8 +228,41 @@ fn words_of_later_systems_stand_in_their_statements_unless_they_are_names() {
     for (text, dialect) in
         [("SPINDL/DEPTH\nFINI\n", DialectName::Free), ("CYCLE/DRILL,DEPTH,2\nFINI\n", DialectName::Apt3)]
     {
-        let program = run_as(text, dialect);
+        let program = run_whole(text, dialect);
         let numbers: Vec<_> = program.findings().map(|finding| finding.number).collect();
         assert_eq!(numbers, [Some(101)], "{text}");
+    }
+}
+
+#[test]
+fn arcs_and_curves_of_cutter_location_files_pass_through_with_their_forms_checked() {
+    let told = |statement: &str| {
+        let program = run_whole(&format!("FROM/0,0,0\n{statement}\nFINI\n"), DialectName::Cl);
+        let passed = program.records().any(|record| {
+            matches!(&record.kind, RecordKind::Postprocessor { word, .. } if statement.starts_with(word.as_str()))
+        });
+        (passed, problems(&program).len())
+    };
+    for good in [
+        "ARCDAT/0,0,0,0,0,1,10",
+        "ARCMOV/CLW,1,2,3",
+        "ARCMOV/CCLW,1,2,3,90",
+        "MOVNRB/ON,3,4,1,0,1",
+        "MOVNRB/1,0,0,1,1",
+        "MOVNRB/NEXT",
+        "MOVNRB/OFF",
+    ] {
+        assert_eq!(told(good), (true, 0), "{good}");
+    }
+    for wrong in [
+        "ARCDAT/0,0,0,0,0,1",
+        "ARCDAT/CLW,0,0,0,0,0,1,1",
+        "ARCMOV/1,2,3",
+        "ARCMOV/CLW,1,2",
+        "ARCMOV/LEFT,1,2,3",
+        "MOVNRB/4,1",
+        "MOVNRB/LEFT",
+    ] {
+        assert_eq!(told(wrong), (false, 1), "{wrong}");
     }
 }

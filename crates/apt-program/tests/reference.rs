@@ -1,19 +1,15 @@
 //! The worked examples of the language reference: programs with the values that they give.
 
+mod support;
+
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use apt_program::{Options, Program, RecordKind, Severity, Value, evaluate};
-use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use apt_program::{Program, RecordKind, Severity};
+use apt_syntax::DialectName;
+use support::{numbers, run_as};
 
 fn run(text: &str) -> Program {
-    let tree = SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Apt3));
-    evaluate(&tree, &Options::default(), &|| false)
-}
-
-/// The numbers of a name.
-fn numbers(program: &Program, name: &str) -> Option<Vec<f64>> {
-    let found = program.symbols().into_iter().find(|(known, _)| known == name)?;
-    Some(Value::canonical_values(&found.1))
+    run_as(text, DialectName::Apt3)
 }
 
 /// Section, program, a name and its numbers.

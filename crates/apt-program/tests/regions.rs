@@ -1,11 +1,12 @@
 //! What may stand in loops and macros, what may jump where, and what is never reached (language reference 7.1 to 7.3).
 
+mod support;
+
 use std::{path::PathBuf, sync::Arc};
 
-use apt_program::{
-    Finding, IncludeFailure, IncludeResolver, Options, Program, Severity, SourceFile, evaluate,
-};
+use apt_program::{IncludeFailure, IncludeResolver, Options, Program, SourceFile, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
+use support::problems;
 
 /// The library: a segment that reads another one, a segment, a macro.
 struct Library;
@@ -27,11 +28,6 @@ impl IncludeResolver for Library {
 fn run(text: &str, dialect: DialectName) -> Program {
     let options = Options { include: Some(Arc::new(Library)), ..Options::default() };
     evaluate(&SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(dialect)), &options, &|| false)
-}
-
-fn problems(program: &Program) -> Vec<(u32, Option<u16>)> {
-    let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
-    serious.map(|finding: &Finding| (finding.origin.isn, finding.number)).collect()
 }
 
 /// The rule, a program without FINI, and the problems as (statement, number).

@@ -1,7 +1,10 @@
 //! IF over several statements in the dialect `free`.
 
-use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, Value, evaluate, expand};
+mod support;
+
+use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate, expand};
 use apt_syntax::{Dialect, DialectName, SyntaxTree, TextRange};
+use support::scalar;
 
 fn tree(text: &str) -> SyntaxTree {
     SyntaxTree::parse(&format!("{text}\nFINI\n"), Dialect::named(DialectName::Free))
@@ -14,13 +17,6 @@ fn run(text: &str) -> Program {
 fn problems(program: &Program) -> Vec<(u32, String)> {
     let serious = program.findings().filter(|finding| finding.severity >= Severity::Warning);
     serious.map(|finding: &Finding| (finding.origin.isn, finding.kind.to_string())).collect()
-}
-
-fn scalar(program: &Program, name: &str) -> Option<f64> {
-    program.symbols().iter().find(|(known, _)| known == name).and_then(|(_, value)| match value {
-        Value::Scalar(value) => Some(*value),
-        Value::Geometry(_) => None,
-    })
 }
 
 /// Which branch is taken, told by R.
