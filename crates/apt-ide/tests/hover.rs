@@ -329,3 +329,74 @@ fn modifiers_are_told_in_their_forms() {
     // A word that is no modifier of this statement is told alone.
     assert!(!told("SPINDL/800,$0XLARGE\nFINI\n").contains("in SPINDL"));
 }
+
+const MILLING: &str = "\
+$$ apt-lsp: dialect=apt4
+A1=POINT/0,0,0
+A2=POINT/2,0,0
+B1=POINT/0,2,0
+B2=POINT/2,2,0
+VZ=VECTOR/0,0,1
+VM=VECTOR/0,0,-1
+PL=PLANE/0,0,1,4
+K1=SCURV/SPLINE,A1,A2
+S1=SSURF/SMESH,XYZ,SPLINE,A1,A2,SPLINE,B1,B2
+CUTTER/.5,.25
+SCON/DS,S1,PARAM,0,1,0,1,ON,VM
+SCON/PS,TO,S1,PLUS,0
+";
+
+#[test]
+fn a_command_of_regional_milling_tells_its_conditions() {
+    let conditions = |text: &str| {
+        let (analysis, offset) = marked(text);
+        let markdown = analysis.hover(offset, &never).unwrap().unwrap().markdown;
+        let rows: Vec<&str> = markdown.lines().filter(|line| line.starts_with('|')).collect();
+        rows.join("\n") + "\n"
+    };
+    expect![[r#"
+        | condition | |
+        |---|---|
+        | `SCON/DS` | valid |
+        | `SCON/PS` | valid |
+        | `SCON/AXIS` | **missing** |
+        | `SCON/FEED` | **has a mistake** |
+        | `SCON/STEPOV` | **missing** |
+    "#]]
+    .assert_eq(&conditions(&format!(
+        "{MILLING}SCON/FEED,1,2,3\nS$0MIL/ZIGZAG,DS,PARAM,0,0,TANSPL,PLUS,STEPOV,PLUS\nFINI\n"
+    )));
+    expect![[r#"
+        | condition | in force |
+        |---|---|
+        | `SCON/DS` | S1, u 0 … 1, v 0 … 1; the tool end along (0, 0, -1) |
+        | `SCON/PS` | TO S1, PLUS, stock 0 |
+        | `SCON/AXIS` | from the normal of the part 0° across and 5° to the feed |
+        | `SCON/FEED` | cutting 1, step over 2, plunge 3, rapid 4 |
+        | `SCON/STEPOV` | scallops of 0.02, at most 1 apart, lift 0.5, at most 3 passes |
+        | `SCON/FEED,plane` | z = 4 |
+        | `CHKSRF` | PS |
+        | `AVCTRL` | tilt -10° … 20° and 1° more, then lift along the normal of the part, at most 2 |
+        | `GOUGCK` | ON |
+    "#]]
+    .assert_eq(&conditions(&format!(
+        "{MILLING}SCON/AXIS,ATANGL,PS,0,CUTANG,5\nSCON/FEED,1,2,3,4\nSCON/FEED,PL\nSCON/STEPOV,.02,1,.5,3\n\
+         CHKSRF/PS,ON\nGOUGCK/ON\nAVCTRL/CUTANG,CONST,1,RANGE,-10,20,NORMPS,LIMIT,2\n\
+         S$0MIL/PICKFD,DS,PARAM,0,0,TANSPL,PLUS,STEPOV,PLUS\nFINI\n"
+    )));
+}
+
+#[test]
+fn curves_and_surfaces_tell_their_size() {
+    let text = |name: &str| {
+        let program = analysis(&format!("{MILLING}FINI\n"));
+        let offset = MILLING.find(&format!("\n{name}=")).unwrap() + 1;
+        program.canonical_form(offset, &never).unwrap().unwrap().text
+    };
+    let curve = text("K1");
+    assert_eq!(
+        curve,
+        "space curve of 1 arc, 2 long, from (0, 0, 0) to (2, 0, 0), inside (0, 0, 0) … (2, 0, 0)"
+    );
+    assert!(text("S1").starts_with("sculptured surface of 1 patch"), "{}", text("S1"));
+}

@@ -3,7 +3,7 @@
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, GeometryKind},
-    parametric::{CurveArc, Patch},
+    parametric::{CurveArc, FlowKind, Patch},
 };
 use apt_program::symbols::Value;
 
@@ -117,7 +117,7 @@ fn meaning(kind: GeometryKind, count: usize) -> Vec<String> {
         .collect()
 }
 
-fn triple(vector: &apt_geometry::Vec3) -> String {
+pub(super) fn triple(vector: &apt_geometry::Vec3) -> String {
     format!("({}, {}, {})", number(vector.x), number(vector.y), number(vector.z))
 }
 
@@ -183,7 +183,18 @@ fn sentence(geometry: &Geometry) -> String {
         }
         Geometry::SpaceCurve(curve) => {
             let points = curve.arcs.iter().flat_map(CurveArc::points);
-            format!("space curve of {} arcs, inside {}", curve.arcs.len(), within(points))
+            let ends = [curve.evaluate_global(0.0), curve.evaluate_global(curve.extent())];
+            let ends = match ends {
+                [Some(first), Some(last)] => {
+                    format!(", from {} to {}", triple(&first.position), triple(&last.position))
+                }
+                _ => String::new(),
+            };
+            let measure = FlowKind::Arc { tolerance: 0.0 };
+            let length: f64 = curve.arcs.iter().map(|arc| measure.amount(arc, 0.0, 1.0)).sum();
+            let arcs =
+                if curve.arcs.len() == 1 { "1 arc".to_owned() } else { format!("{} arcs", curve.arcs.len()) };
+            format!("space curve of {arcs}, {} long{ends}, inside {}", number(length), within(points))
         }
     }
 }
@@ -197,7 +208,7 @@ fn within(points: impl Iterator<Item = Vec3>) -> String {
     format!("{} … {}", triple(&low), triple(&high))
 }
 
-fn plane(plane: &apt_geometry::canonical::Plane) -> String {
+pub(super) fn plane(plane: &apt_geometry::canonical::Plane) -> String {
     let mut text = String::new();
     for (coefficient, axis) in plane.normal.iter().zip(["x", "y", "z"]) {
         if *coefficient == 0.0 {

@@ -3,6 +3,7 @@
 mod canonical;
 mod label;
 mod motion;
+mod regional;
 
 use std::ops::Range;
 
@@ -56,7 +57,8 @@ impl Analysis {
             ElementKind::Word => match lookup(&element.text) {
                 Some(word) if matches!(word.class, WordClass::Motion) => {
                     let result = self.motion_markdown(view.isn(), spot.file, cancel)?;
-                    format!("{result}{}", word_markdown(word))
+                    let conditions = self.conditions_markdown(view.isn(), spot.file, cancel)?;
+                    format!("{result}{conditions}{}", word_markdown(word))
                 }
                 Some(word) if word.class == WordClass::Minor => {
                     let before: Vec<&Element> = parsed
