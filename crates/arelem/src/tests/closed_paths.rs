@@ -1,0 +1,183 @@
+//! Paths that close on themselves: every relation and count over several turns, several check surfaces at once, and check
+//! surfaces that are never met.
+
+use apt_geometry::motion::DriveSide;
+
+use super::*;
+use crate::error::Course;
+
+/// Tool radius.
+const RADIUS: f64 = 0.25;
+/// The check plane is across x at this place.
+const AT: f64 = 0.3;
+/// Width of each half of the bands.
+const BAND: f64 = 0.005;
+
+/// A closed path: drive and part surface, where the tool comes from, and where it is along the drive surface.
+struct Loop {
+    name: &'static str,
+    drive: Geometry,
+    part: Geometry,
+    from: Vec3,
+    side: DriveSide,
+    /// 3DCALC.
+    iterate: bool,
+}
+
+fn loops() -> Vec<Loop> {
+    let floor = || plane(0.0, 0.0, 1.0, 0.0);
+    let oval = quadric([1.0 / 9.0, 0.25, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let (outside, inside) = (v(-5.0, -0.2, 0.0), v(-1.0, -0.2, 0.0));
+    let new = |name, drive, part, from, side, iterate| Loop { name, drive, part, from, side, iterate };
+    vec![
+        new("circle", circle(0.0, 0.0, 2.0), floor(), outside, DriveSide::Left, false),
+        new("circle, iterated", circle(0.0, 0.0, 2.0), floor(), outside, DriveSide::Left, true),
+        new("inside a circle", circle(0.0, 0.0, 2.0), floor(), inside, DriveSide::Right, true),
+        new("ellipse", oval.clone(), floor(), outside, DriveSide::Left, false),
+        new("inside an ellipse", oval, floor(), inside, DriveSide::Right, false),
+        new(
+            "sphere on a slope",
+            sphere(0.0, 0.0, 0.0, 2.5),
+            plane(-0.2, 0.0, 1.0, 0.0),
+            outside,
+            DriveSide::Left,
+            false,
+        ),
+        new(
+            "cone",
+            cone(v(0.0, 0.0, 6.0), v(0.0, 0.0, -1.0), 20.0),
+            floor(),
+            outside,
+            DriveSide::Left,
+            false,
+        ),
+        new(
+            "cylinder through a slope",
+            cylinder(v(0.0, 0.0, 0.0), v(0.2, 0.0, 1.0), 2.0),
+            floor(),
+            outside,
+            DriveSide::Left,
+            false,
+        ),
+    ]
+}
+
+impl Loop {
+    /// Standing at the start of the path.
+    fn program(&self) -> Program {
+        let mut p = Program::new();
+        p.tolerance(BAND, BAND).cutter(&[2.0 * RADIUS]).from(self.from.x, self.from.y, self.from.z + 0.5);
+        p.run(&MotionCommand::MaximumPoints(4000)).run(&MotionCommand::ForceIteration(self.iterate));
+        p.go(&[(Relation::To, &self.drive), (Relation::To, &self.part)]);
+        p.side(self.side).indirv(0.0, 1.0, 0.0);
+        p
+    }
+
+    fn motion(&self, checks: &[(Relation, u32, &Geometry)]) -> MotionCommand {
+        motion(Turn::Forward, &self.drive, checks)
+    }
+
+    /// Carries a motion out; its end, the last vector and the length of the path.
+    fn end(&self, checks: &[(Relation, u32, &Geometry)]) -> (Vec3, Vec3, f64, usize) {
+        let mut p = self.program();
+        p.run(&self.motion(checks)).verified();
+        let last = p.last();
+        let mut tips = vec![last.start.tip];
+        tips.extend(last.points.iter().map(|point| point.tip));
+        let length = tips.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        let [.., before, end] = tips[..] else { panic!("{}: no vector", self.name) };
+        (end, end - before, length, last.stop.as_ref().expect("a stop").index)
+    }
+}
+
+#[test]
+fn every_count_of_every_relation_is_found_over_several_turns() {
+    let wall = plane(1.0, 0.0, 0.0, AT);
+    for path in loops() {
+        for relation in [Relation::On, Relation::To, Relation::Past] {
+            let ends: Vec<_> = (1..=5).map(|count| path.end(&[(relation, count, &wall)])).collect();
+            for (k, (end, last, length, _)) in ends.iter().enumerate() {
+                let told = format!("{}, {relation:?}, {}: {end:?}", path.name, k + 1);
+                // Before the plane, on it, or behind it, seen along the motion.
+                let ahead = (end.x - AT) * last.x.signum();
+                let expected = match relation {
+                    Relation::On => 0.0,
+                    Relation::To => -RADIUS,
+                    _ => RADIUS,
+                };
+                assert!((ahead - expected).abs() < 1e-6, "{told}");
+                let sense = if k % 2 == 0 { 1.0 } else { -1.0 };
+                assert!(sense * last.x * ends[0].1.x > 0.0, "{told}: there and back in turn");
+                // The same place a turn later.
+                if let Some((again, _, later, _)) = ends.get(k + 2) {
+                    assert!((again - end).norm() < 4.0 * BAND, "{told}, and {again:?}");
+                    let turn = ends[2].2 - ends[0].2;
+                    assert!(
+                        turn > 8.0 && (later - length - turn).abs() < 0.05,
+                        "{told}: {turn} {later} {length}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn of_several_check_surfaces_the_first_that_is_met_stops_the_motion() {
+    let walls = [plane(1.0, 0.0, 0.0, AT), plane(0.0, 1.0, 0.0, -0.4)];
+    for path in loops() {
+        for counts in [[1, 1], [2, 1], [3, 2], [2, 4]] {
+            for relations in [[Relation::On, Relation::On], [Relation::Past, Relation::To]] {
+                let checks = [0, 1].map(|k| (relations[k], counts[k], &walls[k]));
+                let alone = checks.map(|check| path.end(&[check]));
+                let (end, _, length, index) = path.end(&checks);
+                let first = usize::from(alone[1].2 < alone[0].2);
+                let told = format!("{}, {counts:?}, {relations:?}", path.name);
+                assert_eq!(index, first, "{told}: {} and {}", alone[0].2, alone[1].2);
+                // In closed form, which is for one check surface, motions end elsewhere in the band.
+                assert!((end - alone[first].0).norm() < 2.0 * BAND, "{told}: {end:?}");
+                assert!((length - alone[first].2).abs() < 0.05, "{told}: {length}");
+            }
+        }
+        // The same one twice: the one that is named first.
+        assert_eq!(path.end(&[(Relation::On, 1, &walls[0]), (Relation::On, 1, &walls[0])]).3, 0);
+    }
+}
+
+#[test]
+fn a_check_surface_that_a_closed_path_never_meets_is_told_with_the_length_of_a_turn() {
+    let (near, far) = (plane(1.0, 0.0, 0.0, AT), plane(1.0, 0.0, 0.0, 30.0));
+    for path in loops() {
+        let lengths = [1, 3].map(|count| path.end(&[(Relation::On, count, &near)]).2);
+        let failure =
+            path.program().attempt(&path.motion(&[(Relation::On, 1, &far)])).expect_err("never met");
+        match failure {
+            MotionFailure::NeverMet { nearest, at, course, .. } => {
+                assert!((30.0 - at.x - nearest).abs() < 0.1, "{}: {nearest} at {at:?}", path.name);
+                match course {
+                    Course::Closed { length } => {
+                        let turn = lengths[1] - lengths[0];
+                        assert!((length - turn).abs() < 0.2 * turn, "{}: {length} {turn}", path.name);
+                    }
+                    Course::Analytic => assert!(!path.iterate && path.name == "circle", "{}", path.name),
+                    Course::Away { .. } => panic!("{}: {course:?}", path.name),
+                }
+            }
+            other => panic!("{}: {other:?}", path.name),
+        }
+    }
+}
+
+#[test]
+fn a_tangency_comes_once_in_every_turn() {
+    let top = line(-9.0, 2.0, 9.0, 2.0);
+    for path in loops().into_iter().filter(|path| path.name.starts_with("circle")) {
+        let ends = [1, 2, 3].map(|count| path.end(&[(Relation::TangentToDrive, count, &top)]));
+        for (end, ..) in &ends {
+            assert!((end - v(0.0, 2.0 + RADIUS, 0.0)).norm() < 0.1, "{}: {end:?}", path.name);
+            assert!((end.y - 2.0 - RADIUS).abs() < 2.0 * BAND, "{}: {end:?}", path.name);
+        }
+        let turn = std::f64::consts::TAU * (2.0 + RADIUS);
+        assert!((ends[1].2 - ends[0].2 - turn).abs() < 0.1 && (ends[2].2 - ends[1].2 - turn).abs() < 0.1);
+    }
+}
