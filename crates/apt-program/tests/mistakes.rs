@@ -492,3 +492,22 @@ fn every_major_word_of_apt_iii_does_something() {
     }
     assert!(count > 120, "{count} major words");
 }
+
+#[test]
+fn a_word_that_does_not_choose_between_two_intersections_is_told() {
+    let told = |selector: &str, line: &str| {
+        let program =
+            run(&format!("E=ELLIPS/CENTER,(POINT/0,0),3,2,0\nP=POINT/{selector},INTOF,({line}),E\nFINI\n"));
+        problems(&program)
+    };
+    for (selector, line) in [("YLARGE", "LINE/XAXIS"), ("YSMALL", "LINE/0,1,1,1"), ("XLARGE", "LINE/1,0,1,1")]
+    {
+        assert_eq!(told(selector, line), [(2, None)], "{selector} {line}");
+    }
+    // It chooses, or there is nothing to choose: the line touches.
+    for (selector, line) in
+        [("XLARGE", "LINE/XAXIS"), ("YLARGE", "LINE/0,0,1,.01"), ("YLARGE", "LINE/0,2,1,2")]
+    {
+        assert_eq!(told(selector, line), [], "{selector} {line}");
+    }
+}

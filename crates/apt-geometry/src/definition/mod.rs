@@ -244,6 +244,12 @@ pub fn define(
     }
 }
 
+/// The word that should choose between two solutions of a definition and does not: both are equally far its way, and one is
+/// taken by the rule of APT III.
+pub fn idle_selector(kind: GeometryKind, arguments: &[Argument]) -> Option<Modifier> {
+    if kind == GeometryKind::Point { point::idle_selector(arguments) } else { None }
+}
+
 fn is_finite(argument: &Argument) -> bool {
     match argument {
         Argument::Scalar(value) => value.is_finite(),

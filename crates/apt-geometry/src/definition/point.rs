@@ -1,11 +1,11 @@
 //! POINT (language reference 4.1).
 
-use super::choice::{PLANES, Toward, X_OR_Y, coordinate_plane};
+use super::choice::{PLANES, Toward, X_OR_Y, ZERO_COMPONENT, coordinate_plane};
 use super::format::{Format, Parameter};
 use super::given::Given;
 use super::solve::{self, coincidence};
 use super::tabulated_tangent;
-use super::{DefinitionError, Impossible, Modifier};
+use super::{Argument, DefinitionError, Impossible, Modifier};
 use crate::Vec3;
 use crate::canonical::matrix::sine_cosine_degrees;
 use crate::canonical::{Geometry, GeometryKind, Plane, Quadric};
@@ -158,9 +158,42 @@ fn conic(given: &Given<'_>, index: usize) -> Result<Quadric, DefinitionError> {
     }
 }
 
-/// The two places where a line of the xy-plane meets the section of a quadric with that plane; of them the one farther
-/// `toward`. Where the word does not tell them apart the one with the positive root is taken, as APT III does.
+/// The place where a line meets a conic; of two the one farther `toward`. Where the word does not tell them apart the one
+/// with the positive root is taken, as APT III does.
 fn line_conic(line: &Plane, conic: &Quadric, toward: Toward) -> Result<Vec3, Impossible> {
+    Ok(match line_conic_places(line, conic)? {
+        (first, Some(second)) if toward.component(&second) > toward.component(&first) => second,
+        (first, _) => first,
+    })
+}
+
+/// The word of `POINT/word,INTOF,line,conic` when it does not tell the two intersections apart: they lie side by side as it
+/// looks.
+pub(super) fn idle_selector(arguments: &[Argument]) -> Option<Modifier> {
+    let [
+        Argument::Modifier(word),
+        Argument::Modifier(Modifier::IntersectionOf),
+        Argument::Geometry(Geometry::Line(line) | Geometry::Plane(line)),
+        Argument::Geometry(
+            Geometry::Ellipse(conic)
+            | Geometry::Hyperbola(conic)
+            | Geometry::GeneralConic(conic)
+            | Geometry::LoftConic(conic)
+            | Geometry::Quadric(conic),
+        ),
+    ] = arguments
+    else {
+        return None;
+    };
+    let toward = Toward::from_word(*word)?;
+    let (first, second) = line_conic_places(line, conic).ok()?;
+    let apart = (second? - first).try_normalize(0.0)?;
+    (toward.component(&apart).abs() <= ZERO_COMPONENT).then_some(*word)
+}
+
+/// The two places where a line of the xy-plane meets the section of a quadric with that plane, that with the positive root
+/// first; or the only one.
+fn line_conic_places(line: &Plane, conic: &Quadric) -> Result<(Vec3, Option<Vec3>), Impossible> {
     let direction = line.line_direction();
     let foot = line.normal * line.distance;
     // On foot + t·direction the equation is square·t² + 2·half·t + constant.
@@ -175,14 +208,14 @@ fn line_conic(line: &Plane, conic: &Quadric, toward: Toward) -> Result<Vec3, Imp
         if half.abs() <= f64::EPSILON * size.max(curvature) {
             return Err(Impossible::Parallel);
         }
-        return Ok(foot - direction * (constant / (2.0 * half)));
+        return Ok((foot - direction * (constant / (2.0 * half)), None));
     }
     let middle = foot - direction * (half / square);
     let reach = half * half - square * constant;
     // Where the line only nears the curve, the distance is the value over the gradient.
     let gap = conic.value(&middle).abs() / conic.gradient(&middle).norm();
     if gap <= coincidence(middle.amax().max((size / curvature).sqrt())) {
-        return Ok(middle);
+        return Ok((middle, None));
     }
     if reach < 0.0 {
         return Err(Impossible::NoIntersection { gap });
@@ -194,7 +227,7 @@ fn line_conic(line: &Plane, conic: &Quadric, toward: Toward) -> Result<Vec3, Imp
         stations.swap(0, 1);
     }
     let [first, second] = stations.map(|station| foot + direction * station);
-    Ok(if toward.component(&second) > toward.component(&first) { second } else { first })
+    Ok((first, Some(second)))
 }
 
 fn three_planes(planes: &[Plane; 3]) -> Result<Vec3, Impossible> {

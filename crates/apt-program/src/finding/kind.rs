@@ -331,6 +331,12 @@ pub enum FindingKind {
         /// The value.
         value: f64,
     },
+    /// A word that should choose between two solutions and does not: both lie equally far its way.
+    #[error("{word} does not choose between two solutions")]
+    IdleSelector {
+        /// The word.
+        word: SmolStr,
+    },
     /// Canonical values whose direction has another length than 1; they are stored as they are given.
     #[error("the direction of the {kind:?} has length {length}, not 1")]
     NotNormalised {

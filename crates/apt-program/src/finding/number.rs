@@ -121,6 +121,7 @@ impl FindingKind {
             | Self::Untransformable { .. }
             | Self::Doubtful { .. }
             | Self::NotNormalised { .. }
+            | Self::IdleSelector { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
             | Self::RuledCurve { .. }
@@ -208,6 +209,7 @@ impl FindingKind {
             Self::EndMissing
             | Self::Doubtful { .. }
             | Self::NotNormalised { .. }
+            | Self::IdleSelector { .. }
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
             | Self::RuledCurve { .. }

@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     canonical::Geometry,
-    definition::{Argument, Modifier},
+    definition::{self, Argument, Modifier},
 };
 use apt_syntax::TextRange;
 use smol_str::SmolStr;
@@ -13,7 +13,7 @@ use crate::{evaluator::Evaluator, finding::FindingKind};
 const UNIT_LENGTH_TOLERANCE: f64 = 1e-4;
 
 impl Evaluator<'_> {
-    /// Warns of a count, a radius, a half axis and an angle that is not positive, of a quadric without coefficients, and of
+    /// Warns of a word that chooses nothing, of a count, a radius, a half axis and an angle that is not positive, of a quadric without coefficients, and of
     /// a direction given by CANON that is no unit vector.
     pub(super) fn report_doubtful_geometry(
         &mut self,
@@ -25,6 +25,9 @@ impl Evaluator<'_> {
         if let Some(value) = value {
             let statement = SmolStr::new_static(geometry.kind().word());
             self.report(FindingKind::Doubtful { statement, value }, range);
+        }
+        if let Some(word) = definition::idle_selector(geometry.kind(), arguments) {
+            self.report(FindingKind::IdleSelector { word: SmolStr::new_static(word.word()) }, range);
         }
         if arguments.first() == Some(&Argument::Modifier(Modifier::Canon))
             && let Some((length, normalised)) = unit_values(geometry)

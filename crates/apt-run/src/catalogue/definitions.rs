@@ -91,6 +91,10 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
             say("APT0314", format!("the curvature of the spline jumps by {} at point {point}", number(*jump)))
                 .hint("the points swing from side to side: give more of them, or use TWOPT")
         }
+        Kind::IdleSelector { word } => {
+            say("APT0324", format!("{word} does not choose: both intersections are equally far that way"))
+                .hint("choose by the other coordinate")
+        }
         Kind::RuledCurve { fault } => ruled_curve(fault),
         Kind::SingularMatrix => say("APT0334", "this matrix has no inverse and cannot be a reference system")
             .hint("its rows depend on each other; check for a row of zeros"),

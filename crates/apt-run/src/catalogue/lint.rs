@@ -34,7 +34,7 @@ pub(super) fn word(kind: &Kind) -> (Text, Severity) {
                 .hint("give INTOL and OUTTOL before the first motion"),
             Severity::Hint,
         ),
-        Kind::FeedMissing => (
+        Kind::FeedMissing { .. } => (
             say("APT0955", "the tool cuts before any feed rate has been given")
                 .hint("give FEDRAT before this motion"),
             Severity::Warning,

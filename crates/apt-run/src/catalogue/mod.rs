@@ -160,7 +160,7 @@ fn completed(
 ) -> Vec<Diagnostic> {
     crate::lint::keep_shadowing(tree, &mut list);
     list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
-    for lint in crate::lint::lint(tree, program) {
+    for lint in crate::lint::lint(tree, program, settings.units) {
         add_lint(&mut list, lint);
     }
     allowances.filter(&mut list);

@@ -86,6 +86,17 @@ pub(crate) fn rewriting(tree: &SyntaxTree, origin: &Origin, title: String, text:
     (single && one_line).then(|| Fix { title, edits: vec![(here.bytes(whole), text)], preferred: false })
 }
 
+/// The program with statements of their own lines before the one of a place, where that begins a line.
+pub(crate) fn inserting(
+    tree: &SyntaxTree,
+    origin: &Origin,
+    statements: &[String],
+    title: String,
+) -> Option<Fix> {
+    let here = Here::of(tree, origin).filter(|here| !here.parsed.is_broken())?;
+    here.lines_before(statements, title)
+}
+
 /// The statement of a place of the program itself as it is written, without comments, if it does nothing else and
 /// stands on one line.
 pub(crate) fn written(tree: &SyntaxTree, origin: &Origin) -> Option<String> {
@@ -259,13 +270,19 @@ impl Here<'_> {
 
     /// The statement with another one before it, both with the same indentation.
     fn line_before(&self, statement: &str, title: String) -> Option<Fix> {
+        self.lines_before(&[statement.to_owned()], title)
+    }
+
+    /// The statement with others before it, all with the same indentation.
+    fn lines_before(&self, statements: &[String], title: String) -> Option<Fix> {
         if !self.begins_line() {
             return None;
         }
         let text = self.view.text();
         let blanks = text.get(..text.len() - text.trim_start_matches([' ', '\t']).len())?;
         let start = usize::from(self.view.start);
-        let insert = format!("{blanks}{statement}{}", self.line_end());
+        let line = |statement: &String| format!("{blanks}{statement}{}", self.line_end());
+        let insert = statements.iter().map(line).collect();
         Some(Fix { title, edits: vec![(start..start, insert)], preferred: false })
     }
 

@@ -26,7 +26,7 @@ use apt_syntax::{SyntaxTree, dialect::DialectName};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use crate::{diagnostic::Fix, fix::removal};
+use crate::{diagnostic::Fix, fix::removal, settings::Units};
 
 /// What is odd, with its evidence.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,10 @@ pub enum LintKind {
     /// A motion along a curved part surface before any tolerance was given.
     ToleranceMissing,
     /// A motion along surfaces before any feed rate.
-    FeedMissing,
+    FeedMissing {
+        /// The first FEDRAT that the program has later on, if its parameters are numbers and words.
+        later: Option<SmolStr>,
+    },
     /// No motion feels the THICK.
     ThicknessUnfelt {
         /// The one before it was not zero, and would hold without it.
@@ -107,7 +110,9 @@ pub struct Lint {
 ///
 /// What is written is looked at once per block of statements ([`notes`]); what the path makes of it is found by a walk
 /// over the records.
-pub fn lint(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
+///
+/// `units` are those of the settings, in which the processor has its own tolerances.
+pub fn lint(tree: &SyntaxTree, program: &Program, units: Units) -> Vec<Lint> {
     if tree.dialect().name == DialectName::Cl {
         // Programs write these files: their lines are of any length, their values are results, and a point has no
         // surface to hold a tolerance of.
@@ -125,7 +130,7 @@ pub fn lint(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
     }
     let mut lints = texts.lints();
     lints.extend(effective_overwriting(tree, program, values.lints()));
-    lints.extend(path::lints(tree, program));
+    lints.extend(path::lints(tree, program, units));
     lints
 }
 

@@ -7,27 +7,31 @@ use std::collections::BTreeMap;
 use apt_geometry::{
     canonical::GeometryKind,
     motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
+    regional::RegionalCommand,
 };
 use apt_program::{Origin, Program, Record, RecordKind, record::PostArgument};
 use apt_syntax::SyntaxTree;
+use arelem::section2::State;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::{Lint, LintKind};
 use crate::{
     diagnostic::{Fix, statement_range},
-    fix::{removal, rewriting, written},
+    fix::{inserting, removal, rewriting, written},
+    settings::Units,
 };
 
 /// A tolerance above this part of the cutter's diameter leaves marks that the eye sees.
 const LOOSE_PART_OF_DIAMETER: f64 = 0.25;
 
-pub(super) fn lints(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
+pub(super) fn lints(tree: &SyntaxTree, program: &Program, units: Units) -> Vec<Lint> {
     let mut walk = Walk::default();
     for record in program.records() {
         walk.record(record);
     }
     walk.close_thickness();
+    walk.feed_for_the_first_cut();
     let Walk { lints, effective, .. } = walk;
     let mut told = FxHashSet::default();
     lints
@@ -36,7 +40,7 @@ pub(super) fn lints(tree: &SyntaxTree, program: &Program) -> Vec<Lint> {
         // What has an effect the next time it is executed is needed.
         .filter(|lint| !needs_no_effect(&lint.kind) || !effective.contains(&place(&lint.origin)))
         .filter(|lint| told.insert((place(&lint.origin), std::mem::discriminant(&lint.kind))))
-        .map(|lint| with_fixes(tree, lint))
+        .map(|lint| with_fixes(tree, lint, units))
         .collect()
 }
 
@@ -56,7 +60,7 @@ fn needs_no_effect(kind: &LintKind) -> bool {
 }
 
 /// The lint with what cures it.
-fn with_fixes(tree: &SyntaxTree, mut lint: Lint) -> Lint {
+fn with_fixes(tree: &SyntaxTree, mut lint: Lint, units: Units) -> Lint {
     let fixes = match &lint.kind {
         LintKind::SideContradicted { said, stands, .. } => other_side(tree, &lint, *said, *stands),
         LintKind::DirectionReplaced => {
@@ -72,6 +76,18 @@ fn with_fixes(tree: &SyntaxTree, mut lint: Lint) -> Lint {
             let title = "Write THICK/0, which ends the one before".to_owned();
             rewriting(tree, &lint.origin, title, "THICK/0".to_owned())
         }
+        LintKind::ToleranceMissing => {
+            let assumed = State::new(units.per_inch());
+            let statements =
+                [format!("INTOL/{}", assumed.inside.part), format!("OUTTOL/{}", assumed.outside.part)];
+            let title = "Give the tolerances that hold where the program gives none".to_owned();
+            inserting(tree, &lint.origin, &statements, title)
+        }
+        LintKind::LooseTolerance { diameter, .. } => default_tolerance(tree, &lint.origin, *diameter, units),
+        LintKind::FeedMissing { later } => later.as_ref().and_then(|feed| {
+            let title = format!("Give the feed of later before the first cut: {feed}");
+            inserting(tree, &lint.origin, &[feed.to_string()], title)
+        }),
         LintKind::ToolWithTwoCutters { tool } => lint.other.as_ref().and_then(|first| {
             let text = written(tree, first)?;
             rewriting(tree, &lint.origin, format!("Write {text}, as tool {tool} had before"), text)
@@ -80,6 +96,17 @@ fn with_fixes(tree: &SyntaxTree, mut lint: Lint) -> Lint {
     };
     lint.fixes.extend(fixes);
     lint
+}
+
+/// The statement of a loose tolerance with the one that the processor has by itself, where that is narrow for the cutter.
+fn default_tolerance(tree: &SyntaxTree, origin: &Origin, diameter: f64, units: Units) -> Option<Fix> {
+    let value = State::new(units.per_inch()).outside.part;
+    let text = written(tree, origin)?;
+    let word = text.split('/').next().map(str::trim).filter(|word| !word.contains([',', '=', ' ']))?;
+    let narrow = value <= LOOSE_PART_OF_DIAMETER * diameter;
+    let statement = format!("{word}/{value}");
+    let title = format!("Write {statement}, the tolerance of a program that gives none");
+    narrow.then(|| rewriting(tree, origin, title, statement)).flatten()
 }
 
 /// The other side word, where the statement that says the wrong one is known.
@@ -158,10 +185,13 @@ struct Walk {
     effective: FxHashSet<Place>,
     machine: bool,
     feed: bool,
+    /// The FEDRAT that comes after a cut without feed.
+    later_feed: Option<SmolStr>,
     no_output: bool,
     inside: Option<(Origin, PerRole)>,
     outside: Option<(Origin, PerRole)>,
     tolerance_told: bool,
+    feed_told: bool,
     diameter: Option<f64>,
     cutter: Option<(Origin, Vec<f64>)>,
     tool: Option<i64>,
@@ -187,11 +217,19 @@ impl Walk {
             RecordKind::Motion(command) => self.command(&record.origin, command),
             RecordKind::Postprocessor { word, arguments, .. } => match word.as_str() {
                 "MACHIN" => self.machine = true,
+                "FEDRAT" => {
+                    let first = self.feed_told && self.later_feed.is_none();
+                    if first {
+                        self.later_feed = feed_statement(arguments);
+                    }
+                    self.feed = true;
+                }
                 // A cycle brings its own feed.
-                "FEDRAT" | "CYCLE" => self.feed = true,
+                "CYCLE" => self.feed = true,
                 "LOADTL" | "TURRET" => self.tool = tool_number(arguments),
                 _ => {}
             },
+            RecordKind::Regional(milling) => self.region(&record.origin, &milling.command),
             // Where the tool goes after these is not known here.
             RecordKind::Transfer(_) | RecordKind::Gap => self.stop = None,
             _ => {}
@@ -340,17 +378,32 @@ impl Walk {
         }
     }
 
-    fn along_surfaces(&mut self, origin: &Origin, checks: &[CheckSurface]) {
+    /// Regional milling: the surface is curved, and ZIGZAG and PICKFD bring their own feeds.
+    fn region(&mut self, origin: &Origin, command: &RegionalCommand) {
+        if let RegionalCommand::Zigzag(region) | RegionalCommand::Pickfeed { region, .. } = command {
+            self.feed |= region.feed.cutting > 0.0;
+        }
+        self.cuts(origin, true);
+        self.moved();
+    }
+
+    /// What a cut needs: tolerances on what is curved, and a feed.
+    fn cuts(&mut self, origin: &Origin, curved: bool) {
         self.loose_tolerance();
-        let curved = !matches!(self.part, None | Some(GeometryKind::Plane | GeometryKind::Line));
         if curved && self.inside.is_none() && self.outside.is_none() && !self.tolerance_told {
             self.add(LintKind::ToleranceMissing, origin, None);
             self.tolerance_told = true;
         }
         if self.machine && !self.no_output && !self.feed {
-            self.add(LintKind::FeedMissing, origin, None);
+            self.add(LintKind::FeedMissing { later: None }, origin, None);
             self.feed = true;
+            self.feed_told = true;
         }
+    }
+
+    fn along_surfaces(&mut self, origin: &Origin, checks: &[CheckSurface]) {
+        let curved = !matches!(self.part, None | Some(GeometryKind::Plane | GeometryKind::Line));
+        self.cuts(origin, curved);
         let drive_side = self.drive_side.as_ref().map_or(DriveSide::On, |(_, side)| *side);
         let part_side = self.part_side.unwrap_or(PartSide::Offset);
         let Some(thickness) = &mut self.thickness else { return };
@@ -384,6 +437,18 @@ impl Walk {
         }
     }
 
+    /// The feed that comes after the cut that has none.
+    fn feed_for_the_first_cut(&mut self) {
+        let found = self.later_feed.take();
+        let told = self.lints.iter_mut().find_map(|lint| match &mut lint.kind {
+            LintKind::FeedMissing { later } => Some(later),
+            _ => None,
+        });
+        if let Some(later) = told {
+            *later = found;
+        }
+    }
+
     fn close_thickness(&mut self) {
         let Some(thickness) = self.thickness.take() else { return };
         if is_zero(&thickness.values) || thickness.felt {
@@ -397,6 +462,20 @@ impl Walk {
 /// Whether a THICK leaves no stock anywhere.
 fn is_zero(values: &PerRole) -> bool {
     [values.part, values.drive, values.check[0], values.check[1]].iter().all(|value| *value == 0.0)
+}
+
+/// A FEDRAT as it would be written, with numbers and words alone.
+fn feed_statement(arguments: &[PostArgument]) -> Option<SmolStr> {
+    let parts: Option<Vec<String>> = arguments
+        .iter()
+        .map(|argument| match argument {
+            PostArgument::Number(value) => Some(value.to_string()),
+            PostArgument::Word(word, _) => Some(word.to_string()),
+            _ => None,
+        })
+        .collect();
+    let parts = parts.filter(|parts| !parts.is_empty())?;
+    Some(format!("FEDRAT/{}", parts.join(",")).into())
 }
 
 /// The first number of a LOADTL, if it is a whole one.

@@ -319,6 +319,51 @@ fn every_mechanical_cure_cures_and_changes_nothing_else() {
 }
 
 #[test]
+fn tolerances_and_feeds_that_are_known_cure() {
+    let curved = |tolerances: &str| {
+        format!(
+            "S=SPHERE/0,0,0,5\nL1=PLANE/0,1,0,0\nL2=PLANE/1,0,0,3\nFROM/0,0,9\nCUTTER/.5,.25\n\
+             GO/ON,L1,TO,S,ON,(PLANE/1,0,0,0)\nINDIRV/1,0,0\n{tolerances}TLON,GOFWD/L1,ON,L2\nFINI\n"
+        )
+    };
+    let expected = curved("INTOL/0\nOUTTOL/0.0005\n");
+    assert_eq!(cured(&curved(""), TOLERANCE_MISSING, 0, true), expected);
+    let loose = |statement: &str| {
+        format!("{PART}CUTTER/.5\n{statement} $$ x\nGO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n")
+    };
+    for word in ["INTOL", "OUTTOL"] {
+        let cure = cured(&loose(&format!("{word}/.5")), LOOSE_TOLERANCE, 0, false);
+        assert_eq!(cure, loose(&format!("{word}/0.0005")));
+    }
+    assert_eq!(cured(&loose("TOLER/.5"), LOOSE_TOLERANCE, 0, false), loose("TOLER/0.0005"));
+    let feed = |before: &str, after: &str| {
+        format!(
+            "MACHIN/X,1\n{PART}CUTTER/.5\nGO/TO,L1,TO,PL,TO,L3\n{before}TLLFT,GORGT/L1,PAST,L2\n{after}FINI\n"
+        )
+    };
+    let later = "FEDRAT/12.5,IPM\nGODLTA/0,0,1\nFEDRAT/3\nGODLTA/0,0,1\n";
+    assert_eq!(cured(&feed("", later), FEED_MISSING, 0, true), feed("FEDRAT/12.5,IPM\n", later));
+    // Without one nobody knows it.
+    let told = diagnostics(&feed("", "")).1;
+    assert!(told.iter().any(|one| one.wording.code == FEED_MISSING && one.fixes.is_empty()), "{told:?}");
+}
+
+#[test]
+fn the_tolerance_that_is_taken_goes_with_the_unit_of_the_settings() {
+    let text = "S=SPHERE/0,0,0,5\nL1=PLANE/0,1,0,0\nL2=PLANE/1,0,0,3\nFROM/0,0,9\nCUTTER/.5,.25\n\
+                GO/ON,L1,TO,S,ON,(PLANE/1,0,0,0)\nINDIRV/1,0,0\nTLON,GOFWD/L1,ON,L2\nFINI\n";
+    let settings = Arc::new(Settings {
+        dialect: Some("free".to_owned()),
+        units: crate::settings::Units::Mm,
+        ..Settings::default()
+    });
+    let document = Document::new(text, None, &settings);
+    let found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+    let one = found.iter().find(|one| one.wording.code == TOLERANCE_MISSING).unwrap();
+    assert!(applied(text, &one.fixes[0].edits).contains("\nOUTTOL/0.0127\nTLON"), "{:?}", one.fixes);
+}
+
+#[test]
 fn what_is_not_sure_has_no_cure() {
     let fixes = |text: &str, code: &str| -> usize {
         let told = diagnostics(text).1;
@@ -403,7 +448,10 @@ fn a_macro_that_is_opened_far_above_hides_what_is_overwritten_below() {
     let plain = Document::new(&text("$$"), None, &settings);
     let lints = |document: &Document| {
         let program = document.program(&|| false).unwrap();
-        super::lint(document.tree(), &program).into_iter().map(|one| one.kind).collect::<Vec<_>>()
+        super::lint(document.tree(), &program, crate::settings::Units::Inch)
+            .into_iter()
+            .map(|one| one.kind)
+            .collect::<Vec<_>>()
     };
     let overwritten = [super::LintKind::Overwritten { name: "A".into() }];
     assert_eq!(lints(&plain), overwritten);
