@@ -2,6 +2,7 @@
 
 pub mod oracle;
 pub mod runs;
+pub mod sculptured;
 
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt::Write, path::Path};
 
 use serde_json::Value;
 
-use crate::{repository, run_report};
+use crate::{repository, run_report, sculptured};
 
 /// Tolerance for canonical forms and point-to-point locations, relative to the size of the numbers.
 const EXACT: f64 = 1e-6;
@@ -14,7 +14,7 @@ const MOTION_SLACK: f64 = 1e-5;
 const DEFAULT_TOLERANCE: f64 = 0.0005;
 
 /// The groups of the corpus.
-pub const GROUPS: [&str; 9] = [
+pub const GROUPS: [&str; 10] = [
     "geometry",
     "language",
     "motion2d",
@@ -24,6 +24,7 @@ pub const GROUPS: [&str; 9] = [
     "errors",
     "apt4-language",
     "apt4-motion",
+    "sculptured-geometry",
 ];
 
 /// What is wrong with each program that does not pass, by `group/name`.
@@ -68,7 +69,7 @@ pub fn check(group: &str, path: &Path) -> Vec<String> {
     let expected = std::fs::read_to_string(path.with_extension("json")).expect("every program has a result");
     let expected: Value = serde_json::from_str(&expected).expect("the result is JSON");
     let dialect = match group {
-        "apt4-language" | "apt4-motion" => "apt4",
+        "apt4-language" | "apt4-motion" | "sculptured-geometry" => "apt4",
         "errors" => "apt3",
         _ => "free",
     };
@@ -81,7 +82,9 @@ pub fn check(group: &str, path: &Path) -> Vec<String> {
     }
     diagnostics(&expected, &ours, &mut problems);
     if expected["ok"].as_bool() == Some(true) {
-        symbols(&expected, &ours, &mut problems);
+        let by_flow = if group == "sculptured-geometry" { sculptured::flow_names(path) } else { Vec::new() };
+        symbols(&expected, &ours, &by_flow, &mut problems);
+        sculptured::check(path, dialect, &expected, &mut problems);
         locations(group, &expected, &ours, &mut problems);
         if group != "errors" {
             verification(&ours, &mut problems);
@@ -113,7 +116,8 @@ fn diagnostics(expected: &Value, ours: &Value, problems: &mut Vec<String>) {
     }
 }
 
-fn symbols(expected: &Value, ours: &Value, problems: &mut Vec<String>) {
+/// Names in `by_flow` carry the flow tolerance of the public system.
+fn symbols(expected: &Value, ours: &Value, by_flow: &[String], problems: &mut Vec<String>) {
     let Some(wanted) = expected["symbols"].as_object() else { return };
     for (name, symbol) in wanted {
         let found = &ours["symbols"][name];
@@ -129,7 +133,8 @@ fn symbols(expected: &Value, ours: &Value, problems: &mut Vec<String>) {
                 normalise(&mut a);
                 normalise(&mut b);
             }
-            if !close(&a, &b, EXACT) {
+            let tolerance = if by_flow.contains(name) { sculptured::FLOW } else { EXACT };
+            if !close(&a, &b, tolerance) {
                 problems.push(format!("symbol {name} is {b:?}, expected {a:?}"));
             }
         }

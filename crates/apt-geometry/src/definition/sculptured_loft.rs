@@ -138,6 +138,9 @@ fn rims(
             _ => Flow::even(curve, rows, SegmentMeasure::Param),
         };
         let rim = Strand { curve, flow: &flow };
+        if !(0..rows).all(|row| rim.is_cubic(row)) {
+            return Err(ParametricError::CrossArcs { curve: index + 1, rows });
+        }
         for (row, strand) in strands.iter().enumerate() {
             let gap = (rim.boundary(row) - strand.boundary(end)).norm();
             if gap > GAP * size {

@@ -71,6 +71,12 @@ impl Strand<'_> {
             .flatten()
     }
 
+    /// Whether a segment is one cubic without weights, by its own parameter.
+    pub(super) fn is_cubic(&self, segment: usize) -> bool {
+        let whole = self.exact(segment, 0.0, 1.0);
+        self.joints(segment).is_empty() && whole.is_some_and(|arc| arc.is_polynomial())
+    }
+
     /// Local parameters of a segment where arcs meet.
     fn joints(&self, segment: usize) -> Vec<f64> {
         let Some(part) = self.flow.segments.get(segment) else { return Vec::new() };

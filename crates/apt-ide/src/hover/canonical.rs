@@ -173,11 +173,12 @@ fn sentence(geometry: &Geometry) -> String {
         }
         Geometry::Pattern(pattern) => format!("pattern of {} points", pattern.points.len()),
         Geometry::Sculptured(surface) => {
-            let arrangement = surface.grid.map_or(String::new(), |(u, v)| format!(", {u} by {v}"));
+            let [u, v] = surface.extent();
+            let arrangement = surface.grid.map_or(String::new(), |_| format!(", {u} by {v}"));
             let points = surface.patches.iter().flat_map(Patch::points).flatten();
             format!(
                 "sculptured surface of {} patches{arrangement}, inside {}",
-                surface.patches.len(),
+                surface.count(),
                 within(points)
             )
         }

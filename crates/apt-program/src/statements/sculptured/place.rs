@@ -257,7 +257,7 @@ fn count(reader: &mut Reader<'_>) -> Read<f64> {
         Geometry::Sculptured(surface) => match word {
             "SPLINE" => surface.mesh.splines,
             "CRSSPL" => surface.mesh.cross_splines,
-            _ => surface.patches.len(),
+            _ => surface.count(),
         },
         _ => 0,
     };
