@@ -15,15 +15,7 @@ const MAY_USE: [(&str, &[&str]); 10] = [
     ("apt-post", &["apt-cldata", "apt-geometry"]),
     (
         "apt-run",
-        &[
-            "apt-syntax",
-            "apt-geometry",
-            "apt-cldata",
-            "apt-program",
-            "arelem",
-            "apt-sculptured",
-            "apt-post",
-        ],
+        &["apt-syntax", "apt-geometry", "apt-cldata", "apt-program", "arelem", "apt-sculptured", "apt-post"],
     ),
     (
         "apt-ide",

@@ -5,12 +5,13 @@
 
 use std::{
     collections::HashMap,
-    fmt::Write,
+    fmt::{Debug, Write},
     hash::Hasher,
     sync::{Arc, Mutex, PoisonError},
 };
 
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{motion::MotionCommand, regional::RegionalMilling};
+use apt_sculptured::mill::{Milled, Setting};
 use arelem::{
     cure::Remedy,
     section2::{Execution, Output, State},
@@ -72,9 +73,19 @@ struct Entry {
     last_run: u64,
 }
 
+/// A path of regional milling with what it was made from.
+#[derive(Debug)]
+struct MilledEntry {
+    setting: Setting,
+    command: RegionalMilling,
+    milled: Arc<Milled>,
+    last_run: u64,
+}
+
 #[derive(Debug, Default)]
 struct Inner {
     entries: HashMap<u64, Vec<Entry>, FxBuildHasher>,
+    milled: HashMap<u64, Vec<MilledEntry>, FxBuildHasher>,
     run: u64,
     counters: MemoCounters,
 }
@@ -95,6 +106,10 @@ impl MotionMemo {
         inner.run += 1;
         let oldest = inner.run.saturating_sub(RUNS_KEPT);
         inner.entries.retain(|_, bucket| {
+            bucket.retain(|entry| entry.last_run >= oldest);
+            !bucket.is_empty()
+        });
+        inner.milled.retain(|_, bucket| {
             bucket.retain(|entry| entry.last_run >= oldest);
             !bucket.is_empty()
         });
@@ -133,6 +148,35 @@ impl MotionMemo {
         Some(motion)
     }
 
+    /// The path of this SMIL with these modal data: from the memo, or computed by `compute`, which gives `None` when it was
+    /// cancelled.
+    pub fn get_or_mill(
+        &self,
+        setting: &Setting,
+        command: &RegionalMilling,
+        compute: impl FnOnce() -> Option<Milled>,
+    ) -> Option<Arc<Milled>> {
+        let key = content_hash(setting, command);
+        {
+            let mut inner = self.lock();
+            let run = inner.run;
+            let same = |entry: &&mut MilledEntry| entry.setting == *setting && entry.command == *command;
+            if let Some(entry) = inner.milled.get_mut(&key).and_then(|bucket| bucket.iter_mut().find(same)) {
+                entry.last_run = run;
+                let found = Arc::clone(&entry.milled);
+                inner.counters.reused += 1;
+                return Some(found);
+            }
+        }
+        let milled = Arc::new(compute()?);
+        let mut inner = self.lock();
+        inner.counters.computed += 1;
+        let (last_run, command) = (inner.run, command.clone());
+        let entry = MilledEntry { setting: *setting, command, milled: Arc::clone(&milled), last_run };
+        inner.milled.entry(key).or_default().push(entry);
+        Some(milled)
+    }
+
     fn find(&self, key: u64, state: &State, command: &MotionCommand) -> Option<Arc<ComputedMotion>> {
         let mut inner = self.lock();
         let run = inner.run;
@@ -153,7 +197,7 @@ impl MotionMemo {
 }
 
 /// Hashes the `Debug` form, which writes every number so that it reads back to the same bits.
-fn content_hash(state: &State, command: &MotionCommand) -> u64 {
+fn content_hash(state: &impl Debug, command: &impl Debug) -> u64 {
     struct Sink(FxHasher);
     impl Write for Sink {
         fn write_str(&mut self, text: &str) -> std::fmt::Result {

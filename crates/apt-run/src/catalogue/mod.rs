@@ -7,6 +7,7 @@
 mod cutter_locations;
 mod definitions;
 mod lint;
+mod milling;
 mod motion;
 mod names;
 mod pages;

@@ -12,12 +12,15 @@ use arelem::{
     verify::{Evidence, Rule, VerifyError},
 };
 
-use super::{Text, a_kind, number, pocket, remedy, say};
+use super::{Text, a_kind, milling, number, pocket, remedy, say};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 
 /// The words, the severity and the APT III number of a finding of Sections 2 and 3.
 pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     match kind {
+        RunFindingKind::Milling(error) => milling::failure(error),
+        RunFindingKind::Interference(found) => milling::interference(found),
+        RunFindingKind::InterferenceNotProven { locations } => milling::not_proven(*locations),
         RunFindingKind::Failure { failure, remedies, .. } => {
             let text = failure_text(failure).maybe(remedy::hint(remedies));
             (text, Severity::Error, failure.apt3())

@@ -11,6 +11,10 @@ use apt_cldata::{
     totals::{Totals, totals},
 };
 use apt_program::{Origin, Program};
+use apt_sculptured::{
+    error::MillingError,
+    mill::{Encounter, Milled},
+};
 use apt_syntax::{SyntaxTree, dialect::DialectName};
 use arelem::{
     cure::Remedy,
@@ -30,6 +34,37 @@ pub struct Motion {
     pub origin: Origin,
     /// The computed sequence with its evidence, shared with the memo.
     pub computed: Arc<ComputedMotion>,
+}
+
+/// A SMIL that Section 2 has carried out.
+#[derive(Debug, Clone)]
+pub struct Milling {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The path with its interferences, shared with the memo.
+    pub milled: Arc<Milled>,
+}
+
+/// What became of interferences.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// AVCTRL is off: they are told.
+    Told,
+    /// The tool was tilted or lifted.
+    Avoided,
+    /// No remedy was found.
+    Failed,
+}
+
+/// The interferences of a SMIL that had the same outcome.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interference {
+    /// What became of them.
+    pub outcome: Outcome,
+    /// How many there are.
+    pub count: usize,
+    /// The deepest of them.
+    pub worst: Encounter,
 }
 
 /// What went wrong, or is worth saying, after Section 1.
@@ -73,6 +108,15 @@ pub enum RunFindingKind {
     },
     /// TRACUT, INDEX or COPY.
     Edit(EditError),
+    /// A SMIL ended before its end.
+    Milling(MillingError),
+    /// A checked surface reaches into the tool of a SMIL.
+    Interference(Box<Interference>),
+    /// Checks of a SMIL ended without proof.
+    InterferenceNotProven {
+        /// At how many locations.
+        locations: u32,
+    },
 }
 
 /// What a run gives.
@@ -84,6 +128,8 @@ pub struct RunResult {
     pub origins: Vec<Origin>,
     /// The motions, in order of execution.
     pub motions: Vec<Motion>,
+    /// The paths of regional milling, in order of execution.
+    pub milled: Vec<Milling>,
     /// What is to be said about them.
     pub findings: Vec<RunFinding>,
     /// Lengths, time and box of the final path.
@@ -108,7 +154,14 @@ pub fn run(
     if program.skips_motion() {
         let (records, origins) = (Vec::new(), Vec::new());
         let totals = totals(&records);
-        return Ok(RunResult { records, origins, motions: Vec::new(), findings: Vec::new(), totals });
+        return Ok(RunResult {
+            records,
+            origins,
+            motions: Vec::new(),
+            milled: Vec::new(),
+            findings: Vec::new(),
+            totals,
+        });
     }
     let mut section2 = section2::Section2::new(settings, tree.dialect().name, memo, cancel);
     let total = program.record_count();
@@ -141,5 +194,12 @@ pub fn run(
         }
     }
     let totals = totals(&records);
-    Ok(RunResult { records, origins: output.origins, motions: output.motions, findings, totals })
+    Ok(RunResult {
+        records,
+        origins: output.origins,
+        motions: output.motions,
+        milled: output.milled,
+        findings,
+        totals,
+    })
 }

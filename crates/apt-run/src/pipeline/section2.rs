@@ -1,5 +1,7 @@
 //! Drives Section 2: hands motion commands to the engine, collects CL items, keeps the transfer mode of Trumpy 1970.
 
+mod milling;
+
 use std::time::Instant;
 
 use apt_cldata::{
@@ -21,7 +23,7 @@ use arelem::{
 };
 use smol_str::SmolStr;
 
-use super::{Motion, RunFinding, RunFindingKind, earlier::Before};
+use super::{Milling, Motion, RunFinding, RunFindingKind, earlier::Before};
 use crate::{
     Cancel, Cancelled,
     memo::{Computation, MotionMemo},
@@ -48,6 +50,7 @@ pub(super) struct SectionTwoOutput {
     pub(super) items: Vec<EditItem>,
     pub(super) origins: Vec<Origin>,
     pub(super) motions: Vec<Motion>,
+    pub(super) milled: Vec<Milling>,
     pub(super) findings: Vec<RunFinding>,
 }
 
@@ -85,6 +88,7 @@ impl<'a> Section2<'a> {
             items: Vec::new(),
             origins: Vec::new(),
             motions: Vec::new(),
+            milled: Vec::new(),
             findings: Vec::new(),
         };
         Self {
@@ -113,6 +117,7 @@ impl<'a> Section2<'a> {
         let source = self.source(&record.origin);
         match &record.kind {
             RecordKind::Motion(command) => return self.command(command, &record.origin, source),
+            RecordKind::Regional(command) => return self.mill(command, &record.origin, source),
             RecordKind::Postprocessor { word, arguments, .. } if units(word, arguments).is_some() => {
                 if let Some(units) = units(word, arguments) {
                     self.push(record.origin.isn, source, ClKind::Units(units));
@@ -162,7 +167,7 @@ impl<'a> Section2<'a> {
                 );
             }
             // Section 1 has said why there is no motion here: what follows from it is passed over as after a failure.
-            RecordKind::Gap | RecordKind::Regional(_) => {
+            RecordKind::Gap => {
                 self.state.restart = Restart::Waiting;
                 self.state.forward = None;
             }

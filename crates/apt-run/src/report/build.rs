@@ -1,14 +1,15 @@
 //! Builds a [`Report`] from the values of the sections.
 
 use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
-use apt_geometry::canonical::Geometry;
+use apt_geometry::{canonical::Geometry, regional::LiftDirection};
 use apt_program::{Program, Value as SymbolValue};
+use apt_sculptured::mill::{Encounter, Remedy};
 use apt_syntax::SyntaxTree;
 use serde_json::{Map, Value, json};
 
 use super::{
-    ClEntry, DiagnosticReport, EditReport, FixReport, ListingReport, MotionEntry, RelatedReport, Report,
-    TotalsEntry,
+    ClEntry, DiagnosticReport, EditReport, FixReport, InterferenceEntry, ListingReport, MotionEntry,
+    RelatedReport, RemedyEntry, Report, TotalsEntry,
 };
 use crate::{
     diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places},
@@ -57,7 +58,45 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .filter(|motion| wanted(motion.origin.place_in_program().0))
             .map(|motion| motion_entry(motion, input.tree))
             .collect(),
+        interference: interference(input.result, wanted),
         totals: totals_entry(input.result),
+    }
+}
+
+/// The interferences of the wanted statements.
+fn interference(result: &RunResult, wanted: impl Fn(u32) -> bool) -> Vec<InterferenceEntry> {
+    let numbered = result.milled.iter().map(|milling| (milling.origin.place_in_program().0, milling));
+    numbered
+        .filter(|(isn, _)| wanted(*isn))
+        .flat_map(|(isn, milling)| {
+            milling.milled.encounters.iter().map(move |one| interference_entry(isn, one))
+        })
+        .collect()
+}
+
+fn interference_entry(isn: u32, encounter: &Encounter) -> InterferenceEntry {
+    let remedy = match encounter.remedy {
+        Remedy::None => None,
+        Remedy::Avoided { tilt, lift, along, .. } => Some(RemedyEntry {
+            result: "avoided",
+            tilt: (tilt != 0.0).then(|| clean(tilt.to_degrees())),
+            lift: (lift != 0.0).then_some(lift),
+            along: (lift != 0.0).then_some(match along {
+                LiftDirection::Axis => "axis",
+                LiftDirection::PartNormal => "normal",
+            }),
+        }),
+        Remedy::Failed(_) => Some(RemedyEntry { result: "failed", tilt: None, lift: None, along: None }),
+    };
+    InterferenceEntry {
+        isn,
+        surface: encounter.surface.clone(),
+        te: encounter.pose.end.map(clean).into(),
+        ta: encounter.pose.axis.map(clean).into(),
+        depth: encounter.hit.depth,
+        patch: encounter.hit.patch + 1,
+        uv: encounter.hit.parameters.map(clean),
+        remedy,
     }
 }
 

@@ -31,8 +31,49 @@ pub struct Report {
     pub cl: Vec<ClEntry>,
     /// What each motion statement gave.
     pub motions: Vec<MotionEntry>,
+    /// Interferences that regional milling met, in order of execution; left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub interference: Vec<InterferenceEntry>,
     /// Sums over the path.
     pub totals: TotalsEntry,
+}
+
+/// A checked surface that reaches into the tool at a location.
+#[derive(Debug, Clone, Serialize)]
+pub struct InterferenceEntry {
+    /// Statement number of the SMIL.
+    pub isn: u32,
+    /// The surface.
+    pub surface: String,
+    /// Tool end before any remedy.
+    pub te: [f64; 3],
+    /// Unit tool axis before any remedy.
+    pub ta: [f64; 3],
+    /// Depth of the deepest point, program units.
+    pub depth: f64,
+    /// Number of its patch, from 1.
+    pub patch: usize,
+    /// Its local parameters.
+    pub uv: [f64; 2],
+    /// What was done, if AVCTRL is on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<RemedyEntry>,
+}
+
+/// What was done about an interference.
+#[derive(Debug, Clone, Serialize)]
+pub struct RemedyEntry {
+    /// `avoided` or `failed`.
+    pub result: &'static str,
+    /// Angle by which the axis was tilted, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt: Option<f64>,
+    /// How far the tool was lifted, program units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lift: Option<f64>,
+    /// Along what: `axis` or `normal`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<&'static str>,
 }
 
 /// One diagnostic.

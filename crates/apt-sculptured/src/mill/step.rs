@@ -56,12 +56,12 @@ impl Band {
         let surface = 1.0 / curvature.abs();
         let path = if curvature < 0.0 { surface + radius } else { (surface - radius).abs() };
         let tolerance = self.chord();
-        if path <= 0.5 * tolerance {
+        if path <= tolerance {
             return most;
         }
-        let cosine = 1.0 - tolerance / path;
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        (2.0 * path * sine).min(most)
+        // The chord whose sagitta is the tolerance.
+        let sagitta = tolerance * (2.0 * path - tolerance);
+        (2.0 * sagitta.sqrt()).min(most)
     }
 }
 
@@ -191,6 +191,8 @@ mod tests {
         near(band.step(1.0 / 40.0, 5.0, 10.0), 2.366094);
         near(band.step(0.0, 5.0, 10.0), 10.0);
         near(band.step(0.2, 5.0, 10.0), 10.0);
+        // What rounding leaves of a straight section does not stop the tool.
+        near(band.step(1e-17, 5.0, 10.0), 10.0);
     }
 
     #[test]
