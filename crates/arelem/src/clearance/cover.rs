@@ -16,7 +16,7 @@ const MAX_BOXES: u32 = 600;
 /// The same where some box has no bound yet.
 const MAX_BOXES_UNBOUNDED: u32 = 2400;
 /// Boxes that are looked at between two questions whether to give up.
-const BOXES_A_QUESTION: u32 = 64;
+const BOXES_A_QUESTION: u32 = 8;
 /// A box is small enough when its bound exceeds that of its centre by this factor at most.
 const CLOSE: f64 = 1.25;
 

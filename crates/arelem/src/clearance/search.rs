@@ -292,7 +292,8 @@ impl Search<'_> {
     }
 
     fn inside_disc(&mut self, radius: f64, start: Vector2<f64>) {
-        let mut q = start;
+        // A contact on the top edge may lie beyond the bottom.
+        let mut q = start * (radius / start.norm().max(radius));
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
             let p = self.tip + self.tool.across[0] * q.x + self.tool.across[1] * q.y;

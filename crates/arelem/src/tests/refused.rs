@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use apt_geometry::cutter::Cutter;
+
 use super::*;
 use crate::{error::RoleName, verify::verify};
 
@@ -242,4 +244,58 @@ fn a_longest_vector_far_below_the_band_ends_where_the_path_is() {
         assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
     }
     assert!((p.tip().x + 0.9).abs() < 1e-9);
+}
+
+/// The top edge of a tapered tool is wider than its flat bottom, on which nothing is looked for beyond its edge.
+#[test]
+fn no_contact_with_the_bottom_lies_beyond_its_edge() {
+    let cutter =
+        Cutter::from_numbers(&[0.3860014724, 0.0, 0.1930007362, 0.0, 0.0, 12.6092980263, 2.40689816], 1.0);
+    let (cutter, axis) = (
+        cutter.expect("a cutter"),
+        v(0.8869204544580213, 0.41769317288408786, -0.19724228955779413).normalize(),
+    );
+    let geometry = quadric([
+        0.22474609577302357,
+        0.21254830467134764,
+        0.09802944802802933,
+        0.9378839075214218,
+        0.006744956230221784,
+        -0.06823286406198292,
+        -0.0014769373775230536,
+        -0.3310506660625299,
+        -0.024167699863006507,
+        0.43379528896509223,
+    ]);
+    let role = Role {
+        surface: named(&geometry),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.0,
+        disk: None,
+    };
+    let tool = Tool::new(cutter, axis);
+    let (from, to) = (v(-0.601614, -2.097499, -6.646959), v(-0.450553, -2.722510, -5.295171));
+    for k in 0..=40 {
+        let tip = from + (to - from) * (f64::from(k) / 40.0);
+        let place = crate::sequence::ToolPosition { tip, axis };
+        let sequence = CutSequence {
+            start: place,
+            points: vec![place],
+            cutter,
+            part: Some(role.clone()),
+            drive: None,
+            stop: None,
+            drive_side: DriveSide::On,
+            start_up: true,
+            forward: Vec3::zeros(),
+            maximum_step: 1.0,
+            minimum: None,
+        };
+        let read = verify(&sequence, &|| false).expect("evidence").part.expect("an extent").min;
+        let found = gauge(&role).contact(&tool, &tip).clearance;
+        assert!((found - read).abs() < 1e-9, "{k}: {found} {read}");
+    }
 }

@@ -67,18 +67,33 @@ pub(super) fn replay(
         }
         Some(first.max(opposite.at(&p.tip, &p.axis)?.value))
     };
-    let (state, count) = walk(sequence, band, &measure, role.relation)?;
+    let Walked { state, count, since } = walk(sequence, band, &measure, role.relation)?;
     let before = match role.relation {
         Relation::To => State::Clear,
         Relation::Past => State::Violating,
         _ => state,
     };
-    let arrives = state == before || state == State::Touching;
+    // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
+    let may_have_changed = match role.relation {
+        Relation::To => since[1] > role.outside_tolerance,
+        Relation::Past => since[0] < -role.inside_tolerance,
+        _ => false,
+    };
+    let arrives = state == before || state == State::Touching || may_have_changed;
     let asked = occurrence.max(1) - 1;
     if arrives && count.certain <= asked && asked <= count.certain + count.doubtful {
         return Some(Ok(()));
     }
     Some(Err(WrongEvent { found: if arrives { count.certain + 1 } else { 0 } }))
+}
+
+/// What a replay found.
+struct Walked {
+    /// At the last position.
+    state: State,
+    count: Count,
+    /// Least and greatest clearance since that state was last beyond doubt.
+    since: [f64; 2],
 }
 
 /// Follows the path with steps that cannot jump a change of state, and counts events.
@@ -87,7 +102,7 @@ fn walk(
     band: f64,
     measure: &dyn Fn(&ToolPosition) -> Option<f64>,
     relation: Relation,
-) -> Option<(State, Count)> {
+) -> Option<Walked> {
     let positions: Vec<ToolPosition> =
         std::iter::once(sequence.start).chain(sequence.points.iter().copied()).collect();
     let total: f64 = positions.windows(2).map(|w| (w[1].tip - w[0].tip).norm()).sum();
@@ -95,6 +110,8 @@ fn walk(
     let mut state = State::Touching;
     let mut brushed = false;
     let mut count = Count::default();
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut since = none;
     // Path length that is known to hold no change of state.
     let mut safe = 0.0;
     for pair in positions.windows(2) {
@@ -116,16 +133,16 @@ fn walk(
             match seen {
                 Some(next) => {
                     record(&mut count, relation, state, next, brushed);
-                    (state, brushed) = (next, false);
+                    (state, brushed, since) = (next, false, none);
                 }
-                None => brushed = true,
+                None => (brushed, since) = (true, [since[0].min(value), since[1].max(value)]),
             }
             let step = if turn > 0.0 { finest.max(move_length / 64.0) } else { finest };
             at += (value.abs() - band).max(step);
         }
         safe = at - move_length;
     }
-    Some((state, count))
+    Some(Walked { state, count, since })
 }
 
 fn record(count: &mut Count, relation: Relation, from: State, to: State, brushed: bool) {

@@ -5,7 +5,7 @@ use apt_geometry::{
     canonical::{Geometry, Matrix},
     cutter::Cutter,
     motion::{
-        CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PartSide, PerRole, Relation,
+        CheckSurface, Delta, Direction, DriveSide, MotionCommand, NamedSurface, PartSide, PerRole, Relation,
         StartSurface, Turn,
     },
     surface::Surface,
@@ -15,7 +15,7 @@ use nalgebra::{Rotation3, Unit};
 use crate::{
     kinds::{self, Kind},
     search::{Reader, Wanted},
-    support::{Random, named, plane},
+    support::{Random, named},
     tools,
 };
 
@@ -25,6 +25,18 @@ const LOOSE: f64 = 0.15;
 const LEAST_SINE: f64 = 0.3;
 /// Share of the check surfaces to which distances are searched for: with one of them a motion takes a hundred times as long.
 const SLOW_STOPS: f64 = 0.01;
+/// Share of the motions from a sure place that stop at a tangency.
+const TANGENT: f64 = 0.12;
+/// How far before and after a tangency it is looked whether there is one.
+const TANGENT_WAY: f64 = 0.05;
+/// Half the difference of the curvatures along the path that makes a tangency.
+const LEAST_BEND: f64 = 0.02;
+/// Share of the check surfaces that are met a second time, if they can be.
+const RETURNS: f64 = 0.12;
+/// Share of the start-ups that go past the drive surface.
+const PASSES: f64 = 0.1;
+/// Share of the motions with a GODLTA before the start-up.
+const DELTAS: f64 = 0.2;
 /// Draws of a case before another seed is taken.
 const DRAWS: u32 = 200;
 /// Draws of a place to come from.
@@ -37,6 +49,8 @@ pub(crate) struct Placed {
     pub(crate) relation: Relation,
     /// Side of the natural normal on which the tool ends.
     pub(crate) side: f64,
+    /// As check surface: which position stops the motion.
+    pub(crate) occurrence: u32,
 }
 
 /// A motion, and what is asked of it. Lengths in program units.
@@ -47,12 +61,18 @@ pub(crate) struct Case {
     pub(crate) axis: Vec3,
     /// Where the tool comes from.
     pub(crate) from: Vec3,
-    /// Where it is meant to touch part and drive surface first.
+    /// Where it is meant to touch part and drive surface first; where the motion stops at a tangency, there.
     pub(crate) place: Vec3,
     pub(crate) part: Placed,
     pub(crate) drive: Placed,
-    /// The plane that the start-up ends on.
+    /// The plane that the start-up ends on, if it has three surfaces.
     pub(crate) first: Placed,
+    /// Surfaces of the start-up; with one the part surface is implied.
+    pub(crate) surfaces: usize,
+    /// The tool comes from the other side of the drive surface: PAST at start-up.
+    pub(crate) passes_drive: bool,
+    /// GODLTA before the start-up.
+    pub(crate) delta: Option<Vec3>,
     pub(crate) stop: Placed,
     /// Distances to the check surface are searched for.
     pub(crate) has_slow_stop: bool,
@@ -91,14 +111,20 @@ impl Case {
         let part_on = random.next() < 0.15;
         let drive_on = random.next() < 0.25;
         let thickness = if random.next() < 0.25 { random.between(0.01, 0.2) } else { 0.0 };
-        let (inside, outside) = random.pick(&[
-            (0.0, 0.001),
-            (0.001, 0.001),
-            (0.0005, 0.0),
-            (0.01, 0.005),
-            (0.0, 0.0001),
-            (0.00002, 0.00003),
-        ]);
+        let is_tangent = is_certain && random.next() < TANGENT;
+        // At a tangency all three surfaces meet at clearance zero, which must not be the limit of a band.
+        let (inside, outside) = if is_tangent {
+            random.pick(&[(0.001, 0.001), (0.01, 0.005), (0.00002, 0.00003)])
+        } else {
+            random.pick(&[
+                (0.0, 0.001),
+                (0.001, 0.001),
+                (0.0005, 0.0),
+                (0.01, 0.005),
+                (0.0, 0.0001),
+                (0.00002, 0.00003),
+            ])
+        };
         let relation = |on: bool| if on { Relation::On } else { Relation::To };
         let laid = |kind: Kind, normal: &Vec3, relation: Relation, tip: &Vec3, random: &mut Random| {
             let mut touch = *tip;
@@ -109,19 +135,42 @@ impl Case {
                 touch += normal * random.between(-0.5, 0.1);
             }
             let (geometry, side) = kinds::through(kind, random, &touch, normal)?;
-            Some(Placed { geometry, relation, side })
+            Some(Placed { geometry, relation, side, occurrence: 1 })
         };
         let part = laid(part_kind, &up, relation(part_on), &place, random)?;
         let drive = laid(drive_kind, &out, relation(drive_on), &place, random)?;
-        let across = plane(along.x, along.y, along.z, along.dot(&place));
-        let first = Placed { geometry: across, relation: Relation::On, side: 1.0 };
         let reach = random.between(0.2, 2.5);
+        let entry = if is_tangent { place - along * reach } else { place };
+        let (relation_of_first, toward) = (
+            random.pick(&[Relation::On, Relation::On, Relation::To, Relation::Past]),
+            random.pick(&[1.0, -1.0]),
+        );
+        let facing_first = if relation_of_first == Relation::On { along } else { along * toward };
+        let first = laid(Kind::Plane, &facing_first, relation_of_first, &entry, random)?;
+        let surfaces = if is_tangent { 3 } else { random.pick(&[1, 2, 3, 3, 3, 3, 3, 3, 3, 3]) };
         let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
         let is_slow = random.next() < SLOW_STOPS;
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| kind.is_slow() == is_slow).collect();
         let stop_kind = random.pick(&kinds);
-        let facing = facing(stop_kind, &along, random)? * if until == Relation::Past { 1.0 } else { -1.0 };
-        let stop = laid(stop_kind, &facing, until, &(place + along * reach), random)?;
+        let stop = if is_tangent {
+            // Against the surface that it is tangent to, or beyond it.
+            let to_part = random.next() < 0.4;
+            let (along_what, on) = if to_part { (&up, part_on) } else { (&out, drive_on) };
+            let stop_kind =
+                if stop_kind.is_upright() && along_what.z.abs() > 1e-12 { Kind::Cylinder } else { stop_kind };
+            let facing = along_what * random.pick(&[1.0, -1.0]);
+            let stop = laid(stop_kind, &facing, relation(on), &place, random)?;
+            Placed {
+                relation: if to_part { Relation::TangentToPart } else { Relation::TangentToDrive },
+                ..stop
+            }
+        } else {
+            let facing =
+                facing(stop_kind, &along, random)? * if until == Relation::Past { 1.0 } else { -1.0 };
+            let stop = laid(stop_kind, &facing, until, &(place + along * reach), random)?;
+            let may_return = !matches!(stop_kind, Kind::Plane | Kind::Line);
+            Placed { occurrence: if may_return && random.next() < RETURNS { 2 } else { 1 }, ..stop }
+        };
         let mut case = Self {
             cutter: numbers,
             shape,
@@ -131,6 +180,10 @@ impl Case {
             part,
             drive,
             first,
+            surfaces,
+            passes_drive: !drive_on && random.next() < PASSES,
+            delta: (random.next() < DELTAS)
+                .then(|| up * random.between(-0.5, 0.5) + out * random.between(-0.5, 0.5)),
             stop,
             has_slow_stop: stop_kind.is_slow(),
             inside,
@@ -147,21 +200,27 @@ impl Case {
             is_certain,
         };
         case.approach(&cutter, random, [&up, &out, &along])?;
-        (!is_certain || case.stands_at_place()).then_some(case)
+        (!is_certain || case.stands_at_place() && case.is_tangent_there(&along)).then_some(case)
     }
 
     /// Finds a place to come from with the observer on the sides on which the tool is meant to end.
     fn approach(&mut self, cutter: &Cutter, random: &mut Random, [up, out, along]: [&Vec3; 3]) -> Option<()> {
         let middle = self.axis * (0.5 * cutter.height);
-        let roles: Vec<(Surface, f64)> = [&self.part, &self.drive]
-            .iter()
-            .map(|role| Some((Surface::from_geometry(&role.geometry).ok()?, role.side)))
-            .collect::<Option<_>>()?;
+        let (drive_side, first_side) = (
+            if self.passes_drive { -1.0 } else { 1.0 },
+            if self.first.relation == Relation::Past { -1.0 } else { 1.0 },
+        );
+        let roles: Vec<(Surface, f64)> =
+            [(&self.part, 1.0), (&self.drive, drive_side), (&self.first, first_side)]
+                .iter()
+                .filter(|(role, _)| role.relation != Relation::On || !std::ptr::eq(*role, &self.first))
+                .map(|(role, side)| Some((Surface::from_geometry(&role.geometry).ok()?, role.side * side)))
+                .collect::<Option<_>>()?;
         for _ in 0..APPROACHES {
             let from = self.place
                 + up * random.between(0.0, 1.0)
-                + out * random.between(0.0, 1.0)
-                + along * random.between(-0.6, 0.3);
+                + out * random.between(0.0, 1.0) * drive_side
+                + along * random.between(-0.6, 0.6);
             let sees =
                 |(surface, side): &(Surface, f64)| surface.signed_distance(&(from + middle)) * side > 1e-3;
             if roles.iter().all(sees) {
@@ -179,23 +238,57 @@ impl Case {
         read.is_some_and(|[part, drive, _]| part.abs() < 1e-5 && drive.abs() < 1e-5)
     }
 
+    /// For a motion that stops at a tangency: whether the tool touches the check surface at the place, and the path leaves it
+    /// there to the same side before and after.
+    fn is_tangent_there(&self, along: &Vec3) -> bool {
+        let to_part = match self.stop.relation {
+            Relation::TangentToPart => true,
+            Relation::TangentToDrive => false,
+            _ => return true,
+        };
+        let reader = Reader::new(self);
+        let apart = |way: f64| {
+            let read = reader.read(&(self.place + along * way), Wanted::Stop(self.stop.side))?;
+            let [part, drive, stop] = read;
+            let partner = if to_part { (&self.part, part) } else { (&self.drive, drive) };
+            // The path keeps to its partner, on whichever side of the check surface that is.
+            let normal = |role: &Placed| {
+                let surface = Surface::from_geometry(&role.geometry).ok()?;
+                Some(surface.foot(&self.place).normal * role.side)
+            };
+            let sense = normal(&self.stop)?.dot(&normal(partner.0)?).signum();
+            Some(stop - sense * partner.1)
+        };
+        let there = reader.read(&self.place, Wanted::Stop(self.stop.side)).map(|[_, _, stop]| stop);
+        let least = LEAST_BEND * TANGENT_WAY * TANGENT_WAY;
+        match (there, apart(TANGENT_WAY), apart(-TANGENT_WAY)) {
+            (Some(there), Some(a), Some(b)) => {
+                there.abs() < 1e-5 && a * b > 0.0 && a.abs().min(b.abs()) > least
+            }
+            _ => false,
+        }
+    }
+
     /// Commands up to the start-up, and the directed motion.
     pub(crate) fn commands(&self) -> Vec<MotionCommand> {
         let mut commands = self.settings();
-        commands.push(MotionCommand::From {
-            position: self.from,
-            axis: Some(self.axis),
-            name: String::new(),
-        });
+        let position = self.from - self.delta.unwrap_or_default();
+        commands.push(MotionCommand::From { position, axis: Some(self.axis), name: String::new() });
+        commands.extend(self.delta.map(|delta| MotionCommand::GoDelta(Delta::Vector(delta, None))));
         let start = |name: &str, role: &Placed| StartSurface {
             relation: role.relation,
             surface: named(name, role.geometry.clone()),
         };
-        commands.push(MotionCommand::Start(vec![
-            start("DS", &self.drive),
-            start("PS", &self.part),
-            start("ST", &self.first),
-        ]));
+        let mut drive = start("DS", &self.drive);
+        if self.passes_drive {
+            drive.relation = Relation::Past;
+        }
+        let mut all = vec![drive, start("PS", &self.part), start("ST", &self.first)];
+        all.truncate(self.surfaces);
+        if self.surfaces == 1 {
+            commands.push(MotionCommand::PartSurface(named("PS", self.part.geometry.clone())));
+        }
+        commands.push(MotionCommand::Start(all));
         commands.extend(self.onward(&self.forward, &self.stop));
         commands
     }
@@ -223,7 +316,7 @@ impl Case {
                 drive: named("DS", self.drive.geometry.clone()),
                 checks: vec![CheckSurface {
                     relation: stop.relation,
-                    occurrence: 1,
+                    occurrence: stop.occurrence,
                     surface: named("CS", stop.geometry.clone()),
                     label: None,
                 }],
@@ -264,6 +357,7 @@ impl Case {
             drive_side: if mirrored { other(self.drive_side) } else { self.drive_side },
             forward: direction(&self.forward),
             reach: self.reach * factor,
+            delta: self.delta.map(|delta| matrix.apply_vector(&delta)),
             maximum_step: self.maximum_step * factor,
             ..self.clone()
         }

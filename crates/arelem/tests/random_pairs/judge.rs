@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// How often a motion may ask whether it is cancelled: the budget of its clearances, more or less, in engine and verifier.
-const BUDGET: u32 = 100_000;
+const BUDGET: u32 = 1_500_000;
 
 /// What became of a motion.
 #[derive(Debug, Clone)]

@@ -104,7 +104,7 @@ fn steepness(case: &Case, path: &CutSequence) -> f64 {
 
 fn wall(at: &Vec3, normal: &Vec3) -> Placed {
     let geometry = plane(normal.x, normal.y, normal.z, normal.dot(at));
-    Placed { geometry, relation: Relation::On, side: 1.0 }
+    Placed { geometry, relation: Relation::On, side: 1.0, occurrence: 1 }
 }
 
 /// Back from the end to the plane of the start.
@@ -148,7 +148,7 @@ fn subdivided(case: &Case, path: &CutSequence) -> Result<(), String> {
     let middle = from + (to - from) * MIDDLE;
     // The plane must not be met before.
     let first = path.points[..half].iter().chain([&path.start]).all(|p| (p.tip - middle).dot(&along) < 0.0);
-    if !first || along.dot(&path.forward) < SQUARE {
+    if !first || case.stop.occurrence > 1 || along.dot(&path.forward) < SQUARE {
         return Ok(());
     }
     let mut runner = Runner::new();

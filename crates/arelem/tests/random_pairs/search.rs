@@ -21,6 +21,8 @@ const CORRECTIONS: u32 = 25;
 const STEPS_TO_STOP: f64 = 60.0;
 /// The path is followed this many times as far as the check surface was laid.
 const FAR: f64 = 3.0;
+/// Cosine between the direction asked for and the path from which the direction is settled: two degrees from square.
+const LEAST_FORWARD: f64 = 0.0349;
 /// A step is halved this often before the path counts as ended.
 const HALVINGS: u32 = 6;
 
@@ -62,7 +64,7 @@ impl<'a> Reader<'a> {
     fn role(&self, placed: &Placed, side: f64) -> Role {
         Role {
             surface: case::surface(placed),
-            relation: if placed.relation == Relation::Past { Relation::To } else { placed.relation },
+            relation: if placed.relation == Relation::On { Relation::On } else { Relation::To },
             side,
             inside_tolerance: 1e3,
             outside_tolerance: 1e3,
@@ -160,7 +162,9 @@ impl<'a> Reader<'a> {
     fn start(&self) -> Option<Vec3> {
         let case = self.case;
         if case.is_certain {
-            return Some(case.place);
+            return (!matches!(case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart))
+                .then_some(case.place)
+                .or_else(|| self.settle(&(case.place - case.forward * case.reach), Wanted::First, None));
         }
         let mut places = vec![case.from, case.place];
         for k in 0..27 {
@@ -199,7 +203,19 @@ impl<'a> Reader<'a> {
     /// Whether the motion from a start (or from where the search finds one) has a solution.
     pub(crate) fn search(&self, start: Option<Vec3>) -> Found {
         let Some(mut tip) = start.or_else(|| self.start()) else { return Found::NoStart };
-        let Some(mut sense) = self.tangent(&tip, &self.case.forward) else { return Found::Ends(0.0) };
+        // Directions count across the tool axis.
+        let Case { forward, axis, .. } = self.case;
+        let Some(wanted) = (forward - axis * axis.dot(forward)).try_normalize(1e-9) else {
+            return Found::Ends(0.0);
+        };
+        let Some(mut sense) = self.tangent(&tip, &wanted) else { return Found::Ends(0.0) };
+        // The motion cannot begin across the path.
+        if sense.dot(&wanted).abs() <= LEAST_FORWARD {
+            return Found::Ends(0.0);
+        }
+        let stops_at_tangency =
+            matches!(self.case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart);
+        let mut met = 0;
         let band = self.case.inside.max(self.case.outside);
         let long = self.case.reach / STEPS_TO_STOP;
         let mut length = 0.0;
@@ -207,6 +223,18 @@ impl<'a> Reader<'a> {
         // No part of the tool moves farther than the tool end: so far the check surface need not be read again.
         let mut last: Option<(Vec3, f64)> = None;
         while length < FAR * self.case.reach + 1.0 {
+            if stops_at_tangency {
+                // It was laid there.
+                if (self.case.place - tip).norm() <= 1.5 * long {
+                    return Found::Path(length);
+                }
+                let Some((next, next_sense)) = self.step(&tip, &sense, long) else {
+                    return Found::Ends(length);
+                };
+                length += (next - tip).norm();
+                (tip, sense) = (next, next_sense);
+                continue;
+            }
             let value = match last {
                 Some((at, value)) if (tip - at).norm() + band < value.abs() => value,
                 _ => {
@@ -225,7 +253,8 @@ impl<'a> Reader<'a> {
                         Relation::Past => now,
                         _ => true,
                     };
-                    if wanted {
+                    met += u32::from(wanted);
+                    if met >= self.case.stop.occurrence {
                         return Found::Path(length);
                     }
                     status = Some(now);

@@ -16,6 +16,8 @@ use crate::{
 const MAX_TRIALS: u32 = 60;
 /// Trials that try to lengthen a vector already proven.
 const LENGTHENINGS: u32 = 4;
+/// Length, relative to the size of the coordinates, below which a vector leads nowhere.
+const LEAST_VECTOR: f64 = 1e-10;
 /// A vector whose length could grow by less than this share is long enough.
 const LONG_ENOUGH: f64 = 6e-4;
 /// Share of the predicted length that is tried.
@@ -46,6 +48,8 @@ pub(super) struct Stepper<'a> {
     curvature: Option<[f64; 2]>,
     /// How much longer than predicted the last vector came out.
     correction: f64,
+    /// Where the path last turned on the spot, and its direction until then.
+    turned: Option<(Vec3, Vec3)>,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
 }
@@ -63,7 +67,15 @@ struct Trial {
 
 impl<'a> Stepper<'a> {
     pub(super) fn new(prepared: &'a Prepared, maximum: f64, cancel: &'a dyn Fn() -> bool) -> Self {
-        Self { prepared, maximum, cancel, curvature: None, correction: 1.0, ledgers: Default::default() }
+        Self {
+            prepared,
+            maximum,
+            cancel,
+            curvature: None,
+            correction: 1.0,
+            turned: None,
+            ledgers: Default::default(),
+        }
     }
 
     fn roles(&self) -> [&Working; 2] {
@@ -80,9 +92,13 @@ impl<'a> Stepper<'a> {
         let places: Vec<SecondPlace> =
             CORNER_PROBES.iter().filter_map(|share| self.second_place(here, *share)).collect();
         for tangent in tangents_beyond(here, &places) {
+            if self.leads_back(here, &tangent) {
+                continue;
+            }
             let turned = Vertex { tangent, ..*here };
             self.curvature = None;
             if let Ok(next) = self.onward(&turned, cap) {
+                self.turned = Some((here.tip, here.tangent));
                 *here = turned;
                 return Ok(next);
             }
@@ -91,6 +107,12 @@ impl<'a> Stepper<'a> {
             (MotionFailure::IterationLimit { .. }, Some(place)) => place.prevents(self.prepared, here),
             (failure, _) => failure,
         })
+    }
+
+    /// True near a place where the path has turned on the spot, if it now would go back from where it came.
+    fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
+        let near = CORNER_BANDS * (self.prepared.part.band() + self.prepared.drive.band());
+        self.turned.is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
     }
 
     /// The contacts so many bands ahead, if one of them is another than here.
@@ -115,7 +137,7 @@ impl<'a> Stepper<'a> {
         let mut best: Option<Trial> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
-        let least = 1e-10 * self.prepared.size;
+        let least = LEAST_VECTOR * self.prepared.size;
         for _ in 0..MAX_TRIALS {
             if length <= least {
                 break;
@@ -262,7 +284,10 @@ impl<'a> Stepper<'a> {
     fn judge(&self, here: &Vertex, vertex: Vertex, chord: Vec3, reached: f64) -> Option<Trial> {
         let forward = chord.dot(&here.tangent) > 0.5 * reached;
         let least_cosine = if reached <= self.corner() { 0.0 } else { LEAST_TURN_COSINE };
-        if !forward || reached <= 0.0 || vertex.tangent.dot(&here.tangent) < least_cosine {
+        if !forward
+            || reached <= LEAST_VECTOR * self.prepared.size
+            || vertex.tangent.dot(&here.tangent) < least_cosine
+        {
             return None;
         }
         let vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };

@@ -1,6 +1,9 @@
 //! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
 
-use apt_geometry::{Vec3, motion::CheckSurface};
+use apt_geometry::{
+    Vec3,
+    motion::{CheckSurface, Relation},
+};
 
 use super::Vertex;
 use crate::{
@@ -14,12 +17,24 @@ use crate::{
 /// Bound of the bisection along one cut vector.
 const MAX_ITERATIONS: u32 = 80;
 
+/// How exactly, relative to the size of the coordinates, a place where both surfaces are parallel is found.
+const POSITION: f64 = 1e-10;
+
 /// Whether tool and check surface touch where the path is parallel to it.
 enum Gap {
     /// They do, at this position and on this side of the check surface.
     Closed(Box<Vertex>, f64),
     /// They are this far apart.
     Open(f64),
+}
+
+/// A cut vector on which the slope of a check surface's clearance changes its sign.
+struct Stretch<'a> {
+    index: usize,
+    from: &'a Vertex,
+    to: &'a Vertex,
+    /// The sign at the start.
+    is_positive: bool,
 }
 
 /// Watches the check surfaces that stop at a tangency.
@@ -51,8 +66,8 @@ impl<'a> Watch<'a> {
             if before == 0.0 || (before > 0.0) == (after > 0.0) {
                 continue;
             }
-            let parallel = self.parallel(index, from, to, before > 0.0, 0.0)?;
-            let (vertex, side) = match self.touching(index, from, to, before > 0.0, parallel)? {
+            let stretch = Stretch { index, from, to, is_positive: before > 0.0 };
+            let (vertex, side) = match self.touching(&stretch)? {
                 Gap::Closed(vertex, side) => (vertex, side),
                 Gap::Open(gap) => {
                     if gap.abs() < self.nearest.abs() {
@@ -85,50 +100,68 @@ impl<'a> Watch<'a> {
         Ok((contact.gradient * side).dot(&vertex.tangent))
     }
 
-    /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the drive surface's
-    /// band: the surfaces may miss each other by as much as both bands allow.
-    fn touching(
-        &self,
-        index: usize,
-        from: &Vertex,
-        to: &Vertex,
-        positive: bool,
-        parallel: Vertex,
-    ) -> Result<Gap, MotionFailure> {
-        let Prepared { drive, size, .. } = self.prepared;
-        let check = &self.prepared.checks[index];
+    /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the band of the surface
+    /// that it is tangent to: the two may miss each other by as much as both bands allow. Looked for on the path at rest,
+    /// then where the tool touches part and drive surface exactly.
+    fn touching(&self, stretch: &Stretch<'_>) -> Result<Gap, MotionFailure> {
+        let Prepared { part, drive, .. } = self.prepared;
+        let at_rest = self.touching_about(stretch, [0.0; 2])?;
+        if matches!(at_rest, Gap::Closed(..)) {
+            return Ok(at_rest);
+        }
+        Ok(match self.touching_about(stretch, [-part.rest(), -drive.rest()])? {
+            Gap::Open(_) => at_rest,
+            closed => closed,
+        })
+    }
+
+    /// The same, with these shifts added to the clearances of part and drive surface at rest.
+    fn touching_about(&self, stretch: &Stretch<'_>, base: [f64; 2]) -> Result<Gap, MotionFailure> {
+        let Prepared { part, drive, size, .. } = self.prepared;
+        let parallel = self.parallel(stretch, base)?;
+        let check = &self.prepared.checks[stretch.index];
         let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
         if check.holds(contact.clearance, *size) {
             return Ok(Gap::Closed(Box::new(parallel), side));
         }
-        let guard = GUARD * check.band();
-        let missing = contact.clearance.clamp(low + guard, high - guard) - contact.clearance;
-        let along_drive = (contact.gradient.dot(&parallel.drive.gradient)).signum();
-        let shift = missing * along_drive;
-        if !drive.holds(drive.rest() + shift, *size) {
+        let to_part = self.checks[stretch.index].relation == Relation::TangentToPart;
+        let (partner, its_base, against) = if to_part {
+            (part, base[0], parallel.part.gradient)
+        } else {
+            (drive, base[1], parallel.drive.gradient)
+        };
+        let sense = contact.gradient.dot(&against).signum();
+        let gap = contact.clearance;
+        // A little inside the check surface's band, or at its limit where the partner's band begins.
+        for guard in [GUARD * check.band(), 0.0] {
+            let shift = its_base + sense * (gap.clamp(low + guard, high - guard) - gap);
+            if !partner.holds(partner.rest() + shift, *size) {
+                continue;
+            }
+            let shifted =
+                self.parallel(stretch, if to_part { [shift, base[1]] } else { [base[0], shift] })?;
+            let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
+            let outside_by = (low - contact.clearance).max(contact.clearance - high);
+            if outside_by <= POSITION * size {
+                return Ok(Gap::Closed(Box::new(shifted), side));
+            }
             return Ok(Gap::Open(contact.clearance));
         }
-        let shifted = self.parallel(index, from, to, positive, shift)?;
-        let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
-        let holds = check.holds(contact.clearance, *size);
-        Ok(if holds { Gap::Closed(Box::new(shifted), side) } else { Gap::Open(contact.clearance) })
+        Ok(Gap::Open(gap))
     }
 
-    /// The position on both surfaces where the path is parallel to the check surface; `shift` is added to the drive
-    /// surface's clearance at rest.
+    /// The position on both surfaces where the path is parallel to the check surface; the shifts are added to the clearances
+    /// of part and drive surface at rest.
     fn parallel(
         &self,
-        index: usize,
-        from: &Vertex,
-        to: &Vertex,
-        positive: bool,
-        shift: f64,
+        &Stretch { index, from, to, is_positive }: &Stretch<'_>,
+        shift: [f64; 2],
     ) -> Result<Vertex, MotionFailure> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions = [
-            Condition::Clearance(&part.gauge, part.rest()),
-            Condition::Clearance(&drive.gauge, drive.rest() + shift),
+            Condition::Clearance(&part.gauge, part.rest() + shift[0]),
+            Condition::Clearance(&drive.gauge, drive.rest() + shift[1]),
         ];
         let at = |share: f64| -> Result<Vertex, MotionFailure> {
             let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;
@@ -147,7 +180,7 @@ impl<'a> Watch<'a> {
             if middle <= low || middle >= high {
                 break;
             }
-            if (self.slope(index, &at(middle)?)? > 0.0) == positive {
+            if (self.slope(index, &at(middle)?)? > 0.0) == is_positive {
                 low = middle;
             } else {
                 high = middle;
