@@ -163,6 +163,10 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
                 .map(|vector| Cure::SurfaceVector { role: *role, vector })
                 .collect()
         }
+        (MotionFailure::StartUpAmbiguous { places }, MotionCommand::Start(_)) => {
+            let towards = |place: &Vec3| state.tip.and_then(|tip| (place - tip).try_normalize(0.0));
+            places.iter().filter_map(towards).map(Cure::Direction).collect()
+        }
         (
             MotionFailure::NotReachedAlong { .. }
             | MotionFailure::OffsetWithoutDirection

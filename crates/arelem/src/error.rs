@@ -226,6 +226,12 @@ pub enum MotionFailure {
         /// Iterations made.
         iterations: u32,
     },
+    /// Several positions are equally near: which of them is meant is not known.
+    #[error("start-up with two answers: {} and {}", places[0], places[1])]
+    StartUpAmbiguous {
+        /// Two of them.
+        places: [Vec3; 2],
+    },
     /// The tool is out of tolerance of the part (502) or drive surface (503) at the start of a cut.
     #[error("{role:?} surface out of tolerance at the start: {clearance} not in [-{inside}, {outside}]")]
     OutOfToleranceAtStart {
@@ -341,7 +347,9 @@ impl MotionFailure {
     /// The APT III diagnostic number.
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
-            Self::Cancelled | Self::NotFinite | Self::NoTolerance { .. } => return None,
+            Self::Cancelled | Self::NotFinite | Self::NoTolerance { .. } | Self::StartUpAmbiguous { .. } => {
+                return None;
+            }
             Self::NoPosition => 307,
             Self::Cutter(error) => return error.apt3(),
             Self::AxisUndetermined { cause, .. } => cause.apt3(),

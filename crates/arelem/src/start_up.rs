@@ -1,5 +1,6 @@
 //! Start-up motions (STRTUP): GO with one to three surfaces, and OFFSET.
 
+mod ambiguous;
 mod around;
 mod directed;
 mod plane;
@@ -215,7 +216,11 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
     if work.roles.iter().zip(&leans).any(|(r, before)| (r.lean > 0.0) != *before) {
         tip = settle(work, guide, &tip)?;
     }
-    Ok(tip)
+    let directed = work.state.directions.iter().any(Option::is_some);
+    match ambiguous::twin(work, &tip).filter(|_| !directed) {
+        Some(other) => Err(MotionFailure::StartUpAmbiguous { places: [tip, other] }),
+        None => Ok(tip),
+    }
 }
 
 fn is_following(work: &StartUp<'_>) -> bool {

@@ -131,6 +131,8 @@ pub struct Story {
     pub start: ToolPosition,
     /// Where it is then.
     pub end: ToolPosition,
+    /// The greatest angle between the tool axis on the way and that at the start, radians.
+    pub turned: f64,
     /// Sense of travel at the start; none for start-up motions.
     pub forward: Option<Vec3>,
     /// Corrections that bring the tool onto its surfaces at the end, from the position before; none in closed form.
@@ -167,11 +169,21 @@ pub fn tell(state: &State, command: &MotionCommand, sequence: &CutSequence) -> O
         surfaces: teller.surfaces(&end),
         start: sequence.start,
         end,
+        turned: sequence
+            .points
+            .iter()
+            .map(|point| angle(&sequence.start.axis, &point.axis))
+            .fold(0.0, f64::max),
         forward,
         corrections: if route == Route::ClosedForm { None } else { teller.corrections(&end) },
         vectors: teller.vectors(command),
         minimum: sequence.minimum,
     })
+}
+
+/// Angle between two unit vectors, radians.
+fn angle(a: &Vec3, b: &Vec3) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b))
 }
 
 /// A role of the sequence that can be measured.

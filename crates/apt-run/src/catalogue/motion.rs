@@ -200,6 +200,11 @@ fn start(failure: &Failure) -> Option<Text> {
             ),
         )
         .hint("start closer, or give a direction by INDIRV"),
+        Failure::StartUpAmbiguous { places: [first, second] } => say(
+            "APT0628",
+            format!("the start-up has more than one answer: {} and {} are equally near", place(first), place(second)),
+        )
+        .hint("give a direction by INDIRV, or start nearer to one of them"),
         Failure::OutOfToleranceAtStart { role: name, clearance, inside, outside, contact } => say(
             "APT0625",
             format!(

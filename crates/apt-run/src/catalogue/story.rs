@@ -16,6 +16,7 @@ use super::{
 pub fn lines(story: &Story) -> Vec<String> {
     let mut lines = vec![route(story)];
     lines.extend(story.surfaces.iter().map(surface));
+    lines.extend(axis(story));
     lines.push(way(story));
     lines.extend(groups(&story.vectors).into_iter().map(group));
     lines
@@ -59,6 +60,22 @@ fn surface(told: &StorySurface) -> String {
         number(-told.inside),
         number(told.outside),
     )
+}
+
+/// Angles below this are rounding, radians.
+const NO_ANGLE: f64 = 1e-9;
+
+/// How the tool axis stands, unless it stands upright all along.
+fn axis(story: &Story) -> Option<String> {
+    let [start, end] = [&story.start.axis, &story.end.axis].map(|axis| place(&axis.map(rounded_axis)));
+    if story.turned > NO_ANGLE {
+        let most = number((story.turned.to_degrees() * 1e3).round() / 1e3);
+        return Some(format!(
+            "the tool axis turns from {start} to {end}, {most} degrees from its start at most"
+        ));
+    }
+    let upright = story.start.axis.x.hypot(story.start.axis.y) <= NO_ANGLE && story.start.axis.z > 0.0;
+    (!upright).then(|| format!("the tool axis is {start} all along"))
 }
 
 fn way(story: &Story) -> String {
@@ -146,6 +163,11 @@ fn rounded(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }
 
+/// Components of the tool axis: six decimals are a fifth of a second of arc.
+fn rounded_axis(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use expect_test::expect;
@@ -162,6 +184,24 @@ mod tests {
 
     const PROGRAM: &str = "CUTTER/.5\nL1=LINE/0,0,1,0\nC1=CIRCLE/5,2,2\nFROM/0,2,0\nGO/TO,L1\n\
                            OUTTOL/.01\nTLRGT\nL2=LINE/5,0,5,9\nINDIRV/1,0,0\nGO/TO,C1\nGORGT/C1,ON,2,INTOF,L2\nFINI\n";
+
+    #[test]
+    fn an_axis_that_turns_or_leans_is_told() {
+        let program = |axis: &str| {
+            format!(
+                "CUTTER/.5\nINTOL/.001\nOUTTOL/.001\nSP=SPHERE/0,0,0,5\nPL=PLANE/0,1,0,0\nFROM/0,0,7\nMULTAX\nTLAXIS/{axis}\n\
+                 GO/ON,PL,TO,SP,ON,(PLANE/1,0,0,0)\nINDIRV/1,0,0\nTLON,GOFWD/PL,ON,(PLANE/1,0,0,2.5)\nFINI\n"
+            )
+        };
+        let line = |axis: &str| {
+            let story = told(&program(axis), 11);
+            story.lines().find(|line| line.starts_with("the tool axis")).unwrap_or_default().to_owned()
+        };
+        expect!["the tool axis turns from (0, 0, 1) to (0.49995, 0, 0.866054), 29.997 degrees from its start at most"]
+            .assert_eq(&line("NORMPS"));
+        expect!["the tool axis is (0, 0.6, 0.8) all along"].assert_eq(&line("0,.6,.8"));
+        expect![""].assert_eq(&line("0,0,1"));
+    }
 
     #[test]
     fn a_story_is_told_in_sentences() {

@@ -213,3 +213,43 @@ fn a_later_crossing_in_the_motion_before_is_found() {
     let other = crate::error::MotionFailure::NoCutter { start_up: false };
     assert_eq!(earlier(before, &second, &other, &mut carry_out), None);
 }
+
+#[test]
+fn a_start_up_with_several_answers_is_named_and_a_direction_settles_it() {
+    let floor = plane(0.0, 0.0, 1.0, 0.0);
+    let (axis, ring, right) = (line(-9.0, 0.0, 9.0, 0.0), circle(0.0, 0.0, 2.0), circle(3.0, 0.0, 2.0));
+    let hollow = crate::tests::sphere(0.0, 0.0, 2.5, 4.0);
+    let oval = crate::tests::quadric([1.0 / 16.0, 0.25, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    // Both crossings of line and circle, from the middle between them; of two circles; all around the centre of a circle, on
+    // the axis of a sphere; both sides of an ellipse.
+    for (from, surfaces) in [
+        (v(0.0, 5.0, 0.0), vec![(On, &axis), (To, &floor), (On, &ring)]),
+        (v(0.0, 3.0, 0.0), vec![(To, &ring), (To, &floor), (To, &axis)]),
+        (v(1.5, 0.0, 0.0), vec![(On, &ring), (To, &floor), (On, &right)]),
+        (v(0.0, 0.0, 0.0), vec![(To, &ring)]),
+        (v(0.0, 0.0, 1.0), vec![(To, &ring), (To, &floor)]),
+        (v(0.0, 0.0, 0.0), vec![(To, &hollow)]),
+        (v(0.0, 0.0, 0.0), vec![(To, &oval), (To, &floor)]),
+    ] {
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(from.x, from.y, from.z);
+        let (state, command) = (p.state.clone(), start(&surfaces));
+        let failure = p.attempt(&command).expect_err("several answers");
+        let crate::error::MotionFailure::StartUpAmbiguous { places } = failure else {
+            panic!("{surfaces:?}: {failure:?}")
+        };
+        let far = places.map(|place| (place - from).norm());
+        assert!((far[0] - far[1]).abs() < 1e-6 && (places[0] - places[1]).norm() > 1.0, "{places:?}");
+        let found = remedies(&state, &command, &failure, &|| false);
+        assert_eq!(found.len(), 2, "{surfaces:?}: {found:?}");
+        for (remedy, place) in found.iter().zip(places) {
+            assert!(matches!(remedy.cure, Cure::Direction(_)), "{found:?}");
+            assert!((remedy.end - place).norm() < 0.01, "{surfaces:?}: {remedy:?}, not {place:?}");
+        }
+        // A little nearer to one of them there is no doubt.
+        let nearer = from + (places[1] - from) * 0.01;
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(nearer.x, nearer.y, nearer.z).run(&command);
+        assert!((p.tip() - places[1]).norm() < 0.05, "{:?}", p.tip());
+    }
+}

@@ -29,12 +29,22 @@ pub(super) fn solve(work: &mut StartUp<'_>) -> Result<Option<Vec3>, MotionFailur
     })?;
     let tip = match direction {
         Some(direction) => along(work, &curve, &direction)?,
-        None => nearest(work, &curve)?,
+        None => match nearest(work, &curve)? {
+            Nearest::One(tip) => tip,
+            Nearest::Several(places) => {
+                let places = places.map(|place| on_part(work, &place));
+                return Err(MotionFailure::StartUpAmbiguous { places });
+            }
+        },
     };
-    Ok(Some(match work.roles.get(1) {
-        Some(part) => to_part(work, part, &tip),
-        None => tip,
-    }))
+    Ok(Some(on_part(work, &tip)))
+}
+
+/// The nearest positions to the drive surface.
+enum Nearest {
+    One(Vec3),
+    /// Around the centre of a circle: two of them.
+    Several([Vec3; 2]),
 }
 
 /// True if the route applies.
@@ -73,11 +83,13 @@ fn stand_off(work: &StartUp<'_>, drive: &Working) -> f64 {
     if drive.gauge.on { 0.0 } else { drive.gauge.side * (work.tool.radius() + drive.gauge.thickness) }
 }
 
-fn nearest(work: &StartUp<'_>, curve: &Curve) -> Result<Vec3, MotionFailure> {
+fn nearest(work: &StartUp<'_>, curve: &Curve) -> Result<Nearest, MotionFailure> {
     let drive = &work.roles[0];
     let off = stand_off(work, drive);
     match curve {
-        Curve::Line { normal, distance } => Ok(work.tip - normal * (normal.dot(&work.tip) - distance - off)),
+        Curve::Line { normal, distance } => {
+            Ok(Nearest::One(work.tip - normal * (normal.dot(&work.tip) - distance - off)))
+        }
         Curve::Circle { center, radius } => {
             let wanted = radius + off;
             if wanted < 0.0 {
@@ -85,9 +97,9 @@ fn nearest(work: &StartUp<'_>, curve: &Curve) -> Result<Vec3, MotionFailure> {
             }
             let (_, across, radial) = work.tool.split(&(work.tip - center));
             if across <= 1e-12 * radius {
-                return Err(MotionFailure::SideUnknown { role: RoleName::Drive, distance: -radius });
+                return Ok(Nearest::Several([wanted, -wanted].map(|way| work.tip + radial * way)));
             }
-            Ok(work.tip + radial * (wanted - across))
+            Ok(Nearest::One(work.tip + radial * (wanted - across)))
         }
     }
 }
@@ -137,8 +149,9 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
     Err(MotionFailure::NoneAhead { check: 0, relation, found })
 }
 
-/// Along the tool axis to the part plane.
-fn to_part(work: &StartUp<'_>, part: &Working, tip: &Vec3) -> Vec3 {
+/// Along the tool axis to the part plane, if there is one.
+fn on_part(work: &StartUp<'_>, tip: &Vec3) -> Vec3 {
+    let Some(part) = work.roles.get(1) else { return *tip };
     let contact = part.gauge.contact(&work.tool, tip);
     let cosine = contact.gradient.dot(&work.tool.axis);
     tip - work.tool.axis * (contact.clearance / cosine)

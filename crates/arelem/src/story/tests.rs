@@ -96,3 +96,19 @@ fn a_mere_move_has_no_story() {
     let command = MotionCommand::NoPartSurface;
     assert_eq!(tell(&p.state, &command, p.last()), None);
 }
+
+#[test]
+fn a_turning_axis_is_told() {
+    let (ball, middle) = (sphere(0.0, 0.0, 0.0, 5.0), plane(0.0, 1.0, 0.0, 0.0));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5]).from(0.0, 0.0, 7.0);
+    p.run(&MotionCommand::ToolAxis(apt_geometry::motion::ToolAxis::Normal { part: true }));
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let told = story(&mut p, &start(&[(On, &middle), (To, &ball), (On, &x(0.0))]));
+    assert!(told.turned < 1e-9, "{}", told.turned);
+    p.indirv(1.0, 0.0, 0.0);
+    let told = story(&mut p, &motion(Turn::Forward, &middle, &[(On, 1, &x(2.5))]));
+    // In a clearance of half the band, as at the end of each motion.
+    let expected = (2.5f64 / 5.0005).asin();
+    assert!((told.turned - expected).abs() < 1e-5, "{} {expected}", told.turned);
+}
