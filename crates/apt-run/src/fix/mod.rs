@@ -56,6 +56,14 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
         FindingKind::Redefined { name, .. } => {
             here.line_before("CANON/ON", format!("Allow {name} to be defined again")).into_iter().collect()
         }
+        FindingKind::OlderSpelling { present, .. } => {
+            let edits = vec![(here.bytes(finding.origin.range), present.to_string())];
+            vec![Fix { title: format!("Write {present}"), edits, preferred: true }]
+        }
+        FindingKind::AvoidanceWithoutCheck => here
+            .line_before("CHKSRF/PS,ON", "Check the part surface for interference".to_owned())
+            .into_iter()
+            .collect(),
         _ => Vec::new(),
     }
 }

@@ -77,8 +77,6 @@ impl Evaluator<'_> {
         if state.avoidance.enabled && !state.checked.part && state.checked.named.is_empty() {
             self.report(FindingKind::AvoidanceWithoutCheck, major.range);
         }
-        // The path is not computed yet: the run passes over what follows, as behind any motion that is missing.
-        self.report(FindingKind::RoutineNotAvailable { name: major.name() }, major.range);
         self.emit(RecordKind::Regional(Box::new(milling)), major.range);
     }
 }
