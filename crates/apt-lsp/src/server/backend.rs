@@ -1,8 +1,11 @@
 //! The handlers: each puts an event into the queue, or asks for a snapshot and has work done on it.
 
+mod sent_tokens;
+mod wishes;
+
 use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use serde_json::{Value, json};
 use tokio::sync::mpsc;
@@ -10,6 +13,7 @@ use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 use tower_lsp::ls_types::{self as lsp, ProgressToken, Uri};
 use tower_lsp::{Client, LanguageServer};
 
+use self::sent_tokens::SentTokens;
 use super::capabilities::{ClientFeatures, server_capabilities};
 use super::documents::{self, Event, Snapshot};
 use super::job::{self, Events};
@@ -22,9 +26,6 @@ use crate::settings::{self, Values};
 
 /// The server gave up the work, and the client may ask again (an error code of the protocol).
 const SERVER_CANCELLED: ErrorCode = ErrorCode::ServerError(-32802);
-
-/// Encoded tokens of a document, with the id under which the client knows them.
-type SentTokens = (String, Arc<Vec<lsp::SemanticToken>>);
 
 /// The server's side of one conversation.
 pub(super) struct Backend {
@@ -118,25 +119,6 @@ impl Backend {
         .await
     }
 
-    fn remember_tokens(&self, uri: Uri, id: String, tokens: Arc<Vec<lsp::SemanticToken>>) {
-        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(uri, (id, tokens));
-    }
-
-    fn sent_tokens(&self, uri: &Uri) -> Option<SentTokens> {
-        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()
-    }
-
-    async fn all_tokens(&self, uri: Uri) -> Result<SentTokens> {
-        let (id, tokens) = self
-            .ask("semantic tokens", uri.clone(), |snapshot, _| {
-                let found = snapshot.document.tokens(None);
-                Ok((snapshot.revision.to_string(), Arc::new(tokens::encode(&snapshot.index, &found))))
-            })
-            .await?;
-        self.remember_tokens(uri, id.clone(), Arc::clone(&tokens));
-        Ok((id, tokens))
-    }
-
     async fn formatted(&self, uri: Uri, range: Option<lsp::Range>) -> Result<Option<Vec<lsp::TextEdit>>> {
         self.ask("formatting", uri, move |snapshot, _| {
             let range = range.map(|range| snapshot.index.bytes(range));
@@ -178,38 +160,6 @@ impl Backend {
 
     pub(super) async fn cancel_progress(&self, params: lsp::WorkDoneProgressCancelParams) {
         self.cancellations.cancel(&params.token);
-    }
-
-    /// Asks the client for its settings. Never called by a handler itself: the answer comes through
-    /// the same queue as the message that the handler handles.
-    fn ask_for_settings(&self) {
-        let (client, events, outbox) = (self.client.clone(), self.events.clone(), self.outbox.clone());
-        tokio::spawn(async move {
-            let item = lsp::ConfigurationItem { scope_uri: None, section: Some("apt".to_owned()) };
-            match client.configuration(vec![item]).await {
-                Ok(values) => {
-                    let values = values.first().map(settings::of_editor).unwrap_or_default();
-                    let _ = events.send(Event::Settings(values));
-                }
-                Err(error) => outbox.warn(format!("the client does not tell its settings: {error}")),
-            }
-        });
-    }
-
-    fn watch_project_files(&self) {
-        let (client, outbox) = (self.client.clone(), self.outbox.clone());
-        tokio::spawn(async move {
-            let watcher =
-                json!({ "watchers": [{ "globPattern": format!("**/{}", settings::PROJECT_FILE) }] });
-            let registration = lsp::Registration {
-                id: "apt-lsp/project-files".to_owned(),
-                method: "workspace/didChangeWatchedFiles".to_owned(),
-                register_options: Some(watcher),
-            };
-            if let Err(error) = client.register_capability(vec![registration]).await {
-                outbox.warn(format!("the client does not watch project files: {error}"));
-            }
-        });
     }
 }
 
@@ -277,7 +227,7 @@ impl LanguageServer for Backend {
 
     async fn did_close(&self, params: lsp::DidCloseTextDocumentParams) {
         let uri = params.text_document.uri;
-        self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&uri);
+        self.forget_tokens(&uri);
         self.happened(Event::Closed(uri));
     }
 
