@@ -16,18 +16,25 @@ use crate::{
 pub struct Obstacle {
     surface: Arc<SculpturedSurface>,
     tree: PatchTree,
+    creased: bool,
 }
 
 impl Obstacle {
     /// Makes a surface ready.
     pub fn new(surface: Arc<SculpturedSurface>) -> Self {
         let tree = PatchTree::new(&surface.patches);
-        Self { surface, tree }
+        let creased = surface.neighbours.iter().flatten().flatten().any(|next| !next.smooth);
+        Self { surface, tree, creased }
     }
 
     /// The surface.
     pub fn surface(&self) -> &Arc<SculpturedSurface> {
         &self.surface
+    }
+
+    /// Whether patches meet at an angle somewhere.
+    pub fn is_creased(&self) -> bool {
+        self.creased
     }
 
     pub(crate) fn tree(&self) -> &PatchTree {

@@ -1,6 +1,8 @@
 //! The contact of the corner with the part surface: a ball that rolls down the projection line of a guide point
 //! (sculptured surfaces reference 4.2).
 
+mod crease;
+
 use apt_geometry::{
     Vec3,
     parametric::{Edge, PatchPoint, SculpturedSurface},
@@ -47,6 +49,8 @@ pub struct Contact {
     pub normal: Vec3,
     /// How far the ball centre is along the projection line.
     pub along_line: f64,
+    /// The ball touches an edge where patches meet at an angle: the normal is one of those between theirs.
+    pub on_crease: bool,
 }
 
 /// No contact was found.
@@ -133,7 +137,7 @@ impl RollingBall {
             let size = here.at.du.norm().max(here.at.dv.norm()) + self.radius;
             if distance <= RESIDUAL * size.max(here.center.norm()) {
                 let along_line = (here.center - self.origin).dot(&self.direction);
-                return Ok(Contact { place, at: here.at, normal: here.normal, along_line });
+                return Ok(Contact { place, at: here.at, normal: here.normal, along_line, on_crease: false });
             }
             let (a, b) = (here.by_u.dot(&first), here.by_v.dot(&first));
             let (c, d) = (here.by_u.dot(&second), here.by_v.dot(&second));

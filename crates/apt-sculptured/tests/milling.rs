@@ -441,6 +441,53 @@ fn nothing_is_told_where_there_is_nothing() {
     assert_eq!((flat.failure, flat.encounters.len()), (None, 0));
 }
 
+/// A roof or a trough along y of two planes that meet at x = 3, each with the slope given.
+fn two_planes(slope: f64) -> NamedSurface {
+    let flat = |from: f64, to: f64| {
+        let height = |x: f64| slope * (3.0 - x).abs();
+        let point = |i: usize, j: usize| {
+            let x = from + (to - from) * i as f64 / 3.0;
+            Vec3::new(x, 1.5 * j as f64, height(x))
+        };
+        Patch::from_points(&std::array::from_fn(|i| std::array::from_fn(|j| point(i, j))))
+    };
+    let patches = vec![flat(0.0, 3.0), flat(3.0, 6.0)];
+    let surface = SculpturedSurface::assembled(patches, Some((2, 1)), Vec::new(), 1.0, Mesh::default());
+    NamedSurface { name: "S".to_owned(), geometry: Geometry::Sculptured(Arc::new(surface)) }
+}
+
+/// Distance of a ball from the two planes, for its centre at height `z` over `x`.
+fn ball_over_planes(slope: f64, radius: f64, x: f64, z: f64) -> f64 {
+    let steps = 60_000;
+    let away = |k: i32| {
+        let at = 6.0 * f64::from(k) / f64::from(steps);
+        (x - at).hypot(z - slope * (3.0 - at).abs())
+    };
+    (0..=steps).map(away).fold(f64::INFINITY, f64::min) - radius
+}
+
+#[test]
+fn a_pass_goes_over_a_ridge_and_through_a_valley_with_an_edge() {
+    for slope in [-0.5, 0.5] {
+        let mut command = command(&HILL);
+        let surface = two_planes(slope);
+        let u = ParameterRange { low: 0.3, high: 1.7 };
+        command.guide.guide = Guide::Surface { surface: surface.clone(), u, v: RANGE };
+        command.part.surface = surface;
+        command.command = RegionalCommand::Path(pass([0.3, 0.5], FeedDirection::Spline, Sense::Plus));
+        let setting = setting(&[1.0, 0.5], 0.002);
+        let milled = run(&command, &setting);
+        assert_eq!(milled.failure, None, "slope {slope}");
+        for pose in milled.locations() {
+            let gap = ball_over_planes(slope, 0.5, pose.end.x, pose.end.z + 0.5);
+            assert!(gap >= -0.002 - 1e-6 && gap <= 0.002 + 1e-6, "slope {slope}: {gap} at {pose:?}");
+        }
+        let (first, last) = ends(&milled);
+        assert!((first.end.x - 0.9).abs() < 0.002 && (last.end.x - 5.1).abs() < 0.002);
+        assert!(milled.locations().count() < 60, "{}", milled.locations().count());
+    }
+}
+
 #[test]
 fn mistakes_have_their_numbers() {
     let good = setting(&[0.5, 0.25], 0.002);

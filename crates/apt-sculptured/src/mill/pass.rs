@@ -114,7 +114,7 @@ impl Job<'_> {
             .map_err(|cause| (Reduction::Station(cause), WITHOUT_LOCATION))?;
         let ball = self.ball_radius(course.stock);
         let [sharpest, _] = next.contact.curvature().principal();
-        if !self.part_is_guide && sharpest * ball > 1.0 {
+        if !self.part_is_guide && !next.contact.on_crease && sharpest * ball > 1.0 {
             let cause = Reduction::Misfit { radius: 1.0 / sharpest, tool: ball };
             return Err((cause, WITHOUT_LOCATION));
         }

@@ -71,7 +71,10 @@ impl Job<'_> {
         let guide = self.guide.at(parameters, course.direction)?;
         let forward = guide.along.normalize() * course.sign;
         let (contact, axis) = self.contact_and_axis(parameters, &guide, &forward, course.stock, from)?;
-        let curvature = contact.curvature().along(&guide.along);
+        let curvature = match contact.on_crease {
+            true => -1.0 / (EDGE_RADIUS * (self.tool.corner_radius() + course.stock)),
+            false => contact.curvature().along(&guide.along),
+        };
         let band = Band::new(self.setting.inside, self.setting.outside);
         let offset = course.stock + band.offset(curvature, self.setting.maximum_step.min(self.size));
         let sideways = from.map_or(-forward, |from| from.sideways);
@@ -127,7 +130,7 @@ impl Job<'_> {
         };
         let (mut axis, mut place) = (from.pose.axis, from.contact.place);
         for _ in 0..MOST_ROUNDS {
-            let contact = ball(&axis).contact_from(self.part.surface(), place)?;
+            let contact = ball(&axis).contact_on(&self.part, place)?;
             let next = self.axis(guide, &contact.normal, forward)?;
             if (next - axis).norm() <= AXIS_SETTLED {
                 return Ok((contact, next));
@@ -155,11 +158,11 @@ impl Job<'_> {
     ) -> Result<Contact, StationError> {
         let surface = self.part.surface();
         if let Some(from) = from {
-            return Ok(ball.contact_from(surface, from.contact.place)?);
+            return Ok(ball.contact_on(&self.part, from.contact.place)?);
         }
         if self.part_is_guide
             && let Some((patch, u, v)) = surface.locate(parameters[0], parameters[1])
-            && let Ok(contact) = ball.contact_from(surface, Place { patch, parameters: [u, v] })
+            && let Ok(contact) = ball.contact_on(&self.part, Place { patch, parameters: [u, v] })
         {
             return Ok(contact);
         }
@@ -196,6 +199,8 @@ fn leaning(guide: &GuidePoint, angle: f64) -> Vec3 {
     guide.normal * angle.cos() + across * angle.sin()
 }
 
+/// Radius of an edge on which the ball turns, as a share of that of the ball.
+const EDGE_RADIUS: f64 = 1e-6;
 /// Most rounds in which contact and axis settle.
 const MOST_ROUNDS: usize = 40;
 /// Change of the unit axis that is none: angles of one part in a hundred million move no tool by any tolerance.

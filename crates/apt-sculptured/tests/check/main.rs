@@ -162,6 +162,11 @@ fn a_checked_pose_costs_tens_of_cells_and_boxes() {
     assert!(ratio <= 1.5, "{small:?} and {large:?}");
 }
 
+/// The number of random cases: more in a longer run, by the environment.
+fn cases() -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(64)
+}
+
 /// A patch with a random net about the unit square, scaled to ten units.
 fn random_patch(z: &[f64]) -> TestSurface {
     let net: [[Vec3; 4]; 4] = std::array::from_fn(|i| {
@@ -189,7 +194,7 @@ fn random_patch(z: &[f64]) -> TestSurface {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases()) })]
 
     /// No filter clears a pose that the dense search finds in the surface, and depths agree.
     #[test]
