@@ -9,8 +9,8 @@ use apt_geometry::{
         matrix::CoordinatePlane,
     },
     definition::{
-        CurveShape, FlowInput, FlowMeasure, ParametricError, ParametricNode, SculpturedDefinition,
-        SegmentInput, SpaceCurveDefinition, SurfaceRange, SurfaceShape,
+        CurveShape, FlowInput, FlowMeasure, MeshRestriction, ParametricError, ParametricNode,
+        SculpturedDefinition, SegmentInput, SpaceCurveDefinition, SurfaceRange, SurfaceShape,
     },
     parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SegmentMeasure, SpaceCurve},
 };
@@ -226,6 +226,58 @@ proptest! {
             if let Ok(made) = SpaceCurveDefinition::plain(shape).define() {
                 prop_assert!(made.geometry.is_finite());
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    /// Whatever the numbers: a mesh is finite, meets its neighbours and holds its points, or says why not.
+    #[test]
+    fn wild_meshes_never_give_wild_surfaces(
+        heights in proptest::collection::vec(prop_oneof![-2.0..2.0f64, Just(0.0), Just(1e150)], 12),
+        tangent in proptest::option::of([-1.0..1.0f64, -1.0..1.0, -1.0..1.0]), collapse: bool, over in 0..2usize,
+    ) {
+        let mut rows: Vec<Vec<ParametricNode>> = (0..3)
+            .map(|row| (0..4).map(|column| {
+                let point = Vec3::new(f64::from(column), f64::from(row), heights[(4 * row + column) as usize]);
+                ParametricNode::plain(point)
+            }).collect())
+            .collect();
+        rows[1][2].tangent = tangent.map(Vec3::from);
+        if collapse {
+            let first = rows[0][0].point;
+            rows[0].iter_mut().for_each(|node| node.point = first);
+        }
+        let restriction =
+            [MeshRestriction::Free, MeshRestriction::Height(CoordinatePlane::Xy)][over];
+        let shape = SurfaceShape::Mesh { restriction, rows: rows.clone() };
+        if let Ok(made) = SculpturedDefinition::plain(shape).define() {
+            let surface = made.geometry;
+            prop_assert!(surface.is_finite());
+            for (row, line) in rows.iter().enumerate() {
+                for (column, node) in line.iter().enumerate() {
+                    let found = surface.evaluate_global(column as f64, row as f64).expect("inside").position;
+                    prop_assert!((found - node.point).norm() <= 1e-9 * node.point.norm().max(1.0));
+                }
+            }
+        }
+    }
+
+    /// Rows of numbers of any kind are a curve or surface that can be used, or an error.
+    #[test]
+    fn wild_rows_are_refused_or_usable(
+        arcs in 0..3usize, ranges in 0..2usize, segments in 0..3usize,
+        numbers in proptest::collection::vec(
+            prop_oneof![0.0..3.0f64, Just(0.0), Just(1.0), Just(2.0), Just(-1.0), Just(1e300), Just(f64::NAN)], 80),
+    ) {
+        let count = 16 * arcs + 4 * (arcs + 1) + 10 * ranges + 3 * segments;
+        let mut row = vec![arcs as f64, ranges as f64, segments as f64];
+        row.extend(numbers.iter().copied().cycle().take(count));
+        if let Ok(Geometry::SpaceCurve(curve)) = Geometry::from_canonical(GeometryKind::SpaceCurve, &row) {
+            let _ = loft(vec![curve.clone(), curve.clone()], vec![curve.clone(), curve.clone()]);
+            prop_assert!(curve.locate(0.5).is_some());
         }
     }
 }

@@ -74,9 +74,12 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
     let ends: Vec<f64> = (SURFACE_HEAD..patch_first).map(at).collect();
     let grow =
         ends.first().is_none_or(|first| *first == 0.0) && ends.windows(2).all(|pair| pair[0] < pair[1]);
-    if !(breaks == 0 || breaks == whole + 1 && grow) {
+    let last = ends.last().copied().unwrap_or(0.0);
+    let ends_whole = last.fract() == 0.0 && last <= whole as f64;
+    if !(breaks == 0 || breaks == whole + 1 && grow && ends_whole) {
         return Err(CanonicalError::Value { kind, position: 6, value: breaks as f64 });
     }
+    finite(kind, values)?;
     if at(3).abs() != 1.0 {
         return Err(CanonicalError::Value { kind, position: 3, value: at(3) });
     }
@@ -112,6 +115,18 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
         side: at(3),
         mesh,
     })
+}
+
+/// Every number of these forms is finite: what is made of them is measured and searched.
+fn finite(kind: GeometryKind, values: &[f64]) -> Result<(), CanonicalError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(position) => Err(CanonicalError::Value {
+            kind,
+            position,
+            value: values.get(position).copied().unwrap_or(f64::NAN),
+        }),
+        None => Ok(()),
+    }
 }
 
 fn neighbour_word(neighbour: &Option<Neighbour>) -> f64 {
@@ -188,6 +203,7 @@ pub(super) fn curve_from(values: &[f64]) -> Result<SpaceCurve, CanonicalError> {
     if values.len() != expected {
         return Err(CanonicalError::Count { kind, expected, found: values.len() });
     }
+    finite(kind, values)?;
     let control = |index: usize| {
         let first = CURVE_HEAD + ARC_VALUES * index;
         std::array::from_fn(|point| Vector4::from_fn(|axis, _| at(first + 4 * point + axis)))
@@ -210,7 +226,11 @@ pub(super) fn curve_from(values: &[f64]) -> Result<SpaceCurve, CanonicalError> {
             4 => FlowKind::Angle { center: vector(first + 2), axis: vector(first + 5) },
             other => return Err(CanonicalError::Value { kind, position: first, value: other as f64 }),
         };
-        Ok(FlowRange { kind: flow, first: head(first + 8)?, last: head(first + 9)? })
+        let (begin, end) = (head(first + 8)?, head(first + 9)?);
+        if begin >= end || end > arcs {
+            return Err(CanonicalError::Value { kind, position: first + 9, value: end as f64 });
+        }
+        Ok(FlowRange { kind: flow, first: begin, last: end })
     };
     let segment = |index: usize| -> Result<FlowSegment, CanonicalError> {
         let first = segment_first + SEGMENT_VALUES * index;
@@ -219,7 +239,11 @@ pub(super) fn curve_from(values: &[f64]) -> Result<SpaceCurve, CanonicalError> {
             2 => SegmentMeasure::Param,
             other => return Err(CanonicalError::Value { kind, position: first, value: other as f64 }),
         };
-        Ok(FlowSegment { measure, first: at(first + 1), last: at(first + 2) })
+        let (begin, end) = (at(first + 1), at(first + 2));
+        if begin < 0.0 || begin >= end || end > arcs as f64 {
+            return Err(CanonicalError::Value { kind, position: first + 2, value: end });
+        }
+        Ok(FlowSegment { measure, first: begin, last: end })
     };
     let ranges = (0..ranges).map(range).collect::<Result<Vec<_>, _>>()?;
     let segments = (0..segments).map(segment).collect::<Result<Vec<_>, _>>()?;

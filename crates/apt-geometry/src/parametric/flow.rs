@@ -111,6 +111,45 @@ impl FlowKind {
     }
 }
 
+impl FlowKind {
+    /// How fast this grows with the parameter of an arc.
+    fn rate(&self, arc: &CurveArc, t: f64) -> f64 {
+        let at = arc.evaluate(t);
+        match self {
+            FlowKind::Param => 1.0,
+            FlowKind::Arc { .. } => at.first.norm(),
+            FlowKind::Chord { direction } => direction.dot(&at.first).abs(),
+            FlowKind::Angle { center, axis } => {
+                let ray = at.position - center;
+                let ray = ray - axis * axis.dot(&ray);
+                (ray.cross(&at.first).dot(axis) / ray.norm_squared()).abs()
+            }
+        }
+    }
+}
+
+/// The parameter of an arc where an amount of flow from the low end is reached: Newton's steps, halving where they leave
+/// what is known to hold the place.
+fn place_of(kind: &FlowKind, arc: &CurveArc, [start, end]: [f64; 2], wanted: f64, whole: f64) -> f64 {
+    let (mut low, mut high) = (start, end);
+    let mut t = start + (end - start) * (wanted / whole);
+    for _ in 0..HALVINGS {
+        let over = kind.amount(arc, start, t).abs() - wanted;
+        if over <= 0.0 {
+            low = t
+        } else {
+            high = t
+        }
+        let next = t - over / kind.rate(arc, t);
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - t).abs() <= f64::EPSILON {
+            return next;
+        }
+        t = next;
+    }
+    t
+}
+
 /// The length of an arc between two parameters.
 fn length(arc: &CurveArc, from: f64, to: f64) -> f64 {
     let half = 0.5 * (to - from) / LENGTH_PIECES as f64;
@@ -130,6 +169,10 @@ impl Flow {
     /// # Errors
     /// The index of the range.
     pub fn check(&self, curve: &SpaceCurve) -> Result<(), usize> {
+        // A collapsed curve flows by its parameter alone.
+        if curve.size() == 0.0 {
+            return Ok(());
+        }
         for (index, range) in self.ranges.iter().enumerate() {
             let mut sense = 0.0;
             for arc in curve.arcs.get(range.first..range.last).unwrap_or_default() {
@@ -139,9 +182,7 @@ impl Flow {
                     if sense == 0.0 {
                         sense = amount.signum();
                     }
-                    // A collapsed curve flows by its parameter alone.
-                    let still = curve.size() == 0.0;
-                    if !still && (amount * sense <= 0.0 || !amount.is_finite()) {
+                    if amount * sense <= 0.0 || !amount.is_finite() {
                         return Err(index);
                     }
                 }
@@ -165,6 +206,11 @@ impl Flow {
         sum
     }
 
+    /// The range that holds an arc (index).
+    fn range_of(&self, arc: usize) -> Option<&FlowRange> {
+        self.ranges.iter().find(|range| (range.first..range.last).contains(&arc))
+    }
+
     /// The global parameter of the arcs at a local parameter of a segment (index); `None` if there is no such segment.
     pub fn arc_parameter(&self, curve: &SpaceCurve, segment: usize, local: f64) -> Option<f64> {
         let segment = self.segments.get(segment)?;
@@ -173,16 +219,18 @@ impl Flow {
         if segment.measure == SegmentMeasure::Param || total <= 0.0 || local <= 0.0 || local >= 1.0 {
             return Some(along(local.clamp(0.0, 1.0)));
         }
-        let (mut low, mut high) = (segment.first, segment.last);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.amount(curve, segment.first, middle) < local * total {
-                low = middle;
-            } else {
-                high = middle;
+        let mut left = local * total;
+        for (index, arc) in curve.arcs.iter().enumerate() {
+            let start = index as f64;
+            let (low, high) = ((segment.first - start).max(0.0), (segment.last - start).min(1.0));
+            let Some(range) = self.range_of(index).filter(|_| low < high) else { continue };
+            let amount = range.kind.amount(arc, low, high).abs();
+            if left <= amount {
+                return Some(start + place_of(&range.kind, arc, [low, high], left, amount));
             }
+            left -= amount;
         }
-        Some(0.5 * (low + high))
+        Some(segment.last)
     }
 
     /// The flow of a curve in equal parts.
@@ -204,22 +252,12 @@ impl Flow {
         let Some(part) = self.segments.get(segment) else { return 0.0 };
         let even = part.last - part.first;
         let total = self.amount(curve, part.first, part.last);
-        let range = self.ranges.iter().find(|range| (range.first..range.last).contains(&arc));
-        let (Some(range), Some(arc), SegmentMeasure::Length) = (range, curve.arcs.get(arc), part.measure)
+        let (Some(range), Some(arc), SegmentMeasure::Length) =
+            (self.range_of(arc), curve.arcs.get(arc), part.measure)
         else {
             return even;
         };
-        let at = arc.evaluate(t);
-        let rate = match range.kind {
-            FlowKind::Param => 1.0,
-            FlowKind::Arc { .. } => at.first.norm(),
-            FlowKind::Chord { direction } => direction.dot(&at.first).abs(),
-            FlowKind::Angle { center, axis } => {
-                let ray = at.position - center;
-                let ray = ray - axis * axis.dot(&ray);
-                (ray.cross(&at.first).dot(&axis) / ray.norm_squared()).abs()
-            }
-        };
+        let rate = range.kind.rate(arc, t);
         if total > 0.0 && rate > 0.0 { total / rate } else { even }
     }
 

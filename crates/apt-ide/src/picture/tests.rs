@@ -1,8 +1,11 @@
 //! The pictures hold what the scene holds, whatever it is.
 
+use std::sync::Arc;
+
 use apt_geometry::{
     Vec3,
     canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SpaceCurve},
 };
 
 use super::{Scene, SceneSurface, Segment, SegmentKind, html, projection::Bounds, svg, wireframe};
@@ -196,4 +199,28 @@ fn sample_pictures_can_be_looked_at() {
         std::fs::write(format!("{folder}/sample.svg"), picture).unwrap();
         std::fs::write(format!("{folder}/sample.html"), page).unwrap();
     }
+}
+
+#[test]
+fn patches_are_drawn_by_their_edges_and_middles() {
+    let bounds = Bounds { low: [-5.0; 3], high: [9.0; 3] };
+    let patch = |shift: f64| {
+        Patch::from_points(&std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                Vec3::new(shift + i as f64, j as f64, (shift + i as f64) * j as f64 * 0.2)
+            })
+        }))
+    };
+    let patches = vec![patch(0.0), patch(3.0)];
+    let surface = SculpturedSurface::assembled(patches, Some((2, 1)), Vec::new(), 1.0, Mesh::default());
+    let lines = wireframe::lines(&Geometry::Sculptured(Arc::new(surface.clone())), &bounds);
+    // Four edges and two middles of each, the common edge once.
+    assert_eq!(lines.len(), 11);
+    for place in lines.iter().flatten() {
+        let off =
+            surface.nearest(&Vec3::from(*place)).map(|near| (near.position - Vec3::from(*place)).norm());
+        assert!(off.is_ok_and(|off| off < 1e-9), "{place:?}");
+    }
+    let curve = SpaceCurve::of_arcs(vec![CurveArc::segment(&Vec3::zeros(), &Vec3::new(1.0, 2.0, 3.0))]);
+    assert_eq!(wireframe::lines(&Geometry::SpaceCurve(Arc::new(curve)), &bounds).len(), 1);
 }
