@@ -144,6 +144,15 @@ fn symbols(expected: &Value, ours: &Value, by_flow: &[String], problems: &mut Ve
 /// The true values of symbols that the peer gets wrong.
 fn true_values(quirk: &Value, ours: &Value, problems: &mut Vec<String>) {
     for (name, value) in quirk["true"].as_object().into_iter().flatten() {
+        // `NAME_xy`: the first two coordinates of a point.
+        if let Some((point, wanted)) = name.strip_suffix("_xy").zip(value.as_array()) {
+            let wanted: Vec<f64> = wanted.iter().filter_map(Value::as_f64).collect();
+            let found = numbers(&ours["symbols"][point]["canonical"]);
+            if !close(&wanted, found.get(..2).unwrap_or_default(), EXACT) {
+                problems.push(format!("symbol {point} is {found:?}, truly over {wanted:?}"));
+            }
+            continue;
+        }
         let (Some(wanted), found) = (value.as_f64(), numbers(&ours["symbols"][name]["canonical"])) else {
             continue;
         };

@@ -136,9 +136,9 @@ fn place_of(kind: &FlowKind, arc: &CurveArc, [start, end]: [f64; 2], wanted: f64
     for _ in 0..HALVINGS {
         let over = kind.amount(arc, start, t).abs() - wanted;
         if over <= 0.0 {
-            low = t
+            low = t;
         } else {
-            high = t
+            high = t;
         }
         let next = t - over / kind.rate(arc, t);
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
