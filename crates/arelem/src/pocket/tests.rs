@@ -350,3 +350,51 @@ proptest! {
         }
     }
 }
+
+/// Distance of a place from the path, all seen from above.
+fn distance_from_path(path: &[Vec3], place: &Vec3) -> f64 {
+    let distance = |pair: &[Vec3]| {
+        let run = pair[1] - pair[0];
+        let square = run.norm_squared();
+        let share = if square > 0.0 { ((place - pair[0]).dot(&run) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (pair[0] + run * share - place).norm()
+    };
+    path.windows(2).map(distance).fold((path[0] - place).norm(), f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// What the verifier says of the bottom, against a look at many places of it: with offsets that are reduced nothing is
+    /// left, whatever the shape; with those that are kept what is left is told.
+    #[test]
+    fn what_is_left_on_the_bottom_is_told_and_nothing_else(
+        corners in shapes(), (radius, numbers) in numbers(), keep in any::<bool>(), ball in any::<bool>(),
+    ) {
+        let points: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
+        // A flat end clears all of its width, a ball what the programmer takes for enough.
+        let cutter: &[f64] = if ball { &[2.0 * radius, radius] } else { &[2.0 * radius] };
+        let Ok(path) = clear(&state(cutter), &statement(numbers, keep, 1, &points), &|| false) else {
+            return Ok(());
+        };
+        let evidence = verify_pocket(&path, &|| false).unwrap();
+        let told = evidence.violations.iter().any(|violation| violation.rule == Rule::Cleared);
+        prop_assert!(keep || !told, "{:?}", evidence.violations);
+        // The area of the tool centre has the corners of the last pass: its places are their mixtures.
+        let (tips, wall) = (tips(&path), path.passes[2].points.iter().map(|at| at.tip).collect::<Vec<_>>());
+        let middle = wall.iter().sum::<Vec3>() / wall.len() as f64;
+        let width = if ball { path.effective_radius.min(radius) } else { radius };
+        let reach = width + path.tolerance.max(1e-6 * radius) + 1e-9;
+        let mut most = 0.0_f64;
+        for pair in wall.windows(2) {
+            for step in 0..8 {
+                let side = pair[0] + (pair[1] - pair[0]) * (f64::from(step) / 8.0);
+                for share in 1..=8 {
+                    let place = middle + (side - middle) * (f64::from(share) / 8.0);
+                    most = most.max(distance_from_path(&tips, &place));
+                }
+            }
+        }
+        prop_assert!(told || most <= reach, "{most} of {reach} from the path, and not told");
+    }
+}
