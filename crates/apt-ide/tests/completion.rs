@@ -157,3 +157,28 @@ fn the_nearest_names_are_chosen_from_very_many() {
     assert!(all.contains(&"P1999".to_owned()) && !all.contains(&"P7".to_owned()));
     assert!(all.len() < 600, "{}", all.len());
 }
+
+#[test]
+fn sculptured_statements_offer_what_may_come_next() {
+    const NAMES: &str = "$$ apt-lsp: dialect=apt4\nP1=POINT/0,0,0\nP2=POINT/2,0,0\nV1=VECTOR/0,0,1\n\
+        CV=SCURV/SPLINE,P1,P2\nSS=SSURF/RULED,CV,AXIS,V1\nPL=PLANE/0,0,1,5\n";
+    for (text, expected) in [
+        ("SMIL/$0", &["POSN", "PATH", "ZIGZAG", "PICKFD"][..]),
+        ("SMIL/PATH,DS,PARAM,0,0,$0", &["TANSPL", "CRSSPL"]),
+        ("SCON/DS,$0", &["SS", "CV"]),
+        ("SCON/PS,TO,$0", &["SS"]),
+        ("SCON/FEED,$0", &["PL"]),
+        ("CHKSRF/$0", &["PS", "SS"]),
+        ("X=SSURF/REVOLV,CV,AXIS,P1,V1,$0", &["CLW", "CCLW"]),
+        ("X=POINT/INTOF,$0", &["SS", "CV", "PL"]),
+        ("X=VECTOR/INTOF,SS,PARAM,0,0,1,$0", &["TANSPL", "CRSSPL", "NORMAL"]),
+        ("X=PARMF($0", &["UVAL", "VVAL", "PVAL", "TVAL", "SVAL"]),
+    ] {
+        let (analysis, offset) = marked(&format!("{NAMES}{text}\nFINI\n"));
+        analysis.program(&never).unwrap();
+        let offers: Vec<String> = analysis.completions(offset).into_iter().map(|one| one.label).collect();
+        for word in expected {
+            assert!(offers.iter().any(|offer| offer == word), "{text} offers {offers:?}");
+        }
+    }
+}

@@ -398,5 +398,8 @@ fn curves_and_surfaces_tell_their_size() {
         curve,
         "space curve of 1 arc, 2 long, from (0, 0, 0) to (2, 0, 0), inside (0, 0, 0) … (2, 0, 0)"
     );
-    assert!(text("S1").starts_with("sculptured surface of 1 patch"), "{}", text("S1"));
+    expect![[
+        r#"sculptured surface of 1 patch, inside (0, 0, 0) … (2, 2, 0), area 4, curvature 0 … 0 (positive where it is hollow on the side of its sign word)"#
+    ]]
+    .assert_eq(&text("S1"));
 }

@@ -108,3 +108,57 @@ fn typing_never_waits_for_an_evaluation() {
     assert_eq!((help.signatures.len() > 10, help.parameter.is_some()), (true, true));
     assert!(program.document().evaluated().is_none(), "it was evaluated");
 }
+
+/// What APT4 has of curves, surfaces and milling to type with.
+const SCULPTURED: &str = "$$ apt-lsp: dialect=apt4\nP1=POINT/0,0,0\nP2=POINT/2,0,0\nP3=POINT/2,2,0\nV1=VECTOR/0,0,1\n\
+    CV=SCURV/SPLINE,P1,P2,P3\nSS=SSURF/RULED,CV,AXIS,V1\nPL=PLANE/0,0,1,5\nMA=MATRIX/TRANSL,1,0,0\n";
+
+#[test]
+fn the_forms_of_sculptured_statements_follow_what_has_been_typed() {
+    for (text, expected) in [
+        ("X=SSURF/RULED,$0", "SSURF/RULED,<scurv>,AXIS,{vector|point,point}"),
+        ("X=SSURF/RULED,CV,AXIS,$0", "SSURF/RULED,scurv,AXIS,{<vector>|point,point}"),
+        (
+            "X=SSURF/REVOLV,CV,AXIS,P1,V1,$0",
+            "SSURF/REVOLV,scurv,AXIS,point,{point|vector},{<CLW>|CCLW},a1,a2",
+        ),
+        ("X=POINT/INTOF,SS,PARAM,.5,.5,$0", "POINT/INTOF,ssurf,PARAM,u,v,<k>"),
+        ("SCON/$0", "SCON/<INIT>,{ALL|DS|PS|FEED|STEPOV|AXIS}"),
+        ("SCON/DS,SS,PARAM,0,$0", "SCON/DS,ssurf,PARAM,ulo,<uhi>,vlo,vhi,{AT|ON},{NORMAL|vector}"),
+        ("SCON/DS,CV,PARAM,0,1,ON,$0", "SCON/DS,scurv,PARAM,ulo,uhi,{AT|ON},{<CRSSPL>|vector}"),
+        ("SCON/FEED,PL$0", "SCON/FEED,<plane>"),
+        ("SCON/AXIS,ATANGL,PS,5,CUTANG,$0", "SCON/AXIS,ATANGL,{DS|PS},alpha,CUTANG,<beta>"),
+        ("SMIL/POSN,DS,PARAM,0,0,INCR,$0", "SMIL/POSN,DS,PARAM,u,v,INCR,{<d>|vector|plane}"),
+        (
+            "SMIL/ZIGZAG,DS,PARAM,0,0,TANSPL,PLUS,$0",
+            "SMIL/ZIGZAG,DS,PARAM,u,v,{TANSPL|CRSSPL},{PLUS|MINUS},<STEPOV>,{PLUS|MINUS}[,skip]",
+        ),
+        (
+            "AVCTRL/CUTANG,CONST,1,RANGE,$0",
+            "AVCTRL/CUTANG,CONST,g,RANGE,<b1>,b2[,{NORMPS|AXIS}[,LIMIT,dmax]]",
+        ),
+        ("CHKSRF/SS,$0", "CHKSRF/{PS|ssurf},{<ON>|OFF}"),
+        ("X=PARMF(SS,$0", "PARMF(ssurf[,{<UPARAM>|VPARAM|PATCH}])"),
+    ] {
+        let (analysis, offset) = marked(&format!("{SCULPTURED}{text}\nFINI\n"));
+        analysis.program(&never).unwrap();
+        let help = analysis.signature_help(offset).unwrap_or_else(|| panic!("nothing at {text}"));
+        let form = &help.signatures[help.active];
+        let range = help.parameter.map(|parameter| form.parameters[parameter].clone());
+        let range = range.unwrap_or_else(|| panic!("no parameter at {text}: {}", form.label));
+        let shown = format!(
+            "{}<{}>{}",
+            &form.label[..range.start],
+            &form.label[range.clone()],
+            &form.label[range.end..]
+        );
+        assert_eq!(shown, expected, "{text}");
+    }
+}
+
+#[test]
+fn other_dialects_do_not_show_the_forms_of_sculptured_surfaces() {
+    let (analysis, offset) = marked("$$ apt-lsp: dialect=apt3\nP1=POINT/$0\nFINI\n");
+    let forms = analysis.signature_help(offset).unwrap().signatures;
+    assert!(forms.len() > 10 && forms.iter().all(|form| !form.label.contains("ssurf")), "{forms:?}");
+}

@@ -59,9 +59,9 @@ fn modal_statements_between_passes_have_served() {
 fn a_pass_without_tolerances_or_feed_is_told() {
     let tools = "CUTTER/.5,.25\nINTOL/.002\nOUTTOL/.002\n";
     assert_eq!(codes(&format!("CUTTER/.5,.25\n{PATH}")), ["APT0954"]);
-    assert_eq!(codes(&format!("MACHIN/MILL,1\n{tools}{PATH}")), ["APT0955"]);
-    assert_eq!(codes(&format!("MACHIN/MILL,1\n{tools}FEDRAT/5\n{PATH}")), Vec::<&str>::new());
-    assert_eq!(codes(&format!("MACHIN/MILL,1\n{tools}{PASSES}")), Vec::<&str>::new());
+    assert_eq!(codes(&format!("MACHIN/MACH1,1\n{tools}{PATH}")), ["APT0955"]);
+    assert_eq!(codes(&format!("MACHIN/MACH1,1\n{tools}FEDRAT/5\n{PATH}")), Vec::<&str>::new());
+    assert_eq!(codes(&format!("MACHIN/MACH1,1\n{tools}{PASSES}")), Vec::<&str>::new());
 }
 
 #[test]

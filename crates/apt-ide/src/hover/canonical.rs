@@ -3,7 +3,7 @@
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, GeometryKind},
-    parametric::{CurveArc, FlowKind, Patch},
+    parametric::{CurveArc, FlowKind, Patch, SculpturedSurface},
 };
 use apt_program::symbols::Value;
 
@@ -176,11 +176,10 @@ fn sentence(geometry: &Geometry) -> String {
             let [u, v] = surface.extent();
             let arrangement = surface.grid.map_or(String::new(), |_| format!(", {u} by {v}"));
             let points = surface.patches.iter().flat_map(Patch::points).flatten();
-            format!(
-                "sculptured surface of {} patches{arrangement}, inside {}",
-                surface.count(),
-                within(points)
-            )
+            let count = surface.count();
+            let patches =
+                if count == 1 { "1 patch".to_owned() } else { format!("{count} patches{arrangement}") };
+            format!("sculptured surface of {patches}, inside {}{}", within(points), measures(surface))
         }
         Geometry::SpaceCurve(curve) => {
             let points = curve.arcs.iter().flat_map(CurveArc::points);
@@ -198,6 +197,23 @@ fn sentence(geometry: &Geometry) -> String {
             format!("space curve of {arcs}, {} long{ends}, inside {}", number(length), within(points))
         }
     }
+}
+
+/// Area and curvatures of a surface, of large ones nothing: a hover does not wait.
+fn measures(surface: &SculpturedSurface) -> String {
+    /// The most patches that are measured.
+    const GREATEST_COUNT: usize = 100;
+    if surface.patches.len() > GREATEST_COUNT {
+        return String::new();
+    }
+    let curvatures = surface.curvature_range().map(|[least, greatest]| {
+        format!(
+            ", curvature {} … {} (positive where it is hollow on the side of its sign word)",
+            number(least.curvature),
+            number(greatest.curvature)
+        )
+    });
+    format!(", area {}{}", number(surface.area()), curvatures.unwrap_or_default())
 }
 
 /// The box of points, in words.
