@@ -53,7 +53,12 @@ impl Surface {
             Self::Cone(cone) => cone_bend(cone, region, nearest),
             Self::Quadric(quadric) => quadric.bend(side, foot, region, nearest),
             Self::Tabulated(curve) => {
-                parallel_bend(curve.greatest_curvature(side, &region.center, region.reach(foot)), nearest)
+                let reach = region.reach(foot);
+                if nearest < 0.0 && !curve.is_alone(side, foot, &region.center, reach, -nearest) {
+                    f64::INFINITY
+                } else {
+                    parallel_bend(curve.greatest_curvature(side, &region.center, reach), nearest)
+                }
             }
             Self::Ruled(sheet) => {
                 let extent = [region.radius, region.reach(foot)];
@@ -63,7 +68,8 @@ impl Surface {
                 // Off a surface that lies at a thickness from its conics distances bend as those from the conics.
                 let stock = side * sheet.thickness();
                 let extent = [region.radius, region.reach(foot) + stock.abs()];
-                return sheet.survey(&region.center, extent, side, &foot.normal).bend(nearest + stock);
+                let survey = Survey::new(&region.center, extent, side, &foot.normal);
+                return sheet.survey(survey).bend(nearest + stock);
             }
         };
         let least = near.min(far);

@@ -2,6 +2,7 @@
 //! directed distances. Made from canonical forms.
 
 mod bend;
+mod chart;
 mod cone;
 mod directed;
 mod interval;
@@ -18,6 +19,7 @@ use nalgebra::Matrix3;
 
 pub use self::{
     bend::{Bend, Region},
+    chart::{Chart, Place, Steady},
     cone::ConeForm,
     directed::{NoDistance, RootSelection, solve_quadratic},
     poly_conic::PolyConicSheet,
@@ -290,6 +292,8 @@ pub fn perpendicular(v: &Vec3) -> Vec3 {
     v.cross(&other).normalize()
 }
 
+#[cfg(test)]
+mod chart_tests;
 #[cfg(test)]
 mod sheet_bend_tests;
 #[cfg(test)]

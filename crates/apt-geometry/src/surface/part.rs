@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use super::{
     bend::{Bend, parallel_bend},
+    chart::Facing,
     interval::{Box3, Interval},
     sheet::Jet,
 };
@@ -18,8 +19,10 @@ const CLOSE: f64 = 0.15;
 pub(super) const FLAT: f64 = 1e-5;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
 pub(super) const FINE: f64 = 0.125;
+/// Curvature times reach that is of no account for a sheet that is asked about as a whole.
+const FAINT: f64 = 0.1;
 /// Cosine of the angle between normals up to which a sheet counts as one that faces one way.
-const LEAST_COSINE: f64 = 0.5;
+pub(super) const LEAST_COSINE: f64 = 0.5;
 /// Bound of the halvings of a part.
 const MAX_DEPTH: u32 = 24;
 /// Bound of the parts that one question looks at.
@@ -132,10 +135,18 @@ pub(super) struct Survey {
     seen: u32,
     /// Greatest curvature within reach.
     curvature: f64,
+    /// The same as seen from the other side, if that is asked too; it need not be close.
+    behind: f64,
     /// Least cosine between the normal asked about and those within reach that may be seen from the other side.
     cosine: f64,
     /// Whether the signed distance may jump from one side to the other.
     jumps: bool,
+    /// Least cosine that is taken for facing one way.
+    least_cosine: f64,
+    /// Whether parts that cannot be beyond the ball count like the others.
+    strict: bool,
+    /// A curvature up to which bounds are close enough.
+    enough: f64,
 }
 
 impl Survey {
@@ -150,9 +161,36 @@ impl Survey {
             normal: *normal,
             seen: 0,
             curvature: f64::NEG_INFINITY,
+            behind: f64::NEG_INFINITY,
             cosine: 1.0,
             jumps: false,
+            least_cosine: LEAST_COSINE,
+            strict: false,
+            enough: f64::NEG_INFINITY,
         }
+    }
+
+    /// Asks about all of the surface within reach of a point, which must face one way: the normals have at least a cosine
+    /// to the given one.
+    pub(super) fn of_sheet(center: &Vec3, reach: f64, side: f64, normal: &Vec3, least_cosine: f64) -> Self {
+        let enough = FAINT / reach;
+        Self { least_cosine, strict: true, enough, ..Self::new(center, [0.0, reach], side, normal) }
+    }
+
+    /// The same question in the coordinates of a surface.
+    pub(super) fn within(self, center: Vec3, normal: Vec3) -> Self {
+        Self { center, normal, ..self }
+    }
+
+    /// What was found of a sheet, unless the surface ends or turns away within reach.
+    pub(super) fn facing(&self) -> Option<Facing> {
+        let (seen, behind) = (self.curvature, self.behind);
+        let curvature = if self.side > 0.0 { [seen, behind] } else { [behind, seen] };
+        (!self.jumps).then_some(Facing { curvature, cosine: self.cosine })
+    }
+
+    pub(super) fn normal(&self) -> &Vec3 {
+        &self.normal
     }
 
     pub(super) fn center(&self) -> &Vec3 {
@@ -319,33 +357,37 @@ impl Part {
 
     /// Adds what this part means for a question.
     pub(super) fn survey(&self, sheet: &impl Enclose, survey: &mut Survey) {
-        let side = if survey.side > 0.0 { 0 } else { 1 };
-        let mut open = vec![(self, 0u32)];
-        while let Some((part, depth)) = open.pop() {
-            if survey.jumps {
-                return;
-            }
-            survey.seen += 1;
-            if (part.center - survey.center).norm() > survey.reach + part.radius {
-                continue;
-            }
-            let bound = part.curvature[side];
-            let faced = survey.faced_by(part);
-            let cosine =
-                if faced { 1.0 } else { part.normal.map_or(-1.0, |n| n.dot(&survey.normal) - part.spread) };
-            let jumps = !faced && (part.ends || cosine < LEAST_COSINE);
-            if bound <= survey.curvature && cosine >= survey.cosine && !jumps {
-                continue;
-            }
-            let close = bound <= part.least[side] + part.close && !jumps;
-            let fine = part.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-            if close || fine {
-                survey.curvature = survey.curvature.max(bound);
-                survey.cosine = survey.cosine.min(cosine);
-                survey.jumps |= jumps;
-            } else {
-                let halves = part.halves.get(|| Box::new(part.halved(sheet)));
-                open.extend(halves.iter().map(|half| (half, depth + 1)));
+        self.survey_within(sheet, survey, 0);
+    }
+
+    fn survey_within(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
+        if survey.jumps {
+            return;
+        }
+        survey.seen += 1;
+        if (self.center - survey.center).norm() > survey.reach + self.radius {
+            return;
+        }
+        let [seen, behind] = if survey.side > 0.0 { [0, 1] } else { [1, 0] };
+        let bound = self.curvature[seen];
+        let faced = !survey.strict && survey.faced_by(self);
+        let cosine =
+            if faced { 1.0 } else { self.normal.map_or(-1.0, |n| n.dot(&survey.normal) - self.spread) };
+        let jumps = !faced && (self.ends || cosine < survey.least_cosine);
+        let known = !survey.strict || self.curvature[behind] <= survey.behind;
+        if bound <= survey.curvature && cosine >= survey.cosine && !jumps && known {
+            return;
+        }
+        let close = bound <= (self.least[seen] + self.close).max(survey.enough) && !jumps;
+        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        if close || fine {
+            survey.curvature = survey.curvature.max(bound);
+            survey.behind = survey.behind.max(self.curvature[behind]);
+            survey.cosine = survey.cosine.min(cosine);
+            survey.jumps |= jumps;
+        } else {
+            for half in self.halves.get(|| Box::new(self.halved(sheet))).iter().rev() {
+                half.survey_within(sheet, survey, depth + 1);
             }
         }
     }

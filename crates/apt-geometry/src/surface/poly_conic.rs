@@ -10,7 +10,7 @@ mod bounds;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
-    Foot,
+    Chart, Foot, Place,
     interval::Number,
     part::{Part, Rectangle},
     perpendicular,
@@ -62,6 +62,10 @@ struct Cell {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolyConicSheet {
     form: PolyConicForm,
+    /// The form's rigid motion: its linear part, what it adds, and −1 if it mirrors.
+    linear: Matrix3<f64>,
+    origin: Vec3,
+    sense: f64,
     /// How many terms of each polynomial are not zero at the end.
     terms: [usize; 7],
     /// Ranges of the conic parameter and of the station parameter.
@@ -123,7 +127,10 @@ impl PolyConicSheet {
         };
         let limits = [[-1.0, 2.0], stations];
         let terms = form.polynomials.map(|p| p.iter().rposition(|k| *k != 0.0).map_or(0, |last| last + 1));
-        let mut sheet = Self { form, terms, limits, cells: Vec::new(), size: 0.0, curvature: 0.0 };
+        let (linear, origin) = (form.map.linear(), form.map.apply_point(&Vec3::zeros()));
+        let sense = linear.determinant().signum();
+        let cells = Vec::new();
+        let mut sheet = Self { form, linear, origin, sense, terms, limits, cells, size: 0.0, curvature: 0.0 };
         sheet.grow();
         let finite = sheet.cells.iter().all(|c| c.center.iter().all(|x| x.is_finite()) && !c.radius.is_nan());
         (finite && sheet.size > 0.0).then_some(sheet)
@@ -360,6 +367,52 @@ impl PolyConicSheet {
         let linear = self.form.map.linear();
         let hessian = linear.tr_mul(&(jet.hessian(&own, rest) * linear));
         (self.outside(p, &own), hessian)
+    }
+
+    pub(super) fn place_near(&self, p: &Vec3) -> Place {
+        let (_, at) = self.nearest(&self.form.map.apply_point(p));
+        Place { piece: 0, at }
+    }
+
+    /// Whether all cells are farther from a point than a distance.
+    pub(super) fn keeps_off(&self, p: &Vec3, distance: f64) -> bool {
+        let own = self.form.map.apply_point(p);
+        let distance = distance + self.form.thickness.abs();
+        let mut open = vec![0usize];
+        while let Some(node) = open.pop() {
+            let Some(cell) = self.cells.get(node).filter(|cell| cell.radius >= 0.0) else { continue };
+            if (own - cell.center).norm() - cell.radius > distance {
+                continue;
+            }
+            if 2 * node + 1 >= self.cells.len() {
+                return false;
+            }
+            open.extend([2 * node + 2, 2 * node + 1]);
+        }
+        true
+    }
+
+    pub(super) fn chart(&self, place: &Place) -> Option<Chart> {
+        let own = self.jet(place.at[0], place.at[1]);
+        let back = |v: &Vec3| self.linear.tr_mul(v);
+        let point = back(&(own.point - self.origin));
+        let jet = Jet {
+            point,
+            du: back(&own.du),
+            dv: back(&own.dv),
+            duu: back(&own.duu),
+            duv: back(&own.duv),
+            dvv: back(&own.dvv),
+        };
+        Some(Chart::new(&jet, self.sense, self.form.thickness))
+    }
+
+    pub(super) fn shifted(&self, place: &Place, step: [f64; 2]) -> Option<Place> {
+        let at = [place.at[0] + step[0], place.at[1] + step[1]];
+        let inside = at.iter().zip(&self.limits).all(|(x, [low, high])| x > low && x < high);
+        // Beyond the nose the natural normal is the opposite one.
+        let over = self.form.roots.is_some() && (at[1] < 0.0) != (place.at[1] < 0.0);
+        (inside && !over).then_some(Place { piece: 0, at })
     }
 
     /// Greatest absolute value of a principal curvature of the conics' surface, 1/length.

@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 
 use self::bounds::ranges;
 use super::{
-    Foot,
+    Chart, Foot, Place,
     interval::Interval,
     part::{Later, Part},
     perpendicular,
@@ -450,6 +450,51 @@ impl RuledSheet {
     pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
         let (foot, jet, rest) = self.place(p);
         (foot, jet.hessian(&foot, rest))
+    }
+
+    pub(super) fn place_near(&self, p: &Vec3) -> Place {
+        let Nearest { t, piece, .. } = self.nearest(p);
+        let start = self.jet(piece, t, 0.0);
+        let (v, _) = self.share(p, &start.point, &start.dv);
+        Place { piece, at: [t, v] }
+    }
+
+    /// Whether all strips are farther from a point than a distance.
+    pub(super) fn keeps_off(&self, p: &Vec3, distance: f64) -> bool {
+        self.bands.iter().all(|nodes| {
+            let mut open = vec![0usize];
+            while let Some(node) = open.pop() {
+                let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };
+                if strip.bound(p) > distance {
+                    continue;
+                }
+                if 2 * node + 1 >= nodes.len() {
+                    return false;
+                }
+                open.extend([2 * node + 2, 2 * node + 1]);
+            }
+            true
+        })
+    }
+
+    pub(super) fn chart(&self, place: &Place) -> Option<Chart> {
+        let [t, v] = place.at;
+        self.pieces.get(place.piece)?;
+        Some(Chart::new(&self.jet(place.piece, t, v), 1.0, 0.0))
+    }
+
+    pub(super) fn shifted(&self, place: &Place, step: [f64; 2]) -> Option<Place> {
+        let at = [place.at[0] + step[0], place.at[1] + step[1]];
+        let inside = at.iter().zip(&self.limits).all(|(x, [low, high])| x > low && x < high);
+        if !inside {
+            return None;
+        }
+        let holds = |piece: &Piece| at[0] >= piece.from && at[0] <= piece.from + piece.width;
+        if self.pieces.get(place.piece).is_some_and(holds) {
+            return Some(Place { piece: place.piece, at });
+        }
+        let after = self.pieces.partition_point(|piece| piece.from <= at[0]);
+        Some(Place { piece: after.checked_sub(1)?, at })
     }
 
     /// Unit direction of the ruling through the nearest point.

@@ -12,9 +12,9 @@ use super::{
 use crate::canonical::{Interval, TabulatedCylinder};
 
 /// How many surfaces [`made`] has.
-const COUNT: usize = 8;
+pub(super) const COUNT: usize = 8;
 /// The one with a thickness.
-const THICK: usize = 3;
+pub(super) const THICK: usize = 3;
 
 /// A wave of three cubics, its joints without corners.
 fn wave() -> Geometry {
@@ -28,7 +28,7 @@ fn wave() -> Geometry {
 }
 
 /// The sheets, a half pipe, and a tabulated cylinder.
-fn made(which: usize) -> &'static Surface {
+pub(super) fn made(which: usize) -> &'static Surface {
     static MADE: OnceLock<Vec<Surface>> = OnceLock::new();
     &MADE.get_or_init(|| sheets().into_iter().chain([half_pipe(), wave()]).map(|g| surface(&g)).collect())
         [which]
@@ -67,7 +67,7 @@ proptest! {
 }
 
 /// Places about the surfaces, spread evenly.
-fn places(count: u32) -> impl Iterator<Item = Vec3> {
+pub(super) fn places(count: u32) -> impl Iterator<Item = Vec3> {
     (0..count).map(|k| {
         let share = |step: f64| (f64::from(k) * step).fract();
         Vec3::new(5.0 * share(0.819_173), 4.0 * share(0.671_044), 4.0 * share(0.549_7) - 0.5)

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector2};
 
-use super::Foot;
+use super::{Chart, Foot, Place, chart::Facing, part::LEAST_COSINE, sheet::Jet};
 use crate::{Vec3, canonical::TabulatedCylinder};
 
 type Vec2 = Vector2<f64>;
@@ -36,6 +36,8 @@ struct Cubic {
     open: [bool; 2],
     /// Bounds of the curvature of each span, against either side.
     bends: [[f64; 2]; SPANS as usize],
+    /// Least and greatest slope over the chord on each span.
+    slopes: [[f64; 2]; SPANS as usize],
     /// Sine of the turn from the interval before, positive to the right.
     turn: f64,
 }
@@ -63,6 +65,7 @@ impl Cubic {
             bounds: [0.0, 0.0],
             open: [false, false],
             bends: [[0.0; 2]; SPANS as usize],
+            slopes: [[0.0; 2]; SPANS as usize],
             turn: 0.0,
         };
         for s in super::solve_quadratic(3.0 * a, b, coefficients[2]) {
@@ -75,6 +78,10 @@ impl Cubic {
             let width = length / f64::from(SPANS);
             let span = [k as f64 * width, (k + 1) as f64 * width];
             [1.0, -1.0].map(|side| cubic.greatest_bend(side, span))
+        });
+        cubic.slopes = std::array::from_fn(|k| {
+            let width = length / f64::from(SPANS);
+            cubic.slope_range([k as f64 * width, (k + 1) as f64 * width])
         });
         Some(cubic)
     }
@@ -236,10 +243,8 @@ impl DirectrixCurve {
         self.axes[0] * v.x + self.axes[1] * v.y
     }
 
-    /// The nearest point, and the curvature of the directrix there, positive where it curves away from the natural
-    /// normal `(−sin φ, cos φ)`.
-    pub(super) fn foot(&self, p: &Vec3) -> (Foot, f64) {
-        let flat = self.flat(p);
+    /// The interval with the nearest point and its parameter there.
+    fn nearest(&self, flat: Vec2) -> (usize, f64) {
         // First the interval that may be nearest, then all that still may be nearer.
         let mut first = (f64::INFINITY, 0);
         for (k, interval) in self.intervals.iter().enumerate() {
@@ -260,7 +265,14 @@ impl DirectrixCurve {
                 }
             }
         }
-        let (k, s, _) = best;
+        (best.0, best.1)
+    }
+
+    /// The nearest point, and the curvature of the directrix there, positive where it curves away from the natural
+    /// normal `(−sin φ, cos φ)`.
+    pub(super) fn foot(&self, p: &Vec3) -> (Foot, f64) {
+        let flat = self.flat(p);
+        let (k, s) = self.nearest(flat);
         let interval = &self.intervals[k];
         let [h, h1, h2] = interval.height(s);
         let norm = h1.hypot(1.0);
@@ -276,6 +288,90 @@ impl DirectrixCurve {
         let curvature = if corner { CORNER_CURVATURE.copysign(height) } else { -h2 / (norm * norm * norm) };
         let normal = self.lift(if corner { offset / distance } else { normal });
         (Foot { distance, point: p - normal * distance, normal }, curvature)
+    }
+
+    /// The first parameter is the distance along the generators from the plane through the origin.
+    pub(super) fn place_near(&self, p: &Vec3) -> Place {
+        let (piece, s) = self.nearest(self.flat(p));
+        Place { piece, at: [self.axes[2].dot(p), s] }
+    }
+
+    pub(super) fn chart(&self, place: &Place) -> Option<Chart> {
+        let interval = self.intervals.get(place.piece)?;
+        let [z, s] = place.at;
+        let [h, slope, bend] = interval.height(s);
+        let across = interval.normal_axis();
+        let jet = Jet {
+            point: self.lift(interval.start + interval.along * s + across * h) + self.axes[2] * z,
+            du: self.axes[2],
+            dv: self.lift(interval.along + across * slope),
+            duu: Vec3::zeros(),
+            duv: Vec3::zeros(),
+            dvv: self.lift(across * bend),
+        };
+        let sense = self.axes[2].dot(&self.axes[0].cross(&self.axes[1])).signum();
+        Some(Chart::new(&jet, sense, 0.0))
+    }
+
+    pub(super) fn shifted(&self, place: &Place, step: [f64; 2]) -> Option<Place> {
+        let interval = self.intervals.get(place.piece)?;
+        let (z, s) = (place.at[0] + step[0], place.at[1] + step[1]);
+        let before = s < 0.0 && !interval.open[0];
+        let after = s > interval.length && !interval.open[1];
+        if !before && !after {
+            return s.is_finite().then_some(Place { piece: place.piece, at: [z, s] });
+        }
+        // On from the end of the neighbour, over the same chord.
+        let piece = if before { place.piece.checked_sub(1)? } else { place.piece + 1 };
+        let next = self.intervals.get(piece)?;
+        let s = if before { next.length + s } else { s - interval.length };
+        let within = (next.open[0] || s >= 0.0) && (next.open[1] || s <= next.length);
+        within.then_some(Place { piece, at: [z, s] })
+    }
+
+    /// Curvatures and normals of the directrix between the first and the last of its spans within reach of a point, unless
+    /// some normal has less than a cosine to the given one.
+    pub(super) fn facing(&self, center: &Vec3, reach: f64, normal: &Vec3, least: f64) -> Option<Facing> {
+        let (flat, normal) = (self.flat(center), self.flat(normal));
+        let mut found = Facing { curvature: [f64::NEG_INFINITY; 2], cosine: 1.0 };
+        let near = |&(interval, k): &(&Cubic, usize)| interval.is_near(k, interval.to_local(flat), reach);
+        let spans =
+            self.intervals.iter().flat_map(|interval| (0..SPANS as usize).map(move |k| (interval, k)));
+        let first = spans.clone().position(|span| near(&span))?;
+        let behind = spans.clone().rev().position(|span| near(&span))?;
+        let count = (SPANS as usize * self.intervals.len()).saturating_sub(first + behind);
+        for (number, (interval, k)) in spans.skip(first).take(count).enumerate() {
+            let bends = if interval.straight() { [0.0; 2] } else { *interval.bends.get(k)? };
+            for (found, (bend, side)) in found.curvature.iter_mut().zip(bends.into_iter().zip([1.0, -1.0])) {
+                let sharp = number > 0 && k == 0 && side * interval.turn > SMOOTH;
+                *found = found.max(if sharp { f64::INFINITY } else { bend });
+            }
+            for slope in interval.slopes.get(k)? {
+                let own = (interval.normal_axis() - interval.along * *slope) / slope.hypot(1.0);
+                found.cosine = found.cosine.min(own.dot(&normal));
+            }
+        }
+        (found.cosine >= least).then_some(found)
+    }
+
+    /// Whether points near another one, no deeper beyond the curve than given, have one nearest point each: that of opposite walls
+    /// is not the same.
+    pub(super) fn is_alone(&self, side: f64, foot: &Foot, center: &Vec3, reach: f64, depth: f64) -> bool {
+        self.facing(center, reach, &foot.normal, LEAST_COSINE).is_some_and(|facing| {
+            let [natural, other] = facing.curvature;
+            depth * (if side > 0.0 { natural } else { other }).max(0.0) * facing.lean() < 1.0
+        })
+    }
+
+    /// Whether the boxes of all intervals are farther from a point than a distance.
+    pub(super) fn keeps_off(&self, p: &Vec3, distance: f64) -> bool {
+        let flat = self.flat(p);
+        self.intervals.iter().all(|interval| {
+            let local = interval.to_local(flat);
+            // The spans' own boxes are smaller.
+            interval.least_square(local) > distance * distance
+                || (0..SPANS as usize).all(|k| !interval.is_near(k, local, distance))
+        })
     }
 
     /// Greatest curvature against a side of the stretches of the directrix that lie within a distance of a point:
@@ -320,6 +416,27 @@ impl DirectrixCurve {
 }
 
 impl Cubic {
+    /// Whether a point may be within reach of a span, by the least height of the span over its chord and the greatest, or of the
+    /// straight line that goes on from it.
+    fn is_near(&self, k: usize, local: Vec2, reach: f64) -> bool {
+        let width = self.length / f64::from(SPANS);
+        let (start, end) = (k as f64 * width, (k + 1) as f64 * width);
+        let aside = (start - local.x).max(local.x - end).max(0.0);
+        let steepest = self.slopes.get(k).map_or(0.0, |[least, greatest]| least.abs().max(greatest.abs()));
+        // Between its ends the span keeps to the steepest lines through both.
+        let (middle, half) = (self.height(start)[0] + self.height(end)[0], width * steepest);
+        let heights = [0.5 * (middle - half), 0.5 * (middle + half)];
+        let beyond = |open: bool, from: f64, sense: f64| {
+            let [height, slope, _] = self.height(from);
+            let (w, way) = (local - Vec2::new(from, height), Vec2::new(sense, sense * slope));
+            let along = (w.dot(&way) / way.norm_squared()).max(0.0);
+            open && (w - way * along).norm_squared() <= reach * reach
+        };
+        aside * aside + least_offset(heights, local.y) <= reach * reach
+            || beyond(k == 0 && self.open[0], 0.0, -1.0)
+            || beyond(k + 1 == SPANS as usize && self.open[1], self.length, 1.0)
+    }
+
     /// A bound of the curvature against a side over the spans within reach of a point.
     fn greatest_curvature(&self, side: f64, local: Vec2, reach: f64) -> f64 {
         if self.straight() {
@@ -346,6 +463,15 @@ impl Cubic {
         let flattest = if wavers { 0.0 } else { s0.abs().min(s1.abs()) };
         let steepest = s0.abs().max(s1.abs()) + b0.abs().max(b1.abs()) * (b - a);
         bend / (if bend > 0.0 { flattest } else { steepest }).hypot(1.0).powi(3)
+    }
+
+    /// Least and greatest slope over a span: at its ends, or where the slope turns.
+    fn slope_range(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let [a, b, _] = self.coefficients;
+        let turn = (-b / (3.0 * a)).clamp(from, to);
+        let turn = if turn.is_nan() { from } else { turn };
+        let slopes = [from, to, turn].map(|s| self.height(s)[1]);
+        [slopes[0].min(slopes[1]).min(slopes[2]), slopes[0].max(slopes[1]).max(slopes[2])]
     }
 
     fn ray_roots(&self, p: Vec2, d: Vec2, roots: &mut Vec<f64>) {

@@ -190,6 +190,15 @@ pub(super) fn boundary(tool: &Tool) -> Vec<Patch> {
     patches
 }
 
+/// The flank above a height.
+pub(super) fn flank_from(tool: &Tool, height: f64) -> Patch {
+    let (upper, top) = (tool.profile.upper, tool.profile.top);
+    let share = ((height - upper.height) / (top.height - upper.height)).clamp(0.0, 1.0);
+    let radius = upper.radius + share * (top.radius - upper.radius);
+    let stretch = Stretch::Line([[radius, height], [top.radius, top.height]]);
+    Patch { stretch, azimuth: 0.0, half: PI }
+}
+
 impl Stretch {
     /// Greatest distance from the axis.
     fn radius(&self) -> f64 {

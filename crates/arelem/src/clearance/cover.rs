@@ -9,7 +9,7 @@ use apt_geometry::{
     surface::{Bend, Region},
 };
 
-use super::{Gauge, Tool, closed_form};
+use super::{Gauge, Tool, closed_form, near};
 
 /// Bound of the boxes into which the tool is cut.
 const MAX_BOXES: u32 = 600;
@@ -19,6 +19,9 @@ const MAX_BOXES_UNBOUNDED: u32 = 2400;
 const BOXES_A_QUESTION: u32 = 8;
 /// A box is small enough when its bound exceeds that of its centre by this factor at most.
 const CLOSE: f64 = 1.25;
+
+/// The same for surfaces whose bounds over large boxes are near enough.
+const CLOSE_BY_CHART: f64 = 1.5;
 
 /// A box of points in the frame of the tool: across, across, along the axis.
 #[derive(Debug, Clone, Copy)]
@@ -50,7 +53,11 @@ pub(crate) fn upward_bend(
         return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region);
     }
     let (radius, height) = (tool.radius(), tool.profile.top.height);
+    // Of a flank that is known to be far away nothing comes within range.
+    let near = near::Around::new(gauge, tool, tip);
+    let height = near.top(range[1] + spread).unwrap_or(height);
     let mut cells = vec![Cell { middle: [0.0, 0.0, 0.5 * height], half: [radius, radius, 0.5 * height] }];
+    let close = if gauge.surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
     while let Some(cell) = cells.pop() {
@@ -66,7 +73,7 @@ pub(crate) fn upward_bend(
             + tool.across[1] * cell.middle[1]
             + tool.axis * cell.middle[2];
         let reach = Vec3::from(cell.half).norm() + spread;
-        let foot = gauge.surface.foot(&center);
+        let foot = near.foot(&center).unwrap_or_else(|| gauge.surface.foot(&center));
         let distance = gauge.side * foot.distance;
         if distance - reach > range[1] || distance + reach < range[0] {
             continue;
@@ -77,7 +84,7 @@ pub(crate) fn upward_bend(
             needed = needed.max(least);
         }
         let enough = match (found, at_best) {
-            (Bend::AtMost(bound), _) => bound <= greatest.max(CLOSE * needed),
+            (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),
             _ => false,
         };
         let small = cell.half.iter().all(|h| *h <= 0.5 * spread);

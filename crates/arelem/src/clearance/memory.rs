@@ -11,6 +11,7 @@ use apt_geometry::Vec3;
 use super::{
     Contact, Tool,
     certify::{Face, Patch, outline},
+    near::Near,
     quadric::Start,
     tool::Piece,
 };
@@ -64,7 +65,11 @@ struct Outline {
 
 /// Remembers the contact of one tool with one surface. It changes what a search costs, never what it finds.
 #[derive(Debug, Default, Clone)]
-pub struct Memory(RefCell<Option<Known>>);
+pub struct Memory {
+    known: RefCell<Option<Known>>,
+    /// The same for surfaces with charts.
+    pub(super) near: RefCell<Option<Near>>,
+}
 
 /// Memories do not tell gauges apart.
 impl PartialEq for Memory {
@@ -76,13 +81,13 @@ impl PartialEq for Memory {
 impl Memory {
     /// Where contact was, if that was with the same axis on the same side.
     pub(super) fn place(&self, tool: &Tool, side: f64) -> Option<Place> {
-        let known = self.0.try_borrow().ok()?;
+        let known = self.known.try_borrow().ok()?;
         known.as_ref().filter(|k| k.axis == tool.axis && k.side == side).map(|k| k.place)
     }
 
     /// The patches to which a point of the tool lower than a level must belong.
     pub(super) fn patches(&self, tool: &Tool, side: f64, tip: &Vec3, level: f64) -> Option<Vec<Patch>> {
-        let known = self.0.try_borrow().ok()?;
+        let known = self.known.try_borrow().ok()?;
         let known = known.as_ref().filter(|k| k.axis == tool.axis && k.side == side)?;
         let outline = known.outline.as_ref()?;
         let moved = (tip - outline.tip).norm();
@@ -91,7 +96,7 @@ impl Memory {
 
     /// Keeps where a contact is that was proven without patches.
     pub(super) fn remember(&self, tool: &Tool, side: f64, tip: &Vec3, place: Place) {
-        let Ok(mut memory) = self.0.try_borrow_mut() else { return };
+        let Ok(mut memory) = self.known.try_borrow_mut() else { return };
         match memory.as_mut() {
             Some(known) if known.axis == tool.axis && known.side == side => {
                 (known.tip, known.place) = (*tip, place);
@@ -116,7 +121,7 @@ impl Memory {
 
     /// Keeps a contact that is proven, and the patches around it if those known do not reach so far.
     pub(super) fn keep(&self, face: Face<'_>, tool: &Tool, tip: &Vec3, place: Place, level: f64) {
-        let Ok(mut memory) = self.0.try_borrow_mut() else { return };
+        let Ok(mut memory) = self.known.try_borrow_mut() else { return };
         let known = memory.take().filter(|k| k.axis == tool.axis && k.side == face.side);
         let (last, old) = match known {
             Some(known) => (Some(known.tip), known.outline),

@@ -7,6 +7,7 @@ mod cover;
 mod dual;
 mod matched;
 mod memory;
+mod near;
 mod quadric;
 mod search;
 mod tool;
@@ -73,6 +74,9 @@ impl Gauge {
     /// Clearance with contact points for a tool whose end is at `tip`.
     pub fn contact(&self, tool: &Tool, tip: &Vec3) -> Contact {
         if self.on {
+            if let Some(contact) = near::foot(tool, &self.surface, self.side, tip, &self.memory) {
+                return contact;
+            }
             let foot = self.surface.foot(tip);
             return Contact {
                 clearance: self.side * foot.distance,
@@ -125,6 +129,11 @@ impl Gauge {
             if contact.clearance >= level && posed.clears(level, &contact) {
                 return Certificate::Holds;
             }
+        }
+        if near::contact(tool, &self.surface, self.side, tip, &self.memory)
+            .is_some_and(|(contact, missed)| contact.clearance - missed >= level)
+        {
+            return Certificate::Holds;
         }
         let patches = self.memory.patches(tool, self.side, tip, level);
         certify::certify(face, tool, tip, level, patches.unwrap_or_else(|| certify::boundary(tool)))
@@ -180,8 +189,17 @@ fn offset_contact(
         }
         return (contact, 0.0);
     }
-    dual::contact(tool, surface, side, tip)
-        .map_or_else(|| search::contact(tool, Face { surface, side }, tip, memory), |contact| (contact, 0.0))
+    if let Some(contact) = dual::contact(tool, surface, side, tip) {
+        return (contact, 0.0);
+    }
+    if let Some(found) = memory.and_then(|memory| near::contact(tool, surface, side, tip, memory)) {
+        return found;
+    }
+    let found = search::contact(tool, Face { surface, side }, tip, memory);
+    if let Some(memory) = memory {
+        near::remember(tool, surface, side, tip, memory, &found.0);
+    }
+    found
 }
 
 /// Distance of the whole tool from a surface without regard to sides: positive when they do not touch, on whichever

@@ -28,7 +28,7 @@ const MAX_RESTARTS: u32 = 12;
 /// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
 pub(super) const MISSED: f64 = 1e-9;
 /// Slack of the fan of contact normals of the corner torus, radians.
-const FAN_SLACK: f64 = 1e-9;
+pub(super) const FAN_SLACK: f64 = 1e-9;
 
 /// The best contact so far.
 struct Best {

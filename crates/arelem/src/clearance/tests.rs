@@ -229,3 +229,5 @@ fn flanks_touch_round_solids_anywhere() {
         assert!((found - wanted).abs() < 1e-10, "{found:e}, samples {wanted:e}");
     }
 }
+
+mod near;

@@ -101,17 +101,11 @@ impl PolyConicSheet {
         self.form.thickness
     }
 
-    /// What is known of the conics' surface within reach of a ball in program coordinates, seen from a side; `normal` is the
-    /// natural normal at its foot.
-    pub(in super::super) fn survey(
-        &self,
-        center: &Vec3,
-        extent: [f64; 2],
-        side: f64,
-        normal: &Vec3,
-    ) -> Survey {
-        let own = self.form.map.apply_point(center);
-        let mut survey = Survey::new(&own, extent, side, &self.form.map.apply_vector(normal));
+    /// Answers a question about the conics' surface, asked in program coordinates.
+    pub(in super::super) fn survey(&self, survey: Survey) -> Survey {
+        let own = self.form.map.apply_point(survey.center());
+        let normal = self.form.map.apply_vector(survey.normal());
+        let mut survey = survey.within(own, normal);
         let mut open = vec![0usize];
         while let Some(node) = open.pop() {
             let Some(cell) = self.cells.get(node).filter(|cell| cell.radius >= 0.0) else { continue };

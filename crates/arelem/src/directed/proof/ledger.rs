@@ -8,6 +8,8 @@ use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, upward_
 
 /// How much farther a bound reaches than the vector it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
+/// The same for surfaces whose bounds take long to make: at most as far as the tool is wide, over which they change little.
+const FORESIGHT_BY_CHART: f64 = 24.0;
 
 /// A bound of the second derivatives of a clearance about a place.
 #[derive(Debug, Clone, Copy)]
@@ -73,9 +75,12 @@ impl Ledger {
         {
             return Bend::AtMost(bound.bend);
         }
-        let ample = FORESIGHT * spread;
-        let wide = [range[0] - ample, range[1] + ample];
-        for (spread, range) in [(ample, wide), (spread, range)] {
+        let mut ample = FORESIGHT * spread;
+        if gauge.surface.has_charts() {
+            ample = ample.max((FORESIGHT_BY_CHART * spread).min(tool.radius()));
+        }
+        for (spread, more) in [(ample, ample), (spread, 0.0)] {
+            let range = [range[0] - more, range[1] + more];
             let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
             if self.gap.get().is_some_and(|known| known.lies_in(tip, &tool.axis, spread, range)) {
                 continue;

@@ -1,0 +1,197 @@
+//! Tabulated cylinders, ruled and polyconic surfaces about one of their places: parameters to begin a search for contact
+//! with, derivatives by them, and balls about which it is known that such a search finds the nearest place.
+
+use super::{Surface, bend::parallel_bend, part::Survey, sheet::Jet};
+use crate::Vec3;
+
+/// Cosine of the angle to the middle normal up to which normals may turn within a steady ball.
+const STEADY_COSINE: f64 = 0.5;
+/// How much farther than the places of a ball the paths between them are expected to reach at first; and how much less the
+/// cosine is expected to be over them where that is not far enough.
+const WIDER: f64 = 1.25;
+const STEEPER: f64 = 0.1;
+
+/// A place of a tabulated cylinder, ruled or polyconic surface by its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    pub(super) piece: usize,
+    pub(super) at: [f64; 2],
+}
+
+/// A surface about one of its places: the point with its derivatives by both parameters, in program coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chart {
+    /// The point.
+    pub point: Vec3,
+    /// First derivatives.
+    pub first: [Vec3; 2],
+    /// Second derivatives: by the first parameter twice, by both, by the second twice.
+    pub second: [Vec3; 3],
+    /// Makes `first[0] × first[1]` point to the natural side: 1 or −1.
+    pub sense: f64,
+    /// How far the surface that distances are measured from is off this one, along the natural normal.
+    pub thickness: f64,
+}
+
+impl Chart {
+    pub(super) fn new(jet: &Jet, sense: f64, thickness: f64) -> Self {
+        Self {
+            point: jet.point,
+            first: [jet.du, jet.dv],
+            second: [jet.duu, jet.duv, jet.dvv],
+            sense,
+            thickness,
+        }
+    }
+}
+
+/// What is known of the distance over a ball in which each point has one nearest place of the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steady {
+    /// Greatest curvature towards the points of the ball, not negative.
+    hollow: f64,
+    /// What the surface of the charts is farther away.
+    stock: f64,
+    /// Depth beyond the surface up to which points of the ball have one nearest place, too.
+    pub beyond: f64,
+}
+
+impl Steady {
+    /// How strongly the distance may fall below its tangent in the ball, from a place at a given distance: at a vector x from
+    /// there it is at least `distance + n·x − bend·x²/2`, n being its gradient there.
+    ///
+    /// The second derivative along a line is at least `−(1 − d′²) κ/(1 − dκ)`. So `r = 1/κ − d` has `(r²)″ ≤ 2`: the
+    /// surface is nowhere nearer than a sphere of curvature κ that touches it at the foot.
+    pub fn bend(&self, distance: f64) -> f64 {
+        parallel_bend(self.hollow, -(distance + self.stock))
+    }
+}
+
+/// What a search over the surface near a ball found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facing {
+    /// Greatest curvature as seen from the natural side and from the other.
+    pub(super) curvature: [f64; 2],
+    /// Least cosine between a normal there and a given one.
+    pub(super) cosine: f64,
+}
+
+impl Facing {
+    /// How much less deep than the shortest radius of curvature points with one nearest place are: see [`Surface::steady`].
+    pub(super) fn lean(&self) -> f64 {
+        let cosine = self.cosine;
+        (1.0 + (1.0 - cosine * cosine).max(0.0) / cosine) / cosine
+    }
+}
+
+impl Surface {
+    /// Whether places have charts.
+    pub fn has_charts(&self) -> bool {
+        matches!(self, Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_))
+    }
+
+    /// The nearest place, for the kinds of surface that have charts.
+    pub fn place(&self, p: &Vec3) -> Option<Place> {
+        match self {
+            Self::Tabulated(curve) => Some(curve.place_near(p)),
+            Self::Ruled(sheet) => Some(sheet.place_near(p)),
+            Self::PolyConic(sheet) => Some(sheet.place_near(p)),
+            _ => None,
+        }
+    }
+
+    /// The surface about a place.
+    pub fn chart(&self, place: &Place) -> Option<Chart> {
+        match self {
+            Self::Tabulated(curve) => curve.chart(place),
+            Self::Ruled(sheet) => sheet.chart(place),
+            Self::PolyConic(sheet) => sheet.chart(place),
+            _ => None,
+        }
+    }
+
+    /// The place at other parameters; `None` beyond the end of the surface and where its natural side turns over.
+    pub fn shifted(&self, place: &Place, step: [f64; 2]) -> Option<Place> {
+        match self {
+            Self::Tabulated(curve) => curve.shifted(place, step),
+            Self::Ruled(sheet) => sheet.shifted(place, step),
+            Self::PolyConic(sheet) => sheet.shifted(place, step),
+            _ => None,
+        }
+    }
+
+    /// Bounds over the points of a ball that are at most `depth` from the surface on one side, if each of them has one
+    /// nearest place that never jumps, and no other place within the ball whose normal leads to it. The centre must be on
+    /// that side. The surface must not cut through itself.
+    ///
+    /// Two nearest places `p = c₁ + d n₁ = c₂ + d n₂` are no more than `2d√(1 − c²)` apart if all normals about keep a cosine
+    /// `c` to the middle one. The sheet about each of them goes on over both, as seen along the middle normal; were one
+    /// of two sheets above the other, the way from the lower place to p would cross it. So both are on one sheet,
+    /// and the path between them that is straight as seen along the middle normal leads through a place where distance
+    /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`.
+    pub fn steady(&self, side: f64, center: &Vec3, [radius, depth]: [f64; 2]) -> Option<Steady> {
+        let stock = match self {
+            Self::Tabulated(_) | Self::Ruled(_) => 0.0,
+            Self::PolyConic(sheet) => side * sheet.thickness(),
+            _ => return None,
+        };
+        let foot = self.foot(center);
+        if side * foot.distance + stock < 0.0 {
+            return None;
+        }
+        let far = (depth + stock).max(0.0);
+        let reach = radius + far;
+        let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
+        let wide = |near: &Facing, path: &Facing| {
+            reach + 2.0 * far * sine(near.cosine) * sine(path.cosine) / path.cosine
+        };
+        let all = |asked: f64| self.facing(side, center, asked, &foot.normal);
+        let (near, path) = if matches!(self, Self::Tabulated(_)) {
+            // The stretch of the curve between the places is among those looked at.
+            let near = all(reach)?;
+            (near, near)
+        } else {
+            match all(WIDER * reach).filter(|path| wide(path, path) <= WIDER * reach) {
+                Some(path) => (path, path),
+                None => {
+                    let near = all(reach)?;
+                    let least = Facing { cosine: (near.cosine - STEEPER).max(STEADY_COSINE), ..near };
+                    let asked = wide(&near, &least);
+                    (near, all(asked).filter(|path| wide(&near, path) <= asked)?)
+                }
+            }
+        };
+        let lean = path.lean();
+        let [natural, other] = path.curvature;
+        let (against, along) = if side > 0.0 { (other, natural) } else { (natural, other) };
+        if far * against.max(0.0) * lean >= 1.0 {
+            return None;
+        }
+        let hollow = if side > 0.0 { near.curvature[1] } else { near.curvature[0] }.max(0.0);
+        let beyond = if along > 0.0 { 0.5 / (along * lean) } else { f64::INFINITY };
+        hollow.is_finite().then_some(Steady { hollow, stock, beyond: (beyond + stock).max(0.0) })
+    }
+
+    /// Whether all of the surface is known, from the sizes of its parts, to be farther from a point than a distance. For
+    /// surfaces without charts that is not known.
+    pub fn keeps_off(&self, p: &Vec3, distance: f64) -> bool {
+        match self {
+            Self::Tabulated(curve) => curve.keeps_off(p, distance),
+            Self::Ruled(sheet) => sheet.keeps_off(p, distance),
+            Self::PolyConic(sheet) => sheet.keeps_off(p, distance),
+            _ => false,
+        }
+    }
+
+    /// Curvature and normals within reach of a point, given a normal; `None` if the surface ends there or turns away. The
+    /// curvature towards the points on a side is the close one.
+    fn facing(&self, side: f64, center: &Vec3, reach: f64, normal: &Vec3) -> Option<Facing> {
+        let asked = || Survey::of_sheet(center, reach, -side, normal, STEADY_COSINE);
+        match self {
+            Self::Tabulated(curve) => curve.facing(center, reach, normal, STEADY_COSINE),
+            Self::Ruled(sheet) => sheet.survey(asked()).facing(),
+            Self::PolyConic(sheet) => sheet.survey(asked()).facing(),
+            _ => None,
+        }
+    }
+}

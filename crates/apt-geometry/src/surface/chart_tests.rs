@@ -1,0 +1,173 @@
+//! Charts of tabulated, ruled and polyconic surfaces against feet and distances found by complete search.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+
+use super::{
+    sheet_bend_tests::{COUNT, THICK, made, places},
+    *,
+};
+use crate::canonical::{Interval, TabulatedCylinder};
+
+#[test]
+fn charts_are_about_the_nearest_places() {
+    let mut inside = 0;
+    for which in 0..COUNT {
+        let surface = made(which);
+        for near in places(60) {
+            let p = surface.foot(&near).point + Vec3::new(0.02, -0.01, 0.03);
+            let foot = surface.foot(&p);
+            let chart = surface.place(&p).and_then(|place| surface.chart(&place)).expect("a chart");
+            let Some(normal) = chart.first[0].cross(&chart.first[1]).try_normalize(1e-9) else { continue };
+            let normal = normal * chart.sense;
+            let offset = p - chart.point;
+            if (offset - normal * offset.dot(&normal)).norm() > 1e-9 {
+                continue;
+            }
+            inside += 1;
+            assert!((offset.dot(&normal) - chart.thickness - foot.distance).abs() < 1e-10, "{which} at {p}");
+            assert!((normal - foot.normal).norm() < 1e-7, "{which} at {p}: {normal} {}", foot.normal);
+        }
+    }
+    assert!(inside >= 300, "only {inside} places off the edges");
+}
+
+#[test]
+fn charts_have_the_derivatives_of_their_points() {
+    let step = 1e-4;
+    let mut seen = 0;
+    for which in 0..COUNT {
+        let surface = made(which);
+        for near in places(40) {
+            let Some(place) = surface.place(&near) else { continue };
+            for side in 0..2 {
+                let way = |k: f64| if side == 0 { [k * step, 0.0] } else { [0.0, k * step] };
+                let at = |k: f64| {
+                    // Neighbouring pieces may follow each other at different speeds.
+                    surface.shifted(&place, way(k)).filter(|there| there.piece == place.piece)
+                };
+                let (Some(before), Some(after)) = (at(-1.0), at(1.0)) else { continue };
+                let [before, here, after] =
+                    [before, place, after].map(|p| surface.chart(&p).expect("a chart"));
+                let first = (after.point - before.point) / (2.0 * step);
+                let second = (after.first[side] - before.first[side]) / (2.0 * step);
+                let mixed = (after.first[1 - side] - before.first[1 - side]) / (2.0 * step);
+                let size = 1.0 + here.first[side].norm() + here.second[2 * side].norm();
+                assert!(
+                    (first - here.first[side]).norm() < 1e-5 * size,
+                    "{which}: {first} {}",
+                    here.first[side]
+                );
+                assert!((second - here.second[2 * side]).norm() < 1e-3 * size, "{which} {side}: {second}");
+                assert!((mixed - here.second[1]).norm() < 1e-3 * size, "{which} {side}: {mixed}");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen >= 300, "only {seen}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+    /// In a steady ball the distance falls below its tangents by no more than the bend says, and a normal that leads from a
+    /// place of the ball to a point of it leads to the point from its nearest place.
+    #[test]
+    fn steady_balls_are_steady(
+        which in 0usize..COUNT, natural in prop::bool::ANY, near in prop::array::uniform3(-1.0..6.0f64),
+        off in 0.0..0.4f64, radius in 0.01..0.7f64, depth in 0.05..1.0f64,
+        ends in prop::collection::vec(prop::array::uniform6(-1.0..1.0f64), 40),
+    ) {
+        let surface = made(which);
+        let side = if natural { 1.0 } else { -1.0 };
+        let foot = surface.foot(&Vec3::from(near));
+        let center = foot.point + foot.normal * (side * off);
+        let Some(steady) = surface.steady(side, &center, [radius, depth]) else { return Ok(()) };
+        let inside = |p: &Vec3| (p - center).norm() <= radius;
+        for e in ends {
+            let (p, q) = (center + Vec3::new(e[0], e[1], e[2]) * radius, center + Vec3::new(e[3], e[4], e[5]) * radius);
+            let (at, other) = (surface.foot(&p), surface.foot(&q));
+            let [d, there] = [&at, &other].map(|foot| side * foot.distance);
+            let deep = |d: f64| d >= 0.0 && d <= depth;
+            if !(inside(&p) && inside(&q) && deep(d) && deep(there)) {
+                continue;
+            }
+            let x = q - p;
+            let least = d + side * at.normal.dot(&x) - 0.5 * steady.bend(d) * x.norm_squared();
+            // On the way the points must be in the ball and no deeper, too.
+            let deepest = (1..20).map(|k| side * surface.signed_distance(&(p + x * (f64::from(k) / 20.0))));
+            if deepest.clone().all(deep) {
+                prop_assert!(there >= least - 1e-9, "{which}: {there} below {least}");
+            }
+            let share = e[0].abs() * depth;
+            let reached = at.point + at.normal * (side * share);
+            if inside(&at.point) && inside(&reached) {
+                let found = surface.foot(&reached);
+                prop_assert!((side * found.distance - share).abs() < 1e-8, "{which}: {} of {share}", found.distance);
+            }
+        }
+    }
+
+    /// Whatever keeps off is farther away.
+    #[test]
+    fn nothing_that_keeps_off_is_nearer(
+        which in 0usize..COUNT, p in prop::array::uniform3(-2.0..7.0f64), distance in 0.0..3.0f64,
+    ) {
+        let (surface, p) = (made(which), Vec3::from(p));
+        if surface.keeps_off(&p, distance) {
+            let found = surface.foot(&p).distance.abs();
+            prop_assert!(found > distance * (1.0 - 1e-9), "{which}: {found} within {distance}");
+        }
+    }
+}
+
+#[test]
+fn steady_balls_are_found_and_far_points_keep_off() {
+    for which in 0..COUNT {
+        let surface = made(which);
+        let (mut balls, mut off) = (0, 0);
+        for near in places(200) {
+            let foot = surface.foot(&near);
+            let found = [1.0, -1.0].map(|side| {
+                surface.steady(side, &(foot.point + foot.normal * (side * 0.02)), [0.03, 0.05]).is_some()
+            });
+            balls += usize::from(found.contains(&true));
+            off += usize::from(surface.keeps_off(&(near + Vec3::z() * 40.0), 20.0));
+        }
+        // Off a thick surface the ends of its conics are within reach nearly everywhere.
+        assert!(
+            balls >= 100 || which == THICK && balls >= 10,
+            "{which}: only {balls} of 200 balls are steady"
+        );
+        assert!(off >= 190, "{which}: only {off} of 200 keep off");
+    }
+}
+
+/// A slot with a round ground.
+fn slot() -> Surface {
+    let row =
+        |u: f64, v: f64, a: f64, b: f64| Interval { u, v, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
+    let geometry = Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
+        axes: [Vec3::x(), Vec3::y(), Vec3::z()],
+        kind: 0.0,
+        intervals: vec![row(-1.0, 9.0, 0.0, 0.0), row(-1.0, 1.0, 0.0, 0.5), row(1.0, 1.0, 0.0, 0.0)],
+        last: [1.0, 9.0],
+    }));
+    Surface::from_geometry(&geometry).expect("a surface")
+}
+
+#[test]
+fn there_is_no_steady_ball_and_no_bound_between_the_walls_of_a_slot() {
+    let slot = slot();
+    let middle = Vec3::new(0.0, 5.0, 0.0);
+    let side = slot.foot(&middle).distance.signum();
+    assert!((slot.foot(&middle).distance.abs() - 1.0).abs() < 1e-12);
+    assert_eq!(slot.steady(side, &middle, [0.3, 1.2]), None);
+    // The distance taken negative bends without bound where the nearest wall changes.
+    let region = Region { center: middle, radius: 0.3, lowest: -1.0, highest: -0.6 };
+    assert_eq!(slot.bend(-side, &slot.foot(&middle), &region), Bend::Unbounded);
+    let beside = Vec3::new(0.6, 5.0, 0.0);
+    assert!(slot.steady(side, &beside, [0.2, 0.6]).is_some());
+    let region = Region { center: beside, radius: 0.2, lowest: -0.6, highest: 0.0 };
+    assert_eq!(slot.bend(-side, &slot.foot(&beside), &region), Bend::AtMost(0.0));
+}

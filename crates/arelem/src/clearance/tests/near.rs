@@ -1,0 +1,131 @@
+//! Contact from the last one near by against the search that looks everywhere.
+
+use std::sync::Arc;
+
+use apt_geometry::canonical::{Cylinder, Interval, RuledSurface, TabulatedCylinder};
+
+use super::*;
+
+/// A wave of three cubics along a direction, its joints without corners.
+fn wave(axes: [Vec3; 3]) -> Geometry {
+    let row = |u: f64, a: f64, b: f64| Interval { u, v: 0.0, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
+    Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
+        axes,
+        kind: 0.0,
+        intervals: vec![row(-3.0, 0.0, -0.2), row(-1.0, 0.0, 0.2), row(1.0, 0.0, -0.2)],
+        last: [3.0, 0.0],
+    }))
+}
+
+/// A loft between arcs of different radius at y = ±2.
+fn loft() -> Geometry {
+    let curve = |y: f64, z: f64, radius: f64| {
+        let round = Cylinder { point: v(0.0, y, z), axis: Vec3::y(), radius };
+        let end = z + (radius * radius - 4.0).sqrt();
+        let [start, end] = [v(-2.0, y, end), v(2.0, y, end)].map(Geometry::Point);
+        [Geometry::Cylinder(round), start, end, Geometry::Vector(Vec3::z())]
+    };
+    let parts = curve(-2.0, 0.0, 3.0).into_iter().chain(curve(2.0, 0.3, 2.6)).collect();
+    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+}
+
+/// A vault along y that widens and flattens.
+fn vault() -> Geometry {
+    let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    values.extend([0.0, -3.0, 6.0]);
+    for [constant, linear] in
+        [[2.0, 0.2], [2.0, 0.1], [2.0, 0.0], [-2.0, 0.0], [-2.0, -0.1], [0.3, -0.1], [0.7, 0.03]]
+    {
+        values.extend([constant, linear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+    values.extend([0.0; 7]);
+    Geometry::PolyConic(Arc::new(values))
+}
+
+fn charted() -> Vec<Geometry> {
+    vec![
+        wave([Vec3::x(), Vec3::z(), -Vec3::y()]),
+        wave([v(1.0, 0.3, 0.0).normalize(), Vec3::z(), v(0.3, -1.0, 0.0).normalize()]),
+        loft(),
+        vault(),
+    ]
+}
+
+/// The side of a surface that its upper side is.
+fn upper(surface: &Surface) -> f64 {
+    surface.foot(&v(0.0, 0.0, 9.0)).distance.signum()
+}
+
+/// What a gauge that remembers finds on a pass over a surface, and one that does not.
+fn pass(geometry: &Geometry, on: bool, tool: &Tool, from: &Vec3, step: &Vec3, count: u32) -> (u32, u32) {
+    let surface = Surface::from_geometry(geometry).expect("surface");
+    let side = upper(&surface);
+    let known = Gauge { on, ..gauge(geometry, side) };
+    let (mut proven, mut seen) = (0, 0);
+    for k in 0..count {
+        let mut tip = from + step * f64::from(k);
+        // Down to the surface, so that contact is near.
+        tip.z -= known.contact(tool, &tip).clearance * 0.99;
+        let (found, missed) = known.contact_within(tool, &tip);
+        let fresh = Gauge { on, ..gauge(geometry, side) }.contact(tool, &tip);
+        let size = 1e-8 * (tool.radius() + tool.profile.top.height);
+        assert!(
+            (found.clearance - fresh.clearance).abs() <= size,
+            "{} near the last contact, {} everywhere, at {tip}",
+            found.clearance,
+            fresh.clearance
+        );
+        let gap = (found.tool - found.surface).dot(&found.gradient);
+        assert!((gap - found.clearance).abs() < 1e-9, "gap {gap}");
+        seen += 1;
+        proven += u32::from(missed < 1e-10);
+    }
+    (proven, seen)
+}
+
+#[test]
+fn passes_over_sheets_find_what_a_complete_search_finds() {
+    // With the tenths of the positions that are to be proven without a search: none where the corner does not touch its lines,
+    // less where a flat tool jumps from one side of its edge to the other.
+    let cutters: [(&[f64], u32); 4] =
+        [(&[0.5, 0.25], 7), (&[0.5, 0.1], 7), (&[0.6], 4), (&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0], 0)];
+    let mut few = Vec::new();
+    for (which, geometry) in charted().iter().enumerate() {
+        for (numbers, tenths) in cutters {
+            for axis in [Vec3::z(), v(0.2, -0.1, 1.0).normalize()] {
+                let cutter = Cutter::from_numbers(numbers, 1.0).expect("cutter");
+                let tool = Tool::new(cutter, axis);
+                let (proven, seen) =
+                    pass(geometry, false, &tool, &v(-1.1, 0.3, 4.0), &v(0.011, 0.002, 0.0), 200);
+                if proven * 10 < seen * tenths {
+                    few.push(format!("{which} {numbers:?} {} {proven} of {seen}", axis.z));
+                }
+            }
+        }
+    }
+    assert!(few.is_empty(), "{few:#?}");
+}
+
+#[test]
+fn tool_ends_on_sheets_have_the_feet_that_a_complete_search_finds() {
+    let tool = tool(&[0.5, 0.1]);
+    for geometry in charted() {
+        pass(&geometry, true, &tool, &v(-1.1, 0.3, 3.0), &v(0.011, 0.002, 0.0), 200);
+    }
+}
+
+#[test]
+fn what_is_remembered_changes_no_clearance() {
+    let tool = tool(&[0.5, 0.1]);
+    for geometry in charted() {
+        let side = upper(&Surface::from_geometry(&geometry).expect("surface"));
+        let tip = |k: u32| v(-0.8 + 0.01 * f64::from(k), 0.2, 3.0);
+        let (ahead, back) = (gauge(&geometry, side), gauge(&geometry, side));
+        let forward: Vec<f64> = (0..150).map(|k| ahead.contact(&tool, &tip(k)).clearance).collect();
+        let mut backward: Vec<f64> = (0..150).rev().map(|k| back.contact(&tool, &tip(k)).clearance).collect();
+        backward.reverse();
+        for (a, b) in forward.iter().zip(&backward) {
+            assert!((a - b).abs() < 1e-8, "{a} forward, {b} backward");
+        }
+    }
+}
