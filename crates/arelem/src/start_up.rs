@@ -217,7 +217,8 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         tip = settle(work, guide, &tip)?;
     }
     let directed = work.state.directions.iter().any(Option::is_some);
-    match ambiguous::twin(work, &tip).filter(|_| !directed) {
+    let other = if directed { None } else { ambiguous::twin(work, &tip) };
+    match other {
         Some(other) => Err(MotionFailure::StartUpAmbiguous { places: [tip, other] }),
         None => Ok(tip),
     }

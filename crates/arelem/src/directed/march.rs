@@ -73,7 +73,7 @@ const PATIENT_FINALS: u32 = 12;
 /// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
 const WITHOUT_AXIS: f64 = 0.25;
 /// Cut vectors after which it is first looked whether a check surface lies ahead.
-const FIRST_LOOK: usize = 100;
+const FIRST_LOOK: usize = 25;
 /// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
 const LEAST_FORWARD: f64 = 0.5;
 /// Share of the way to the stop for the vertex before it, when one vector cannot reach it.

@@ -4,7 +4,7 @@
 use apt_geometry::motion::DriveSide;
 
 use super::*;
-use crate::error::Course;
+use crate::{clearance::EVALUATIONS, error::Course};
 
 /// Tool radius.
 const RADIUS: f64 = 0.25;
@@ -179,5 +179,24 @@ fn a_tangency_comes_once_in_every_turn() {
         }
         let turn = std::f64::consts::TAU * (2.0 + RADIUS);
         assert!((ends[1].2 - ends[0].2 - turn).abs() < 0.1 && (ends[2].2 - ends[1].2 - turn).abs() < 0.1);
+    }
+}
+
+#[test]
+fn a_check_surface_that_is_never_met_is_told_before_many_vectors_are_made() {
+    let (near, far) = (plane(1.0, 0.0, 0.0, AT), plane(1.0, 0.0, 0.0, 30.0));
+    for path in loops().into_iter().filter(|path| path.iterate || path.name.contains("slope")) {
+        let cost = |checks: &[(Relation, u32, &Geometry)]| {
+            let mut p = path.program();
+            p.run(&MotionCommand::MaximumStep(0.02));
+            let before = EVALUATIONS.get();
+            let made = p.attempt(&path.motion(checks)).map(|_| p.last().points.len());
+            (EVALUATIONS.get() - before, made)
+        };
+        let (whole, made) = cost(&[(Relation::On, 2, &near)]);
+        assert!(made.is_ok_and(|vectors| vectors > 200), "{}", path.name);
+        let (lost, failure) = cost(&[(Relation::On, 1, &far)]);
+        assert!(matches!(failure, Err(MotionFailure::NeverMet { .. })), "{}: {failure:?}", path.name);
+        assert!(2 * lost < whole, "{}: {lost} clearances, and {whole} for the motion", path.name);
     }
 }

@@ -8,6 +8,7 @@ mod cost;
 mod disk;
 mod economy;
 mod found;
+mod gouges;
 mod properties;
 mod refused;
 mod sheets;

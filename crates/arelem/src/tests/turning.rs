@@ -77,7 +77,7 @@ mod wave;
 const BALL: f64 = 0.25;
 
 /// Part surfaces under a tool that comes from above, without undercuts around the origin.
-fn part_surface(kind: usize, shape: f64, turn: f64) -> Geometry {
+pub(super) fn part_surface(kind: usize, shape: f64, turn: f64) -> Geometry {
     let along = v(turn.cos(), turn.sin(), 0.0);
     match kind {
         0 => sphere(0.0, 0.0, 0.0, 3.0 + 4.0 * shape),
