@@ -229,6 +229,37 @@ fn flow_measures_length_chord_and_parameter() {
 }
 
 #[test]
+fn flow_moves_with_its_curve() {
+    use apt_geometry::canonical::Matrix;
+    let matrix = Matrix::translation(v(3.0, -7.0, 2.0))
+        .multiply(&Matrix::rotation(CoordinatePlane::Xy, 70.0))
+        .multiply(&Matrix::rotation(CoordinatePlane::Yz, -25.0))
+        .multiply(&Matrix::scaling(2.5));
+    let whole = [(SegmentMeasure::Length, 0.0, 3.0)];
+    let about = FlowMeasure::Angle(v(4.5, -3.0, 0.0), None);
+    for measure in [FlowMeasure::Chord(Vec3::x()), FlowMeasure::Arc(None), FlowMeasure::Param, about] {
+        let curve = flowing(&ARCH, measure, &whole);
+        let moved = curve.transformed(&matrix);
+        for local in [0.2, 0.5, 0.9] {
+            let place = |curve: &SpaceCurve| {
+                let flow = curve.flow.as_ref().expect("a flow");
+                at(curve, flow.arc_parameter(curve, 0, local).expect("a segment"))
+            };
+            near(place(&moved), matrix.apply_point(&place(&curve)).into(), 1e-9);
+        }
+        let bent = at(
+            &curve,
+            curve.flow.as_ref().and_then(|flow| flow.arc_parameter(&curve, 0, 0.5)).expect("inside"),
+        );
+        if let FlowMeasure::Angle(center, _) = measure {
+            let angle = |place: Vec3| (place.y - center.y).atan2(place.x - center.x);
+            let middle = 0.5 * (angle(Vec3::from(ARCH[0])) + angle(Vec3::from(ARCH[3])));
+            assert!((angle(bent) - middle).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
 fn faults_of_flow_are_told() {
     let spline = CurveShape::Spline { weight: None, limit: None, nodes: nodes(&ARCH) };
     let mut definition = SpaceCurveDefinition::plain(spline);

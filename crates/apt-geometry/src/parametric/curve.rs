@@ -103,7 +103,7 @@ impl SpaceCurve {
         SpaceCurve {
             arcs: self.arcs.iter().map(|arc| arc.transformed(matrix)).collect(),
             cross: self.cross.iter().map(|cross| cross.map(|vector| matrix.apply_vector(&vector))).collect(),
-            flow: self.flow.clone(),
+            flow: self.flow.as_ref().map(|flow| flow.transformed(matrix)),
         }
     }
 }

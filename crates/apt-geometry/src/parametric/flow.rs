@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{arc::CurveArc, curve::SpaceCurve};
-use crate::Vec3;
+use crate::{Vec3, canonical::Matrix};
 
 /// What the flow of a range of arcs measures.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ pub enum FlowKind {
     Param,
     /// The way along a direction.
     Chord {
-        /// The unit direction.
+        /// The direction; of unit length unless the curve was moved by a map that changes lengths.
         direction: Vec3,
     },
     /// The angle about an axis through a point, in radians.
@@ -204,6 +204,24 @@ impl Flow {
             }
         }
         sum
+    }
+
+    /// The flow of the curve's image under an affine map: a chord is measured by the same planes, an angle about the image
+    /// of its axis (exactly so under similarities).
+    pub fn transformed(&self, matrix: &Matrix) -> Flow {
+        let kind = |kind: FlowKind| match kind {
+            FlowKind::Chord { direction } => {
+                let back = matrix.inverse().map(|inverse| inverse.linear().transpose() * direction);
+                FlowKind::Chord { direction: back.unwrap_or(direction) }
+            }
+            FlowKind::Angle { center, axis } => {
+                let turned = matrix.apply_vector(&axis).try_normalize(f64::MIN_POSITIVE);
+                FlowKind::Angle { center: matrix.apply_point(&center), axis: turned.unwrap_or(axis) }
+            }
+            measured => measured,
+        };
+        let ranges = self.ranges.iter().map(|range| FlowRange { kind: kind(range.kind), ..*range }).collect();
+        Flow { ranges, segments: self.segments.clone() }
     }
 
     /// The range that holds an arc (index).
