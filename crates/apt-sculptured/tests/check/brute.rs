@@ -23,7 +23,9 @@ impl Mill {
         let rho = (offset - self.axis * h).norm();
         let e = self.radius - self.corner;
         if rho > e && h < self.corner {
-            self.corner - (rho - e).hypot(self.corner - h)
+            let depth = self.corner - (rho - e).hypot(self.corner - h);
+            // The top of a short tool is nearer than its corner.
+            if depth > 0.0 { depth.min(self.length - h) } else { depth }
         } else if rho <= self.radius && (0.0..=self.length).contains(&h) {
             (self.radius - rho).min(h).min(self.length - h)
         } else {
