@@ -193,3 +193,22 @@ fn an_edit_gives_what_a_fresh_evaluation_gives() {
         }
     }
 }
+
+#[test]
+fn an_if_that_is_being_written_leaves_the_rest_of_the_program_as_it_is() {
+    let rest = "X=3\nIF(X.EQ.3)THEN\nY=4\nENDIF";
+    for (open, inside) in [
+        ("IF(1.EQ.2)THEN\n  R=1\n", None),
+        ("IF(1.EQ.1)THEN\n  R=1\n", Some(1.0)),
+        ("IF(1.EQ.2)THEN\n  R=1\nELSE\n  R=2\n", Some(2.0)),
+        ("A)   IF(1.EQ.2)THEN\n$$ why\n          R=1\n", None),
+        ("IF(1.EQ.2)THEN\n", None),
+    ] {
+        let program = run(&format!("{open}{rest}"));
+        assert_eq!(scalar(&program, "R"), inside, "{open}");
+        assert_eq!((scalar(&program, "X"), scalar(&program, "Y")), (Some(3.0), Some(4.0)), "{open}");
+        let told: Vec<_> = program.findings().map(|finding| finding.kind.to_string()).collect();
+        let open_told = told.iter().filter(|one| *one == "IF without ENDIF").count();
+        assert_eq!(open_told, 1, "{open}: {told:?}");
+    }
+}

@@ -89,6 +89,11 @@ impl BranchFinder {
         !self.open.is_empty()
     }
 
+    /// The last clause of the outermost IF that is open.
+    pub(crate) fn last_clause(&self) -> Option<usize> {
+        self.open.first()?.clauses.last().copied()
+    }
+
     fn close(&mut self, end: usize) {
         let Some(open) = self.open.pop() else { return };
         self.found.add(&open.clauses, end);

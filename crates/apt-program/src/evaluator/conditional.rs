@@ -8,20 +8,22 @@ use crate::blocks::{self, BranchFinder, Branches, clause_mark};
 /// An IF over several statements at the top level, with those inside of it.
 pub(super) struct Conditional {
     first: usize,
-    /// The ENDIF; the number of statements if there is none.
-    end: usize,
+    /// The ENDIF, or the last statement of an IF that has none.
+    last: usize,
+    /// One more than the last statement that was looked at to find its end.
+    read_to: usize,
     branches: Branches,
 }
 
 impl Conditional {
     /// Whether a statement stands in it, its first and last one included.
     pub(super) fn contains(&self, index: usize) -> bool {
-        (self.first..=self.end).contains(&index)
+        (self.first..=self.last).contains(&index)
     }
 
     /// Whether a statement stands behind it.
     pub(super) fn is_before(&self, index: usize) -> bool {
-        index > self.end
+        index > self.last
     }
 }
 
@@ -46,7 +48,7 @@ impl Evaluator<'_> {
         }
         let open = top.conditional.as_ref()?;
         let place = open.branches.place(index)?;
-        let (read_from, read_to) = (open.first, open.end.saturating_add(1).min(top.tree.statement_count()));
+        let (read_from, read_to) = (open.first, open.read_to);
         let moves =
             || (index..place.end).any(|at| blocks::says_motion(&top.tree.statement(at).parsed().elements));
         let next = self.clause((statement, index), place, &mut top.testing, &moves);
@@ -69,19 +71,20 @@ impl Evaluator<'_> {
                 None if blocks::is_macro_header(&statement) => region = Some("TERMAC"),
                 None if word == Some("LOOPST") && !self.dialect.branch_anywhere => region = Some("LOOPND"),
                 None if word == Some("FINI") => {
-                    return Some(Conditional { first, end: index, branches: finder.finish(index) });
+                    return Some(without_end(tree, finder, first, index));
                 }
                 None => {
                     finder.statement(index, &statement);
                     if !finder.is_open() {
                         // A clause without an IF opens nothing.
                         clause_mark(&statement.elements).filter(|_| index > first)?;
-                        return Some(Conditional { first, end: index, branches: finder.finish(count) });
+                        let (last, read_to) = (index, index + 1);
+                        return Some(Conditional { first, last, read_to, branches: finder.finish(count) });
                     }
                 }
             }
         }
-        Some(Conditional { first, end: count, branches: finder.finish(count) })
+        Some(without_end(tree, finder, first, count))
     }
 
     /// Whether an IF over several statements begins between a DO and the end of its loop and closes behind it, or the
@@ -96,4 +99,25 @@ impl Evaluator<'_> {
         }
         finder.is_open() || !finder.finish(last + 1).faults.is_empty()
     }
+}
+
+/// An IF without ENDIF before the statement `limit`, as while it is being written: it ends where the statements behind its
+/// last clause are no more indented than it is, so that the rest of the program stays what it was.
+fn without_end(tree: &SyntaxTree, finder: BranchFinder, first: usize, limit: usize) -> Conditional {
+    let own = indentation(tree, first).unwrap_or(0);
+    let behind = finder.last_clause().map_or(first, |clause| clause.max(first)) + 1;
+    let end = (behind..limit).find(|index| indentation(tree, *index).is_some_and(|column| column <= own));
+    let end = end.unwrap_or(limit);
+    let read_to = limit.saturating_add(1).min(tree.statement_count());
+    Conditional { first, last: end.saturating_sub(1), read_to, branches: finder.finish(end) }
+}
+
+/// How many characters stand before a statement, or before what follows its label; nothing for lines without one.
+fn indentation(tree: &SyntaxTree, index: usize) -> Option<usize> {
+    let view = tree.statement(index);
+    let parsed = view.parsed();
+    let after_label = if parsed.statement.label.is_some() { 2 } else { 0 };
+    let start = usize::from(parsed.elements.get(after_label)?.range.start());
+    let line = view.text().get(..start)?.rsplit(['\n', '\r']).next()?;
+    Some(line.chars().count())
 }
