@@ -225,7 +225,10 @@ impl Clearance<'_> {
         let tool = Tool { profile: self.profile, axis: *axis };
         let bare = [ends[0].value + self.thickness, ends[1].value + self.thickness];
         match self.surface {
-            Surface::Ruled(surface) => surface.bend(self.side, tips, bare, &ends[0].normal, &tool),
+            Surface::Ruled(surface) => {
+                let [from, to] = tips.map(|tip| tip + axis * self.raise);
+                surface.bend(self.side, [&from, &to], bare, &ends[0].normal, &tool)
+            }
             _ => None,
         }
     }

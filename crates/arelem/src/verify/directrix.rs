@@ -361,9 +361,9 @@ mod tests {
             let found = nearest([first, last], &shadow, resolution, f64::INFINITY).unwrap();
             let own = shadow.distance(&found.place, resolution);
             prop_assert!((own.value - found.value).abs() <= 2.0 * resolution, "{own:?} {found:?}");
-            // Deep inside two sides of the shadow can be equally near.
+            // Deep inside, two sides of the shadow can be equally near: the gap says how much that leaves open.
             let shallow = found.value > -0.1 * profile.widest();
-            prop_assert!(found.gap <= if shallow { 1e-9 } else { 1e-6 }, "{found:?}");
+            prop_assert!(found.gap <= if shallow { 1e-9 } else { 1e-3 }, "{found:?}");
             for piece in &pieces {
                 for k in 0..=200 {
                     let [x, _] = at(&piece.control, f64::from(k) / 200.0);

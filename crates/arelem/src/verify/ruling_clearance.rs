@@ -165,7 +165,8 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
     let bodies = Bodies { surface, side, tool, reach, resolution: resolution(surface, tip, reach), deep };
     let touch = bodies.touch(tip)?;
     let clear = bodies.is_on_side(&touch)?;
-    let mut reading = if touch.value >= 0.0 && clear {
+    // A tool without a body is nowhere deep in the surface: where it is not clear for certain, its places are looked at.
+    let mut reading = if touch.value > touch.gap && clear {
         Reading { value: touch.value, normal: bodies.away(&touch)?, error: touch.gap }
     } else {
         bodies.violation(tip, &touch)?

@@ -2,6 +2,7 @@
 
 mod branches;
 mod clearances;
+mod every_kind;
 mod mutations;
 mod paths;
 mod poly_conics;
