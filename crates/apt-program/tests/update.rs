@@ -75,6 +75,32 @@ fn inserted_lines_move_the_rest() {
     assert_eq!(last.origin.isn, 2_007);
 }
 
+#[test]
+fn an_if_that_is_being_written_costs_little_at_every_step() {
+    let mut text = long_program(4_000);
+    let mut tree = parse(&text);
+    let mut program = run(&tree);
+    let at = text.find("GOTO/2000,").expect("the line");
+    let steps = [
+        (0, "IF(A.EQ.2)THEN\n"),
+        (15, "  GOTO/1,1,1\n"),
+        (28, "ELSE\n"),
+        (33, "  GOTO/2,2,2\n"),
+        (46, "ENDIF\n"),
+    ];
+    for (offset, insert) in steps {
+        let place = at + offset;
+        let (next, change) = edited(&tree, place, place, insert);
+        text.insert_str(place, insert);
+        program = program.update(&next, &change, &options(), &|| false);
+        tree = next;
+        assert_eq!(tree.text(), text);
+        assert_same(&program, &run(&tree), insert);
+        assert!(program.statistics().evaluated_statements <= 512, "{insert}: {:?}", program.statistics());
+    }
+    assert!(!program.findings().any(|finding| finding.kind.to_string().contains("ENDIF")));
+}
+
 /// Names that begin and cease to be read, defined, and listed, one edit after the other.
 #[test]
 fn names_that_nobody_reads_are_known_after_every_edit() {
