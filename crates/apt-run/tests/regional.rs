@@ -74,3 +74,14 @@ fn older_spellings_and_missing_checks_have_their_fix() {
     assert_eq!(fixed(&unchecked, "APT0524"), checked);
     assert_eq!(codes(&format!("CUTTER/.5,.25\nINTOL/.01\nOUTTOL/.01\n{checked}")), Vec::<&str>::new());
 }
+
+#[test]
+fn a_start_outside_of_the_guide_says_where_the_range_is_given() {
+    let settings = Arc::new(Settings { dialect: Some("apt4".to_owned()), ..Settings::default() });
+    let text = format!("{SURFACE}CUTTER/.5,.25\nSMIL/PATH,DS,PARAM,2,.5,TANSPL,PLUS\nFINI\n");
+    let document = Document::new(&text, Some("part.apt".to_owned()), &settings);
+    let all = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+    let finding = all.iter().find(|one| one.wording.code == "APT0322").unwrap();
+    assert_eq!(finding.wording.apt3, Some(3563));
+    assert!(finding.wording.hint.as_deref().unwrap().contains("SCON/DS"), "{:?}", finding.wording.hint);
+}

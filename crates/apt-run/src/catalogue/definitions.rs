@@ -30,8 +30,11 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
                 .hint(format!("it takes {expected}"))
         }
         Kind::OperandRange { statement, value, .. } => {
-            say("APT0322", format!("{statement} cannot take the value {}", number(*value)))
-                .hint("check the sign and the unit of the value")
+            let hint = match statement.as_str() {
+                "SMIL" => "a pass starts inside the range that SCON/DS gives the guide",
+                _ => "check the sign and the unit of the value",
+            };
+            say("APT0322", format!("{statement} cannot take the value {}", number(*value))).hint(hint)
         }
         Kind::Doubtful { statement, value } => {
             let text = say("APT0323", format!("{} is a doubtful value for {statement}", number(*value)));
@@ -45,6 +48,7 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
                 }
                 "CONE" => text.hint("the half angle lies between 0 and 90 degrees"),
                 "ELLIPS" | "HYPERB" => text.hint("a half axis is longer than zero"),
+                "SCON" => text.hint("so far from the normal the tool lies nearly along the surface"),
                 "QADRIC" | "GCONIC" => text.hint("without x, y and z the equation describes no surface"),
                 _ => text,
             }
