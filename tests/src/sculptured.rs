@@ -64,6 +64,12 @@ fn numbers(row: &Value) -> Vec<f64> {
     row.as_array().map(|list| list.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
 }
 
+/// Whether two numbers are farther apart than that, or one of them is none.
+fn differs(found: f64, listed: f64, tolerance: f64) -> bool {
+    let apart = (found - listed).abs();
+    apart.is_nan() || apart > tolerance
+}
+
 fn vector(row: &[f64], first: usize) -> Vec3 {
     Vec3::from_fn(|axis, _| row.get(first + axis).copied().unwrap_or(f64::NAN))
 }
@@ -99,7 +105,7 @@ fn curve(entry: &Value, found: &SpaceCurve, problems: &mut Vec<String>) {
     for (index, range) in ranges.iter().enumerate() {
         let length = flow.amount(found, index as f64, index as f64 + 1.0);
         let listed = range["length"].as_f64().unwrap_or(f64::NAN);
-        if !((length - listed).abs() <= FLOW * listed) {
+        if differs(length, listed, FLOW * listed) {
             problems.push(format!("{name} has flow {length} over arc {}, expected {listed}", index + 1));
         }
     }
@@ -139,7 +145,7 @@ fn surface(entry: &Value, found: &SculpturedSurface, problems: &mut Vec<String>)
         }
     }
     let (area, listed) = (found.area(), entry["area"].as_f64().unwrap_or(f64::NAN));
-    if !((area - listed).abs() <= AREA * listed) {
+    if differs(area, listed, AREA * listed) {
         problems.push(format!("{name} has area {area}, expected {listed}"));
     }
     for row in entry["nodes"].as_array().into_iter().flatten().map(numbers) {
@@ -168,7 +174,7 @@ fn curvatures(entry: &Value, found: &SculpturedSurface, problems: &mut Vec<Strin
     let least = values.iter().map(|one| one.least).fold(f64::INFINITY, f64::min);
     for (what, value) in [("curvature_max", greatest), ("curvature_min", least)] {
         let listed = entry[what][0].as_f64().unwrap_or(f64::NAN);
-        if !((value - listed).abs() <= MEASURE * listed.abs().max(0.1)) {
+        if differs(value, listed, MEASURE * listed.abs().max(0.1)) {
             problems.push(format!("{} has {what} {value}, expected {listed}", entry["name"]));
         }
     }
