@@ -299,3 +299,54 @@ fn no_contact_with_the_bottom_lies_beyond_its_edge() {
         assert!((found - read).abs() < 1e-9, "{k}: {found} {read}");
     }
 }
+
+/// A path past a cylinder on one long vector: at its ends the slope has the same sign.
+#[test]
+fn a_tangency_in_the_middle_of_a_long_vector_is_found() {
+    let part = Geometry::Circle(Cylinder {
+        point: v(-6.6626390663628, -3.866091234851262, 1.8218956848225423),
+        axis: v(0.0, 0.0, 1.0),
+        radius: 5.732800945814817,
+    });
+    let drive = Geometry::Cone(Cone {
+        vertex: v(-4.833716067916479, -3.3929622262979553, -0.5348639913930977),
+        axis: v(0.13402613066804875, -0.2307041891081761, 0.9637492274581029),
+        cosine: 0.4729186847050721,
+    });
+    let motion = Found {
+        cutter: &[
+            0.23344982068792736,
+            0.0,
+            0.11672491034396368,
+            0.0,
+            0.0,
+            10.641139425576606,
+            2.5813384034641165,
+        ],
+        axis: v(-0.9887391803590723, 0.08350201779374462, 0.1241863367977457),
+        from: v(-1.6493119724813738, -2.362472248972289, 1.9679280885433923),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(0.34246447167583466, -0.6974007852055019, -0.6295635237484308),
+        part: (Relation::To, part),
+        drive: (Relation::To, drive),
+        first: (
+            Relation::Past,
+            Geometry::Plane(Plane {
+                normal: v(0.34246447167583477, -0.6974007852055017, -0.6295635237484308),
+                distance: -2.1042100735655573,
+            }),
+        ),
+        stop: (
+            Relation::TangentToDrive,
+            Geometry::Cylinder(Cylinder {
+                point: v(-3.9897371847887326, -2.8026116557150793, 3.9029717877212375),
+                axis: v(-0.8255798675205225, 0.40239638769479197, 0.3955945266494208),
+                radius: 2.9768545007743104,
+            }),
+        ),
+    };
+    let sequences = motion.run(AMPLE).expect("a path");
+    assert_eq!(sequences.len(), 2);
+}

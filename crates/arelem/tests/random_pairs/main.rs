@@ -128,7 +128,7 @@ fn every_pair(
 
 /// Of the pairs with surfaces to which distances are searched for, the long run looks at one motion in so many; the test
 /// command leaves them to `curved_pairs`.
-const SLOW_SHARE: u64 = 20;
+const SLOW_SHARE: u64 = 100;
 /// With more motions than this of each pair, every pair is told as it is done.
 const TELLING: u64 = 20;
 

@@ -23,6 +23,8 @@ const STEPS_TO_STOP: f64 = 60.0;
 const FAR: f64 = 3.0;
 /// Cosine between the direction asked for and the path from which the direction is settled: two degrees from square.
 const LEAST_FORWARD: f64 = 0.0349;
+/// A path that has the opposite direction after so many steps has turned back.
+const TURNING_BACK: usize = 4;
 /// A step is halved this often before the path counts as ended.
 const HALVINGS: u32 = 6;
 
@@ -222,7 +224,15 @@ impl<'a> Reader<'a> {
         let mut status: Option<bool> = None;
         // No part of the tool moves farther than the tool end: so far the check surface need not be read again.
         let mut last: Option<(Vec3, f64)> = None;
+        let mut senses = vec![sense; TURNING_BACK];
         while length < FAR * self.case.reach + 1.0 {
+            // Where two walls close in, the other one leads back from where the tool came.
+            if senses.last() != Some(&sense) {
+                senses.push(sense);
+            }
+            if senses[senses.len() - TURNING_BACK].dot(&sense) < 0.0 {
+                return Found::Ends(length);
+            }
             if stops_at_tangency {
                 // It was laid there.
                 if (self.case.place - tip).norm() <= 1.5 * long {

@@ -50,6 +50,8 @@ pub(super) struct Stepper<'a> {
     correction: f64,
     /// Where the path last turned on the spot, and its direction until then.
     turned: Option<(Vec3, Vec3)>,
+    /// The last vector; zero before the first.
+    last: Vec3,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
 }
@@ -74,6 +76,7 @@ impl<'a> Stepper<'a> {
             curvature: None,
             correction: 1.0,
             turned: None,
+            last: Vec3::zeros(),
             ledgers: Default::default(),
         }
     }
@@ -87,7 +90,7 @@ impl<'a> Stepper<'a> {
     pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         let failure = match self.onward(here, cap) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
-            found => return found,
+            found => return self.noted(here, found),
         };
         let places: Vec<SecondPlace> =
             CORNER_PROBES.iter().filter_map(|share| self.second_place(here, *share)).collect();
@@ -100,7 +103,7 @@ impl<'a> Stepper<'a> {
             if let Ok(next) = self.onward(&turned, cap) {
                 self.turned = Some((here.tip, here.tangent));
                 *here = turned;
-                return Ok(next);
+                return self.noted(here, Ok(next));
             }
         }
         Err(match (failure, places.first()) {
@@ -109,10 +112,26 @@ impl<'a> Stepper<'a> {
         })
     }
 
-    /// True near a place where the path has turned on the spot, if it now would go back from where it came.
+    /// Remembers the direction of a vector.
+    fn noted(
+        &mut self,
+        here: &Vertex,
+        found: Result<Vertex, MotionFailure>,
+    ) -> Result<Vertex, MotionFailure> {
+        if let Ok(next) = &found {
+            self.last = next.tip - here.tip;
+        }
+        found
+    }
+
+    /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
+    /// the spot, against its direction before that.
     fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
         let near = CORNER_BANDS * (self.prepared.part.band() + self.prepared.drive.band());
-        self.turned.is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
+        tangent.dot(&self.last) < 0.0
+            || self
+                .turned
+                .is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
     }
 
     /// The contacts so many bands ahead, if one of them is another than here.

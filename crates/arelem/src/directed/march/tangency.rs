@@ -17,6 +17,10 @@ use crate::{
 /// Bound of the bisection along one cut vector.
 const MAX_ITERATIONS: u32 = 80;
 
+/// Parts of a long cut vector near a check surface in which the slope is looked at.
+const PIECES: f64 = 24.0;
+/// Their least length, relative to the size of the coordinates.
+const LEAST_PIECE: f64 = 2e-3;
 /// How exactly, relative to the size of the coordinates, a place where both surfaces are parallel is found.
 const POSITION: f64 = 1e-10;
 
@@ -62,28 +66,11 @@ impl<'a> Watch<'a> {
             if !is_tangent(self.checks[index].relation) {
                 continue;
             }
-            let (before, after) = (self.slope(index, from)?, self.slope(index, to)?);
-            if before == 0.0 || (before > 0.0) == (after > 0.0) {
-                continue;
-            }
-            let stretch = Stretch { index, from, to, is_positive: before > 0.0 };
-            let (vertex, side) = match self.touching(&stretch)? {
-                Gap::Closed(vertex, side) => (vertex, side),
-                Gap::Open(gap) => {
-                    if gap.abs() < self.nearest.abs() {
-                        (self.nearest, self.check) = (gap, index);
-                    }
-                    continue;
+            if let Some((vertex, side)) = self.follow(index, from, to)? {
+                let x = (vertex.tip - from.tip).norm();
+                if first.is_none_or(|best| x < best.x) {
+                    first = Some(Event { check: index, tip: vertex.tip, x, side, grazed: false });
                 }
-            };
-            self.counts[index] += 1;
-            self.met += 1;
-            if self.counts[index] < self.checks[index].occurrence.max(1) {
-                continue;
-            }
-            let x = (vertex.tip - from.tip).norm();
-            if first.is_none_or(|best| x < best.x) {
-                first = Some(Event { check: index, tip: vertex.tip, x, side, grazed: false });
             }
         }
         if let Some(event) = first {
@@ -94,10 +81,54 @@ impl<'a> Watch<'a> {
         Ok(first)
     }
 
-    /// How fast the tool moves away from the check surface.
-    fn slope(&self, index: usize, vertex: &Vertex) -> Result<f64, MotionFailure> {
+    /// The tangency wanted with one check surface, if it is on a cut vector. Where tool and surface are far from each other
+    /// there is none, and near to each other the slope is looked at often enough not to miss where it changes its sign twice.
+    fn follow(
+        &mut self,
+        index: usize,
+        from: &Vertex,
+        to: &Vertex,
+    ) -> Result<Option<(Vertex, f64)>, MotionFailure> {
+        let length = (to.tip - from.tip).norm();
+        let least = (length / PIECES).max(LEAST_PIECE * self.prepared.size);
+        let reach =
+            self.prepared.checks[index].band() + self.prepared.part.band() + self.prepared.drive.band();
+        let (mut here, mut x) = (*from, 0.0);
+        let (mut before, mut gap) = self.slope(index, &here)?;
+        while x < length {
+            x += (gap.abs() - reach).max(least);
+            let next = if x < length {
+                Vertex::at(self.prepared, from.tip + (to.tip - from.tip) * (x / length), &from.tangent)?
+            } else {
+                *to
+            };
+            let after;
+            (after, gap) = self.slope(index, &next)?;
+            if before != 0.0 && (before > 0.0) != (after > 0.0) {
+                let stretch = Stretch { index, from: &here, to: &next, is_positive: before > 0.0 };
+                match self.touching(&stretch)? {
+                    Gap::Closed(vertex, side) => {
+                        self.counts[index] += 1;
+                        self.met += 1;
+                        if self.counts[index] >= self.checks[index].occurrence.max(1) {
+                            return Ok(Some((*vertex, side)));
+                        }
+                    }
+                    Gap::Open(gap) if gap.abs() < self.nearest.abs() => {
+                        (self.nearest, self.check) = (gap, index);
+                    }
+                    Gap::Open(_) => {}
+                }
+            }
+            (here, before) = (next, after);
+        }
+        Ok(None)
+    }
+
+    /// How fast the tool moves away from the check surface, and how far it is from it.
+    fn slope(&self, index: usize, vertex: &Vertex) -> Result<(f64, f64), MotionFailure> {
         let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
-        Ok((contact.gradient * side).dot(&vertex.tangent))
+        Ok(((contact.gradient * side).dot(&vertex.tangent), contact.clearance))
     }
 
     /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the band of the surface
@@ -180,7 +211,7 @@ impl<'a> Watch<'a> {
             if middle <= low || middle >= high {
                 break;
             }
-            if (self.slope(index, &at(middle)?)? > 0.0) == is_positive {
+            if (self.slope(index, &at(middle)?)?.0 > 0.0) == is_positive {
                 low = middle;
             } else {
                 high = middle;
