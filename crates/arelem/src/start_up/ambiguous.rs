@@ -8,8 +8,11 @@ use crate::position::{self, Condition};
 
 /// Two ways differ if their lengths do by more than this, relative to the size of the coordinates.
 const SAME_LENGTH: f64 = 1e-9;
-/// Two positions differ if they are farther apart than this, relative to the size of the coordinates.
+/// Moves shorter than this, relative to the size of the coordinates, have no image.
 const SAME_PLACE: f64 = 1e-6;
+/// Two answers are farther apart than this share of the way to them: beside the nearest position distances grow with the
+/// square of the way, and what a search finds there is the same answer.
+const APART: f64 = 1e-2;
 /// Corrections from one place.
 const CORRECTIONS: u32 = 20;
 
@@ -33,7 +36,7 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
         .filter_map(|image| position::solve_within(attitude, &conditions, &(tip + image), CORRECTIONS).ok())
         .map(|solution| solution.tip)
         .find(|other| {
-            (other - found).norm() > SAME_PLACE * size
+            (other - found).norm() > APART * length
                 && ((other - tip).norm() - length).abs() <= SAME_LENGTH * size
         })
 }
