@@ -125,6 +125,8 @@ proptest! {
 fn steady_balls_are_found_and_far_points_keep_off() {
     for which in 0..COUNT {
         let surface = made(which);
+        // Not along the straight lines of the tabulated cylinder, which go on for ever.
+        let away = if surface.generator().is_some() { Vec3::y() } else { Vec3::z() };
         let (mut balls, mut off) = (0, 0);
         for near in places(200) {
             let foot = surface.foot(&near);
@@ -132,7 +134,7 @@ fn steady_balls_are_found_and_far_points_keep_off() {
                 surface.steady(side, &(foot.point + foot.normal * (side * 0.02)), [0.03, 0.05]).is_some()
             });
             balls += usize::from(found.contains(&true));
-            off += usize::from(surface.keeps_off(&(near + Vec3::z() * 40.0), 20.0));
+            off += usize::from(surface.keeps_off(&(near + away * 40.0), 20.0));
         }
         // Off a thick surface the ends of its conics are within reach nearly everywhere.
         assert!(
