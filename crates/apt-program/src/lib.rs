@@ -23,7 +23,9 @@ pub mod symbols;
 use apt_syntax::SyntaxTree;
 
 pub use expand::{ExpandedLine, Expansion, expand};
-pub use finding::{Expected, Finding, FindingKind, Found, RelatedKind, Severity};
+pub use finding::{
+    ControlFinding, Expected, Finding, FindingKind, Found, RelatedKind, SculpturedFinding, Severity,
+};
 pub use fold::{Program, Statistics};
 pub use listing::{ListingEntry, ListingKind, PrintFormat, PrintedItem};
 pub use options::{IncludeFailure, IncludeResolver, Options};

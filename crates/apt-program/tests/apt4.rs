@@ -2,7 +2,7 @@
 
 mod support;
 
-use apt_program::{FindingKind, Options, Program, RecordKind, Severity, evaluate};
+use apt_program::{ControlFinding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use support::{problems, run_as, scalar};
 
@@ -351,18 +351,26 @@ fn constructs_nest_and_combine() {
 fn do_loops_end_at_their_label_and_are_left_by_jumps() {
     let missing = run("DO/B,I=1,3\nX=I");
     let kinds: Vec<_> = missing.findings().map(|finding| &finding.kind).collect();
-    assert!(matches!(kinds.as_slice(), [FindingKind::UnknownLabel { name, .. }] if name == "B"), "{kinds:?}");
+    assert!(
+        matches!(kinds.as_slice(), [FindingKind::Control(ControlFinding::UnknownLabel { name, .. })] if name == "B"),
+        "{kinds:?}"
+    );
     for text in [
         "DO/A,I=1,3\nDO/B,J=1,2\nA)X=I\nB)Y=J",
         "M=MACRO\nDO/A,I=1,3\nDO/B,J=1,2\nA)X=I\nB)Y=J\nTERMAC\nCALL/M",
     ] {
         let program = run(text);
         let kinds: Vec<_> = program.findings().map(|finding| finding.kind.clone()).collect();
-        let expected = FindingKind::LoopsCross { label: "B".into(), outer: "A".into() };
+        let expected =
+            FindingKind::Control(ControlFinding::LoopsCross { label: "B".into(), outer: "A".into() });
         assert_eq!(kinds, [expected], "{text}");
     }
     let backwards = run("A)X=1\nDO/A,I=1,3\nX=2");
-    assert!(backwards.findings().any(|finding| matches!(finding.kind, FindingKind::UnknownLabel { .. })));
+    assert!(
+        backwards
+            .findings()
+            .any(|finding| matches!(finding.kind, FindingKind::Control(ControlFinding::UnknownLabel { .. })))
+    );
     // A loop that a jump has left is over, wherever the jump goes.
     let text =
         "N=0\nS=0\nC)N=N+1\nDO/A,I=1,4\nIF(N.EQ.1.AND.I.EQ.2)JUMPTO/B\nA)S=S+I\nB)IF(N.LT.2)JUMPTO/C\nA1)X=I";
@@ -378,7 +386,7 @@ fn do_loops_end_at_their_label_and_are_left_by_jumps() {
 fn an_endless_program_is_no_program_without_fini() {
     let program = run("J=0\nA)I=1\nIF(J.LT.3)JUMPTO/A");
     let kinds: Vec<_> = program.findings().map(|finding| &finding.kind).collect();
-    assert!(matches!(kinds.as_slice(), [FindingKind::Endless { .. }]), "{kinds:?}");
+    assert!(matches!(kinds.as_slice(), [FindingKind::Control(ControlFinding::Endless { .. })]), "{kinds:?}");
     let unended = evaluate(
         &SyntaxTree::parse("A=1\nB=A\n", Dialect::named(DialectName::Apt4)),
         &Options::default(),

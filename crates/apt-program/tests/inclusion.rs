@@ -6,7 +6,8 @@ use std::{
 };
 
 use apt_program::{
-    FindingKind, FrameKind, IncludeFailure, IncludeResolver, Options, Program, SourceFile, evaluate, expand,
+    ControlFinding, FindingKind, FrameKind, IncludeFailure, IncludeResolver, Options, Program, SourceFile,
+    evaluate, expand,
 };
 use apt_syntax::{Dialect, DialectName, SyntaxTree, TextRange};
 
@@ -84,7 +85,10 @@ fn library_macros_and_stored_segments_are_found_as_files_are() {
     let program = run("LIBRY/NONE\nFINI\n", &[]);
     let kinds: Vec<_> = program.findings().map(|one| &one.kind).collect();
     let searched = vec!["shelf".into()];
-    assert_eq!(kinds, [&FindingKind::IncludeNotFound { name: "NONE".into(), searched }]);
+    assert_eq!(
+        kinds,
+        [&FindingKind::Control(ControlFinding::IncludeNotFound { name: "NONE".into(), searched })]
+    );
 }
 
 #[test]
@@ -92,7 +96,7 @@ fn circles_end_with_the_way_they_go() {
     let circle = |text: &str, files: &[(&'static str, &'static str)]| {
         let program = run(text, files);
         let found = program.findings().find_map(|one| match &one.kind {
-            FindingKind::IncludeCycle { name, through } => {
+            FindingKind::Control(ControlFinding::IncludeCycle { name, through }) => {
                 Some((name.to_string(), through.join(" "), one.origin.isn))
             }
             _ => None,
@@ -106,7 +110,11 @@ fn circles_end_with_the_way_they_go() {
     assert_eq!(circle("INCLUD/MAIN\nFINI\n", &files), Some(("MAIN".into(), "MAIN".into(), 1)));
     assert_eq!(circle("INCLUD/LIB\nINCLUD/LIB\nFINI\n", &[("LIB", "X=1\n")]), None, "twice is no circle");
     let locked = run("INCLUD/LOCKED\nFINI\n", &[]);
-    assert!(locked.findings().any(|one| matches!(one.kind, FindingKind::IncludeUnreadable { .. })));
+    assert!(
+        locked
+            .findings()
+            .any(|one| matches!(one.kind, FindingKind::Control(ControlFinding::IncludeUnreadable { .. })))
+    );
 }
 
 #[test]
@@ -151,7 +159,7 @@ fn read_takes_surfaces_from_the_library_in_apt4() {
     assert!(
         missing
             .findings()
-            .any(|one| matches!(&one.kind, FindingKind::IncludeNotFound { name, .. } if name == "NIX"))
+            .any(|one| matches!(&one.kind, FindingKind::Control(ControlFinding::IncludeNotFound { name, .. }) if name == "NIX"))
     );
     let bare = apt4("READ/1", &library);
     assert!(bare.findings().any(|one| matches!(one.kind, FindingKind::OperandCount { .. })));

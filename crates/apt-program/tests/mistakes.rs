@@ -2,7 +2,7 @@
 
 mod support;
 
-use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
+use apt_program::{ControlFinding, Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use support::{problems, run_whole};
 
@@ -378,7 +378,9 @@ fn an_endless_loop_ends_and_says_where_it_went() {
     let found: Vec<&Finding> =
         program.findings().filter(|finding| finding.severity == Severity::Error).collect();
     let [endless] = found.as_slice() else { panic!("{found:?}") };
-    let apt_program::FindingKind::Endless { changing, unchanged, statements } = &endless.kind else {
+    let apt_program::FindingKind::Control(ControlFinding::Endless { changing, unchanged, statements }) =
+        &endless.kind
+    else {
         panic!("{endless:?}")
     };
     assert_eq!(changing.as_slice(), ["I"]);
@@ -396,8 +398,9 @@ type LabelCase = (DialectName, &'static str, &'static [(u32, Severity)]);
 fn a_label_that_is_nowhere_is_a_warning_until_a_jump_leads_there() {
     let severity = |text: &str, dialect: DialectName| -> Vec<(u32, Severity)> {
         let program = run_whole(&format!("{text}\nFINI\n"), dialect);
-        let unknown =
-            program.findings().filter(|finding| matches!(finding.kind, FindingKind::UnknownLabel { .. }));
+        let unknown = program.findings().filter(|finding| {
+            matches!(finding.kind, FindingKind::Control(ControlFinding::UnknownLabel { .. }))
+        });
         unknown.map(|finding| (finding.origin.isn, finding.severity)).collect()
     };
     use DialectName::{Apt4, Free};
@@ -434,7 +437,7 @@ fn an_endless_loop_names_what_decides_and_does_not_change() {
         let options = Options { statement_budget: 5_000, ..Options::default() };
         let program = evaluate(&tree, &options, &|| false);
         let found = program.findings().find_map(|finding| match &finding.kind {
-            FindingKind::Endless { changing, unchanged, statements } => {
+            FindingKind::Control(ControlFinding::Endless { changing, unchanged, statements }) => {
                 Some((changing.clone(), unchanged.clone(), *statements))
             }
             _ => None,
@@ -486,8 +489,9 @@ fn every_major_word_of_apt_iii_does_something() {
     for word in majors {
         count += 1;
         let program = run(&format!("{}\nFINI\n", word.spelling));
-        let unknown =
-            program.findings().find(|finding| matches!(finding.kind, FindingKind::NotInDialect { .. }));
+        let unknown = program.findings().find(|finding| {
+            matches!(finding.kind, FindingKind::Control(ControlFinding::NotInDialect { .. }))
+        });
         assert!(unknown.is_none(), "{} is not handled", word.spelling);
     }
     assert!(count > 120, "{count} major words");

@@ -11,7 +11,8 @@ use apt_geometry::{
     },
 };
 use apt_program::{
-    Finding, FindingKind, Options, Program, RecordKind, Severity, Value, evaluate, finding::ConditionBlock,
+    Finding, FindingKind, Options, Program, RecordKind, SculpturedFinding, Severity, Value, evaluate,
+    finding::ConditionBlock,
 };
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 
@@ -332,14 +333,17 @@ fn conditions_hold_until_they_are_given_again() {
     assert_eq!(retracts[1], Retract::Vector(Vec3::new(0.0, 0.0, 1.0)));
     assert!(matches!(retracts[2], Retract::Plane(plane) if plane.distance == 3.0));
     // AVCTRL is on and nothing is checked: the three commands behind it say so.
-    let warned = program.findings().filter(|one| one.kind == FindingKind::AvoidanceWithoutCheck).count();
+    let warned = program
+        .findings()
+        .filter(|one| one.kind == FindingKind::Sculptured(SculpturedFinding::AvoidanceWithoutCheck))
+        .count();
     assert_eq!(warned, 3);
 }
 
 /// What a command finds missing.
 fn missing(program: &Program) -> (Vec<ConditionBlock>, Vec<ConditionBlock>, Vec<ConditionBlock>) {
     let found = program.findings().find_map(|finding| match &finding.kind {
-        FindingKind::ConditionMissing { missing, spoiled, valid, .. } => {
+        FindingKind::Sculptured(SculpturedFinding::ConditionMissing { missing, spoiled, valid, .. }) => {
             Some((missing.clone(), spoiled.clone(), valid.clone()))
         }
         _ => None,
@@ -412,20 +416,23 @@ fn doubtful_conditions_are_told() {
     };
     assert!(matches!(
         kind("SCON/DS,SS,PARAM,0,2.5,0,2,ON,VM"),
-        Some(FindingKind::GuideBeyond { parameter: 'u', extent, .. }) if extent == 2.0
+        Some(FindingKind::Sculptured(SculpturedFinding::GuideBeyond { parameter: 'u', extent, .. })) if extent == 2.0
     ));
     assert!(matches!(
         kind("SCON/DS,SS,PARAM,0,2,-.5,2,ON,VM"),
-        Some(FindingKind::GuideBeyond { parameter: 'v', .. })
+        Some(FindingKind::Sculptured(SculpturedFinding::GuideBeyond { parameter: 'v', .. }))
     ));
     assert!(matches!(
         kind("SCON/DS,K1,PARAM,0,3,ON,VM"),
-        Some(FindingKind::GuideBeyond { parameter: 'u', .. })
+        Some(FindingKind::Sculptured(SculpturedFinding::GuideBeyond { parameter: 'u', .. }))
     ));
     assert!(matches!(kind("SCON/AXIS,ATANGL,DS,0,CUTANG,-85"), Some(FindingKind::Doubtful { .. })));
-    assert_eq!(kind("AVCTRL/NORMPS"), Some(FindingKind::LiftWithoutLimit));
+    assert_eq!(kind("AVCTRL/NORMPS"), Some(FindingKind::Sculptured(SculpturedFinding::LiftWithoutLimit)));
     let older = kind(&format!("{CONDITIONS}SMIL/CUT,DS,PARAM,.2,.2,TANSPL,PLUS"));
-    assert!(matches!(older, Some(FindingKind::OlderSpelling { .. })), "{older:?}");
+    assert!(
+        matches!(older, Some(FindingKind::Sculptured(SculpturedFinding::OlderSpelling { .. }))),
+        "{older:?}"
+    );
 }
 
 #[test]

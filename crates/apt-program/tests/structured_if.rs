@@ -2,7 +2,9 @@
 
 mod support;
 
-use apt_program::{Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate, expand};
+use apt_program::{
+    ControlFinding, Finding, FindingKind, Options, Program, RecordKind, Severity, evaluate, expand,
+};
 use apt_syntax::{Dialect, DialectName, SyntaxTree, TextRange};
 use support::scalar;
 
@@ -148,8 +150,9 @@ fn loops_that_never_end_are_noticed() {
     for text in ["LOOPST\nA)X=1\nIF(X.LT.2)THEN\nJUMPTO/A\nENDIF\nLOOPND", "DO/E,I=1,2\nI=1\nE)CONTIN"] {
         let options = Options { statement_budget: 20_000, ..Options::default() };
         let program = evaluate(&tree(text), &options, &|| false);
-        let endless =
-            program.findings().filter(|finding| matches!(finding.kind, FindingKind::Endless { .. }));
+        let endless = program
+            .findings()
+            .filter(|finding| matches!(finding.kind, FindingKind::Control(ControlFinding::Endless { .. })));
         assert_eq!(endless.count(), 1, "{text}");
     }
 }

@@ -9,7 +9,7 @@ use apt_geometry::regional::{
 };
 use apt_program::{
     Origin,
-    finding::{ConditionBlock, FindingKind},
+    finding::{ConditionBlock, FindingKind, SculpturedFinding},
     record::RecordKind,
 };
 
@@ -41,9 +41,12 @@ impl Analysis {
         }
         let missing = program.findings().filter(|finding| here(&finding.origin)).find_map(|finding| {
             match &finding.kind {
-                FindingKind::ConditionMissing { missing, spoiled, valid, .. } => {
-                    Some(blocks(missing, spoiled, valid))
-                }
+                FindingKind::Sculptured(SculpturedFinding::ConditionMissing {
+                    missing,
+                    spoiled,
+                    valid,
+                    ..
+                }) => Some(blocks(missing, spoiled, valid)),
                 _ => None,
             }
         });

@@ -8,7 +8,7 @@ use apt_syntax::{
 use super::{Block, Branches, ClauseFault, ClauseMark, ClausePlace, clause_mark, says_motion};
 use crate::{
     evaluator::Evaluator,
-    finding::{FindingKind, RelatedKind},
+    finding::{ControlFinding, FindingKind, RelatedKind},
 };
 
 /// The condition of a clause; nothing if it has none, or if a mistake hides it.
@@ -86,8 +86,12 @@ impl Evaluator<'_> {
             let word = word.map(|element| element.text.clone()).unwrap_or_default();
             let here = std::mem::replace(&mut self.here.isn, isn);
             match fault {
-                ClauseFault::WithoutIf => self.report(FindingKind::ClauseWithoutIf { word }, range),
-                ClauseFault::NotClosed => self.report(FindingKind::BranchNotClosed, range),
+                ClauseFault::WithoutIf => {
+                    self.report(FindingKind::Control(ControlFinding::ClauseWithoutIf { word }), range)
+                }
+                ClauseFault::NotClosed => {
+                    self.report(FindingKind::Control(ControlFinding::BranchNotClosed), range)
+                }
                 ClauseFault::AfterElse(otherwise) => {
                     let other = statement(*otherwise).and_then(|(isn, parsed)| {
                         let mut origin = self.origin(parsed.statement.parts.first()?.range);
@@ -95,7 +99,11 @@ impl Evaluator<'_> {
                         Some((RelatedKind::Branch, origin))
                     });
                     let related = other.into_iter().collect();
-                    self.report_related(FindingKind::ClauseAfterElse { word }, range, related);
+                    self.report_related(
+                        FindingKind::Control(ControlFinding::ClauseAfterElse { word }),
+                        range,
+                        related,
+                    );
                 }
             }
             self.here.isn = here;
@@ -104,6 +112,10 @@ impl Evaluator<'_> {
 
     /// A jump into a branch from outside.
     pub(crate) fn report_jump_into_branch(&mut self, isn: u32, label: &Name) {
-        self.report_at(isn, FindingKind::JumpIntoBranch { name: label.text.clone() }, label.range);
+        self.report_at(
+            isn,
+            FindingKind::Control(ControlFinding::JumpIntoBranch { name: label.text.clone() }),
+            label.range,
+        );
     }
 }

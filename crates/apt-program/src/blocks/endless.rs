@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 use super::Activation;
 use crate::{
     evaluator::{Evaluator, Region},
-    finding::{FindingKind, RelatedKind},
+    finding::{ControlFinding, FindingKind, RelatedKind},
     symbols::{Meaning, Value},
 };
 
@@ -21,7 +21,11 @@ impl Evaluator<'_> {
     pub(super) fn report_endless(&mut self, activation: &Activation<'_>, index: usize, turn_start: usize) {
         let changing = self.changing_names(turn_start);
         let unchanged = self.unchanged_names(&self.deciding_names(activation), &changing);
-        let finding = FindingKind::Endless { statements: self.budget.granted, changing, unchanged };
+        let finding = FindingKind::Control(ControlFinding::Endless {
+            statements: self.budget.granted,
+            changing,
+            unchanged,
+        });
         let kind = if activation.region == Region::Macro { RelatedKind::Macro } else { RelatedKind::Loop };
         let mut origin = self.origin(activation.frame.range);
         origin.isn = activation.frame.isn;
@@ -105,7 +109,11 @@ impl Evaluator<'_> {
         let deciding = sorted(statements.flat_map(|statement| condition_names(&statement)).collect());
         let unchanged = self.unchanged_names(&deciding, &changing);
         let part = tree.statement(index).parsed().statement.parts.first().map(|part| part.range);
-        let finding = FindingKind::Endless { statements: self.options.statement_budget, changing, unchanged };
+        let finding = FindingKind::Control(ControlFinding::Endless {
+            statements: self.options.statement_budget,
+            changing,
+            unchanged,
+        });
         self.report(finding, part.unwrap_or_default());
     }
 }

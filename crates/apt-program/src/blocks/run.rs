@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 use super::{Bindings, Block};
 use crate::{
     evaluator::{Evaluator, Flow, Here, Region},
-    finding::FindingKind,
+    finding::{ControlFinding, FindingKind},
     record::{Frame, FrameKind},
     symbols::similar_names,
 };
@@ -196,7 +196,10 @@ impl Evaluator<'_> {
         let found = activation.block.label(&label.text);
         if found.is_none() {
             let similar = similar_names(&label.text, activation.block.labels());
-            self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
+            self.report(
+                FindingKind::Control(ControlFinding::UnknownLabel { name: label.text.clone(), similar }),
+                label.range,
+            );
         }
         if found.is_some_and(|found| !activation.block.branches.may_jump(from, found)) {
             self.report_jump_into_branch(self.here.isn, label);
@@ -227,18 +230,23 @@ impl Evaluator<'_> {
         leave_do_loops(do_loops, body);
         let label = super::normalised_label(&header.label.text);
         let Some(end) = end.filter(|end| *end >= body) else {
-            let finding = FindingKind::UnknownLabel { name: label, similar: Vec::new() };
+            let finding =
+                FindingKind::Control(ControlFinding::UnknownLabel { name: label, similar: Vec::new() });
             return self.report(finding, header.label.range);
         };
         if crosses {
-            return self.report(FindingKind::LoopCrossesBranch { label }, header.label.range);
+            return self.report(
+                FindingKind::Control(ControlFinding::LoopCrossesBranch { label }),
+                header.label.range,
+            );
         }
         if let Some(outer) = do_loops.last().filter(|outer| outer.end < end) {
-            let finding = FindingKind::LoopsCross { label, outer: outer.label.clone() };
+            let finding =
+                FindingKind::Control(ControlFinding::LoopsCross { label, outer: outer.label.clone() });
             return self.report(finding, header.label.range);
         }
         if step == Some(0.0) {
-            return self.report(FindingKind::ZeroStep, header.range);
+            return self.report(FindingKind::Control(ControlFinding::ZeroStep), header.range);
         }
         if let (Some(_), Some(last), Some(step)) = (first, last, step) {
             do_loops.push(DoLoop { label, index: header.index.clone(), last, step, body, end });

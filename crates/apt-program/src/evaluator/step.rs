@@ -13,7 +13,7 @@ use crate::{
     blocks::{
         self, Activation, Bindings, Block, BranchFinder, DoHeader, DoLoop, leave_do_loops, normalised_label,
     },
-    finding::{FindingKind, RelatedKind, Severity},
+    finding::{ControlFinding, FindingKind, RelatedKind, Severity},
     options::IncludeFailure,
     record::{FrameKind, RecordKind, SourceFile},
     statements::Major,
@@ -173,7 +173,8 @@ impl Evaluator<'_> {
         for (isn, label) in block.missing_labels(is_variable) {
             let similar = similar_names(&label.text, block.labels());
             let here = std::mem::replace(&mut self.here.isn, isn);
-            let kind = FindingKind::UnknownLabel { name: label.text.clone(), similar };
+            let kind =
+                FindingKind::Control(ControlFinding::UnknownLabel { name: label.text.clone(), similar });
             let mut finding = self.finding(kind, label.range);
             finding.severity = Severity::Warning;
             self.add(finding);
@@ -273,12 +274,20 @@ impl Evaluator<'_> {
             None => self.set_symbol(text, Meaning::Label, origin),
             Some((Meaning::Label, first)) if first.isn != origin.isn || first.frame != origin.frame => {
                 let related = vec![(RelatedKind::Label, first)];
-                self.report_related(FindingKind::DuplicateLabel { name: text }, label.range, related);
+                self.report_related(
+                    FindingKind::Control(ControlFinding::DuplicateLabel { name: text }),
+                    label.range,
+                    related,
+                );
             }
             Some((Meaning::Label | Meaning::Poisoned, _)) => {}
             Some((_, first)) => {
                 let related = vec![(RelatedKind::Definition, first)];
-                self.report_related(FindingKind::LabelIsName { name: text }, label.range, related);
+                self.report_related(
+                    FindingKind::Control(ControlFinding::LabelIsName { name: text }),
+                    label.range,
+                    related,
+                );
             }
         }
     }
@@ -320,8 +329,8 @@ impl Evaluator<'_> {
             }
         }
         let finding = match macro_name {
-            Some(name) => FindingKind::MacroNotClosed { name: name.text.clone() },
-            None => FindingKind::LoopNotClosed,
+            Some(name) => FindingKind::Control(ControlFinding::MacroNotClosed { name: name.text.clone() }),
+            None => FindingKind::Control(ControlFinding::LoopNotClosed),
         };
         self.report(finding, range);
         self.settle_branches(&mut block, branches);
@@ -345,7 +354,11 @@ impl Evaluator<'_> {
             && let Some(label) = label
         {
             let isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
-            self.report_at(isn, FindingKind::DuplicateLabel { name: label.text.clone() }, label.range);
+            self.report_at(
+                isn,
+                FindingKind::Control(ControlFinding::DuplicateLabel { name: label.text.clone() }),
+                label.range,
+            );
         }
     }
 
@@ -363,7 +376,11 @@ impl Evaluator<'_> {
         let kind = if macro_name.is_some() { RelatedKind::Macro } else { RelatedKind::Loop };
         self.here.isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
         let at = statement.statement.parts.first().map_or(TextRange::default(), |part| part.range);
-        let finding = if foreign_macro { FindingKind::MacroInRegion } else { FindingKind::EndInRegion };
+        let finding = if foreign_macro {
+            FindingKind::Control(ControlFinding::MacroInRegion)
+        } else {
+            FindingKind::Control(ControlFinding::EndInRegion)
+        };
         self.report_related(finding, at, vec![(kind, opening)]);
         self.here.isn = opened_at;
     }
@@ -372,14 +389,17 @@ impl Evaluator<'_> {
     fn top_level_jump(&mut self, top: &mut TopLevel<'_>, index: usize, label: &Name) -> StepEnd {
         let count = top.tree.statement_count();
         if !self.dialect.branch_anywhere {
-            self.report(FindingKind::JumpOutsideRegion, label.range);
+            self.report(FindingKind::Control(ControlFinding::JumpOutsideRegion), label.range);
             return StepEnd { next: index + 1, read_to: index + 1, read_from: index };
         }
         let target = top.label(&label.text);
         if target.is_none() {
             let labels = top.labels.iter().flat_map(BTreeMap::keys).map(SmolStr::as_str);
             let similar = similar_names(&label.text, labels);
-            self.report(FindingKind::UnknownLabel { name: label.text.clone(), similar }, label.range);
+            self.report(
+                FindingKind::Control(ControlFinding::UnknownLabel { name: label.text.clone(), similar }),
+                label.range,
+            );
         }
         let mut next = target.unwrap_or(index + 1);
         if self.skips_check_label(top, index, next) {
@@ -415,7 +435,10 @@ impl Evaluator<'_> {
         let Some(source) = self.included_source(name, range) else { return Flow::Next };
         let limit = self.options.macro_depth;
         if self.here.depth >= limit {
-            self.report(FindingKind::MacroDepth { name: name.clone(), limit }, range);
+            self.report(
+                FindingKind::Control(ControlFinding::MacroDepth { name: name.clone(), limit }),
+                range,
+            );
             return Flow::Abort;
         }
         let outer = self.here.clone();
@@ -451,18 +474,18 @@ impl Evaluator<'_> {
                 None => return Some(source),
                 Some(mut through) => {
                     through.push(name.clone());
-                    FindingKind::IncludeCycle { name: name.clone(), through }
+                    FindingKind::Control(ControlFinding::IncludeCycle { name: name.clone(), through })
                 }
             },
             Err(IncludeFailure::NotFound { searched }) => {
-                FindingKind::IncludeNotFound { name: name.clone(), searched }
+                FindingKind::Control(ControlFinding::IncludeNotFound { name: name.clone(), searched })
             }
             Err(IncludeFailure::Unreadable { path, reason }) => {
-                FindingKind::IncludeUnreadable { path, reason }
+                FindingKind::Control(ControlFinding::IncludeUnreadable { path, reason })
             }
             Err(IncludeFailure::TooLarge { path, limit }) => {
                 let reason = format_smolstr!("it is larger than {limit} bytes");
-                FindingKind::IncludeUnreadable { path, reason }
+                FindingKind::Control(ControlFinding::IncludeUnreadable { path, reason })
             }
         };
         self.report(finding, range);

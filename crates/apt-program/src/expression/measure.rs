@@ -13,7 +13,7 @@ use smol_str::SmolStr;
 use super::Item;
 use crate::{
     evaluator::Evaluator,
-    finding::{FindingKind, Severity},
+    finding::{ControlFinding, FindingKind, Severity},
 };
 
 /// Lines and planes count as parallel up to this sine (language reference 2.6).
@@ -68,8 +68,10 @@ impl Evaluator<'_> {
 
     /// Reports a function whose result does not exist.
     fn without_result(&mut self, name: &'static str, number: u16, range: TextRange) {
-        let mut finding =
-            self.finding(FindingKind::RoutineNotAvailable { name: SmolStr::new_static(name) }, range);
+        let mut finding = self.finding(
+            FindingKind::Control(ControlFinding::RoutineNotAvailable { name: SmolStr::new_static(name) }),
+            range,
+        );
         finding.severity = Severity::Error;
         finding.number = Some(number);
         self.add(finding);

@@ -1,15 +1,19 @@
 //! Findings of Section 1: what is wrong or doubtful, where, and the evidence. Words are made elsewhere.
 
+mod control;
 mod evidence;
 mod kind;
 mod number;
+mod sculptured;
 
 use apt_syntax::dialect::DialectName;
 
 use crate::record::Origin;
 
+pub use control::ControlFinding;
 pub use evidence::{ConditionBlock, Expected, Found, SynonymFault};
 pub use kind::FindingKind;
+pub use sculptured::SculpturedFinding;
 
 /// Something to tell the programmer.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
 use apt_syntax::{dialect::DialectName, error::SyntaxErrorKind};
 
-use super::{FindingKind, Found, Severity, SynonymFault};
+use super::{ControlFinding, FindingKind, Found, SculpturedFinding, Severity, SynonymFault};
 use crate::listing::cards::CardFault;
 
 impl FindingKind {
@@ -55,25 +55,27 @@ impl FindingKind {
             Self::ObtainCount { .. } => 154,
             Self::ObtainLarge { .. } => 157,
             Self::ReferenceSystem { .. } | Self::SingularMatrix => 651,
-            Self::DuplicateLabel { .. } => 6,
-            Self::LabelIsName { .. } => 3,
-            Self::UnknownLabel { .. } | Self::JumpIntoBranch { .. } => 406,
-            Self::JumpOutsideRegion => 407,
-            Self::UnknownTransfer { .. } => 456,
-            Self::NestedLoop => 206,
-            Self::LoopEndAlone => 208,
-            Self::LoopInMacro => 210,
-            Self::LoopNotClosed => 212,
-            Self::MacroInRegion => 201,
-            Self::MacroNotClosed { .. } | Self::EndInRegion => 16,
-            Self::MacroEndAlone => 209,
-            Self::MacroNameUsed { .. } => 202,
-            Self::MacroVariableCount { .. } => 205,
-            Self::UnknownMacro { .. } => 233,
-            Self::UnknownMacroVariable { .. } => 228,
-            Self::MacroVariableMissing { .. } => 230,
-            Self::MacroValueMissing { .. } => 229,
-            Self::MacroDepth { .. } => 231,
+            Self::Control(ControlFinding::DuplicateLabel { .. }) => 6,
+            Self::Control(ControlFinding::LabelIsName { .. }) => 3,
+            Self::Control(ControlFinding::UnknownLabel { .. })
+            | Self::Control(ControlFinding::JumpIntoBranch { .. }) => 406,
+            Self::Control(ControlFinding::JumpOutsideRegion) => 407,
+            Self::Control(ControlFinding::UnknownTransfer { .. }) => 456,
+            Self::Control(ControlFinding::NestedLoop) => 206,
+            Self::Control(ControlFinding::LoopEndAlone) => 208,
+            Self::Control(ControlFinding::LoopInMacro) => 210,
+            Self::Control(ControlFinding::LoopNotClosed) => 212,
+            Self::Control(ControlFinding::MacroInRegion) => 201,
+            Self::Control(ControlFinding::MacroNotClosed { .. })
+            | Self::Control(ControlFinding::EndInRegion) => 16,
+            Self::Control(ControlFinding::MacroEndAlone) => 209,
+            Self::Control(ControlFinding::MacroNameUsed { .. }) => 202,
+            Self::Control(ControlFinding::MacroVariableCount { .. }) => 205,
+            Self::Control(ControlFinding::UnknownMacro { .. }) => 233,
+            Self::Control(ControlFinding::UnknownMacroVariable { .. }) => 228,
+            Self::Control(ControlFinding::MacroVariableMissing { .. }) => 230,
+            Self::Control(ControlFinding::MacroValueMissing { .. }) => 229,
+            Self::Control(ControlFinding::MacroDepth { .. }) => 231,
             Self::SynonymPairs { .. } => 351,
             Self::SynonymInRegion => 353,
             Self::SynonymCount { .. } => 354,
@@ -98,23 +100,25 @@ impl FindingKind {
             Self::TransformForm { .. } => 506,
             Self::CopyCount { .. } => 507,
             Self::CopyOption { .. } => 503,
-            Self::IncludeNotFound { .. } | Self::IncludeUnreadable { .. } | Self::IncludeCycle { .. } => 31,
+            Self::Control(ControlFinding::IncludeNotFound { .. })
+            | Self::Control(ControlFinding::IncludeUnreadable { .. })
+            | Self::Control(ControlFinding::IncludeCycle { .. }) => 31,
             Self::Cards { fault: CardFault::Format { .. } } => 2000,
             Self::Cards { fault: CardFault::Missing } => 2002,
             Self::CardSort { .. } => 2001,
-            Self::SegmentInRegion => 37,
-            Self::SegmentInSegment => 30,
-            Self::SystemMacroInSegment { .. } => 38,
+            Self::Control(ControlFinding::SegmentInRegion) => 37,
+            Self::Control(ControlFinding::SegmentInSegment) => 30,
+            Self::Control(ControlFinding::SystemMacroInSegment { .. }) => 38,
             Self::EndMissing => 23,
-            Self::Parametric { .. }
-            | Self::ParametricDoubt { .. }
-            | Self::ConditionMissing { .. }
-            | Self::RangeReversed { .. }
-            | Self::GuideBeyond { .. }
-            | Self::AvoidanceWithoutCheck
-            | Self::LiftWithoutLimit
-            | Self::OlderSpelling { .. }
-            | Self::NameOnly { .. }
+            Self::Sculptured(SculpturedFinding::Parametric { .. })
+            | Self::Sculptured(SculpturedFinding::ParametricDoubt { .. })
+            | Self::Sculptured(SculpturedFinding::ConditionMissing { .. })
+            | Self::Sculptured(SculpturedFinding::RangeReversed { .. })
+            | Self::Sculptured(SculpturedFinding::GuideBeyond { .. })
+            | Self::Sculptured(SculpturedFinding::AvoidanceWithoutCheck)
+            | Self::Sculptured(SculpturedFinding::LiftWithoutLimit)
+            | Self::Sculptured(SculpturedFinding::OlderSpelling { .. })
+            | Self::Sculptured(SculpturedFinding::NameOnly { .. })
             | Self::Unused { .. }
             | Self::WordBecomesName { .. }
             | Self::NotFinite
@@ -125,16 +129,16 @@ impl FindingKind {
             | Self::Corner { .. }
             | Self::CurvatureJump { .. }
             | Self::RuledCurve { .. }
-            | Self::MacroVariableTwice { .. }
-            | Self::RoutineNotAvailable { .. }
-            | Self::Endless { .. }
-            | Self::LoopsCross { .. }
-            | Self::LoopCrossesBranch { .. }
-            | Self::ClauseWithoutIf { .. }
-            | Self::ClauseAfterElse { .. }
-            | Self::BranchNotClosed
-            | Self::ZeroStep
-            | Self::NotInDialect { .. }
+            | Self::Control(ControlFinding::MacroVariableTwice { .. })
+            | Self::Control(ControlFinding::RoutineNotAvailable { .. })
+            | Self::Control(ControlFinding::Endless { .. })
+            | Self::Control(ControlFinding::LoopsCross { .. })
+            | Self::Control(ControlFinding::LoopCrossesBranch { .. })
+            | Self::Control(ControlFinding::ClauseWithoutIf { .. })
+            | Self::Control(ControlFinding::ClauseAfterElse { .. })
+            | Self::Control(ControlFinding::BranchNotClosed)
+            | Self::Control(ControlFinding::ZeroStep)
+            | Self::Control(ControlFinding::NotInDialect { .. })
             | Self::AxisDropped { .. }
             | Self::AxisUndocumented { .. }
             | Self::NoEffect { .. }
@@ -155,11 +159,11 @@ impl FindingKind {
             | Self::MacroAsValue { .. }
             | Self::GeometryAsScalar { .. }
             | Self::NotAssignable { .. }
-            | Self::LabelIsName { .. }
-            | Self::NotInDialect { .. }
-            | Self::IncludeNotFound { .. }
-            | Self::IncludeUnreadable { .. }
-            | Self::IncludeCycle { .. }
+            | Self::Control(ControlFinding::LabelIsName { .. })
+            | Self::Control(ControlFinding::NotInDialect { .. })
+            | Self::Control(ControlFinding::IncludeNotFound { .. })
+            | Self::Control(ControlFinding::IncludeUnreadable { .. })
+            | Self::Control(ControlFinding::IncludeCycle { .. })
             | Self::InclusiveForm { .. }
             | Self::SynonymPairs { .. } => 1007,
             Self::Redefined { .. } => 50,
@@ -186,15 +190,17 @@ impl FindingKind {
             Self::OperandCount { .. } => 2001,
             Self::OperandRange { statement, .. } if statement == "PRINT" => 2031,
             Self::ObtainType { .. } => 1050,
-            Self::DuplicateLabel { .. } => 1003,
-            Self::UnknownMacro { .. } => 72,
-            Self::UnknownMacroVariable { .. } => 1020,
-            Self::MacroVariableMissing { .. } | Self::MacroValueMissing { .. } => 2055,
+            Self::Control(ControlFinding::DuplicateLabel { .. }) => 1003,
+            Self::Control(ControlFinding::UnknownMacro { .. }) => 72,
+            Self::Control(ControlFinding::UnknownMacroVariable { .. }) => 1020,
+            Self::Control(ControlFinding::MacroVariableMissing { .. })
+            | Self::Control(ControlFinding::MacroValueMissing { .. }) => 2055,
             Self::AxisDropped { .. } => 22300,
-            Self::Parametric { error, .. } | Self::ParametricDoubt { error, .. } => return error.number(),
-            Self::ConditionMissing { .. } => 3565,
-            Self::RangeReversed { .. } => 3523,
-            Self::NameOnly { .. } => 1007,
+            Self::Sculptured(SculpturedFinding::Parametric { error, .. })
+            | Self::Sculptured(SculpturedFinding::ParametricDoubt { error, .. }) => return error.number(),
+            Self::Sculptured(SculpturedFinding::ConditionMissing { .. }) => 3565,
+            Self::Sculptured(SculpturedFinding::RangeReversed { .. }) => 3523,
+            Self::Sculptured(SculpturedFinding::NameOnly { .. }) => 1007,
             Self::Unreachable => 1009,
             _ => return None,
         })
@@ -215,14 +221,14 @@ impl FindingKind {
             | Self::RuledCurve { .. }
             | Self::NoEffect { .. }
             | Self::RestartNotAvailable { .. }
-            | Self::MacroVariableTwice { .. }
-            | Self::RoutineNotAvailable { .. }
+            | Self::Control(ControlFinding::MacroVariableTwice { .. })
+            | Self::Control(ControlFinding::RoutineNotAvailable { .. })
             | Self::AxisDropped { .. }
-            | Self::ParametricDoubt { .. }
-            | Self::GuideBeyond { .. }
-            | Self::AvoidanceWithoutCheck
-            | Self::LiftWithoutLimit
-            | Self::OlderSpelling { .. }
+            | Self::Sculptured(SculpturedFinding::ParametricDoubt { .. })
+            | Self::Sculptured(SculpturedFinding::GuideBeyond { .. })
+            | Self::Sculptured(SculpturedFinding::AvoidanceWithoutCheck)
+            | Self::Sculptured(SculpturedFinding::LiftWithoutLimit)
+            | Self::Sculptured(SculpturedFinding::OlderSpelling { .. })
             | Self::Unreachable => Severity::Warning,
             Self::Syntax(kind) if kind.is_warning() => Severity::Warning,
             _ => Severity::Error,

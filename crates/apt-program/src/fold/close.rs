@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 use super::chunk::Chunk;
 use crate::{
     evaluator::{State, same_place_and_kind},
-    finding::{Finding, FindingKind},
+    finding::{ControlFinding, Finding, FindingKind},
     record::Origin,
     symbols::Meaning,
 };
@@ -57,9 +57,12 @@ fn add_unknown_transfers(chunks: &[Chunk], end: &State, dialect: DialectName, fi
         if !carried.contains(label) {
             let at_top = matches!(end.symbol(label).map(|symbol| &symbol.meaning), Some(Meaning::Label));
             let kind = if at_top || chunks.iter().any(|chunk| chunk.has_inner_label(label)) {
-                FindingKind::UnknownTransfer { name: label.clone() }
+                FindingKind::Control(ControlFinding::UnknownTransfer { name: label.clone() })
             } else {
-                FindingKind::UnknownLabel { name: label.clone(), similar: Vec::new() }
+                FindingKind::Control(ControlFinding::UnknownLabel {
+                    name: label.clone(),
+                    similar: Vec::new(),
+                })
             };
             push(findings, kind, dialect, origin);
         }

@@ -12,7 +12,7 @@ use super::MacroDefinition;
 use crate::{
     blocks::{Activation, Bindings},
     evaluator::{Evaluator, Flow, Region},
-    finding::{FindingKind, RelatedKind},
+    finding::{ControlFinding, FindingKind, RelatedKind},
     record::FrameKind,
     symbols::{Meaning, similar_names},
 };
@@ -27,7 +27,10 @@ impl Evaluator<'_> {
         range: TextRange,
     ) -> Flow {
         if section.is_some() {
-            self.report(FindingKind::RoutineNotAvailable { name: name.text.clone() }, name.range);
+            self.report(
+                FindingKind::Control(ControlFinding::RoutineNotAvailable { name: name.text.clone() }),
+                name.range,
+            );
             return Flow::Next;
         }
         self.mark_used(&name.text);
@@ -50,7 +53,7 @@ impl Evaluator<'_> {
         if self.is_first_call_in_segment(&definition, &name.text) {
             let related = vec![(RelatedKind::Macro, origin)];
             self.report_related(
-                FindingKind::SystemMacroInSegment { name: name.text.clone() },
+                FindingKind::Control(ControlFinding::SystemMacroInSegment { name: name.text.clone() }),
                 name.range,
                 related,
             );
@@ -68,7 +71,11 @@ impl Evaluator<'_> {
         let limit = self.macro_depth();
         if self.here.depth >= limit {
             let related = vec![(RelatedKind::Macro, origin)];
-            self.report_related(FindingKind::MacroDepth { name: name.text.clone(), limit }, range, related);
+            self.report_related(
+                FindingKind::Control(ControlFinding::MacroDepth { name: name.text.clone(), limit }),
+                range,
+                related,
+            );
             return Flow::Abort;
         }
         let frame = self.frame(FrameKind::Macro, name.text.clone(), range);
@@ -104,7 +111,7 @@ impl Evaluator<'_> {
             .map(|(name, _)| name.as_str());
         let similar = similar_names(&name.text, macros);
         self.report_related(
-            FindingKind::UnknownMacro { name: name.text.clone(), similar },
+            FindingKind::Control(ControlFinding::UnknownMacro { name: name.text.clone(), similar }),
             name.range,
             related,
         );
@@ -123,11 +130,11 @@ impl Evaluator<'_> {
         for argument in arguments {
             if !definition.variables.iter().any(|variable| variable.name == argument.name.text) {
                 let known = definition.variables.iter().map(|variable| variable.name.clone()).collect();
-                let finding = FindingKind::UnknownMacroVariable {
+                let finding = FindingKind::Control(ControlFinding::UnknownMacroVariable {
                     name: name.text.clone(),
                     parameter: argument.name.text.clone(),
                     known,
-                };
+                });
                 let related = vec![(RelatedKind::Macro, origin.clone())];
                 self.report_related(finding, argument.name.range, related);
                 sound = false;
@@ -140,7 +147,10 @@ impl Evaluator<'_> {
                 }
                 None => {
                     let parameter = argument.name.text.clone();
-                    self.report(FindingKind::MacroValueMissing { parameter }, argument.range);
+                    self.report(
+                        FindingKind::Control(ControlFinding::MacroValueMissing { parameter }),
+                        argument.range,
+                    );
                     sound = false;
                 }
             }
@@ -155,10 +165,10 @@ impl Evaluator<'_> {
                     bindings.bind(variable.name.clone(), value.clone());
                 }
                 None => {
-                    let finding = FindingKind::MacroVariableMissing {
+                    let finding = FindingKind::Control(ControlFinding::MacroVariableMissing {
                         name: name.text.clone(),
                         parameter: variable.name.clone(),
-                    };
+                    });
                     self.report_related(finding, name.range, vec![(RelatedKind::Macro, origin.clone())]);
                     sound = false;
                 }

@@ -3,7 +3,12 @@
 use apt_syntax::statement::{MacroParameter, Name};
 
 use super::{MacroDefinition, MacroVariable};
-use crate::{blocks::Block, evaluator::Evaluator, finding::FindingKind, symbols::Meaning};
+use crate::{
+    blocks::Block,
+    evaluator::Evaluator,
+    finding::{ControlFinding, FindingKind},
+    symbols::Meaning,
+};
 
 /// Most macro variables where tables are bounded (language reference 1.10).
 const MOST_VARIABLES: usize = 50;
@@ -12,21 +17,27 @@ impl Evaluator<'_> {
     /// Defines a macro with this body. The statement being executed is its header.
     pub(crate) fn define_macro(&mut self, name: &Name, parameters: &[MacroParameter], body: Block) {
         if self.dialect.bounded_tables && parameters.len() > MOST_VARIABLES {
-            let finding = FindingKind::MacroVariableCount { found: parameters.len(), limit: MOST_VARIABLES };
+            let finding = FindingKind::Control(ControlFinding::MacroVariableCount {
+                found: parameters.len(),
+                limit: MOST_VARIABLES,
+            });
             self.report(finding, name.range);
         }
         let mut variables: Vec<MacroVariable> = Vec::with_capacity(parameters.len());
         for parameter in parameters {
             let text = parameter.name.text.clone();
             if variables.iter().any(|other| other.name == text) {
-                self.report(FindingKind::MacroVariableTwice { name: text.clone() }, parameter.name.range);
+                self.report(
+                    FindingKind::Control(ControlFinding::MacroVariableTwice { name: text.clone() }),
+                    parameter.name.range,
+                );
             }
             variables.push(MacroVariable { name: text, default: parameter.value.clone() });
         }
         self.report_body_mistakes(&body, &variables);
         if self.look_up(&name.text).is_some() {
             let related = self.definition_of(&name.text);
-            let finding = FindingKind::MacroNameUsed { name: name.text.clone() };
+            let finding = FindingKind::Control(ControlFinding::MacroNameUsed { name: name.text.clone() });
             return self.report_related(finding, name.range, related);
         }
         let origin = self.origin(name.range);

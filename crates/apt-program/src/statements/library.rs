@@ -5,7 +5,7 @@ use apt_syntax::statement::{Argument, Expression};
 use super::Major;
 use crate::{
     evaluator::{Evaluator, Flow, Region},
-    finding::{Expected, FindingKind, Found},
+    finding::{ControlFinding, Expected, FindingKind, Found},
 };
 
 /// The first number of a READ that puts in a segment of statements.
@@ -27,12 +27,12 @@ impl Evaluator<'_> {
     /// READ/2,name: puts in a stored segment of statements, which is looked for as an included file is.
     pub(super) fn read_segment(&mut self, major: Major<'_>, name: &Argument, rest: &[Argument]) -> Flow {
         if self.here.region != Region::Top {
-            self.report(FindingKind::SegmentInRegion, major.range);
+            self.report(FindingKind::Control(ControlFinding::SegmentInRegion), major.range);
             return Flow::Next;
         }
         // Files may include files; only the library of the cards is read one block after the other.
         if self.dialect.bounded_tables && self.here.source.is_some() {
-            self.report(FindingKind::SegmentInSegment, major.range);
+            self.report(FindingKind::Control(ControlFinding::SegmentInSegment), major.range);
             return Flow::Next;
         }
         if !rest.is_empty() {

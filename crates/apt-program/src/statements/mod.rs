@@ -28,7 +28,7 @@ pub(crate) use sculptured::RegionalState;
 use crate::{
     evaluator::{Evaluator, Flow, Region},
     expression::Items,
-    finding::{Expected, FindingKind, Found},
+    finding::{ControlFinding, Expected, FindingKind, Found},
     record::{Record, RecordKind},
 };
 
@@ -92,7 +92,9 @@ impl Evaluator<'_> {
             Body::Text { word, text, .. } => self.text_statement(word, text, part.range),
             Body::Assignment { target, value } => self.assignment(target, value),
             Body::Definition { target, definition } => self.definition(target, definition),
-            Body::Macro { word, .. } => self.report(FindingKind::MacroInRegion, word.range),
+            Body::Macro { word, .. } => {
+                self.report(FindingKind::Control(ControlFinding::MacroInRegion), word.range)
+            }
             Body::Call { name, arguments, section, .. } => {
                 return self.call(name, arguments, section.as_ref(), part.range);
             }
@@ -121,10 +123,13 @@ impl Evaluator<'_> {
             // Where the branches are is known before anything is executed: these belong to none.
             Body::Clause { word, .. } => {
                 let word = SmolStr::new_static(word.word.spelling);
-                self.report(FindingKind::ClauseWithoutIf { word }, part.range);
+                self.report(FindingKind::Control(ControlFinding::ClauseWithoutIf { word }), part.range);
             }
             Body::Do { word, .. } => {
-                self.report(FindingKind::NotInDialect { word: SmolStr::new_static("DO") }, word.range);
+                self.report(
+                    FindingKind::Control(ControlFinding::NotInDialect { word: SmolStr::new_static("DO") }),
+                    word.range,
+                );
             }
             Body::Jump { word, label } => return self.jump_statement(word, label, part.range),
             Body::Major { word, slash, arguments } => {
@@ -254,7 +259,7 @@ impl Evaluator<'_> {
             "FINI" => return self.end(major),
             "LOOPST" => return self.loop_word_in_region(major, true),
             "LOOPND" => return self.loop_word_in_region(major, false),
-            "TERMAC" => self.report(FindingKind::MacroEndAlone, major.word.range),
+            "TERMAC" => self.report(FindingKind::Control(ControlFinding::MacroEndAlone), major.word.range),
             "INCLUD" => return self.include(major),
             "MACHIN" => self.machine(major),
             "LIBRY" => return self.library(major),
@@ -270,14 +275,17 @@ impl Evaluator<'_> {
             WordClass::PostprocessorBare | WordClass::Postprocessor => self.postprocessor(major),
             _ if self.is_cl() => self.postprocessor(major),
             WordClass::Logic if major.spelling() == "CONTIN" => {}
-            _ => self.report(FindingKind::NotInDialect { word: major.name() }, major.word.range),
+            _ => self.report(
+                FindingKind::Control(ControlFinding::NotInDialect { word: major.name() }),
+                major.word.range,
+            ),
         }
     }
 
     /// FINI.
     fn end(&mut self, major: Major<'_>) -> Flow {
         if self.here.region != Region::Top {
-            self.report(FindingKind::EndInRegion, major.word.range);
+            self.report(FindingKind::Control(ControlFinding::EndInRegion), major.word.range);
             return Flow::Next;
         }
         self.break_pending(FindingKind::ImpliedCheckOpen, major.range);
@@ -292,9 +300,9 @@ impl Evaluator<'_> {
             return Flow::Next;
         }
         let finding = match (self.here.region, start) {
-            (Region::Macro, _) => FindingKind::LoopInMacro,
-            (Region::Loop, true) => FindingKind::NestedLoop,
-            (_, _) => FindingKind::LoopEndAlone,
+            (Region::Macro, _) => FindingKind::Control(ControlFinding::LoopInMacro),
+            (Region::Loop, true) => FindingKind::Control(ControlFinding::NestedLoop),
+            (_, _) => FindingKind::Control(ControlFinding::LoopEndAlone),
         };
         self.report(finding, major.word.range);
         Flow::Next

@@ -1,6 +1,6 @@
 //! Words for names, subscripts and arithmetic (codes 01xx and 02xx).
 
-use apt_program::finding::{FindingKind as Kind, Found};
+use apt_program::finding::{ControlFinding, FindingKind as Kind, Found};
 
 use super::{Text, a_kind, number, say, similar};
 
@@ -138,7 +138,7 @@ fn arithmetic(kind: &Kind) -> Option<Text> {
             )
         }
         Kind::AngleOfCenter => say("APT0209", "there is no angle: the point is the centre of the circle"),
-        Kind::ZeroStep => say("APT0210", "the step of the DO loop is zero"),
+        Kind::Control(ControlFinding::ZeroStep) => say("APT0210", "the step of the DO loop is zero"),
         _ => return None,
     })
 }

@@ -1,7 +1,7 @@
 //! Words for labels, loops, macros, motion statements, post-processor statements and the program as a whole
 //! (codes 04xx, 05xx, 08xx, 09xx), and the door to the other groups of Section 1.
 
-use apt_program::finding::{FindingKind as Kind, SynonymFault};
+use apt_program::finding::{ControlFinding, FindingKind as Kind, SynonymFault};
 use smol_str::SmolStr;
 
 use super::{Text, a_kind, definitions, names, number, say, sculptured, similar, syntax};
@@ -28,49 +28,64 @@ pub(super) fn is_unnecessary(kind: &Kind) -> bool {
 
 fn jump(kind: &Kind) -> Option<Text> {
     Some(match kind {
-        Kind::DuplicateLabel { name } => {
+        Kind::Control(ControlFinding::DuplicateLabel { name }) => {
             say("APT0401", format!("the label {name} stands twice in this part of the program"))
         }
-        Kind::LabelIsName { name } => {
+        Kind::Control(ControlFinding::LabelIsName { name }) => {
             say("APT0402", format!("{name} is the name of something else and cannot be a label"))
         }
-        Kind::UnknownLabel { name, similar: names } => {
+        Kind::Control(ControlFinding::UnknownLabel { name, similar: names }) => {
             say("APT0403", format!("there is no label {name} here"))
                 .hint("a jump stays inside its loop or macro")
                 .maybe(similar(names))
         }
-        Kind::JumpOutsideRegion => say("APT0404", "IF and JUMPTO work inside loops and macros only")
-            .hint("put the statements between LOOPST and LOOPND"),
-        Kind::UnknownTransfer { name } => {
+        Kind::Control(ControlFinding::JumpOutsideRegion) => {
+            say("APT0404", "IF and JUMPTO work inside loops and macros only")
+                .hint("put the statements between LOOPST and LOOPND")
+        }
+        Kind::Control(ControlFinding::UnknownTransfer { name }) => {
             say("APT0405", format!("no statement of the path carries the label {name}"))
                 .hint("put the label before a motion or post-processor statement")
         }
-        Kind::NestedLoop => say("APT0406", "LOOPST cannot stand inside a loop").hint(
-            "one pair of LOOPST and LOOPND may hold several counters, or put the inner loop into a macro",
-        ),
-        Kind::LoopEndAlone => say("APT0407", "LOOPND without LOOPST").hint("add LOOPST, or remove LOOPND"),
-        Kind::LoopInMacro => say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
-            .hint("IF and JUMPTO work in a macro without them"),
-        Kind::LoopNotClosed => say("APT0409", "this loop is never closed").hint("add LOOPND"),
-        Kind::LoopsCross { label, outer } => {
+        Kind::Control(ControlFinding::NestedLoop) => say("APT0406", "LOOPST cannot stand inside a loop")
+            .hint(
+                "one pair of LOOPST and LOOPND may hold several counters, or put the inner loop into a macro",
+            ),
+        Kind::Control(ControlFinding::LoopEndAlone) => {
+            say("APT0407", "LOOPND without LOOPST").hint("add LOOPST, or remove LOOPND")
+        }
+        Kind::Control(ControlFinding::LoopInMacro) => {
+            say("APT0408", "LOOPST and LOOPND cannot stand in a macro")
+                .hint("IF and JUMPTO work in a macro without them")
+        }
+        Kind::Control(ControlFinding::LoopNotClosed) => {
+            say("APT0409", "this loop is never closed").hint("add LOOPND")
+        }
+        Kind::Control(ControlFinding::LoopsCross { label, outer }) => {
             say("APT0411", format!("the DO loop to {label} ends behind the loop to {outer} around it"))
                 .hint(format!("put the statement {label}) before {outer}), or end both loops at one label"))
         }
-        Kind::LoopCrossesBranch { label } => say(
+        Kind::Control(ControlFinding::LoopCrossesBranch { label }) => say(
             "APT0439",
             format!("the DO loop to {label} begins in one branch of an IF and ends in another"),
         )
         .hint(format!("put the DO and the statement {label}) into the same branch")),
-        Kind::ClauseWithoutIf { word } => say("APT0435", format!("{word} without an IF"))
-            .hint(format!("IF(condition)THEN stands before it, on a line of its own; or remove {word}")),
-        Kind::ClauseAfterElse { word } => say("APT0436", format!("{word} behind the ELSE of the same IF"))
-            .hint("ELSE opens the last branch: ELSEIF stands before it, ENDIF behind it"),
-        Kind::BranchNotClosed => say("APT0437", "this IF is never closed").hint("add ENDIF"),
-        Kind::JumpIntoBranch { name } => {
+        Kind::Control(ControlFinding::ClauseWithoutIf { word }) => {
+            say("APT0435", format!("{word} without an IF"))
+                .hint(format!("IF(condition)THEN stands before it, on a line of its own; or remove {word}"))
+        }
+        Kind::Control(ControlFinding::ClauseAfterElse { word }) => {
+            say("APT0436", format!("{word} behind the ELSE of the same IF"))
+                .hint("ELSE opens the last branch: ELSEIF stands before it, ENDIF behind it")
+        }
+        Kind::Control(ControlFinding::BranchNotClosed) => {
+            say("APT0437", "this IF is never closed").hint("add ENDIF")
+        }
+        Kind::Control(ControlFinding::JumpIntoBranch { name }) => {
             say("APT0438", format!("{name} stands in a branch of an IF that this jump does not come from"))
                 .hint("a branch is entered through its IF only; jumps may lead out of it")
         }
-        Kind::Endless { statements, changing, unchanged } => {
+        Kind::Control(ControlFinding::Endless { statements, changing, unchanged }) => {
             let what = match (unchanged.as_slice(), changing.as_slice()) {
                 ([], []) => "no condition of the loop depends on a name that changes".to_owned(),
                 ([], changing) => format!("{} changed in the last turn", changing.join(", ")),
@@ -93,28 +108,28 @@ fn jump(kind: &Kind) -> Option<Text> {
 
 fn macro_call(kind: &Kind) -> Option<Text> {
     Some(match kind {
-        Kind::MacroInRegion => say("APT0420", "a macro cannot be defined inside a loop or another macro"),
-        Kind::MacroNotClosed { name } => {
+        Kind::Control(ControlFinding::MacroInRegion) => say("APT0420", "a macro cannot be defined inside a loop or another macro"),
+        Kind::Control(ControlFinding::MacroNotClosed { name }) => {
             say("APT0421", format!("the macro {name} is never closed")).hint("add TERMAC")
         }
-        Kind::MacroEndAlone => say("APT0422", "TERMAC without MACRO")
+        Kind::Control(ControlFinding::MacroEndAlone) => say("APT0422", "TERMAC without MACRO")
             .hint("the statement that begins the macro may have a mistake"),
-        Kind::EndInRegion => {
+        Kind::Control(ControlFinding::EndInRegion) => {
             say("APT0423", "FINI stands inside a loop or macro").hint("TERMAC or LOOPND is missing before it")
         }
-        Kind::MacroNameUsed { name } => {
+        Kind::Control(ControlFinding::MacroNameUsed { name }) => {
             say("APT0424", format!("{name} is in use already and cannot name a macro"))
         }
-        Kind::MacroVariableCount { found, limit } => {
+        Kind::Control(ControlFinding::MacroVariableCount { found, limit }) => {
             say("APT0425", format!("the macro has {found} variables; this dialect takes {limit}"))
         }
-        Kind::MacroVariableTwice { name } => {
+        Kind::Control(ControlFinding::MacroVariableTwice { name }) => {
             say("APT0426", format!("the macro variable {name} stands twice"))
         }
-        Kind::UnknownMacro { name, similar: names } => say("APT0427", format!("there is no macro {name}"))
+        Kind::Control(ControlFinding::UnknownMacro { name, similar: names }) => say("APT0427", format!("there is no macro {name}"))
             .hint("a macro must stand before its first CALL")
             .maybe(similar(names)),
-        Kind::UnknownMacroVariable { name, parameter, known } => {
+        Kind::Control(ControlFinding::UnknownMacroVariable { name, parameter, known }) => {
             let hint = if known.is_empty() {
                 "it has no variables".to_owned()
             } else {
@@ -122,16 +137,16 @@ fn macro_call(kind: &Kind) -> Option<Text> {
             };
             say("APT0428", format!("the macro {name} has no variable {parameter}")).hint(hint)
         }
-        Kind::MacroVariableMissing { name, parameter } => {
+        Kind::Control(ControlFinding::MacroVariableMissing { name, parameter }) => {
             say("APT0429", format!("{parameter} of the macro {name} has neither a value nor a default"))
                 .hint(format!("add {parameter}=… to the CALL"))
         }
-        Kind::MacroValueMissing { parameter } => say("APT0430", format!("{parameter} needs = and a value")),
-        Kind::MacroDepth { name, limit } => {
+        Kind::Control(ControlFinding::MacroValueMissing { parameter }) => say("APT0430", format!("{parameter} needs = and a value")),
+        Kind::Control(ControlFinding::MacroDepth { name, limit }) => {
             say("APT0433", format!("the CALL of {name} is nested deeper than {limit}"))
                 .hint("the macro may call itself; the setting budget.macro-depth allows more")
         }
-        Kind::RoutineNotAvailable { name } => say("APT0434", format!("the routine {name} is not available")),
+        Kind::Control(ControlFinding::RoutineNotAvailable { name }) => say("APT0434", format!("the routine {name} is not available")),
         Kind::SynonymPairs { found } => {
             let operands = if *found == 1 { "is 1 operand" } else { "are {} operands" };
             say(
@@ -245,14 +260,14 @@ fn whole(kind: &Kind) -> Text {
         }
         Kind::AfterEnd => say("APT0902", "statements after FINI are not executed"),
         Kind::Unreachable => say("APT0903", "this statement is never reached"),
-        Kind::SegmentInRegion => say("APT0913", "READ/2 cannot stand in a loop or macro").hint(
+        Kind::Control(ControlFinding::SegmentInRegion) => say("APT0913", "READ/2 cannot stand in a loop or macro").hint(
             "put the statements in before the loop or macro, or make them a macro of their own and call it",
         ),
-        Kind::SegmentInSegment => {
+        Kind::Control(ControlFinding::SegmentInSegment) => {
             say("APT0914", "the statements that READ/2 puts in cannot hold another READ/2")
                 .hint("read both blocks in the program; the dialect free puts in blocks within blocks")
         }
-        Kind::SystemMacroInSegment { name } => say(
+        Kind::Control(ControlFinding::SystemMacroInSegment { name }) => say(
             "APT0915",
             format!("the statements that READ/2 puts in cannot hold the first CALL of {name}, a macro of the library"),
         )
@@ -268,9 +283,9 @@ fn whole(kind: &Kind) -> Text {
             _ => "the whole program is run; leave out what is done by statements of the program",
         }),
         Kind::NoEffect { word } => say("APT0904", format!("{word} has no effect here")),
-        Kind::NotInDialect { word } => say("APT0905", format!("{word} is not supported in this dialect"))
+        Kind::Control(ControlFinding::NotInDialect { word }) => say("APT0905", format!("{word} is not supported in this dialect"))
             .hint("another dialect is set in apt-lsp.toml or by a first line `$$ apt-lsp: dialect=…`"),
-        Kind::IncludeNotFound { name, searched } => {
+        Kind::Control(ControlFinding::IncludeNotFound { name, searched }) => {
             let hint = match searched.as_slice() {
                 [] => "the setting include lists the folders that are searched".to_owned(),
                 folders => format!(
@@ -280,10 +295,10 @@ fn whole(kind: &Kind) -> Text {
             };
             say("APT0906", format!("{name} cannot be found")).hint(hint)
         }
-        Kind::IncludeUnreadable { path, reason } => {
+        Kind::Control(ControlFinding::IncludeUnreadable { path, reason }) => {
             say("APT0907", format!("{path} cannot be included: {reason}"))
         }
-        Kind::IncludeCycle { name, through } => {
+        Kind::Control(ControlFinding::IncludeCycle { name, through }) => {
             let way = through.iter().map(SmolStr::as_str).collect::<Vec<_>>().join(" includes ");
             say("APT0908", format!("{name} would include itself")).hint(format!("the program includes {way}"))
         }

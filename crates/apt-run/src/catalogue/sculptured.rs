@@ -1,34 +1,34 @@
 //! Words for space curves and sculptured surfaces (codes 0317 to 0319) and for their regional milling (codes 052x).
 
 use apt_geometry::definition::ParametricError as Error;
-use apt_program::finding::{ConditionBlock, FindingKind as Kind};
+use apt_program::finding::{ConditionBlock, FindingKind as Kind, SculpturedFinding};
 
 use super::{Text, a_kind, number, say};
 
 pub(super) fn word(kind: &Kind) -> Option<Text> {
     Some(match kind {
-        Kind::Parametric { statement, error } => match statement.as_str() {
+        Kind::Sculptured(SculpturedFinding::Parametric { statement, error }) => match statement.as_str() {
             "POINT" | "VECTOR" | "PARMF" => {
                 say("APT0318", format!("{statement} has no answer: {}", reason(error))).maybe(help(error))
             }
             _ => say("APT0317", format!("this {statement} does not exist: {}", reason(error)))
                 .maybe(help(error)),
         },
-        Kind::ParametricDoubt { statement, error } => {
+        Kind::Sculptured(SculpturedFinding::ParametricDoubt { statement, error }) => {
             say("APT0319", format!("this {statement} is doubtful: {}", reason(error))).maybe(help(error))
         }
-        Kind::ConditionMissing { word, missing, spoiled, valid } => {
+        Kind::Sculptured(SculpturedFinding::ConditionMissing { word, missing, spoiled, valid }) => {
             condition_missing(word, missing, spoiled, valid)
         }
-        Kind::NameOnly { word } => {
+        Kind::Sculptured(SculpturedFinding::NameOnly { word }) => {
             say("APT0521", format!("only the name of {word} is public, not what it does"))
                 .hint("SCON and SMIL mill regions of sculptured surfaces")
         }
-        Kind::OlderSpelling { word, present } => {
+        Kind::Sculptured(SculpturedFinding::OlderSpelling { word, present }) => {
             say("APT0522", format!("{word} is an older spelling of {present}"))
                 .hint(format!("write {present}"))
         }
-        Kind::GuideBeyond { name, parameter, low, high, extent } => {
+        Kind::Sculptured(SculpturedFinding::GuideBeyond { name, parameter, low, high, extent }) => {
             let guide = if name.is_empty() { "the guide element" } else { name.as_str() };
             say(
                 "APT0523",
@@ -40,13 +40,15 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
             )
             .hint(format!("{parameter} runs from 0 to {} there", number(*extent)))
         }
-        Kind::AvoidanceWithoutCheck => {
+        Kind::Sculptured(SculpturedFinding::AvoidanceWithoutCheck) => {
             say("APT0524", "AVCTRL is on, but no surface is checked, so that there is nothing to avoid")
                 .hint("write CHKSRF/PS,ON before this statement, or AVCTRL/OFF")
         }
-        Kind::LiftWithoutLimit => say("APT0525", "the lift has no limit of its own: MAXDP limits it")
-            .hint("add LIMIT and the greatest lift"),
-        Kind::RangeReversed { statement, low, high } => say(
+        Kind::Sculptured(SculpturedFinding::LiftWithoutLimit) => {
+            say("APT0525", "the lift has no limit of its own: MAXDP limits it")
+                .hint("add LIMIT and the greatest lift")
+        }
+        Kind::Sculptured(SculpturedFinding::RangeReversed { statement, low, high }) => say(
             "APT0526",
             format!(
                 "the limits of {statement} are in the wrong order: {} is above {}",

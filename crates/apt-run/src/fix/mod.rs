@@ -11,7 +11,7 @@ mod tests;
 
 use std::ops::Range;
 
-use apt_program::{Finding, FindingKind, Origin, symbols::similar_names};
+use apt_program::{ControlFinding, Finding, FindingKind, Origin, SculpturedFinding, symbols::similar_names};
 use apt_syntax::{
     SyntaxTree, TextRange,
     error::SyntaxErrorKind,
@@ -34,33 +34,38 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
     match &finding.kind {
         FindingKind::Syntax(kind) => here.syntax(kind),
         FindingKind::Undefined { name, similar }
-        | FindingKind::UnknownLabel { name, similar }
-        | FindingKind::UnknownMacro { name, similar } => here.misspelt(name, similar),
-        FindingKind::UnknownMacroVariable { parameter, known, .. } => {
+        | FindingKind::Control(ControlFinding::UnknownLabel { name, similar })
+        | FindingKind::Control(ControlFinding::UnknownMacro { name, similar }) => {
+            here.misspelt(name, similar)
+        }
+        FindingKind::Control(ControlFinding::UnknownMacroVariable { parameter, known, .. }) => {
             here.misspelt(parameter, &similar_names(parameter, known.iter().map(SmolStr::as_str)))
         }
         FindingKind::Unused { name } => here.unused(name).into_iter().collect(),
         FindingKind::EndMissing => block::end_of_program(tree).into_iter().collect(),
-        FindingKind::MacroNotClosed { .. } => {
+        FindingKind::Control(ControlFinding::MacroNotClosed { .. }) => {
             block::end_of_block(tree, index, "TERMAC").into_iter().collect()
         }
-        FindingKind::LoopNotClosed => block::end_of_block(tree, index, "LOOPND").into_iter().collect(),
-        FindingKind::EndInRegion | FindingKind::MacroInRegion => {
+        FindingKind::Control(ControlFinding::LoopNotClosed) => {
+            block::end_of_block(tree, index, "LOOPND").into_iter().collect()
+        }
+        FindingKind::Control(ControlFinding::EndInRegion)
+        | FindingKind::Control(ControlFinding::MacroInRegion) => {
             block::end_before(&here.view, &here.parsed, finding)
         }
-        FindingKind::MacroEndAlone
-        | FindingKind::LoopEndAlone
+        FindingKind::Control(ControlFinding::MacroEndAlone)
+        | FindingKind::Control(ControlFinding::LoopEndAlone)
         | FindingKind::AfterEnd
         | FindingKind::Unreachable => here.without_statement("Remove the statement").into_iter().collect(),
         FindingKind::PostBare { .. } => here.without_parameters().into_iter().collect(),
         FindingKind::Redefined { name, .. } => {
             here.line_before("CANON/ON", format!("Allow {name} to be defined again")).into_iter().collect()
         }
-        FindingKind::OlderSpelling { present, .. } => {
+        FindingKind::Sculptured(SculpturedFinding::OlderSpelling { present, .. }) => {
             let edits = vec![(here.bytes(finding.origin.range), present.to_string())];
             vec![Fix { title: format!("Write {present}"), edits, preferred: true }]
         }
-        FindingKind::AvoidanceWithoutCheck => here
+        FindingKind::Sculptured(SculpturedFinding::AvoidanceWithoutCheck) => here
             .line_before("CHKSRF/PS,ON", "Check the part surface for interference".to_owned())
             .into_iter()
             .collect(),

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     evaluator::Evaluator,
-    finding::{Expected, FindingKind},
+    finding::{Expected, FindingKind, SculpturedFinding},
     statements::Major,
 };
 
@@ -69,7 +69,7 @@ impl Evaluator<'_> {
         };
         let lifts = items.iter().any(|item| matches!(item.word(), Some("NORMPS" | "AXIS")));
         if lifts && matches!(control, Control::Avoid(AvoidanceControl { limit: None, .. })) {
-            self.report(FindingKind::LiftWithoutLimit, major.range);
+            self.report(FindingKind::Sculptured(SculpturedFinding::LiftWithoutLimit), major.range);
         }
         let state = &mut self.regional_mut().avoidance;
         match control {
@@ -101,7 +101,8 @@ impl Evaluator<'_> {
             "AVPRT" => {}
             "AVMSG" => {
                 let (word_text, present) = (SmolStr::new_static("AVMSG"), SmolStr::new_static("AVPRT"));
-                let finding = FindingKind::OlderSpelling { word: word_text, present };
+                let finding =
+                    FindingKind::Sculptured(SculpturedFinding::OlderSpelling { word: word_text, present });
                 self.report_apt4(finding, number::PRINT_WORD, word.range);
             }
             _ => return false,

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     evaluator::Evaluator,
-    finding::{ConditionBlock, Expected, FindingKind, Found},
+    finding::{ConditionBlock, Expected, FindingKind, Found, SculpturedFinding},
     record::RecordKind,
     statements::Major,
 };
@@ -56,10 +56,10 @@ impl Evaluator<'_> {
             Err(misfit) => return self.misfit(major, misfit),
         };
         if word == "CUT" {
-            let finding = FindingKind::OlderSpelling {
+            let finding = FindingKind::Sculptured(SculpturedFinding::OlderSpelling {
                 word: SmolStr::new_static("CUT"),
                 present: SmolStr::new_static("PATH"),
-            };
+            });
             self.report(finding, items.first().map_or(major.range, |item| item.range));
         }
         let state = std::sync::Arc::clone(&self.state.regional);
@@ -68,14 +68,22 @@ impl Evaluator<'_> {
         if !missing.is_empty() {
             let spoiled = missing.iter().copied().filter(|block| state.is_spoiled(*block)).collect();
             let (word, valid) = (SmolStr::new_static(word), state.valid_blocks());
-            return self.report(FindingKind::ConditionMissing { word, missing, spoiled, valid }, major.range);
+            return self.report(
+                FindingKind::Sculptured(SculpturedFinding::ConditionMissing {
+                    word,
+                    missing,
+                    spoiled,
+                    valid,
+                }),
+                major.range,
+            );
         }
         let Some(milling) = milling(&state, &statement) else { return };
         if let Some(misfit) = unfit(&milling, &items, major) {
             return self.misfit(major, misfit);
         }
         if state.avoidance.enabled && !state.checked.part && state.checked.named.is_empty() {
-            self.report(FindingKind::AvoidanceWithoutCheck, major.range);
+            self.report(FindingKind::Sculptured(SculpturedFinding::AvoidanceWithoutCheck), major.range);
         }
         self.emit(RecordKind::Regional(Box::new(milling)), major.range);
     }

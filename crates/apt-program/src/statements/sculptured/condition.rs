@@ -20,7 +20,7 @@ use super::{
 use crate::{
     evaluator::Evaluator,
     expression::Item,
-    finding::{Expected, FindingKind},
+    finding::{Expected, FindingKind, SculpturedFinding},
     statements::Major,
 };
 
@@ -104,7 +104,15 @@ fn beyond(guide: &Guide) -> Option<FindingKind> {
     let outside = |name: &str, parameter, range: &ParameterRange, extent: f64| {
         let is_outside = range.low < 0.0 || range.high > extent;
         let (low, high) = (range.low, range.high);
-        is_outside.then(|| FindingKind::GuideBeyond { name: name.into(), parameter, low, high, extent })
+        is_outside.then(|| {
+            FindingKind::Sculptured(SculpturedFinding::GuideBeyond {
+                name: name.into(),
+                parameter,
+                low,
+                high,
+                extent,
+            })
+        })
     };
     match guide {
         Guide::Surface { surface: NamedSurface { name, geometry: Geometry::Sculptured(surface) }, u, v } => {

@@ -28,7 +28,7 @@ use super::Major;
 use crate::{
     evaluator::Evaluator,
     expression::{Item, Items},
-    finding::{FindingKind, Found},
+    finding::{FindingKind, Found, SculpturedFinding},
 };
 
 /// Numbers of the public system (sculptured surfaces reference, 1.4 to 1.8).
@@ -77,9 +77,11 @@ impl Evaluator<'_> {
             Misfit::Value { value, number, range } => {
                 (FindingKind::OperandRange { statement, value, number }, number, range)
             }
-            Misfit::Range { low, high, number, range } => {
-                (FindingKind::RangeReversed { statement, low, high }, number, range)
-            }
+            Misfit::Range { low, high, number, range } => (
+                FindingKind::Sculptured(SculpturedFinding::RangeReversed { statement, low, high }),
+                number,
+                range,
+            ),
         };
         let mut finding = self.finding(kind, range);
         finding.number = number;
@@ -124,12 +126,18 @@ impl Evaluator<'_> {
             Ok(Ok((geometry, warnings))) => {
                 for error in warnings {
                     let statement = statement.clone();
-                    self.report(FindingKind::ParametricDoubt { statement, error }, range);
+                    self.report(
+                        FindingKind::Sculptured(SculpturedFinding::ParametricDoubt { statement, error }),
+                        range,
+                    );
                 }
                 Some(geometry)
             }
             Ok(Err(error)) => {
-                self.report(FindingKind::Parametric { statement, error }, range);
+                self.report(
+                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
+                    range,
+                );
                 None
             }
             Err(misfit) => {
@@ -141,7 +149,10 @@ impl Evaluator<'_> {
 
     /// GOMILL, GCLEAR and INTSEC: only their names are public.
     pub(crate) fn undocumented_milling(&mut self, major: Major<'_>) {
-        self.report(FindingKind::NameOnly { word: major.name() }, major.word.range);
+        self.report(
+            FindingKind::Sculptured(SculpturedFinding::NameOnly { word: major.name() }),
+            major.word.range,
+        );
     }
 }
 

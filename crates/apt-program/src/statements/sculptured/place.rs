@@ -15,7 +15,7 @@ use super::reader::{Read, Reader};
 use crate::{
     evaluator::Evaluator,
     expression::Item,
-    finding::{Expected, FindingKind},
+    finding::{Expected, FindingKind, SculpturedFinding},
 };
 
 /// What VECTOR/INTOF takes of the place.
@@ -61,7 +61,10 @@ impl Evaluator<'_> {
             }
             Err(error) => {
                 let statement = SmolStr::new_static(kind.word());
-                self.report(FindingKind::Parametric { statement, error }, range);
+                self.report(
+                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
+                    range,
+                );
                 None
             }
         }
@@ -72,7 +75,7 @@ impl Evaluator<'_> {
         let statement = SmolStr::new_static("PARMF");
         let Some(place) = self.state.intersection.clone() else {
             let error = ParametricError::NoPlaceYet;
-            self.report(FindingKind::Parametric { statement, error }, range);
+            self.report(FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }), range);
             return Some(0.0);
         };
         let items = self.operands(arguments)?;
@@ -80,7 +83,10 @@ impl Evaluator<'_> {
             Ok(Some(value)) => Some(value),
             Ok(None) => {
                 let error = ParametricError::NoPlaceYet;
-                self.report(FindingKind::Parametric { statement, error }, range);
+                self.report(
+                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
+                    range,
+                );
                 None
             }
             Err(misfit) => {
