@@ -87,10 +87,10 @@ impl Evaluator<'_> {
             let here = std::mem::replace(&mut self.here.isn, isn);
             match fault {
                 ClauseFault::WithoutIf => {
-                    self.report(FindingKind::Control(ControlFinding::ClauseWithoutIf { word }), range)
+                    self.report(FindingKind::Control(ControlFinding::ClauseWithoutIf { word }), range);
                 }
                 ClauseFault::NotClosed => {
-                    self.report(FindingKind::Control(ControlFinding::BranchNotClosed), range)
+                    self.report(FindingKind::Control(ControlFinding::BranchNotClosed), range);
                 }
                 ClauseFault::AfterElse(otherwise) => {
                     let other = statement(*otherwise).and_then(|(isn, parsed)| {

@@ -93,7 +93,7 @@ impl Evaluator<'_> {
             Body::Assignment { target, value } => self.assignment(target, value),
             Body::Definition { target, definition } => self.definition(target, definition),
             Body::Macro { word, .. } => {
-                self.report(FindingKind::Control(ControlFinding::MacroInRegion), word.range)
+                self.report(FindingKind::Control(ControlFinding::MacroInRegion), word.range);
             }
             Body::Call { name, arguments, section, .. } => {
                 return self.call(name, arguments, section.as_ref(), part.range);
