@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write, path::Path};
 
+use apt_syntax::dialect::DialectName;
 use serde_json::Value;
 
 use crate::{repository, run_report, sculptured};
@@ -26,6 +27,20 @@ pub const GROUPS: [&str; 10] = [
     "apt4-motion",
     "sculptured-geometry",
 ];
+
+/// The groups that a test of their own compares (`regional_milling`).
+pub const MILLING_GROUPS: [&str; 2] = ["regional-milling", "interference"];
+
+/// The dialect in which the programs of a group are written.
+pub fn dialect_of(group: &str) -> DialectName {
+    match group {
+        "apt4-language" | "apt4-motion" | "sculptured-geometry" | "regional-milling" | "interference" => {
+            DialectName::Apt4
+        }
+        "errors" => DialectName::Apt3,
+        _ => DialectName::Free,
+    }
+}
 
 /// What is wrong with each program that does not pass, by `group/name`.
 pub type Failures = BTreeMap<String, Vec<String>>;
@@ -68,11 +83,7 @@ fn stem(path: &Path) -> String {
 pub fn check(group: &str, path: &Path) -> Vec<String> {
     let expected = std::fs::read_to_string(path.with_extension("json")).expect("every program has a result");
     let expected: Value = serde_json::from_str(&expected).expect("the result is JSON");
-    let dialect = match group {
-        "apt4-language" | "apt4-motion" | "sculptured-geometry" => "apt4",
-        "errors" => "apt3",
-        _ => "free",
-    };
+    let dialect = dialect_of(group).as_str();
     let ours = run_report(path, dialect);
     let mut problems = Vec::new();
     if let Some(quirk) = expected.get("quirk") {

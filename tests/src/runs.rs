@@ -68,15 +68,6 @@ fn without_times(report: &mut Value) {
     }
 }
 
-/// The dialect in which the programs of a group are written.
-pub fn dialect_of(group: &str) -> &'static str {
-    match group {
-        "apt4-language" | "apt4-motion" => "apt4",
-        "errors" => "apt3",
-        _ => "free",
-    }
-}
-
 /// The text of a file.
 pub fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -88,10 +79,10 @@ pub fn title(path: &Path) -> String {
     format!("{}/{}", part(path.parent().and_then(Path::file_name)), part(path.file_stem()))
 }
 
-/// All programs of the oracle: (dialect, path), in a fixed order.
+/// All programs that [`oracle::run_corpus`] compares: (dialect, path), in a fixed order.
 pub fn oracle_programs() -> Vec<(&'static str, PathBuf)> {
     let of_group = |group: &&'static str| {
-        oracle::programs(group).into_iter().map(|path| (dialect_of(group), path)).collect()
+        oracle::programs(group).into_iter().map(|path| (oracle::dialect_of(group).as_str(), path)).collect()
     };
     oracle::GROUPS.iter().flat_map(of_group as fn(&&'static str) -> Vec<_>).collect()
 }

@@ -9,9 +9,9 @@ use std::{
 };
 
 use apt_tests::{
-    oracle::{GROUPS, programs},
+    oracle::{GROUPS, dialect_of, programs},
     repository,
-    runs::{dialect_of, examples, read, title},
+    runs::{examples, read, title},
 };
 use serde_json::Value;
 
@@ -103,7 +103,7 @@ fn every_mistake_is_told_first_and_at_its_statement() {
 fn nothing_is_told_about_good_programs() {
     let mut count = 0;
     for dialect in ["free", "apt4"] {
-        let groups = GROUPS.iter().filter(|group| dialect_of(group) == dialect);
+        let groups = GROUPS.iter().filter(|group| dialect_of(group).as_str() == dialect);
         let mut paths: Vec<PathBuf> =
             groups.flat_map(|group| programs(group)).filter(|path| is_good(path)).collect();
         if dialect == "free" {
@@ -148,7 +148,8 @@ fn schema() -> jsonschema::Validator {
 fn sarif_is_what_its_schema_says() {
     let schema = schema();
     for group in ["errors", "apt4-language", "geometry"] {
-        let checked = check(&programs(group), &["--format", "sarif", "--dialect", dialect_of(group)]);
+        let checked =
+            check(&programs(group), &["--format", "sarif", "--dialect", dialect_of(group).as_str()]);
         let log: Value = serde_json::from_str(&checked.output).unwrap();
         let wrong: Vec<String> =
             schema.iter_errors(&log).map(|error| format!("{}: {error}", error.instance_path())).collect();

@@ -67,12 +67,8 @@ fn formatted(text: &str, dialect: DialectName) -> Vec<String> {
 /// All programs of the repository with the dialects in which they are read.
 fn programs() -> Vec<(DialectName, String, String)> {
     let mut programs = Vec::new();
-    for group in oracle::GROUPS {
-        let dialect = match group {
-            "apt4-language" | "apt4-motion" => DialectName::Apt4,
-            "errors" => DialectName::Apt3,
-            _ => DialectName::Free,
-        };
+    for group in oracle::GROUPS.into_iter().chain(oracle::MILLING_GROUPS) {
+        let dialect = oracle::dialect_of(group);
         programs.extend(oracle::programs(group).into_iter().map(|path| (dialect, path)));
     }
     for folder in

@@ -227,7 +227,9 @@ fn base_programs() -> Vec<(&'static str, String)> {
     ];
     for group in ["language", "apt4-language", "motion2d"] {
         let paths = apt_tests::oracle::programs(group);
-        programs.extend(paths.iter().step_by(5).map(|path| (apt_tests::runs::dialect_of(group), read(path))));
+        programs.extend(
+            paths.iter().step_by(5).map(|path| (apt_tests::oracle::dialect_of(group).as_str(), read(path))),
+        );
     }
     programs.extend(examples().iter().map(|path| ("free", read(path))));
     programs
