@@ -1,0 +1,109 @@
+//! What proves a contact: balls about the tool in which the distance is bounded by its tangent, and balls along the flank
+//! that keep off the surface.
+
+use apt_geometry::Vec3;
+
+use super::{BALLS, Circle, DEEPER, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, Zone};
+use crate::clearance::{Contact, Tool, waves::length};
+
+impl Pose<'_> {
+    /// A steady ball about the tool at a contact.
+    pub(super) fn zone(&self, found: &Touch) -> Option<Zone> {
+        let Tool { axis, profile, .. } = self.tool;
+        let (scale, surface, side) = (self.scale(), self.surface, self.side);
+        if found.start.piece.is_none() {
+            let center = found.contact.surface + found.contact.gradient * found.contact.clearance.max(0.0);
+            return POINT_BALLS.iter().find_map(|share| {
+                let radius = share * scale;
+                let depth = found.contact.clearance.max(0.0) + radius;
+                let steady = surface.steady(side, &center, [radius, depth])?;
+                Some(Zone { center, radius, depth, top: 0.0, steady })
+            });
+        }
+        BALLS.iter().find_map(|[ease, above]| {
+            let top = profile.top.height.min(profile.upper.height + above * scale);
+            let center = self.tip + axis * (0.5 * top);
+            let half = self.tool.radius().hypot(0.5 * top);
+            let away = (center - found.contact.surface).norm();
+            let (radius, depth) = (half.max(away) + ease * scale, DEEPER * (away + half));
+            let steady = surface.steady(side, &center, [radius, depth])?;
+            Some(Zone { center, radius, depth, top, steady })
+        })
+    }
+
+    /// Whether balls that cover the flank above a height keep off the surface by a level. Then the flank, which begins on the
+    /// right side, is on that side.
+    pub(super) fn is_off(&self, from: f64, level: f64) -> bool {
+        let top = self.tool.profile.top.height;
+        let (mut low, mut length) = (from, top - from);
+        for _ in 0..MAX_COVER {
+            let middle = self.tip + self.tool.axis * (low + 0.5 * length);
+            if self.surface.keeps_off(&middle, self.tool.radius().hypot(0.5 * length) + level.max(0.0)) {
+                low += length;
+                length = (2.0 * length).min(top - low);
+                if low >= top {
+                    return true;
+                }
+            } else {
+                length *= 0.5;
+                if length < SHORTEST * self.scale() {
+                    return false;
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether the tool up to the top of a zone, and the contact, are in its ball.
+    pub(super) fn is_in(&self, zone: &Zone, found: &Touch) -> bool {
+        let contact = (zone.center - found.contact.surface).norm() <= zone.radius;
+        let w = zone.center - self.tip;
+        if found.start.piece.is_none() {
+            return contact && w.norm() <= zone.radius && found.contact.clearance <= zone.depth;
+        }
+        let (along, across, _) = self.tool.split(&w);
+        let wide = across + self.tool.radius();
+        // No point is farther from the surface than from the contact.
+        let middle = self.tip + self.tool.axis * (0.5 * zone.top);
+        let deepest = (middle - found.contact.surface).norm() + self.tool.radius().hypot(0.5 * zone.top);
+        contact
+            && deepest <= zone.depth
+            && along.hypot(wide) <= zone.radius
+            && (along - zone.top).hypot(wide) <= zone.radius
+    }
+
+    /// Whether the tool up to the top of a zone keeps a level: bounds that touch the distance at the contact are nowhere less on
+    /// circles, and between circles on a straight line they are least at one of them.
+    pub(super) fn keeps(&self, found: &Touch, zone: &Zone, level: f64) -> bool {
+        let profile = &self.tool.profile;
+        let Contact { clearance, tool: point, .. } = found.contact;
+        let from_point = (point, clearance);
+        let edge = |radius: f64, height: f64| {
+            self.floor(from_point, zone, found, Circle { radius, height, ball: 0.0 }) >= level
+        };
+        let corner =
+            Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
+        let own = found.circle.ball > 0.0;
+        let from_corner = if own { (found.center, clearance + found.circle.ball) } else { from_point };
+        (profile.arc <= 0.0 || self.floor(from_corner, zone, found, corner) >= level)
+            && edge(profile.lower.radius, profile.lower.height)
+            && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
+            && (profile.top.height <= profile.upper.height || {
+                let rise = (zone.top - profile.upper.height) / (profile.top.height - profile.upper.height);
+                let radius = profile.upper.radius + rise * (profile.top.radius - profile.upper.radius);
+                edge(profile.upper.radius, profile.upper.height) && edge(radius, zone.top)
+            })
+    }
+
+    /// Lower bound of the distance of a circle of balls, from a place on the normal of a contact with its distance.
+    fn floor(&self, (place, distance): (Vec3, f64), zone: &Zone, found: &Touch, circle: Circle) -> f64 {
+        let bend = zone.steady.bend(distance);
+        let normal = found.contact.gradient;
+        let w = self.tip + self.tool.axis * circle.height - place;
+        let middle =
+            distance + normal.dot(&w) - 0.5 * bend * (w.norm_squared() + circle.radius * circle.radius);
+        let slope = normal - w * bend;
+        let across = length(self.tool.across.map(|across| slope.dot(&across)));
+        middle - circle.radius * across - circle.ball
+    }
+}
