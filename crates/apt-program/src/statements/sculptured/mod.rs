@@ -106,6 +106,11 @@ impl Evaluator<'_> {
         Some(items)
     }
 
+    /// Reports what does not exist of a curve or surface.
+    fn report_parametric(&mut self, statement: SmolStr, error: ParametricError, range: TextRange) {
+        self.report(FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }), range);
+    }
+
     /// A space curve or a sculptured surface from the operands of its definition; mistakes are reported.
     pub(super) fn parametric_definition(
         &mut self,
@@ -134,10 +139,7 @@ impl Evaluator<'_> {
                 Some(geometry)
             }
             Ok(Err(error)) => {
-                self.report(
-                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
-                    range,
-                );
+                self.report_parametric(statement, error, range);
                 None
             }
             Err(misfit) => {

@@ -12,11 +12,7 @@ use apt_syntax::{TextRange, statement::Argument};
 use smol_str::SmolStr;
 
 use super::reader::{Read, Reader};
-use crate::{
-    evaluator::Evaluator,
-    expression::Item,
-    finding::{Expected, FindingKind, SculpturedFinding},
-};
+use crate::{evaluator::Evaluator, expression::Item, finding::Expected};
 
 /// What VECTOR/INTOF takes of the place.
 const DIRECTIONS: &[&str] = &["TANSPL", "CRSSPL", "NORMAL", "BINORM"];
@@ -61,10 +57,7 @@ impl Evaluator<'_> {
             }
             Err(error) => {
                 let statement = SmolStr::new_static(kind.word());
-                self.report(
-                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
-                    range,
-                );
+                self.report_parametric(statement, error, range);
                 None
             }
         }
@@ -75,7 +68,7 @@ impl Evaluator<'_> {
         let statement = SmolStr::new_static("PARMF");
         let Some(place) = self.state.intersection.clone() else {
             let error = ParametricError::NoPlaceYet;
-            self.report(FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }), range);
+            self.report_parametric(statement, error, range);
             return Some(0.0);
         };
         let items = self.operands(arguments)?;
@@ -83,10 +76,7 @@ impl Evaluator<'_> {
             Ok(Some(value)) => Some(value),
             Ok(None) => {
                 let error = ParametricError::NoPlaceYet;
-                self.report(
-                    FindingKind::Sculptured(SculpturedFinding::Parametric { statement, error }),
-                    range,
-                );
+                self.report_parametric(statement, error, range);
                 None
             }
             Err(misfit) => {
