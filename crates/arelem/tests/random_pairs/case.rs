@@ -13,6 +13,7 @@ use apt_geometry::{
 use nalgebra::{Rotation3, Unit};
 
 use crate::{
+    judge::Budget,
     kinds::{self, Kind},
     search::{Reader, Wanted},
     support::{Random, named},
@@ -76,6 +77,8 @@ pub(crate) struct Case {
     pub(crate) stop: Placed,
     /// Distances to the check surface are searched for.
     pub(crate) has_slow_stop: bool,
+    /// What may be spent on the motion.
+    pub(crate) budget: Budget,
     pub(crate) inside: f64,
     pub(crate) outside: f64,
     pub(crate) thickness: f64,
@@ -186,6 +189,7 @@ impl Case {
                 .then(|| up * random.between(-0.5, 0.5) + out * random.between(-0.5, 0.5)),
             stop,
             has_slow_stop: stop_kind.is_slow(),
+            budget: Budget::of([part_kind, drive_kind, stop_kind].into_iter().any(Kind::is_slow)),
             inside,
             outside,
             thickness,

@@ -16,11 +16,37 @@ use arelem::{
 
 use crate::{
     case::Case,
+    laws::Laws,
     search::{Found, Reader},
 };
 
-/// How often a motion may ask whether it is cancelled: the budget of its clearances, more or less, in engine and verifier.
-const BUDGET: u32 = 1_500_000;
+/// What may be spent on a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Budget {
+    /// How often it may ask whether it is cancelled: more or less the number of clearances in engine and verifier.
+    asks: u32,
+    /// Clearances that the search for a path may read.
+    pub(crate) reads: u32,
+    /// Questions of the verifier while it reads for the search: its own searches count too.
+    pub(crate) asks_of_search: u32,
+}
+
+impl Budget {
+    /// Of motions whose distances are computed.
+    const COMPUTED: Self = Self { asks: 1_500_000, reads: 60_000, asks_of_search: 1_500_000 };
+    /// Where distances are searched for, which cost as much more.
+    const SEARCHED: Self = Self { asks: 60_000, reads: 10_000, asks_of_search: 100_000 };
+    /// The same in the test command, which leaves out what takes more.
+    pub(crate) const SPARING: Self = Self { asks: 2_000, reads: 400, asks_of_search: 4_000 };
+
+    /// The budget of a motion, if distances to one of its surfaces are searched for or not.
+    pub(crate) fn of(searched: bool) -> Self {
+        if searched { Self::SEARCHED } else { Self::COMPUTED }
+    }
+}
+
+/// A motion that takes longer tells where the time goes; that decides nothing.
+const LONG: Duration = Duration::from_secs(1);
 
 /// What became of a motion.
 #[derive(Debug, Clone)]
@@ -35,6 +61,28 @@ pub(crate) enum Verdict {
     Wrong(String),
     /// Neither delivered nor refused within the budget.
     Slow(String),
+    /// Refused, and the search for a path did not end within its own budget.
+    NotJudged(String),
+}
+
+/// What engine, verifier and search took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Times {
+    engine: Duration,
+    verifier: Duration,
+    search: Duration,
+}
+
+impl Times {
+    fn all(&self) -> Duration {
+        self.engine + self.verifier + self.search
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.engine += other.engine;
+        self.verifier += other.verifier;
+        self.search += other.search;
+    }
 }
 
 /// Counts for a pair of surfaces.
@@ -49,17 +97,29 @@ pub(crate) struct Tally {
     wrongly_refused: usize,
     wrong: usize,
     slow: usize,
+    not_judged: usize,
     /// What it took; it decides nothing.
-    time: Duration,
+    times: Times,
     pub(crate) faults: Vec<String>,
+    /// Refusals that were not judged, and where the time of long motions goes.
+    pub(crate) remarks: Vec<String>,
     /// What was said of motions that were rightly refused, and how often.
     refusals: BTreeMap<String, usize>,
 }
 
 impl Tally {
-    /// Counts a verdict, and what it took since `began`.
-    pub(crate) fn note(&mut self, index: u64, case: &Case, (verdict, began): (Verdict, Instant)) {
-        self.time += began.elapsed();
+    /// Counts a verdict, and what it took.
+    pub(crate) fn note(&mut self, index: u64, case: &Case, (verdict, times): (Verdict, Times)) {
+        self.times.add(&times);
+        if times.all() > LONG {
+            let [engine, verifier, search] =
+                [times.engine, times.verifier, times.search].map(|time| time.as_secs_f64());
+            self.remarks.push(format!(
+                "#{index} {}: engine {engine:.1} s, verifier {verifier:.1} s, search {search:.1} s",
+                case.shape
+            ));
+        }
+        let fault = |words: &str| format!("#{index} {}: {words}", case.shape);
         match verdict {
             Verdict::Proven(vectors) => {
                 self.proven += 1;
@@ -71,17 +131,44 @@ impl Tally {
             }
             Verdict::WronglyRefused(words) => {
                 self.wrongly_refused += 1;
-                self.faults.push(format!("#{index} {}: wrongly refused: {words}", case.shape));
+                self.faults.push(fault(&format!("wrongly refused: {words}")));
             }
             Verdict::Wrong(words) => {
                 self.wrong += 1;
-                self.faults.push(format!("#{index} {}: wrong: {words}", case.shape));
+                self.faults.push(fault(&format!("wrong: {words}")));
             }
+            Verdict::Slow(_) | Verdict::NotJudged(_) if case.budget == Budget::SPARING => self.left_out += 1,
             Verdict::Slow(words) => {
+                self.slow += 1;
+                self.faults.push(fault(&format!("too slow: {words}")));
+            }
+            Verdict::NotJudged(words) => {
+                self.not_judged += 1;
+                self.remarks.push(fault(&format!("not judged: {words}")));
+            }
+        }
+    }
+
+    /// Counts a motion that the laws were tried on.
+    pub(crate) fn note_laws(&mut self, index: u64, case: &Case, laws: Laws) {
+        match laws {
+            Laws::NoMotion => self.refused += 1,
+            Laws::Slow(_) if case.budget == Budget::SPARING => self.left_out += 1,
+            Laws::Slow(words) => {
                 self.slow += 1;
                 self.faults.push(format!("#{index} {}: too slow: {words}", case.shape));
             }
+            Laws::Tried(broken) => {
+                self.proven += usize::from(broken.is_empty());
+                self.wrong += usize::from(!broken.is_empty());
+                self.faults.extend(broken.iter().map(|words| format!("#{index} {}: {words}", case.shape)));
+            }
         }
+    }
+
+    /// Faults, then what else is to be told.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = &String> {
+        self.faults.iter().chain(&self.remarks)
     }
 
     pub(crate) fn add(&mut self, other: &Self) {
@@ -93,19 +180,20 @@ impl Tally {
         self.wrongly_refused += other.wrongly_refused;
         self.wrong += other.wrong;
         self.slow += other.slow;
-        self.time += other.time;
+        self.not_judged += other.not_judged;
+        self.times.add(&other.times);
         for (words, count) in &other.refusals {
             *self.refusals.entry(words.clone()).or_default() += count;
         }
     }
 
     /// Names of the columns of [`Tally::row`].
-    pub(crate) const COLUMNS: &'static str =
-        "run, proven, vectors, rightly refused, wrongly refused, wrong, slow, not drawn, left out, ms each";
+    pub(crate) const COLUMNS: &'static str = "run, proven, vectors, rightly refused, wrongly refused, wrong, slow, not judged, not drawn, left out, ms each";
 
     pub(crate) fn row(&self) -> String {
-        let run = self.proven + self.refused + self.wrongly_refused + self.wrong + self.slow;
-        let each = self.time.as_secs_f64() * 1e3 / run.max(1) as f64;
+        let refused = self.refused + self.wrongly_refused + self.not_judged;
+        let run = self.proven + refused + self.wrong + self.slow;
+        let each = self.times.all().as_secs_f64() * 1e3 / run.max(1) as f64;
         let counts = [
             run,
             self.proven,
@@ -114,6 +202,7 @@ impl Tally {
             self.wrongly_refused,
             self.wrong,
             self.slow,
+            self.not_judged,
             self.undrawn,
             self.left_out,
         ];
@@ -136,18 +225,18 @@ pub(crate) struct Runner {
 }
 
 impl Runner {
-    pub(crate) fn new() -> Self {
-        Self { state: State::new(1.0), sequences: Vec::new(), left: Cell::new(BUDGET) }
+    pub(crate) fn new(case: &Case) -> Self {
+        Self { state: State::new(1.0), sequences: Vec::new(), left: Cell::new(case.budget.asks) }
     }
 
-    fn spent(&self) -> bool {
+    fn spend(&self) -> bool {
         self.left.set(self.left.get().saturating_sub(1));
         self.left.get() == 0
     }
 
     pub(crate) fn run(&mut self, commands: &[MotionCommand]) -> Result<(), MotionFailure> {
         for command in commands {
-            let execution = execute(&self.state, command, &|| self.spent());
+            let execution = execute(&self.state, command, &|| self.spend());
             self.state = execution.state;
             if let Some(failure) = execution.failure {
                 return Err(failure);
@@ -158,38 +247,59 @@ impl Runner {
         }
         Ok(())
     }
-}
 
-/// Why a sequence is not proven, if it is not.
-pub(crate) fn fault(sequence: &CutSequence) -> Option<String> {
-    match verify(sequence, &|| false) {
-        Ok(evidence) if evidence.verified => None,
-        Ok(evidence) => Some(format!("{} vectors: {:?}", sequence.points.len(), evidence.violations)),
-        Err(error) => Some(format!("{} vectors: {error:?}", sequence.points.len())),
+    /// Why a sequence is not proven, if it is not.
+    pub(crate) fn fault(&self, sequence: &CutSequence) -> Option<Fault> {
+        let words = match verify(sequence, &|| self.spend()) {
+            Ok(evidence) if evidence.verified => return None,
+            Err(VerifyError::Cancelled) => return Some(Fault::Slow(sequence.points.len())),
+            Ok(evidence) => format!("{:?}", evidence.violations),
+            Err(error) => format!("{error:?}"),
+        };
+        Some(Fault::Wrong(format!("{} vectors: {words}", sequence.points.len())))
     }
 }
 
-pub(crate) fn judge(case: &Case) -> Verdict {
-    let mut runner = Runner::new();
-    let outcome = runner.run(&case.commands());
-    for sequence in &runner.sequences {
-        let vectors = sequence.points.len();
-        match verify(sequence, &|| runner.spent()) {
-            Ok(evidence) if evidence.verified => {}
-            Err(VerifyError::Cancelled) => return Verdict::Slow(format!("{vectors} vectors to verify")),
-            _ => return Verdict::Wrong(fault(sequence).unwrap_or_default()),
+/// Why a sequence is not proven.
+#[derive(Debug, Clone)]
+pub(crate) enum Fault {
+    /// The verifier does not accept it.
+    Wrong(String),
+    /// The verifier did not end within the budget; with the number of vectors.
+    Slow(usize),
+}
+
+fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let began = Instant::now();
+    let result = work();
+    *time += began.elapsed();
+    result
+}
+
+pub(crate) fn judge(case: &Case) -> (Verdict, Times) {
+    let mut times = Times::default();
+    let mut runner = Runner::new(case);
+    let outcome = timed(&mut times.engine, || runner.run(&case.commands()));
+    let fault = timed(&mut times.verifier, || runner.sequences.iter().find_map(|s| runner.fault(s)));
+    let verdict = match (fault, outcome) {
+        (_, Err(MotionFailure::Cancelled)) => {
+            Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()))
         }
-    }
-    if matches!(outcome, Err(MotionFailure::Cancelled)) {
-        return Verdict::Slow(format!("after {} sequences", runner.sequences.len()));
-    }
-    let Err(failure) = outcome else {
-        return Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum());
+        (Some(Fault::Slow(vectors)), _) => Verdict::Slow(format!("verifier, {vectors} vectors")),
+        (Some(Fault::Wrong(words)), _) => Verdict::Wrong(words),
+        (None, Ok(())) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
+        (None, Err(failure)) => timed(&mut times.search, || refused(case, &runner, &failure)),
     };
+    (verdict, times)
+}
+
+/// Whether a refusal is right.
+fn refused(case: &Case, runner: &Runner, failure: &MotionFailure) -> Verdict {
     let words = format!("{failure:?}");
     let reader = Reader::new(case);
     let start = if runner.sequences.is_empty() { None } else { runner.state.tip };
     match reader.search(start) {
+        _ if reader.is_spent() => Verdict::NotJudged(words),
         Found::Path(length) => Verdict::WronglyRefused(format!("a path of {length:.3}: {words}")),
         // The start-up alone was refused, and there is a start.
         found @ (Found::Ends(_) | Found::NotMet) if start.is_none() => {

@@ -6,12 +6,12 @@ use apt_geometry::{
     canonical::{Matrix, Plane},
     motion::Relation,
 };
-use arelem::sequence::CutSequence;
+use arelem::{MotionFailure, sequence::CutSequence};
 use nalgebra::{Rotation3, Unit};
 
 use crate::{
     case::{Case, Placed, other},
-    judge::{Runner, fault},
+    judge::{Fault, Runner},
     support::{Random, plane},
 };
 
@@ -25,24 +25,67 @@ const VECTORS_IN: usize = 10;
 /// Cosine of the greatest angle between path and wall at which the end of the path counts as fixed by the wall.
 const SQUARE: f64 = 0.5;
 
-/// Laws broken by a motion that is proven, each with evidence.
-pub(crate) fn broken(case: &Case, random: &mut Random) -> Vec<String> {
-    let mut runner = Runner::new();
-    if runner.run(&case.commands()).is_err() {
-        return Vec::new();
+/// What is found of a motion.
+pub(crate) enum Laws {
+    /// It is refused, so that there is nothing to compare.
+    NoMotion,
+    /// Neither the motion nor what is compared with it ends within the budget.
+    Slow(String),
+    /// The laws that it breaks, each with evidence.
+    Tried(Vec<String>),
+}
+
+/// Why a law is not obeyed.
+enum Broken {
+    Slow,
+    Law(String),
+}
+
+impl From<MotionFailure> for Broken {
+    fn from(failure: MotionFailure) -> Self {
+        match failure {
+            MotionFailure::Cancelled => Self::Slow,
+            other => Self::Law(format!("{other:?}")),
+        }
     }
-    let Some(path) = runner.sequences.last().cloned() else { return Vec::new() };
+}
+
+impl From<Fault> for Broken {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::Slow(_) => Self::Slow,
+            Fault::Wrong(words) => Self::Law(words),
+        }
+    }
+}
+
+impl From<String> for Broken {
+    fn from(words: String) -> Self {
+        Self::Law(words)
+    }
+}
+
+/// Tries the laws on a motion.
+pub(crate) fn tried(case: &Case, random: &mut Random) -> Laws {
+    let mut runner = Runner::new(case);
+    match runner.run(&case.commands()) {
+        Ok(()) => {}
+        Err(MotionFailure::Cancelled) => return Laws::Slow("the motion".to_owned()),
+        Err(_) => return Laws::NoMotion,
+    }
+    let Some(path) = runner.sequences.last() else { return Laws::NoMotion };
     let mut found = Vec::new();
-    for (name, matrix) in maps(random) {
-        found.extend(image(case, &path, &matrix).err().map(|words| format!("{name}: {words}")));
+    let mut all: Vec<_> = maps(random).iter().map(|(name, m)| (*name, image(case, path, m))).collect();
+    all.push(("reversed", reversed(case, path)));
+    all.push(("subdivided", subdivided(case, path)));
+    for (name, result) in all {
+        match result {
+            Ok(()) => {}
+            Err(Broken::Slow) => return Laws::Slow(name.to_owned()),
+            Err(Broken::Law(words)) => found.push(format!("{name}: {words}")),
+        }
     }
-    if let Some(words) = reversed(case, &path).err() {
-        found.push(format!("reversed: {words}"));
-    }
-    if let Some(words) = subdivided(case, &path).err() {
-        found.push(format!("subdivided: {words}"));
-    }
-    found
+    Laws::Tried(found)
 }
 
 /// A rigid motion, a reflection and changes of unit.
@@ -64,28 +107,30 @@ fn maps(random: &mut Random) -> Vec<(&'static str, Matrix)> {
     ]
 }
 
+fn proven(runner: &Runner, sequences: &[CutSequence]) -> Result<(), Broken> {
+    sequences.iter().find_map(|s| runner.fault(s)).map_or(Ok(()), |fault| Err(fault.into()))
+}
+
 fn counts_agree(a: usize, b: usize) -> bool {
     a.abs_diff(b) <= 1 + a.max(b) / VECTORS_IN
 }
 
 /// The motion under a map is the image of the motion.
-fn image(case: &Case, path: &CutSequence, matrix: &Matrix) -> Result<(), String> {
+fn image(case: &Case, path: &CutSequence, matrix: &Matrix) -> Result<(), Broken> {
     let mapped = case.under(matrix);
-    let mut runner = Runner::new();
-    runner.run(&mapped.commands()).map_err(|failure| format!("{failure:?}"))?;
-    if let Some(words) = runner.sequences.iter().find_map(fault) {
-        return Err(words);
-    }
-    let image = runner.sequences.last().ok_or("no motion")?;
+    let mut runner = Runner::new(case);
+    runner.run(&mapped.commands())?;
+    proven(&runner, &runner.sequences)?;
+    let image = runner.sequences.last().ok_or_else(|| "no motion".to_owned())?;
     if !counts_agree(path.points.len(), image.points.len()) {
-        return Err(format!("{} vectors instead of {}", image.points.len(), path.points.len()));
+        return Err(format!("{} vectors instead of {}", image.points.len(), path.points.len()).into());
     }
     let factor = matrix.linear().determinant().abs().cbrt();
     let wanted = matrix.apply_point(&end(path));
     let off = (end(image) - wanted).norm();
     let size = factor * (10.0 + end(path).norm());
     let slack = 4.0 * (mapped.inside + mapped.outside) / steepness(case, path);
-    if off > (ROUNDING * size).max(slack) { Err(format!("ends {off:e} away")) } else { Ok(()) }
+    if off > (ROUNDING * size).max(slack) { Err(format!("ends {off:e} away").into()) } else { Ok(()) }
 }
 
 fn end(path: &CutSequence) -> Vec3 {
@@ -108,7 +153,7 @@ fn wall(at: &Vec3, normal: &Vec3) -> Placed {
 }
 
 /// Back from the end to the plane of the start.
-fn reversed(case: &Case, path: &CutSequence) -> Result<(), String> {
+fn reversed(case: &Case, path: &CutSequence) -> Result<(), Broken> {
     let count = path.points.len();
     let before = if count > 1 { path.points[count - 2].tip } else { path.start.tip };
     let Some(back) = (before - end(path)).try_normalize(1e-9) else { return Ok(()) };
@@ -119,28 +164,26 @@ fn reversed(case: &Case, path: &CutSequence) -> Result<(), String> {
         return Ok(());
     }
     let turned = Case { drive_side: other(case.drive_side), ..case.clone() };
-    let mut runner = Runner::new();
-    runner.run(&case.commands()).map_err(|failure| format!("{failure:?}"))?;
+    let mut runner = Runner::new(case);
+    runner.run(&case.commands())?;
     let onward = turned.onward(&back, &wall(&start, &path.forward));
-    runner.run(&onward).map_err(|failure| format!("{failure:?}"))?;
-    let found = runner.sequences.last().ok_or("no motion")?;
-    if let Some(words) = fault(found) {
-        return Err(words);
-    }
+    runner.run(&onward)?;
+    let found = runner.sequences.last().ok_or_else(|| "no motion".to_owned())?;
+    proven(&runner, std::slice::from_ref(found))?;
     let off = (end(found) - start).norm();
     let slack = 10.0 * (case.inside + case.outside);
     if off > slack {
-        return Err(format!("ends {off:e} from the start"));
+        return Err(format!("ends {off:e} from the start").into());
     }
     let there = found.points.len();
     if there.abs_diff(count) > 2 + count / VECTORS_IN {
-        return Err(format!("{there} vectors back, {count} there"));
+        return Err(format!("{there} vectors back, {count} there").into());
     }
     Ok(())
 }
 
 /// To a plane on the way, and on.
-fn subdivided(case: &Case, path: &CutSequence) -> Result<(), String> {
+fn subdivided(case: &Case, path: &CutSequence) -> Result<(), Broken> {
     let half = (path.points.len() as f64 * MIDDLE) as usize;
     let from = if half == 0 { path.start.tip } else { path.points[half - 1].tip };
     let to = path.points[half].tip;
@@ -151,25 +194,23 @@ fn subdivided(case: &Case, path: &CutSequence) -> Result<(), String> {
     if !first || case.stop.occurrence > 1 || along.dot(&path.forward) < SQUARE {
         return Ok(());
     }
-    let mut runner = Runner::new();
+    let mut runner = Runner::new(case);
     let mut commands = case.commands();
     let tail = case.onward(&case.forward, &wall(&middle, &along));
     commands.truncate(commands.len() - tail.len());
     commands.extend(tail);
-    runner.run(&commands).map_err(|failure| format!("first: {failure:?}"))?;
-    runner.run(&case.onward(&along, &case.stop)).map_err(|failure| format!("on: {failure:?}"))?;
-    let [.., first, second] = runner.sequences.as_slice() else { return Err("no motion".to_owned()) };
-    if let Some(words) = [first, second].into_iter().find_map(fault) {
-        return Err(words);
-    }
+    runner.run(&commands)?;
+    runner.run(&case.onward(&along, &case.stop))?;
+    let [.., first, second] = runner.sequences.as_slice() else { return Err("no motion".to_owned().into()) };
+    proven(&runner, &runner.sequences[runner.sequences.len() - 2..])?;
     let off = (end(second) - end(path)).norm();
     let slack = 10.0 * (case.inside + case.outside) / steepness(case, path);
     if off > slack.max(ROUNDING * 10.0) {
-        return Err(format!("ends {off:e} away"));
+        return Err(format!("ends {off:e} away").into());
     }
     let (count, parts) = (path.points.len(), first.points.len() + second.points.len());
     if parts > count + 3 + count / VECTORS_IN {
-        return Err(format!("{parts} vectors instead of {count}"));
+        return Err(format!("{parts} vectors instead of {count}").into());
     }
     Ok(())
 }

@@ -4,8 +4,10 @@
 //!
 //! Surfaces are laid against a tool at a random place, so that the start-up has a solution; a share is laid anywhere.
 //!
-//! `APT_CASES` sets the number of motions of each pair, `APT_SEED` the seed, `APT_PAIR` (`sphere/cone`) looks at one pair,
-//! and `APT_CASE` at one motion of it; `APT_PAIRS` (`2/5`) looks at the second of five parts of the pairs.
+//! `APT_CASES` sets the number of motions of each pair, `APT_SEED` the seed, `APT_PAIR` (`sphere/cone`, `*/ruled`) looks at
+//! one pair, and `APT_CASE` at one motion of it; `APT_PAIRS` (`2/5`) looks at the second of five parts of the pairs.
+//! `APT_SHARE` says of how many motions one is looked at in pairs with surfaces to which distances are searched for, and
+//! `APT_SURFACES=searched` looks at such pairs alone.
 
 mod case;
 mod judge;
@@ -18,10 +20,10 @@ mod tools;
 #[path = "../support/wave.rs"]
 mod wave;
 
-use std::{collections::BTreeMap, fmt::Write as _, time::Instant};
+use std::{collections::BTreeMap, fmt::Write as _};
 
 use case::Case;
-use judge::Tally;
+use judge::{Budget, Tally};
 use kinds::Kind;
 use support::Random;
 
@@ -39,12 +41,14 @@ fn pairs() -> Vec<(Kind, Kind)> {
         Some((p, d)) => (p == "*" || part.name() == p) && (d == "*" || drive.name() == d),
         None => true,
     };
+    let searched_only = std::env::var("APT_SURFACES").is_ok_and(|word| word == "searched");
     let [slice, slices] = slice().unwrap_or([1, 1]);
     Kind::ALL
         .into_iter()
         .flat_map(|part| Kind::ALL.into_iter().map(move |drive| (part, drive)))
         .enumerate()
         .filter(|(k, (part, drive))| k % slices + 1 == slice && is_wanted(*part, *drive))
+        .filter(|(_, (part, drive))| !searched_only || part.is_slow() || drive.is_slow())
         .map(|(_, pair)| pair)
         .collect()
 }
@@ -76,7 +80,7 @@ fn describe(pairs: &BTreeMap<(Kind, Kind), Tally>) -> String {
     let _ = writeln!(report, "{:<22}{}", "all", all.row());
     let _ = writeln!(report, "rightly refused: {}", all.refusals());
     for (pair, tally) in pairs {
-        for line in &tally.faults {
+        for line in tally.lines() {
             let _ = writeln!(report, "{} {line}", name(*pair));
         }
     }
@@ -87,7 +91,7 @@ fn name((part, drive): (Kind, Kind)) -> String {
     format!("{}/{}", part.name(), drive.name())
 }
 
-/// Looks at so many motions of every pair; sparing ones leave out surfaces to which distances are searched for.
+/// Looks at so many motions of every pair; sparing ones have little time for surfaces to which distances are searched for.
 #[expect(clippy::print_stdout, reason = "the long run tells what is done")]
 fn every_pair(
     standard: u64,
@@ -97,24 +101,24 @@ fn every_pair(
 ) -> BTreeMap<(Kind, Kind), Tally> {
     let base = number("APT_SEED").unwrap_or(standard);
     let one = number("APT_CASE");
+    let share = number("APT_SHARE").unwrap_or(SLOW_SHARE).max(1);
     let mut tallies: BTreeMap<(Kind, Kind), Tally> = BTreeMap::new();
     for (part, drive) in pairs() {
         let slow = part.is_slow() || drive.is_slow();
-        if slow && sparing {
-            continue;
-        }
         let tally = tallies.entry((part, drive)).or_default();
-        // Where distances are searched for, a motion takes a hundred times as long.
-        let cases = if slow { cases.div_ceil(SLOW_SHARE) } else { cases };
+        // Where distances are searched for, a motion takes many times as long.
+        let cases = if slow { cases.div_ceil(share) } else { cases };
         for index in one.map_or(0..cases, |index| index..index + 1) {
-            let told = tally.faults.len();
+            let told = [tally.faults.len(), tally.remarks.len()];
             match Case::draw(part, drive, seed(base, part, drive, index)) {
-                Some(case) if sparing && case.has_slow_stop => tally.left_out += 1,
+                Some(case) if sparing && (slow || case.has_slow_stop) => {
+                    look(index, &Case { budget: Budget::SPARING, ..case }, tally);
+                }
                 Some(case) => look(index, &case, tally),
                 None => tally.undrawn += 1,
             }
             if cases > TELLING {
-                for line in &tally.faults[told..] {
+                for line in tally.faults[told[0]..].iter().chain(&tally.remarks[told[1]..]) {
                     println!("{} {line}", name((part, drive)));
                 }
             }
@@ -126,11 +130,10 @@ fn every_pair(
     tallies
 }
 
-/// Of the pairs with surfaces to which distances are searched for, the long run looks at one motion in so many; the test
-/// command leaves them to `curved_pairs`.
+/// Of the pairs with surfaces to which distances are searched for, the long run looks at one motion in so many.
 const SLOW_SHARE: u64 = 100;
 /// With more motions than this of each pair, every pair is told as it is done.
-const TELLING: u64 = 20;
+const TELLING: u64 = 2;
 
 #[test]
 fn motions_of_every_pair_are_proven_or_refused_rightly() {
@@ -140,12 +143,11 @@ fn motions_of_every_pair_are_proven_or_refused_rightly() {
         if told {
             println!("{case:#?}");
         }
-        let began = Instant::now();
-        let verdict = judge::judge(case);
+        let (verdict, times) = judge::judge(case);
         if told {
             println!("{verdict:?}");
         }
-        tally.note(index, case, (verdict, began));
+        tally.note(index, case, (verdict, times));
     });
     let report = describe(&tallies);
     println!("{report}");
@@ -160,9 +162,7 @@ fn motions_of_every_pair_obey_the_laws_of_motion() {
     let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(10));
     let tallies = every_pair(SEEDS[1], cases, cases <= 1, |index, case, tally| {
         let mut random = Random(index);
-        let faults = laws::broken(case, &mut random);
-        tally.proven += usize::from(faults.is_empty());
-        tally.faults.extend(faults.into_iter().map(|words| format!("#{index} {}: {words}", case.shape)));
+        tally.note_laws(index, case, laws::tried(case, &mut random));
     });
     let report = describe(&tallies);
     println!("{report}");

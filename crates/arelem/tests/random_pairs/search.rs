@@ -1,6 +1,8 @@
 //! A search for a path that uses the verifier's clearances alone: it decides whether a motion that the engine refuses has a
 //! solution. Gradients are differences, steps are short, nothing is clever.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     cutter::Cutter,
@@ -42,6 +44,8 @@ pub(crate) enum Wanted {
 pub(crate) struct Reader<'a> {
     case: &'a Case,
     cutter: Cutter,
+    reads: Cell<u32>,
+    asks: Cell<u32>,
 }
 
 /// What the search found.
@@ -60,7 +64,18 @@ pub(crate) enum Found {
 impl<'a> Reader<'a> {
     pub(crate) fn new(case: &'a Case) -> Self {
         let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
-        Self { case, cutter }
+        let budget = &case.budget;
+        Self { case, cutter, reads: Cell::new(budget.reads), asks: Cell::new(budget.asks_of_search) }
+    }
+
+    /// The budget is used up: what the search finds then says nothing.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.reads.get() == 0 || self.asks.get() == 0
+    }
+
+    fn spend(&self) -> bool {
+        self.asks.set(self.asks.get().saturating_sub(1));
+        self.is_spent()
     }
 
     fn role(&self, placed: &Placed, side: f64) -> Role {
@@ -77,6 +92,10 @@ impl<'a> Reader<'a> {
 
     /// Clearances to part, drive and, if wanted, check surface at a place; None where there are none.
     pub(crate) fn read(&self, tip: &Vec3, wanted: Wanted) -> Option<[f64; 3]> {
+        self.reads.set(self.reads.get().saturating_sub(1));
+        if self.is_spent() {
+            return None;
+        }
         let Case { part, drive, first, stop, axis, .. } = self.case;
         let place = ToolPosition { tip: *tip, axis: *axis };
         let check = match wanted {
@@ -97,7 +116,7 @@ impl<'a> Reader<'a> {
             maximum_step: 1e3,
             minimum: None,
         };
-        let evidence = verify(&sequence, &|| false).ok()?;
+        let evidence = verify(&sequence, &|| self.spend()).ok()?;
         let check = evidence.check.map_or(0.0, |c| c.min);
         Some([evidence.part?.min, evidence.drive?.min, check])
     }
