@@ -8,7 +8,7 @@ use apt_geometry::{
     surface::{ConeForm, Surface},
 };
 
-use super::{Contact, Tool};
+use super::{Contact, Tool, dual};
 
 /// Sine of the angle between two axes below which they are parallel.
 const PARALLEL: f64 = 1e-13;
@@ -122,8 +122,9 @@ fn parallel_cone(tool: &Tool, cone: &ConeForm, side: f64, tip: &Vec3) -> Contact
     let contact = tip + tool.axis * point.height - radial * (side * point.radius);
     let surface = contact - gradient * clearance;
     let generator = cone.axis * cone.cosine + radial * cone.sine;
+    let along_ruling = Contact { clearance, gradient, tool: contact, surface };
     if side > 0.0 && (surface - cone.vertex).dot(&generator) < 0.0 {
-        return ball_outside(tool, &cone.vertex, 0.0, tip);
+        return dual::about_vertex(tool, cone, tip, along_ruling);
     }
-    Contact { clearance, gradient, tool: contact, surface }
+    along_ruling
 }

@@ -99,8 +99,12 @@ fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
     let a = perpendicular(&cone.axis) * cone.cosine;
     let b = cone.axis.cross(&a);
     let family = Family { fixed: -cone.axis * cone.sine, a, b, origin: cone.vertex, level: 0.0 };
-    let side = greatest(tool, &family, tip);
-    // Behind the vertex the normals of the vertex's own fan are nearer: then the vertex is the solid.
+    about_vertex(tool, cone, tip, greatest(tool, &family, tip))
+}
+
+/// The contact of a tool outside a cone, given the greatest of the distances by the planes that touch it along a ruling.
+/// Behind the vertex the normals of the vertex's own fan are nearer: then the vertex is the solid.
+pub(super) fn about_vertex(tool: &Tool, cone: &ConeForm, tip: &Vec3, side: Contact) -> Contact {
     let vertex = ball_outside(tool, &cone.vertex, 0.0, tip);
     let in_fan = |normal: &Vec3| normal.dot(&cone.axis) <= -cone.sine;
     let mut best = side;
@@ -114,7 +118,8 @@ fn outside_cone(tool: &Tool, cone: &ConeForm, tip: &Vec3) -> Contact {
         let (sb, cb) = tool.cutter.beta.sin_cos();
         let corner = tip + tool.axis * tool.profile.center.height + toward * tool.profile.center.radius;
         let through_corner = (corner - cone.vertex).try_normalize(0.0).unwrap_or(tool.axis);
-        for normal in [tool.axis * ca - toward * sa, tool.axis * sb - toward * cb, through_corner] {
+        let faces = [tool.axis * ca - toward * sa, tool.axis * sb - toward * cb, -tool.axis, through_corner];
+        for normal in faces {
             let depth = normal.dot(&(tip - cone.vertex)) - support(tool, &normal);
             if in_fan(&normal) && depth > best.clearance {
                 let contact = cone.vertex + normal * depth;

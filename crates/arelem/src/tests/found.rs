@@ -87,6 +87,52 @@ proptest! {
     }
 }
 
+/// The greatest distance at which a plane through the vertex of a cone, which leaves the cone on one side, has the tool on the
+/// other: among so many of these planes.
+fn greatest_about_vertex(tool: &Tool, sine: f64, tip: &Vec3) -> f64 {
+    let mut greatest = f64::NEG_INFINITY;
+    for row in 0..=100 {
+        let polar = sine.acos() * f64::from(row) / 100.0;
+        for column in 0..400 {
+            let (s, c) = (std::f64::consts::TAU * f64::from(column) / 400.0).sin_cos();
+            let normal = v(polar.sin() * c, polar.sin() * s, polar.cos());
+            let (along, across, _) = tool.split(&normal);
+            greatest = greatest.max(normal.dot(tip) - tool.profile.support(across, -along).0);
+        }
+    }
+    greatest
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+    /// Whichever end of the tool the vertex of a cone pokes into, all planes that leave the cone on one side count, and no
+    /// other ones.
+    #[test]
+    fn either_end_of_the_tool_is_measured_against_the_vertex_of_a_cone(
+        degrees in 20.0..85.0f64, upside_down: bool, parallel: bool, which in 0usize..4,
+        lean in prop::array::uniform2(-0.2..0.2f64), about in 0.0..6.3f64, out in 0.0..1.1f64, depth in -0.05..0.02f64,
+    ) {
+        let numbers: [&[f64]; 4] =
+            [&[1.0, 0.5], &[0.5], &[0.6, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+        let cutter = Cutter::from_numbers(numbers[which], 1.0).expect("a cutter");
+        let sense = if upside_down { -1.0 } else { 1.0 };
+        let axis = v(lean[0], lean[1], 1.0).normalize();
+        let axis = if parallel { Vec3::z() } else { axis } * sense;
+        let tool = Tool::new(cutter, axis);
+        let sine = degrees.to_radians().sin();
+        let geometry = cone(Vec3::zeros(), -Vec3::z(), degrees);
+        // That end of the tool which is below comes down on the vertex.
+        let end = if upside_down { tool.profile.top.height } else { 0.0 };
+        let out = out * tool.radius();
+        let tip = v(out * about.cos(), out * about.sin(), depth) - axis * end;
+        let greatest = greatest_about_vertex(&tool, sine, &tip);
+        let [engine, _] = outside_cone(&geometry, cutter, ToolPosition { tip, axis });
+        // Neighbouring planes are 1° apart, and what they touch is not farther from the vertex than that end is wide.
+        let spacing = 0.016 * 2.0 * tool.radius();
+        prop_assert!(engine >= greatest - 1e-12 && engine <= greatest + spacing, "{engine} {greatest}");
+    }
+}
+
 /// A drill along a cone past its vertex: two planes tangent to the cone, 19° apart, touch the flank of the drill along its
 /// whole length, and one of them is the clearance.
 #[test]
