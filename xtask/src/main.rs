@@ -58,9 +58,15 @@ enum Task {
         /// Cases per form of a definition.
         #[arg(long, default_value_t = nightly::DEFINITION_CASES)]
         definition_cases: u32,
-        /// Random motions.
+        /// Random motions of each pair of surfaces.
         #[arg(long, default_value_t = nightly::MOTION_CASES)]
         motion_cases: u32,
+        /// One motion in so many is run of pairs with tabulated, ruled or polyconic surfaces.
+        #[arg(long, default_value_t = nightly::SHARE)]
+        share: u32,
+        /// A part of the pairs of surfaces, as 2/5 for the second of five parts.
+        #[arg(long)]
+        pairs: Option<String>,
         /// Seed of the random numbers, to repeat a run; another one every time if not given.
         #[arg(long)]
         seed: Option<u64>,
@@ -112,8 +118,8 @@ fn perform(task: Task) -> Outcome {
         Task::Codegen { check } => codegen::run(check),
         Task::Setup { check } => setup::run(check),
         Task::PackageVscode { output } => vscode::package::run(&layout::root().join(output)),
-        Task::Nightly { definition_cases, motion_cases, seed } => {
-            nightly::run(nightly::Extent { definition_cases, motion_cases, seed })
+        Task::Nightly { definition_cases, motion_cases, share, pairs, seed } => {
+            nightly::run(&nightly::Extent { definition_cases, motion_cases, share, pairs, seed })
         }
         Task::Test { no_editors } => whole::run(!no_editors),
         Task::TestVscode(editor) => vscode::tests::run(&editor.server()?, &mut count),

@@ -118,14 +118,17 @@ fn surfaces() -> impl Strategy<Value = Geometry> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Around a round drive surface with a disk: the verifier, which has its own model of it, proves the motion.
+    /// Around a round drive surface with a disk: the verifier, which has its own model of it, proves the motion. The tool is
+    /// short and stands low: the ray of the hidden move begins half way up the tool, and where it meets the surface near its
+    /// top the tool comes to lie deep inside, from where the nearest way out may lead aside, along the way it came.
     #[test]
     fn motions_around_round_surfaces_are_proven(
         surface in surfaces(), radius in 0.0..1.5, height in -0.5..0.8, onto in any::<bool>(),
     ) {
         let floor = plane(0.0, 0.0, 1.0, 0.0);
         let mut p = Program::new();
-        p.tolerance(0.001, 0.002).cutter(&[0.6, 0.1]).run(&disk(false, radius, height)).from(-9.0, 0.0, 1.0);
+        p.tolerance(0.001, 0.002).cutter(&[0.6, 0.1, 0.2, 0.1, 0.0, 0.0, 0.4]).run(&disk(false, radius, height));
+        p.from(-9.0, 0.0, 0.1);
         if onto {
             p.part_side(PartSide::On);
         }

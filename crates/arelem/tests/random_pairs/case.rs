@@ -43,6 +43,17 @@ const DRAWS: u32 = 200;
 /// Draws of a place to come from.
 const APPROACHES: u32 = 40;
 
+/// How the tool stands on the part surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stance {
+    /// However it is drawn.
+    Any,
+    /// Along the normal.
+    Square,
+    /// Along the normal, with its end ON the surface.
+    SquareOn,
+}
+
 /// A surface in its role.
 #[derive(Debug, Clone)]
 pub(crate) struct Placed {
@@ -94,24 +105,30 @@ pub(crate) struct Case {
 impl Case {
     /// The motion that a seed stands for; None if no draw was a case.
     pub(crate) fn draw(part: Kind, drive: Kind, seed: u64) -> Option<Self> {
-        let mut random = Random(seed);
-        (0..DRAWS).find_map(|_| Self::attempt(part, drive, &mut random))
+        Self::draw_standing(part, drive, Stance::Any, seed)
     }
 
-    fn attempt(part_kind: Kind, drive_kind: Kind, random: &mut Random) -> Option<Self> {
+    /// The same for a tool that stands on the part surface in a certain way.
+    pub(crate) fn draw_standing(part: Kind, drive: Kind, stance: Stance, seed: u64) -> Option<Self> {
+        let mut random = Random(seed);
+        (0..DRAWS).find_map(|_| Self::attempt(part, drive, stance, &mut random))
+    }
+
+    fn attempt(part_kind: Kind, drive_kind: Kind, stance: Stance, random: &mut Random) -> Option<Self> {
         let (shape, numbers) = tools::draw(random);
         let cutter = Cutter::from_numbers(&numbers, 1.0).ok()?;
         let is_certain = random.next() >= LOOSE;
         let place =
             Vec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         let (axis, up) = axis_and_part_normal(part_kind, random)?;
+        let axis = if stance == Stance::Any { axis } else { up };
         let out = drive_normal(drive_kind, &axis, &up, random)?;
         let along = up.cross(&out).normalize() * random.pick(&[1.0, -1.0]);
         let sine = along.cross(&out).dot(&axis);
         if sine.abs() < LEAST_SINE {
             return None;
         }
-        let part_on = random.next() < 0.15;
+        let part_on = random.next() < 0.15 || stance == Stance::SquareOn;
         let drive_on = random.next() < 0.25;
         let thickness = if random.next() < 0.25 { random.between(0.01, 0.2) } else { 0.0 };
         let is_tangent = is_certain && random.next() < TANGENT;
@@ -385,7 +402,7 @@ pub(crate) fn surface(role: &Placed) -> NamedSurface {
 }
 
 /// A unit vector at most `degrees` away.
-fn near(direction: &Vec3, degrees: f64, random: &mut Random) -> Vec3 {
+pub(crate) fn near(direction: &Vec3, degrees: f64, random: &mut Random) -> Vec3 {
     let across = apt_geometry::surface::perpendicular(direction);
     let about = Rotation3::from_axis_angle(
         &Unit::new_normalize(*direction),

@@ -304,6 +304,13 @@ pub(crate) fn judge(case: &Case) -> (Verdict, Times) {
     (verdict, times)
 }
 
+/// A verdict with what it took, all counted as the engine's.
+pub(crate) fn timed_verdict(work: impl FnOnce() -> Verdict) -> (Verdict, Times) {
+    let mut times = Times::default();
+    let verdict = timed(&mut times.engine, work);
+    (verdict, times)
+}
+
 /// Whether a refusal is right.
 fn refused(case: &Case, runner: &Runner, failure: &MotionFailure) -> Verdict {
     let words = format!("{failure:?}");

@@ -14,6 +14,7 @@ mod dense;
 mod judge;
 mod kinds;
 mod laws;
+mod modes;
 mod search;
 #[path = "../support/mod.rs"]
 mod support;
@@ -26,10 +27,11 @@ use std::{collections::BTreeMap, fmt::Write as _};
 use case::Case;
 use judge::Tally;
 use kinds::Kind;
+use modes::Turning;
 use support::Random;
 
-/// Seeds of the test command: of the motions, and of those that the laws are tried on.
-const SEEDS: [u64; 2] = [1, 19_610_315];
+/// Seeds of the test command: of the motions, of those that the laws are tried on, and of those on which the axis turns.
+const SEEDS: [u64; 3] = [1, 19_610_315, 19_700_101];
 
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
@@ -69,6 +71,32 @@ fn seed(base: u64, part: Kind, drive: Kind, index: u64) -> u64 {
         ^ index.wrapping_mul(0x94d0_49bb_1331_11eb)
 }
 
+/// One motion among those looked at.
+struct Place {
+    part: Kind,
+    drive: Kind,
+    index: u64,
+    seed: u64,
+    /// There is little time.
+    sparing: bool,
+}
+
+impl Place {
+    /// The motion, unless it is to be left out; the tally knows why.
+    fn draw(&self, tally: &mut Tally) -> Option<Case> {
+        self.wanted(Case::draw(self.part, self.drive, self.seed), |case| case, tally)
+    }
+
+    fn wanted<T>(&self, drawn: Option<T>, case: impl Fn(&T) -> &Case, tally: &mut Tally) -> Option<T> {
+        match drawn {
+            Some(drawn) if self.sparing && case(&drawn).has_slow_stop => tally.left_out += 1,
+            Some(drawn) => return Some(drawn),
+            None => tally.undrawn += 1,
+        }
+        None
+    }
+}
+
 /// A table of counts, a row per pair, and every fault.
 fn describe(pairs: &BTreeMap<(Kind, Kind), Tally>) -> String {
     let mut report = String::new();
@@ -98,7 +126,7 @@ fn every_pair(
     standard: u64,
     cases: u64,
     sparing: bool,
-    mut look: impl FnMut(u64, &Case, &mut Tally),
+    mut look: impl FnMut(&Place, &mut Tally),
 ) -> BTreeMap<(Kind, Kind), Tally> {
     let base = number("APT_SEED").unwrap_or(standard);
     let one = number("APT_CASE");
@@ -114,11 +142,8 @@ fn every_pair(
         let cases = if slow { cases.div_ceil(share) } else { cases };
         for index in one.map_or(0..cases, |index| index..index + 1) {
             let told = [tally.faults.len(), tally.remarks.len()];
-            match Case::draw(part, drive, seed(base, part, drive, index)) {
-                Some(case) if sparing && case.has_slow_stop => tally.left_out += 1,
-                Some(case) => look(index, &case, tally),
-                None => tally.undrawn += 1,
-            }
+            let seed = seed(base, part, drive, index);
+            look(&Place { part, drive, index, seed, sparing }, tally);
             if cases > TELLING {
                 for line in tally.faults[told[0]..].iter().chain(&tally.remarks[told[1]..]) {
                     println!("{} {line}", name((part, drive)));
@@ -140,18 +165,24 @@ const TELLING: u64 = 2;
 #[test]
 fn motions_of_every_pair_are_proven_or_refused_rightly() {
     let cases = number("APT_CASES").unwrap_or(2);
-    let tallies = every_pair(SEEDS[0], cases, number("APT_CASES").is_none(), |index, case, tally| {
-        let told = number("APT_CASE").is_some();
+    let told = number("APT_CASE").is_some();
+    let tallies = every_pair(SEEDS[0], cases, number("APT_CASES").is_none(), |place, tally| {
+        let Some(case) = place.draw(tally) else { return };
         if told {
             println!("{case:#?}");
         }
-        let (verdict, times) = judge::judge(case);
+        let (verdict, times) = judge::judge(&case);
         if told {
             println!("{verdict:?}");
         }
-        tally.note(index, case, (verdict, times));
+        tally.note(place.index, &case, (verdict, times));
     });
-    let report = describe(&tallies);
+    settle(&tallies);
+}
+
+/// Prints the table, and fails where there is a fault.
+fn settle(tallies: &BTreeMap<(Kind, Kind), Tally>) {
+    let report = describe(tallies);
     println!("{report}");
     assert!(tallies.values().all(|t| t.faults.is_empty()), "\n{report}");
     let proven: usize = tallies.values().map(|t| t.proven).sum();
@@ -162,11 +193,29 @@ fn motions_of_every_pair_are_proven_or_refused_rightly() {
 #[test]
 fn motions_of_every_pair_obey_the_laws_of_motion() {
     let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(10));
-    let tallies = every_pair(SEEDS[1], cases, number("APT_CASES").is_none(), |index, case, tally| {
-        let mut random = Random(index);
-        tally.note_laws(index, case, laws::tried(case, &mut random));
+    let tallies = every_pair(SEEDS[1], cases, number("APT_CASES").is_none(), |place, tally| {
+        let Some(case) = place.draw(tally) else { return };
+        let mut random = Random(place.index);
+        tally.note_laws(place.index, &case, laws::tried(&case, &mut random));
     });
-    let report = describe(&tallies);
-    println!("{report}");
-    assert!(tallies.values().all(|t| t.faults.is_empty()), "\n{report}");
+    settle(&tallies);
+}
+
+#[test]
+fn motions_on_which_the_axis_turns_keep_bands_and_angles() {
+    let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(4));
+    let told = number("APT_CASE").is_some();
+    let tallies = every_pair(SEEDS[2], cases, number("APT_CASES").is_none(), |place, tally| {
+        let drawn = Turning::draw(place.part, place.drive, place.seed);
+        let Some(turning) = place.wanted(drawn, |turning| &turning.case, tally) else { return };
+        if told {
+            println!("{turning:#?}");
+        }
+        let (verdict, times) = judge::timed_verdict(|| modes::judge(&turning));
+        if told {
+            println!("{verdict:?}");
+        }
+        tally.note(place.index, &turning.case, (verdict, times));
+    });
+    settle(&tallies);
 }

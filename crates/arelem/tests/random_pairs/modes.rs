@@ -1,0 +1,228 @@
+//! Random motions on which the tool axis follows a surface, or is another one for every motion: the verifier proves the
+//! bands of the turning tool, and at every position the axis is what its law says.
+//!
+//! Whether a refusal is right is not judged: the search for a path knows fixed axes only.
+
+use apt_geometry::{
+    Vec3,
+    cutter::Cutter,
+    motion::{AxisAngle, MotionCommand, Relation, ToolAxis},
+    surface::Surface,
+};
+use arelem::{
+    MotionFailure,
+    sequence::{CutSequence, Role, ToolPosition},
+};
+
+use crate::{
+    case::{self, Case, Stance},
+    judge::{Fault, Runner, Verdict},
+    kinds::Kind,
+    support::Random,
+};
+
+/// How exactly the angles hold at the positions.
+const EXACT: f64 = 1e-9;
+/// The same where nearest points are searched for.
+const SEARCHED: f64 = 1e-8;
+/// Angles to the normal, degrees.
+const ANGLES: [f64; 2] = [3.0, 20.0];
+/// The lead angle at most, as a share of the angle to the normal.
+const LEADS: f64 = 0.8;
+/// How far the next fixed axis may be from the last one, degrees.
+const FARTHEST: f64 = 25.0;
+/// Shapes that touch a surface under them at the corner: there the angles hold.
+const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
+
+/// A motion with the law of its axis.
+#[derive(Debug)]
+pub(crate) struct Turning {
+    pub(crate) case: Case,
+    mode: ToolAxis,
+    exact: f64,
+}
+
+impl Turning {
+    /// The motion that a seed stands for; None if no draw was a case.
+    pub(crate) fn draw(part: Kind, drive: Kind, seed: u64) -> Option<Self> {
+        let mut random = Random(seed ^ 0x5851_f42d_4c95_7f2d);
+        let on_part = random.next() < 0.65;
+        let mode = mode(on_part, &mut random);
+        let exact = if part.is_slow() || drive.is_slow() { SEARCHED } else { EXACT };
+        let stance = match mode {
+            ToolAxis::Fixed(_) => Stance::Any,
+            _ if on_part => Stance::Square,
+            _ => Stance::SquareOn,
+        };
+        // Where the drive surface guides the axis, the tool end is ON it, and it is the surface under the tool.
+        let case = if on_part {
+            Case::draw_standing(part, drive, stance, seed)?
+        } else {
+            turned_round(Case::draw_standing(drive, part, stance, seed)?)
+        };
+        let mode = match mode {
+            ToolAxis::Fixed(_) => ToolAxis::Fixed(case::near(&case.axis, FARTHEST, &mut random)),
+            other => other,
+        };
+        Some(Self { case, mode, exact })
+    }
+
+    fn commands(&self) -> Vec<MotionCommand> {
+        let mut commands = self.case.commands();
+        let is_from = |c: &MotionCommand| matches!(c, MotionCommand::From { .. });
+        let from = commands.iter().position(is_from).map_or(0, |at| at + 1);
+        if let ToolAxis::Fixed(_) = self.mode {
+            // The same again with another axis.
+            let again: Vec<_> = commands[from..].to_vec();
+            commands.extend([MotionCommand::MultipleAxes(Some(true)), MotionCommand::ToolAxis(self.mode)]);
+            commands.extend(again);
+        } else {
+            commands.insert(from, MotionCommand::ToolAxis(self.mode));
+        }
+        commands
+    }
+}
+
+fn mode(part: bool, random: &mut Random) -> ToolAxis {
+    let angle = random.between(ANGLES[0], ANGLES[1]).to_radians() * random.pick(&[1.0, -1.0]);
+    let lead = random.between(-LEADS, LEADS) * angle;
+    let across = Vec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+    let mode = match (random.next() * 6.0) as u32 {
+        0 | 1 => return ToolAxis::Normal { part },
+        2 => AxisAngle::Plain,
+        3 => AxisAngle::Lead(lead),
+        4 => AxisAngle::PerpendicularTo(across),
+        _ if part => return ToolAxis::Fixed(Vec3::z()),
+        _ => AxisAngle::Plain,
+    };
+    ToolAxis::AtAngle { part, angle, mode }
+}
+
+/// What was part surface is drive surface, and the other way round.
+fn turned_round(case: Case) -> Case {
+    Case {
+        part: case.drive.clone(),
+        drive: case.part.clone(),
+        drive_side: apt_geometry::motion::DriveSide::On,
+        passes_drive: false,
+        surfaces: 3,
+        ..case
+    }
+}
+
+/// Runs the motion and asks the verifier and the law.
+pub(crate) fn judge(turning: &Turning) -> Verdict {
+    let mut runner = Runner::new(&turning.case);
+    let outcome = runner.run(&turning.commands());
+    for sequence in &runner.sequences {
+        match runner.fault(sequence) {
+            Some(Fault::Slow(vectors)) => return Verdict::Slow(format!("verifier, {vectors} vectors")),
+            Some(Fault::Wrong(words)) => return Verdict::Wrong(format!("{:?}: {words}", turning.mode)),
+            None => {}
+        }
+        if !sequence.start_up
+            && CORNERED.contains(&turning.case.shape)
+            && let Some(words) = misfit(turning, sequence)
+        {
+            return Verdict::Wrong(format!("{:?}: {words}", turning.mode));
+        }
+    }
+    match outcome {
+        Ok(()) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
+        Err(MotionFailure::Cancelled) => {
+            Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()))
+        }
+        Err(failure) => {
+            let words = format!("{failure:?}");
+            Verdict::Refused(words.split([' ', '{', '(']).next().unwrap_or_default().to_owned())
+        }
+    }
+}
+
+/// A surface whose normal counts.
+struct Guide {
+    surface: Surface,
+    sign: f64,
+}
+
+impl Guide {
+    fn new(role: &Role, sign: f64) -> Self {
+        Self { surface: Surface::from_geometry(&role.surface.geometry).expect("a surface"), sign }
+    }
+
+    /// The surface that guides the axis: on the side where the tool is, where the end is ON it where the axis is.
+    fn base(role: &Role, start: &ToolPosition) -> Self {
+        let natural = Self::new(role, 1.0);
+        let side = natural.normal(&start.tip).dot(&start.axis).signum();
+        Self { sign: if role.relation == Relation::On { side } else { role.side }, ..natural }
+    }
+
+    /// The surface towards which a positive angle tilts: to the side where the tool is, along its own normal for ON.
+    fn other(role: &Role) -> Self {
+        Self::new(role, if role.relation == Relation::On { 1.0 } else { role.side })
+    }
+
+    fn normal(&self, p: &Vec3) -> Vec3 {
+        self.surface.foot(p).normal * self.sign
+    }
+}
+
+/// Where the axis is not what its law says.
+fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
+    let part_guides = match turning.mode {
+        ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } => part,
+        _ => return None,
+    };
+    let (part, drive) = (sequence.part.as_ref()?, sequence.drive.as_ref()?);
+    let (base, other) = if part_guides { (part, drive) } else { (drive, part) };
+    let (base, other) = (Guide::base(base, &sequence.start), Guide::other(other));
+    let cutter = sequence.cutter;
+    let mut from = sequence.start.tip;
+    for point in &sequence.points {
+        let off =
+            off(&turning.mode, (&base, &other), &cutter, (&point.tip, &point.axis), &(point.tip - from));
+        if off > turning.exact {
+            return Some(format!("axis off by {off:e} at {point:?}"));
+        }
+        from = point.tip;
+    }
+    None
+}
+
+fn off(
+    mode: &ToolAxis,
+    (base, other): (&Guide, &Guide),
+    cutter: &Cutter,
+    (tip, axis): (&Vec3, &Vec3),
+    ahead: &Vec3,
+) -> f64 {
+    let ToolAxis::AtAngle { angle, mode, .. } = mode else { return (axis - base.normal(tip)).norm() };
+    let normal = normal_at_corner(base, cutter, tip, axis);
+    let aside = other.normal(tip);
+    let tangent = normal.cross(&aside).normalize();
+    let across = tangent.cross(&normal);
+    let (sine, cosine) = angle.sin_cos();
+    match mode {
+        AxisAngle::Plain => (normal * cosine + across * sine - axis).norm(),
+        AxisAngle::Lead(lead) => {
+            let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(*angle);
+            let onward = if tangent.dot(ahead) < 0.0 { -tangent } else { tangent };
+            (normal * cosine + onward * lead.sin() + across * rest - axis).norm()
+        }
+        AxisAngle::PerpendicularTo(vector) => {
+            let vector = vector.normalize();
+            let flat = (normal - vector * normal.dot(&vector)).normalize();
+            vector.dot(axis).abs().max((flat.dot(axis) - cosine).abs())
+        }
+    }
+}
+
+/// The normal where the corner of the tool faces the surface.
+fn normal_at_corner(base: &Guide, cutter: &Cutter, tip: &Vec3, axis: &Vec3) -> Vec3 {
+    let mut normal = base.normal(tip);
+    for _ in 0..100 {
+        let radial = (normal - axis * normal.dot(axis)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
+        normal = base.normal(&(tip + axis * cutter.corner_height - radial * cutter.corner_offset.max(0.0)));
+    }
+    normal
+}
