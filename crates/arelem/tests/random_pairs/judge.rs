@@ -127,7 +127,8 @@ impl Tally {
             }
             Verdict::Refused(words) => {
                 self.refused += 1;
-                *self.refusals.entry(words).or_default() += 1;
+                let name = words.split([' ', '{', '(']).next().unwrap_or_default();
+                *self.refusals.entry(name.to_owned()).or_default() += 1;
             }
             Verdict::WronglyRefused(words) => {
                 self.wrongly_refused += 1;
@@ -323,6 +324,6 @@ fn refused(case: &Case, runner: &Runner, failure: &MotionFailure) -> Verdict {
         found @ (Found::Ends(_) | Found::NotMet) if start.is_none() => {
             Verdict::WronglyRefused(format!("a start, then {found:?}: {words}"))
         }
-        _ => Verdict::Refused(words.split([' ', '{', '(']).next().unwrap_or_default().to_owned()),
+        _ => Verdict::Refused(words),
     }
 }

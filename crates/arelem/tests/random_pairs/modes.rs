@@ -31,6 +31,10 @@ const ANGLES: [f64; 2] = [3.0, 20.0];
 const LEADS: f64 = 0.8;
 /// How far the next fixed axis may be from the last one, degrees.
 const FARTHEST: f64 = 25.0;
+/// Places around the corner from which contact is looked for.
+const AROUND: u32 = 8;
+/// Positions of a sequence that is not proven that are shown.
+const SHOWN: usize = 12;
 /// Shapes that touch a surface under them at the corner: there the angles hold.
 const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
 
@@ -117,7 +121,9 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
     for sequence in &runner.sequences {
         match runner.fault(sequence) {
             Some(Fault::Slow(vectors)) => return Verdict::Slow(format!("verifier, {vectors} vectors")),
-            Some(Fault::Wrong(words)) => return Verdict::Wrong(format!("{:?}: {words}", turning.mode)),
+            Some(Fault::Wrong(words)) => {
+                return Verdict::Wrong(format!("{:?}: {words} {}", turning.mode, positions(sequence)));
+            }
             None => {}
         }
         if !sequence.start_up
@@ -132,11 +138,15 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
         Err(MotionFailure::Cancelled) => {
             Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()))
         }
-        Err(failure) => {
-            let words = format!("{failure:?}");
-            Verdict::Refused(words.split([' ', '{', '(']).next().unwrap_or_default().to_owned())
-        }
+        Err(failure) => Verdict::Refused(format!("{failure:?}")),
     }
+}
+
+/// The first positions of a sequence, in short.
+fn positions(sequence: &CutSequence) -> String {
+    let all = std::iter::once(&sequence.start).chain(&sequence.points).take(SHOWN);
+    let triple = |v: &Vec3| format!("({:.5} {:.5} {:.5})", v.x, v.y, v.z);
+    all.map(|p| format!("{}{}", triple(&p.tip), triple(&p.axis))).collect::<Vec<_>>().join(" ")
 }
 
 /// A surface whose normal counts.
@@ -197,15 +207,26 @@ fn off(
     ahead: &Vec3,
 ) -> f64 {
     let ToolAxis::AtAngle { angle, mode, .. } = mode else { return (axis - base.normal(tip)).norm() };
-    let normal = normal_at_corner(base, cutter, tip, axis);
     let aside = other.normal(tip);
-    let tangent = normal.cross(&aside).normalize();
-    let across = tangent.cross(&normal);
+    let normals = normals_at_corner(base, cutter, tip, axis);
+    normals.iter().map(|n| off_normal((*angle, mode), n, &aside, axis, ahead)).fold(f64::INFINITY, f64::min)
+}
+
+/// How far the axis is from what the angles ask for with a normal of the guiding surface.
+fn off_normal(
+    (angle, mode): (f64, &AxisAngle),
+    normal: &Vec3,
+    aside: &Vec3,
+    axis: &Vec3,
+    ahead: &Vec3,
+) -> f64 {
+    let tangent = normal.cross(aside).normalize();
+    let across = tangent.cross(normal);
     let (sine, cosine) = angle.sin_cos();
     match mode {
         AxisAngle::Plain => (normal * cosine + across * sine - axis).norm(),
         AxisAngle::Lead(lead) => {
-            let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(*angle);
+            let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(angle);
             let onward = if tangent.dot(ahead) < 0.0 { -tangent } else { tangent };
             (normal * cosine + onward * lead.sin() + across * rest - axis).norm()
         }
@@ -217,12 +238,23 @@ fn off(
     }
 }
 
-/// The normal where the corner of the tool faces the surface.
-fn normal_at_corner(base: &Guide, cutter: &Cutter, tip: &Vec3, axis: &Vec3) -> Vec3 {
-    let mut normal = base.normal(tip);
-    for _ in 0..100 {
-        let radial = (normal - axis * normal.dot(axis)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
-        normal = base.normal(&(tip + axis * cutter.corner_height - radial * cutter.corner_offset.max(0.0)));
-    }
-    normal
+/// The normals where the corner of the tool faces the surface: on a surface that bends more than the corner does there may
+/// be several such places, so that they are looked for from the tool end and from all around the corner.
+fn normals_at_corner(base: &Guide, cutter: &Cutter, tip: &Vec3, axis: &Vec3) -> Vec<Vec3> {
+    let radius = cutter.corner_offset.max(0.0);
+    let middle = tip + axis * cutter.corner_height;
+    let aside = apt_geometry::surface::perpendicular(axis);
+    let around = (0..AROUND).map(|k| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)).sin_cos();
+        middle + (aside * cos + axis.cross(&aside) * sin) * radius
+    });
+    let settled = |first: Vec3| {
+        let mut normal = base.normal(&first);
+        for _ in 0..100 {
+            let radial = (normal - axis * normal.dot(axis)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
+            normal = base.normal(&(middle - radial * radius));
+        }
+        normal
+    };
+    std::iter::once(*tip).chain(around).map(settled).collect()
 }
