@@ -181,6 +181,7 @@ fn motions_of_every_pair_are_proven_or_refused_rightly() {
 }
 
 /// Prints the table, and fails where there is a fault.
+#[expect(clippy::print_stdout, reason = "the long run tells what is done")]
 fn settle(tallies: &BTreeMap<(Kind, Kind), Tally>) {
     let report = describe(tallies);
     println!("{report}");
