@@ -73,11 +73,19 @@ pub(super) fn prepare(
     let part_contact = start_check(&tool, &mut part, &tip, size)?;
     // A direction that is not defined is the plainer mistake: it is named before a drive surface out of reach.
     let checked = start_check(&tool, &mut drive, &tip, size);
-    let drive_contact =
+    let mut drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn)?;
-    let tangent = line_of_motion(&part_contact, &drive_contact, &wanted, &tip)?;
+    let mut tangent = line_of_motion(&part_contact, &drive_contact, &wanted, &tip)?;
     checked?;
+    // Where the tool is in tolerance on both sides, TLLFT and TLRGT tell which.
+    if misplaced(state.drive_side, &tool, &drive_contact, &tangent).is_some()
+        && let Some((other, contact)) = on_the_other_side(&tool, &drive, &tip, size)
+        && let Ok(along) = line_of_motion(&part_contact, &contact, &wanted, &tip)
+        && misplaced(state.drive_side, &tool, &contact, &along).is_none()
+    {
+        (drive, drive_contact, tangent) = (other, contact, along);
+    }
     let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
     let mut working = Vec::with_capacity(checks.len());
     for (index, check) in checks.iter().enumerate() {
@@ -198,16 +206,29 @@ fn judge_side(
     tangent: &Vec3,
     warnings: &mut Vec<MotionWarning>,
 ) -> DriveSide {
+    let Some((sine, side)) = misplaced(state.drive_side, tool, drive, tangent) else {
+        return state.drive_side;
+    };
+    warnings.push(MotionWarning::WrongSideOfDrive { sine, side });
+    side
+}
+
+/// Where the tool is not on the side of the drive surface that is told: by which sine, and on which side it is.
+fn misplaced(told: DriveSide, tool: &Tool, drive: &Contact, tangent: &Vec3) -> Option<(f64, DriveSide)> {
     // From the surface to the tool, seen with the axis up: positive when the tool is to the left.
     let sine = tangent.cross(&drive.gradient).dot(&tool.axis);
-    let (wrong, other) = match state.drive_side {
-        DriveSide::Left => (sine < -SIDE_SINE, DriveSide::Right),
-        DriveSide::Right => (sine > SIDE_SINE, DriveSide::Left),
-        DriveSide::On => (false, DriveSide::On),
-    };
-    if wrong {
-        warnings.push(MotionWarning::WrongSideOfDrive { sine, side: other });
-        return other;
+    match told {
+        DriveSide::Left => (sine < -SIDE_SINE).then_some((sine, DriveSide::Right)),
+        DriveSide::Right => (sine > SIDE_SINE).then_some((sine, DriveSide::Left)),
+        DriveSide::On => None,
     }
-    state.drive_side
+}
+
+/// The surface with the tool on its other side, if the tool is in tolerance there too.
+fn on_the_other_side(tool: &Tool, role: &Working, tip: &Vec3, size: f64) -> Option<(Working, Contact)> {
+    let mut other = role.clone();
+    other.set_side(-role.gauge.side);
+    let contact = other.gauge.contact(tool, tip);
+    other.look_from(tip);
+    other.holds(contact.clearance, size).then_some((other, contact))
 }

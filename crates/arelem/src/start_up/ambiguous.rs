@@ -4,7 +4,10 @@
 use apt_geometry::Vec3;
 
 use super::StartUp;
-use crate::position::{self, Condition};
+use crate::{
+    attitude::Attitude,
+    position::{self, Condition},
+};
 
 /// Two ways differ if their lengths do by more than this, relative to the size of the coordinates.
 const SAME_LENGTH: f64 = 1e-9;
@@ -38,5 +41,24 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
         .find(|other| {
             (other - found).norm() > APART * length
                 && ((other - tip).norm() - length).abs() <= SAME_LENGTH * size
+                && !is_nearer_between(attitude, &conditions, [found, other], tip)
         })
+}
+
+/// Whether there is a position between two that is nearer to the start than both: they are then two sides of one answer,
+/// about which the way of the search is mirrored.
+fn is_nearer_between(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    [found, other]: [&Vec3; 2],
+    start: &Vec3,
+) -> bool {
+    let middle = (found + other) * 0.5;
+    let solved = position::solve_within(attitude, conditions, &middle, CORRECTIONS);
+    let nearest = (found - start).norm().min((other - start).norm());
+    solved.is_ok_and(|between| {
+        let is_between =
+            [found, other].iter().all(|end| (between.tip - *end).norm() < (found - other).norm());
+        is_between && (between.tip - start).norm() < nearest
+    })
 }

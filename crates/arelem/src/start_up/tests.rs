@@ -1,7 +1,10 @@
 //! Start-up motions: the rules of the dialects, and what a direction decides.
 
 use Relation::{On, Past, To};
-use apt_geometry::motion::{Direction, MotionCommand, NamedSurface, Relation};
+use apt_geometry::{
+    canonical::{Cone, Geometry},
+    motion::{Direction, MotionCommand, NamedSurface, Relation},
+};
 
 use crate::{
     MotionFailure,
@@ -106,4 +109,24 @@ fn the_move_of_apt4_stops_at_the_first_of_the_surfaces() {
     p.go(&[(To, &far), (To, &plane(0.0, 0.0, 1.0, 0.0)), (To, &near)]).verified();
     let above = |x: f64, y: f64| (y + 5.0) * 8.0 - (x - 4.0) * 10.0;
     assert!(above(p.tip().x, p.tip().y) > 0.0, "the tool crossed the near wall: {:?}", p.tip());
+}
+
+/// The way from the start is mirrored on the other side of the nearest position, not at another one.
+#[test]
+fn two_sides_of_the_nearest_position_are_one_answer() {
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[1.0812946301719006, 0.5406473150859503]);
+    p.run(&MotionCommand::From {
+        position: v(0.7987517285383947, -1.3196763852697064, 0.8093604275514281),
+        axis: Some(v(-0.022819020368739142, 0.11185669524198244, 0.9934623153592457)),
+        name: String::new(),
+    });
+    let part = plane(0.022819020368739125, -0.11185669524198252, -0.9934623153592457, -0.006105292586625594);
+    let drive = Geometry::Cone(Cone {
+        vertex: v(1.0342376874744765, -0.38116317227157537, 1.5495471580819273),
+        axis: v(0.0942804055146963, 0.5524393781953678, -0.8282040440345),
+        cosine: 0.7669948205624006,
+    });
+    p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: part }));
+    p.go(&[(To, &drive)]).verified();
 }

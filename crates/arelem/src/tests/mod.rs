@@ -1,6 +1,7 @@
 //! Motion programs as hand-built commands: worked cases, the shapes of the oracle corpus, and properties.
 
 mod axis_modes;
+mod bends;
 mod closed_paths;
 mod corpus_plane;
 mod corpus_space;

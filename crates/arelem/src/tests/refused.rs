@@ -8,24 +8,24 @@ use super::*;
 use crate::{error::RoleName, verify::verify};
 
 /// A start-up and a directed motion.
-struct Found {
-    cutter: &'static [f64],
-    axis: Vec3,
-    from: Vec3,
+pub(super) struct Found {
+    pub(super) cutter: &'static [f64],
+    pub(super) axis: Vec3,
+    pub(super) from: Vec3,
     /// INTOL and OUTTOL.
-    band: [f64; 2],
-    thickness: f64,
-    drive_side: DriveSide,
-    forward: Vec3,
-    part: (Relation, Geometry),
-    drive: (Relation, Geometry),
-    first: (Relation, Geometry),
-    stop: (Relation, Geometry),
+    pub(super) band: [f64; 2],
+    pub(super) thickness: f64,
+    pub(super) drive_side: DriveSide,
+    pub(super) forward: Vec3,
+    pub(super) part: (Relation, Geometry),
+    pub(super) drive: (Relation, Geometry),
+    pub(super) first: (Relation, Geometry),
+    pub(super) stop: (Relation, Geometry),
 }
 
 impl Found {
     /// Runs both, asking at most so often whether to give up; what they found is proven.
-    fn run(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+    pub(super) fn run(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
         let ahead = Some(Direction::Vector(self.forward));
         let [part, drive, first, stop] = [&self.part, &self.drive, &self.first, &self.stop]
             .map(|(relation, surface)| (*relation, surface));
@@ -34,6 +34,7 @@ impl Found {
             MotionCommand::InsideTolerance(PerRole::all(self.band[0])),
             MotionCommand::OutsideTolerance(PerRole::all(self.band[1])),
             MotionCommand::Thickness(PerRole::all(self.thickness)),
+            MotionCommand::PartSide(if part.0 == Relation::On { PartSide::On } else { PartSide::Offset }),
             MotionCommand::MaximumStep(10.0),
             MotionCommand::MaximumPoints(1500),
             MotionCommand::From { position: self.from, axis: Some(self.axis), name: String::new() },
@@ -66,7 +67,7 @@ impl Found {
 }
 
 /// More questions than any of these motions needs.
-const AMPLE: u32 = 20_000;
+pub(super) const AMPLE: u32 = 20_000;
 
 fn is_stopped_by_its_part_surface(motion: &Found) {
     match motion.run(AMPLE) {

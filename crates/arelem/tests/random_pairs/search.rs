@@ -34,7 +34,7 @@ const HALVINGS: u32 = 6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Wanted {
     PathOnly,
-    /// The plane that the start-up ends on.
+    /// The plane that the start-up ends on, on the side on which it leaves the tool.
     First,
     /// The check surface, on this side.
     Stop(f64),
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
         let place = ToolPosition { tip: *tip, axis: *axis };
         let check = match wanted {
             Wanted::PathOnly => None,
-            Wanted::First => Some(self.role(first, 1.0)),
+            Wanted::First => Some(self.role(first, first.side)),
             Wanted::Stop(side) => Some(self.role(stop, side)),
         };
         let sequence = CutSequence {

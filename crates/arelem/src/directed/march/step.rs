@@ -16,8 +16,9 @@ use crate::{
 const MAX_TRIALS: u32 = 60;
 /// Trials that try to lengthen a vector already proven.
 const LENGTHENINGS: u32 = 4;
-/// Length, relative to the size of the coordinates, below which a vector leads nowhere.
-const LEAST_VECTOR: f64 = 1e-10;
+/// Length, relative to the size of the coordinates, below which a vector leads nowhere: well above the size below which a
+/// reader of the path takes two positions for one.
+const LEAST_VECTOR: f64 = 1e-8;
 /// A vector whose length could grow by less than this share is long enough.
 const LONG_ENOUGH: f64 = 6e-4;
 /// Share of the predicted length that is tried.
@@ -38,6 +39,18 @@ const SAME_TANGENT_COSINE: f64 = 0.999;
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
 const PROBE: f64 = 1e-4;
+
+/// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
+const LEAST_LEVEL: f64 = 0.1;
+
+/// Where in the bands a vector ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Places {
+    /// At the limits opposite to the sag.
+    Limits,
+    /// Where it begins.
+    Level,
+}
 
 /// Computes vectors one after the other, remembering curvature.
 pub(super) struct Stepper<'a> {
@@ -88,7 +101,7 @@ impl<'a> Stepper<'a> {
     /// The next vertex, at most `cap` away. Where the path turns sharply because the tool comes to touch a surface at a second
     /// place, the tangent of the vertex becomes that of the path beyond.
     pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
-        let failure = match self.onward(here, cap) {
+        let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
             found => return self.noted(here, found),
         };
@@ -100,11 +113,17 @@ impl<'a> Stepper<'a> {
             }
             let turned = Vertex { tangent, ..*here };
             self.curvature = None;
-            if let Ok(next) = self.onward(&turned, cap) {
+            if let Ok(next) = self.onward(&turned, cap, Places::Limits) {
                 self.turned = Some((here.tip, here.tangent));
                 *here = turned;
                 return self.noted(here, Ok(next));
             }
+        }
+        // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
+        self.curvature = None;
+        match self.onward(here, cap, Places::Level) {
+            found @ (Ok(_) | Err(MotionFailure::Cancelled)) => return self.noted(here, found),
+            Err(_) => {}
         }
         Err(match (failure, places.first()) {
             (MotionFailure::IterationLimit { .. }, Some(place)) => place.prevents(self.prepared, here),
@@ -145,7 +164,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// The next vertex along the tangent, at most `cap` away.
-    fn onward(&mut self, here: &Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+    fn onward(&mut self, here: &Vertex, cap: f64, places: Places) -> Result<Vertex, MotionFailure> {
         let cap = cap.min(self.maximum);
         let curvature = match self.curvature {
             Some(known) => known,
@@ -156,7 +175,10 @@ impl<'a> Stepper<'a> {
         let mut best: Option<Trial> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
-        let least = LEAST_VECTOR * self.prepared.size;
+        let least = match places {
+            Places::Limits => LEAST_VECTOR * self.prepared.size,
+            Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
+        };
         for _ in 0..MAX_TRIALS {
             if length <= least {
                 break;
@@ -164,7 +186,7 @@ impl<'a> Stepper<'a> {
             if (self.cancel)() {
                 return Err(MotionFailure::Cancelled);
             }
-            let Some(trial) = self.attempt(here, length, cap, &bends) else {
+            let Some(trial) = self.attempt(here, length, cap, (&bends, places)) else {
                 shortest_bad = shortest_bad.min(length);
                 length *= 0.5;
                 continue;
@@ -268,18 +290,31 @@ impl<'a> Stepper<'a> {
     }
 
     /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
-    fn attempt(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2]) -> Option<Trial> {
+    fn attempt(
+        &self,
+        here: &Vertex,
+        length: f64,
+        cap: f64,
+        (bends, places): (&[Bend; 2], Places),
+    ) -> Option<Trial> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
-        let conditions = [
-            Condition::Clearance(&part.gauge, part.vertex(bends[0])),
-            Condition::Clearance(&drive.gauge, drive.vertex(bends[1])),
-        ];
+        let [at_part, at_drive] = match places {
+            Places::Limits => [part.vertex(bends[0]), drive.vertex(bends[1])],
+            Places::Level => [here.part.clearance, here.drive.clearance],
+        };
+        let conditions =
+            [Condition::Clearance(&part.gauge, at_part), Condition::Clearance(&drive.gauge, at_drive)];
         let tip = position::solve(attitude, &conditions, &(here.tip + here.tangent * length)).ok()?.tip;
         let chord = tip - here.tip;
         let reached = chord.norm();
         if reached > cap * (1.0 + 1e-9) {
             // The correction made it longer than allowed: try again a little shorter.
-            return self.shorter(here, length * (cap / reached) * (1.0 - 1e-6), cap, bends, length);
+            let shorter = length * (cap / reached) * (1.0 - 1e-6);
+            return if shorter < 0.5 * length {
+                None
+            } else {
+                self.attempt(here, shorter, cap, (bends, places))
+            };
         }
         let vertex = Vertex::at(self.prepared, tip, &here.tangent).ok()?;
         self.judge(here, vertex, chord, reached)
@@ -294,10 +329,6 @@ impl<'a> Stepper<'a> {
             _ => !turns && role.shape != Shape::Flat,
         };
         CORNER_BANDS * self.roles().into_iter().filter(may_turn).map(Working::band).sum::<f64>()
-    }
-
-    fn shorter(&self, here: &Vertex, length: f64, cap: f64, bends: &[Bend; 2], before: f64) -> Option<Trial> {
-        if length < 0.5 * before { None } else { self.attempt(here, length, cap, bends) }
     }
 
     fn judge(&self, here: &Vertex, vertex: Vertex, chord: Vec3, reached: f64) -> Option<Trial> {

@@ -41,6 +41,30 @@ struct Stretch<'a> {
     is_positive: bool,
 }
 
+/// A check surface seen from a place on a cut vector.
+struct Reading {
+    /// Distance from the start of the vector.
+    x: f64,
+    vertex: Vertex,
+    /// Rate at which the distance along the natural normal grows on the path.
+    slope: f64,
+    gap: f64,
+    side: f64,
+}
+
+impl Reading {
+    /// Whether the tool comes to touch the check surface elsewhere before another place: the gap then does not change as the
+    /// slopes say, and a slope that changed its sign in between may have changed it back.
+    fn jumps_before(&self, next: &Self, slack: f64) -> bool {
+        let step = next.x - self.x;
+        if self.gap.abs() + next.gap.abs() > step + 2.0 * slack {
+            return false;
+        }
+        let change = next.gap - self.gap;
+        self.side != next.side || (change - 0.5 * self.side * (self.slope + next.slope) * step).abs() > slack
+    }
+}
+
 /// Watches the check surfaces that stop at a tangency.
 #[derive(Clone)]
 pub(super) struct Watch<'a> {
@@ -93,19 +117,17 @@ impl<'a> Watch<'a> {
         let least = (length / PIECES).max(LEAST_PIECE * self.prepared.size);
         let reach =
             self.prepared.checks[index].band() + self.prepared.part.band() + self.prepared.drive.band();
-        let (mut here, mut x) = (*from, 0.0);
-        let (mut before, mut gap) = self.slope(index, &here)?;
-        while x < length {
-            x += (gap.abs() - reach).max(least);
-            let next = if x < length {
-                Vertex::at(self.prepared, from.tip + (to.tip - from.tip) * (x / length), &from.tangent)?
-            } else {
-                *to
-            };
-            let after;
-            (after, gap) = self.slope(index, &next)?;
-            if before != 0.0 && (before > 0.0) != (after > 0.0) {
-                let stretch = Stretch { index, from: &here, to: &next, is_positive: before > 0.0 };
+        let mut here = self.read(index, [from, to], 0.0)?;
+        while here.x < length {
+            let mut step = (here.gap.abs() - reach).max(least);
+            let mut next = self.read(index, [from, to], (here.x + step).min(length))?;
+            while step > reach && here.jumps_before(&next, reach) {
+                step *= 0.5;
+                next = self.read(index, [from, to], (here.x + step).min(length))?;
+            }
+            if here.slope != 0.0 && (here.slope > 0.0) != (next.slope > 0.0) {
+                let stretch =
+                    Stretch { index, from: &here.vertex, to: &next.vertex, is_positive: here.slope > 0.0 };
                 match self.touching(&stretch)? {
                     Gap::Closed(vertex, side) => {
                         self.counts[index] += 1;
@@ -120,15 +142,30 @@ impl<'a> Watch<'a> {
                     Gap::Open(_) => {}
                 }
             }
-            (here, before) = (next, after);
+            here = next;
         }
         Ok(None)
     }
 
-    /// How fast the tool moves away from the check surface, and how far it is from it.
-    fn slope(&self, index: usize, vertex: &Vertex) -> Result<(f64, f64), MotionFailure> {
+    /// The check surface at a distance from the start of a cut vector.
+    fn read(&self, index: usize, [from, to]: [&Vertex; 2], x: f64) -> Result<Reading, MotionFailure> {
+        let length = (to.tip - from.tip).norm();
+        let vertex = if x <= 0.0 {
+            *from
+        } else if x < length {
+            Vertex::at(self.prepared, from.tip + (to.tip - from.tip) * (x / length), &from.tangent)?
+        } else {
+            *to
+        };
         let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
-        Ok(((contact.gradient * side).dot(&vertex.tangent), contact.clearance))
+        let slope = (contact.gradient * side).dot(&vertex.tangent);
+        Ok(Reading { x, vertex, slope, gap: contact.clearance, side })
+    }
+
+    /// How fast the tool moves away from the check surface.
+    fn slope(&self, index: usize, vertex: &Vertex) -> Result<f64, MotionFailure> {
+        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
+        Ok((contact.gradient * side).dot(&vertex.tangent))
     }
 
     /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the band of the surface
@@ -211,7 +248,7 @@ impl<'a> Watch<'a> {
             if middle <= low || middle >= high {
                 break;
             }
-            if (self.slope(index, &at(middle)?)?.0 > 0.0) == is_positive {
+            if (self.slope(index, &at(middle)?)? > 0.0) == is_positive {
                 low = middle;
             } else {
                 high = middle;

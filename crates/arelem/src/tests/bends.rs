@@ -1,0 +1,233 @@
+//! Random motions around tight bends, past surfaces that the tool touches with another part than before, and from where two
+//! sides of the drive surface would do.
+
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
+use crate::error::RoleName;
+
+fn is_delivered(motion: &Found) {
+    let sequences = motion.run(AMPLE).expect("a path");
+    assert_eq!(sequences.len(), 2);
+}
+
+/// From the middle of the band to its limit no vector leads past a tight bend.
+#[test]
+fn a_lens_cutter_gets_round_a_bend_on_a_level() {
+    let motion = Found {
+        cutter: &[1.0, 0.1875, 0.33, 0.22, 6.830430776130537, 5.0, 2.034399071486589],
+        axis: v(0.2743201268978522, -0.4872554137301453, 0.829054057205808),
+        from: v(1.932271361599631, 0.4145999562787791, 0.8219560846834704),
+        band: [0.0005, 0.0],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(-0.3124654224835965, -0.40196832278195155, 0.8606897392394152),
+        part: (
+            Relation::To,
+            Geometry::Circle(Cylinder {
+                point: v(-1.59808647051409, 3.254229077714206, 1.768602533874725),
+                axis: v(0.0, 0.0, 1.0),
+                radius: 3.1274786869036406,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    -0.32563496407754033,
+                    -1.5979370693976251,
+                    0.5405306654814732,
+                    10.361018480962038,
+                    -0.2429751588003326,
+                    0.03439024072734293,
+                    0.732635689228503,
+                    -0.19438940933484966,
+                    -0.14905490689037984,
+                    -2.1764779195575326,
+                ],
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.3124654224835963, -0.4019683227819517, 0.8606897392394152),
+                distance: 0.1752717512392228,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Line(Plane {
+                normal: v(-0.6137244583180014, -0.789520290595673, 0.0),
+                distance: -0.926333311478422,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// Soon after the tangency another part of the tool goes into the check surface: seen from a long way off the slope never
+/// changes its sign.
+#[test]
+fn a_tangency_before_another_part_of_the_tool_goes_in_is_found() {
+    let motion = Found {
+        cutter: &[1.1988762989249946, 0.27112178854404073],
+        axis: v(-0.7056769743592767, -0.42867928863854393, -0.5641401203171857),
+        from: v(-0.9093753963857598, -0.24706690499676182, 0.21624345220152297),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(-0.0, -0.0, -1.0),
+        part: (
+            Relation::On,
+            Geometry::Circle(Cylinder {
+                point: v(-5.7883313183606955, -3.1028754097733353, -0.17075435283552487),
+                axis: v(0.0, 0.0, 1.0),
+                radius: 6.162183207271337,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Circle(Cylinder {
+                point: v(1.1677872574744166, 5.82115365050019, -0.48356212690098815),
+                axis: v(0.0, 0.0, 1.0),
+                radius: 5.460679063586384,
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-1.0353013404798411e-16, -6.541490021871942e-17, -1.0),
+                distance: 1.287233399500737,
+            }),
+        ),
+        stop: (
+            Relation::TangentToDrive,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.269021652314857,
+                    0.1572437768631698,
+                    -0.11374335774073532,
+                    -0.2809322780309085,
+                    -0.09765473298566306,
+                    -0.02059741758635271,
+                    0.03421590029239295,
+                    0.9419670957276968,
+                    -0.23739547161191726,
+                    -0.6216648499864745,
+                ],
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// The way along the second wall leads back by a little more than a right angle, which no vector of no length hides.
+#[test]
+fn no_vector_without_length_hides_a_way_back() {
+    let motion = Found {
+        cutter: &[
+            0.4561163986690853,
+            0.0,
+            0.22805819933454266,
+            0.13703119082646406,
+            31.0,
+            0.0,
+            3.383459357964606,
+        ],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(0.9654196526501286, 0.6771124957312995, -0.7289830957873278),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.7762758596403075, -0.6275689700396138, 0.059606858524164676),
+        part: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(0.5338335702710564, 0.9906171185574818, 5.447393476837533),
+                axis: v(-0.903956204955161, -0.4259754026324791, 0.03752513657750371),
+                radius: 7.052714395473617,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.6286868189333942, 0.7776585907063649, 1.0747943122258738e-16),
+                distance: -0.39822515626262345,
+            }),
+        ),
+        first: (
+            Relation::Past,
+            Geometry::Plane(Plane {
+                normal: v(0.7762758596403075, 0.627568970039614, -0.059606858524164516),
+                distance: 0.9308653633524715,
+            }),
+        ),
+        stop: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-1.1589031707657842, 1.0357325050624733, -1.7429690108773908),
+                axis: v(0.536670246430031, -0.17508090496061965, 0.8254282060330264),
+                cosine: 0.9148348435652561,
+            }),
+        ),
+    };
+    match motion.run(AMPLE) {
+        Err(MotionFailure::NoAdmissibleVector { role: RoleName::Part, .. }) => {}
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A tool as thin as the band is in tolerance on both sides of its drive surface, and TLLFT tells on which it shall be.
+#[test]
+fn between_two_sides_in_tolerance_the_side_told_decides() {
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001],
+        axis: v(-0.43924035818181206, 0.7445882733595628, 0.5026491926977885),
+        from: v(-1.5016167626767303, 1.0035319184745939, -1.0225488086906962),
+        band: [2e-5, 3e-5],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(-0.49345443711927284, -0.5648523234098581, -0.6613959262240634),
+        part: (
+            Relation::On,
+            Geometry::Line(Plane {
+                normal: v(0.753099326907141, -0.6579068352069397, 0.0),
+                distance: -1.2412152318353291,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.3923668527200942,
+                    0.08789169196752522,
+                    0.048186262042478334,
+                    -1.1020732843873766,
+                    0.06394805163639186,
+                    0.0735193509388986,
+                    0.06844865232520157,
+                    0.6357418575400853,
+                    0.40923722502367643,
+                    -0.28380084884241247,
+                ],
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.49345443711927295, -0.5648523234098581, -0.6613959262240634),
+                distance: -0.24504616781103195,
+            }),
+        ),
+        stop: (
+            Relation::TangentToDrive,
+            Geometry::Cone(Cone {
+                vertex: v(-1.3783432363238641, -0.8777565096610384, -3.403276115001089),
+                axis: v(-0.1228783286344567, 0.10174787583265149, 0.987192122190785),
+                cosine: 0.6910350613384698,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
