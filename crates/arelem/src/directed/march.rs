@@ -186,8 +186,8 @@ impl<'a> March<'a> {
                 return Ok(self.path(&end));
             }
         }
-        if let Outlook::Nothing { course, nearest } = self.outlook(&here, cancel)? {
-            return Err(self.never_met(nearest, course));
+        if let Outlook::Nothing { course, nearest, met } = self.outlook(&here, cancel)? {
+            return Err(self.never_met(nearest, course, met));
         }
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
@@ -202,8 +202,8 @@ impl<'a> March<'a> {
             return Ok(());
         }
         self.look *= 2;
-        if let Outlook::Nothing { course, nearest } = self.outlook(from, cancel)? {
-            return Err(self.never_met(nearest, course));
+        if let Outlook::Nothing { course, nearest, met } = self.outlook(from, cancel)? {
+            return Err(self.never_met(nearest, course, met));
         }
         Ok(())
     }
@@ -304,13 +304,19 @@ impl<'a> March<'a> {
             let vertices = std::iter::once(&start.tip).chain(&self.points);
             let length = vertices.clone().zip(vertices.skip(1)).map(|(a, b)| (b - a).norm()).sum();
             let nothing = (f64::INFINITY, start.tip, 0);
-            return Err(self.never_met(nothing, Course::Closed { length }));
+            let met = self.watcher.met + self.tangency.met;
+            return Err(self.never_met(nothing, Course::Closed { length }, met));
         }
         Ok(())
     }
 
-    /// The evidence: the nearest approach on the cut vectors made and on the way ahead of them.
-    fn never_met(&self, ahead: (f64, Vec3, usize), course: Course) -> MotionFailure {
+    /// The evidence: the positions met, if they were too few, or the nearest approach on the cut vectors made and on the way
+    /// ahead of them.
+    fn never_met(&self, ahead: (f64, Vec3, usize), course: Course, met: usize) -> MotionFailure {
+        if met > 0 {
+            let check = if self.tangency.met > 0 { self.tangency.check } else { self.watcher.nearest.2 };
+            return MotionFailure::NoneAhead { check, relation: self.checks[check].relation, found: met };
+        }
         let mut watcher = Watcher::new(self.prepared, self.checks).thorough();
         let mut here = Vertex::start(self.prepared);
         for point in &self.points {

@@ -37,8 +37,9 @@ const SAME: f64 = 1e-6;
 /// What lies ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outlook {
-    /// No check surface: the nearest approach on the way, and how the way ends.
-    Nothing { course: Course, nearest: (f64, Vec3, usize) },
+    /// No position that stops the motion: the nearest approach on the way, how the way ends, and how many positions that
+    /// count were met, too few.
+    Nothing { course: Course, nearest: (f64, Vec3, usize), met: usize },
     /// A check surface, or nothing that could be told.
     Open,
 }
@@ -104,11 +105,11 @@ pub(super) fn ahead(
         let closed = scout.log.len() > 3 && scout.passes(&start, &here, &to);
         let course = if closed { Some(scout.turn()) } else { scout.left_behind(least) };
         if let Some(course) = course {
-            let found = if closed { scout.met() > met } else { scout.met() > 0 };
-            return Ok(if found {
+            // On a closed path those that were met come again.
+            return Ok(if closed && scout.met() > met {
                 Outlook::Open
             } else {
-                Outlook::Nothing { course, nearest: scout.nearest }
+                Outlook::Nothing { course, nearest: scout.nearest, met: scout.met() }
             });
         }
         step = sweep.length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);

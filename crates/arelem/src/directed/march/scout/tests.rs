@@ -34,6 +34,18 @@ fn a_check_surface_left_behind_is_never_met() {
 }
 
 #[test]
+fn a_check_surface_that_is_met_once_is_not_met_twice() {
+    let middle = plane(0.0, 1.0, 0.0, 0.0);
+    let mut p = on_the_back();
+    p.run(&MotionCommand::MaximumPoints(1500));
+    let twice = motion(Turn::Forward, &middle, &[(Relation::On, 2, &plane(1.0, 0.0, 0.0, 5.0))]);
+    match p.attempt(&twice) {
+        Err(MotionFailure::NoneAhead { check: 0, relation: Relation::On, found: 1 }) => {}
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn a_check_surface_far_ahead_is_met() {
     let middle = plane(0.0, 1.0, 0.0, 0.0);
     let mut p = on_the_back();
