@@ -121,9 +121,9 @@ impl<'a> Stepper<'a> {
         }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
         self.curvature = None;
-        match self.onward(here, cap, Places::Level) {
-            found @ (Ok(_) | Err(MotionFailure::Cancelled)) => return self.noted(here, found),
-            Err(_) => {}
+        let level = self.onward(here, cap, Places::Level);
+        if matches!(level, Ok(_) | Err(MotionFailure::Cancelled)) {
+            return self.noted(here, level);
         }
         Err(match (failure, places.first()) {
             (MotionFailure::IterationLimit { .. }, Some(place)) => place.prevents(self.prepared, here),
