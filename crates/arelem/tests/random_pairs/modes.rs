@@ -31,6 +31,8 @@ const ANGLES: [f64; 2] = [3.0, 20.0];
 const LEADS: f64 = 0.8;
 /// How far the next fixed axis may be from the last one, degrees.
 const FARTHEST: f64 = 25.0;
+/// Steps in which axis and contact are looked for together.
+const ROUNDS: u32 = 100;
 /// Places around the corner from which contact is looked for.
 const AROUND: u32 = 8;
 /// Positions of a sequence that is not proven that are shown.
@@ -208,53 +210,47 @@ fn off(
 ) -> f64 {
     let ToolAxis::AtAngle { angle, mode, .. } = mode else { return (axis - base.normal(tip)).norm() };
     let aside = other.normal(tip);
-    let normals = normals_at_corner(base, cutter, tip, axis);
-    normals.iter().map(|n| off_normal((*angle, mode), n, &aside, axis, ahead)).fold(f64::INFINITY, f64::min)
+    // The angles hold at the contact, which moves with the axis: both are looked for together. On a surface that bends more
+    // than the corner does there may be several contacts.
+    let settled = |first: Vec3| {
+        let mut normal = base.normal(&first);
+        let mut asked = asked((*angle, mode), &normal, &aside, axis, ahead);
+        for _ in 0..ROUNDS {
+            let radial =
+                (normal - asked * normal.dot(&asked)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
+            let corner = asked * cutter.corner_height - radial * cutter.corner_offset.max(0.0);
+            normal = base.normal(&(tip + corner));
+            asked = self::asked((*angle, mode), &normal, &aside, axis, ahead);
+        }
+        (asked - axis).norm()
+    };
+    let across = apt_geometry::surface::perpendicular(axis);
+    let around = (0..AROUND).map(|k| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)).sin_cos();
+        let radial = (across * cos + axis.cross(&across) * sin) * cutter.corner_offset.max(0.0);
+        tip + axis * cutter.corner_height + radial
+    });
+    std::iter::once(*tip).chain(around).map(settled).fold(f64::INFINITY, f64::min)
 }
 
-/// How far the axis is from what the angles ask for with a normal of the guiding surface.
-fn off_normal(
-    (angle, mode): (f64, &AxisAngle),
-    normal: &Vec3,
-    aside: &Vec3,
-    axis: &Vec3,
-    ahead: &Vec3,
-) -> f64 {
+/// The axis that the angles ask for with a normal of the guiding surface; of the two that lie across a vector the one that
+/// is nearer to the axis of the tool.
+fn asked((angle, mode): (f64, &AxisAngle), normal: &Vec3, aside: &Vec3, axis: &Vec3, ahead: &Vec3) -> Vec3 {
     let tangent = normal.cross(aside).normalize();
     let across = tangent.cross(normal);
     let (sine, cosine) = angle.sin_cos();
     match mode {
-        AxisAngle::Plain => (normal * cosine + across * sine - axis).norm(),
+        AxisAngle::Plain => normal * cosine + across * sine,
         AxisAngle::Lead(lead) => {
             let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(angle);
             let onward = if tangent.dot(ahead) < 0.0 { -tangent } else { tangent };
-            (normal * cosine + onward * lead.sin() + across * rest - axis).norm()
+            normal * cosine + onward * lead.sin() + across * rest
         }
         AxisAngle::PerpendicularTo(vector) => {
             let vector = vector.normalize();
             let flat = (normal - vector * normal.dot(&vector)).normalize();
-            vector.dot(axis).abs().max((flat.dot(axis) - cosine).abs())
+            let turned = vector.cross(&flat) * sine;
+            if turned.dot(axis) < 0.0 { flat * cosine - turned } else { flat * cosine + turned }
         }
     }
-}
-
-/// The normals where the corner of the tool faces the surface: on a surface that bends more than the corner does there may
-/// be several such places, so that they are looked for from the tool end and from all around the corner.
-fn normals_at_corner(base: &Guide, cutter: &Cutter, tip: &Vec3, axis: &Vec3) -> Vec<Vec3> {
-    let radius = cutter.corner_offset.max(0.0);
-    let middle = tip + axis * cutter.corner_height;
-    let aside = apt_geometry::surface::perpendicular(axis);
-    let around = (0..AROUND).map(|k| {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)).sin_cos();
-        middle + (aside * cos + axis.cross(&aside) * sin) * radius
-    });
-    let settled = |first: Vec3| {
-        let mut normal = base.normal(&first);
-        for _ in 0..100 {
-            let radial = (normal - axis * normal.dot(axis)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
-            normal = base.normal(&(middle - radial * radius));
-        }
-        normal
-    };
-    std::iter::once(*tip).chain(around).map(settled).collect()
 }
