@@ -4,6 +4,14 @@
 use super::{ConeForm, Foot, Surface, part::Survey};
 use crate::Vec3;
 
+/// How much farther than its feet the paths between feet are looked for at first.
+const WIDER: f64 = 1.25;
+/// How much farther than the cosine over the feet says they are looked for where that is too far.
+const STEEPER: f64 = 1.5;
+/// How far from feet of one point the path between them can reach, in depths of the point, while all normals keep the least
+/// cosine: `2 (1 − c²)/c` for c = 1/2.
+const FARTHEST_BESIDE: f64 = 3.0;
+
 /// An upper bound of the second derivative, along any unit direction, of the distance from a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bend {
@@ -61,15 +69,18 @@ impl Surface {
                 }
             }
             Self::Ruled(sheet) => {
-                let extent = [region.radius, region.reach(foot)];
-                return sheet.survey(Survey::new(&region.center, extent, side, &foot.normal)).bend(nearest);
+                let survey = |reach: f64| {
+                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
+                };
+                return sheet_bend(survey, region.reach(foot), nearest);
             }
             Self::PolyConic(sheet) => {
                 // Off a surface that lies at a thickness from its conics distances bend as those from the conics.
                 let stock = side * sheet.thickness();
-                let extent = [region.radius, region.reach(foot) + stock.abs()];
-                let survey = Survey::new(&region.center, extent, side, &foot.normal);
-                return sheet.survey(survey).bend(nearest + stock);
+                let survey = |reach: f64| {
+                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
+                };
+                return sheet_bend(survey, region.reach(foot) + stock.abs(), nearest + stock);
             }
         };
         let least = near.min(far);
@@ -98,6 +109,29 @@ impl Surface {
             Self::PolyConic(sheet) => sheet.common_ruling(),
             _ => None,
         }
+    }
+}
+
+/// The bend for places at least `nearest` from a sheet, from what is found of it within so far from the centre. Beyond the
+/// sheet its places are to be on one piece: the paths between feet of one point reach farther than the feet.
+fn sheet_bend(survey: impl Fn(f64) -> Survey, reach: f64, nearest: f64) -> Bend {
+    if nearest >= 0.0 {
+        return survey(reach).bend(nearest);
+    }
+    let depth = -nearest;
+    let within = |asked: f64| {
+        let path = survey(asked);
+        path.beside(depth)
+            .map(|beside| if reach + beside <= asked { path.bend(nearest) } else { Bend::Unbounded })
+    };
+    match within(WIDER * reach) {
+        Some(Bend::AtMost(bend)) => Bend::AtMost(bend),
+        Some(Bend::Unbounded) => survey(reach + FARTHEST_BESIDE * depth).bend(nearest),
+        // An edge or a wall may lie just beyond the paths.
+        None => survey(reach)
+            .beside(depth)
+            .and_then(|beside| within(reach + STEEPER * beside))
+            .unwrap_or(Bend::Unbounded),
     }
 }
 

@@ -8,12 +8,15 @@ mod directed;
 mod interval;
 mod part;
 mod poly_conic;
+mod prepared;
 mod quadric;
 mod quadric_bound;
 mod ruled;
 mod section_curve;
 mod sheet;
 mod tabulated;
+
+use std::sync::Arc;
 
 use nalgebra::Matrix3;
 
@@ -49,9 +52,9 @@ pub enum Surface {
     /// Tabulated cylinder; the straight extensions go on for ever.
     Tabulated(Box<DirectrixCurve>),
     /// Ruled surface with its extensions.
-    Ruled(Box<RuledSheet>),
+    Ruled(Arc<RuledSheet>),
     /// Polyconic surface with its extensions.
-    PolyConic(Box<PolyConicSheet>),
+    PolyConic(Arc<PolyConicSheet>),
 }
 
 /// Why a geometric entity is no surface here.
@@ -139,10 +142,11 @@ impl Surface {
                 DirectrixCurve::new(cylinder).map(|curve| Self::Tabulated(Box::new(curve))).ok_or(degenerate)
             }
             Geometry::RuledSurface(surface) => {
-                RuledSheet::new(surface).map(|sheet| Self::Ruled(Box::new(sheet))).ok_or(degenerate)
+                prepared::RULED.get(surface, RuledSheet::new).map(Self::Ruled).ok_or(degenerate)
             }
             Geometry::PolyConic(values) => {
-                PolyConicSheet::new(values).map(|sheet| Self::PolyConic(Box::new(sheet))).ok_or(degenerate)
+                let sheet = prepared::POLY_CONIC.get(values, |values| PolyConicSheet::new(values));
+                sheet.map(Self::PolyConic).ok_or(degenerate)
             }
             Geometry::Point(_)
             | Geometry::Vector(_)

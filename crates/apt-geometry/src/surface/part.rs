@@ -76,6 +76,9 @@ pub(super) struct Enclosure {
 /// A surface whose derivatives can be enclosed.
 pub(super) trait Enclose {
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure;
+
+    /// Counts parts that were made.
+    fn made(&self, parts: usize);
 }
 
 /// Bounds over a part of a surface.
@@ -85,6 +88,8 @@ pub(super) struct Part {
     center: Vec3,
     /// No place is farther from the centre.
     radius: f64,
+    /// No place is farther from the tangent plane in the middle.
+    sag: f64,
     /// Greatest curvature seen from the natural side (positive where the surface curves away from it), and from the other.
     curvature: [f64; 2],
     /// The same in the middle.
@@ -204,20 +209,30 @@ impl Survey {
     /// Bound of the second derivatives of the distance over places at least `nearest` from the surface (negative: so far
     /// beyond it).
     ///
-    /// Beyond the surface the nearest place must not jump. It does not while all normals within reach point the same way
-    /// within an angle and no place is farther beyond than the shortest radius of curvature times its cosine: two
-    /// feet of one place would be nearer to each other than their normals allow. Before the surface a jump of the
-    /// nearest place lets the slope only fall, but to places that face the other way.
+    /// Beyond the surface the nearest place must not jump. It does not while all normals within reach, and on the paths between
+    /// feet, point the same way within an angle and no place is so far beyond as two feet of one place need: see
+    /// [`Surface::steady`](super::Surface::steady). Before the surface a jump of the nearest place lets the slope only
+    /// fall, but to places that face the other way.
     pub(super) fn bend(&self, nearest: f64) -> Bend {
         let far = if nearest > 0.0 { 1.0 / nearest } else { f64::INFINITY };
         let beyond = nearest.min(0.0);
-        let alone = self.cosine >= LEAST_COSINE && 1.0 + beyond * self.curvature.max(0.0) / self.cosine > 0.0;
+        let facing = Facing { curvature: [self.curvature; 2], cosine: self.cosine };
+        let alone =
+            self.cosine >= LEAST_COSINE && 1.0 + beyond * self.curvature.max(0.0) * facing.lean() > 0.0;
         if self.jumps || beyond < 0.0 && !alone {
             return Bend::Unbounded;
         }
         let near = if self.curvature.is_finite() { parallel_bend(self.curvature, nearest) } else { far };
         let least = if self.curvature == f64::NEG_INFINITY { 0.0 } else { near.min(far) };
         if least.is_finite() { Bend::AtMost(least) } else { Bend::Unbounded }
+    }
+
+    /// How far from the feet of a point at a depth beyond the surface the path between them can reach, if the surface faces
+    /// one way.
+    pub(super) fn beside(&self, depth: f64) -> Option<f64> {
+        let cosine = self.cosine;
+        let faces = !self.jumps && cosine >= LEAST_COSINE;
+        faces.then(|| 2.0 * depth * (1.0 - cosine * cosine).max(0.0) / cosine)
     }
 
     /// Whether a part faces the ball, so that no point of it can be beyond that part.
@@ -309,6 +324,12 @@ impl Part {
         let radius = (u + v).norm().max((u - v).norm()) + bent;
         let radius = if radius.is_nan() { *reach } else { radius.min(*reach) };
         let mut bounds = Bounds::of(&enclosure, rectangle.half);
+        let sag = bounds.normal.map_or(radius, |normal| {
+            let off = |bend: &Box3| bend.dot(&normal).magnitude();
+            let sag = 0.5 * (off(duu) * hu * hu + off(dvv) * hv * hv) + off(duv) * hu * hv;
+            // Over an edge or a crease derivatives tell nothing of that.
+            if sag.is_nan() || sharp.contains(&true) { radius } else { sag.min(radius) }
+        });
         for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
             if *sharp || curvature.is_nan() {
                 *curvature = f64::INFINITY;
@@ -322,6 +343,7 @@ impl Part {
             rectangle,
             center: jet.point,
             radius,
+            sag,
             curvature: bounds.curvature,
             least: bounds.least,
             close: bounds.close.max(FLAT / radius),
@@ -335,6 +357,7 @@ impl Part {
 
     /// Both halves: of the side whose halves have the closer bounds.
     fn halved(&self, sheet: &impl Enclose) -> [Self; 2] {
+        sheet.made(2);
         let cut = |side: usize| self.rectangle.halves(side).map(|half| Self::new(sheet, half));
         if let Some(side) = self.halved {
             return cut(side);
@@ -353,6 +376,16 @@ impl Part {
 
     pub(super) fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// No place of the part is nearer to a point than this: the part lies in a disc about its middle, as thick as it bends.
+    pub(super) fn bound(&self, p: &Vec3) -> f64 {
+        let w = p - self.center;
+        let away = w.norm() - self.radius;
+        let Some(normal) = self.normal else { return away };
+        let height = w.dot(&normal);
+        let beside = (w.norm_squared() - height * height).max(0.0).sqrt() - self.radius;
+        away.max(beside.max(0.0).hypot((height.abs() - self.sag).max(0.0)))
     }
 
     /// Adds what this part means for a question.

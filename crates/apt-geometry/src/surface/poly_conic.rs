@@ -14,6 +14,7 @@ use super::{
     interval::Number,
     part::{Part, Rectangle},
     perpendicular,
+    prepared::{Count, Parted},
     sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{
@@ -74,6 +75,8 @@ pub struct PolyConicSheet {
     cells: Vec<Cell>,
     size: f64,
     curvature: f64,
+    /// Parts with bounds.
+    parts: Count,
 }
 
 /// Both coordinates in a section plane.
@@ -115,6 +118,12 @@ fn section<T: Number>(
     }
 }
 
+impl Parted for PolyConicSheet {
+    fn parts(&self) -> usize {
+        self.parts.get()
+    }
+}
+
 impl PolyConicSheet {
     /// `None` if the values do not describe a surface.
     pub(super) fn new(values: &[f64]) -> Option<Self> {
@@ -130,7 +139,18 @@ impl PolyConicSheet {
         let (linear, origin) = (form.map.linear(), form.map.apply_point(&Vec3::zeros()));
         let sense = linear.determinant().signum();
         let cells = Vec::new();
-        let mut sheet = Self { form, linear, origin, sense, terms, limits, cells, size: 0.0, curvature: 0.0 };
+        let mut sheet = Self {
+            form,
+            linear,
+            origin,
+            sense,
+            terms,
+            limits,
+            cells,
+            size: 0.0,
+            curvature: 0.0,
+            parts: Count::default(),
+        };
         sheet.grow();
         let finite = sheet.cells.iter().all(|c| c.center.iter().all(|x| x.is_finite()) && !c.radius.is_nan());
         (finite && sheet.size > 0.0).then_some(sheet)
@@ -245,7 +265,9 @@ impl PolyConicSheet {
         let mut open: Vec<(f64, usize)> = Vec::with_capacity(32);
         open.push((0.0, 0));
         let bound = |k: usize| {
-            self.cells.get(k).filter(|c| c.radius >= 0.0).map(|c| ((p - c.center).norm() - c.radius, k))
+            let cell = self.cells.get(k).filter(|c| c.radius >= 0.0)?;
+            let ball = || (p - cell.center).norm() - cell.radius;
+            Some((cell.part.as_ref().map_or_else(ball, |part| part.bound(p)), k))
         };
         while let Some((least, node)) = open.pop() {
             if least > 0.0 && least * least >= best.0 {

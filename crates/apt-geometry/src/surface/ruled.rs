@@ -15,6 +15,7 @@ use super::{
     interval::Interval,
     part::{Later, Part},
     perpendicular,
+    prepared::{Count, Parted},
     section_curve::{CurvePoint, SectionCurve},
     sheet::{Jet, ON_SURFACE, Rest},
 };
@@ -80,6 +81,8 @@ pub struct RuledSheet {
     ruling: Vec3,
     size: f64,
     curvature: f64,
+    /// Parts with bounds.
+    parts: Count,
 }
 
 /// The nearest place so far.
@@ -136,6 +139,12 @@ impl Edge {
     }
 }
 
+impl Parted for RuledSheet {
+    fn parts(&self) -> usize {
+        self.parts.get()
+    }
+}
+
 impl RuledSheet {
     /// `None` if the parts are not those of a definition or a section does not join its end points.
     pub(super) fn new(surface: &RuledSurface) -> Option<Self> {
@@ -160,7 +169,8 @@ impl RuledSheet {
         let ruling = (other - first.start).try_normalize(0.0)?;
         let pieces = pieces(&edges, range, ACCURACY * size)?;
         let limits = [range, [0.0, 1.0]];
-        let mut sheet = Self { pieces, bands: Vec::new(), limits, ruling, size, curvature: 0.0 };
+        let mut sheet =
+            Self { pieces, bands: Vec::new(), limits, ruling, size, curvature: 0.0, parts: Count::default() };
         sheet.limits[1] = sheet.shares();
         sheet.grow();
         Some(sheet)

@@ -334,12 +334,22 @@ impl DirectrixCurve {
     pub(super) fn facing(&self, center: &Vec3, reach: f64, normal: &Vec3, least: f64) -> Option<Facing> {
         let (flat, normal) = (self.flat(center), self.flat(normal));
         let mut found = Facing { curvature: [f64::NEG_INFINITY; 2], cosine: 1.0 };
-        let near = |&(interval, k): &(&Cubic, usize)| interval.is_near(k, interval.to_local(flat), reach);
+        let within = |interval: &Cubic, sense: bool| {
+            let local = interval.to_local(flat);
+            if interval.least_square(local) > reach * reach {
+                return None;
+            }
+            let mut spans = 0..SPANS as usize;
+            let near = |k: &usize| interval.is_near(*k, local, reach);
+            if sense { spans.find(near) } else { spans.rev().find(near) }
+        };
+        let place =
+            |(i, interval): (usize, &Cubic), sense: bool| Some(i * SPANS as usize + within(interval, sense)?);
+        let first = self.intervals.iter().enumerate().find_map(|one| place(one, true))?;
+        let last = self.intervals.iter().enumerate().rev().find_map(|one| place(one, false))?;
         let spans =
             self.intervals.iter().flat_map(|interval| (0..SPANS as usize).map(move |k| (interval, k)));
-        let first = spans.clone().position(|span| near(&span))?;
-        let behind = spans.clone().rev().position(|span| near(&span))?;
-        let count = (SPANS as usize * self.intervals.len()).saturating_sub(first + behind);
+        let count = (last + 1).saturating_sub(first);
         for (number, (interval, k)) in spans.skip(first).take(count).enumerate() {
             let bends = if interval.straight() { [0.0; 2] } else { *interval.bends.get(k)? };
             for (found, (bend, side)) in found.curvature.iter_mut().zip(bends.into_iter().zip([1.0, -1.0])) {

@@ -47,6 +47,10 @@ impl PolyConicSheet {
 }
 
 impl Enclose for PolyConicSheet {
+    fn made(&self, parts: usize) {
+        self.parts.add(parts);
+    }
+
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let Rectangle { middle: [t, s], half: [along, across] } = *rectangle;
         let jet = self.jet(t, s);

@@ -46,6 +46,10 @@ struct Stretch<'a> {
 }
 
 impl Enclose for Stretch<'_> {
+    fn made(&self, parts: usize) {
+        self.sheet.parts.add(parts);
+    }
+
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let Rectangle { middle: [t, v], half: [along, across] } = *rectangle;
         let jet = self.sheet.jet(self.piece, t, v);
