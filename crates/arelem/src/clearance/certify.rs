@@ -13,11 +13,14 @@ use std::{
 
 use apt_geometry::{
     Vec3,
-    cutter::ProfilePoint,
     surface::{Bend, Foot, Region, Surface},
 };
 
-use super::{Contact, Tool};
+use super::{
+    Contact, Tool,
+    floor::{Base, Bases, Course},
+    patch::{Middle, Patch, Stretch, boundary},
+};
 
 /// Bound of the patches looked at. A proof takes some dozens; where contact is nearly flat, a few hundred.
 const MAX_PATCHES: u32 = 1500;
@@ -28,6 +31,19 @@ const NARROW: f64 = 0.02;
 /// How far (radians) from the corner's own fan a normal may point while its whole ball is looked at.
 const BESIDE_FAN: f64 = 0.05;
 
+/// Distance of a base from the middle of a patch, in reaches of the patch, up to which it is tried.
+const BESIDE: f64 = 3.0;
+
+/// How many times more leaves a proof may come to have than it was made with, counted from a least number.
+const FINER: usize = 2;
+const LEAST_FINE: usize = 12;
+
+#[cfg(test)]
+thread_local! {
+    /// Patches that this thread has looked at.
+    pub(super) static JUDGED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// What is known about a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Certificate {
@@ -37,26 +53,6 @@ pub(crate) enum Certificate {
     Lower(Contact),
     /// The patches ran out.
     Undecided,
-}
-
-/// A stretch of the profile.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Stretch {
-    /// A straight line between two points (radius, height).
-    Line([[f64; 2]; 2]),
-    /// Part of the corner: centre, radius, polar angles from straight down.
-    Arc { center: [f64; 2], arc: f64, polar: [f64; 2] },
-    /// The whole balls about the points of the circle on which the corner's centre turns.
-    Ball { center: [f64; 2], arc: f64, fan: [f64; 2] },
-}
-
-/// A stretch over a range of azimuth.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Patch {
-    stretch: Stretch,
-    azimuth: f64,
-    /// Half the range, π for a whole turn.
-    half: f64,
 }
 
 /// What is known of the distance over a patch.
@@ -76,6 +72,93 @@ pub(crate) struct Face<'a> {
     pub(crate) surface: &'a Surface,
     /// Side of its natural normal.
     pub(crate) side: f64,
+}
+
+/// A patch that kept a level, and why.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Leaf {
+    patch: Patch,
+    /// The position there.
+    pose: Pose,
+    /// No point of the patch was nearer to the surface.
+    least: f64,
+    ground: Option<Ground>,
+}
+
+/// A position of the tool: its end, and two directions of its frame.
+#[derive(Debug, Clone, Copy)]
+struct Pose {
+    tip: Vec3,
+    axis: Vec3,
+    across: Vec3,
+}
+
+impl Pose {
+    fn of(tool: &Tool, tip: &Vec3) -> Self {
+        Self { tip: *tip, axis: tool.axis, across: tool.across[0] }
+    }
+
+    /// No point of the tool moves farther from this position to another one.
+    fn moved(&self, tool: &Tool, tip: &Vec3) -> f64 {
+        let moved = (tip - self.tip).norm();
+        if self.axis == tool.axis {
+            return moved;
+        }
+        let third = tool.across[1] - self.axis.cross(&self.across);
+        let aside = (tool.across[0] - self.across).norm() + third.norm();
+        moved + tool.profile.top.height * (tool.axis - self.axis).norm() + tool.radius() * aside
+    }
+}
+
+/// A ball with the downward bend of the distance in it, and a place in the ball to expand the distance about.
+#[derive(Debug, Clone, Copy)]
+struct Ground {
+    base: Base,
+    center: Vec3,
+    radius: f64,
+    bend: f64,
+}
+
+impl Leaf {
+    /// Of which nothing is known.
+    fn new(patch: Patch) -> Self {
+        let pose = Pose { tip: Vec3::zeros(), axis: Vec3::zeros(), across: Vec3::zeros() };
+        Self { patch, pose, least: f64::NEG_INFINITY, ground: None }
+    }
+}
+
+/// A proof of a level, kept for the next ones: leaves that cover what the level is asked of.
+#[derive(Debug, Clone)]
+pub(super) struct Proof {
+    leaves: Vec<Leaf>,
+    /// How many leaves it had when it was made.
+    made: usize,
+    /// How far the tool is expected to move until the next questions.
+    pub(super) spread: f64,
+}
+
+impl Proof {
+    /// Nothing is proven of some patches.
+    pub(super) fn of(patches: Vec<Patch>) -> Self {
+        Self { leaves: patches.into_iter().map(Leaf::new).collect(), made: 0, spread: 0.0 }
+    }
+
+    /// Nothing is proven of a whole tool.
+    pub(super) fn of_tool(tool: &Tool) -> Self {
+        Self::of(boundary(tool))
+    }
+
+    fn take(&mut self, leaves: Vec<Leaf>) {
+        if self.made == 0 {
+            self.made = leaves.len();
+        }
+        self.leaves = leaves;
+    }
+
+    /// Whether it serves a next question: not if nothing holds, nor if it has become much finer than it was made.
+    pub(super) fn serves(&self) -> bool {
+        !self.leaves.is_empty() && self.leaves.len() <= FINER * self.made.max(LEAST_FINE)
+    }
 }
 
 /// A patch that is not cleared yet; the one that may be lowest is the greatest, among equals the one seen first.
@@ -105,214 +188,194 @@ impl PartialEq for Open {
 
 impl Eq for Open {}
 
-/// Examines whether the distance from a surface is nowhere on some patches of the tool below a level. The patch that may be
-/// lowest is halved first: where the level is not kept that leads down to a lower point.
+/// What a search knows of a pose: the tool beside a surface, the level that is asked about, and what the distance is
+/// expanded about.
+struct Question<'a> {
+    face: Face<'a>,
+    tool: &'a Tool,
+    tip: &'a Vec3,
+    level: f64,
+    bases: Option<&'a Bases>,
+    generator: Option<Vec3>,
+    /// How much farther than needed a bend is asked for, so that it serves the next positions.
+    spread: f64,
+}
+
+/// Examines whether the distance from a surface is nowhere on the patches of a proof below a level. The patch that may be
+/// lowest is halved first: where the level is not kept that leads down to a lower point. `bases` are about the contact
+/// found. The proof is left for the next question.
 pub(super) fn certify(
     face: Face<'_>,
     tool: &Tool,
     tip: &Vec3,
     level: f64,
-    mut patches: Vec<Patch>,
+    proof: &mut Proof,
+    bases: Option<&Bases>,
 ) -> Certificate {
     let mut open: BinaryHeap<Open> = BinaryHeap::new();
     let mut seen = 0;
     let cleared = level - ROUNDING * (tip.amax() + tool.radius() + tool.profile.top.height);
+    let (generator, spread) = (face.surface.generator(), proof.spread);
+    let question = Question { face, tool, tip, level: cleared, bases, generator, spread };
+    let pose = Pose::of(tool, tip);
+    let mut leaves = std::mem::take(&mut proof.leaves);
+    let mut done = Vec::with_capacity(leaves.len());
     loop {
-        for patch in patches.drain(..) {
-            seen += 1;
-            let judged = judge(face, tool, tip, &patch);
-            if judged.least >= cleared {
+        while let Some(leaf) = leaves.pop() {
+            if let Some(leaf) = question.still_keeps(&leaf) {
+                done.push(leaf);
                 continue;
             }
-            if judged.sample.clearance < level {
+            seen += 1;
+            let (judged, ground) = question.judge(&leaf);
+            if judged.least >= cleared {
+                done.push(Leaf { patch: leaf.patch, pose, least: judged.least, ground });
+            } else if judged.sample.clearance < level {
+                done.push(Leaf::new(leaf.patch));
+                done.extend(leaves);
+                done.extend(open.into_iter().map(|open| Leaf::new(open.patch)));
+                proof.leaves = done;
                 return Certificate::Lower(judged.sample);
+            } else {
+                open.push(Open { patch: leaf.patch, judged, number: seen });
             }
-            open.push(Open { patch, judged, number: seen });
         }
-        let Some(Open { patch, judged, .. }) = open.pop() else { return Certificate::Holds };
+        let Some(Open { patch, judged, .. }) = open.pop() else {
+            proof.take(done);
+            return Certificate::Holds;
+        };
         if seen > MAX_PATCHES {
             return Certificate::Undecided;
         }
-        split(&mut patches, tool, &patch, &judged);
+        split(&mut leaves, tool, &patch, &judged);
     }
 }
 
-/// The patches that may hold points nearer than a far level. They are as large as the proof of the near level allows.
-pub(super) fn outline(face: Face<'_>, tool: &Tool, tip: &Vec3, [near, far]: [f64; 2]) -> Option<Vec<Patch>> {
-    let (mut patches, mut found) = (boundary(tool), Vec::new());
-    let mut seen = 0;
-    while let Some(patch) = patches.pop() {
-        seen += 1;
-        if seen > MAX_PATCHES {
+impl Question<'_> {
+    /// A leaf of an earlier proof, if it is known without a new look at the surface that its patch keeps the level.
+    fn still_keeps(&self, leaf: &Leaf) -> Option<Leaf> {
+        if leaf.least - leaf.pose.moved(self.tool, self.tip) >= self.level {
+            return Some(*leaf);
+        }
+        let Ground { base, center, radius, bend } = leaf.ground?;
+        let Middle { place, ball, reach, .. } =
+            leaf.patch.middle(self.tool, self.tip, self.generator.as_ref());
+        let within = |p: &Vec3| self.away(p, &center) <= radius;
+        if self.away(&place, &center) + reach > radius {
             return None;
         }
-        let judged = judge(face, tool, tip, &patch);
-        if judged.least >= far {
-            continue;
-        }
-        // Patches as small as the distance that counts are not worth halving.
-        let small = patch.extent(judged.length) <= 0.25 * (far - near);
-        if small || judged.least >= near && patch.half < PI {
-            found.push(patch);
-        } else {
-            split(&mut patches, tool, &patch, &judged);
-        }
+        let now = self.base(ball).filter(|base| within(&base.place));
+        now.into_iter().chain([base]).find_map(|base| {
+            let least = self.least(&leaf.patch, &base, bend) - ball;
+            let ground = Some(Ground { base, center, radius, bend });
+            let pose = Pose::of(self.tool, self.tip);
+            (least >= self.level).then_some(Leaf { patch: leaf.patch, pose, least, ground })
+        })
     }
-    Some(found)
-}
 
-impl Patch {
-    /// Its greater dimension, its length along the profile being given.
-    fn extent(&self, length: f64) -> f64 {
-        length.max(2.0 * self.stretch.radius() * self.half.min(FRAC_PI_2))
+    /// The base for a patch with a ball about its points or without.
+    fn base(&self, ball: f64) -> Option<Base> {
+        self.bases.and_then(|bases| if ball > 0.0 { bases.core } else { Some(bases.contact) })
     }
-}
 
-/// The whole boundary, the parts that matter most last, because the last is looked at first.
-pub(super) fn boundary(tool: &Tool) -> Vec<Patch> {
-    let profile = &tool.profile;
-    let (lower, upper, top) = (profile.lower, profile.upper, profile.top);
-    let whole = |stretch| Patch { stretch, azimuth: 0.0, half: PI };
-    let mut patches = Vec::with_capacity(32);
-    let round = profile.arc > 0.0;
-    let mut line = |from: ProfilePoint, to: ProfilePoint| {
-        // The ends of the corner belong to it.
-        if from != to || !round {
-            patches.push(whole(Stretch::Line([[from.radius, from.height], [to.radius, to.height]])));
+    /// Distance of two places but for what lies along the generator.
+    fn away(&self, a: &Vec3, b: &Vec3) -> f64 {
+        let w = a - b;
+        self.generator.map_or(w, |generator| w - generator * generator.dot(&w)).norm()
+    }
+
+    fn least(&self, patch: &Patch, base: &Base, bend: f64) -> f64 {
+        patch.least(self.tool, self.tip, base, Course { bend, generator: self.generator })
+    }
+
+    /// The distance over a patch from its middle, and from the base, as far as the level needs it; and on what ground.
+    fn judge(&self, leaf: &Leaf) -> (Judged, Option<Ground>) {
+        #[cfg(test)]
+        JUDGED.set(JUDGED.get() + 1);
+        let Self { face, tool, tip, level, .. } = *self;
+        let patch = &leaf.patch;
+        let Middle { place, ball, reach, length, round } = patch.middle(tool, tip, self.generator.as_ref());
+        let foot = face.surface.foot(&place);
+        let distance = face.side * foot.distance;
+        let sample = sample(tool, patch, &place, &foot, face.side);
+        let mut judged = Judged { least: distance - reach - ball, sample, length };
+        if judged.least >= level || reach == 0.0 {
+            return (judged, None);
         }
-    };
-    line(upper, top);
-    line(ProfilePoint { radius: 0.0, height: 0.0 }, lower);
-    if round {
-        let center = [profile.center.radius, profile.center.height];
-        patches.push(whole(Stretch::Ball { center, arc: profile.arc, fan: profile.fan }));
-    }
-    patches
-}
-
-/// The flank above a height.
-pub(super) fn flank_from(tool: &Tool, height: f64) -> Patch {
-    let (upper, top) = (tool.profile.upper, tool.profile.top);
-    let share = ((height - upper.height) / (top.height - upper.height)).clamp(0.0, 1.0);
-    let radius = upper.radius + share * (top.radius - upper.radius);
-    let stretch = Stretch::Line([[radius, height], [top.radius, top.height]]);
-    Patch { stretch, azimuth: 0.0, half: PI }
-}
-
-impl Stretch {
-    /// Greatest distance from the axis.
-    fn radius(&self) -> f64 {
-        match *self {
-            Self::Line([a, b]) => a[0].max(b[0]),
-            Self::Arc { center, arc, polar } => {
-                let at = |angle: f64| center[0] + arc * angle.sin();
-                let top = if polar[0] < FRAC_PI_2 && polar[1] > FRAC_PI_2 { center[0] + arc } else { 0.0 };
-                at(polar[0]).max(at(polar[1])).max(top)
+        // What is known of the bend about there from before.
+        let known = |radius: f64| {
+            let ground = leaf.ground?;
+            (self.away(&place, &ground.center) + radius <= ground.radius).then_some(ground.bend)
+        };
+        let bend_within = |radius: f64| {
+            known(radius).map_or_else(|| downward_bend(face, &foot, &place, radius), Bend::AtMost)
+        };
+        let own = Base { place, distance, gradient: foot.normal * face.side };
+        let bound = |base: &Base, bend: f64, is_own: bool| match patch.stretch {
+            Stretch::Arc { .. } if is_own => {
+                distance + least_from_middle(tool, patch, &own, bend, length > 0.0)
             }
-            Self::Ball { center, .. } => center[0],
+            _ => self.least(patch, base, bend) - ball,
+        };
+        let mut ground = None;
+        let bend = if round { Bend::Unbounded } else { bend_within(reach) };
+        if let Bend::AtMost(bend) = bend {
+            judged.least = judged.least.max(bound(&own, bend, true));
+            ground = Some(Ground { base: own, center: place, radius: reach, bend });
         }
-    }
-
-    /// Length along the profile.
-    fn length(&self) -> f64 {
-        match *self {
-            Self::Line([a, b]) => (b[0] - a[0]).hypot(b[1] - a[1]),
-            Self::Arc { arc, polar, .. } => arc * (polar[1] - polar[0]),
-            Self::Ball { .. } => 0.0,
-        }
-    }
-
-    /// Both halves.
-    fn halves(&self) -> [Self; 2] {
-        match *self {
-            Self::Line([a, b]) => {
-                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-                [Self::Line([a, middle]), Self::Line([middle, b])]
+        let tried = round || ground.is_some();
+        if judged.least < level
+            && let Some(base) = self.base(ball).filter(|_| tried)
+        {
+            let away = self.away(&base.place, &place);
+            let bend = match bend {
+                Bend::AtMost(bend) if away <= reach => Bend::AtMost(bend),
+                _ if away <= BESIDE * reach => bend_within(away.max(reach)),
+                _ => Bend::Unbounded,
+            };
+            if let Bend::AtMost(bend) = bend {
+                judged.least = judged.least.max(bound(&base, bend, false));
+                ground = Some(Ground { base, center: place, radius: away.max(reach), bend });
             }
-            Self::Arc { center, arc, polar: [a, b] } => {
-                let middle = 0.5 * (a + b);
-                [Self::Arc { center, arc, polar: [a, middle] }, Self::Arc { center, arc, polar: [middle, b] }]
-            }
-            Self::Ball { .. } => [*self, *self],
         }
+        let ground = ground.filter(|_| judged.least >= level && self.spread > 0.0).map(|ground| {
+            // More ground for the next positions, if it bears as well.
+            let radius = ground.radius + self.spread;
+            match downward_bend(face, &foot, &place, radius) {
+                Bend::AtMost(bend) if bound(&ground.base, bend, false) >= level => {
+                    Ground { radius, bend, ..ground }
+                }
+                _ => ground,
+            }
+        });
+        (judged, ground)
     }
 }
 
-/// The distance over a patch from its middle.
-fn judge(face: Face<'_>, tool: &Tool, tip: &Vec3, patch: &Patch) -> Judged {
+/// How much lower than in its middle the distance is on part of the corner.
+fn least_from_middle(tool: &Tool, patch: &Patch, own: &Base, bend: f64, long: bool) -> f64 {
+    let Stretch::Arc { arc, polar, .. } = patch.stretch else { return f64::NEG_INFINITY };
     let (sin, cos) = patch.azimuth.sin_cos();
     let radial = tool.across[0] * cos + tool.across[1] * sin;
-    let place = |p: [f64; 2]| tip + tool.axis * p[1] + radial * p[0];
-    let radius = patch.stretch.radius();
-    let round = patch.half >= PI && radius > 0.0;
-    let (middle, ball) = match patch.stretch {
-        Stretch::Line([a, b]) if round => ([0.0, 0.5 * (a[1] + b[1])], 0.0),
-        Stretch::Line([a, b]) => ([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], 0.0),
-        Stretch::Arc { center, arc, polar } => {
-            let angle = 0.5 * (polar[0] + polar[1]);
-            let outward = if round { 0.0 } else { center[0] + arc * angle.sin() };
-            ([outward, center[1] - arc * angle.cos()], 0.0)
-        }
-        Stretch::Ball { center, arc, .. } if round => ([0.0, center[1]], arc),
-        Stretch::Ball { center, arc, .. } => (center, arc),
-    };
-    let p = place(middle);
-    let foot = face.surface.foot(&p);
-    let distance = face.side * foot.distance;
-    let normal = foot.normal * face.side;
-    let sample = sample(tool, patch, &p, &foot, face.side);
-    if round {
-        // From a point of the axis: nothing is farther from it than this.
-        let reach = radius.hypot(0.5 * patch.stretch.length());
-        return Judged { least: distance - reach - ball, sample, length: patch.stretch.length() };
-    }
-    let chord = if patch.half >= PI { 0.0 } else { 2.0 * radius * (0.5 * patch.half).sin() };
-    let half = 0.5 * patch.stretch.length();
-    // Along a generator of the surface nothing changes.
-    let half = match (patch.stretch, face.surface.generator()) {
-        (Stretch::Line([a, b]), Some(generator)) => {
-            let way = tool.axis * (b[1] - a[1]) + radial * (b[0] - a[0]);
-            0.5 * way.cross(&generator).norm()
-        }
-        _ => half,
-    };
-    let reach = chord + half;
-    let length = 2.0 * half;
-    let farthest = distance - reach - ball;
-    if reach == 0.0 {
-        return Judged { least: farthest, sample, length };
-    }
-    let bend = match downward_bend(face, &foot, &p, reach) {
-        Bend::AtMost(bend) => bend,
-        Bend::Unbounded => return Judged { least: farthest, sample, length },
-    };
     let tangent = tool.axis.cross(&radial);
+    let (radius, normal, chord) = (patch.stretch.radius(), &own.gradient, patch.chord());
     // Of |a + b|² ≤ 2a² + 2b² one part goes to each direction; alone, a part needs no factor.
-    let share = if chord > 0.0 && half > 0.0 { 2.0 } else { 1.0 };
+    let share = if chord > 0.0 && long { 2.0 } else { 1.0 };
     let around = least_on_arc(
         -radius * normal.dot(&radial) - share * bend * radius * radius,
         radius * normal.dot(&tangent),
         patch.half.min(FRAC_PI_2),
     );
     let around = if chord > 0.0 { around } else { 0.0 };
-    let along = match patch.stretch {
-        Stretch::Line([a, b]) => {
-            let way = tool.axis * (b[1] - a[1]) + radial * (b[0] - a[0]);
-            -0.5 * normal.dot(&way).abs() - 0.5 * share * bend * half * half
-        }
-        Stretch::Arc { arc, polar, .. } => {
-            let (sin, cos) = (0.5 * (polar[0] + polar[1])).sin_cos();
-            let outward = radial * sin - tool.axis * cos;
-            let onward = radial * cos + tool.axis * sin;
-            least_on_arc(
-                -arc * normal.dot(&outward) - share * bend * arc * arc,
-                arc * normal.dot(&onward),
-                0.5 * (polar[1] - polar[0]),
-            )
-        }
-        Stretch::Ball { .. } => 0.0,
-    };
-    Judged { least: farthest.max(distance + around + along - ball), sample, length }
+    let (sin, cos) = (0.5 * (polar[0] + polar[1])).sin_cos();
+    let outward = radial * sin - tool.axis * cos;
+    let onward = radial * cos + tool.axis * sin;
+    let along = least_on_arc(
+        -arc * normal.dot(&outward) - share * bend * arc * arc,
+        arc * normal.dot(&onward),
+        0.5 * (polar[1] - polar[0]),
+    );
+    around + along
 }
 
 /// A point of the tool near the middle of a patch: of a ball, its point towards the surface if it belongs to the tool.
@@ -350,7 +413,7 @@ fn least_on_arc(a: f64, b: f64, half: f64) -> f64 {
 }
 
 /// The parts of a patch that may yet be cleared.
-fn split(patches: &mut Vec<Patch>, tool: &Tool, patch: &Patch, judged: &Judged) {
+fn split(leaves: &mut Vec<Leaf>, tool: &Tool, patch: &Patch, judged: &Judged) {
     let Patch { stretch, azimuth, half } = *patch;
     let radius = stretch.radius();
     let whole = half >= PI;
@@ -358,18 +421,23 @@ fn split(patches: &mut Vec<Patch>, tool: &Tool, patch: &Patch, judged: &Judged) 
         let polar = judged.sample.gradient.dot(&tool.axis).clamp(-1.0, 1.0).acos();
         let beside = polar < fan[0] - BESIDE_FAN || polar > fan[1] + BESIDE_FAN;
         if radius <= 0.0 || half <= NARROW || beside && !whole {
-            patches.push(Patch { stretch: Stretch::Arc { center, arc, polar: fan }, azimuth, half });
+            leaves.push(Leaf::new(Patch {
+                stretch: Stretch::Arc { center, arc, polar: fan },
+                azimuth,
+                half,
+            }));
             return;
         }
     }
     let along = judged.length > if whole { 2.0 * radius } else { 2.0 * radius * half };
     if along || radius <= 0.0 {
-        patches.extend(stretch.halves().map(|stretch| Patch { stretch, azimuth, half }));
+        leaves.extend(stretch.halves().map(|stretch| Leaf::new(Patch { stretch, azimuth, half })));
     } else if whole {
-        let turned = |k: f64| Patch { stretch, azimuth: azimuth + 2.0 * k * FRAC_PI_3, half: FRAC_PI_3 };
-        patches.extend([turned(0.0), turned(1.0), turned(2.0)]);
+        let turned =
+            |k: f64| Leaf::new(Patch { stretch, azimuth: azimuth + 2.0 * k * FRAC_PI_3, half: FRAC_PI_3 });
+        leaves.extend([turned(0.0), turned(1.0), turned(2.0)]);
     } else {
-        let turned = |k: f64| Patch { stretch, azimuth: azimuth + k * half, half: 0.5 * half };
-        patches.extend([turned(-0.5), turned(0.5)]);
+        let turned = |k: f64| Leaf::new(Patch { stretch, azimuth: azimuth + k * half, half: 0.5 * half });
+        leaves.extend([turned(-0.5), turned(0.5)]);
     }
 }

@@ -80,8 +80,13 @@ pub(crate) fn upward_bend(
         }
         let found = gauge.surface.bend(gauge.side, &foot, &region(center, reach));
         let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
-        if let Bend::AtMost(least) = at_best {
-            needed = needed.max(least);
+        match at_best {
+            Bend::AtMost(least) => needed = needed.max(least),
+            // Every box about that place has it within its reach, and no better bound.
+            Bend::Unbounded if distance - spread <= range[1] && distance + spread >= range[0] => {
+                return at_best;
+            }
+            Bend::Unbounded => {}
         }
         let enough = match (found, at_best) {
             (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),

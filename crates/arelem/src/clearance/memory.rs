@@ -1,25 +1,19 @@
-//! What the last search for a contact leaves for the next one near by: where contact was, and the patches of the tool
-//! that may come into contact around there.
+//! What the last search for a contact leaves for the next one near by: where contact was, and the proof that it was the
+//! nearest.
 //!
-//! A point of the tool comes nearer to a surface by no more than it moves. Patches farther away than the tool can move
-//! need no second look.
+//! A point of the tool comes nearer to a surface by no more than it moves, and what bounds the bend of the distance in a ball
+//! holds for all positions in it. Most patches of the tool need no second look.
 
 use std::cell::RefCell;
 
 use apt_geometry::Vec3;
 
-use super::{
-    Contact, Tool,
-    certify::{Face, Patch, outline},
-    near::Near,
-    quadric::Start,
-    tool::Piece,
-};
+use super::{Contact, Tool, certify::Proof, near::Near, quadric::Start, tool::Piece};
 
-/// How many times the last step the tool may move before the patches are looked at again.
+/// How many times the last steps the tool may move before the bends are looked at again.
 const FORESIGHT: f64 = 3.0;
-/// Smallest distance, relative to the tool's size, for which patches are kept.
-const LEAST_SPREAD: f64 = 1e-6;
+/// What is left of the length of a step with the next one, if that is shorter.
+const FADING: f64 = 0.7;
 
 /// Where on the tool contact was.
 #[derive(Debug, Clone, Copy)]
@@ -50,17 +44,9 @@ struct Known {
     axis: Vec3,
     side: f64,
     place: Place,
-    outline: Option<Outline>,
-}
-
-/// The patches that matter around a tool end.
-#[derive(Debug, Clone)]
-struct Outline {
-    tip: Vec3,
-    spread: f64,
-    /// Distance from the surface of all other points, with the tool end there.
-    level: f64,
-    patches: Vec<Patch>,
+    /// How far the tool moved lately between two contacts.
+    stride: f64,
+    proof: Option<Proof>,
 }
 
 /// Remembers the contact of one tool with one surface. It changes what a search costs, never what it finds.
@@ -85,23 +71,33 @@ impl Memory {
         known.as_ref().filter(|k| k.axis == tool.axis && k.side == side).map(|k| k.place)
     }
 
-    /// The patches to which a point of the tool lower than a level must belong.
-    pub(super) fn patches(&self, tool: &Tool, side: f64, tip: &Vec3, level: f64) -> Option<Vec<Patch>> {
-        let known = self.known.try_borrow().ok()?;
-        let known = known.as_ref().filter(|k| k.axis == tool.axis && k.side == side)?;
-        let outline = known.outline.as_ref()?;
-        let moved = (tip - outline.tip).norm();
-        (moved <= outline.spread && outline.level - moved >= level).then(|| outline.patches.clone())
+    /// What is proven of the tool about there; the proof is taken out.
+    pub(super) fn proof(&self, tool: &Tool, side: f64, tip: &Vec3) -> Proof {
+        let Ok(mut known) = self.known.try_borrow_mut() else { return Proof::of_tool(tool) };
+        let Some(known) = known.as_mut().filter(|k| k.side == side) else { return Proof::of_tool(tool) };
+        let step = (tip - known.tip).norm() + tool.reach() * (tool.axis - known.axis).norm();
+        known.stride = step.max(FADING * known.stride);
+        let mut proof = known.proof.take().filter(Proof::serves).unwrap_or_else(|| Proof::of_tool(tool));
+        proof.spread = FORESIGHT * known.stride;
+        proof
+    }
+
+    /// Keeps a proof that was taken out.
+    pub(super) fn keep_proof(&self, side: f64, proof: Proof) {
+        let Ok(mut known) = self.known.try_borrow_mut() else { return };
+        if let Some(known) = known.as_mut().filter(|k| k.side == side) {
+            known.proof = Some(proof);
+        }
     }
 
     /// Keeps where a contact is that was proven without patches.
     pub(super) fn remember(&self, tool: &Tool, side: f64, tip: &Vec3, place: Place) {
         let Ok(mut memory) = self.known.try_borrow_mut() else { return };
         match memory.as_mut() {
-            Some(known) if known.axis == tool.axis && known.side == side => {
-                (known.tip, known.place) = (*tip, place);
+            Some(known) if known.side == side => {
+                (known.tip, known.axis, known.place) = (*tip, tool.axis, place);
             }
-            _ => *memory = Some(Known { tip: *tip, axis: tool.axis, side, place, outline: None }),
+            _ => *memory = Some(Known { tip: *tip, axis: tool.axis, side, place, stride: 0.0, proof: None }),
         }
     }
 
@@ -117,31 +113,5 @@ impl Memory {
         if let Some(piece) = corner {
             self.remember(tool, side, tip, Place { piece, point: contact.tool - tip, start: None });
         }
-    }
-
-    /// Keeps a contact that is proven, and the patches around it if those known do not reach so far.
-    pub(super) fn keep(&self, face: Face<'_>, tool: &Tool, tip: &Vec3, place: Place, level: f64) {
-        let Ok(mut memory) = self.known.try_borrow_mut() else { return };
-        let known = memory.take().filter(|k| k.axis == tool.axis && k.side == face.side);
-        let (last, old) = match known {
-            Some(known) => (Some(known.tip), known.outline),
-            None => (None, None),
-        };
-        let step = last.map_or(0.0, |last| (tip - last).norm());
-        let reaches = old.as_ref().is_some_and(|o| (tip - o.tip).norm() <= o.spread);
-        let outline = if reaches || last.is_none() {
-            old
-        } else {
-            let least = LEAST_SPREAD * (tool.radius() + tool.profile.top.height);
-            let spread = (FORESIGHT * step).max(0.5 * old.map_or(0.0, |o| o.spread)).max(least);
-            let far = level + 2.0 * spread;
-            outline(face, tool, tip, [level, far]).map(|patches| Outline {
-                tip: *tip,
-                spread,
-                level: far,
-                patches,
-            })
-        };
-        *memory = Some(Known { tip: *tip, axis: tool.axis, side: face.side, place, outline });
     }
 }

@@ -5,9 +5,11 @@ mod certify;
 mod closed_form;
 mod cover;
 mod dual;
+mod floor;
 mod matched;
 mod memory;
 mod near;
+mod patch;
 mod quadric;
 mod search;
 mod tool;
@@ -25,6 +27,7 @@ pub(crate) use self::{
     certify::{Certificate, Face},
     cover::upward_bend,
 };
+use self::{floor::Bases, near::Followed};
 pub use self::{memory::Memory, tool::Tool};
 
 /// Where tool and surface are nearest.
@@ -130,13 +133,20 @@ impl Gauge {
                 return Certificate::Holds;
             }
         }
-        if near::contact(tool, &self.surface, self.side, tip, &self.memory)
-            .is_some_and(|(contact, missed)| contact.clearance - missed >= level)
+        if let Followed::Proven(contact, missed) =
+            near::contact(tool, &self.surface, self.side, tip, &self.memory)
+            && contact.clearance - missed >= level
         {
             return Certificate::Holds;
         }
-        let patches = self.memory.patches(tool, self.side, tip, level);
-        certify::certify(face, tool, tip, level, patches.unwrap_or_else(|| certify::boundary(tool)))
+        let bases = self
+            .memory
+            .place(tool, self.side)
+            .map(|place| Bases::about(tool, tip, (&self.surface, self.side), &(tip + place.point)));
+        let mut proof = self.memory.proof(tool, self.side, tip);
+        let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref());
+        self.memory.keep_proof(self.side, proof);
+        found
     }
 
     /// How the clearance behaves along a straight line.
@@ -192,10 +202,12 @@ fn offset_contact(
     if let Some(contact) = dual::contact(tool, surface, side, tip) {
         return (contact, 0.0);
     }
-    if let Some(found) = memory.and_then(|memory| near::contact(tool, surface, side, tip, memory)) {
-        return found;
-    }
-    let found = search::contact(tool, Face { surface, side }, tip, memory);
+    let likely = match memory.map(|memory| near::contact(tool, surface, side, tip, memory)) {
+        Some(Followed::Proven(contact, missed)) => return (contact, missed),
+        Some(Followed::Likely(piece, contact)) => Some((piece, contact)),
+        Some(Followed::Lost) | None => None,
+    };
+    let found = search::contact(tool, Face { surface, side }, tip, memory, likely);
     if let Some(memory) = memory {
         near::remember(tool, surface, side, tip, memory, &found.0);
     }

@@ -14,8 +14,9 @@ use apt_geometry::{
 
 use super::{
     Contact, Gauge, Tool,
-    certify::{Certificate, Face, certify, flank_from},
+    certify::{Certificate, Face, Proof, certify},
     memory::Memory,
+    patch::flank_from,
     search::FAN_SLACK,
     tool::Piece,
     waves::{length, turned},
@@ -38,7 +39,8 @@ const FLAT: f64 = 1e-9;
 const BESIDE: f64 = 3.0;
 /// Sizes of a steady ball that are tried: how far the tool may move in it, and how much of the flank it holds above the
 /// corner; in radii of the tool.
-const BALLS: [[f64; 2]; 5] = [[0.8, 1.0], [0.8, 0.3], [0.3, 0.3], [0.1, 0.1], [0.03, 0.05]];
+const BALLS: [[f64; 2]; 6] =
+    [[0.8, f64::INFINITY], [0.8, 1.0], [0.8, 0.3], [0.3, 0.3], [0.1, 0.1], [0.03, 0.05]];
 /// The same for a single point.
 const POINT_BALLS: [f64; 4] = [2.0, 0.5, 0.1, 0.02];
 /// Way, in radii of the tool, after which a ball is tried for again.
@@ -60,6 +62,8 @@ pub(crate) struct Near {
     start: Start,
     zone: Result<Zone, Vec3>,
     far: Option<Far>,
+    /// Where that was not shown.
+    doubtful: Option<Vec3>,
 }
 
 /// Where Newton's method begins.
@@ -109,23 +113,28 @@ struct Touch {
     start: Start,
 }
 
-/// The proven contact near the last one, and how much nearer another point may be.
-pub(super) fn contact(
-    tool: &Tool,
-    surface: &Surface,
-    side: f64,
-    tip: &Vec3,
-    memory: &Memory,
-) -> Option<(Contact, f64)> {
-    let mut memory = memory.near.try_borrow_mut().ok()?;
-    let known = memory.as_mut().filter(|known| known.side == side)?;
+/// What following the last contact has found.
+pub(super) enum Followed {
+    /// The contact, and how much nearer another point may be.
+    Proven(Contact, f64),
+    /// Contact of a piece of the tool, perhaps not the nearest.
+    Likely(usize, Contact),
+    /// Nothing.
+    Lost,
+}
+
+/// The contact near the last one.
+pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3, memory: &Memory) -> Followed {
+    let Ok(mut memory) = memory.near.try_borrow_mut() else { return Followed::Lost };
+    let Some(known) = memory.as_mut().filter(|known| known.side == side) else { return Followed::Lost };
     let pose = Pose { tool, surface, side, tip };
-    let found = known.touch(&pose)?;
+    let Some(found) = known.touch(&pose) else { return Followed::Lost };
     let slack = pose.slack();
-    known.proves(&pose, &found, slack).then(|| {
+    if known.proves(&pose, &found, slack) {
         known.start = found.start;
-        (found.contact, slack)
-    })
+        return Followed::Proven(found.contact, slack);
+    }
+    found.start.piece.map_or(Followed::Lost, |piece| Followed::Likely(piece, found.contact))
 }
 
 /// Keeps a contact of the tool.
@@ -145,7 +154,10 @@ pub(super) fn remember(
     let start = Start { piece: Some(piece), direction: pose.facing(&contact.gradient), place };
     match memory.as_mut().filter(|known| known.side == side) {
         Some(known) => known.start = start,
-        None => *memory = Some(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None }),
+        None => {
+            *memory =
+                Some(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None, doubtful: None })
+        }
     }
 }
 
@@ -163,7 +175,13 @@ pub(super) fn foot(
         Some(known) => known,
         None => {
             let start = Start { piece: None, direction: [1.0, 0.0], place: surface.place(tip)? };
-            memory.insert(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None })
+            memory.insert(Near {
+                side,
+                start,
+                zone: Err(Vec3::repeat(f64::INFINITY)),
+                far: None,
+                doubtful: None,
+            })
         }
     };
     match pose.touch(&known.start) {
@@ -258,17 +276,22 @@ impl Near {
         if self.far.is_some_and(|far| far.from == from && far.keeps(pose, level)) {
             return true;
         }
+        if self.doubtful.is_some_and(|tried| (pose.tip - tried).norm() <= PATIENCE * pose.scale()) {
+            return false;
+        }
         let face = Face { surface: pose.surface, side: pose.side };
         for share in FAR {
             let level = level + share * pose.scale();
-            let patches = vec![flank_from(pose.tool, from)];
+            let mut proof = Proof::of(vec![flank_from(pose.tool, from)]);
             if pose.is_off(from, level)
-                || certify(face, pose.tool, pose.tip, level, patches) == Certificate::Holds
+                || certify(face, pose.tool, pose.tip, level, &mut proof, None) == Certificate::Holds
             {
                 self.far = Some(Far { tip: *pose.tip, axis: pose.tool.axis, from, level });
+                self.doubtful = None;
                 return true;
             }
         }
+        self.doubtful = Some(*pose.tip);
         false
     }
 }

@@ -10,7 +10,8 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
     Contact, Shape, Tool,
-    certify::{Certificate, Face, boundary, certify},
+    certify::{Certificate, Face, Proof, certify},
+    floor::Bases,
     memory::{Memory, Place},
     quadric::Posed,
     shape,
@@ -27,6 +28,8 @@ const ANGLE_RESOLUTION: f64 = 1e-10;
 const MAX_RESTARTS: u32 = 12;
 /// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
 pub(super) const MISSED: f64 = 1e-9;
+/// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
+const SAME: f64 = 1e-11;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
@@ -59,21 +62,31 @@ struct Search<'a> {
 }
 
 /// The clearance on one side, for any surface; and how much nearer than the contact another point of the tool may be.
-pub(super) fn contact(tool: &Tool, face: Face<'_>, tip: &Vec3, memory: Option<&Memory>) -> (Contact, f64) {
+pub(super) fn contact(
+    tool: &Tool,
+    face: Face<'_>,
+    tip: &Vec3,
+    memory: Option<&Memory>,
+    likely: Option<(usize, Contact)>,
+) -> (Contact, f64) {
     let Face { surface, side } = face;
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };
     // Two convex bodies need no proof: what is nearest around is nearest of all.
     let unique = shape(surface, side) == Shape::Convex;
     let place = if unique { None } else { memory.and_then(|m| m.place(tool, side)) };
-    if let Some(place) = place {
+    if let Some((piece, contact)) = likely.filter(|_| !unique) {
+        search.take_likely(piece, &contact);
+    }
+    if let Some(place) = place.filter(|_| search.best.contact.is_none()) {
         search.descend(&place.point, Some(place.piece));
     }
     if search.best.contact.is_none() {
         search.scan();
     }
-    let proof = if unique { Proof::Complete } else { search.complete(memory) };
-    if place.is_some() && matches!(proof, Proof::None) {
+    let guessed = place.is_some() || likely.is_some();
+    let shown = if unique { Shown::Nearest } else { search.complete(memory) };
+    if guessed && matches!(shown, Shown::Nothing) {
         // Nothing proves the contact near the last one: look everywhere.
         search.scan();
     }
@@ -82,26 +95,26 @@ pub(super) fn contact(tool: &Tool, face: Face<'_>, tip: &Vec3, memory: Option<&M
         let (clearance, gradient) = (side * foot.distance, foot.normal * side);
         return (Contact { clearance, gradient, tool: *tip, surface: foot.point }, f64::INFINITY);
     };
-    if let (Some(memory), Proof::Within(missed)) = (memory, &proof) {
+    if let (Some(memory), Shown::Within(_)) = (memory, &shown) {
         let place = Place { piece: search.best.piece, point: contact.tool - tip, start: None };
-        memory.keep(face, tool, tip, place, search.best.value - missed);
+        memory.remember(tool, side, tip, place);
     }
-    let missed = match proof {
-        Proof::Complete => 0.0,
-        Proof::Within(missed) => missed,
-        Proof::None => f64::INFINITY,
+    let missed = match shown {
+        Shown::Nearest => 0.0,
+        Shown::Within(missed) => missed,
+        Shown::Nothing => f64::INFINITY,
     };
     (contact, missed)
 }
 
 /// What is proven of a contact.
-enum Proof {
+enum Shown {
     /// It is the nearest.
-    Complete,
+    Nearest,
     /// No other is nearer by more than this.
     Within(f64),
     /// Nothing.
-    None,
+    Nothing,
 }
 
 impl Search<'_> {
@@ -118,8 +131,27 @@ impl Search<'_> {
         }
     }
 
+    /// Takes a contact that was found near by, if that is where it is on the surface.
+    fn take_likely(&mut self, piece: usize, contact: &Contact) {
+        let foot = self.surface.foot(&contact.tool);
+        let size = self.tool.radius() + self.tool.profile.top.height + self.tip.amax();
+        if (self.side * foot.distance - contact.clearance).abs() <= SAME * size {
+            self.best.take(piece, contact.clearance, || *contact);
+        }
+    }
+
     /// Looks for places that are nearer than the nearest found, until there are none.
-    fn complete(&mut self, memory: Option<&Memory>) -> Proof {
+    fn complete(&mut self, memory: Option<&Memory>) -> Shown {
+        let proof = memory.map(|memory| memory.proof(self.tool, self.side, self.tip));
+        let mut proof = proof.unwrap_or_else(|| Proof::of_tool(self.tool));
+        let shown = self.complete_with(&mut proof);
+        if let Some(memory) = memory {
+            memory.keep_proof(self.side, proof);
+        }
+        shown
+    }
+
+    fn complete_with(&mut self, proof: &mut Proof) -> Shown {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
@@ -128,21 +160,23 @@ impl Search<'_> {
                 && let Some(contact) = &self.best.contact
                 && posed.clears(level, contact)
             {
-                return Proof::Within(slack);
+                return Shown::Within(slack);
             }
-            let patches = memory.and_then(|m| m.patches(self.tool, self.side, self.tip, level));
-            let patches = patches.unwrap_or_else(|| boundary(self.tool));
             let face = Face { surface: self.surface, side: self.side };
-            match certify(face, self.tool, self.tip, level, patches) {
+            let bases = self
+                .best
+                .contact
+                .map(|contact| Bases::about(self.tool, self.tip, (self.surface, self.side), &contact.tool));
+            match certify(face, self.tool, self.tip, level, proof, bases.as_ref()) {
                 Certificate::Lower(point) => {
                     self.best.take(self.best.piece, point.clearance, || point);
                     self.descend(&(point.tool - self.tip), None);
                 }
-                Certificate::Holds => return Proof::Within(slack),
-                Certificate::Undecided => return Proof::None,
+                Certificate::Holds => return Shown::Within(slack),
+                Certificate::Undecided => return Shown::Nothing,
             }
         }
-        Proof::None
+        Shown::Nothing
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.
