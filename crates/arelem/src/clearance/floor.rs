@@ -141,7 +141,7 @@ mod tests {
             radius in 0.0..0.5f64, height in 0.0..0.5f64, azimuth in -3.0..3.0f64, half in 0.01..3.14f64,
         ) {
             let (surface, generator) = &surfaces()[which];
-            let tool = Tool::new(Cutter::from_numbers(&[1.0, 0.0, 0.5], 1.0).expect("a cutter"), Vec3::z());
+            let tool = Tool::new(Cutter::from_numbers(&[1.0], 1.0).expect("a cutter"), Vec3::z());
             let (tip, place) = (Vec3::from(tip), Vec3::from(place) + Vec3::x() * 0.7);
             let base = Base::at(surface, -1.0, place);
             // Nothing in question is nearer to the centre or the axis than this.
