@@ -1,5 +1,7 @@
 //! Cost of the verifier per cut vector: sequences of the engine over one part surface each, judged again and again.
 
+#[path = "../tests/support/lofts.rs"]
+mod lofts;
 #[path = "../tests/support/wave.rs"]
 mod wave;
 
@@ -17,6 +19,7 @@ use arelem::{
     verify::verify,
 };
 use divan::{Bencher, counter::ItemsCount};
+use lofts::{roof, vault};
 use wave::wave;
 
 fn main() {
@@ -65,12 +68,26 @@ fn surfaces() -> Vec<(&'static str, Geometry)> {
         ("dish", quadric([0.1, 0.05, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.5])),
         ("saddle", quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])),
         ("tabcyl", wave([Vec3::x(), Vec3::z(), -Vec3::y()], 0.0, 0.3)),
+        ("ruled", roof()),
+        ("polyconic", vault()),
     ]
 }
 
 /// The part surfaces by name.
-const NAMES: [&str; 10] =
-    ["plane", "sphere", "bowl", "cylinder", "hollow", "cone", "ellipsoid", "dish", "saddle", "tabcyl"];
+const NAMES: [&str; 12] = [
+    "plane",
+    "sphere",
+    "bowl",
+    "cylinder",
+    "hollow",
+    "cone",
+    "ellipsoid",
+    "dish",
+    "saddle",
+    "tabcyl",
+    "ruled",
+    "polyconic",
+];
 
 /// A pass over a part surface in the plane y = .4 from x = −1.2 to 1.2.
 fn pass(name: &str, numbers: &[f64]) -> Option<CutSequence> {

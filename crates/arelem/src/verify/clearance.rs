@@ -6,6 +6,8 @@ use apt_geometry::{
     canonical::{self, Geometry},
 };
 
+use crate::sequence::ToolPosition;
+
 use super::{
     VerifyError,
     pencil::Pencil,
@@ -166,6 +168,25 @@ impl Surface {
         }
     }
 
+    /// The greatest curvature with which it bends away from a tool on a side, at places nearer to the tool than `reach`.
+    /// None where there is no bound.
+    fn hill(&self, side: f64, tip: &Vec3, tool: &Tool<'_>, reach: f64) -> Option<f64> {
+        let is_hollow = side < 0.0;
+        let found = match self {
+            Self::Plane(..) => 0.0,
+            Self::Sphere(..) | Self::Pencil(_) if is_hollow => 0.0,
+            Self::Sphere(_, radius) => 1.0 / radius,
+            Self::Pencil(pencil) => pencil.curvature(tip, tool, reach)?,
+            Self::Quadric(quadric) => {
+                let half = 0.5 * tool.profile.top_height();
+                let ball = half.hypot(tool.profile.widest()) + reach;
+                quadric.hill(side, &(tip + tool.axis * half), ball)
+            }
+            Self::Ruled(_) => return None,
+        };
+        found.is_finite().then_some(found)
+    }
+
     /// How the clearance on a side varies along straight moves.
     pub(super) fn shape(&self, side: f64) -> Shape {
         let outside = side > 0.0;
@@ -219,18 +240,30 @@ impl Clearance<'_> {
         self.profile.reach() + self.raise.abs()
     }
 
-    /// How its slope can grow along a straight move with a fixed axis, from the readings at both ends; None where that is not
-    /// known.
-    pub(super) fn bend_along(&self, tips: [&Vec3; 2], ends: &[Reading; 2], axis: &Vec3) -> Option<Bend> {
-        let tool = Tool { profile: self.profile, axis: *axis };
-        let bare = [ends[0].value + self.thickness, ends[1].value + self.thickness];
-        match self.surface {
-            Surface::Ruled(surface) => {
-                let [from, to] = tips.map(|tip| tip + axis * self.raise);
-                surface.bend(self.side, [&from, &to], bare, &ends[0].normal, &tool)
-            }
-            _ => None,
+    /// How its slope can grow on a vector, where no place of the tool moves farther than `travel`, from the readings at both
+    /// ends; None where that is not known.
+    pub(super) fn bend_along(
+        &self,
+        [from, to]: [&ToolPosition; 2],
+        ends: [&Reading; 2],
+        travel: f64,
+    ) -> Option<Bend> {
+        let tool = Tool { profile: self.profile, axis: from.axis };
+        let tips = [from, to].map(|p| p.tip + p.axis * self.raise);
+        if let Surface::Ruled(surface) = self.surface {
+            return surface.bend(self.side, [&tips[0], &tips[1]], &tool, ends, self.thickness, travel);
         }
+        let values = ends.map(|end| end.value + self.thickness);
+        let [least, most] = [values[0].min(values[1]), values[0].abs().max(values[1].abs())];
+        let depth = (0.5 * travel - least).max(0.0);
+        let hill = self.surface.hill(self.side, &tips[0], &tool, most + 1.5 * travel)?;
+        Bend::over(hill, depth)
+    }
+
+    /// From the tool end to the place of the tool that is in contact.
+    pub(super) fn arm(&self, normal: &Vec3, axis: &Vec3) -> Vec3 {
+        let tool = Tool { profile: self.profile, axis: *axis };
+        axis * self.raise + tool.support(&-normal).1
     }
 
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real

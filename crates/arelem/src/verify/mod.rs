@@ -8,7 +8,9 @@ mod bow;
 mod circle_contact;
 mod clearance;
 mod directrix;
+mod followed;
 mod judge;
+mod patch;
 mod pencil;
 mod pocket;
 mod poly_conic;
@@ -22,6 +24,7 @@ mod shadow;
 mod span;
 mod stop;
 mod strip;
+mod survey;
 mod tool;
 mod vertex;
 

@@ -87,6 +87,16 @@ impl Pencil {
         (rho * self.cosine - along * self.sine - self.radius, out * self.cosine - self.axis * self.sine)
     }
 
+    /// Greatest curvature of the surface nearer to a tool than `reach`; None at the vertex of a cone.
+    pub(super) fn curvature(&self, tip: &Vec3, tool: &Tool<'_>, reach: f64) -> Option<f64> {
+        if self.sine <= 0.0 {
+            return Some(1.0 / self.radius);
+        }
+        // Least distance of its places from the vertex along the axis.
+        let along = self.axis.dot(&(tip - self.origin)) - tool.support(&-self.axis).0 - reach;
+        (along > 0.0).then(|| self.cosine * self.cosine / (self.sine * along))
+    }
+
     /// Clearance of a tool outside: the greatest distance that a tangent plane, or one through the vertex, leaves.
     pub(super) fn outside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
         let w = tip - self.origin;

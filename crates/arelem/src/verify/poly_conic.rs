@@ -1,6 +1,7 @@
-//! Polyconic surfaces as strips: cubics in place of the conics, straight from station to station (language reference 4.15).
+//! Polyconic surfaces as patches: cubics in place of the conics, and of their way from station to station (language
+//! reference 4.15).
 //!
-//! The places and the natural normal come from the control functions themselves; the strips serve to find the nearest
+//! The places and the natural normal come from the control functions themselves; the patches serve to find the nearest
 //! place. How far they are off is measured between the places they go through and counted as an error of every distance.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
@@ -14,16 +15,20 @@ use apt_geometry::{
 };
 
 use super::{
-    ruled::through,
-    strip::{Cubic, Strip, Touch, lerp, place},
+    patch::{Net, Patch, extent, jet, turned},
+    ruled::{ERROR_BEND, through},
+    strip::Touch,
+    survey::Sheet,
 };
 
-/// How far a strip may be off, relative to the size of the surface.
-const ACCURACY: f64 = 1e-8;
+/// How far a patch may be off, relative to the size of the surface.
+const ACCURACY: f64 = 3e-9;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
 const ALLOWANCE: f64 = 2.0;
-/// Bound of the number of strips; where more were needed they are as accurate as so many can be.
-const STRIPS: usize = 4096;
+/// Bound of the number of patches; where more were needed they are as accurate as so many can be.
+const PATCHES: usize = 4096;
+/// Sine of the angle between the normals of surface and patch above which the surface has an edge there.
+const EDGE: f64 = 1e-4;
 /// Share of the way to the middle at which the normal is taken where a place has none.
 const INWARD: f64 = 1e-5;
 /// Sine of the angle between both directions on the surface, and length relative to its size, that is rounding.
@@ -36,12 +41,12 @@ type Rectangle = [[f64; 2]; 2];
 #[derive(Debug, Clone)]
 pub(super) struct ConicStrips {
     conics: Conics,
-    pub(super) strips: Vec<Strip>,
-    /// The part of the surface that each strip replaces.
+    pub(super) sheet: Sheet,
+    /// The part of the surface that each patch replaces.
     ranges: Vec<Rectangle>,
     /// Greatest distance from the origin between the ends of the conics and stations 0 and 1.
     pub(super) size: f64,
-    /// How far a place of a strip may be off the surface.
+    /// How far a place of a patch may be off the surface.
     pub(super) error: f64,
 }
 
@@ -158,6 +163,32 @@ impl Conics {
         found.iter().all(|x| x.is_finite()).then_some(found)
     }
 
+    /// The patch of a part with what is known of it.
+    fn patch(&self, part: &Part, size: f64) -> Patch {
+        let mut patch = Patch::new(part.fit.net);
+        let [along, across] = part.rectangle;
+        let stations = self.stations();
+        let is_end =
+            along[0] <= -1.0 || along[1] >= 2.0 || across[0] <= stations[0] || across[1] >= stations[3];
+        let normals = |at: [f64; 2]| {
+            let [_, run, rise] = jet(&patch.net, at);
+            let natural = self.normal(inside(along, at[0]), inside(across, at[1]), size)?;
+            Some((run.cross(&rise).try_normalize(0.0)?, self.form.map.linear().tr_mul(&natural)))
+        };
+        let against = normals([0.5; 2]).is_some_and(|(own, natural)| own.dot(&natural) < 0.0);
+        let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.5]];
+        let is_edged = corners.into_iter().any(|at| {
+            normals(at).is_none_or(|(own, natural)| {
+                own.cross(&natural).norm() > EDGE || (own.dot(&natural) < 0.0) != against
+            })
+        });
+        patch.against = against;
+        patch.sharp = is_end || is_edged;
+        let shortest = extent(&patch.net).into_iter().fold(f64::INFINITY, f64::min);
+        patch.slack = ERROR_BEND * part.off / (shortest * shortest);
+        patch
+    }
+
     fn stations(&self) -> [f64; 4] {
         match self.form.roots {
             None => [-POLYCONIC_STATIONS_BEYOND, 0.0, 1.0, 1.0 + POLYCONIC_STATIONS_BEYOND],
@@ -169,9 +200,9 @@ impl Conics {
     }
 }
 
-/// A strip in place of a part of the surface, and how far it is off: along the cubics, and between them.
+/// A patch in place of a part of the surface, and how far it is off: along the conics, and across.
 struct Fit {
-    edges: [Cubic; 2],
+    net: Net,
     errors: [f64; 2],
 }
 
@@ -181,24 +212,24 @@ fn inside([low, high]: [f64; 2], share: f64) -> f64 {
 
 fn fit(conics: &Conics, [along, across]: &Rectangle, size: f64) -> Option<Fit> {
     let at = |t: f64, s: f64| conics.at(inside(*along, t), inside(*across, s), size);
-    let mut errors = [0.0f64; 2];
-    let mut edges = [[Vec3::zeros(); 4]; 2];
-    for (edge, s) in edges.iter_mut().zip([0.0, 1.0]) {
-        *edge = through(&[at(0.0, s)?, at(1.0 / 3.0, s)?, at(2.0 / 3.0, s)?, at(1.0, s)?]);
-        for t in [0.127, 0.5, 0.873] {
-            errors[0] = errors[0].max((at(t, s)? - place(edge, t)).norm());
+    let thirds = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+    let mut rows = [[Vec3::zeros(); 4]; 4];
+    for (row, s) in rows.iter_mut().zip(thirds) {
+        *row = through(&[at(thirds[0], s)?, at(thirds[1], s)?, at(thirds[2], s)?, at(thirds[3], s)?]);
+    }
+    let net = turned(&turned(&rows).map(|column| through(&column)));
+    let off = |t: f64, s: f64| Some((at(t, s)? - jet(&net, [t, s])[0]).norm());
+    let mut errors = [off(0.5, 0.5)?; 2];
+    for between in [0.127, 0.5, 0.873] {
+        for node in [thirds[0], thirds[2]] {
+            errors[0] = errors[0].max(off(between, node)?);
+            errors[1] = errors[1].max(off(1.0 - node, between)?);
         }
     }
-    for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
-        let (first, last) = (at(t, 0.0)?, at(t, 1.0)?);
-        for s in [0.25, 0.5, 0.75] {
-            errors[1] = errors[1].max((at(t, s)? - lerp(&first, &last, s)).norm());
-        }
-    }
-    errors.iter().all(|e| e.is_finite()).then_some(Fit { edges, errors })
+    errors.iter().all(|e| e.is_finite()).then_some(Fit { net, errors })
 }
 
-/// A part of the surface with its strip, in the order of how far the strip is off; among equals the earlier first.
+/// A part of the surface with its patch, in the order of how far the patch is off; among equals the earlier first.
 struct Part {
     rectangle: Rectangle,
     fit: Fit,
@@ -226,7 +257,7 @@ impl PartialEq for Part {
 
 impl Eq for Part {}
 
-/// The whole surface in strips that are off by `accuracy`, or by more where that would take too many.
+/// The whole surface in patches that are off by `accuracy`, or by more where that would take too many.
 fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> {
     let mut number = 0;
     let mut part = |rectangle: Rectangle| -> Option<Part> {
@@ -235,13 +266,13 @@ fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> 
         number += 1;
         Some(Part { rectangle, fit, off, number })
     };
-    let mut parts = BinaryHeap::with_capacity(STRIPS);
+    let mut parts = BinaryHeap::with_capacity(PATCHES);
     for across in conics.stations().windows(2) {
         for along in [[-1.0, 0.0], [0.0, 0.5], [0.5, 1.0], [1.0, 2.0]] {
             parts.push(part([along, [across[0], across[1]]])?);
         }
     }
-    while parts.len() < STRIPS && parts.peek().is_some_and(|worst| worst.off > accuracy) {
+    while parts.len() < PATCHES && parts.peek().is_some_and(|worst| worst.off > accuracy) {
         let Some(Part { rectangle: [along, across], fit, .. }) = parts.pop() else { break };
         let halves = |range: [f64; 2]| [[range[0], inside(range, 0.5)], [inside(range, 0.5), range[1]]];
         let halved = if fit.errors[0] > fit.errors[1] {
@@ -261,29 +292,30 @@ impl ConicStrips {
     pub(super) fn of(values: &[f64]) -> Option<Self> {
         let conics = Conics { form: PolyConicForm::read(values)? };
         let mut size: f64 = 0.0;
-        let mut extent: f64 = 0.0;
+        let mut extent_of_all: f64 = 0.0;
         let shift = conics.form.map.shift();
         let middle = conics.jet(0.5, 0.5).point;
         for i in 0..=8 {
             for k in 0..=8 {
                 let point = conics.jet(f64::from(i) / 8.0, f64::from(k) / 8.0).point;
                 size = size.max((point - shift).norm());
-                extent = extent.max((point - middle).norm());
+                extent_of_all = extent_of_all.max((point - middle).norm());
             }
         }
         size += conics.form.thickness.abs();
-        if !(extent > 0.0 && size.is_finite()) {
+        if !(extent_of_all > 0.0 && size.is_finite()) {
             return None;
         }
-        let mut parts = cover(&conics, extent, ACCURACY * extent)?.into_vec();
+        let mut parts = cover(&conics, extent_of_all, ACCURACY * extent_of_all)?.into_vec();
         parts.sort_by_key(|part| part.number);
         let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
         let ranges = parts.iter().map(|part| part.rectangle).collect();
-        let strips = parts.iter().enumerate().map(|(k, part)| Strip::new(part.fit.edges, k)).collect();
-        Some(Self { conics, strips, ranges, size, error })
+        let patches = parts.iter().map(|part| conics.patch(part, extent_of_all)).collect();
+        let sheet = Sheet::new(patches, false);
+        Some(Self { conics, sheet, ranges, size, error })
     }
 
-    /// The natural normal of the surface itself at a place of a strip.
+    /// The natural normal of the surface itself at a place of a patch.
     pub(super) fn natural(&self, touch: &Touch) -> Option<Vec3> {
         let [along, across] = self.ranges.get(touch.piece)?;
         let (t, s) = (inside(*along, touch.along), inside(*across, touch.across));

@@ -118,6 +118,27 @@ impl PrincipalQuadric {
         Some((self.axes.column(k).into_owned(), -self.b[k] / self.a[k]))
     }
 
+    /// Bound of the curvature with which the surface bends away from what is on a side of it, in a ball.
+    pub(super) fn hill(&self, side: f64, center: &Vec3, radius: f64) -> f64 {
+        let slope = self.slope(&self.turned_in(center));
+        let local = Vec3::from_fn(|i, _| (slope[i].abs() - self.a[i].abs() * radius).max(0.0)).norm();
+        let greatest = self.a.iter().map(|a| side * a).fold(0.0, f64::max);
+        if greatest > 0.0 { greatest / local.max(self.least_slope()) } else { 0.0 }
+    }
+
+    /// Half of the gradient is nowhere on the surface less than this: of `Σ aᵢzᵢ² = C` about the centre the squares with the
+    /// sign of C make up at least C.
+    fn least_slope(&self) -> f64 {
+        let flat = (0..3).filter(|i| self.a[*i] == 0.0).map(|i| self.b[i].abs()).fold(0.0, f64::max);
+        let round = || (0..3).filter(|i| self.a[*i] != 0.0);
+        let level = round().map(|i| self.b[i] * self.b[i] / self.a[i]).sum::<f64>() - self.constant;
+        let least = round().map(|i| self.a[i]).filter(|a| a * level > 0.0).map(f64::abs);
+        let least = least.fold(f64::INFINITY, f64::min);
+        // With a linear part left the level differs from place to place.
+        let central = if flat > 0.0 || least.is_infinite() { 0.0 } else { (least * level.abs()).sqrt() };
+        flat.max(central)
+    }
+
     /// `k (ρ² − r²) − l z²` about an axis through the origin.
     pub(super) fn round(
         frame: &[Vec3; 2],

@@ -1,4 +1,4 @@
-//! Ruled surfaces as strips: straight rulings between points at equal shares of two chords (language reference 4.16).
+//! Ruled surfaces as patches: straight rulings between points at equal shares of two chords (language reference 4.16).
 //!
 //! Between the ends of the chords the parameter is an angle, `(1 − cos πw)/2` the share: so a section that starts upright,
 //! like a half circle, is smooth in it. Cubics through four places of each piece replace the curves; how far they are off
@@ -13,8 +13,10 @@ use apt_geometry::{
 };
 
 use super::{
+    patch::{Patch, jet},
     section::Section,
-    strip::{Cubic, Strip, Touch, lerp, place, tangent},
+    strip::{Cubic, Touch, lerp, place, tangent},
+    survey::Sheet,
 };
 
 /// How far a cubic may be off, relative to the size of the surface.
@@ -26,12 +28,17 @@ const HALVINGS: u32 = 24;
 const PIECES: usize = 4096;
 /// Parameter next to the end of a piece that counts as the joint with its neighbour.
 const JOINT: f64 = 1e-7;
+/// Sine of the angle between the normals of neighbours above which the joint is an edge of the surface.
+const EDGE: f64 = 1e-5;
+/// What the second derivative of a cubic's error is at most, times that error, where it is the error of a cubic through
+/// four places of a curve whose fourth derivative is steady.
+pub(super) const ERROR_BEND: f64 = 200.0;
 
 /// A ruled surface.
 #[derive(Debug, Clone)]
 pub(super) struct RuledStrips {
     /// In the order of the share of the chord.
-    pub(super) strips: Vec<Strip>,
+    pub(super) sheet: Sheet,
     /// Greatest distance from the origin of the surface between its curves.
     pub(super) size: f64,
     /// How far a place of a strip may be off the surface.
@@ -86,25 +93,32 @@ impl RuledStrips {
         let [low, high] = shares(&pieces);
         let mut size: f64 = 0.0;
         let mut error: f64 = 0.0;
-        let mut strips = Vec::with_capacity(pieces.len());
-        for (index, piece) in pieces.iter().enumerate() {
+        let mut patches = Vec::with_capacity(pieces.len());
+        for piece in &pieces {
             let [e, f] = &piece.curves;
             let edge = |v: f64| -> Cubic { std::array::from_fn(|i| lerp(&e[i], &f[i], v)) };
-            strips.push(Strip::new([edge(low), edge(high)], index));
+            let mut patch = Patch::straight(&[edge(low), edge(high)]);
+            let along = [e, f].map(|c| (c[3] - c[0]).norm()).into_iter().fold(0.0, f64::max);
+            patch.slack = ERROR_BEND * piece.error / (along * along);
+            patches.push(patch);
             if piece.inner {
                 size = e.iter().chain(f).map(|p| p.norm()).fold(size, f64::max);
             }
             error = error.max(piece.error);
         }
         error *= (low.abs() + (1.0 - low)).max(high.abs() + (high - 1.0).abs());
-        (error.is_finite() && size.is_finite() && !strips.is_empty()).then_some(Self { strips, size, error })
+        mark_edges(&mut patches);
+        let sheet = Sheet::new(patches, true);
+        (error.is_finite() && size.is_finite() && !sheet.patches.is_empty()).then_some(Self {
+            sheet,
+            size,
+            error,
+        })
     }
 
     fn normal_at(&self, piece: usize, along: f64, across: f64) -> Option<Vec3> {
-        let [e, f] = self.strips.get(piece)?.edges();
-        let run = lerp(&tangent(e, along), &tangent(f, along), across);
-        let normal = run.cross(&(place(f, along) - place(e, along)));
-        normal.try_normalize(0.0)
+        let [_, run, rise] = jet(&self.sheet.patches.get(piece)?.net, [along, across]);
+        run.cross(&rise).try_normalize(0.0)
     }
 
     /// The natural normal, along the first curve × along the ruling; at a joint the middle between both sides.
@@ -119,6 +133,27 @@ impl RuledStrips {
         };
         let beside = beside.and_then(|(piece, along)| self.normal_at(piece, along, touch.across));
         beside.map_or(Some(here), |n| (here + n).try_normalize(0.0))
+    }
+}
+
+/// Marks the patches at edges of the surface, and those at its ends.
+fn mark_edges(patches: &mut [Patch]) {
+    let is_edge = |pair: &[Patch]| {
+        [0.0, 0.5, 1.0].into_iter().any(|across| {
+            let normal = |patch: &Patch, along: f64| {
+                let [_, run, rise] = jet(&patch.net, [along, across]);
+                run.cross(&rise).try_normalize(0.0)
+            };
+            match (normal(&pair[0], 1.0), normal(&pair[1], 0.0)) {
+                (Some(a), Some(b)) => a.cross(&b).norm() > EDGE || a.dot(&b) < 0.0,
+                _ => false,
+            }
+        })
+    };
+    let edges: Vec<usize> = (1..patches.len()).filter(|k| is_edge(&patches[k - 1..=*k])).collect();
+    let last = patches.len().saturating_sub(1);
+    for (k, patch) in patches.iter_mut().enumerate() {
+        patch.sharp = k == 0 || k == last || edges.contains(&k) || edges.contains(&(k + 1));
     }
 }
 

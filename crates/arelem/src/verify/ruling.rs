@@ -95,8 +95,9 @@ impl Ruling {
         })
     }
 
-    /// How the slope of the clearance can grow from one position of the tool to another, where the surface's normal towards
-    /// the tool is `normal` at the start; the clearances are without thickness.
+    /// How the slope of the clearance can grow from a position of the tool on, where the surface's normal towards the tool is
+    /// `normal`, and no place of the tool moves farther than `travel`; the clearances are without thickness. Of a straight
+    /// move to another position only what is across the rulings counts.
     pub(super) fn bend(
         &self,
         side: f64,
@@ -104,11 +105,14 @@ impl Ruling {
         values: [f64; 2],
         normal: &Vec3,
         tool: &Tool<'_>,
+        travel: f64,
     ) -> Option<Bend> {
         let shadow = Shadow::new(tool, &self.frame, from);
         let way = to - from;
-        let length = flat(&self.frame, &way).norm();
-        let share = if length > 0.0 { length / way.norm() } else { 0.0 };
+        let along = way.norm();
+        let is_straight = along >= travel;
+        let length = if is_straight { flat(&self.frame, &way).norm() } else { travel };
+        let share = if is_straight && length > 0.0 { length / along } else { 1.0 };
         let natural = flat(&self.frame, &(normal * side)).try_normalize(0.0)?;
         let run = Flat::new(natural.y, -natural.x);
         let passing = Passing { shadow: &shadow, run, left: side > 0.0, length, values };

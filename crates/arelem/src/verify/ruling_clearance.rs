@@ -1,4 +1,4 @@
-//! Clearance of the whole tool to a surface of straight rulings, or to strips of such in place of another surface.
+//! Clearance of the whole tool to a surface of straight rulings, or to patches in place of another surface.
 //!
 //! Clear of the surface it is the least distance of a place of the surface. In violation it is the least translation
 //! that frees the tool (arelem reference 5.2): not less than the depth of any place of the surface in the tool, and of
@@ -13,13 +13,15 @@ use super::{
     ruling::Ruling,
     span::Bend,
     strip::{Touch, nearest},
+    survey::Sheet,
     tool::{Meridian, Profile, Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
 const RESOLUTION: f64 = 2e-11;
-/// The same, relative to how far the strips may be off the surface.
+/// The same, relative to how far the patches may be off the surface, and where the contact of before is followed.
 const RESOLUTION_OF_ERROR: f64 = 0.05;
+const WARM_RESOLUTION_OF_ERROR: f64 = 0.25;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
 /// Distance, relative to the tool, from which on the difference of two places is a direction.
@@ -66,25 +68,45 @@ impl Ruled {
     fn nearest(&self, tip: &Vec3, tool: &Tool<'_>, resolution: f64, deep: f64) -> Option<Touch> {
         match self {
             Self::Parallel(ruling) => ruling.nearest(tip, tool, resolution, deep),
-            Self::Joining(surface) => nearest(&surface.strips, tip, tool, resolution, deep),
-            Self::Conics(surface) => nearest(&surface.strips, tip, tool, resolution, deep),
+            Self::Joining(surface) => nearest(&surface.sheet.patches, tip, tool, resolution, deep),
+            Self::Conics(surface) => nearest(&surface.sheet.patches, tip, tool, resolution, deep),
         }
     }
 
-    /// How the slope of the clearance can grow along a straight move from a reading at its start; None where that is not
-    /// known. The clearances at both ends are without thickness.
+    /// How the slope of the clearance can grow from a position on, where no place of the tool moves farther than `travel`;
+    /// `to` is the end of a straight move. None where that is not known. The clearances are without thickness.
     pub(super) fn bend(
         &self,
         side: f64,
-        ends: [&Vec3; 2],
-        values: [f64; 2],
-        normal: &Vec3,
+        [from, to]: [&Vec3; 2],
         tool: &Tool<'_>,
+        ends: [&Reading; 2],
+        thickness: f64,
+        travel: f64,
     ) -> Option<Bend> {
+        let values = ends.map(|end| end.value + thickness);
         match self {
-            Self::Parallel(ruling) => ruling.bend(side, ends, values, normal, tool),
-            Self::Joining(_) | Self::Conics(_) => None,
+            Self::Parallel(ruling) => ruling.bend(side, [from, to], values, &ends[0].normal, tool, travel),
+            Self::Joining(RuledStrips { sheet, size, .. }) => {
+                sheet.bend(side, from, tool, values, travel, *size)
+            }
+            Self::Conics(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
         }
+    }
+
+    fn sheet(&self) -> Option<&Sheet> {
+        match self {
+            Self::Parallel(_) => None,
+            Self::Joining(surface) => Some(&surface.sheet),
+            Self::Conics(surface) => Some(&surface.sheet),
+        }
+    }
+
+    /// The clearance by the contact of before, if it is shown.
+    pub(super) fn followed(&self, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+        let (size, reach) = (self.size(), tool.profile.reach());
+        let tolerance = resolution(self, tip, reach).max(WARM_RESOLUTION_OF_ERROR * self.error());
+        self.sheet()?.at(side, tip, tool, size, tolerance)
     }
 
     fn natural(&self, touch: &Touch) -> Option<Vec3> {
@@ -109,7 +131,7 @@ impl Ruled {
         at_joint && !matches!(self, Self::Conics(_))
     }
 
-    /// How far the strips may be off the surface.
+    /// How far the patches may be off the surface.
     pub(super) fn error(&self) -> f64 {
         match self {
             Self::Parallel(_) => 0.0,
@@ -128,6 +150,9 @@ fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
 pub(super) fn point_distance(surface: &Ruled, x: &Vec3) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
     let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z) };
+    if let Some(found) = surface.followed(1.0, x, &tool) {
+        return Some((found.value, found.normal));
+    }
     let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
     let height = natural.dot(&(x - touch.point));
@@ -160,6 +185,15 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error });
     }
+    if let Some(mut found) = surface.followed(side, tip, tool) {
+        found.error += surface.error();
+        return Some(found);
+    }
+    searched(surface, side, tip, tool)
+}
+
+/// The clearance without regard to what was found before.
+pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
     let reach = tool.profile.reach();
     let deep = PROVEN_DEPTH * tool.profile.widest();
     let bodies = Bodies { surface, side, tool, reach, resolution: resolution(surface, tip, reach), deep };

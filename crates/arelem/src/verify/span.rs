@@ -12,8 +12,8 @@ const FIRST_PIECES: usize = 4;
 const FREE_EVALUATIONS: usize = 4096;
 /// Sine below which two opposite axes leave the plane open in which the axis turns.
 const OPPOSITE: f64 = 1e-9;
-/// Step of the derivative with respect to the vector parameter when the tool axis turns.
-const TURN_STEP: f64 = 1e-5;
+/// Share of the radius of curvature that a tool may be too deep where the slope of a clearance is bounded.
+const DEEPEST: f64 = 0.5;
 
 /// Where the tool is between two positions of a vector, `t` from 0 to 1: the tool end goes straight and evenly, the axis
 /// turns evenly in the plane of both axes. A machine that moves otherwise between them is not judged. None for opposite axes.
@@ -71,6 +71,10 @@ impl Extremes {
 }
 
 /// How the slope of a clearance can grow along a straight move with a fixed tool axis.
+///
+/// Behind every contact the surface holds a ball, as large as the radius of the curvature with which it bends away from the
+/// tool. The clearance is at most that from the ball, and equal to it at the contact: so where the tool has come in by d, its
+/// second derivative is at most 1/(ρ − d). What a turning axis adds is that the tool's places go round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bend {
     /// Bound of the second derivative, per unit of length squared: the clearance less half of it times the square of the way
@@ -78,6 +82,14 @@ pub(super) struct Bend {
     pub(super) rate: f64,
     /// Bound of the sum of all sudden increases of the slope.
     pub(super) jumps: f64,
+}
+
+impl Bend {
+    /// For a surface that bends away with a curvature of `hill` at most, and a tool no deeper in it than `depth`.
+    pub(super) fn over(hill: f64, depth: f64) -> Option<Self> {
+        let deepest = hill * depth;
+        (deepest <= DEEPEST).then(|| Self { rate: hill / (1.0 - deepest), jumps: 0.0 })
+    }
 }
 
 /// Clearance, derivative by the parameter 0 … 1 and error at one place of the vector.
@@ -107,24 +119,20 @@ impl Span<'_> {
         self.from.axis != self.to.axis
     }
 
-    fn value(&self, t: f64) -> Option<f64> {
-        let place = between(&self.from, &self.to, t)?;
-        self.clearance.at(&place.tip, &place.axis).map(|r| r.value)
-    }
-
     fn sample(&self, t: f64) -> Option<Sample> {
         let place = between(&self.from, &self.to, t)?;
         self.known(t, self.clearance.at(&place.tip, &place.axis)?)
     }
 
     fn known(&self, t: f64, reading: Reading) -> Option<Sample> {
-        let slope = if self.turns() {
-            let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
-            (self.value(high)? - self.value(low)?) / (high - low)
-        } else {
-            reading.normal.dot(&(self.to.tip - self.from.tip))
-        };
-        Some(Sample { t, value: reading.value, slope, error: reading.error })
+        let mut rate = self.to.tip - self.from.tip;
+        if self.turns() {
+            let place = between(&self.from, &self.to, t)?;
+            let round = self.from.axis.cross(&self.to.axis).try_normalize(0.0)?;
+            let arm = self.clearance.arm(&reading.normal, &place.axis);
+            rate += round.cross(&arm) * turning(&self.from, &self.to);
+        }
+        Some(Sample { t, value: reading.value, slope: reading.normal.dot(&rate), error: reading.error })
     }
 
     /// Extremes to within `tolerance`; None where there is no distance.
@@ -147,13 +155,10 @@ impl Span<'_> {
                 let (depth, gap) = self.trough(first, last, -1.0, tolerance)?;
                 Some(Extremes::within(error.max(gap), low, (-depth).max(high)))
             }
-            Shape::Free => {
-                let bend = if self.turns() { None } else { self.bend() };
-                match bend {
-                    Some(bend) => self.bent(first, last, bend, tolerance),
-                    None => self.free(first, last, tolerance),
-                }
-            }
+            Shape::Free => match self.bend() {
+                Some(bend) => self.bent(first, last, bend, tolerance),
+                None => self.free(first, last, tolerance),
+            },
         }
     }
 
@@ -194,16 +199,25 @@ impl Span<'_> {
         Some((least, gap + error))
     }
 
+    /// By the parameter from 0 to 1.
     fn bend(&self) -> Option<Bend> {
-        self.clearance.bend_along([&self.from.tip, &self.to.tip], &self.ends, &self.from.axis)
+        let turn = if self.turns() { turning(&self.from, &self.to) } else { 0.0 };
+        let swing = turn * self.clearance.reach();
+        let travel = (self.to.tip - self.from.tip).norm() + swing;
+        let [first, last] = &self.ends;
+        let bend = self.clearance.bend_along([&self.from, &self.to], [first, last], travel)?;
+        Some(Bend { rate: bend.rate * travel * travel + turn * swing, jumps: bend.jumps * travel })
     }
 
     /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the
     /// band, or to hide no more than `tolerance`.
-    fn bent(&self, first: Sample, last: Sample, bend: Bend, tolerance: f64) -> Option<Extremes> {
-        let length = (self.to.tip - self.from.tip).norm();
-        // By the parameter from 0 to 1.
-        let (rate, jumps) = (bend.rate * length * length, bend.jumps * length);
+    fn bent(
+        &self,
+        first: Sample,
+        last: Sample,
+        Bend { rate, jumps }: Bend,
+        tolerance: f64,
+    ) -> Option<Extremes> {
         let mut found: Option<Extremes> = None;
         let mut open = vec![(first, last)];
         let mut budget = FREE_EVALUATIONS;

@@ -113,6 +113,16 @@ impl Profile {
         self.support([1.0, 0.0]).0
     }
 
+    /// The body up to a height above the corner.
+    pub(super) fn below(&self, height: f64) -> Self {
+        let share = (height - self.upper[1]) / (self.top[1] - self.upper[1]);
+        if !(share > 0.0 && share < 1.0) {
+            return self.clone();
+        }
+        let top = [self.upper[0] + share * (self.top[0] - self.upper[0]), height];
+        Self { top, ..self.clone() }
+    }
+
     /// Height of the top above the tool end.
     pub(super) fn top_height(&self) -> f64 {
         self.top[1]

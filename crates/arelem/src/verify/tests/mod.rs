@@ -3,6 +3,9 @@
 mod branches;
 mod clearances;
 mod every_kind;
+mod followed;
+#[path = "../../../tests/support/lofts.rs"]
+mod lofts;
 mod mutations;
 mod paths;
 mod poly_conics;

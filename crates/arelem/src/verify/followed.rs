@@ -1,0 +1,323 @@
+//! The clearance of a tool to a surface of patches from the contact before: the contact is followed by Newton's method,
+//! and shown to be the nearest place by balls.
+//!
+//! Where a ball that touches the surface at the contact, on the tool's side, has no place of a patch inside, and the tool
+//! lies in a smaller one about the same centre, nothing of the patch is nearer than the difference of the radii. The same
+//! holds for half-spaces. What cannot be shown is left to the general search.
+
+use apt_geometry::Vec3;
+
+use super::{
+    clearance::Reading,
+    patch::{Bends, ball, extent, halves_across, halves_along, held, jet},
+    survey::{Part, Sheet, nearest_by},
+    tool::{Profile, Tool},
+};
+
+/// Steps of Newton's method, the last of them, and the greatest, in parameters.
+const STEPS: usize = 14;
+const LAST_STEP: f64 = 1e-10;
+const GREATEST_STEP: f64 = 0.5;
+/// Halvings of a step that leads farther from the contact.
+const SHORTENINGS: usize = 5;
+/// Step of the derivatives, in parameters.
+const DIFFERENCE: f64 = 1e-6;
+/// How far beyond the side of a part, in parameters, a contact still counts as its own.
+const AT_SIDE: f64 = 1e-7;
+/// Parts that the contact is followed through.
+const HOPS: usize = 24;
+/// Halvings of a part whose distance is not shown at once.
+const HALVINGS: u32 = 5;
+/// Radii of the balls tried, in radii of the tool, before that of the surface itself.
+const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
+/// Share of the radius of the tool behind the surface at which it is met by Newton's method, and of the radius of curvature.
+const BEHIND: f64 = 0.5;
+/// Depth, relative to the radius of the tool, down to which contacts are followed.
+const DEEPEST: f64 = 0.1;
+
+/// A contact: a place of a part and the tool's place straight across from it.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    at: [f64; 2],
+    place: Vec3,
+    /// Unit, towards the tool.
+    normal: Vec3,
+    /// The tool's place, from its end.
+    opposite: Vec3,
+    /// From the one to the other along the normal.
+    value: f64,
+}
+
+/// What holds the tool, at least the part of it below some height: all places outside are as far from it as `least`.
+#[derive(Debug, Clone, Copy)]
+enum Guard {
+    /// Outward normal, and height of its plane.
+    Level(Vec3, f64),
+    /// Centre and radius.
+    Ball(Vec3, f64),
+}
+
+impl Guard {
+    /// How far outside a part is at least.
+    fn outside(&self, part: &Part) -> f64 {
+        let points = part.net.iter().flatten();
+        match self {
+            Self::Level(outward, height) => {
+                points.map(|p| outward.dot(p)).fold(f64::INFINITY, f64::min) - height
+            }
+            Self::Ball(center, radius) => {
+                let away = part.near(center) - center;
+                let size = away.norm();
+                points.map(|p| away.dot(&(p - center))).fold(f64::INFINITY, f64::min) / size - radius
+            }
+        }
+    }
+}
+
+impl Contact {
+    /// How far the tool's place is from straight across.
+    fn beside(&self, tip: &Vec3) -> f64 {
+        let apart = tip + self.opposite - self.place;
+        (apart - self.normal * self.normal.dot(&apart)).norm()
+    }
+}
+
+/// A tool in a position and what is near it.
+pub(super) struct Following<'a> {
+    pub(super) sheet: &'a Sheet,
+    pub(super) parts: &'a [Part],
+    /// The way of the tool since the survey.
+    pub(super) way: f64,
+    pub(super) side: f64,
+    pub(super) tip: &'a Vec3,
+    pub(super) tool: &'a Tool<'a>,
+    pub(super) size: f64,
+    pub(super) tolerance: f64,
+}
+
+impl Following<'_> {
+    /// The clearance, from the contact found last to that of now.
+    pub(super) fn reading(&self, last: &mut Option<(usize, [f64; 2])>) -> Option<Reading> {
+        if self.tool.profile.is_point() {
+            return self.point(last);
+        }
+        let (value, normal) = self.settled(self.side, last)?;
+        Some(Reading { value, normal, error: self.tolerance })
+    }
+
+    /// A point is measured from the side that it is on.
+    fn point(&self, last: &mut Option<(usize, [f64; 2])>) -> Option<Reading> {
+        let (_, contact) = self.contact(1.0, last)?;
+        let sense = if contact.value < 0.0 { -1.0 } else { 1.0 };
+        let (value, normal) = self.settled(sense, last)?;
+        let turn = sense * self.side;
+        Some(Reading { value: turn * value, normal: normal * turn, error: self.tolerance })
+    }
+
+    /// The clearance on a side and the direction that leads away, where it is shown.
+    fn settled(&self, side: f64, last: &mut Option<(usize, [f64; 2])>) -> Option<(f64, Vec3)> {
+        let (index, contact) = self.contact(side, last)?;
+        let widest = self.tool.profile.widest();
+        if contact.value < -DEEPEST * widest - self.tolerance {
+            return None;
+        }
+        let part = self.parts.get(index)?;
+        let behind = part.hollow(-side)?;
+        // The surface's place in the tool, or the tool's under the surface, is as deep as that.
+        let own = jet(&part.net, contact.at.map(|x| x.clamp(0.0, 1.0)))[0];
+        let mut value = self.tool.signed_distance(&(own - self.tip)).0;
+        if value > contact.value + self.tolerance && contact.value < 0.0 && -contact.value * behind <= BEHIND
+        {
+            let profile = Profile::tool_end();
+            let point = Tool { profile: &profile, axis: self.tool.axis };
+            let place = self.tip + contact.opposite;
+            let under = self.sheet.at(side, &place, &point, self.size, self.tolerance)?;
+            value = value.min(under.value + under.error);
+        }
+        if (value - contact.value).abs() > 2.0 * self.tolerance {
+            return None;
+        }
+        // A tool that is too deep is looked at where it has been led out.
+        let least = value - self.tolerance;
+        let out = self.tip + contact.normal * (-least).max(0.0);
+        let led = Following { tip: &out, ..*self };
+        let least = least.max(0.0);
+        let (guard, below) = led.guard(part, side, &contact, least)?;
+        let outward = -contact.normal;
+        let level = Guard::Level(outward, outward.dot(&out) + self.tool.support(&outward).0 + least);
+        let led_by = (out - self.tip).norm();
+        for (k, other) in self.parts.iter().enumerate() {
+            if k == index || other.far.get() - self.way - led_by >= least {
+                continue;
+            }
+            let far = led.far(other, [&level, &guard], below, least);
+            if far >= least {
+                other.far.set(far - led_by + self.way);
+            } else {
+                led.show(other, side, [&level, &guard], below, least, HALVINGS)?;
+            }
+        }
+        Some((value, contact.normal))
+    }
+
+    /// A bound of the distance of a part, where both have all outside as far as `least`; the second of them holds the tool up
+    /// to a height.
+    fn far(&self, part: &Part, [level, guard]: [&Guard; 2], below: f64, least: f64) -> f64 {
+        let from = part.center - self.tip;
+        let far = self.tool.signed_distance(&from).0 - part.radius;
+        if far >= least {
+            return far;
+        }
+        let far = level.outside(part) + least;
+        let above = below - self.tool.axis.dot(&from) - part.radius;
+        if far >= least || above < least {
+            return far;
+        }
+        far.max((guard.outside(part) + least).min(above))
+    }
+
+    /// Shows that a part is no nearer than `least`, from its own contact; in halves if need be.
+    fn show(
+        &self,
+        part: &Part,
+        side: f64,
+        guards: [&Guard; 2],
+        below: f64,
+        least: f64,
+        halvings: u32,
+    ) -> Option<()> {
+        if let Some(contact) = self.solve(part, side, [0.5; 2])
+            && self.guard(part, side, &contact, least).is_some()
+        {
+            return Some(());
+        }
+        if halvings == 0 {
+            return None;
+        }
+        let [along, across] = extent(&part.net);
+        let halves = if along >= across { halves_along(&part.net) } else { halves_across(&part.net) };
+        for net in halves {
+            let (center, radius) = ball(&net);
+            let half = Part { net, center, radius, bends: Bends::of(&net), ..part.clone() };
+            if self.far(&half, guards, below, least) < least {
+                self.show(&half, side, guards, below, least, halvings - 1)?;
+            }
+        }
+        Some(())
+    }
+
+    /// A half-space or ball at a contact that has no place of its part inside and keeps the tool as far away as `least`, and
+    /// the height up to which it holds the tool, which is enough for the part.
+    fn guard(&self, part: &Part, side: f64, contact: &Contact, least: f64) -> Option<(Guard, f64)> {
+        let hollow = part.hollow(side)?;
+        let outward = -contact.normal;
+        let height = outward.dot(&contact.place);
+        if hollow <= 0.0 && height - outward.dot(self.tip) - self.tool.support(&outward).0 >= least {
+            return Some((Guard::Level(outward, height), f64::INFINITY));
+        }
+        let (tool, widest) = (self.tool, self.tool.profile.widest());
+        // The part of the tool that is high above the surface's part is farther than the contact anyway.
+        let top = tool.axis.dot(&(part.center - self.tip)) + part.radius + least;
+        let below = top.max(tool.profile.edges()[1][1]) + widest;
+        let low = (below < tool.profile.top_height()).then(|| tool.profile.below(below));
+        let limit = 1.0 / hollow;
+        let tried =
+            BALLS.iter().map(|k| k * widest.max(contact.value.abs())).filter(|r| *r > 0.0 && *r < limit);
+        let greatest = limit.min(1e4 * (widest + contact.value.abs() + part.radius));
+        for radius in tried.chain([greatest]) {
+            let center = contact.place + contact.normal * radius;
+            let from = center - self.tip;
+            if radius - tool.farthest(&from).0 >= least {
+                return Some((Guard::Ball(center, radius), f64::INFINITY));
+            }
+            if let Some(low) = &low
+                && radius - (Tool { profile: low, axis: tool.axis }).farthest(&from).0 >= least
+            {
+                return Some((Guard::Ball(center, radius), below));
+            }
+        }
+        None
+    }
+
+    /// Follows the contact from part to part.
+    fn contact(&self, side: f64, last: &mut Option<(usize, [f64; 2])>) -> Option<(usize, Contact)> {
+        let (mut index, mut from) = match *last {
+            Some(last) => last,
+            None => {
+                let apart = |part: &Part| self.tool.signed_distance(&(part.center - self.tip)).0;
+                (nearest_by(self.parts, apart)?, [0.5; 2])
+            }
+        };
+        for _ in 0..HOPS {
+            let part = self.parts.get(index)?;
+            let contact = self.solve(part, side, from)?;
+            if contact.at.iter().all(|x| (-AT_SIDE..=1.0 + AT_SIDE).contains(x)) {
+                *last = Some((index, contact.at));
+                return Some((index, contact));
+            }
+            // Where its own polynomial leads is near another part.
+            let apart = |other: &Part| {
+                let from_center = (other.center - contact.place).norm();
+                if from_center > other.radius + part.radius {
+                    return f64::INFINITY;
+                }
+                (other.near(&contact.place) - contact.place).norm()
+            };
+            let next = nearest_by(self.parts, apart)?;
+            if next == index {
+                *last = Some((index, contact.at));
+                return Some((index, contact));
+            }
+            (index, from) = (next, [0.5; 2]);
+        }
+        None
+    }
+
+    /// The contact with the surface that a part belongs to, near the part.
+    fn solve(&self, part: &Part, side: f64, from: [f64; 2]) -> Option<Contact> {
+        let widest = self.tool.profile.widest();
+        let behind = part.hollow(-side)?;
+        let offset = (BEHIND * widest).min(BEHIND / behind);
+        let sense = part.sense(side);
+        // The tool's place nearest to a place straight behind that of the surface, and how far it is beside.
+        let beside = |at: [f64; 2]| -> Option<([f64; 2], Contact)> {
+            let [place, along, across] = jet(&part.net, at);
+            let normal = along.cross(&across).try_normalize(0.0)? * sense;
+            let opposite = self.tool.signed_distance(&(place - normal * offset - self.tip)).1;
+            let apart = self.tip + opposite - place;
+            let value = normal.dot(&apart);
+            let contact = Contact { at, place, normal, opposite, value };
+            Some(([apart.dot(&along), apart.dot(&across)], contact))
+        };
+        let mut at = held(from);
+        let (mut off, mut contact) = beside(at)?;
+        for _ in 0..STEPS {
+            let [u, v] = at;
+            let (by_u, by_v) = (beside([u + DIFFERENCE, v])?.0, beside([u, v + DIFFERENCE])?.0);
+            let [a, c] = [0, 1].map(|i| (by_u[i] - off[i]) / DIFFERENCE);
+            let [b, d] = [0, 1].map(|i| (by_v[i] - off[i]) / DIFFERENCE);
+            let area = a * d - b * c;
+            let mut step = [(b * off[1] - d * off[0]) / area, (c * off[0] - a * off[1]) / area];
+            if !step.iter().all(|x| x.is_finite()) {
+                return None;
+            }
+            let size = step[0].abs().max(step[1].abs());
+            step = step.map(|x| x * (GREATEST_STEP / size).min(1.0));
+            let before = contact.beside(self.tip);
+            // Where the nearest place of the tool goes over to another of its parts the whole step may lead too far.
+            for _ in 0..SHORTENINGS {
+                at = held([u + step[0], v + step[1]]);
+                (off, contact) = beside(at)?;
+                if contact.beside(self.tip) <= before {
+                    break;
+                }
+                step = step.map(|x| 0.5 * x);
+            }
+            let left = at[0] != u + step[0] && at[0] == u || at[1] != v + step[1] && at[1] == v;
+            if size <= LAST_STEP || left || at == [u, v] {
+                break;
+            }
+        }
+        Some(contact)
+    }
+}

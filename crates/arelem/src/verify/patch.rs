@@ -1,0 +1,260 @@
+//! Patches of surface that are cubic both ways, and bounds of how they bend.
+
+use apt_geometry::Vec3;
+
+use super::strip::{Cubic, lerp};
+
+/// Share of a patch by which its cubics are followed beyond each of its sides.
+const BEYOND: f64 = 0.25;
+/// Least share of the way between two places of a patch, measured along its parameters, that is progress in space.
+const PROGRESS: f64 = 0.3;
+
+/// Control points: cubics along the patch, in the order across it.
+pub(super) type Net = [Cubic; 4];
+
+/// A patch of a surface.
+#[derive(Debug, Clone)]
+pub(super) struct Patch {
+    pub(super) net: Net,
+    /// Whether its normal, along × across, is against the natural one.
+    pub(super) against: bool,
+    /// Whether the surface ends or bends sharply at a side of it.
+    pub(super) sharp: bool,
+    /// How much more than the patch, in curvature, the surface that it stands for may bend.
+    pub(super) slack: f64,
+    /// The ends of its middle line across, and how far its control points are from that at most.
+    pub(super) spine: [Vec3; 2],
+    pub(super) girth: f64,
+}
+
+/// The four weights of a cubic's control points and their derivatives.
+fn weights(t: f64) -> [[f64; 4]; 2] {
+    let r = 1.0 - t;
+    [
+        [r * r * r, 3.0 * t * r * r, 3.0 * t * t * r, t * t * t],
+        [-3.0 * r * r, 3.0 * r * (r - 2.0 * t), 3.0 * t * (2.0 * r - t), 3.0 * t * t],
+    ]
+}
+
+fn mixed(points: &Cubic, weights: &[f64; 4]) -> Vec3 {
+    points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2] + points[3] * weights[3]
+}
+
+/// A place with its derivatives along and across.
+pub(super) fn jet(net: &Net, [along, across]: [f64; 2]) -> [Vec3; 3] {
+    let ([u, du], [v, dv]) = (weights(along), weights(across));
+    let rows = net.map(|row| mixed(&row, &u));
+    let rates = net.map(|row| mixed(&row, &du));
+    [mixed(&rows, &v), mixed(&rates, &v), mixed(&rows, &dv)]
+}
+
+/// Rows and columns changed.
+pub(super) fn turned(net: &Net) -> Net {
+    std::array::from_fn(|i| std::array::from_fn(|j| net[j][i]))
+}
+
+/// The two halves of a cubic.
+fn halves(c: &Cubic) -> [Cubic; 2] {
+    let middle = |a: &Vec3, b: &Vec3| (a + b) * 0.5;
+    let (ab, bc, cd) = (middle(&c[0], &c[1]), middle(&c[1], &c[2]), middle(&c[2], &c[3]));
+    let (abc, bcd) = (middle(&ab, &bc), middle(&bc, &cd));
+    let all = middle(&abc, &bcd);
+    [[c[0], ab, abc, all], [all, bcd, cd, c[3]]]
+}
+
+/// Halves of a patch along it.
+pub(super) fn halves_along(net: &Net) -> [Net; 2] {
+    let parts = net.map(|row| halves(&row));
+    [parts.map(|p| p[0]), parts.map(|p| p[1])]
+}
+
+/// Halves of a patch across it.
+pub(super) fn halves_across(net: &Net) -> [Net; 2] {
+    halves_along(&turned(net)).map(|half| turned(&half))
+}
+
+/// The ball about the middle of the control points that holds a patch.
+pub(super) fn ball(net: &Net) -> (Vec3, f64) {
+    let center = net.iter().flatten().sum::<Vec3>() / 16.0;
+    let radius = net.iter().flatten().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
+    (center, radius)
+}
+
+/// Lengths of a patch along and across.
+pub(super) fn extent(net: &Net) -> [f64; 2] {
+    let across = [0, 3].map(|i| (net[3][i] - net[0][i]).norm());
+    let along = [0, 3].map(|j| (net[j][3] - net[j][0]).norm());
+    [along[0].max(along[1]), across[0].max(across[1])]
+}
+
+impl Patch {
+    pub(super) fn new(net: Net) -> Self {
+        let spine = [0.0, 1.0].map(|across| jet(&net, [0.5, across])[0]);
+        let off = |j: usize| {
+            let middle = lerp(&spine[0], &spine[1], j as f64 / 3.0);
+            net[j].iter().map(|p| (p - middle).norm()).fold(0.0, f64::max)
+        };
+        let girth = (0..4).map(off).fold(0.0, f64::max);
+        Self { net, against: false, sharp: false, slack: 0.0, spine, girth }
+    }
+
+    /// Distance of a point to its spine.
+    pub(super) fn remoteness(&self, x: &Vec3) -> f64 {
+        let [a, b] = self.spine;
+        let along = b - a;
+        let square = along.norm_squared();
+        let t = if square > 0.0 { ((x - a).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (x - a - along * t).norm()
+    }
+
+    /// Between two cubics with straight lines across.
+    pub(super) fn straight([first, last]: &[Cubic; 2]) -> Self {
+        let row = |t: f64| std::array::from_fn(|i| lerp(&first[i], &last[i], t));
+        Self::new([*first, row(1.0 / 3.0), row(2.0 / 3.0), *last])
+    }
+}
+
+/// The same cubic from −[`BEYOND`] to 1 + [`BEYOND`].
+fn stretched(c: &Cubic) -> Cubic {
+    // The blossom of the cubic at the three parameters.
+    let at = |x: f64, y: f64, z: f64| {
+        let first = [lerp(&c[0], &c[1], x), lerp(&c[1], &c[2], x), lerp(&c[2], &c[3], x)];
+        let second = [lerp(&first[0], &first[1], y), lerp(&first[1], &first[2], y)];
+        lerp(&second[0], &second[1], z)
+    };
+    let (low, high) = (-BEYOND, 1.0 + BEYOND);
+    [at(low, low, low), at(low, low, high), at(low, high, high), at(high, high, high)]
+}
+
+/// Parameters of a patch and a little beyond, where its bounds still hold.
+pub(super) fn held(parameters: [f64; 2]) -> [f64; 2] {
+    parameters.map(|x| x.clamp(-BEYOND, 1.0 + BEYOND))
+}
+
+/// How much a patch, with what is a little beyond its sides, can bend.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bends {
+    /// Curvature of balls on the side that along × across points to, and on the other, that touch the patch anywhere and
+    /// have no place of it inside.
+    pub(super) hollow: [f64; 2],
+}
+
+impl Bends {
+    /// None where the patch turns too much for a bound, or its parameters do not spread.
+    ///
+    /// From one place to another, a and b away in the parameters, a patch goes by `aU + bV` with U and V among the convex
+    /// hulls of the differences of its control points, and leaves the tangent plane by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv`.
+    pub(super) fn of(net: &Net) -> Option<Self> {
+        let wide = turned(&net.map(|row| stretched(&row))).map(|row| stretched(&row));
+        let wide = turned(&wide);
+        let differences = |net: &Net| net.map(|row| [row[1] - row[0], row[2] - row[1], row[3] - row[2]]);
+        let (along, across) = (differences(&wide), differences(&turned(&wide)));
+        let spread = |all: &[[Vec3; 3]; 4]| {
+            let mean = all.iter().flatten().sum::<Vec3>() / 12.0;
+            let off = all.iter().flatten().map(|d| (d - mean).norm_squared()).fold(0.0, f64::max).sqrt();
+            (mean, off)
+        };
+        let ((u, off_u), (v, off_v)) = (spread(&along), spread(&across));
+        let (size_u, size_v) = (u.norm(), v.norm());
+        let normal = u.cross(&v);
+        let area = normal.norm();
+        let cosine = u.dot(&v).abs() / (size_u * size_v);
+        let progress = (1.0 - cosine).max(0.0).sqrt() - (off_u / size_u).hypot(off_v / size_v);
+        if !(area > 0.0 && progress > PROGRESS) {
+            return None;
+        }
+        let normal = normal / area;
+        let turn = 2.0 * (off_u * size_v + size_u * off_v + off_u * off_v) / area;
+        // Greatest product of a second derivative with any normal of the patch, to both sides. The differences count
+        // thirds of the first derivative, and so ninths of the mixed and two thirds of the others.
+        let most = |all: &mut dyn Iterator<Item = Vec3>| {
+            let mut found = [0.0f64, 0.0, 0.0];
+            let mut first = true;
+            for second in all {
+                let height = normal.dot(&second);
+                if first {
+                    (found[0], found[1]) = (height, -height);
+                    first = false;
+                }
+                found[0] = found[0].max(height);
+                found[1] = found[1].max(-height);
+                found[2] = found[2].max(second.norm_squared());
+            }
+            let tilt = turn * found[2].sqrt();
+            [found[0] + tilt, found[1] + tilt]
+        };
+        let bends = |all: &[[Vec3; 3]; 4]| {
+            most(&mut all.iter().flat_map(|d| [d[1] - d[0], d[2] - d[1]])).map(|x| x * (2.0 / 3.0))
+        };
+        let (uu, vv) = (bends(&along), bends(&across));
+        let mut twists = along.windows(2).flat_map(|rows| (0..3).map(move |i| rows[1][i] - rows[0][i]));
+        let uv = most(&mut twists);
+        let twist = uv[0].max(uv[1]).max(0.0) / (size_u * size_v);
+        let hollow = [0, 1].map(|side| {
+            let (l, k) = (uu[side] / (size_u * size_u), vv[side] / (size_v * size_v));
+            let greatest = 0.5 * (l + k) + (0.5 * (l - k)).hypot(twist);
+            greatest.max(0.0) / (progress * progress)
+        });
+        hollow.iter().all(|h| h.is_finite()).then_some(Self { hollow })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn bumps() -> impl Strategy<Value = Net> {
+        proptest::collection::vec(-0.2..0.2f64, 48).prop_map(|r| {
+            std::array::from_fn(|j| {
+                std::array::from_fn(|i| {
+                    let k = 3 * (4 * j + i);
+                    Vec3::new(i as f64 / 3.0 + 0.2 * r[k], 0.7 * j as f64 / 3.0 + 0.2 * r[k + 1], r[k + 2])
+                })
+            })
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        #[test]
+        fn balls_that_touch_a_patch_hold_no_place_of_it(
+            net in bumps(),
+            flat in 0.05..1.0f64,
+            [u, v, s, t] in [-0.25..1.25f64, -0.25..1.25f64, -0.25..1.25f64, -0.25..1.25f64],
+        ) {
+            let net = net.map(|row| row.map(|p| Vec3::new(p.x, p.y, p.z * flat)));
+            let Some(bends) = Bends::of(&net) else { return Ok(()) };
+            let [touch, along, across] = jet(&net, [u, v]);
+            let [other, ..] = jet(&net, [s, t]);
+            let normal = along.cross(&across).normalize();
+            for (side, hollow) in [1.0, -1.0].into_iter().zip(bends.hollow) {
+                let rise = side * normal.dot(&(other - touch));
+                let room = 0.5 * hollow * (other - touch).norm_squared();
+                prop_assert!(rise <= room + 1e-12, "{rise} {room}");
+            }
+        }
+
+        #[test]
+        fn halves_are_parts(net in bumps(), [u, v] in [0.0..1.0f64, 0.0..1.0f64]) {
+            let [first, last] = halves_along(&net);
+            let whole = jet(&net, [u, v])[0];
+            let part = if u < 0.5 { jet(&first, [2.0 * u, v])[0] } else { jet(&last, [2.0 * u - 1.0, v])[0] };
+            prop_assert!((whole - part).norm() < 1e-12);
+            let [first, last] = halves_across(&net);
+            let part = if v < 0.5 { jet(&first, [u, 2.0 * v])[0] } else { jet(&last, [u, 2.0 * v - 1.0])[0] };
+            prop_assert!((whole - part).norm() < 1e-12);
+        }
+
+        #[test]
+        fn derivatives_are_those_of_the_place(net in bumps(), [u, v] in [0.0..1.0f64, 0.0..1.0f64]) {
+            let h = 1e-5;
+            let at = |u: f64, v: f64| jet(&net, [u, v])[0];
+            let [_, along, across] = jet(&net, [u, v]);
+            prop_assert!(((at(u + h, v) - at(u - h, v)) / (2.0 * h) - along).norm() < 1e-8);
+            prop_assert!(((at(u, v + h) - at(u, v - h)) / (2.0 * h) - across).norm() < 1e-8);
+        }
+    }
+}
