@@ -406,9 +406,15 @@ impl Search<'_> {
         let mut q = start;
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
+            let rho = radius[0] + q.x * (radius[1] - radius[0]);
+            if rho <= 0.0 {
+                // The tip has every azimuth: the one that faces the surface leads down, if any does.
+                let tip = self.point(0.0, height[0] + q.x * (height[1] - height[0]), 0.0);
+                let towards = self.surface.foot(&tip).normal * -self.side;
+                q.y = towards.dot(&self.tool.across[1]).atan2(towards.dot(&self.tool.across[0]));
+            }
             let radial = self.direction(q.y);
             let tangent = self.tool.axis.cross(&radial);
-            let rho = radius[0] + q.x * (radius[1] - radius[0]);
             let p = self.tip + self.tool.axis * (height[0] + q.x * (height[1] - height[0])) + radial * rho;
             let (foot, hessian) = self.surface.foot_and_hessian(&p);
             let value = self.side * foot.distance;

@@ -231,3 +231,34 @@ fn flanks_touch_round_solids_anywhere() {
 }
 
 mod near;
+
+/// A flank that leans little against an ellipsoid: contact is inside of it, near the tip.
+#[test]
+fn contact_on_a_shallow_flank_near_the_tip_is_found() {
+    let ellipsoid = Geometry::Quadric(Quadric {
+        coefficients: [
+            0.889948197825192,
+            0.2480181002908702,
+            0.5256485647940492,
+            2.1842086677464274,
+            0.029351327660240633,
+            0.15939218384872025,
+            0.30990362108909264,
+            -0.7513715908857705,
+            -0.1354983762307729,
+            0.9369436894603721,
+        ],
+    });
+    let bell = tool(&[0.6, 0.11, 0.2, 0.13, 9.78528083003446, 3.643337133155286, 3.0389449769320658]);
+    let gauge = gauge(&ellipsoid, 1.0);
+    // From the tip, where the azimuth is lost, the search must find its way out again.
+    for (tip, expected) in [
+        (v(1.6381600650219679, -1.9676514758421877, -0.882930366992134), 7.5e-5),
+        (v(1.6793591150990066, -1.9516625750054228, -0.8801426202756157), -2.954819942910169e-5),
+        (v(1.7009626382338618, -1.9431379137327112, -0.8789322094997449), 9.99e-5),
+        (v(1.6793591150990066, -1.9516625750054228, -0.8801426202756157), -2.954819942910169e-5),
+    ] {
+        let contact = gauge.contact(&bell, &tip);
+        assert!((contact.clearance - expected).abs() < 1e-9, "{} {expected}", contact.clearance);
+    }
+}

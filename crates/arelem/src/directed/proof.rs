@@ -21,6 +21,9 @@ const MAX_ITERATIONS: u32 = 24;
 /// An extreme is known well enough when its bound and its value differ by this share of the band.
 const ENOUGH: f64 = 2e-4;
 
+/// Share of the band that a vector leaves free on the side of its sag: errors of another proof must not decide about it.
+const ROOM: f64 = 5e-5;
+
 /// Extreme clearances over a cut vector, and whether they were shown to be in the band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extremes {
@@ -47,6 +50,14 @@ struct Line<'a> {
     cancel: &'a dyn Fn() -> bool,
     /// −1 turns a concave clearance into a convex one.
     sign: f64,
+    /// Least and greatest clearance that the vector may have between its ends.
+    limits: [f64; 2],
+}
+
+/// The limits between the ends of a vector: the band less a little room, where the ends themselves leave it.
+fn limits(role: &Working, ends: &Extremes, size: f64) -> [f64; 2] {
+    let (room, rounding) = (ROOM * role.band(), ROUNDING * size);
+    [(room - role.inside).min(ends.least) - rounding, (role.outside - room).max(ends.greatest) + rounding]
 }
 
 impl Line<'_> {
@@ -54,6 +65,10 @@ impl Line<'_> {
         let (tip, tool) = self.sweep.at(x);
         let (contact, missed) = self.role.gauge.contact_within(&tool, &tip);
         Sample { missed, ..self.known(x, &contact, &tip) }
+    }
+
+    fn allows(&self, clearance: f64) -> bool {
+        clearance >= self.limits[0] && clearance <= self.limits[1]
     }
 
     /// True if no part of the tool is nearer to the surface than a level.
@@ -91,30 +106,31 @@ pub(crate) fn extremes(
     }
     if length > 0.0 && turns {
         // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
-        let line = Line { sweep, role, ledger, cancel, sign: 1.0 };
-        return course::extremes(&line, line.sample(0.0), line.sample(length), ends, size);
+        let line = Line { sweep, role, ledger, cancel, sign: 1.0, limits: limits(role, &ends, size) };
+        return course::extremes(&line, line.sample(0.0), line.sample(length), ends);
     }
     if role.shape == Shape::Flat || length <= 0.0 {
         return ends;
     }
     let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
-    let line = Line { sweep, role, ledger, cancel, sign };
+    let limits = limits(role, &ends, size);
+    let line = Line { sweep, role, ledger, cancel, sign, limits };
     let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
     match role.shape {
         Shape::Flat => ends,
         Shape::Convex => {
             let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
-            let proven = ends.proven && role.holds(bound, size);
+            let proven = ends.proven && bound >= limits[0];
             Extremes { least: value.min(least), greatest, proven }
         }
         Shape::Concave => {
             let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
             // The least values are those of the ends, if no other part of the tool is deeper there.
             let deepest = |x| line.certified(x, -role.inside - ROUNDING * size);
-            let proven = ends.proven && role.holds(-bound, size) && deepest(0.0) && deepest(length);
+            let proven = ends.proven && -bound <= limits[1] && deepest(0.0) && deepest(length);
             Extremes { least, greatest: (-value).max(greatest), proven }
         }
-        Shape::General => course::extremes(&line, a, b, ends, size),
+        Shape::General => course::extremes(&line, a, b, ends),
     }
 }
 

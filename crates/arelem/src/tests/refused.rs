@@ -351,3 +351,63 @@ fn a_tangency_in_the_middle_of_a_long_vector_is_found() {
     let sequences = motion.run(AMPLE).expect("a path");
     assert_eq!(sequences.len(), 2);
 }
+
+/// In the narrow end of an ellipse along a cone the tool turns on the spot, bit by bit, until it would go back.
+#[test]
+fn a_path_that_turns_back_on_the_spot_ends() {
+    let motion = Found {
+        cutter: &[0.5538439700773867, 0.16915670338002262],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-0.5480962021314171, 0.271825259760935, -1.1335367908447467),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.05353183534880281, 0.9985661433296188, 0.0),
+        part: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-3.498318622976069, -4.82462733654642, -1.641608164714932),
+                axis: v(0.262856422431742, 0.42727819968396497, -0.8650663796849439),
+                cosine: 0.501657411725158,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Ellipse(Quadric {
+                coefficients: [
+                    1.4195902078603821,
+                    0.09792183230487649,
+                    0.0,
+                    -0.4945833383185727,
+                    0.0,
+                    0.0,
+                    0.2397719454565712,
+                    0.48793474421754335,
+                    0.22166975978727618,
+                    0.0,
+                ],
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(0.05353183534880286, -0.9985661433296188, -1.0378514116909118e-17),
+                distance: 0.294976424727361,
+            }),
+        ),
+        stop: (
+            Relation::To,
+            Geometry::Circle(Cylinder {
+                point: v(-0.7916550680906114, 0.6981867802635764, -1.4724514613349104),
+                axis: v(0.0, 0.0, 1.0),
+                radius: 1.244218724186388,
+            }),
+        ),
+    };
+    match motion.run(AMPLE) {
+        Err(MotionFailure::NoAdmissibleVector { tip, .. }) => {
+            assert!((tip - v(-0.6147, 1.4463, -1.6583)).norm() < 1e-3, "{tip:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+}

@@ -31,6 +31,8 @@ const LEAST_TURN_COSINE: f64 = 0.5;
 const CORNER_BANDS: f64 = 20.0;
 /// How many times the width of the bands ahead of a place without a way on it is looked for another contact.
 const CORNER_PROBES: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
+/// How many times the width of the bands a path goes on before what it does there is not turning on the spot any more.
+const KINK_BANDS: f64 = 0.1;
 /// Sine between the normals of two contacts above which they are not the same one.
 const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Cosine between two directions above which both need not be tried.
@@ -65,6 +67,8 @@ pub(super) struct Stepper<'a> {
     turned: Option<(Vec3, Vec3)>,
     /// The last vector; zero before the first.
     last: Vec3,
+    /// Where the path came from farther off than it may turn on the spot, and its direction then.
+    arrived: Option<(Vec3, Vec3)>,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
 }
@@ -90,6 +94,7 @@ impl<'a> Stepper<'a> {
             correction: 1.0,
             turned: None,
             last: Vec3::zeros(),
+            arrived: None,
             ledgers: Default::default(),
         }
     }
@@ -139,15 +144,34 @@ impl<'a> Stepper<'a> {
     ) -> Result<Vertex, MotionFailure> {
         if let Ok(next) = &found {
             self.last = next.tip - here.tip;
+            if !self.is_where_it_arrived(&next.tip) {
+                self.arrived = Some((next.tip, self.last));
+            }
         }
         found
+    }
+
+    fn bands(&self) -> f64 {
+        self.prepared.part.band() + self.prepared.drive.band()
+    }
+
+    /// True if all that the path has done since it arrived is to turn on the spot.
+    fn is_where_it_arrived(&self, tip: &Vec3) -> bool {
+        self.arrived.is_some_and(|(at, _)| (tip - at).norm() <= KINK_BANDS * self.bands())
+    }
+
+    /// True if the path, bit by bit, has turned so far on the spot that it goes back from where it came.
+    fn kinks_back(&self, here: &Vertex, direction: &Vec3) -> bool {
+        self.is_where_it_arrived(&here.tip)
+            && self.arrived.is_some_and(|(_, before)| direction.dot(&before) < 0.0)
     }
 
     /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
     /// the spot, against its direction before that.
     fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
-        let near = CORNER_BANDS * (self.prepared.part.band() + self.prepared.drive.band());
+        let near = CORNER_BANDS * self.bands();
         tangent.dot(&self.last) < 0.0
+            || self.kinks_back(here, tangent)
             || self
                 .turned
                 .is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
@@ -335,6 +359,7 @@ impl<'a> Stepper<'a> {
         let forward = chord.dot(&here.tangent) > 0.5 * reached;
         let least_cosine = if reached <= self.corner() { 0.0 } else { LEAST_TURN_COSINE };
         if !forward
+            || self.kinks_back(here, &chord)
             || reached <= LEAST_VECTOR * self.prepared.size
             || vertex.tangent.dot(&here.tangent) < least_cosine
         {

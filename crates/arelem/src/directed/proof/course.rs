@@ -23,9 +23,9 @@ const OPEN: f64 = 0.1;
 const LEAST_OPEN: f64 = 1e-5;
 
 /// Every interior extreme between two samples, and the proof that there are no others beyond the band.
-pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, size: f64) -> Extremes {
+pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) -> Extremes {
     let (least, greatest) = (ends.least, ends.greatest);
-    let mut course = Course { line, size, samples: vec![a], least, greatest, is_exhausted: false };
+    let mut course = Course { line, samples: vec![a], least, greatest, is_exhausted: false };
     let mut from = a;
     for k in 1..=PIECES {
         let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
@@ -39,7 +39,6 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes, si
 
 struct Course<'a, 'b> {
     line: &'a Line<'b>,
-    size: f64,
     samples: Vec<Sample>,
     least: f64,
     greatest: f64,
@@ -54,7 +53,7 @@ impl Course<'_, '_> {
     }
 
     fn holds(&self) -> bool {
-        self.line.role.holds(self.least, self.size) && self.line.role.holds(self.greatest, self.size)
+        self.line.allows(self.least) && self.line.allows(self.greatest)
     }
 
     /// Looks for extremes between two samples. Where the values do not fit the slopes, contact jumps from one part of
@@ -163,7 +162,7 @@ impl Course<'_, '_> {
         let Bend::AtMost(bend) = self.bend(a, b) else { return false };
         let low = lowest((a.value - self.open(a), b.value - self.open(b)), bend, b.x - a.x);
         let high = highest(a, b, bend);
-        self.line.role.holds(low, self.size) && self.line.role.holds(high, self.size)
+        self.line.allows(low) && self.line.allows(high)
     }
 }
 
