@@ -123,7 +123,8 @@ fn parallel_cone(tool: &Tool, cone: &ConeForm, side: f64, tip: &Vec3) -> Contact
     let surface = contact - gradient * clearance;
     let generator = cone.axis * cone.cosine + radial * cone.sine;
     let along_ruling = Contact { clearance, gradient, tool: contact, surface };
-    if side > 0.0 && (surface - cone.vertex).dot(&generator) < 0.0 {
+    // Behind the vertex it is the vertex that is near; where the tool cuts in, the way out past the vertex may be shorter.
+    if side > 0.0 && (clearance < 0.0 || (surface - cone.vertex).dot(&generator) < 0.0) {
         return dual::about_vertex(tool, cone, tip, along_ruling);
     }
     along_ruling

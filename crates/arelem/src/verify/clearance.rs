@@ -260,12 +260,6 @@ impl Clearance<'_> {
         Bend::over(hill, depth)
     }
 
-    /// From the tool end to the place of the tool that is in contact.
-    pub(super) fn arm(&self, normal: &Vec3, axis: &Vec3) -> Vec3 {
-        let tool = Tool { profile: self.profile, axis: *axis };
-        axis * self.raise + tool.support(&-normal).1
-    }
-
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real
     /// points, or a position that is not finite).
     pub(super) fn at(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {

@@ -12,6 +12,8 @@ const FIRST_PIECES: usize = 4;
 const FREE_EVALUATIONS: usize = 4096;
 /// Sine below which two opposite axes leave the plane open in which the axis turns.
 const OPPOSITE: f64 = 1e-9;
+/// Step of the derivative with respect to the vector parameter when the tool axis turns.
+const TURN_STEP: f64 = 1e-5;
 /// Share of the radius of curvature that a tool may be too deep where the slope of a clearance is bounded.
 const DEEPEST: f64 = 0.5;
 
@@ -119,20 +121,26 @@ impl Span<'_> {
         self.from.axis != self.to.axis
     }
 
+    fn value(&self, t: f64) -> Option<f64> {
+        let place = between(&self.from, &self.to, t)?;
+        self.clearance.at(&place.tip, &place.axis).map(|r| r.value)
+    }
+
     fn sample(&self, t: f64) -> Option<Sample> {
         let place = between(&self.from, &self.to, t)?;
         self.known(t, self.clearance.at(&place.tip, &place.axis)?)
     }
 
     fn known(&self, t: f64, reading: Reading) -> Option<Sample> {
-        let mut rate = self.to.tip - self.from.tip;
-        if self.turns() {
-            let place = between(&self.from, &self.to, t)?;
-            let round = self.from.axis.cross(&self.to.axis).try_normalize(0.0)?;
-            let arm = self.clearance.arm(&reading.normal, &place.axis);
-            rate += round.cross(&arm) * turning(&self.from, &self.to);
-        }
-        Some(Sample { t, value: reading.value, slope: reading.normal.dot(&rate), error: reading.error })
+        let slope = if self.turns() {
+            // Where a flat face or a straight piece of the tool is in contact the reading does not say with which of its
+            // places, and they go round with different speeds.
+            let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
+            (self.value(high)? - self.value(low)?) / (high - low)
+        } else {
+            reading.normal.dot(&(self.to.tip - self.from.tip))
+        };
+        Some(Sample { t, value: reading.value, slope, error: reading.error })
     }
 
     /// Extremes to within `tolerance`; None where there is no distance.
