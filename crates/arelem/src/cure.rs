@@ -171,8 +171,7 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             MotionFailure::NotReachedAlong { .. }
             | MotionFailure::OffsetWithoutDirection
             | MotionFailure::StartUpDiverges { .. }
-            | MotionFailure::NeverMet { .. }
-            | MotionFailure::NoneAhead { .. },
+            | MotionFailure::NoPositionAlong { .. },
             MotionCommand::Start(_) | MotionCommand::Offset(_),
         ) => start_up(state, command),
         _ => Vec::new(),

@@ -208,6 +208,29 @@ pub enum MotionFailure {
         /// Its unit direction.
         direction: Vec3,
     },
+    /// Along INDIRV or INDIRP the tool comes to no position at the drive surface (714), or only behind it or in another
+    /// relation (724).
+    #[error("no position {relation:?} the drive surface along the direction, {found} elsewhere")]
+    NoPositionAlong {
+        /// The relation asked for.
+        relation: Relation,
+        /// Where the tool stands.
+        from: Vec3,
+        /// Unit direction across the tool axis.
+        direction: Vec3,
+        /// Positions on the whole line, ahead and behind, with either relation.
+        found: usize,
+        /// Radii of the tool and of the circle that it stands in and does not fit into.
+        narrow: Option<[f64; 2]>,
+    },
+    /// Drive, part and check surface of a start-up are planes and two of them are parallel (602).
+    #[error("{:?} and {:?} surface are parallel planes, {apart} apart", roles[0], roles[1])]
+    ParallelPlanes {
+        /// Which two.
+        roles: [RoleName; 2],
+        /// Distance between them.
+        apart: f64,
+    },
     /// OFFSET without a direction (33).
     #[error("OFFSET without direction")]
     OffsetWithoutDirection,
@@ -374,6 +397,9 @@ impl MotionFailure {
             Self::TangentSurfaces { .. } => 802,
             Self::NeverMet { .. } => 714,
             Self::NoneAhead { .. } => 724,
+            Self::NoPositionAlong { found: 0, .. } => 714,
+            Self::NoPositionAlong { .. } => 724,
+            Self::ParallelPlanes { .. } => 602,
             Self::NotTangent { .. } => 721,
             Self::TangentLines { .. } => 720,
             Self::ToolTooLarge { .. } => 705,

@@ -60,9 +60,32 @@ pub(crate) fn start(
     };
     let tip = match closed {
         Some(tip) => tip,
-        None => in_space(&mut work)?,
+        None => in_space(&mut work).map_err(|failure| parallel(&work, failure))?,
     };
     work.sequence(tip)
+}
+
+/// Where no position is found because two of the surfaces are parallel planes: that.
+fn parallel(work: &StartUp<'_>, failure: MotionFailure) -> MotionFailure {
+    if !matches!(failure, MotionFailure::StartUpDiverges { .. }) {
+        return failure;
+    }
+    let planes = || {
+        work.roles.iter().filter_map(|role| match &role.gauge.surface {
+            Surface::Plane(plane) => Some((role.name, plane)),
+            _ => None,
+        })
+    };
+    for (k, (one, first)) in planes().enumerate() {
+        for (other, second) in planes().skip(k + 1) {
+            if first.normal.cross(&second.normal).norm() <= PARALLEL_SINE {
+                let sense = first.normal.dot(&second.normal).signum();
+                let apart = (first.distance - sense * second.distance).abs();
+                return MotionFailure::ParallelPlanes { roles: [one, other], apart };
+            }
+        }
+    }
+    failure
 }
 
 /// By which route a GO finds its position.
@@ -89,7 +112,7 @@ pub(crate) fn offset(
     let Some(direction) = state.directions[0] else { return Err(MotionFailure::OffsetWithoutDirection) };
     let direction = directed::unit_direction(&direction, &work.tip)?;
     side::assign(&mut work, None)?;
-    follow_surfaces(&mut work, &direction)?;
+    follow_surfaces(&mut work, &direction, None)?;
     let drive = &work.roles[0];
     let along =
         drive.gauge.surface.directed_distance(&work.tip, &direction, RootSelection::Ahead).map_err(|_| {
@@ -188,7 +211,7 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
     let original = work.tip;
     if let Some(direction) = directed::only_direction(work)? {
         side::assign(work, None)?;
-        follow_surfaces(work, &direction)?;
+        follow_surfaces(work, &direction, None)?;
         return directed::along(work, &direction);
     }
     let start = directed::interim(work)?;
@@ -199,13 +222,13 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         .iter()
         .position(|r| matches!(r.relation, Relation::TangentToDrive | Relation::TangentToPart));
     if tangent.is_some() {
-        follow_surfaces(work, &(start - original))?;
+        follow_surfaces(work, &(start - original), None)?;
         return directed::tangent_start(work, &start);
     }
     let mut tip = if is_following(work) {
         // The sense of the move, where the law needs it, is that of the move with the present axis.
         let first = settle(work, guide, &start).unwrap_or(start);
-        follow_surfaces(work, &(first - original))?;
+        follow_surfaces(work, &(first - original), Some(first))?;
         settle(work, guide, &first).or_else(|_| settle(work, guide, &start))?
     } else {
         settle(work, guide, &start)?
@@ -230,7 +253,9 @@ fn is_following(work: &StartUp<'_>) -> bool {
 
 /// Lets the axis follow the surfaces, whose sides are known, for a move `ahead`. A part surface that takes no part in the
 /// start-up (NOPS) still guides the axis.
-fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3) -> Result<(), MotionFailure> {
+///
+/// How the axis tilts is judged at the place where the move ends, if that is known, as the next motion will judge it.
+fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3, place: Option<Vec3>) -> Result<(), MotionFailure> {
     if !is_following(work) {
         return Ok(());
     }
@@ -240,6 +265,7 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3) -> Result<(), MotionFai
     modal.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
     let find = |name: RoleName| work.roles.iter().find(|r| r.name == name);
     let part = find(RoleName::Part).unwrap_or(&modal);
+    let tip = place.unwrap_or(tip);
     let law = Law::new(&state.axis_mode, Some(part), find(RoleName::Drive), (&work.tool, &tip, ahead))
         .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip })?;
     if let Some(law) = law {
@@ -327,6 +353,8 @@ fn staged(
     position::solve(&work.attitude, conditions, &tip).map(|solution| solution.tip)
 }
 
+/// Sine between the normals of two planes below which they are parallel.
+const PARALLEL_SINE: f64 = 1e-6;
 /// Stages of the homotopy.
 const HOMOTOPY_STEPS: u32 = 24;
 

@@ -7,5 +7,6 @@ mod economy;
 #[path = "../../../crates/apt-post/tests/interpreter/mod.rs"]
 mod interpreter;
 mod invariance;
+mod labels;
 mod tapes;
 mod verified;

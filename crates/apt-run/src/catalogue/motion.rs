@@ -186,6 +186,33 @@ fn start(failure: &Failure) -> Option<Text> {
             format!("from {} along {} the {} is not met", place(from), place(direction), role(*name)),
         )
         .hint("correct INDIRV or INDIRP"),
+        Failure::NoPositionAlong { relation: wanted, from, direction, found, narrow } => {
+            let what = format!(
+                "from {} along {} there is no position {} the drive surface",
+                place(from),
+                place(direction),
+                relation(*wanted)
+            );
+            say("APT0621", what).hint(match (narrow, found) {
+                (Some([tool, circle]), _) => format!(
+                    "the tool of radius {} does not fit into the circle of radius {}",
+                    number(*tool),
+                    number(*circle)
+                ),
+                (None, 0) => "correct INDIRV or INDIRP".to_owned(),
+                (None, _) => "there is one behind the tool, or with TO and PAST exchanged".to_owned(),
+            })
+        }
+        Failure::ParallelPlanes { roles: [one, other], apart } => say(
+            "APT0624",
+            format!(
+                "the {} and the {} are parallel planes, {} apart, so there is no position at both",
+                role(*one),
+                role(*other),
+                number(*apart)
+            ),
+        )
+        .hint("choose a drive surface that stands on the part surface"),
         Failure::OffsetWithoutDirection => {
             say("APT0622", "OFFSET needs a direction").hint("give INDIRV or INDIRP towards the drive surface before it")
         }

@@ -168,6 +168,13 @@ mod tests {
         made
     }
 
+    /// The same for the first of several codes that is found.
+    fn fixes_of_any(text: &str, codes: &[&'static str]) -> Vec<(String, String)> {
+        let all = found(text);
+        let code = codes.iter().find(|code| all.iter().any(|one| one.wording.code == **code));
+        fixes(text, code.unwrap_or_else(|| panic!("none of {codes:?}: {all:?}")))
+    }
+
     const HEAD: &str = "CUTTER/.5\nL1=LINE/0,0,1,0\nL2=LINE/6,0,6,1\nC1=CIRCLE/6,.5,1\n";
 
     #[test]
@@ -261,6 +268,71 @@ mod tests {
         assert_eq!(made.len(), 1, "{made:?}");
         assert_eq!(made[0].0, "Replace TLRGT by TLLFT");
         assert!(made[0].1.contains("TLLFT,GOLFT/C9,ON,L8"), "{made:?}");
+    }
+
+    /// A ball 0.01 above part surfaces of many kinds, and past what is allowed: the tool is moved in, or it is tolerated.
+    #[test]
+    fn a_start_out_of_tolerance_is_cured_on_every_kind_of_part_surface() {
+        for part in [
+            "PLANE/.1,.2,1,-1",
+            "CYLNDR/0,0,-3,0,1,.1,3",
+            "SPHERE/0,0,-3,3",
+            "CONE/(POINT/0,0,1),(VECTOR/.1,0,-1),60",
+            "QADRIC/1,2,3,0,0,0,0,0,18,0",
+        ] {
+            let text = format!(
+                "CUTTER/.5,.25\nOUTTOL/.001\nPS={part}\nDS=PLANE/0,1,0,.3\nFROM/-2,0,4\n\
+                 GO/ON,DS,TO,PS,ON,(PLANE/1,0,0,-1)\nGODLTA/.01\nINDIRV/1,0,0\nTLON,GOFWD/DS,ON,(PLANE/1,0,0,1)\nFINI\n"
+            );
+            let made = fixes(&text, "APT0625");
+            let titles: Vec<&str> = made.iter().map(|(title, _)| title.as_str()).collect();
+            assert!(titles.iter().any(|title| title.starts_with("Insert OUTTOL/")), "{part}: {titles:?}");
+            assert!(titles.iter().any(|title| title.starts_with("Insert GOTO/")), "{part}: {titles:?}");
+        }
+    }
+
+    /// The stop is asked for in a relation, or the other way, in which it does not come: on curved check surfaces too.
+    #[test]
+    fn a_stop_that_lies_behind_is_cured_on_every_kind_of_check_surface() {
+        for check in [
+            "CIRCLE/6,0,1",
+            "SPHERE/6,0,0,1",
+            "CONE/(POINT/6,0,2),(VECTOR/0,0,-1),30",
+            "QADRIC/1,2,3,0,0,0,-12,0,0,35",
+        ] {
+            let text = format!("{HEAD}CS={check}\nFROM/2,2,0\nGO/TO,L1\nTLLFT,GORGT/L1,TO,CS\nFINI\n");
+            let made = fixes_of_any(&text, &["APT0641", "APT0642"]);
+            let turned = made.iter().find(|(title, _)| title == "Replace GORGT by GOLFT");
+            assert!(turned.is_some_and(|(_, fixed)| fixed.contains("GOLFT/L1,TO,CS")), "{check}: {made:?}");
+        }
+    }
+
+    #[test]
+    fn a_start_up_without_a_position_says_why() {
+        for (text, code, words) in [
+            (
+                "FROM/0,0,1\nINDIRV/1,0,0\nGO/TO,(CIRCLE/0,0,.2)\nFINI\n",
+                "APT0621",
+                "the tool of radius 0.25 does not fit into the circle of radius 0.2",
+            ),
+            (
+                "FROM/9,0,1\nINDIRV/1,0,0\nGO/TO,C1\nFINI\n",
+                "APT0621",
+                "there is no position TO the drive surface",
+            ),
+            (
+                "FROM/0,0,3\nGO/TO,(PLANE/0,0,1,1),TO,(PLANE/0,0,1,0)\nFINI\n",
+                "APT0624",
+                "the drive surface and the part surface are parallel planes, 1 apart",
+            ),
+        ] {
+            let all = found(&format!("{HEAD}{text}"));
+            let Some(told) = all.iter().find(|one| one.wording.code == code) else {
+                panic!("{text}: {all:?}")
+            };
+            let said = format!("{:?}", told.wording);
+            assert!(said.contains(words), "{text}: {said}");
+        }
     }
 
     #[test]

@@ -191,7 +191,7 @@ impl<'a> March<'a> {
         }
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
-            remaining: self.watcher.nearest.0.min(self.tangency.nearest.abs()),
+            remaining: self.watcher.remaining(&here.tip, &here.axis).min(self.tangency.nearest.abs()),
             at: here.tip,
         })
     }

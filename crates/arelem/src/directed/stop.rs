@@ -132,6 +132,13 @@ impl<'a> Watcher<'a> {
         (contact.clearance - working.gauge.thickness - working.rest(), side)
     }
 
+    /// How far the relation of the nearest check surface is from a position; infinite where all stop at a tangency.
+    pub(super) fn remaining(&self, tip: &Vec3, axis: &Vec3) -> f64 {
+        let tool = self.prepared.tool.turned(*axis);
+        let crossed = (0..self.checks.len()).filter(|index| !is_tangent(self.checks[*index].relation));
+        crossed.map(|index| self.value(index, &tool, tip).0.abs()).fold(f64::INFINITY, f64::min)
+    }
+
     /// The function at a distance from the start of a vector.
     fn value_at(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> (f64, f64) {
         let (tip, tool) = sweep.at(x);

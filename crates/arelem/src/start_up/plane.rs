@@ -5,7 +5,7 @@ use apt_geometry::{Vec3, motion::Relation, surface::Surface};
 
 use super::{StartUp, directed::unit_direction, side};
 use crate::{
-    error::{Course, MotionFailure, RoleName},
+    error::{MotionFailure, RoleName},
     plane_curve::Curve,
     role::Working,
 };
@@ -125,13 +125,8 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
     }
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
     if candidates.is_empty() {
-        return Err(MotionFailure::NeverMet {
-            check: 0,
-            relation,
-            nearest: work.roles[0].gauge.surface.signed_distance(&work.tip).abs(),
-            at: work.tip,
-            course: Course::Analytic,
-        });
+        let (from, narrow) = (work.tip, None);
+        return Err(MotionFailure::NoPositionAlong { relation, from, direction: flat, found: 0, narrow });
     }
     let found = candidates.len();
     let start = curve.signed_distance(&work.tip, &axis);
@@ -146,7 +141,11 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
         }
         label = if label == Relation::To { Relation::Past } else { Relation::To };
     }
-    Err(MotionFailure::NoneAhead { check: 0, relation, found })
+    let narrow = match curve {
+        Curve::Circle { radius, .. } if start < 0.0 && reach > *radius => Some([work.tool.radius(), *radius]),
+        _ => None,
+    };
+    Err(MotionFailure::NoPositionAlong { relation, from: work.tip, direction: flat, found, narrow })
 }
 
 /// Along the tool axis to the part plane, if there is one.

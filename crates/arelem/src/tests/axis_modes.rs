@@ -105,6 +105,20 @@ fn holds(p: &Program, mode: &ToolAxis, base: &Geometry, other: &Geometry) -> Res
     proven(p)
 }
 
+/// Seen from where the tool comes from the axis would tilt the other way than from where the start-up ends.
+#[test]
+fn a_start_up_tilts_the_axis_as_the_motion_behind_it() {
+    let (part, drive) = (hill(3, 0.1, 0.0), wall(1, 0.0, Relation::To));
+    let mode = axis_mode(true, 2, -19.657_173_566_075_166, 0.0, v(0.1, 1.0, 0.2));
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, BALL]).from(-3.0, 0.0, 9.0);
+    p.run(&MotionCommand::ToolAxis(mode));
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &x(-1.0))]);
+    p.side(DriveSide::Right).indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(0.8));
+    holds(&p, &mode, &part, &drive).expect("its angles");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

@@ -11,12 +11,19 @@ use apt_geometry::canonical::{Interval, TabulatedCylinder};
 use super::*;
 
 /// A plane curve by a parameter: position, first and second derivative in x and y.
-type Curve<'a> = &'a dyn Fn(f64) -> [[f64; 2]; 3];
+pub(super) type Curve<'a> = &'a dyn Fn(f64) -> [[f64; 2]; 3];
 
 /// The integral for the parallel curve at a signed distance to the left, over the part of it that lies between two
 /// limits of x or y.
-fn integral(curve: Curve<'_>, range: [f64; 2], left: f64, axis: usize, between: [f64; 2], band: f64) -> f64 {
-    let steps = 200_000;
+pub(super) fn integral(
+    curve: Curve<'_>,
+    range: [f64; 2],
+    left: f64,
+    axis: usize,
+    between: [f64; 2],
+    band: f64,
+) -> f64 {
+    let steps = 50_000;
     let width = (range[1] - range[0]) / f64::from(steps);
     let mut sum = 0.0;
     for k in 0..steps {
@@ -44,11 +51,11 @@ fn assert_frugal(name: &str, sequence: &CutSequence, integral: f64) {
     assert!(f64::from(minimum) <= integral.max(1.0), "{name}: bound {minimum} above the integral {integral}");
 }
 
-fn x(d: f64) -> Geometry {
+pub(super) fn x(d: f64) -> Geometry {
     plane(1.0, 0.0, 0.0, d)
 }
 
-fn ground() -> Geometry {
+pub(super) fn ground() -> Geometry {
     plane(0.0, 0.0, 1.0, 0.0)
 }
 
@@ -106,20 +113,29 @@ const TABLE: [[f64; 4]; 5] = [
 const TABLE_END: [f64; 2] = [16.976_504_32, -4.407_081_82];
 
 pub(super) fn table() -> Geometry {
+    tabulated(&TABLE, TABLE_END)
+}
+
+pub(super) fn tabulated(table: &[[f64; 4]], end: [f64; 2]) -> Geometry {
     let interval = |[u, v, a, b]: [f64; 4]| Interval { u, v, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
         axes: [Vec3::x(), Vec3::y(), Vec3::z()],
         kind: 0.0,
-        intervals: TABLE.map(interval).to_vec(),
-        last: TABLE_END,
+        intervals: table.iter().copied().map(interval).collect(),
+        last: end,
     }))
 }
 
 /// The directrix over the intervals in order: the whole part of the parameter tells which.
 fn along_table(t: f64) -> [[f64; 2]; 3] {
-    let k = (t as usize).min(TABLE.len() - 1);
-    let [u, v, a, b] = TABLE[k];
-    let end = TABLE.get(k + 1).map_or(TABLE_END, |next| [next[0], next[1]]);
+    along_directrix(&TABLE, TABLE_END, t)
+}
+
+/// The same for any directrix, given by u, v, a, b of its intervals and its end.
+pub(super) fn along_directrix(table: &[[f64; 4]], table_end: [f64; 2], t: f64) -> [[f64; 2]; 3] {
+    let k = (t as usize).min(table.len() - 1);
+    let [u, v, a, b] = table[k];
+    let end = table.get(k + 1).map_or(table_end, |next| [next[0], next[1]]);
     let (dx, dy) = (end[0] - u, end[1] - v);
     let length = dx.hypot(dy);
     let (cx, cy) = (dx / length, dy / length);

@@ -9,6 +9,7 @@ mod cost;
 mod disk;
 mod economy;
 mod found;
+mod frugal;
 mod gouges;
 mod properties;
 mod refused;

@@ -256,3 +256,41 @@ fn the_axis_turns_over_the_vertex_of_a_cone_in_its_band() {
         proven(&p);
     }
 }
+
+/// GO leaves the axis to the lead that its own move has; a motion that goes the other way turns the tool over while it begins.
+#[test]
+fn a_motion_against_the_move_of_the_start_up_turns_the_lead_over() {
+    let lead = 12f64.to_radians();
+    let mode = || ToolAxis::AtAngle { part: true, angle: 15f64.to_radians(), mode: AxisAngle::Lead(lead) };
+    let middle = plane(0.0, 1.0, 0.0, 0.0);
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let parts = [
+        ("plane", plane(0.0, 0.0, 1.0, 5.0)),
+        ("ball", sphere(0.0, 0.0, 0.0, 5.0)),
+        ("roof", cylinder(Vec3::zeros(), v(0.1, 1.0, 0.0), 5.0)),
+        ("tube", cylinder(v(0.0, 0.0, 11.0), v(0.1, 1.0, 0.0), 6.0)),
+    ];
+    for cutter in [&[0.5, 0.25][..], &[0.75, 0.2], &[0.5]] {
+        for (name, part) in &parts {
+            let mut p = program(cutter, mode());
+            p.go(&[(Relation::On, &middle), (Relation::To, part), (Relation::On, &x(-1.0))]);
+            p.indirv(-1.0, 0.0, 0.0);
+            let command = motion(Turn::Forward, &middle, &[(Relation::On, 1, &x(-3.5))]);
+            assert_eq!(p.attempt(&command).err(), None, "{name}, {cutter:?}");
+            proven(&p);
+            let sequence = p.last();
+            // It leads at the end as it lagged at the start, and never jumps.
+            let [.., before, end] = sequence.points.as_slice() else { panic!("{name}: {sequence:?}") };
+            let ahead = (end.tip - before.tip).normalize();
+            let lags = sequence.start.axis.dot(&(sequence.points[0].tip - sequence.start.tip).normalize());
+            assert!(lags < -0.1, "{name}, {cutter:?}: {:?}", sequence.start);
+            assert!((end.axis.dot(&ahead) - lead.sin()).abs() < 0.05, "{name}, {cutter:?}: {end:?}");
+            let mut from = &sequence.start;
+            for to in &sequence.points {
+                assert!((to.axis - from.axis).norm() < 0.4, "{name}, {cutter:?}: {from:?} to {to:?}");
+                assert!(to.tip.x < from.tip.x, "{name}, {cutter:?}: {from:?} to {to:?}");
+                from = to;
+            }
+        }
+    }
+}

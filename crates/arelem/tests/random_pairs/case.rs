@@ -40,6 +40,8 @@ const PASSES: f64 = 0.1;
 const DELTAS: f64 = 0.2;
 /// Draws of a case before another seed is taken.
 const DRAWS: u32 = 200;
+/// Draws of a case that must be as wished.
+const WISHED_DRAWS: u32 = 2000;
 /// Draws of a place to come from.
 const APPROACHES: u32 = 40;
 
@@ -63,6 +65,37 @@ pub(crate) struct Placed {
     pub(crate) side: f64,
     /// As check surface: which position stops the motion.
     pub(crate) occurrence: u32,
+    /// THICK for it.
+    pub(crate) thickness: f64,
+}
+
+/// What a case must be like, with a path for sure; what is not said is drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Wish {
+    /// Shape of the tool.
+    pub(crate) shape: Option<&'static str>,
+    /// No line and no point.
+    pub(crate) is_wide: bool,
+    /// TLONPS or TLOFPS.
+    pub(crate) part_on: Option<bool>,
+    pub(crate) drive: Option<DriveSide>,
+    /// THICK of part, drive and check surface.
+    pub(crate) thickness: Option<[f64; 3]>,
+    /// The check surface, its relation and the count before INTOF.
+    pub(crate) stop: Option<(Kind, Relation, u32)>,
+    /// The third surface of the start-up.
+    pub(crate) first: Option<(Kind, Relation)>,
+    /// Surfaces of the start-up.
+    pub(crate) surfaces: Option<usize>,
+    /// Whether the start-up goes past the drive surface.
+    pub(crate) passes_drive: Option<bool>,
+}
+
+impl Wish {
+    /// A tool with a diameter, so that every stock has a meaning.
+    pub(crate) fn wide() -> Self {
+        Self { is_wide: true, ..Self::default() }
+    }
 }
 
 /// A motion, and what is asked of it. Lengths in program units.
@@ -92,7 +125,6 @@ pub(crate) struct Case {
     pub(crate) budget: Budget,
     pub(crate) inside: f64,
     pub(crate) outside: f64,
-    pub(crate) thickness: f64,
     pub(crate) drive_side: DriveSide,
     pub(crate) forward: Vec3,
     /// How far along the path the check surface was laid.
@@ -111,13 +143,28 @@ impl Case {
     /// The same for a tool that stands on the part surface in a certain way.
     pub(crate) fn draw_standing(part: Kind, drive: Kind, stance: Stance, seed: u64) -> Option<Self> {
         let mut random = Random(seed);
-        (0..DRAWS).find_map(|_| Self::attempt(part, drive, stance, &mut random))
+        (0..DRAWS).find_map(|_| Self::attempt((part, drive), stance, None, &mut random))
     }
 
-    fn attempt(part_kind: Kind, drive_kind: Kind, stance: Stance, random: &mut Random) -> Option<Self> {
+    /// A case that is as wished.
+    pub(crate) fn wished(part: Kind, drive: Kind, wish: &Wish, seed: u64) -> Option<Self> {
+        let mut random = Random(seed);
+        (0..WISHED_DRAWS).find_map(|_| Self::attempt((part, drive), Stance::Any, Some(wish), &mut random))
+    }
+
+    fn attempt(
+        (part_kind, drive_kind): (Kind, Kind),
+        stance: Stance,
+        asked: Option<&Wish>,
+        random: &mut Random,
+    ) -> Option<Self> {
+        let wish = asked.copied().unwrap_or_default();
         let (shape, numbers) = tools::draw(random);
+        if wish.shape.is_some_and(|wished| wished != shape) || wish.is_wide && numbers[0] == 0.0 {
+            return None;
+        }
         let cutter = Cutter::from_numbers(&numbers, 1.0).ok()?;
-        let is_certain = random.next() >= LOOSE;
+        let is_certain = random.next() >= LOOSE || asked.is_some();
         let place =
             Vec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         let (axis, up) = axis_and_part_normal(part_kind, random)?;
@@ -130,8 +177,12 @@ impl Case {
         }
         let part_on = random.next() < 0.15 || stance == Stance::SquareOn;
         let drive_on = random.next() < 0.25;
+        let part_on = wish.part_on.unwrap_or(part_on);
+        let drive_on = wish.drive.map_or(drive_on, |side| side == DriveSide::On);
         let thickness = if random.next() < 0.25 { random.between(0.01, 0.2) } else { 0.0 };
+        let [part_thickness, drive_thickness, check_thickness] = wish.thickness.unwrap_or([thickness; 3]);
         let is_tangent = is_certain && random.next() < TANGENT;
+        let is_tangent = wish.stop.map_or(is_tangent, |(_, relation, _)| is_tangency(relation));
         // At a tangency all three surfaces meet at clearance zero, which must not be the limit of a band.
         let (inside, outside) = if is_tangent {
             random.pick(&[(0.001, 0.001), (0.01, 0.005), (0.00002, 0.00003)])
@@ -146,7 +197,11 @@ impl Case {
             ])
         };
         let relation = |on: bool| if on { Relation::On } else { Relation::To };
-        let laid = |kind: Kind, normal: &Vec3, relation: Relation, tip: &Vec3, random: &mut Random| {
+        let laid = |kind: Kind,
+                    normal: &Vec3,
+                    (relation, thickness): (Relation, f64),
+                    tip: &Vec3,
+                    random: &mut Random| {
             let mut touch = *tip;
             if relation != Relation::On {
                 touch += tools::support(&cutter, &axis, &-normal) - normal * thickness;
@@ -155,31 +210,39 @@ impl Case {
                 touch += normal * random.between(-0.5, 0.1);
             }
             let (geometry, side) = kinds::through(kind, random, &touch, normal)?;
-            Some(Placed { geometry, relation, side, occurrence: 1 })
+            Some(Placed { geometry, relation, side, occurrence: 1, thickness })
         };
-        let part = laid(part_kind, &up, relation(part_on), &place, random)?;
-        let drive = laid(drive_kind, &out, relation(drive_on), &place, random)?;
+        let part = laid(part_kind, &up, (relation(part_on), part_thickness), &place, random)?;
+        let drive = laid(drive_kind, &out, (relation(drive_on), drive_thickness), &place, random)?;
         let reach = random.between(0.2, 2.5);
         let entry = if is_tangent { place - along * reach } else { place };
         let (relation_of_first, toward) = (
             random.pick(&[Relation::On, Relation::On, Relation::To, Relation::Past]),
             random.pick(&[1.0, -1.0]),
         );
+        let (kind_of_first, relation_of_first) = wish.first.unwrap_or((Kind::Plane, relation_of_first));
         let facing_first = if relation_of_first == Relation::On { along } else { along * toward };
-        let first = laid(Kind::Plane, &facing_first, relation_of_first, &entry, random)?;
+        let facing_first = match kind_of_first {
+            Kind::Plane => facing_first,
+            kind => facing(kind, &facing_first, random)?,
+        };
+        let first = laid(kind_of_first, &facing_first, (relation_of_first, check_thickness), &entry, random)?;
         let surfaces = if is_tangent { 3 } else { random.pick(&[1, 2, 3, 3, 3, 3, 3, 3, 3, 3]) };
+        let surfaces = wish.surfaces.unwrap_or(surfaces);
         let until = random.pick(&[Relation::On, Relation::To, Relation::Past]);
         let is_slow = random.next() < SLOW_STOPS;
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| kind.is_slow() == is_slow).collect();
         let stop_kind = random.pick(&kinds);
+        let (until, stop_kind) = wish.stop.map_or((until, stop_kind), |(kind, until, _)| (until, kind));
         let stop = if is_tangent {
             // Against the surface that it is tangent to, or beyond it.
             let to_part = random.next() < 0.4;
+            let to_part = if wish.stop.is_some() { until == Relation::TangentToPart } else { to_part };
             let (along_what, on) = if to_part { (&up, part_on) } else { (&out, drive_on) };
             let stop_kind =
                 if stop_kind.is_upright() && along_what.z.abs() > 1e-12 { Kind::Cylinder } else { stop_kind };
             let facing = along_what * random.pick(&[1.0, -1.0]);
-            let stop = laid(stop_kind, &facing, relation(on), &place, random)?;
+            let stop = laid(stop_kind, &facing, (relation(on), check_thickness), &place, random)?;
             Placed {
                 relation: if to_part { Relation::TangentToPart } else { Relation::TangentToDrive },
                 ..stop
@@ -187,9 +250,10 @@ impl Case {
         } else {
             let facing =
                 facing(stop_kind, &along, random)? * if until == Relation::Past { 1.0 } else { -1.0 };
-            let stop = laid(stop_kind, &facing, until, &(place + along * reach), random)?;
+            let stop = laid(stop_kind, &facing, (until, check_thickness), &(place + along * reach), random)?;
             let may_return = !matches!(stop_kind, Kind::Plane | Kind::Line);
-            Placed { occurrence: if may_return && random.next() < RETURNS { 2 } else { 1 }, ..stop }
+            let occurrence = if may_return && random.next() < RETURNS { 2 } else { 1 };
+            Placed { occurrence: wish.stop.map_or(occurrence, |(_, _, count)| count), ..stop }
         };
         let mut case = Self {
             cutter: numbers,
@@ -201,7 +265,7 @@ impl Case {
             drive,
             first,
             surfaces,
-            passes_drive: !drive_on && random.next() < PASSES,
+            passes_drive: wish.passes_drive.unwrap_or(!drive_on && random.next() < PASSES),
             delta: (random.next() < DELTAS)
                 .then(|| up * random.between(-0.5, 0.5) + out * random.between(-0.5, 0.5)),
             stop,
@@ -209,7 +273,6 @@ impl Case {
             budget: Budget::of([part_kind, drive_kind, stop_kind].into_iter().any(Kind::is_slow)),
             inside,
             outside,
-            thickness,
             drive_side: match (drive_on, sine > 0.0) {
                 (true, _) => DriveSide::On,
                 (false, true) => DriveSide::Left,
@@ -220,8 +283,12 @@ impl Case {
             maximum_step: 10.0,
             is_certain,
         };
+        if wish.drive.is_some_and(|side| side != case.drive_side) {
+            return None;
+        }
         case.approach(&cutter, random, [&up, &out, &along])?;
-        (!is_certain || case.stands_at_place() && case.is_tangent_there(&along)).then_some(case)
+        let first_fits = wish.first.is_none() || case.stands_at_first();
+        (!is_certain || case.stands_at_place() && case.is_tangent_there(&along) && first_fits).then_some(case)
     }
 
     /// Finds a place to come from with the observer on the sides on which the tool is meant to end.
@@ -257,6 +324,12 @@ impl Case {
         let reader = Reader::new(self);
         let read = reader.read(&self.place, Wanted::PathOnly);
         read.is_some_and(|[part, drive, _]| part.abs() < 1e-5 && drive.abs() < 1e-5)
+    }
+
+    /// Whether the whole tool is clear of the third surface of the start-up but for the contact at the place.
+    fn stands_at_first(&self) -> bool {
+        let read = Reader::new(self).read(&self.place, Wanted::First);
+        read.is_some_and(|[.., first]| first.abs() < 1e-5)
     }
 
     /// For a motion that stops at a tangency: whether the tool touches the check surface at the place, and the path leaves it
@@ -320,7 +393,11 @@ impl Case {
             MotionCommand::Cutter(self.cutter.clone()),
             MotionCommand::InsideTolerance(PerRole::all(self.inside)),
             MotionCommand::OutsideTolerance(PerRole::all(self.outside)),
-            MotionCommand::Thickness(PerRole::all(self.thickness)),
+            MotionCommand::Thickness(PerRole {
+                part: self.part.thickness,
+                drive: self.drive.thickness,
+                check: [self.stop.thickness; 2],
+            }),
             MotionCommand::MaximumStep(self.maximum_step),
             MotionCommand::MaximumPoints(POINTS),
             MotionCommand::PartSide(part_side),
@@ -360,7 +437,7 @@ impl Case {
         let mirrored = matrix.linear().determinant() < 0.0;
         let image = |role: &Placed| {
             let geometry = role.geometry.transform(matrix).expect("an image");
-            Placed { geometry, ..role.clone() }
+            Placed { geometry, thickness: role.thickness * factor, ..role.clone() }
         };
         let direction = |v: &Vec3| matrix.apply_vector(v).normalize();
         Self {
@@ -374,7 +451,6 @@ impl Case {
             stop: image(&self.stop),
             inside: self.inside * factor,
             outside: self.outside * factor,
-            thickness: self.thickness * factor,
             drive_side: if mirrored { other(self.drive_side) } else { self.drive_side },
             forward: direction(&self.forward),
             reach: self.reach * factor,
@@ -395,6 +471,10 @@ pub(crate) fn other(side: DriveSide) -> DriveSide {
         DriveSide::Right => DriveSide::Left,
         DriveSide::On => DriveSide::On,
     }
+}
+
+fn is_tangency(relation: Relation) -> bool {
+    matches!(relation, Relation::TangentToDrive | Relation::TangentToPart)
 }
 
 pub(crate) fn surface(role: &Placed) -> NamedSurface {

@@ -149,7 +149,7 @@ fn steepness(case: &Case, path: &CutSequence) -> f64 {
 
 fn wall(at: &Vec3, normal: &Vec3) -> Placed {
     let geometry = plane(normal.x, normal.y, normal.z, normal.dot(at));
-    Placed { geometry, relation: Relation::On, side: 1.0, occurrence: 1 }
+    Placed { geometry, relation: Relation::On, side: 1.0, occurrence: 1, thickness: 0.0 }
 }
 
 /// Back from the end to the plane of the start.

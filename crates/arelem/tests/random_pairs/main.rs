@@ -10,6 +10,7 @@
 //! `APT_SURFACES=searched` looks at such pairs alone.
 
 mod case;
+mod combinations;
 mod dense;
 mod judge;
 mod kinds;

@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
             side,
             inside_tolerance: 1e3,
             outside_tolerance: 1e3,
-            thickness: self.case.thickness,
+            thickness: placed.thickness,
             disk: None,
         }
     }
