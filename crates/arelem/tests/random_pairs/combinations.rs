@@ -41,7 +41,8 @@ impl Row {
 fn settle(row: &Row, number: u64, refusals: &mut Vec<String>, faults: &mut String) {
     let mut refused = Vec::new();
     for draw in 0..DRAWS {
-        let seed = (number * DRAWS + draw + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        // Seeds that follow one another by the generator's own step would draw the same motions.
+        let seed = (number * DRAWS + draw + 1).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let Some(case) = Case::wished(row.part, row.drive, &row.wish, seed) else { continue };
         match judge(&case) {
             Verdict::Proven(_) => {
@@ -129,7 +130,9 @@ fn check_surfaces_of_every_kind_with_every_relation_count_and_stock() {
             rows.extend(STOCK.map(|stock| of(kind, relation, 1, stock)));
         }
         rows.extend([Relation::To, Relation::On, Relation::Past].map(|relation| of(kind, relation, 2, 0.0)));
-        rows.extend([Relation::TangentToDrive, Relation::TangentToPart].map(|to| of(kind, to, 1, 0.0)));
+        rows.push(of(kind, Relation::TangentToDrive, 1, 0.0));
+        // A plane is nowhere tangent to the plane that the part surface is.
+        rows.extend((kind != Kind::Plane).then(|| of(kind, Relation::TangentToPart, 1, 0.0)));
         rows
     }));
 }
