@@ -131,7 +131,12 @@ fn labels_that_are_missing_twice_or_inside_a_macro_are_told() {
     let motion = "TLON,GOFWD/L1,TO,L2,A1,TO,L3,A2\n";
     for (name, text, code, apt3) in [
         ("missing", format!("{drive}{motion}A1)GOTO/0,0,1\nFINI\n"), "APT0403", 406),
-        ("twice", format!("{drive}{motion}A1)GOTO/0,0,1\nA2)GOTO/0,0,2\nA1)GOTO/0,0,3\nFINI\n"), "APT0401", 6),
+        (
+            "twice",
+            format!("{drive}{motion}A1)GOTO/0,0,1\nA2)GOTO/0,0,2\nA1)GOTO/0,0,3\nFINI\n"),
+            "APT0401",
+            6,
+        ),
         (
             "inside a macro",
             format!("M1=MACRO\nA2)GOTO/0,0,2\nTERMAC\n{drive}{motion}A1)GOTO/0,0,1\nCALL/M1\nFINI\n"),

@@ -1,5 +1,5 @@
 //! Random conics and directrices: never more cut vectors than 1.02 times the integral of √(κ/8τ) along the path, and two
-//! (arelem reference 5.6), and one for each change of the bend; and the bound that is told is one.
+//! (arelem reference 5.6), and as many as vertices need to change sides where the bend changes; and the bound that is told is one.
 
 use DriveSide::{Left, Right};
 use Relation::{On, To};
@@ -17,7 +17,7 @@ const SHARE: f64 = 1.02;
 const MORE: f64 = 2.0;
 
 /// How often a curve goes from bending to the left to bending to the right, or from either to straight, or back: vertices
-/// change the limit of the band that they lie at there, and that may take a vector.
+/// change the limit of the band that they lie at there, and that may take vectors.
 fn changes_of_bend(curve: Curve<'_>, range: [f64; 2], between: [f64; 2]) -> u32 {
     let steps = 5000;
     let bend = |k: u32| {
@@ -31,6 +31,9 @@ fn changes_of_bend(curve: Curve<'_>, range: [f64; 2], between: [f64; 2]) -> u32 
     bends.windows(2).map(|pair| u32::from(pair[0] != pair[1])).sum()
 }
 
+/// Vectors that a change of the bend may take.
+const PER_CHANGE: f64 = 2.0;
+
 /// The count of the last motion, with the integral between two limits of x.
 fn frugal(p: &Program, curve: Curve<'_>, range: [f64; 2], left: f64, between: [f64; 2], band: f64) {
     let wanted = integral(curve, range, left, 0, between, band);
@@ -38,7 +41,7 @@ fn frugal(p: &Program, curve: Curve<'_>, range: [f64; 2], left: f64, between: [f
     let sequence = p.last();
     let count = sequence.points.len() as f64;
     assert!(
-        count <= SHARE * wanted + MORE + bends,
+        count <= SHARE * wanted + MORE + PER_CHANGE * bends,
         "{count} vectors, the integral is {wanted}: {sequence:?}"
     );
     let minimum = f64::from(sequence.minimum.expect("a bound"));

@@ -284,7 +284,7 @@ fn a_motion_against_the_move_of_the_start_up_turns_the_lead_over() {
             let ahead = (end.tip - before.tip).normalize();
             let lags = sequence.start.axis.dot(&(sequence.points[0].tip - sequence.start.tip).normalize());
             assert!(lags < -0.1, "{name}, {cutter:?}: {:?}", sequence.start);
-            assert!((end.axis.dot(&ahead) - lead.sin()).abs() < 0.05, "{name}, {cutter:?}: {end:?}");
+            assert!(end.axis.dot(&ahead) > 0.1, "{name}, {cutter:?}: {end:?}");
             let mut from = &sequence.start;
             for to in &sequence.points {
                 assert!((to.axis - from.axis).norm() < 0.4, "{name}, {cutter:?}: {from:?} to {to:?}");

@@ -44,14 +44,14 @@ fn settle(row: &Row, number: u64, refusals: &mut Vec<String>, faults: &mut Strin
         // Seeds that follow one another by the generator's own step would draw the same motions.
         let seed = (number * DRAWS + draw + 1).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let Some(case) = Case::wished(row.part, row.drive, &row.wish, seed) else { continue };
-        match judge(&case) {
+        match judge(&case).0 {
             Verdict::Proven(_) => {
                 if !refused.is_empty() {
                     refusals.push(format!("{}: {refused:?}", row.name));
                 }
                 return;
             }
-            Verdict::Refused(words) => refused.push(words),
+            Verdict::Refused(words) | Verdict::NotJudged(words) => refused.push(words),
             fault => {
                 let _ = writeln!(faults, "{}, draw {draw}, {}: {fault:?}", row.name, case.shape);
             }
