@@ -37,6 +37,8 @@ pub(crate) struct Solution {
     pub(crate) tip: Vec3,
     /// Corrections made.
     pub(crate) corrections: u32,
+    /// The contacts there, for conditions on clearances.
+    pub(crate) contacts: [Option<Contact>; 3],
 }
 
 /// What was left when no position was found.
@@ -55,10 +57,14 @@ pub(crate) struct Unsolved {
 struct Rows {
     residual: [f64; 3],
     normal: [Vec3; 3],
+    contacts: [Option<Contact>; 3],
     count: usize,
 }
 
 impl Rows {
+    const NONE: Self =
+        Self { residual: [0.0; 3], normal: [Vec3::new(0.0, 0.0, 0.0); 3], contacts: [None; 3], count: 0 };
+
     fn greatest(&self) -> (f64, usize) {
         let mut best = (0.0, 0);
         for (k, r) in self.residual[..self.count].iter().enumerate() {
@@ -97,12 +103,12 @@ pub(crate) fn solve_within(
         let (worst, row) = rows.greatest();
         let scale = size(attitude.tool(), &tip);
         if worst <= RESOLUTION * scale {
-            return Ok(Solution { tip, corrections: iteration });
+            return Ok(Solution { tip, corrections: iteration, contacts: rows.contacts });
         }
         let step = correction(&rows);
         let Some((next, next_rows)) = improve(attitude, conditions, &tip, &rows, &step) else {
             return if worst <= ACCEPTABLE * scale {
-                Ok(Solution { tip, corrections: iteration })
+                Ok(Solution { tip, corrections: iteration, contacts: rows.contacts })
             } else {
                 Err(Unsolved { residual: worst, row, tip, iterations: iteration + 1 })
             };
@@ -112,7 +118,7 @@ pub(crate) fn solve_within(
     }
     let (residual, row) = rows.greatest();
     if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
-        return Ok(Solution { tip, corrections });
+        return Ok(Solution { tip, corrections, contacts: rows.contacts });
     }
     Err(Unsolved { residual, row, tip, iterations: corrections })
 }
@@ -158,7 +164,7 @@ fn improve(
 
 /// Residuals and their gradients. Where the axis is not determined the residuals are not numbers, and no step goes there.
 fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
-    let mut rows = Rows { residual: [0.0; 3], normal: [Vec3::zeros(); 3], count: conditions.len().min(3) };
+    let mut rows = Rows { count: conditions.len().min(3), ..Rows::NONE };
     let Ok(posture) = attitude.posture(tip) else {
         rows.residual = [f64::NAN; 3];
         return rows;
@@ -166,13 +172,20 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Ro
     for (k, condition) in conditions.iter().take(3).enumerate() {
         (rows.residual[k], rows.normal[k]) = match condition {
             Condition::Clearance(gauge, target) => {
-                let Contact { clearance, gradient, .. } = posture.contact(gauge, tip);
-                (clearance - target, gradient)
+                let contact = posture.contact(gauge, tip);
+                rows.contacts[k] = Some(contact);
+                (contact.clearance - target, contact.gradient)
             }
             Condition::Plane(normal, distance) => (normal.dot(tip) - distance, *normal),
         };
     }
     rows
+}
+
+/// The shortest correction for two residuals with their gradients.
+pub(crate) fn correction_of_two(residual: [f64; 2], normal: [Vec3; 2]) -> Vec3 {
+    let ([ra, rb], [a, b]) = (residual, normal);
+    correction(&Rows { residual: [ra, rb, 0.0], normal: [a, b, Vec3::zeros()], count: 2, ..Rows::NONE })
 }
 
 /// `X = −Nᵀ (N Nᵀ)⁻¹ r`, damped when the normals are dependent.

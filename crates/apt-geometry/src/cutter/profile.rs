@@ -97,11 +97,9 @@ impl Profile {
                 best = (value, point);
             }
         }
-        let norm = s.hypot(c);
+        let norm = (s * s + c * c).sqrt();
         if self.arc > 0.0 && norm > 0.0 {
-            // Polar angle from straight down of the direction (s, c).
-            let polar = s.atan2(-c);
-            if polar >= self.fan[0] && polar <= self.fan[1] {
+            if self.is_in_fan(s, c) {
                 let value = s * self.center.radius + c * self.center.height + self.arc * norm;
                 if value > best.0 {
                     let radius = self.center.radius + self.arc * s / norm;
@@ -111,6 +109,14 @@ impl Profile {
             }
         }
         best
+    }
+
+    /// True if a direction is one of the arc's outward normals: between those to its ends, which are less than half a turn
+    /// apart.
+    fn is_in_fan(&self, s: f64, c: f64) -> bool {
+        let to = |end: &ProfilePoint| (end.radius - self.center.radius, end.height - self.center.height);
+        let ((ls, lc), (us, uc)) = (to(&self.lower), to(&self.upper));
+        ls * c - lc * s >= 0.0 && s * uc - c * us >= 0.0 && s * (ls + us) + c * (lc + uc) > 0.0
     }
 
     /// Greatest distance of the profile from the tool axis.
@@ -125,21 +131,22 @@ impl Profile {
         let axis_top = ProfilePoint { radius: 0.0, height: self.top.height };
         let mut best = (f64::INFINITY, tip);
         let mut take = |point: ProfilePoint| {
-            let d = (radius - point.radius).hypot(height - point.height);
-            if d < best.0 {
-                best = (d, point);
+            let (x, z) = (radius - point.radius, height - point.height);
+            let square = x * x + z * z;
+            if square < best.0 {
+                best = (square, point);
             }
         };
         // A disk has no inside.
         let mut inside = self.top.height > 0.0;
         for (a, b) in [(tip, self.lower), (self.upper, self.top), (self.top, axis_top)] {
             let (dx, dz) = (b.radius - a.radius, b.height - a.height);
-            let length = dx.hypot(dz);
-            if length <= 0.0 {
+            let square = dx * dx + dz * dz;
+            if square <= 0.0 {
                 take(a);
                 continue;
             }
-            let t = ((radius - a.radius) * dx + (height - a.height) * dz) / (length * length);
+            let t = ((radius - a.radius) * dx + (height - a.height) * dz) / square;
             let t01 = t.clamp(0.0, 1.0);
             take(ProfilePoint { radius: a.radius + t01 * dx, height: a.height + t01 * dz });
             // Outward normal of a counter-clockwise edge is (dz, -dx).
@@ -147,10 +154,9 @@ impl Profile {
         }
         if self.arc > 0.0 {
             let (x, z) = (radius - self.center.radius, height - self.center.height);
-            let polar = x.atan2(-z);
-            let rho = x.hypot(z);
-            if polar >= self.fan[0] && polar <= self.fan[1] {
-                let k = if rho > 0.0 { self.arc / rho } else { 0.0 };
+            let rho = (x * x + z * z).sqrt();
+            if self.is_in_fan(x, z) {
+                let k = self.arc / rho;
                 take(ProfilePoint { radius: self.center.radius + k * x, height: self.center.height + k * z });
             }
             // Beyond the chord of the arc, the arc decides.
@@ -159,7 +165,8 @@ impl Profile {
                 inside &= rho <= self.arc;
             }
         }
-        if inside { (-best.0, best.1) } else { best }
+        let distance = best.0.sqrt();
+        (if inside { -distance } else { distance }, best.1)
     }
 
     /// Greatest distance of the point (ρ, z), ρ ≥ 0, from the solid tool and the farthest profile point; that point
@@ -167,9 +174,10 @@ impl Profile {
     pub fn greatest_distance(&self, radius: f64, height: f64) -> (f64, ProfilePoint) {
         let mut best = (0.0, ProfilePoint { radius: 0.0, height: 0.0 });
         let mut take = |point: ProfilePoint| {
-            let d = (radius + point.radius).hypot(height - point.height);
-            if d > best.0 {
-                best = (d, point);
+            let (x, z) = (radius + point.radius, height - point.height);
+            let square = x * x + z * z;
+            if square > best.0 {
+                best = (square, point);
             }
         };
         take(ProfilePoint { radius: 0.0, height: 0.0 });
@@ -178,14 +186,12 @@ impl Profile {
         take(self.top);
         if self.arc > 0.0 {
             let (x, z) = (self.center.radius + radius, self.center.height - height);
-            let rho = x.hypot(z);
-            let polar = x.atan2(-z);
-            if rho > 0.0 && polar >= self.fan[0] && polar <= self.fan[1] {
-                let k = self.arc / rho;
+            if self.is_in_fan(x, z) {
+                let k = self.arc / (x * x + z * z).sqrt();
                 take(ProfilePoint { radius: self.center.radius + k * x, height: self.center.height + k * z });
             }
         }
-        best
+        (best.0.sqrt(), best.1)
     }
 }
 

@@ -11,6 +11,7 @@ mod memory;
 mod near;
 mod patch;
 mod quadric;
+mod round;
 mod search;
 mod tool;
 mod waves;
@@ -198,6 +199,9 @@ fn offset_contact(
             memory.remember_corner(tool, side, tip, &contact);
         }
         return (contact, 0.0);
+    }
+    if let Some(found) = quadric::contact_anywhere(tool, surface, side, tip, memory) {
+        return found;
     }
     if let Some(contact) = dual::contact(tool, surface, side, tip) {
         return (contact, 0.0);

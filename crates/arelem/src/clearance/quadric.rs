@@ -6,6 +6,8 @@
 //! tangent planes for convex solids, and for all others by quadratic functions below the squared distance, which have
 //! closed bounds over whole circles and patches of the tool.
 
+mod patch;
+
 use std::borrow::Cow;
 
 use apt_geometry::{
@@ -17,9 +19,10 @@ use apt_geometry::{
 use super::{
     Contact, Shape, Tool,
     memory::{Memory, Place},
+    round::Round,
     search::MISSED,
     shape,
-    tool::Piece,
+    tool::{Circle, Piece},
     waves::{Waves, length, turned},
 };
 
@@ -63,12 +66,12 @@ struct Bound {
 }
 
 /// A contact on a circle.
-struct Touch {
-    contact: Contact,
+pub(super) struct Touch {
+    pub(super) contact: Contact,
     /// Cosine of the angle between tool axis and surface normal.
-    lean: f64,
+    pub(super) lean: f64,
     /// Where to begin the next time.
-    start: Start,
+    pub(super) start: Start,
 }
 
 /// Where the search on a circle begins.
@@ -80,8 +83,7 @@ pub(super) struct Start {
     pub(super) multiplier: Option<f64>,
 }
 
-/// The contact near the last one, if that was on a circle of the tool and the new one is proven; and how much nearer
-/// another point may be.
+/// The contact on the part of the tool where the last one was, if it is proven; and how much nearer another point may be.
 pub(super) fn contact(
     tool: &Tool,
     surface: &Surface,
@@ -90,36 +92,157 @@ pub(super) fn contact(
     memory: &Memory,
 ) -> Option<(Contact, f64)> {
     let place = memory.place(tool, side)?;
-    let &Piece::Ring { radius, height, ball, fan } = tool.pieces.get(place.piece)? else { return None };
-    let convex = shape(surface, side) == Shape::Convex;
-    if convex && radius == 0.0 {
-        // One nearest point does it.
-        return None;
-    }
-    let posed = Posed::new(tool, surface, side, tip)?;
-    let Touch { contact, lean, start } = if radius == 0.0 {
-        posed.touch_on_axis(surface, height, ball)?
-    } else {
-        posed.touch(radius, height, ball, &place.start(tool))?
-    };
-    if fan.is_some() {
-        // Cosines of the polar angles, from straight down, between which the corner has its normals.
-        let down = |p: &ProfilePoint| (height - p.height) / ball;
-        if lean > down(&tool.profile.lower) + ROUNDING || lean < down(&tool.profile.upper) - ROUNDING {
-            return None;
+    let scene = Scene::new(tool, surface, side, tip)?;
+    let touch = scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool))?;
+    scene.proven(place.piece, &touch, Some(memory))
+}
+
+/// The contact on whichever part of the tool it is, if that is proven; and how much nearer another point may be.
+pub(super) fn contact_anywhere(
+    tool: &Tool,
+    surface: &Surface,
+    side: f64,
+    tip: &Vec3,
+    memory: Option<&Memory>,
+) -> Option<(Contact, f64)> {
+    let scene = Scene::new(tool, surface, side, tip)?;
+    let foot = surface.foot(&(tip + tool.axis * tool.profile.center.height));
+    let radial = tool.split(&(foot.normal * -side)).2;
+    let direction = [radial.dot(&tool.across[0]), radial.dot(&tool.across[1])];
+    let start = Start { direction, multiplier: None };
+    let mut best: Option<(usize, Touch)> = None;
+    // Circles come first; the lowest of them tells where to begin on patches.
+    for (index, piece) in tool.pieces.iter().enumerate() {
+        let (last, start) = match &best {
+            Some((_, touch)) if !matches!(piece, Piece::Ring { .. }) => {
+                (touch.contact.tool - tip, touch.start)
+            }
+            _ => (Vec3::zeros(), start),
+        };
+        let Some(touch) = scene.touch(piece, &last, &start) else { continue };
+        if best.as_ref().is_none_or(|(_, best)| touch.contact.clearance < best.contact.clearance) {
+            best = Some((index, touch));
         }
     }
-    let missed = if convex {
-        // Also on the corner: the ball may face the surface from inside the tool, above its flat bottom.
-        (posed.is_way_out(surface, &contact) && posed.touches_by_plane(&contact, tip)).then_some(0.0)?
-    } else {
-        let slack = MISSED * (tool.radius() + tool.profile.top.height);
-        (posed.is_way_out(surface, &contact) && posed.clears(contact.clearance - slack, &contact))
-            .then_some(slack)?
-    };
-    let point = contact.tool - tip;
-    memory.remember(tool, side, tip, Place { piece: place.piece, point, start: Some(start) });
-    Some((contact, missed))
+    let (piece, touch) = best?;
+    scene.proven(piece, &touch, memory)
+}
+
+/// Tool and surface, as contacts on circles are looked for.
+struct Scene<'a> {
+    tool: &'a Tool,
+    surface: &'a Surface,
+    side: f64,
+    tip: &'a Vec3,
+    means: Means<'a>,
+}
+
+/// How contacts are found and proven.
+enum Means<'a> {
+    /// The tool outside a cylinder or cone.
+    Round(Round),
+    /// The tool outside any other convex solid.
+    Convex(Posed<'a>),
+    /// Anything else.
+    General(Posed<'a>),
+}
+
+impl<'a> Scene<'a> {
+    /// `None` for surfaces that are no quadrics.
+    fn new(tool: &'a Tool, surface: &'a Surface, side: f64, tip: &'a Vec3) -> Option<Self> {
+        let convex = shape(surface, side) == Shape::Convex;
+        let means = match Round::new(surface) {
+            Some(round) if convex => Means::Round(round),
+            _ if convex => Means::Convex(Posed::new(tool, surface, side, tip)?),
+            _ => Means::General(Posed::new(tool, surface, side, tip)?),
+        };
+        Some(Self { tool, surface, side, tip, means })
+    }
+
+    /// The contact on a piece of the tool, near the last one (from the tool end) and a start, if it is a way out.
+    fn touch(&self, piece: &Piece, last: &Vec3, start: &Start) -> Option<Touch> {
+        let touch = match (piece, &self.means) {
+            (&Piece::Ring { radius, height, ball, fan }, _) => {
+                self.touch_circle(&Circle { radius, height, ball }, fan.is_some(), start)?
+            }
+            (_, Means::Round(_)) => return None,
+            (_, Means::Convex(posed) | Means::General(posed)) => posed.touch_patch(piece, last, start)?,
+        };
+        is_way_out(self.tool, self.surface, &touch.contact).then_some(touch)
+    }
+
+    /// The contact on a circle; on the corner its normal must be one of the corner's own.
+    fn touch_circle(&self, circle: &Circle, is_corner: bool, start: &Start) -> Option<Touch> {
+        let touch = match &self.means {
+            _ if circle.radius == 0.0 => self.touch_on_axis(circle)?,
+            Means::Round(round) => round.touch(self.tool, self.tip, circle, start.direction)?,
+            Means::Convex(posed) | Means::General(posed) => posed.touch(circle, start)?,
+        };
+        if is_corner {
+            // Cosines of the polar angles, from straight down, between which the corner has its normals.
+            let down = |p: &ProfilePoint| (circle.height - p.height) / circle.ball;
+            let profile = &self.tool.profile;
+            if touch.lean > down(&profile.lower) + ROUNDING || touch.lean < down(&profile.upper) - ROUNDING {
+                return None;
+            }
+        }
+        Some(touch)
+    }
+
+    /// The contact of a ball about a point of the axis.
+    fn touch_on_axis(&self, circle: &Circle) -> Option<Touch> {
+        let center = self.tip + self.tool.axis * circle.height;
+        let foot = self.surface.foot(&center);
+        let (distance, gradient) = (self.side * foot.distance, foot.normal * self.side);
+        let contact = Contact {
+            clearance: distance - circle.ball,
+            gradient,
+            tool: center - gradient * circle.ball,
+            surface: foot.point,
+        };
+        // Where contact goes from there, should it leave the axis.
+        let (lean, _, radial) = self.tool.split(&-gradient);
+        let direction = [0, 1].map(|k| radial.dot(&self.tool.across[k]));
+        let (lean, start) = (-lean, Start { direction, multiplier: None });
+        (circle.ball <= 0.0 || distance > 0.0).then_some(Touch { contact, lean, start })
+    }
+
+    /// The contact, if no other point of the tool is nearer but for what is told.
+    fn proven(&self, piece: usize, touch: &Touch, memory: Option<&Memory>) -> Option<(Contact, f64)> {
+        let Self { tool, side, tip, .. } = *self;
+        let Touch { contact, start, .. } = *touch;
+        let missed = match &self.means {
+            // Also on the corner: the ball may face the surface from inside the tool, above its flat bottom.
+            Means::Round(_) | Means::Convex(_) => touches_by_plane(tool, &contact, tip).then_some(0.0)?,
+            Means::General(posed) => {
+                let slack = MISSED * (tool.radius() + tool.profile.top.height);
+                posed.clears(contact.clearance - slack, &contact).then_some(slack)?
+            }
+        };
+        if let Some(memory) = memory {
+            let point = contact.tool - tip;
+            memory.remember(tool, side, tip, Place { piece, point, start: Some(start) });
+        }
+        Some((contact, missed))
+    }
+}
+
+/// Whether a contact with a cone is one with this nappe (F has the other one too), and not one where the tool cuts in near
+/// the vertex: there another way out may be shorter.
+pub(super) fn is_way_out(tool: &Tool, surface: &Surface, contact: &Contact) -> bool {
+    let Surface::Cone(cone) = surface else { return true };
+    let foot = contact.surface - cone.vertex;
+    foot.dot(&cone.axis) > 0.0 && (contact.clearance > 0.0 || foot.norm() > tool.radius())
+}
+
+/// Whether the tangent plane at a contact has the whole tool on one side, a convex solid being on the other: two convex
+/// bodies are nearest where their normals match.
+fn touches_by_plane(tool: &Tool, contact: &Contact, tip: &Vec3) -> bool {
+    let (along, across, _) = tool.split(&contact.gradient);
+    let reach = tool.profile.support(across, -along).0;
+    let by_plane = contact.gradient.dot(&(tip - contact.surface)) - reach;
+    let size = tool.radius() + tool.profile.top.height + (tip - contact.surface).norm();
+    by_plane >= contact.clearance - GAP * size
 }
 
 impl<'a> Posed<'a> {
@@ -133,7 +256,8 @@ impl<'a> Posed<'a> {
     }
 
     /// The contact of a circle of balls near a place of it: where the nearest point of the surface is stationary.
-    fn touch(&self, radius: f64, height: f64, ball: f64, start: &Start) -> Option<Touch> {
+    fn touch(&self, circle: &Circle, start: &Start) -> Option<Touch> {
+        let &Circle { radius, height, ball } = circle;
         let squares = *self.form.squares();
         let center = self.tip + self.axis * height;
         let mut direction = start.direction;
@@ -183,22 +307,6 @@ impl<'a> Posed<'a> {
         None
     }
 
-    /// The contact of a ball about a point of the axis.
-    fn touch_on_axis(&self, surface: &Surface, height: f64, ball: f64) -> Option<Touch> {
-        let center = self.form.from_principal(&(self.tip + self.axis * height));
-        let foot = surface.foot(&center);
-        let (distance, gradient) = (self.side * foot.distance, foot.normal * self.side);
-        let lean = gradient.dot(&self.tool.axis);
-        let contact = Contact {
-            clearance: distance - ball,
-            gradient,
-            tool: center - gradient * ball,
-            surface: foot.point,
-        };
-        let start = Start { direction: [1.0, 0.0], multiplier: None };
-        (ball <= 0.0 || distance > 0.0).then_some(Touch { contact, lean, start })
-    }
-
     fn radial(&self, [cosine, sine]: [f64; 2]) -> Vec3 {
         self.across[0] * cosine + self.across[1] * sine
     }
@@ -230,24 +338,6 @@ impl<'a> Posed<'a> {
         next
     }
 
-    /// Whether a contact with a cone is one with this nappe (F has the other one too), and not one where the tool cuts in near
-    /// the vertex: there another way out may be shorter.
-    fn is_way_out(&self, surface: &Surface, contact: &Contact) -> bool {
-        let Surface::Cone(cone) = surface else { return true };
-        let foot = contact.surface - cone.vertex;
-        foot.dot(&cone.axis) > 0.0 && (contact.clearance > 0.0 || foot.norm() > self.tool.radius())
-    }
-
-    /// Whether the tangent plane at a contact has the whole tool on one side, a convex solid being on the other: two convex
-    /// bodies are nearest where their normals match.
-    fn touches_by_plane(&self, contact: &Contact, tip: &Vec3) -> bool {
-        let (along, across, _) = self.tool.split(&contact.gradient);
-        let reach = self.tool.profile.support(across, -along).0;
-        let by_plane = contact.gradient.dot(&(tip - contact.surface)) - reach;
-        let size = self.tool.radius() + self.tool.profile.top.height + (tip - contact.surface).norm();
-        by_plane >= contact.clearance - GAP * size
-    }
-
     /// Whether no point of the tool is nearer to the surface than a level, by bounds made from a contact. If not, there may
     /// be one or the bounds are too weak.
     pub(super) fn clears(&self, level: f64, contact: &Contact) -> bool {
@@ -264,7 +354,7 @@ impl<'a> Posed<'a> {
                 .then(|| self.bound(level + profile.arc, steepness, &towards))
                 .flatten();
             balls.is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
-                || self.arcs(level, steepness, &towards)
+                || self.arcs(&sharp, &towards)
         } else {
             self.floor(&sharp, &profile.lower, &towards) >= sharp.target
         };
@@ -292,21 +382,21 @@ impl<'a> Posed<'a> {
         })
     }
 
-    /// Whether the corner keeps a distance, where its whole balls stand out from the tool: the patches between points of its
-    /// arc keep what the arc bulges more.
-    fn arcs(&self, level: f64, steepness: f64, towards: &Vec3) -> bool {
+    /// Whether the corner keeps a distance, where its whole balls stand out from the tool: patches along the tangents at both
+    /// ends of stretches of its arc have the arc behind them. An end that is the contact itself is no obstacle to that.
+    fn arcs(&self, bound: &Bound, towards: &Vec3) -> bool {
         let profile = &self.tool.profile;
-        let at = |polar: f64| ProfilePoint {
-            radius: profile.center.radius + profile.arc * polar.sin(),
-            height: profile.center.height - profile.arc * polar.cos(),
+        let at = |polar: f64, away: f64| ProfilePoint {
+            radius: profile.center.radius + away * polar.sin(),
+            height: profile.center.height - away * polar.cos(),
         };
         let mut open = vec![profile.fan];
         for _ in 0..MAX_ARCS {
             let Some([from, to]) = open.pop() else { return true };
-            let bulge = profile.arc * (1.0 - (0.5 * (to - from)).cos());
-            let bound = self.bound(level + bulge, steepness, towards);
-            if !bound.is_some_and(|bound| self.flank(&bound, [&at(from), &at(to)], towards)) {
-                let middle = 0.5 * (from + to);
+            let middle = 0.5 * (from + to);
+            let meeting = at(middle, profile.arc / (0.5 * (to - from)).cos());
+            let ends = [from, to].map(|polar| at(polar, profile.arc));
+            if !ends.iter().all(|end| self.flank(bound, [end, &meeting], towards)) {
                 open.extend([[middle, to], [from, middle]]);
             }
         }

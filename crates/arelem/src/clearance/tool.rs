@@ -18,6 +18,17 @@ pub(crate) enum Piece {
     Frustum { radius: [f64; 2], height: [f64; 2] },
 }
 
+/// A circle about the axis carrying balls; without radius one ball about a point of the axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Circle {
+    /// Its radius.
+    pub(crate) radius: f64,
+    /// Height above the tool end.
+    pub(crate) height: f64,
+    /// Radius of the balls, zero for an edge.
+    pub(crate) ball: f64,
+}
+
 /// The cutter with its axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tool {
@@ -26,6 +37,8 @@ pub struct Tool {
     /// Unit axis from the tip to the spindle.
     pub axis: Vec3,
     pub(crate) profile: Profile,
+    /// Greatest distance of the body from its axis.
+    widest: f64,
     pub(crate) across: [Vec3; 2],
     pub(crate) pieces: Vec<Piece>,
 }
@@ -35,7 +48,8 @@ impl Tool {
     pub fn new(cutter: Cutter, axis: Vec3) -> Self {
         let profile = cutter.profile();
         let x = perpendicular(&axis);
-        Self { cutter, axis, profile, across: [x, axis.cross(&x)], pieces: pieces(&profile) }
+        let widest = profile.greatest_radius();
+        Self { cutter, axis, profile, widest, across: [x, axis.cross(&x)], pieces: pieces(&profile) }
     }
 
     /// The same cutter with another unit axis.
@@ -46,7 +60,7 @@ impl Tool {
 
     /// Greatest distance of the body from its axis.
     pub fn radius(&self) -> f64 {
-        self.profile.greatest_radius()
+        self.widest
     }
 
     /// A distance from the tool end beyond which there is no point of the body.

@@ -18,6 +18,8 @@ use crate::{
 
 /// Bound of the refinement of one extreme.
 const MAX_ITERATIONS: u32 = 24;
+/// Of so many refinements one is made for clearances with a kink.
+const TANGENTS_EVERY: u32 = 3;
 /// An extreme is known well enough when its bound and its value differ by this share of the band.
 const ENOUGH: f64 = 2e-4;
 
@@ -142,14 +144,16 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f
     }
     let (mut a, mut b) = (a, b);
     let mut value = a.value.min(b.value);
-    for _ in 0..MAX_ITERATIONS {
+    for iteration in 0..MAX_ITERATIONS {
         if (line.cancel)() {
             return (value, f64::NEG_INFINITY);
         }
-        let (x, bound) = tangents_meet(a, b);
+        let (meeting, bound) = tangents_meet(a, b);
         if value - bound <= enough {
             return (value, bound);
         }
+        // Where contact jumps the tangents meet at the minimum, elsewhere it is that of the cubic.
+        let x = if iteration % TANGENTS_EVERY == TANGENTS_EVERY - 1 { meeting } else { cubic_minimum(a, b) };
         let middle = line.sample(x);
         value = value.min(middle.value);
         // With the new tangent both sides are bounded.
@@ -166,6 +170,15 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f
         }
     }
     (value, tangents_meet(a, b).1)
+}
+
+/// Where the cubic through two samples with slopes of opposite sign, falling and rising, has its minimum.
+fn cubic_minimum(a: Sample, b: Sample) -> f64 {
+    let length = b.x - a.x;
+    let middle = a.slope + b.slope - 3.0 * (b.value - a.value) / length;
+    let root = (middle * middle - a.slope * b.slope).sqrt();
+    let x = b.x - length * (b.slope + root - middle) / (b.slope - a.slope + 2.0 * root);
+    if x > a.x && x < b.x { x } else { 0.5 * (a.x + b.x) }
 }
 
 /// Where the tangents of two samples with slopes of opposite sign meet.

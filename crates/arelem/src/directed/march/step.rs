@@ -8,7 +8,7 @@ use crate::{
     clearance::{Contact, Shape},
     directed::proof::{self, Extremes, Ledger},
     error::{Iteration, MotionFailure},
-    position::{self, Condition},
+    position::{self, Condition, Solution},
     role::{Bend, GUARD, Working},
 };
 
@@ -21,6 +21,8 @@ const LENGTHENINGS: u32 = 4;
 const LEAST_VECTOR: f64 = 1e-8;
 /// A vector whose length could grow by less than this share is long enough.
 const LONG_ENOUGH: f64 = 6e-4;
+/// Share of the band that the sag leaves: the less of it, the more places its proof takes.
+const SPARED: f64 = 0.25 * GUARD;
 /// Share of the predicted length that is tried.
 const AIM: f64 = 0.9999;
 /// Greatest growth of the length from one trial to the next.
@@ -39,6 +41,8 @@ const OTHER_CONTACT_SINE: f64 = 0.05;
 const SAME_TANGENT_COSINE: f64 = 0.999;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
+/// Share of a vector's length by which its end may be expected aside of its tangent.
+const FAR_ASIDE: f64 = 0.25;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
 const PROBE: f64 = 1e-4;
 
@@ -195,6 +199,7 @@ impl<'a> Stepper<'a> {
             None => self.probe(here)?,
         };
         let mut bends = self.bends(&curvature);
+        let mut bent = curvature;
         let mut length = (self.predict(here, &curvature, &bends) * self.correction).min(cap);
         let mut best: Option<Trial> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
@@ -210,11 +215,13 @@ impl<'a> Stepper<'a> {
             if (self.cancel)() {
                 return Err(MotionFailure::Cancelled);
             }
-            let Some(trial) = self.attempt(here, length, cap, (&bends, places)) else {
+            let targets = self.targets(here, &bends, places);
+            let Some(trial) = self.attempt(here, length, cap, (targets, &bent)) else {
                 shortest_bad = shortest_bad.min(length);
                 length *= 0.5;
                 continue;
             };
+            bent = trial.curvature;
             if trial.proven {
                 let at_cap = trial.length >= cap * (1.0 - 1e-6);
                 let enough = trial.growth <= 1.0 + LONG_ENOUGH || at_cap || lengthenings >= LENGTHENINGS;
@@ -307,40 +314,39 @@ impl<'a> Stepper<'a> {
                 Bend::Convex => (clearance + role.inside, role.vertex(*bend) + role.inside),
                 Bend::Concave => (role.outside - clearance, role.outside - role.vertex(*bend)),
             };
-            let reach = |room: f64| (2.0 * room.max(0.0) / k.abs().max(f64::MIN_POSITIVE)).sqrt();
+            let spared = SPARED * role.band();
+            let reach = |room: f64| (2.0 * (room - spared).max(0.0) / k.abs().max(f64::MIN_POSITIVE)).sqrt();
             length = length.min(reach(at_start) + reach(at_end));
         }
         length.max(1e-9 * self.prepared.size)
     }
 
-    /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
-    fn attempt(
-        &self,
-        here: &Vertex,
-        length: f64,
-        cap: f64,
-        (bends, places): (&[Bend; 2], Places),
-    ) -> Option<Trial> {
-        let Prepared { attitude, part, drive, .. } = self.prepared;
-        let [at_part, at_drive] = match places {
-            Places::Limits => [part.vertex(bends[0]), drive.vertex(bends[1])],
+    /// The clearances that a vector is to end with.
+    fn targets(&self, here: &Vertex, bends: &[Bend; 2], places: Places) -> [f64; 2] {
+        match places {
+            Places::Limits => [self.prepared.part.vertex(bends[0]), self.prepared.drive.vertex(bends[1])],
             Places::Level => [here.part.clearance, here.drive.clearance],
-        };
+        }
+    }
+
+    /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
+    fn attempt(&self, here: &Vertex, length: f64, cap: f64, how: ([f64; 2], &[f64; 2])) -> Option<Trial> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let (targets, curvature) = how;
         let conditions =
-            [Condition::Clearance(&part.gauge, at_part), Condition::Clearance(&drive.gauge, at_drive)];
-        let tip = position::solve(attitude, &conditions, &(here.tip + here.tangent * length)).ok()?.tip;
+            [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
+        let start = ahead(here, length, targets, curvature);
+        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, &start).ok()?;
+        let [Some(part), Some(drive), _] = contacts else { return None };
         let chord = tip - here.tip;
         let reached = chord.norm();
         if reached > cap * (1.0 + 1e-9) {
             // The correction made it longer than allowed: try again a little shorter.
             let shorter = length * (cap / reached) * (1.0 - 1e-6);
-            return if shorter < 0.5 * length {
-                None
-            } else {
-                self.attempt(here, shorter, cap, (bends, places))
-            };
+            return if shorter < 0.5 * length { None } else { self.attempt(here, shorter, cap, how) };
         }
-        let vertex = Vertex::at(self.prepared, tip, &here.tangent).ok()?;
+        let axis = attitude.tool_at(&tip).ok()?.axis;
+        let vertex = Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) };
         self.judge(here, vertex, chord, reached)
     }
 
@@ -393,6 +399,25 @@ impl<'a> Stepper<'a> {
     }
 }
 
+/// About where the path is at a distance along its tangent, as far as clearances bend as is known. Where that leads far aside
+/// it is not trusted.
+fn ahead(here: &Vertex, length: f64, targets: [f64; 2], curvature: &[f64; 2]) -> Vec3 {
+    let along = here.tangent * length;
+    let contacts = [&here.part, &here.drive];
+    let mut residual = [0.0; 2];
+    for (k, contact) in contacts.iter().enumerate() {
+        let bent = contact.gradient.dot(&along) + 0.5 * curvature[k] * length * length;
+        residual[k] = contact.clearance + bent - targets[k];
+    }
+    let aside = position::correction_of_two(residual, contacts.map(|contact| contact.gradient));
+    if !(aside.norm() <= FAR_ASIDE * length) {
+        return here.tip + along;
+    }
+    // No longer than asked for: an arc sags a little more than the parabola that the length is predicted for.
+    let way = along + aside;
+    here.tip + way * (length * length / way.norm_squared())
+}
+
 /// A place ahead at which the tool touches a surface elsewhere.
 struct SecondPlace {
     ahead: Vertex,
@@ -438,7 +463,7 @@ fn growth(role: &Working, extremes: &Extremes, (start, end): (f64, f64)) -> f64 
     if role.shape == Shape::Flat {
         return GREATEST_GROWTH;
     }
-    let guard = 0.25 * GUARD * role.band();
+    let guard = SPARED * role.band();
     let mut factor: f64 = GREATEST_GROWTH;
     let mut consider = |depth: f64, room_start: f64, room_end: f64, left: f64| {
         // Parabola through both ends with its vertex `depth` beyond the nearer end.

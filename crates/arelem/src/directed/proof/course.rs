@@ -21,6 +21,8 @@ const MAX_SAMPLES_REFUSED: usize = 48;
 const OPEN: f64 = 0.1;
 /// What it may leave open at least, as a share of the band.
 const LEAST_OPEN: f64 = 1e-5;
+/// Sine between the move and the generators of the surface with which regions are laid out at least.
+const LEAST_ACROSS: f64 = 0.01;
 
 /// Every interior extreme between two samples, and the proof that there are no others beyond the band.
 pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) -> Extremes {
@@ -144,15 +146,23 @@ impl Course<'_, '_> {
         let Line { sweep, role, ledger, cancel, .. } = self.line;
         let reach = role.gauge.reach(sweep.tool());
         let stretch = if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
-        let way = (b.x - a.x) * stretch;
+        // Along its generators a surface does not change, so that only the way across them counts.
+        let across = match role.gauge.surface.generator() {
+            Some(generator) if role.gauge.on || !sweep.turns() => sweep.direction.cross(&generator).norm(),
+            _ => 1.0,
+        };
+        let way = (b.x - a.x) * stretch * across.max(LEAST_ACROSS);
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
         let thickness = role.gauge.thickness;
         // A point that is in contact on the way is nowhere farther from contact than the way is long.
         let range = [low - way + thickness, high + 2.0 * way + thickness];
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
         match ledger.bend(&role.gauge, &tool, (&tip, 0.5 * way), range, cancel) {
-            Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend),
-            Bend::AtMost(bend) => Bend::AtMost(bend * stretch * stretch + sweep.swing(reach)),
+            Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend * across * across),
+            Bend::AtMost(bend) => {
+                let speed = stretch * across;
+                Bend::AtMost(bend * speed * speed + sweep.swing(reach))
+            }
             other => other,
         }
     }

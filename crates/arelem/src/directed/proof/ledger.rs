@@ -6,9 +6,11 @@ use apt_geometry::{Vec3, surface::Bend};
 
 use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, upward_bend};
 
-/// How much farther a bound reaches than the vector it is made for, so that the next ones need no new one.
+/// How much farther a bound reaches than the stretch it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
-/// The same for surfaces whose bounds take long to make: at most as far as the tool is wide, over which they change little.
+/// The same for quadrics and for surfaces with charts, whose bounds take long to make: at most as far as the tool is wide,
+/// over which they change little.
+const FORESIGHT_BY_QUADRIC: f64 = 8.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
 
 /// A bound of the second derivatives of a clearance about a place.
@@ -75,10 +77,8 @@ impl Ledger {
         {
             return Bend::AtMost(bound.bend);
         }
-        let mut ample = FORESIGHT * spread;
-        if gauge.surface.has_charts() {
-            ample = ample.max((FORESIGHT_BY_CHART * spread).min(tool.radius()));
-        }
+        let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
+        let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
         for (spread, more) in [(ample, ample), (spread, 0.0)] {
             let range = [range[0] - more, range[1] + more];
             let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
