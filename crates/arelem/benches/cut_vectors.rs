@@ -156,3 +156,9 @@ fn ball(bencher: Bencher<'_, '_>, which: usize) {
 fn bull(bencher: Bencher<'_, '_>, which: usize) {
     bench(bencher, which, &[0.5, 0.1]);
 }
+
+/// A corner that touches neither of its lines.
+#[divan::bench(args = [0, 1, 2, 3, 4, 5])]
+fn seven_numbers(bencher: Bencher<'_, '_>, which: usize) {
+    bench(bencher, which, &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]);
+}

@@ -39,6 +39,8 @@ const LARGEST_STEP: f64 = 0.5;
 const TO_POLE: f64 = 0.9;
 /// Gap between contact and tangent plane, relative to the sizes, that is rounding.
 const GAP: f64 = 1e-13;
+/// Depth of a cut, as a share of the radii of tool and solid, up to which it has one way out.
+const SLIGHT: f64 = 0.05;
 /// Bound of the parts of the corner's arc that are looked at.
 const MAX_ARCS: u32 = 60;
 /// Bound of the parts into which a flank of the tool is cut.
@@ -110,22 +112,30 @@ pub(super) fn contact_anywhere(
     let radial = tool.split(&(foot.normal * -side)).2;
     let direction = [radial.dot(&tool.across[0]), radial.dot(&tool.across[1])];
     let start = Start { direction, multiplier: None };
-    let mut best: Option<(usize, Touch)> = None;
-    // Circles come first; the lowest of them tells where to begin on patches.
-    for (index, piece) in tool.pieces.iter().enumerate() {
-        let (last, start) = match &best {
-            Some((_, touch)) if !matches!(piece, Piece::Ring { .. }) => {
-                (touch.contact.tool - tip, touch.start)
-            }
-            _ => (Vec3::zeros(), start),
-        };
-        let Some(touch) = scene.touch(piece, &last, &start) else { continue };
-        if best.as_ref().is_none_or(|(_, best)| touch.contact.clearance < best.contact.clearance) {
-            best = Some((index, touch));
+    let is_circle = |piece: &Piece| matches!(piece, Piece::Ring { .. });
+    let pieces = || tool.pieces.iter().enumerate();
+    let mut found: Vec<(usize, Touch)> = pieces()
+        .filter(|(_, piece)| is_circle(piece))
+        .filter_map(|(index, piece)| Some((index, scene.touch(piece, &Vec3::zeros(), &start)?)))
+        .collect();
+    // Contact inside a patch is looked for from every circle.
+    let circles = found.len();
+    for (index, piece) in pieces().filter(|(_, piece)| !is_circle(piece)) {
+        for circle in 0..circles {
+            let from = found.get(circle).map(|(_, from)| (from.contact.tool - tip, from.start));
+            let touch = from.and_then(|(last, start)| scene.touch(piece, &last, &start));
+            found.extend(touch.map(|touch| (index, touch)));
         }
     }
-    let (piece, touch) = best?;
-    scene.proven(piece, &touch, memory)
+    let (piece, touch) =
+        found.iter().min_by(|(_, a), (_, b)| a.contact.clearance.total_cmp(&b.contact.clearance))?;
+    if let Means::Round(round) = &scene.means
+        && touch.contact.clearance < -SLIGHT * tool.radius().min(round.width())
+    {
+        // Far in, there may be a shorter way out elsewhere.
+        return None;
+    }
+    scene.proven(*piece, touch, memory)
 }
 
 /// Tool and surface, as contacts on circles are looked for.

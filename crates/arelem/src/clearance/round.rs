@@ -41,6 +41,11 @@ impl Round {
         }
     }
 
+    /// Radius of a cylinder; a cone is as wide as one likes.
+    pub(super) fn width(&self) -> f64 {
+        if self.sine > 0.0 { f64::INFINITY } else { self.radius }
+    }
+
     /// The contact of a circle of balls near a direction (cosine and sine of the azimuth).
     pub(super) fn touch(
         &self,

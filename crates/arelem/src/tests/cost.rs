@@ -102,3 +102,24 @@ fn a_cancelled_motion_computes_nothing_more() {
         assert_eq!(EVALUATIONS.get(), at.get(), "{name}");
     }
 }
+
+/// Along its straight lines a hyperbolic cylinder does not change, however long the vectors and fine the band are.
+#[test]
+fn vectors_along_generators_cost_little() {
+    let wall = quadric([1.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let (drive, level) = (plane(0.0, 1.0, 0.0, 0.3), |z: f64| plane(0.0, 0.0, 1.0, z));
+    for cutter in [&[0.5, 0.25][..], &[0.5, 0.1], &[1.0, 0.1875, 0.33, 0.22, 11.0, 5.0, 3.0]] {
+        let mut p = Program::new();
+        p.tolerance(5e-4, 0.0).cutter(cutter);
+        let axis = Some(v(1.0, 0.2, 0.3).normalize());
+        p.run(&MotionCommand::From { position: v(3.0, 0.3, 0.0), axis, name: String::new() });
+        p.go(&[(Relation::On, &drive), (Relation::To, &wall), (Relation::On, &level(0.0))]);
+        p.indirv(0.0, 0.0, -1.0).side(DriveSide::On);
+        let before = EVALUATIONS.get();
+        p.drive(Turn::Forward, &drive, Relation::On, &level(-100.0));
+        let (vectors, clearances) = (p.last().points.len(), EVALUATIONS.get() - before);
+        assert!(vectors <= 12, "cutter {cutter:?}: {vectors} vectors");
+        assert!(clearances <= 5000, "cutter {cutter:?}: {clearances}");
+        p.verified();
+    }
+}

@@ -11,6 +11,7 @@ mod economy;
 mod found;
 mod frugal;
 mod gouges;
+mod hollow;
 mod properties;
 mod refused;
 mod sheets;

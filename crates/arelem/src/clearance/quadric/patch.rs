@@ -14,6 +14,9 @@ const NEARLY: f64 = 1e-8;
 /// Largest step of a coordinate, in radians or shares of the patch.
 const LARGEST_STEP: f64 = 0.5;
 
+/// Share of the squared bends of the distance that is rounding of their product.
+const FLAT: f64 = 1e-9;
+
 /// A place on a patch with the directions in which it is varied.
 struct Spot {
     place: Vec3,
@@ -77,6 +80,10 @@ impl Posed<'_> {
             if !step.iter().all(|x| x.is_finite()) {
                 return None;
             }
+            // Second derivatives of the distance, which is to be a least one.
+            let bend = |i: usize, j: usize| self.side * (rows[i][j] - rows[i].z * rows[2][j] / rows[2].z);
+            let (trace, mixed) = (bend(0, 0) + bend(1, 1), bend(0, 1) * bend(1, 0));
+            let is_least = trace > 0.0 && bend(0, 0) * bend(1, 1) - mixed >= -FLAT * trace * trace;
             let near =
                 step.x.abs() <= NEARLY && step.y.abs() <= NEARLY && step.z.abs() * bent.amax() <= NEARLY;
             let [p, q] = [step.x, step.y].map(|x| x.clamp(-LARGEST_STEP, LARGEST_STEP));
@@ -85,6 +92,9 @@ impl Posed<'_> {
                 Coordinates::Line(direction, share) => Coordinates::Line(turned(direction, p), share + q),
             };
             multiplier = self.limited(multiplier, multiplier + step.z);
+            if near && !is_least {
+                return None;
+            }
             if near {
                 let place = self.spot(piece, at)?.place;
                 let direction = match at {

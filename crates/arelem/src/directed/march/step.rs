@@ -410,7 +410,8 @@ fn ahead(here: &Vertex, length: f64, targets: [f64; 2], curvature: &[f64; 2]) ->
         residual[k] = contact.clearance + bent - targets[k];
     }
     let aside = position::correction_of_two(residual, contacts.map(|contact| contact.gradient));
-    if !(aside.norm() <= FAR_ASIDE * length) {
+    let trusted = aside.norm() <= FAR_ASIDE * length;
+    if !trusted {
         return here.tip + along;
     }
     // No longer than asked for: an arc sags a little more than the parabola that the length is predicted for.
