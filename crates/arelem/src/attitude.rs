@@ -53,13 +53,6 @@ impl Attitude {
         Ok(Self { tool: self.tool.clone(), law })
     }
 
-    /// The same surfaces with an axis that goes over from another one while the tool end moves on by `way`. A fixed axis
-    /// stays as it is.
-    pub(crate) fn eased(&self, from: &Vec3, origin: &Vec3, way: &Vec3) -> Self {
-        let law = self.law.as_ref().map(|law| law.eased(from, origin, way));
-        Self { tool: self.tool.clone(), law }
-    }
-
     /// The cutter, whatever its axis.
     pub(crate) fn tool(&self) -> &Tool {
         &self.tool

@@ -1,7 +1,6 @@
 //! Directed motions (AREPRE, ARLM2, ARLM3): from the tool's position along the drive and part surface until a check
 //! surface stops it.
 
-mod ease;
 mod fan;
 mod gouge;
 mod march;
@@ -50,9 +49,10 @@ pub(crate) fn run(
         ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => {
             fan::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?
         }
-        _ => ease::follow(prepared, warnings, &mut |prepared, warnings| {
-            follow(state, prepared, checks, warnings, cancel)
-        })?,
+        _ => {
+            let path = follow(state, &prepared, checks, warnings, cancel)?;
+            (prepared, path)
+        }
     };
     let sequence = sequence(state, &prepared, checks, path)?;
     if state.gouge_check {

@@ -117,17 +117,6 @@ pub(crate) struct Law {
     base: Directed,
     other: Option<Directed>,
     mode: Mode,
-    /// Where the motion began with another axis: how that goes over to the one of the mode.
-    ease: Option<Ease>,
-}
-
-/// From an axis to the one that the mode asks for, evenly with the way along a straight line.
-#[derive(Debug, Clone, Copy)]
-struct Ease {
-    from: Vec3,
-    origin: Vec3,
-    /// Direction of the line divided by its length.
-    line: Vec3,
 }
 
 impl Law {
@@ -154,7 +143,7 @@ impl Law {
             if base.gauge.on && cosine.abs() > LEAST_COSINE { cosine.signum() } else { base.gauge.side };
         let base = Directed::new(base, sign);
         let other = other.map(|role| Directed::new(role, if role.gauge.on { 1.0 } else { role.gauge.side }));
-        let mut law = Self { base, other, mode: Mode::Normal, ease: None };
+        let mut law = Self { base, other, mode: Mode::Normal };
         if let ToolAxis::AtAngle { angle, mode, .. } = mode {
             law.mode = law.angles(*angle, mode, tip, ahead)?;
         }
@@ -202,13 +191,6 @@ impl Law {
         }
         let mode = Mode::Fan { from: *from, about, angle, origin: *origin, line: way / square };
         Ok(Self { mode, ..self.clone() })
-    }
-
-    /// The law of an axis that is `from` at a place, and goes over to that of this law while the tool end moves on by
-    /// `way`.
-    pub(crate) fn eased(&self, from: &Vec3, origin: &Vec3, way: &Vec3) -> Self {
-        let line = way / way.norm_squared();
-        Self { ease: Some(Ease { from: *from, origin: *origin, line }), ..self.clone() }
     }
 
     fn angles(&self, angle: f64, mode: &AxisAngle, tip: &Vec3, ahead: &Vec3) -> Result<Mode, AxisFailure> {
@@ -259,7 +241,6 @@ impl Law {
     pub(crate) fn is_constant(&self) -> bool {
         let plane = |directed: &Directed| matches!(directed.surface, Surface::Plane(_));
         let alone = match self.mode {
-            _ if self.ease.is_some() => return false,
             Mode::Fan { .. } => return false,
             Mode::Normal | Mode::Across { .. } | Mode::Tangent { vector: Some(_), .. } => true,
             _ => false,
@@ -269,21 +250,11 @@ impl Law {
 
     /// Derivatives of the axis by the coordinates of the tool end, as columns, where they have a closed form.
     pub(crate) fn rate(&self, tip: &Vec3) -> Option<Matrix3<f64>> {
-        (matches!(self.mode, Mode::Normal) && self.ease.is_none()).then(|| self.base.normal_rate(tip))
+        matches!(self.mode, Mode::Normal).then(|| self.base.normal_rate(tip))
     }
 
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
-        let asked = self.axis_asked_for(tool, tip)?;
-        let Some(Ease { from, origin, line }) = self.ease else { return Ok(asked) };
-        let share = line.dot(&(tip - origin)).clamp(-BEYOND, 1.0);
-        let across = from.cross(&asked);
-        let about = across.try_normalize(0.0).unwrap_or_else(|| perpendicular(&from));
-        let (sin, cos) = (across.norm().atan2(from.dot(&asked)) * share).sin_cos();
-        (from * cos + about.cross(&from) * sin).try_normalize(0.0).ok_or(AxisFailure::NoNormal)
-    }
-
-    fn axis_asked_for(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
         match self.mode {
             Mode::Parallel { sense } => return self.ruling(tip).map(|ruling| ruling * sense),
             Mode::Fan { .. } => return self.towards(&Vec3::zeros(), tip),
