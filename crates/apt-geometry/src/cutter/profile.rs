@@ -98,14 +98,12 @@ impl Profile {
             }
         }
         let norm = (s * s + c * c).sqrt();
-        if self.arc > 0.0 && norm > 0.0 {
-            if self.is_in_fan(s, c) {
-                let value = s * self.center.radius + c * self.center.height + self.arc * norm;
-                if value > best.0 {
-                    let radius = self.center.radius + self.arc * s / norm;
-                    let height = self.center.height + self.arc * c / norm;
-                    best = (value, ProfilePoint { radius, height });
-                }
+        if self.arc > 0.0 && norm > 0.0 && self.is_in_fan(s, c) {
+            let value = s * self.center.radius + c * self.center.height + self.arc * norm;
+            if value > best.0 {
+                let radius = self.center.radius + self.arc * s / norm;
+                let height = self.center.height + self.arc * c / norm;
+                best = (value, ProfilePoint { radius, height });
             }
         }
         best

@@ -329,7 +329,7 @@ fn tolerances_and_feeds_that_are_known_cure() {
     let expected = curved("INTOL/0\nOUTTOL/0.0005\n");
     assert_eq!(cured(&curved(""), TOLERANCE_MISSING, 0, true), expected);
     let loose = |statement: &str| {
-        format!("{PART}CUTTER/.5\n{statement} $$ x\nGO/TO,L1,TO,PL,TO,L3\nTLLFT,GORGT/L1,PAST,L2\nFINI\n")
+        format!("{PART}CUTTER/.5\n{statement} $$ x\nGO/TO,L1,TO,PL,TO,L3\nTLRGT,GORGT/L1,PAST,L2\nFINI\n")
     };
     for word in ["INTOL", "OUTTOL"] {
         let cure = cured(&loose(&format!("{word}/.5")), LOOSE_TOLERANCE, 0, false);

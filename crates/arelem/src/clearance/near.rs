@@ -156,7 +156,7 @@ pub(super) fn remember(
         Some(known) => known.start = start,
         None => {
             *memory =
-                Some(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None, doubtful: None })
+                Some(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None, doubtful: None });
         }
     }
 }

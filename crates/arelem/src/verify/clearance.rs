@@ -120,7 +120,7 @@ impl Surface {
             }
             Geometry::RuledSurface(surface) => {
                 let strips = RuledStrips::of(surface).ok_or_else(degenerate)?;
-                Ok(Self::Ruled(Box::new(Ruled::Joining(strips))))
+                Ok(Self::Ruled(Box::new(Ruled::Joining(Box::new(strips)))))
             }
             Geometry::PolyConic(values) => {
                 let strips = ConicStrips::of(values).ok_or_else(degenerate)?;

@@ -49,7 +49,7 @@ pub(super) enum Ruled {
     /// A tabulated cylinder: all rulings parallel.
     Parallel(Ruling),
     /// Rulings between two curves, or to a point.
-    Joining(RuledStrips),
+    Joining(Box<RuledStrips>),
     /// A polyconic surface, its conics joined by straight lines.
     Conics(Box<ConicStrips>),
 }
@@ -87,9 +87,7 @@ impl Ruled {
         let values = ends.map(|end| end.value + thickness);
         match self {
             Self::Parallel(ruling) => ruling.bend(side, [from, to], values, &ends[0].normal, tool, travel),
-            Self::Joining(RuledStrips { sheet, size, .. }) => {
-                sheet.bend(side, from, tool, values, travel, *size)
-            }
+            Self::Joining(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
             Self::Conics(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
         }
     }
