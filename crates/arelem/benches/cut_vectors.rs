@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{
-        Cone, Cylinder, Geometry, Interval, Plane, Quadric, RuledSurface, Sphere, TabulatedCylinder,
-    },
+    canonical::{Cone, Cylinder, Geometry, Interval, Plane, Quadric, Sphere, TabulatedCylinder},
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
         Turn,
@@ -14,6 +12,9 @@ use apt_geometry::{
 };
 use arelem::section2::{Output, State, execute};
 use divan::{Bencher, counter::ItemsCount};
+
+#[path = "../tests/support/lofts.rs"]
+mod lofts;
 
 fn main() {
     divan::main();
@@ -85,32 +86,6 @@ fn tabulated() -> Geometry {
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, kind: 0.0, intervals, last }))
 }
 
-/// A roof between arcs of different radius at y = ±2.
-fn ruled() -> Geometry {
-    let curve = |y: f64, z: f64, radius: f64| {
-        let round = Cylinder { point: Vec3::new(0.0, y, z), axis: Vec3::y(), radius };
-        let end = z + (radius * radius - 4.0).sqrt();
-        let places = [Vec3::new(-2.0, y, end), Vec3::new(2.0, y, end)].map(Geometry::Point);
-        let [start, end] = places;
-        [Geometry::Cylinder(round), start, end, Geometry::Vector(Vec3::z())]
-    };
-    let parts = curve(-2.0, 0.0, 3.0).into_iter().chain(curve(2.0, 0.3, 2.6)).collect();
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
-}
-
-/// A vault along y that widens and flattens: quarter circles change to fuller conics.
-fn poly_conic() -> Geometry {
-    let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    values.extend([0.0, -3.0, 6.0]);
-    for [constant, linear] in
-        [[2.0, 0.2], [2.0, 0.1], [2.0, 0.0], [-2.0, 0.0], [-2.0, -0.1], [0.3, -0.1], [0.7, 0.03]]
-    {
-        values.extend([constant, linear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    }
-    values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
-}
-
 fn surfaces() -> [(&'static str, Geometry); 9] {
     let quadric = |coefficients| Geometry::Quadric(Quadric { coefficients });
     [
@@ -135,8 +110,8 @@ fn surfaces() -> [(&'static str, Geometry); 9] {
         ("ellipsoid", quadric([1.0 / 16.0, 1.0 / 9.0, 0.25, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
         ("saddle", quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])),
         ("tabulated cylinder", tabulated()),
-        ("ruled surface", ruled()),
-        ("polyconic", poly_conic()),
+        ("ruled surface", lofts::roof()),
+        ("polyconic", lofts::vault()),
     ]
 }
 

@@ -96,7 +96,8 @@ pub(crate) fn route(state: &State, surfaces: &[StartSurface]) -> Route {
 }
 
 /// OFFSET (class 7000/2): pierce the drive surface along the direction given, stand off along its normal, then move
-/// along the tool axis to the part surface.
+/// along the tool axis to the part surface. Both relations hold where it ends: what the way along the axis spoils is put
+/// right in the plane of normal and axis.
 pub(crate) fn offset(
     state: &State,
     surfaces: &[StartSurface],
@@ -128,8 +129,16 @@ pub(crate) fn offset(
         let axis = work.attitude.tool_at(&tip)?.axis;
         tip = along_line(&work.attitude, part, &tip, &axis, part.rest())
             .map_err(|_| MotionFailure::PartNotReached)?;
+        // Along an axis that leans against the drive surface the way to the part surface leads off the former again.
+        tip = settle(&work, guide_through(&pierce, &normal, &axis), &tip)?;
     }
     work.sequence(tip)
+}
+
+/// The plane through a place that holds two directions, unless they are one.
+fn guide_through(place: &Vec3, one: &Vec3, other: &Vec3) -> Option<(Vec3, f64)> {
+    let across = one.cross(other).try_normalize(PARALLEL_SINE)?;
+    Some((across, across.dot(place)))
 }
 
 /// The position on a straight line where a clearance has a value.

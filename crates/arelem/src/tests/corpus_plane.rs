@@ -177,6 +177,17 @@ fn offset_start() {
 }
 
 #[test]
+fn offset_start_with_a_tilted_axis() {
+    let wall = line(4.0, 0.0, 5.0, 5.0);
+    let MotionCommand::Start(surfaces) = start(&[(To, &wall), (To, &ground())]) else { panic!("a start") };
+    for axis in [v(0.0, 0.2, 1.0), v(0.3, -0.1, 1.0), v(-0.4, 0.2, 1.0)] {
+        let mut p = Program::new();
+        p.cutter(&[1.0]).run(&MotionCommand::ToolAxis(apt_geometry::motion::ToolAxis::Fixed(axis)));
+        p.from(0.0, 1.0, 2.0).indirv(1.0, 0.5, 0.0).run(&MotionCommand::Offset(surfaces.clone())).verified();
+    }
+}
+
+#[test]
 fn corners_and_sides() {
     let (l1, l2) = (x_axis(), line(5.0, 0.0, 3.0, 2.0));
     let mut p = Program::new();

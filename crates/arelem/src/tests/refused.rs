@@ -411,3 +411,30 @@ fn a_path_that_turns_back_on_the_spot_ends() {
         other => panic!("{other:?}"),
     }
 }
+
+/// A start aside of the drive surface by more than MAXDP: no vector leads back into the band.
+#[test]
+fn a_way_back_into_the_bands_that_maxdp_does_not_allow_is_told() {
+    let ball = sphere(0.0, 0.0, 0.0, 5.0);
+    for step in [0.2, 0.24, 0.249, 0.2499, 0.3] {
+        let mut p = Program::new();
+        p.tolerance(0.01, 0.01)
+            .cutter(&[0.5, 0.25])
+            .run(&MotionCommand::MaximumStep(step))
+            .from(-3.0, 0.0, 7.0);
+        p.go(&[
+            (Relation::On, &plane(0.0, 1.0, 0.0, 1.0)),
+            (Relation::To, &ball),
+            (Relation::On, &plane(1.0, 0.0, 0.0, -1.0)),
+        ]);
+        p.tolerance(0.3, 0.01).side(DriveSide::Left);
+        let command =
+            motion(Turn::Right, &plane(0.0, 1.0, 0.0, 1.0), &[(Relation::On, 1, &plane(1.0, 0.0, 0.0, 1.0))]);
+        match p.attempt(&command) {
+            Ok(_) => _ = p.verified(),
+            Err(failure) => {
+                assert!(matches!(failure, MotionFailure::NoAdmissibleVector { .. }), "{failure:?}")
+            }
+        }
+    }
+}

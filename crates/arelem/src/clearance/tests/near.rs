@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use apt_geometry::canonical::{Cylinder, Interval, RuledSurface, TabulatedCylinder};
+use apt_geometry::canonical::{Interval, TabulatedCylinder};
 
 use super::*;
 use crate::clearance::certify::JUDGED;
+
+#[path = "../../../tests/support/lofts.rs"]
+mod lofts;
 
 /// A wave of three cubics along a direction, its joints without corners.
 fn wave(axes: [Vec3; 3]) -> Geometry {
@@ -18,37 +21,12 @@ fn wave(axes: [Vec3; 3]) -> Geometry {
     }))
 }
 
-/// A loft between arcs of different radius at y = ±2.
-fn loft() -> Geometry {
-    let curve = |y: f64, z: f64, radius: f64| {
-        let round = Cylinder { point: v(0.0, y, z), axis: Vec3::y(), radius };
-        let end = z + (radius * radius - 4.0).sqrt();
-        let [start, end] = [v(-2.0, y, end), v(2.0, y, end)].map(Geometry::Point);
-        [Geometry::Cylinder(round), start, end, Geometry::Vector(Vec3::z())]
-    };
-    let parts = curve(-2.0, 0.0, 3.0).into_iter().chain(curve(2.0, 0.3, 2.6)).collect();
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
-}
-
-/// A vault along y that widens and flattens.
-fn vault() -> Geometry {
-    let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    values.extend([0.0, -3.0, 6.0]);
-    for [constant, linear] in
-        [[2.0, 0.2], [2.0, 0.1], [2.0, 0.0], [-2.0, 0.0], [-2.0, -0.1], [0.3, -0.1], [0.7, 0.03]]
-    {
-        values.extend([constant, linear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    }
-    values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
-}
-
 fn charted() -> Vec<Geometry> {
     vec![
         wave([Vec3::x(), Vec3::z(), -Vec3::y()]),
         wave([v(1.0, 0.3, 0.0).normalize(), Vec3::z(), v(0.3, -1.0, 0.0).normalize()]),
-        loft(),
-        vault(),
+        lofts::roof(),
+        lofts::vault(),
     ]
 }
 

@@ -14,6 +14,8 @@ use crate::{
 
 /// Bound of the trials for one vector.
 const MAX_TRIALS: u32 = 60;
+/// Bound of the trials that shorten a vector which the way back into the bands makes longer than is allowed.
+const MOST_SHORTENINGS: u32 = 12;
 /// Trials that try to lengthen a vector already proven.
 const LENGTHENINGS: u32 = 4;
 /// Length, relative to the size of the coordinates, below which a vector leads nowhere: well above the size below which a
@@ -335,19 +337,26 @@ impl<'a> Stepper<'a> {
         let (targets, curvature) = how;
         let conditions =
             [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
-        let start = ahead(here, length, targets, curvature);
-        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, &start).ok()?;
-        let [Some(part), Some(drive), _] = contacts else { return None };
-        let chord = tip - here.tip;
-        let reached = chord.norm();
-        if reached > cap * (1.0 + 1e-9) {
+        let mut attempted = length;
+        for _ in 0..MOST_SHORTENINGS {
+            let start = ahead(here, attempted, targets, curvature);
+            let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, &start).ok()?;
+            let [Some(part), Some(drive), _] = contacts else { return None };
+            let chord = tip - here.tip;
+            let reached = chord.norm();
+            if reached <= cap * (1.0 + 1e-9) {
+                let axis = attitude.tool_at(&tip).ok()?.axis;
+                let vertex =
+                    Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) };
+                return self.judge(here, vertex, chord, reached);
+            }
             // The correction made it longer than allowed: try again a little shorter.
-            let shorter = length * (cap / reached) * (1.0 - 1e-6);
-            return if shorter < 0.5 * length { None } else { self.attempt(here, shorter, cap, how) };
+            attempted *= (cap / reached) * (1.0 - 1e-6);
+            if attempted < 0.5 * length {
+                return None;
+            }
         }
-        let axis = attitude.tool_at(&tip).ok()?.axis;
-        let vertex = Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) };
-        self.judge(here, vertex, chord, reached)
+        None
     }
 
     /// How long a vector may be that rounds a corner. The path has one over the vertex of a cone, and, while the axis stands
