@@ -9,6 +9,7 @@ mod floor;
 mod matched;
 mod memory;
 mod near;
+mod open_top;
 mod patch;
 mod quadric;
 mod round;
@@ -150,9 +151,24 @@ impl Gauge {
         found
     }
 
-    /// How the clearance behaves along a straight line.
+    /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.
     pub fn shape(&self) -> Shape {
         shape(&self.surface, self.side)
+    }
+
+    /// How it behaves on a straight way of a tool end.
+    pub(crate) fn shape_along(&self, tool: &Tool, [from, to]: [&Vec3; 2]) -> Shape {
+        let shape = self.shape();
+        if shape != Shape::Convex || self.on {
+            return shape;
+        }
+        let (body, start) = self.body(tool, from);
+        let end = to + (start - from);
+        if open_top::is_entered(&body, &self.surface, self.side, [&start, &end]) {
+            Shape::General
+        } else {
+            shape
+        }
     }
 }
 

@@ -19,6 +19,7 @@ use apt_geometry::{
 use super::{
     Contact, Shape, Tool,
     memory::{Memory, Place},
+    open_top::is_entered,
     round::Round,
     search::MISSED,
     shape,
@@ -223,8 +224,10 @@ impl<'a> Scene<'a> {
         let Touch { contact, start, .. } = *touch;
         let missed = match &self.means {
             // Also on the corner: the ball may face the surface from inside the tool, above its flat bottom.
-            Means::Round(_) | Means::Convex(_) => touches_by_plane(tool, &contact, tip).then_some(0.0)?,
-            Means::General(posed) => {
+            Means::Round(_) | Means::Convex(_) if touches_by_plane(tool, &contact, tip) => 0.0,
+            Means::Round(_) => return None,
+            Means::Convex(_) if !is_entered(tool, self.surface, side, [tip, tip]) => return None,
+            Means::Convex(posed) | Means::General(posed) => {
                 let slack = MISSED * (tool.radius() + tool.profile.top.height);
                 posed.clears(contact.clearance - slack, &contact).then_some(slack)?
             }

@@ -13,6 +13,7 @@ use super::{
     certify::{Certificate, Face, Proof, certify},
     floor::Bases,
     memory::{Memory, Place},
+    open_top::is_entered,
     quadric::Posed,
     shape,
     tool::Piece,
@@ -73,7 +74,7 @@ pub(super) fn contact(
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };
     // Two convex bodies need no proof: what is nearest around is nearest of all.
-    let unique = shape(surface, side) == Shape::Convex;
+    let unique = shape(surface, side) == Shape::Convex && !is_entered(tool, surface, side, [tip, tip]);
     let place = if unique { None } else { memory.and_then(|m| m.place(tool, side)) };
     if let Some((piece, contact)) = likely.filter(|_| !unique) {
         search.take_likely(piece, &contact);

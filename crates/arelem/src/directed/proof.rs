@@ -100,8 +100,12 @@ pub(crate) fn extremes(
     let length = sweep.length;
     let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
     let turns = sweep.turns() && !role.gauge.on;
+    let shape = match role.shape {
+        Shape::Convex if !turns => role.gauge.shape_along(&sweep.at(0.0).1, [from.0, to.0]),
+        shape => shape,
+    };
     if length > 0.0
-        && (turns || role.shape == Shape::General)
+        && (turns || shape == Shape::General)
         && let Some(found) = support::extremes(sweep, role, ends, size)
     {
         return found;
@@ -111,14 +115,14 @@ pub(crate) fn extremes(
         let line = Line { sweep, role, ledger, cancel, sign: 1.0, limits: limits(role, &ends, size) };
         return course::extremes(&line, line.sample(0.0), line.sample(length), ends);
     }
-    if role.shape == Shape::Flat || length <= 0.0 {
+    if shape == Shape::Flat || length <= 0.0 {
         return ends;
     }
-    let sign = if role.shape == Shape::Concave { -1.0 } else { 1.0 };
+    let sign = if shape == Shape::Concave { -1.0 } else { 1.0 };
     let limits = limits(role, &ends, size);
     let line = Line { sweep, role, ledger, cancel, sign, limits };
     let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
-    match role.shape {
+    match shape {
         Shape::Flat => ends,
         Shape::Convex => {
             let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());

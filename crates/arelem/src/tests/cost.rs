@@ -3,8 +3,11 @@
 
 use std::cell::Cell;
 
-use super::*;
-use crate::clearance::EVALUATIONS;
+use super::{turning::waves_across, *};
+use crate::{
+    clearance::EVALUATIONS,
+    verify::{VerifyError, WORK, tests::lofted, verify},
+};
 
 /// Clearances that the engine may compute before it asks again whether to go on. The slowest of them, on quadrics, take a
 /// microsecond in a release build: 5 ms are thousands of them.
@@ -78,6 +81,45 @@ fn the_engine_asks_often_whether_to_go_on() {
             assert!(execution.failure.is_none(), "{name}: {:?}", execution.failure);
             let longest = longest.get().max(EVALUATIONS.get() - last.get());
             assert!(longest > 0 && longest <= BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {longest}");
+        }
+    }
+}
+
+/// Distances of points and parts of surfaces that the verifier may look at before it asks again. One takes up to a microsecond
+/// in a release build.
+const WORK_BETWEEN_QUESTIONS: u64 = 1000;
+
+#[test]
+fn the_verifier_asks_often_whether_to_go_on() {
+    let [ruled, polyconic] = lofted();
+    let searched = [("tabulated cylinder", waves_across()), ("ruled", ruled), ("polyconic", polyconic)];
+    let cutters = [CUTTERS[0], CUTTERS[1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+    for (name, part) in parts().into_iter().chain(searched) {
+        for cutter in cutters {
+            let (mut p, command) = pass(&part, cutter, 0.2);
+            p.run(&command);
+            let (last, longest) = (Cell::new(WORK.get()), Cell::new(0));
+            let (asked, limit) = (Cell::new(0), Cell::new(u64::MAX));
+            let ask = || {
+                let now = WORK.get();
+                longest.set(longest.get().max(now - last.get()));
+                last.set(now);
+                asked.set(asked.get() + 1);
+                asked.get() > limit.get()
+            };
+            let evidence = verify(p.last(), &ask).expect("evidence");
+            assert!(evidence.verified, "{name}, cutter {cutter:?}: {evidence:?}");
+            let longest = longest.get().max(WORK.get() - last.get());
+            assert!(longest <= WORK_BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {longest}");
+            // Given up at any question, it does no more.
+            let all = asked.get();
+            for share in [0, 1, all / 3, all / 2, all - 1] {
+                asked.set(0);
+                limit.set(share);
+                assert_eq!(verify(p.last(), &ask), Err(VerifyError::Cancelled), "{name}, cutter {cutter:?}");
+                let after = WORK.get() - last.get();
+                assert!(after <= WORK_BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {after} after {share}");
+            }
         }
     }
 }

@@ -330,3 +330,22 @@ proptest! {
         }
     }
 }
+
+/// Below an ellipsoid that comes down into the top of the tool its rim touches, and nothing touches the disc within it: the
+/// clearance is no convex function of the way then, and vectors that are straight bulge to the other side.
+#[test]
+fn a_tool_below_a_solid_touches_it_with_the_rim_of_its_top() {
+    let ellipsoid = quadric([1.0 / 9.0, 0.25, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let (along, wall) = (plane(0.0, 1.0, 0.0, 0.1), |x: f64| plane(1.0, 0.0, 0.0, x));
+    for numbers in [&[1.0][..], &[1.0, 0.2], &[0.8, 0.0, 0.4, 0.0, 0.0, 8.0, 3.0]] {
+        let mut p = Program::new();
+        p.tolerance(0.0, 1e-3).cutter(numbers).from(1.3, 0.1, -7.0);
+        p.go(&[(Relation::On, &along), (Relation::To, &ellipsoid), (Relation::On, &wall(1.2))]);
+        p.indirv(-1.0, 0.0, 0.0).side(DriveSide::On);
+        proven(&mut p, &[motion(Turn::Forward, &along, &[(Relation::On, 1, &wall(-1.2))])]);
+        let lowest = p.last().points.iter().map(|p| p.tip.z).fold(f64::INFINITY, f64::min);
+        // The lowest place of the solid is above the rim's plane where the tool is below it.
+        let height = p.last().cutter.height;
+        assert!(p.last().points.iter().any(|p| p.tip.x.abs() < 0.2 && p.tip.z + height > -1.0), "{lowest}");
+    }
+}

@@ -73,6 +73,11 @@ fn angles_that_exclude_each_other_are_named() {
 #[path = "../../tests/support/wave.rs"]
 mod wave;
 
+/// A tabulated cylinder whose rulings lie across the x axis.
+pub(super) fn waves_across() -> Geometry {
+    wave::wave([Vec3::x(), Vec3::z(), -Vec3::y()], 0.0, 0.3)
+}
+
 /// Radius of the ball end of the random motions.
 const BALL: f64 = 0.25;
 

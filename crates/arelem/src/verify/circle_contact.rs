@@ -32,26 +32,26 @@ const ARCS: usize = 60;
 const NEARLY_IN_FAN: f64 = 1e-9;
 
 /// One position of the tool in the principal axes of the surface.
-struct Place<'a> {
-    quadric: &'a PrincipalQuadric,
-    side: f64,
+pub(super) struct Place<'a> {
+    pub(super) quadric: &'a PrincipalQuadric,
+    pub(super) side: f64,
     tool: &'a Tool<'a>,
-    tip: Vec3,
-    axis: Vec3,
-    across: [Vec3; 2],
+    pub(super) tip: Vec3,
+    pub(super) axis: Vec3,
+    pub(super) across: [Vec3; 2],
 }
 
 /// A place of the tool and its foot, in principal axes.
 #[derive(Debug, Clone, Copy)]
-struct Touch {
-    distance: f64,
+pub(super) struct Touch {
+    pub(super) distance: f64,
     /// Towards the tool.
-    normal: Vec3,
+    pub(super) normal: Vec3,
     /// Half the gradient of F at the foot.
-    steepness: f64,
-    foot: Vec3,
+    pub(super) steepness: f64,
+    pub(super) foot: Vec3,
     /// Where on the meridian of the tool, a ball's centre for the corner.
-    meridian: Meridian,
+    pub(super) meridian: Meridian,
 }
 
 /// What is asked of all points of the tool: a bound of their squared distances, from a place of the tool end.
@@ -96,26 +96,42 @@ pub(super) fn at(
     // The tool end is in contact only where the bottom rises from it.
     let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
     let mut done: Option<Meridian> = None;
+    // The nearest of all circles, with its distance; only that can be shown to be.
+    let mut nearest: Option<(f64, Touch, f64)> = None;
     for (p, ball) in corner.into_iter().chain(tip).chain(edges) {
         if done == Some(p) {
             continue;
         }
         done = Some(p);
-        if let Some(touch) = place.touch(p, ball)
+        let Some(touch) = place.touch(p, ball) else { continue };
+        // The corner is so mostly that it is worth the trial.
+        if Some((p, ball)) == corner
             && let Some(reading) = proven(&touch, ball)
         {
             return Some(reading);
         }
+        let distance = touch.distance - ball;
+        if nearest.is_none_or(|near| distance < near.0) {
+            nearest = Some((distance, touch, ball));
+        }
+    }
+    let nearest = nearest.map(|(_, touch, ball)| (touch, ball));
+    if let Some((touch, ball)) = nearest.filter(|near| near.1 <= 0.0)
+        && let Some(reading) = proven(&touch, ball)
+    {
+        return Some(reading);
     }
     let pieces = [([0.0; 2], lower), (upper, top)];
     pieces.into_iter().filter(|(a, b)| a != b).find_map(|(a, b)| {
-        let touch = place.touch_piece([a, b])?;
-        proven(&touch, 0.0)
+        let straight =
+            nearest.filter(|_| convex).and_then(|near| place.touch_straight([a, b], &-near.0.normal));
+        let shown = straight.and_then(|touch| proven(&touch, 0.0));
+        shown.or_else(|| proven(&place.touch_piece([a, b])?, 0.0))
     })
 }
 
 impl Place<'_> {
-    fn on_circle(&self, phi: f64) -> [Vec3; 2] {
+    pub(super) fn on_circle(&self, phi: f64) -> [Vec3; 2] {
         let (s, c) = phi.sin_cos();
         [self.across[0] * c + self.across[1] * s, self.across[1] * c - self.across[0] * s]
     }
@@ -274,7 +290,7 @@ impl Place<'_> {
             Some((center, radius)) => {
                 let balls = (least + radius > 0.0).then(|| self.demand(least + radius, touch)).flatten();
                 balls.is_some_and(|demand| self.circle(&demand, center, touch) >= demand.least)
-                    || self.arcs(least, touch)
+                    || self.arcs(&sharp, touch)
             }
             None => self.circle(&sharp, lower, touch) >= sharp.least,
         };
@@ -288,25 +304,31 @@ impl Place<'_> {
             && (upper == top || self.piece(&sharp, [upper, top], touch))
     }
 
-    /// Whether the arc of the corner keeps a distance, where its whole balls stand out from the tool: the pieces between
-    /// points of it do by what the arc bulges more.
-    fn arcs(&self, least: f64, touch: &Touch) -> bool {
+    /// Whether the arc of the corner keeps a distance, where its whole balls stand out from the tool: the straight pieces
+    /// along the tangents at both ends of a stretch of it are outside of the arc. A stretch that ends at the contact touches
+    /// with that end alone.
+    fn arcs(&self, demand: &Demand, touch: &Touch) -> bool {
         let Some((center, radius)) = self.tool.profile.corner() else { return true };
         let [lower, upper, _] = self.tool.profile.edges();
         let angle = |p: Meridian| (p[0] - center[0]).atan2(center[1] - p[1]);
-        let at = |angle: f64| [center[0] + radius * angle.sin(), center[1] - radius * angle.cos()];
-        let mut open = vec![([angle(lower), angle(upper)], [lower, upper])];
+        let at = |angle: f64, away: f64| [center[0] + away * angle.sin(), center[1] - away * angle.cos()];
+        let facing = self.facing(touch);
+        let keeps = |ends: [Meridian; 2]| self.best_between(demand, ends, touch, &facing) >= demand.least;
+        let [first, last] = [angle(lower), angle(upper)];
+        let height = -touch.normal.dot(&self.axis);
+        let contact = (1.0 - height * height).max(0.0).sqrt().atan2(-height);
+        let mut open = if contact > first && contact < last {
+            vec![[contact, last], [first, contact]]
+        } else {
+            vec![[first, last]]
+        };
         for _ in 0..ARCS {
-            let Some(([from, to], ends)) = open.pop() else { return true };
-            let bulge = radius * (1.0 - (0.5 * (to - from)).cos());
-            let demand = self.demand(least + bulge, touch);
-            let facing = self.facing(touch);
-            let keeps =
-                demand.is_some_and(|demand| self.best_between(&demand, ends, touch, &facing) >= demand.least);
-            if !keeps {
-                let middle = 0.5 * (from + to);
-                let p = at(middle);
-                open.extend([([middle, to], [p, ends[1]]), ([from, middle], [ends[0], p])]);
+            let Some([from, to]) = open.pop() else { return true };
+            let half = 0.5 * (to - from);
+            let middle = from + half;
+            let meeting = at(middle, radius / half.cos());
+            if !(keeps([at(from, radius), meeting]) && keeps([meeting, at(to, radius)])) {
+                open.extend([[middle, to], [from, middle]]);
             }
         }
         open.is_empty()
@@ -383,14 +405,12 @@ impl Place<'_> {
     /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from
     /// the axis and for staying between the circles.
     fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch) -> bool {
-        if ends[0][0] <= 0.0 && self.rises_from_apex(demand, ends) {
-            return true;
-        }
         let facing = self.facing(touch);
         let mut open = vec![ends];
         for _ in 0..HALVINGS {
             let Some([a, b]) = open.pop() else { return true };
-            if self.best_between(demand, [a, b], touch, &facing) < demand.least {
+            let rises = a[0] <= 0.0 && self.rises_from_apex(demand, [a, b]);
+            if !rises && self.best_between(demand, [a, b], touch, &facing) < demand.least {
                 let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                 open.extend([[middle, b], [a, middle]]);
             }

@@ -18,7 +18,7 @@ use super::{
     ruling::Ruling,
     ruling_clearance::{self, Ruled},
     span::Bend,
-    tool::{Profile, Tool},
+    tool::{Patience, Profile, Tool},
 };
 
 /// A surface prepared for the verifier.
@@ -153,8 +153,15 @@ impl Surface {
         }
     }
 
-    /// Signed distance of a point along the natural normal, and that distance's unit gradient.
+    /// Signed distance of a point along the natural normal, with all the time in the world.
+    #[cfg(test)]
     pub(super) fn point_distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+        self.distance(x, Patience::default())
+    }
+
+    /// Signed distance of a point along the natural normal, and that distance's unit gradient. None where there is none, or
+    /// when it is given up.
+    fn distance(&self, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
         match self {
             Self::Plane(normal, distance) => Some((normal.dot(x) - distance, *normal)),
             Self::Sphere(center, radius) => {
@@ -164,7 +171,7 @@ impl Surface {
             }
             Self::Pencil(pencil) => Some(pencil.point_distance(x)),
             Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal)),
-            Self::Ruled(surface) => ruling_clearance::point_distance(surface, x),
+            Self::Ruled(surface) => ruling_clearance::point_distance(surface, x, patience),
         }
     }
 
@@ -216,9 +223,21 @@ pub(super) struct Clearance<'a> {
     pub(super) side: f64,
     /// Stock added to the surface.
     pub(super) thickness: f64,
+    /// Who is asked before each reading, and while it is made.
+    pub(super) patience: Patience<'a>,
 }
 
-impl Clearance<'_> {
+impl<'a> Clearance<'a> {
+    /// Of a tool without stock, with all the time in the world.
+    #[cfg(test)]
+    pub(super) fn new(surface: &'a Surface, profile: &'a Profile, side: f64) -> Self {
+        Self { surface, profile, raise: 0.0, side, thickness: 0.0, patience: Patience::default() }
+    }
+
+    fn tool(&self, axis: Vec3) -> Tool<'a> {
+        Tool { profile: self.profile, axis, patience: self.patience }
+    }
+
     pub(super) fn shape(&self) -> Shape {
         self.surface.shape(self.side)
     }
@@ -227,7 +246,7 @@ impl Clearance<'_> {
     pub(super) fn shape_along(&self, ends: [&Vec3; 2], axis: &Vec3) -> Shape {
         match self.surface {
             Surface::Quadric(quadric) => {
-                let tool = Tool { profile: self.profile, axis: *axis };
+                let tool = self.tool(*axis);
                 let [from, to] = ends.map(|tip| tip + axis * self.raise);
                 quadric_clearance::shape(quadric, self.side, [&from, &to], &tool)
             }
@@ -248,7 +267,7 @@ impl Clearance<'_> {
         ends: [&Reading; 2],
         travel: f64,
     ) -> Option<Bend> {
-        let tool = Tool { profile: self.profile, axis: from.axis };
+        let tool = self.tool(from.axis);
         let tips = [from, to].map(|p| p.tip + p.axis * self.raise);
         if let Surface::Ruled(surface) = self.surface {
             return surface.bend(self.side, [&tips[0], &tips[1]], &tool, ends, self.thickness, travel);
@@ -261,17 +280,20 @@ impl Clearance<'_> {
     }
 
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real
-    /// points, or a position that is not finite).
+    /// points, or a position that is not finite), or when it is given up.
     pub(super) fn at(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
+        if self.patience.is_over() {
+            return None;
+        }
         let mut reading = self.bare(&(tip + axis * self.raise), axis)?;
         reading.value -= self.thickness;
         (reading.value.is_finite() && reading.error.is_finite()).then_some(reading)
     }
 
     fn bare(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
-        let tool = Tool { profile: self.profile, axis: *axis };
+        let tool = self.tool(*axis);
         if self.profile.is_point() {
-            let (distance, normal) = self.surface.point_distance(tip)?;
+            let (distance, normal) = self.surface.distance(tip, self.patience)?;
             let error = self.surface.error();
             return Some(Reading { value: self.side * distance, normal: normal * self.side, error });
         }

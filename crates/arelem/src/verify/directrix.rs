@@ -8,6 +8,8 @@ use super::shadow::{Distance, Flat, Level, Shadow, left};
 
 /// Parts that one search may look at; what is left then goes into the gap.
 const PART_BUDGET: usize = 4_000;
+/// After so many parts it is asked whether to go on.
+const PARTS_BETWEEN_QUESTIONS: usize = 100;
 /// Steps by which a nearest place is closed in.
 const CLOSING_STEPS: usize = 24;
 /// Sine of the angle to the curve below which a nearest place has been found.
@@ -210,6 +212,7 @@ impl<'a> Search<'a> {
     }
 
     fn part(&mut self, control: [Flat; 4], piece: usize, [start, width]: [f64; 2]) -> Part {
+        super::tool::count_work();
         let best = self.best_value();
         let mut lower = self.best.as_ref().map_or(f64::NEG_INFINITY, |b| least_above(&b.level, &control));
         let mut middle = f64::INFINITY;
@@ -263,6 +266,9 @@ impl<'a> Search<'a> {
                 continue;
             }
             *budget -= 1;
+            if (*budget).is_multiple_of(PARTS_BETWEEN_QUESTIONS) && self.shadow.patience().is_over() {
+                return None;
+            }
             let [first, last] = halves(&part.control);
             let half = 0.5 * part.width;
             let first = self.part(first, part.piece, [part.start, half]);
@@ -352,7 +358,7 @@ mod tests {
             };
             let profile = if point { Profile::tool_end() } else { Profile::of(&cutter).unwrap() };
             let axis = Vec3::new(lean[0], lean[1], lean[2] + 0.01).normalize();
-            let tool = Tool { profile: &profile, axis };
+            let tool = Tool::new(&profile, axis);
             let frame = [Vec3::x(), Vec3::y()];
             let shadow = Shadow::new(&tool, &frame, &Vec3::new(at_place[0], at_place[1], 0.3));
             let pieces = curve(&slopes);

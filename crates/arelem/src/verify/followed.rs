@@ -129,7 +129,7 @@ impl Following<'_> {
         if value > contact.value + self.tolerance && contact.value < 0.0 && -contact.value * behind <= BEHIND
         {
             let profile = Profile::tool_end();
-            let point = Tool { profile: &profile, axis: self.tool.axis };
+            let point = self.tool.with(&profile);
             let place = self.tip + contact.opposite;
             let under = self.sheet.at(side, &place, &point, self.size, self.tolerance)?;
             value = value.min(under.value + under.error);
@@ -231,7 +231,7 @@ impl Following<'_> {
                 return Some((Guard::Ball(center, radius), f64::INFINITY));
             }
             if let Some(low) = &low
-                && radius - (Tool { profile: low, axis: tool.axis }).farthest(&from).0 >= least
+                && radius - tool.with(low).farthest(&from).0 >= least
             {
                 return Some((Guard::Ball(center, radius), below));
             }

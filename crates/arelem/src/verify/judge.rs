@@ -1,5 +1,7 @@
 //! The rules, one after the other.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     motion::{DriveSide, Relation},
@@ -12,7 +14,7 @@ use super::{
     clearance::{Clearance, Reading, Shape, Surface},
     span::{Extremes, Span},
     stop,
-    tool::Profile,
+    tool::{Patience, Profile},
 };
 
 /// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
@@ -21,7 +23,7 @@ const ROUND_OFF: f64 = 1e-9;
 const BAND_SHARE: f64 = 1e-5;
 /// The same where the shape of the clearance along a vector is not known (saddles, turning axes), at first and when
 /// it would decide.
-const FREE_SHARE: [f64; 2] = [4e-4, 2e-5];
+const FREE_SHARE: [f64; 3] = [4e-4, 2e-5, 0.0];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
 /// Sine below which a surface is neither left nor right of the motion (3°).
@@ -44,10 +46,12 @@ struct Bound<'a> {
     /// The clearance at each position, where the bands of whole vectors are judged: a position ends one vector and
     /// begins the next.
     readings: Vec<Reading>,
+    /// Who waits for the proof.
+    patience: Patience<'a>,
 }
 
 impl<'a> Bound<'a> {
-    fn of(role: &'a Role, profile: &Profile, on: bool) -> Result<Self, VerifyError> {
+    fn of(role: &'a Role, profile: &Profile, on: bool, patience: Patience<'a>) -> Result<Self, VerifyError> {
         let numbers = [role.side, role.inside_tolerance, role.outside_tolerance, role.thickness];
         if !numbers.iter().all(|x| x.is_finite()) {
             return Err(VerifyError::NotFinite);
@@ -68,17 +72,15 @@ impl<'a> Bound<'a> {
             intol: if on { wider } else { role.inside_tolerance },
             outtol: if on { wider } else { role.outside_tolerance },
             readings: Vec::new(),
+            patience,
         })
     }
 
     /// Reads the clearance at all positions.
-    fn read(mut self, positions: &[ToolPosition], cancel: &dyn Fn() -> bool) -> Result<Self, VerifyError> {
+    fn read(mut self, positions: &[ToolPosition]) -> Result<Self, VerifyError> {
         let mut readings = Vec::with_capacity(positions.len());
         let clearance = self.clearance();
         for (k, place) in positions.iter().enumerate() {
-            if cancel() {
-                return Err(VerifyError::Cancelled);
-            }
             let vector = k.saturating_sub(1);
             readings.push(clearance.at(&place.tip, &place.axis).ok_or(VerifyError::NoDistance { vector })?);
         }
@@ -98,6 +100,7 @@ impl<'a> Bound<'a> {
             raise: self.raise,
             side: if self.role.side < 0.0 { -1.0 } else { 1.0 },
             thickness: if self.on { 0.0 } else { self.role.thickness },
+            patience: self.patience,
         }
     }
 
@@ -152,16 +155,27 @@ struct Judge<'a> {
     profile: Profile,
     size: f64,
     findings: Findings,
-    cancel: &'a dyn Fn() -> bool,
+    patience: Patience<'a>,
 }
 
 /// Judges a sequence: bands over the whole of every cut vector, stop condition, side, progress and step length.
 ///
-/// Start-up motions are bound at their end only. `cancel` is asked before every cut vector.
+/// Start-up motions are bound at their end only. `cancel` is asked before every reading of a clearance, and during long ones.
 ///
 /// # Errors
 /// See [`VerifyError`]; an error means that the sequence could not be judged, not that it is wrong.
 pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Result<Evidence, VerifyError> {
+    // A reading that is given up is missing like one that does not exist: what is to be said of it is settled here.
+    let given_up = Cell::new(false);
+    let asked = || {
+        given_up.set(given_up.get() || cancel());
+        given_up.get()
+    };
+    let evidence = judged(sequence, Patience::until(&asked));
+    if given_up.get() { Err(VerifyError::Cancelled) } else { evidence }
+}
+
+fn judged(sequence: &CutSequence, patience: Patience<'_>) -> Result<Evidence, VerifyError> {
     let profile = match (&sequence.part, &sequence.drive, &sequence.stop) {
         // Point to point motion needs no cutter.
         (None, None, None) => Profile::tool_end(),
@@ -169,24 +183,30 @@ pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Re
     };
     let positions = positions(sequence)?;
     let mut size = positions.iter().map(|p| p.tip.amax()).fold(profile.widest(), f64::max);
-    let part =
-        sequence.part.as_ref().map(|r| Bound::of(r, &profile, r.relation == Relation::On)).transpose()?;
-    let drive =
-        sequence.drive.as_ref().map(|r| Bound::of(r, &profile, r.relation == Relation::On)).transpose()?;
+    let part = sequence
+        .part
+        .as_ref()
+        .map(|r| Bound::of(r, &profile, r.relation == Relation::On, patience))
+        .transpose()?;
+    let drive = sequence
+        .drive
+        .as_ref()
+        .map(|r| Bound::of(r, &profile, r.relation == Relation::On, patience))
+        .transpose()?;
     let check = match &sequence.stop {
-        Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role))?),
+        Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role), patience)?),
         None => None,
     };
     let (part, drive) = if sequence.start_up {
         (part, drive)
     } else {
-        let part = part.map(|b| b.read(&positions, cancel)).transpose()?;
-        (part, drive.map(|b| b.read(&positions, cancel)).transpose()?)
+        let part = part.map(|b| b.read(&positions)).transpose()?;
+        (part, drive.map(|b| b.read(&positions)).transpose()?)
     };
     for bound in [&part, &drive, &check].into_iter().flatten() {
         size = size.max(bound.surface.size());
     }
-    let mut judge = Judge { sequence, positions, profile, size, findings: Findings::default(), cancel };
+    let mut judge = Judge { sequence, positions, profile, size, findings: Findings::default(), patience };
     judge.run(part.as_ref(), drive.as_ref(), check.as_ref())
 }
 
@@ -278,24 +298,24 @@ impl Judge<'_> {
         let clearance = bound.clearance();
         let width = bound.intol + bound.outtol;
         let turns = self.positions.windows(2).any(|p| p[0].axis != p[1].axis);
-        let shares = if turns || clearance.shape() == Shape::Free { FREE_SHARE } else { [BAND_SHARE, 0.0] };
-        let [tolerance, last_tolerance] = shares.map(|s| (s * width).max(0.1 * guard));
+        let shares =
+            if turns || clearance.shape() == Shape::Free { FREE_SHARE } else { [BAND_SHARE, 0.0, 0.0] };
+        let tolerances = shares.map(|s| (s * width).max(0.1 * guard));
         // A whole band outside is out of tolerance whatever else there is on the vector.
         let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
         let allowed = [-bound.intol - guard, bound.outtol + guard];
         let mut all: Option<Extremes> = None;
         for (vector, pair) in self.positions.windows(2).enumerate() {
-            if (self.cancel)() {
-                return Err(VerifyError::Cancelled);
-            }
             let ends = [*bound.reading(vector)?, *bound.reading(vector + 1)?];
             let span =
                 Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond, band: allowed };
             let lost = VerifyError::NoDistance { vector };
-            let mut found = span.extremes(tolerance).ok_or(lost.clone())?;
-            if bound.excess(&found, guard).is_some() && found.error() > last_tolerance {
+            let mut found = span.extremes(tolerances[0]).ok_or(lost.clone())?;
+            for finer in &tolerances[1..] {
                 // Let no error term decide that could be made smaller.
-                found = span.extremes(last_tolerance).ok_or(lost)?;
+                if bound.excess(&found, guard).is_some() && found.error() > *finer {
+                    found = span.extremes(*finer).ok_or(lost.clone())?;
+                }
             }
             if let Some((value, excess)) = bound.excess(&found, guard) {
                 self.findings.add(rule, vector, value, excess);
@@ -308,9 +328,14 @@ impl Judge<'_> {
     fn stop_event(&mut self, check: &Bound<'_>, occurrence: u32) -> Result<(), VerifyError> {
         let vector = self.last_vector();
         let profile = if check.on { Profile::tool_end() } else { self.profile.clone() };
-        let verdict =
-            stop::replay(self.sequence, check.role, occurrence, &check.surface, &profile, self.guard())
-                .ok_or(VerifyError::NoDistance { vector })?;
+        let verdict = stop::replay(
+            self.sequence,
+            (check.role, occurrence),
+            (&check.surface, &profile),
+            self.guard(),
+            self.patience,
+        )
+        .ok_or(VerifyError::NoDistance { vector })?;
         if let Err(wrong) = verdict {
             self.findings.add(Rule::StopEvent, vector, f64::from(wrong.found), 1.0);
         }
@@ -407,7 +432,9 @@ impl Judge<'_> {
                 let travel = part.reading(vector)?.normal.cross(&drive.reading(vector)?.normal);
                 if travel.norm() > PARALLEL && heading.norm() > 0.0 {
                     let along = travel / (travel.norm() * travel.dot(&heading).signum());
-                    sine = direction.dot(&along);
+                    // The path of a turning tool is no line across both normals: the axis leads it aside.
+                    let turns = from.axis != to.axis;
+                    sine = direction.dot(&along).max(if turns { sine } else { f64::NEG_INFINITY });
                 }
             }
             if sine <= 0.0 {

@@ -23,16 +23,20 @@ mod section;
 mod shadow;
 mod span;
 mod stop;
+mod straight_contact;
 mod strip;
 mod survey;
 mod tool;
 mod vertex;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use apt_geometry::canonical::GeometryKind;
 use serde::Serialize;
+
+#[cfg(test)]
+pub(crate) use tool::WORK;
 
 pub use judge::verify;
 pub use pocket::verify_pocket;

@@ -136,7 +136,7 @@ impl Pencil {
         let swing = first.hypot(second);
         let toward = second.atan2(first);
         let mut knees = vec![toward, toward + std::f64::consts::PI];
-        for (a, b) in tool.profile.lines() {
+        for (a, b) in tool.profile.closed_lines() {
             let [out, up] = [b[0] - a[0], b[1] - a[1]];
             // n·axis = −(outward normal of the straight part)·axis
             let turn = ((out / out.hypot(up) - fixed) / swing).acos();

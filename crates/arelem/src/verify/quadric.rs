@@ -14,6 +14,8 @@ const ROOT_STEPS: usize = 200;
 /// Distance from the pole of the secular equation, relative to where it starts, below which the search goes to it in long
 /// steps: the root is as near to it as the point is to a symmetry plane.
 const NEAR_POLE: f64 = 1e-3;
+/// Rounding of the sine of the angle at which a body that does not end lies level.
+const NEARLY_LEVEL: f64 = 1e-9;
 /// Below this distance from the pole, at which squares of the foot are about to overflow, the point is on the plane.
 const AT_POLE: f64 = 1e-140;
 
@@ -118,6 +120,45 @@ impl PrincipalQuadric {
         Some((self.axes.column(k).into_owned(), -self.b[k] / self.a[k]))
     }
 
+    /// Direction of the straight lines of a cylinder of any section, in principal axes.
+    pub(super) fn generator(&self) -> Option<Vec3> {
+        let flat: Vec<usize> = (0..3).filter(|i| self.a[*i] == 0.0).collect();
+        let mut generator = Vec3::zeros();
+        match flat[..] {
+            [i] if self.b[i] == 0.0 => generator[i] = 1.0,
+            [i, j] => (generator[i], generator[j]) = (self.b[j], -self.b[i]),
+            _ => return None,
+        }
+        generator.try_normalize(0.0)
+    }
+
+    /// Of one convex body on the other side than `side`, the place that is farthest along a unit direction, both in principal
+    /// axes; what is not determined is as at a given place. None where nothing is farthest.
+    pub(super) fn farthest(&self, side: f64, direction: &Vec3, about: &Vec3) -> Option<Vec3> {
+        let (a, b) = (self.a.map(|a| a * side), self.b.map(|b| b * side));
+        // Where the gradient has the direction: a y + b = t n with t > 0, the same for all coordinates.
+        let linear = (0..3).filter(|i| a[*i] == 0.0).max_by(|i, j| b[*i].abs().total_cmp(&b[*j].abs()));
+        let linear = linear.filter(|i| b[*i] != 0.0);
+        let curved = || (0..3).filter(|i| a[*i] != 0.0);
+        let t = match linear {
+            Some(i) => b[i] / direction[i],
+            None => {
+                let level = curved().map(|i| b[i] * b[i] / a[i]).sum::<f64>() - side * self.constant;
+                (level / curved().map(|i| direction[i] * direction[i] / a[i]).sum::<f64>()).sqrt()
+            }
+        };
+        let is_level = |i: usize| (t * direction[i] - b[i]).abs() <= NEARLY_LEVEL * (b[i].abs() + t);
+        if !(t > 0.0 && t.is_finite() && (0..3).all(|i| a[i] != 0.0 || is_level(i))) {
+            return None;
+        }
+        let mut place =
+            Vec3::from_fn(|i, _| if a[i] != 0.0 { (t * direction[i] - b[i]) / a[i] } else { about[i] });
+        if let Some(i) = linear {
+            place[i] -= side * self.value(&place) / (2.0 * b[i]);
+        }
+        Some(place)
+    }
+
     /// Bound of the curvature with which the surface bends away from what is on a side of it, in a ball.
     pub(super) fn hill(&self, side: f64, center: &Vec3, radius: f64) -> f64 {
         let slope = self.slope(&self.turned_in(center));
@@ -213,6 +254,7 @@ impl PrincipalQuadric {
 
     /// Signed distance of a point; None if the surface has no real points or the point is not finite.
     pub(super) fn distance(&self, point: &Vec3) -> Option<PointDistance> {
+        super::tool::count_work();
         let p = self.axes.transpose() * point;
         let value = self.value(&p);
         let slope = self.slope(&p);

@@ -5,6 +5,8 @@
 //! plane at the contact proves the minimum at once (distance is a convex function); inside a convex hollow distance is
 //! concave, so only edges matter and the corners of a circumscribed polygon bound what lies between samples.
 
+use std::cell::Cell;
+
 use apt_geometry::Vec3;
 
 use super::{
@@ -28,6 +30,8 @@ const PROVING_WIDTH: f64 = 1e-9;
 const PATCH_PIECES: u32 = 16;
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
 const ARC_BUDGET: usize = 400;
+/// After so many distances it is asked whether to go on.
+const READS_BETWEEN_QUESTIONS: u32 = 500;
 
 /// A point of the tool with its distance on the tool's side.
 #[derive(Debug, Clone, Copy)]
@@ -43,16 +47,40 @@ struct Search<'a> {
     tip: Vec3,
     tool: &'a Tool<'a>,
     across: [Vec3; 2],
+    /// How distance varies over places on a side.
     shape: Shape,
+    /// A solid may reach into the top of the tool.
+    open_top: bool,
     best: Option<Candidate>,
     /// Greatest amount by which the true minimum could be below the best candidate.
     gap: f64,
+    /// Distances of points read.
+    reads: Cell<u32>,
 }
 
-/// How the clearance of a tool varies over its places and along a straight move. Distance is concave inside each of two
+/// Whether a convex solid may reach into the top of a tool on a straight move: its lowest place along the axis comes over the
+/// disc there, and not as deep as the middle of the tool. Nothing touches that disc (arelem reference 1.3), and where it is
+/// what is nearest of the tool as a closed body, the clearance of the others is no convex function of the way.
+fn may_reach_into_top(quadric: &PrincipalQuadric, side: f64, ends: [&Vec3; 2], tool: &Tool<'_>) -> bool {
+    let Some(radius) = tool.profile.open_top() else { return false };
+    let (up, tip) = (quadric.turned_in(&tool.axis), quadric.turned_in(ends[0]));
+    let Some(lowest) = quadric.farthest(side, &-up, &tip) else { return false };
+    let away = lowest - tip;
+    let height = away.dot(&up);
+    let way = ends[1] - ends[0];
+    let climb = way.dot(&tool.axis);
+    let across = (way - tool.axis * climb).norm();
+    (away - up * height).norm() <= radius + across
+        && height - climb.min(0.0) >= 0.5 * tool.profile.top_height()
+}
+
+/// How the clearance of a tool varies along a straight move. Distance is concave inside each of two
 /// convex bodies, and not in both together: a tool that has parts in one and in the other is deep in what lies between.
 pub(super) fn shape(quadric: &PrincipalQuadric, side: f64, ends: [&Vec3; 2], tool: &Tool<'_>) -> Shape {
     let shape = quadric.convexity.shape(side);
+    if shape == Shape::Convex && may_reach_into_top(quadric, side, ends, tool) {
+        return Shape::Free;
+    }
     match quadric.mirror() {
         Some((normal, distance)) if shape == Shape::Concave => {
             let heights = ends.map(|tip| normal.dot(tip) - distance);
@@ -72,9 +100,15 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error: 0.0 });
     }
-    let shape = shape(quadric, side, [tip, tip], tool);
-    if let Some(reading) = circle_contact::at(quadric, shape, side, tip, tool) {
-        return Some(reading);
+    let along = shape(quadric, side, [tip, tip], tool);
+    let convex = quadric.convexity.shape(side) == Shape::Convex;
+    // Distance from a convex solid is a convex function of the place, also where that of the whole tool is not.
+    let shape = if convex { Shape::Convex } else { along };
+    let shown = circle_contact::at(quadric, shape, side, tip, tool);
+    let open_top = convex && along != shape;
+    let shown = shown.or_else(|| open_top.then(|| circle_contact::at(quadric, along, side, tip, tool))?);
+    if shown.is_some() {
+        return shown;
     }
     let first = perpendicular(&tool.axis);
     let mut search = Search {
@@ -84,8 +118,10 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         tool,
         across: [first, tool.axis.cross(&first)],
         shape,
+        open_top,
         best: None,
         gap: 0.0,
+        reads: Cell::new(0),
     };
     search.run()?;
     let best = search.best?;
@@ -107,8 +143,12 @@ impl Search<'_> {
         self.tip + self.radial(phi) * p[0] + self.tool.axis * p[1]
     }
 
-    /// Distance of a point on the tool's side and its gradient.
+    /// Distance of a point on the tool's side and its gradient; None when the search is given up, too.
     fn distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+        self.reads.set(self.reads.get() + 1);
+        if self.reads.get().is_multiple_of(READS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
+            return None;
+        }
         let d = self.quadric.distance(x)?;
         Some((self.side * d.distance, d.normal * self.side))
     }
@@ -167,8 +207,10 @@ impl Search<'_> {
         let (Shape::Convex, Some(best)) = (self.shape, self.best) else { return false };
         let least = best.normal.dot(&(self.tip - best.point)) - self.tool.support(&-best.normal).0;
         let scale = self.tool.profile.reach();
-        self.gap = (-least).max(0.0);
-        self.gap <= 1e-11 * scale
+        let gap = (-least).max(0.0);
+        // What the tangent plane misses at an open top is the disc that nothing touches.
+        self.gap = if self.open_top { 0.0 } else { gap };
+        gap <= 1e-11 * scale
     }
 
     /// Candidates on the circle through a meridian point, with a ball of `radius` round each of its points; of the balls of

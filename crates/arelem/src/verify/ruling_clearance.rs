@@ -14,7 +14,7 @@ use super::{
     span::Bend,
     strip::{Touch, nearest},
     survey::Sheet,
-    tool::{Meridian, Profile, Tool, perpendicular},
+    tool::{Meridian, Patience, Profile, Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
@@ -145,9 +145,9 @@ fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
 }
 
 /// Signed distance of a point along the natural normal and that distance's unit gradient; None beyond the end of a curve.
-pub(super) fn point_distance(surface: &Ruled, x: &Vec3) -> Option<(f64, Vec3)> {
+pub(super) fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
-    let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z) };
+    let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z), patience };
     if let Some(found) = surface.followed(1.0, x, &tool) {
         return Some((found.value, found.normal));
     }
@@ -178,7 +178,7 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
     if let Some(axis) = surface.axis()
         && tool.axis.cross(&axis).norm() <= PARALLEL
     {
-        let (distance, normal) = point_distance(surface, tip)?;
+        let (distance, normal) = point_distance(surface, tip, tool.patience)?;
         let error = resolution(surface, tip, 0.0);
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error });
@@ -280,7 +280,7 @@ impl Bodies<'_> {
 
     /// Depth of a place under the surface, and the direction out.
     fn depth(&self, x: &Vec3) -> Option<(f64, Vec3)> {
-        let (distance, normal) = point_distance(self.surface, x)?;
+        let (distance, normal) = point_distance(self.surface, x, self.tool.patience)?;
         Some((-self.side * distance, normal * self.side))
     }
 

@@ -6,7 +6,7 @@
 use apt_geometry::Vec3;
 use nalgebra::Vector2;
 
-use super::tool::Tool;
+use super::tool::{Patience, Tool};
 
 /// Arcs of directions looked at for one distance; what is left then is the gap.
 const ARCS: usize = 48;
@@ -106,6 +106,11 @@ impl Arc {
 }
 
 impl<'a> Shadow<'a> {
+    /// Who is asked while it is measured.
+    pub(super) fn patience(&self) -> Patience<'a> {
+        self.tool.patience
+    }
+
     /// The tool with its end at `tip`, seen along the direction across both unit vectors of `frame`.
     pub(super) fn new(tool: &'a Tool<'a>, frame: &'a [Vec3; 2], tip: &Vec3) -> Self {
         let flat = |v: &Vec3| Flat::new(frame[0].dot(v), frame[1].dot(v));
@@ -199,7 +204,7 @@ mod tests {
                 height,
             };
             let profile = Profile::of(&cutter).unwrap();
-            let tool = Tool { profile: &profile, axis: Vec3::new(lean[0], lean[1], 1.0).normalize() };
+            let tool = Tool::new(&profile, Vec3::new(lean[0], lean[1], 1.0).normalize());
             let frame = [Vec3::x(), Vec3::z()];
             let shadow = Shadow::new(&tool, &frame, &Vec3::new(0.1, 0.2, 0.3));
             let x = Flat::new(at[0], at[1]);

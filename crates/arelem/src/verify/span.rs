@@ -230,7 +230,7 @@ impl Span<'_> {
         let mut open = vec![(first, last)];
         let mut budget = FREE_EVALUATIONS;
         while let Some((a, b)) = open.pop() {
-            let part = bounds([a, b], rate, jumps);
+            let part = bounds([a, b], rate, jumps, if self.turns() { rate * TURN_STEP } else { 0.0 });
             let is_whole = b.t - a.t >= 1.0;
             let within = part.low >= self.band[0] && part.high <= self.band[1];
             // Where the slope changes its sign, an extreme is looked at once.
@@ -302,8 +302,9 @@ impl Span<'_> {
 }
 
 /// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
-/// by at most `jumps`: not below its chord less the bulge of a parabola, nor above what leads on from either end.
-fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
+/// by at most `jumps`: not below its chord less the bulge of a parabola, nor below what leads to either end, nor above what
+/// leads on from either end. The slopes are known up to `slack`.
+fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64, slack: f64) -> Extremes {
     let width = b.t - a.t;
     let (least, most) = (a.value.min(b.value), a.value.max(b.value));
     let rise = (b.value - a.value) / width;
@@ -313,16 +314,25 @@ fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
     } else {
         least
     };
+    // From the one end on it is not below a parabola that has the slope of the other end there.
+    let from = |value: f64, slope: f64| {
+        let first = slope - slack - jumps - rate * width;
+        let at = -first / rate;
+        if first >= 0.0 {
+            value
+        } else if at < width {
+            value + 0.5 * first * at
+        } else {
+            value + first * width + 0.5 * rate * width * width
+        }
+    };
+    let low = low - 0.25 * jumps * width;
+    let low = low.max(from(a.value, b.slope)).max(from(b.value, -a.slope)).min(least);
     // Where the parabolas from both ends meet.
     let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
         / (a.slope - b.slope + rate * width);
     let high =
         if at > 0.0 && at < width { most.max(a.value + a.slope * at + 0.5 * rate * at * at) } else { most };
     let error = a.error.max(b.error);
-    Extremes {
-        min: least,
-        max: most,
-        low: low - 0.25 * jumps * width - error,
-        high: high + jumps * width + error,
-    }
+    Extremes { min: least, max: most, low: low - error, high: high + jumps * width + error }
 }

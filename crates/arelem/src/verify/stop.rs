@@ -10,7 +10,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::clearance::{Clearance, Surface};
 use super::span::{between, turning};
-use super::tool::Profile;
+use super::tool::{Patience, Profile};
 
 /// Steps of the replay over the whole sequence; the shortest step is the path length divided by this.
 const FINEST_STEPS: f64 = 20_000.0;
@@ -41,14 +41,13 @@ pub(super) struct WrongEvent {
     pub(super) found: u32,
 }
 
-/// Replays the sequence against its check surface.
+/// Replays the sequence against its check surface. None where there is no distance, or when it is given up.
 pub(super) fn replay(
     sequence: &CutSequence,
-    role: &Role,
-    occurrence: u32,
-    surface: &Surface,
-    profile: &Profile,
+    (role, occurrence): (&Role, u32),
+    (surface, profile): (&Surface, &Profile),
     guard: f64,
+    patience: Patience<'_>,
 ) -> Option<Result<(), WrongEvent>> {
     let band = CERTAIN * role.inside_tolerance.max(role.outside_tolerance) + guard;
     let on = role.relation == Relation::On;
@@ -58,7 +57,7 @@ pub(super) fn replay(
     }
     let thickness = if on { 0.0 } else { role.thickness };
     // The cutter itself stops at check surfaces, whatever disk there is for the others.
-    let make = |side: f64| Clearance { surface, profile, raise: 0.0, side, thickness };
+    let make = |side: f64| Clearance { surface, profile, raise: 0.0, side, thickness, patience };
     let (natural, opposite) = (make(1.0), make(-1.0));
     let measure = |p: &ToolPosition| -> Option<f64> {
         let first = natural.at(&p.tip, &p.axis)?.value;

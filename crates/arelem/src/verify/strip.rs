@@ -13,6 +13,8 @@ use super::{
 
 /// Cells that one search may look at; what is left then goes into the gap.
 const CELL_BUDGET: usize = 20_000;
+/// After so many cells it is asked whether to go on.
+const CELLS_BETWEEN_QUESTIONS: usize = 200;
 /// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction.
 const SURE_DIRECTION: f64 = 1e-8;
 
@@ -125,6 +127,7 @@ impl Search<'_> {
     }
 
     fn cell(&mut self, net: Net, piece: usize, along: [f64; 2], across: [f64; 2]) -> Cell {
+        super::tool::count_work();
         let [x, run, rise] = jet(&net, [0.5; 2]);
         let normal = run.cross(&rise);
         let size = normal.norm();
@@ -166,19 +169,19 @@ impl Search<'_> {
     }
 
     /// Halves cells until none could hold a place nearer than the best by more than `resolution`, or one deeper than `deep`
-    /// is found; `lowest` tells what the budget left unseen.
+    /// is found; `lowest` tells what the budget left unseen. None when it is given up.
     fn close_in(
         &mut self,
         open: &mut Vec<Cell>,
         [resolution, deep]: [f64; 2],
         budget: &mut usize,
         lowest: &mut f64,
-    ) {
+    ) -> Option<()> {
         while let Some(cell) = open.pop() {
             let best = self.best.map_or(f64::INFINITY, |b| b.value);
             if best < -deep {
                 open.clear();
-                return;
+                break;
             }
             if cell.lower >= best - resolution {
                 continue;
@@ -187,6 +190,9 @@ impl Search<'_> {
                 *lowest = lowest.min(cell.lower);
             } else {
                 *budget -= 1;
+                if (*budget).is_multiple_of(CELLS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
+                    return None;
+                }
                 let [first, second] = self.split(&cell);
                 if first.value < second.value {
                     open.extend([second, first]);
@@ -195,6 +201,7 @@ impl Search<'_> {
                 }
             }
         }
+        Some(())
     }
 
     fn split(&mut self, cell: &Cell) -> [Cell; 2] {
@@ -214,7 +221,7 @@ impl Search<'_> {
 }
 
 /// The place of the patches nearest to a tool with its end at `tip`, to within `resolution`; None without patches or where
-/// a number is not finite. A place deeper in the tool than `deep` ends the search.
+/// a number is not finite or the search is given up. A place deeper in the tool than `deep` ends the search.
 pub(super) fn nearest(
     patches: &[Patch],
     tip: &Vec3,
@@ -236,7 +243,7 @@ pub(super) fn nearest(
     let mut budget = CELL_BUDGET;
     let mut open = Vec::with_capacity(32);
     open.push(search.whole(patches.get(first)?, first));
-    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest);
+    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest)?;
     let found = search.best?;
     let base = found.outward.dot(tip) + tool.support(&found.outward).0;
     for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
@@ -250,7 +257,7 @@ pub(super) fn nearest(
     }
     // The nearest last, because it is taken first.
     open.sort_by(|a, b| b.value.total_cmp(&a.value));
-    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest);
+    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest)?;
     let mut touch = search.best?;
     touch.gap = resolution.max(touch.value - lowest);
     (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)

@@ -2,7 +2,8 @@
 //! numbers alone (arelem reference 1.3).
 //!
 //! The meridian is tip – lower line – corner arc – upper line – top, in the half-plane (ρ, z) of distance from the axis
-//! and height above the tool end. It is closed by the top disc, so that a surface inside the tool counts as penetrated.
+//! and height above the tool end. The disc at the top closes the body where inside and outside are told apart; nothing
+//! touches it (arelem reference 1.3).
 
 use apt_geometry::{Vec3, cutter::Cutter};
 
@@ -138,9 +139,20 @@ impl Profile {
         [self.lower, self.upper, self.top]
     }
 
-    /// Straight parts of the meridian, the closing top disc included.
-    pub(super) fn lines(&self) -> [(Meridian, Meridian); 3] {
-        [([0.0; 2], self.lower), (self.upper, self.top), ([0.0, self.top[1]], self.top)]
+    /// Straight parts of the meridian that touch surfaces: all but the closing disc at the top.
+    pub(super) fn lines(&self) -> [(Meridian, Meridian); 2] {
+        [([0.0; 2], self.lower), (self.upper, self.top)]
+    }
+
+    /// The straight parts of the closed body.
+    pub(super) fn closed_lines(&self) -> [(Meridian, Meridian); 3] {
+        let [lower, upper] = self.lines();
+        [lower, upper, ([0.0, self.top[1]], self.top)]
+    }
+
+    /// Radius of the disc at the top of a tool with a height: a surface may reach through it without being touched.
+    pub(super) fn open_top(&self) -> Option<f64> {
+        (self.top[1] > 0.0 && self.top[0] > 0.0).then_some(self.top[0])
     }
 
     /// Centre and radius of the corner arc, if there is one.
@@ -179,7 +191,7 @@ impl Profile {
     /// Signed distance of a point of the half-plane (ρ ≥ 0) to the body, negative inside, and the nearest boundary point.
     pub(super) fn signed_distance(&self, p: Meridian) -> (f64, Meridian) {
         let mut best = (f64::INFINITY, [0.0; 2]);
-        for (a, b) in self.lines() {
+        for (a, b) in self.closed_lines() {
             let q = nearest_on_segment(p, a, b);
             let d = sub(p, q);
             let distance = dot(d, d).sqrt();
@@ -248,6 +260,44 @@ pub(super) struct Tool<'a> {
     pub(super) profile: &'a Profile,
     /// Unit tool axis.
     pub(super) axis: Vec3,
+    /// Who is asked while it is measured.
+    pub(super) patience: Patience<'a>,
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Distances of points, and parts of surfaces, that this thread has looked at: one takes up to a microsecond.
+    pub(crate) static WORK: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
+/// Counts a piece of work for the tests that say how much of it lies between two questions whether to go on.
+pub(super) fn count_work() {
+    #[cfg(test)]
+    WORK.set(WORK.get() + 1);
+}
+
+/// Whoever waits for a measurement, and may give it up. A measurement that is given up has no result.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Patience<'a> {
+    cancel: Option<&'a dyn Fn() -> bool>,
+}
+
+impl<'a> Patience<'a> {
+    /// Of somebody who says when to give up.
+    pub(super) fn until(cancel: &'a dyn Fn() -> bool) -> Self {
+        Self { cancel: Some(cancel) }
+    }
+
+    /// Whether the measurement is to be given up.
+    pub(super) fn is_over(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel())
+    }
+}
+
+impl std::fmt::Debug for Patience<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Patience").field("has_limit", &self.cancel.is_some()).finish()
+    }
 }
 
 /// Some unit vector perpendicular to a unit vector.
@@ -263,7 +313,21 @@ pub(super) fn perpendicular(axis: &Vec3) -> Vec3 {
     side / side.norm()
 }
 
-impl Tool<'_> {
+impl<'a> Tool<'a> {
+    /// A cutter with a unit axis, measured with all the time in the world.
+    #[cfg(test)]
+    pub(super) fn new(profile: &'a Profile, axis: Vec3) -> Self {
+        Self { profile, axis, patience: Patience::default() }
+    }
+
+    /// The same place of the axis with another meridian.
+    pub(super) fn with<'b>(&self, profile: &'b Profile) -> Tool<'b>
+    where
+        'a: 'b,
+    {
+        Tool { profile, axis: self.axis, patience: self.patience }
+    }
+
     /// Distance from the axis, height, and the unit radial direction of a vector from the tool end.
     fn split(&self, w: &Vec3) -> (Meridian, Vec3) {
         let z = w.dot(&self.axis);
@@ -305,7 +369,7 @@ impl Tool<'_> {
     /// stands out over the body in it: away from edges and corner, and across the straight parts.
     pub(super) fn outward_at(&self, w: &Vec3) -> impl Iterator<Item = Vec3> {
         let (p, out) = self.split(w);
-        let straight = self.profile.lines().map(|(a, b)| [b[1] - a[1], a[0] - b[0]]);
+        let straight = self.profile.closed_lines().map(|(a, b)| [b[1] - a[1], a[0] - b[0]]);
         let round = self.knots().map(|q| sub(p, q));
         let ends = [[0.0, 1.0], [0.0, -1.0]];
         self.directions(straight.into_iter().chain(round).chain(ends), out)

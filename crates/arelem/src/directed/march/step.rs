@@ -297,6 +297,8 @@ impl<'a> Stepper<'a> {
             *bend = match role.shape {
                 _ if sag <= STRAIGHT_SHARE * role.band() => Bend::Straight,
                 Shape::Flat => Bend::Straight,
+                // Under a solid that reaches into the top of the tool the path may bend the other way.
+                Shape::Convex if *k < 0.0 => Bend::Concave,
                 Shape::Convex => Bend::Convex,
                 Shape::Concave => Bend::Concave,
                 Shape::General if *k > 0.0 => Bend::Convex,

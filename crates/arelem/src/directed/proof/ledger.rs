@@ -119,6 +119,6 @@ impl Ledger {
 /// solid are both convex, or the clearance has a closed form, it may not.
 fn doubtful(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
     !gauge.on
-        && matches!(gauge.shape(), Shape::General | Shape::Concave)
+        && matches!(gauge.shape_along(tool, [tip, tip]), Shape::General | Shape::Concave)
         && !has_closed_form(gauge, tool, tip)
 }

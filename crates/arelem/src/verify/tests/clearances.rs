@@ -21,7 +21,7 @@ pub(super) fn clearance(
 ) -> (f64, Vec3, f64) {
     let profile = Profile::of(cutter).unwrap();
     let surface = Surface::of(geometry).unwrap();
-    let c = Clearance { surface: &surface, profile: &profile, raise: 0.0, side, thickness: 0.0 };
+    let c = Clearance::new(&surface, &profile, side);
     let reading = c.at(&Vec3::from(tip), &Vec3::from(axis).normalize()).unwrap();
     (reading.value, reading.normal, reading.error)
 }

@@ -159,13 +159,7 @@ impl<'a> Course<'a> {
     }
 
     fn reading(&self, place: &ToolPosition) -> Reading {
-        let clearance = Clearance {
-            surface: &self.surface,
-            profile: &self.profile,
-            raise: 0.0,
-            side: self.side,
-            thickness: 0.0,
-        };
+        let clearance = Clearance::new(&self.surface, &self.profile, self.side);
         clearance.at(&place.tip, &place.axis).unwrap()
     }
 

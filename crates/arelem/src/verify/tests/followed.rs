@@ -36,7 +36,7 @@ fn contacts_are_followed_and_are_those_of_the_search() {
         let surface = Surface::of(&geometry).unwrap();
         let Surface::Ruled(ruled) = &surface else { panic!("{geometry:?}") };
         let profile = Profile::of(&cutter(&tool)).unwrap();
-        let tool = Tool { profile: &profile, axis: Vec3::z() };
+        let tool = Tool::new(&profile, Vec3::z());
         let mut tip = Vec3::new(-0.6, 0.4, 5.0);
         for _ in 0..60 {
             tip.z -= searched(ruled, side, &tip, &tool).unwrap().value;
@@ -75,8 +75,7 @@ fn the_slope_of_a_clearance_grows_no_faster_than_its_bound() {
         let mut numbers = cutter(&tool);
         numbers.height = 1.0;
         let profile = Profile::of(&numbers).unwrap();
-        let clearance =
-            Clearance { surface: &surface, profile: &profile, raise: 0.1, side: *side, thickness: 0.0 };
+        let clearance = Clearance { raise: 0.1, ..Clearance::new(&surface, &profile, *side) };
         let place = |x: f64, lean: f64| {
             let axis = Vec3::new(lean, 0.1, 1.0).normalize();
             let mut tip = Vec3::new(x, 0.5, 6.0);

@@ -11,6 +11,7 @@ mod paths;
 mod poly_conics;
 mod ruled;
 mod rulings;
+mod straight;
 mod turning;
 mod vertices;
 
@@ -119,4 +120,9 @@ pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64
         thickness: 0.0,
         disk: None,
     }
+}
+
+/// A ruled and a polyconic surface.
+pub(crate) fn lofted() -> [Geometry; 2] {
+    [lofts::roof(), lofts::vault()]
 }

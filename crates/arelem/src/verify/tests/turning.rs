@@ -79,7 +79,7 @@ fn rules(sequence: &CutSequence) -> Vec<Rule> {
 fn sampled(sequence: &CutSequence) -> (f64, f64) {
     let profile = Profile::of(&sequence.cutter).unwrap();
     let surface = Surface::of(&sequence.part.as_ref().unwrap().surface.geometry).unwrap();
-    let clearance = Clearance { surface: &surface, profile: &profile, raise: 0.0, side: 1.0, thickness: 0.0 };
+    let clearance = Clearance::new(&surface, &profile, 1.0);
     let places: Vec<ToolPosition> =
         std::iter::once(sequence.start).chain(sequence.points.iter().copied()).collect();
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);

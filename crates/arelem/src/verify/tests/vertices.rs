@@ -108,7 +108,7 @@ proptest! {
         let solid = cone(VERTEX, [0.0, 0.0, -1.0], half_angle);
         let (value, normal, error) = clearance(&tool, &solid, 1.0, tip.into(), axis);
         let profile = Profile::of(&tool).unwrap();
-        let body = Tool { profile: &profile, axis: unit };
+        let body = Tool::new(&profile, unit);
         let w = tip - Vec3::from(VERTEX);
         let leaves = |n: &Vec3| n.dot(&w) - body.support(&-n).0;
         prop_assert!((normal.norm() - 1.0).abs() < 1e-9);
