@@ -5,11 +5,11 @@ mod support;
 #[path = "support/wave.rs"]
 mod wave;
 
-use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
+use std::{collections::BTreeMap, fmt::Write as _};
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, RuledSurface},
+    canonical::{Geometry, Remembering, RuledSurface},
     cutter::Cutter,
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
@@ -46,7 +46,7 @@ fn ruled(curves: [(Vec3, Vec3, Vec3); 2]) -> Geometry {
         parts.push(plane(normal.x, normal.y, normal.z, normal.dot(&start)));
         parts.extend([Geometry::Point(start), Geometry::Point(end), Geometry::Vector(normal.normalize())]);
     }
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
 }
 
 /// Surfaces under the tool, about z = 0, with the side of their natural normal that is up.

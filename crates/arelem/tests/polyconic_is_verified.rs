@@ -1,10 +1,8 @@
 //! Motions over polyconic surfaces: what the engine delivers is proven.
 
-use std::sync::Arc;
-
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Plane},
+    canonical::{Geometry, Plane, Remembering},
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PerRole, Relation, StartSurface,
         Turn,
@@ -33,7 +31,7 @@ fn poly_conic(length: f64, functions: [[f64; 2]; 7]) -> Geometry {
         values.extend([0.0; 6]);
     }
     values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }
 
 #[test]

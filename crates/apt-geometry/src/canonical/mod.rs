@@ -11,6 +11,7 @@ pub mod matrix;
 mod plane;
 mod poly_conic;
 mod quadric;
+mod remembering;
 mod ruled;
 mod sculptured;
 mod tabulated;
@@ -18,6 +19,7 @@ mod transform;
 mod values;
 
 pub use poly_conic::PolyConicForm;
+pub use remembering::{Made, Remembering};
 pub use ruled::{RuledCurve, RuledEnd};
 pub use tabulated::Joint;
 pub use transform::TransformError;
@@ -195,11 +197,11 @@ pub enum Geometry {
     Sphere(Sphere),
     Quadric(Quadric),
     /// The 79 canonical values.
-    PolyConic(Arc<Vec<f64>>),
+    PolyConic(Remembering<Vec<f64>>),
     /// The eight canonical values; what they mean is known to the installation that had the type.
     Loft(Arc<Vec<f64>>),
     TabulatedCylinder(Arc<TabulatedCylinder>),
-    RuledSurface(Arc<RuledSurface>),
+    RuledSurface(Remembering<RuledSurface>),
     Pattern(Arc<Pattern>),
     /// The canonical values, as many as there are; what they mean is known to the installation that had the type.
     Mesh(Arc<Vec<f64>>),

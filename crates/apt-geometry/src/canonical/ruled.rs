@@ -81,10 +81,8 @@ impl RuledSurface {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use super::super::Plane;
     use super::super::matrix::CoordinatePlane;
+    use super::super::{Plane, Remembering};
     use super::*;
 
     #[test]
@@ -95,7 +93,7 @@ mod tests {
         let matrix = Matrix::translation(Vec3::new(10.0, 0.0, 0.0))
             .multiply(&Matrix::rotation(CoordinatePlane::Xy, 90.0))
             .multiply(&Matrix::scaling(2.0));
-        let surface = Geometry::RuledSurface(Arc::new(RuledSurface { parts }));
+        let surface = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
         let Ok(Geometry::RuledSurface(moved)) = surface.transform(&matrix) else { panic!("a ruled surface") };
         let (curve, end) = moved.curves().expect("the parts of a definition");
         assert_eq!(curve.end, Vec3::new(10.0, 8.0, 6.0));

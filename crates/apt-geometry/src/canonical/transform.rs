@@ -10,7 +10,8 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 use super::{
-    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Sphere, TabulatedCylinder,
+    Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Remembering, Sphere,
+    TabulatedCylinder,
 };
 use crate::Vec3;
 
@@ -75,7 +76,9 @@ impl Geometry {
             Geometry::TabulatedCylinder(surface) => {
                 Geometry::TabulatedCylinder(Arc::new(tabulated_image(surface, matrix)?))
             }
-            Geometry::RuledSurface(surface) => Geometry::RuledSurface(Arc::new(surface.image(matrix)?)),
+            Geometry::RuledSurface(surface) => {
+                Geometry::RuledSurface(Remembering::new(surface.image(matrix)?))
+            }
             Geometry::Pattern(pattern) => Geometry::Pattern(Arc::new(Pattern {
                 points: pattern.points.iter().map(|point| matrix.apply_point(point)).collect(),
                 ..Pattern::clone(pattern)
@@ -89,7 +92,7 @@ impl Geometry {
                 Geometry::SpaceCurve(Arc::new(curve.transformed(matrix)))
             }
             Geometry::PolyConic(values) => {
-                Geometry::PolyConic(Arc::new(super::poly_conic::image(values, matrix)?))
+                Geometry::PolyConic(Remembering::new(super::poly_conic::image(values, matrix)?))
             }
             Geometry::Matrix(_) | Geometry::Loft(_) | Geometry::Mesh(_) | Geometry::ElementSurface(_) => {
                 return Err(TransformError::NotMoved { kind });

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arrangement, Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Quadric, Sphere,
-    TabulatedCylinder, sculptured,
+    Arrangement, Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Pattern, Plane, Quadric,
+    Remembering, Sphere, TabulatedCylinder, sculptured,
 };
 use crate::Vec3;
 
@@ -83,10 +83,10 @@ impl Geometry {
             | Geometry::LoftConic(quadric)
             | Geometry::Quadric(quadric) => quadric.coefficients.to_vec(),
             Geometry::Matrix(matrix) => matrix.rows.concat(),
-            Geometry::PolyConic(values)
-            | Geometry::Loft(values)
-            | Geometry::Mesh(values)
-            | Geometry::ElementSurface(values) => values.to_vec(),
+            Geometry::PolyConic(values) => values.to_vec(),
+            Geometry::Loft(values) | Geometry::Mesh(values) | Geometry::ElementSurface(values) => {
+                values.to_vec()
+            }
             Geometry::TabulatedCylinder(surface) => tabulated_values(surface),
             Geometry::RuledSurface(surface) => surface.parts.iter().flat_map(coded_values).collect(),
             Geometry::Pattern(pattern) => pattern_values(pattern),
@@ -128,7 +128,7 @@ impl Geometry {
             GeometryKind::Matrix => Geometry::Matrix(Matrix {
                 rows: std::array::from_fn(|row| std::array::from_fn(|column| at(4 * row + column))),
             }),
-            GeometryKind::PolyConic => Geometry::PolyConic(Arc::new(values.to_vec())),
+            GeometryKind::PolyConic => Geometry::PolyConic(Remembering::new(values.to_vec())),
             GeometryKind::Loft => Geometry::Loft(Arc::new(values.to_vec())),
             GeometryKind::Mesh | GeometryKind::ElementSurface if values.is_empty() => {
                 return Err(CanonicalError::Count { kind, expected: 1, found: 0 });

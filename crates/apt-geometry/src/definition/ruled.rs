@@ -1,13 +1,11 @@
 //! RLDSRF (language reference 4.16): two curves, each cut out of a surface by a plane, joined by rulings.
 
-use std::sync::Arc;
-
 use super::DefinitionError;
 use super::format::{Format, Parameter};
 use super::given::Given;
 use super::solve::PARALLEL_SINE;
 use crate::Vec3;
-use crate::canonical::{Geometry, GeometryKind, RuledSurface};
+use crate::canonical::{Geometry, GeometryKind, Remembering, RuledSurface};
 
 use Parameter::Entity;
 
@@ -44,7 +42,7 @@ pub(super) static FORMATS: &[Format] = &[
         build: |given| {
             let mut parts = curve(given, 0)?;
             parts.extend(curve(given, 4)?);
-            Ok(Geometry::RuledSurface(Arc::new(RuledSurface { parts })))
+            Ok(Geometry::RuledSurface(Remembering::new(RuledSurface { parts })))
         },
     },
     Format {
@@ -53,7 +51,7 @@ pub(super) static FORMATS: &[Format] = &[
         build: |given| {
             let mut parts = curve(given, 0)?;
             parts.push(given.geometry(4)?.clone());
-            Ok(Geometry::RuledSurface(Arc::new(RuledSurface { parts })))
+            Ok(Geometry::RuledSurface(Remembering::new(RuledSurface { parts })))
         },
     },
 ];

@@ -8,7 +8,6 @@ mod directed;
 mod interval;
 mod part;
 mod poly_conic;
-mod prepared;
 mod quadric;
 mod quadric_bound;
 mod ruled;
@@ -142,10 +141,10 @@ impl Surface {
                 DirectrixCurve::new(cylinder).map(|curve| Self::Tabulated(Box::new(curve))).ok_or(degenerate)
             }
             Geometry::RuledSurface(surface) => {
-                prepared::RULED.get(surface, RuledSheet::new).map(Self::Ruled).ok_or(degenerate)
+                surface.made(RuledSheet::new).map(Self::Ruled).ok_or(degenerate)
             }
             Geometry::PolyConic(values) => {
-                let sheet = prepared::POLY_CONIC.get(values, |values| PolyConicSheet::new(values));
+                let sheet = values.made(|values| PolyConicSheet::new(values));
                 sheet.map(Self::PolyConic).ok_or(degenerate)
             }
             Geometry::Point(_)

@@ -1,7 +1,10 @@
 //! Parts of parametric surfaces with bounds that hold over all of them: of their extent, their curvature and the turn of
 //! their normal. Parts are halved where a question needs closer bounds; what was found stays with them.
 
-use std::sync::OnceLock;
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicUsize, Ordering},
+};
 
 use super::{
     bend::{Bend, parallel_bend},
@@ -122,6 +125,32 @@ impl<T> Later<T> {
 }
 
 impl<T> PartialEq for Later<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// A number of parts. It tells no surfaces apart.
+#[derive(Debug, Default)]
+pub(super) struct Count(AtomicUsize);
+
+impl Count {
+    pub(super) fn add(&self, more: usize) {
+        self.0.fetch_add(more, Ordering::Relaxed);
+    }
+
+    pub(super) fn get(&self) -> usize {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+impl Clone for Count {
+    fn clone(&self) -> Self {
+        Self(AtomicUsize::new(self.get()))
+    }
+}
+
+impl PartialEq for Count {
     fn eq(&self, _: &Self) -> bool {
         true
     }

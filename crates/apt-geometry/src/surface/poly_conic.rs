@@ -14,15 +14,14 @@ use self::tree::{halved, joined};
 use super::{
     Chart, Foot, Place,
     interval::Number,
-    part::{Part, Rectangle},
+    part::{Count, Part, Rectangle},
     perpendicular,
-    prepared::{Count, Parted},
     sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
     canonical::{
-        PolyConicForm,
+        Made, PolyConicForm,
         extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
     },
 };
@@ -120,7 +119,7 @@ fn section<T: Number>(
     }
 }
 
-impl Parted for PolyConicSheet {
+impl Made for PolyConicSheet {
     fn parts(&self) -> usize {
         self.parts.get()
     }

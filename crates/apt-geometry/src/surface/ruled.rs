@@ -13,16 +13,15 @@ use self::bounds::ranges;
 use super::{
     Chart, Foot, Place,
     interval::Interval,
-    part::{Later, Part},
+    part::{Count, Later, Part},
     perpendicular,
-    prepared::{Count, Parted},
     section_curve::{CurvePoint, SectionCurve},
     sheet::{Jet, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
     canonical::{
-        RuledEnd, RuledSurface,
+        Made, RuledEnd, RuledSurface,
         extent::{RULED_BEFORE_FOLD, RULED_BEYOND, RULED_STEADY},
     },
 };
@@ -139,7 +138,7 @@ impl Edge {
     }
 }
 
-impl Parted for RuledSheet {
+impl Made for RuledSheet {
     fn parts(&self) -> usize {
         self.parts.get()
     }

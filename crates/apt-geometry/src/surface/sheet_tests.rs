@@ -5,7 +5,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 
 use super::*;
-use crate::canonical::{Matrix, RuledSurface, matrix::CoordinatePlane};
+use crate::canonical::{Matrix, Remembering, RuledSurface, matrix::CoordinatePlane};
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
@@ -17,7 +17,7 @@ fn curve(surface: Geometry, start: Vec3, end: Vec3, across: Vec3) -> Vec<Geometr
 
 fn ruled(first: Vec<Geometry>, second: Vec<Geometry>) -> Geometry {
     let parts = first.into_iter().chain(second).collect();
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
 }
 
 fn plane(normal: Vec3, distance: f64) -> Geometry {
@@ -49,7 +49,7 @@ fn between_arcs() -> Geometry {
 fn cone_piece() -> Geometry {
     let mut parts = curve(circle(0.0, 0.0, 2.0), v(2.0, 0.0, 0.0), v(0.0, 2.0, 0.0), v(1.0, 1.0, 0.0));
     parts.push(Geometry::Point(v(0.0, 0.0, 3.0)));
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
 }
 
 /// Over the diameter of a circle to a straight line.
@@ -73,7 +73,7 @@ fn poly_conic(head: [f64; 3], polynomials: [&[f64]; 7], roots: Option<[f64; 7]>)
         values.extend((0..8).map(|i| polynomial.get(i).copied().unwrap_or(0.0)));
     }
     values.extend(roots.unwrap_or([0.0; 7]));
-    Geometry::PolyConic(Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }
 
 /// Fullness of a quarter of a circle.
@@ -260,7 +260,7 @@ fn values_without_a_surface_are_degenerate() {
     for (index, value) in [(15, 0.0), (20, f64::NAN), (1, 3.0)] {
         let mut broken = values.to_vec();
         broken[index] = value;
-        let found = Surface::from_geometry(&Geometry::PolyConic(Arc::new(broken)));
+        let found = Surface::from_geometry(&Geometry::PolyConic(Remembering::new(broken)));
         assert_eq!(found, Err(SurfaceError::Degenerate { kind }), "value {index}");
     }
     let stretched = Matrix { rows: [[2.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] };

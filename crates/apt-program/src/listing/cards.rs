@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use apt_geometry::canonical::{Geometry, GeometryKind, RuledSurface};
+use apt_geometry::canonical::{Geometry, GeometryKind, Remembering, RuledSurface};
 use smol_str::SmolStr;
 
 use crate::symbols::Value;
@@ -126,7 +126,7 @@ fn ruled_surface(numbers: &[f64]) -> Option<Geometry> {
         parts.push(Geometry::from_canonical(kind, own).ok()?);
         rest = others;
     }
-    Some(Geometry::RuledSurface(Arc::new(RuledSurface { parts })))
+    Some(Geometry::RuledSurface(Remembering::new(RuledSurface { parts })))
 }
 
 /// How many numbers the table of a tabulated cylinder at the head of a row has: the count of points and the nine numbers
@@ -177,7 +177,8 @@ mod tests {
         tabulated.extend((0..16).map(f64::from));
         let table = Geometry::from_canonical(GeometryKind::TabulatedCylinder, &tabulated).expect("a table");
         let point = Geometry::from_canonical(GeometryKind::Point, &[1.0, 2.0, 3.0]).expect("three numbers");
-        let ruled = Geometry::RuledSurface(Arc::new(RuledSurface { parts: vec![table.clone(), point] }));
+        let ruled =
+            Geometry::RuledSurface(Remembering::new(RuledSurface { parts: vec![table.clone(), point] }));
         items.extend([table, ruled].map(|geometry| dumped("L", None, Value::Geometry(Arc::new(geometry)))));
         let mut cards: Vec<String> = items.iter().flat_map(written).collect();
         cards.push(END_CARD.to_owned());

@@ -1,10 +1,8 @@
 //! Axes along the surface that the flank cuts: PARLEL, PERPTO, TANDS and FAN.
 
-use std::sync::Arc;
-
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, RuledSurface},
+    canonical::{Geometry, Remembering, RuledSurface},
     motion::{AxisTangency, DriveSide, MotionCommand, Relation, ToolAxis, Turn},
     surface::Surface,
 };
@@ -26,7 +24,9 @@ fn leaning_wall() -> Geometry {
             Geometry::Vector(Vec3::y()),
         ]
     };
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts: [curve(6.0, 0.0), curve(5.0, 4.0)].concat() }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface {
+        parts: [curve(6.0, 0.0), curve(5.0, 4.0)].concat(),
+    }))
 }
 
 fn program(axis: Vec3) -> Program {
@@ -97,7 +97,7 @@ fn plane_wall() -> Geometry {
             Geometry::Vector(Vec3::z()),
         ]
     };
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts: [curve(0.0), curve(4.0)].concat() }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts: [curve(0.0), curve(4.0)].concat() }))
 }
 
 /// A ball end round a dome that stands on the floor, with an axis that follows it.

@@ -1,10 +1,8 @@
 //! Every axis mode with drive surfaces of every kind, on part and on drive surface: at every position the axis is what its
 //! law says, and the independent verifier proves the bands of the turning tool.
 
-use std::sync::Arc;
-
 use apt_geometry::{
-    canonical::RuledSurface,
+    canonical::{Remembering, RuledSurface},
     motion::{AxisAngle, AxisTangency, ToolAxis},
     surface::Surface,
 };
@@ -203,7 +201,7 @@ fn axes_along_the_rulings_of_either_surface() {
             [circle(3.0, -6.0, radius), first, second, Geometry::Vector(Vec3::y())]
         };
         let parts = [arc(lower, 0.0), arc(upper, height)].concat();
-        let wall = Geometry::RuledSurface(Arc::new(RuledSurface { parts }));
+        let wall = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
         let Surface::Ruled(sheet) = surface(&wall) else { panic!("not ruled") };
         let level = plane(0.0, 0.0, 1.0, floor);
         let x = |d: f64| plane(1.0, 0.0, 0.0, d);

@@ -1,11 +1,9 @@
 //! Ruled and polyconic surfaces in all roles: against their own formulas, and against surfaces that they are equal to.
 
-use std::sync::Arc;
-
 use DriveSide::{Left, On as TlOn};
 use Relation::{On, Past, To};
 use Turn::{Forward, Right as GoRgt};
-use apt_geometry::canonical::{Matrix, RuledSurface, matrix::CoordinatePlane};
+use apt_geometry::canonical::{Matrix, Remembering, RuledSurface, matrix::CoordinatePlane};
 
 use super::*;
 
@@ -25,7 +23,7 @@ fn ruled(curves: [(Geometry, Vec3, Vec3, Vec3); 2]) -> Geometry {
     let parts = curves.into_iter().flat_map(|(surface, start, end, across)| {
         [surface, Geometry::Point(start), Geometry::Point(end), Geometry::Vector(across)]
     });
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts: parts.collect() }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts: parts.collect() }))
 }
 
 /// The twisted strip of the corpus program rldsrf-ps.
@@ -56,7 +54,7 @@ fn tube() -> Geometry {
         values.extend([0.0; 7]);
     }
     values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }
 
 /// Distance of a point from the twisted strip by its formula, searched for on finer and finer grids.

@@ -1,6 +1,7 @@
 //! Motions on which the tool axis follows a surface: the axis is what the law says, and the independent verifier agrees.
 
 use apt_geometry::{
+    canonical::Remembering,
     motion::{AxisAngle, ToolAxis},
     surface::Surface,
 };
@@ -113,7 +114,7 @@ fn twisted_strip(shape: f64) -> Geometry {
         edge(3.0, ends, upper, v(-shape, 0.0, 6.0)),
     ];
     let surface = apt_geometry::canonical::RuledSurface { parts: parts.concat() };
-    Geometry::RuledSurface(std::sync::Arc::new(surface))
+    Geometry::RuledSurface(Remembering::new(surface))
 }
 
 /// The upper quarter of a tube about the x axis from −3 to 3, as a polyconic.
@@ -127,7 +128,7 @@ fn tube(radius: f64) -> Geometry {
         values.extend([0.0; 7]);
     }
     values.extend([0.0; 7]);
-    Geometry::PolyConic(std::sync::Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }
 
 /// Axis modes by number, with angles in degrees.

@@ -1,13 +1,10 @@
 //! Random surfaces of every kind, each with a random place on it, and how they are moved to where a tool touches them.
 
-use std::{
-    f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU},
-    sync::Arc,
-};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cylinder, Geometry, Matrix, Quadric, RuledSurface},
+    canonical::{Cylinder, Geometry, Matrix, Quadric, Remembering, RuledSurface},
     surface::Surface,
 };
 use nalgebra::{Rotation3, Unit};
@@ -229,7 +226,7 @@ fn ruled(random: &mut Random) -> Drawn {
         parts.extend(section(random, 3.0));
     }
     let near = Vec3::new(random.between(-2.0, 2.0), 0.0, random.between(-2.0, 2.0));
-    Drawn { geometry: Geometry::RuledSurface(Arc::new(RuledSurface { parts })), near }
+    Drawn { geometry: Geometry::RuledSurface(Remembering::new(RuledSurface { parts })), near }
 }
 
 /// A quarter of a tube about the x axis that widens, rises and fills up along its stations.
@@ -252,5 +249,5 @@ fn poly_conic(random: &mut Random) -> Drawn {
     function(FRAC_1_SQRT_2, 0.3 * change);
     values.extend([0.0; 7]);
     let near = Vec3::new(random.between(1.0, 5.0), random.between(-1.0, 1.0) * size, size * 2.0);
-    Drawn { geometry: Geometry::PolyConic(Arc::new(values)), near }
+    Drawn { geometry: Geometry::PolyConic(Remembering::new(values)), near }
 }

@@ -1,10 +1,8 @@
 //! A ruled and a polyconic surface, both bent both ways, over x and y from −2 to 2.
 
-use std::sync::Arc;
-
 use apt_geometry::{
     Vec3,
-    canonical::{Cylinder, Geometry, RuledSurface},
+    canonical::{Cylinder, Geometry, Remembering, RuledSurface},
 };
 
 /// A roof between arcs of different radius at y = ±2.
@@ -16,7 +14,7 @@ pub(super) fn roof() -> Geometry {
         [Geometry::Cylinder(round), start, end, Geometry::Vector(Vec3::z())]
     };
     let parts = curve(-2.0, 0.0, 3.0).into_iter().chain(curve(2.0, 0.3, 2.6)).collect();
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
 }
 
 /// A vault along y that widens and flattens: quarter circles change to fuller conics.
@@ -29,5 +27,5 @@ pub(super) fn vault() -> Geometry {
         values.extend([constant, linear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     }
     values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }

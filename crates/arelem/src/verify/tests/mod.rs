@@ -20,7 +20,8 @@ use std::sync::Arc;
 use apt_geometry::{
     Vec3,
     canonical::{
-        Cone, Cylinder, Geometry, Interval, Plane, Quadric, RuledSurface, Sphere, TabulatedCylinder,
+        Cone, Cylinder, Geometry, Interval, Plane, Quadric, Remembering, RuledSurface, Sphere,
+        TabulatedCylinder,
     },
     cutter::Cutter,
     motion::{NamedSurface, Relation},
@@ -107,7 +108,9 @@ pub(super) fn section(surface: Geometry, ends: [[f64; 3]; 2], across: [f64; 3]) 
 }
 
 pub(super) fn ruled(first: Vec<Geometry>, second: Vec<Geometry>) -> Geometry {
-    Geometry::RuledSurface(Arc::new(RuledSurface { parts: first.into_iter().chain(second).collect() }))
+    Geometry::RuledSurface(Remembering::new(RuledSurface {
+        parts: first.into_iter().chain(second).collect(),
+    }))
 }
 
 pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64, outtol: f64) -> Role {

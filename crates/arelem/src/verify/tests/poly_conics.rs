@@ -1,10 +1,8 @@
 //! Polyconic surfaces: against the cylinder that one of them is, dense sampling by their formula, and broken sequences.
 
-use std::sync::Arc;
-
 use apt_geometry::{
     Vec3,
-    canonical::Geometry,
+    canonical::{Geometry, Remembering},
     motion::{DriveSide, Relation},
 };
 use proptest::prelude::*;
@@ -40,7 +38,7 @@ fn poly_conic(
         values.extend([0.0; 5]);
     }
     values.extend([0.0; 7]);
-    Geometry::PolyConic(Arc::new(values))
+    Geometry::PolyConic(Remembering::new(values))
 }
 
 const ALONG_X: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -156,7 +154,7 @@ fn square_roots_make_a_nose() {
         values.extend([0.0; 7]);
     }
     values.extend([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    let model = Surface::of(&Geometry::PolyConic(Arc::new(values))).unwrap();
+    let model = Surface::of(&Geometry::PolyConic(Remembering::new(values))).unwrap();
     for z in [0.02f64, 0.3, 0.9] {
         let foot = Vec3::new(4.0 * z * z, 0.2, z);
         // Along y × along growing x.
@@ -178,7 +176,7 @@ fn values_without_a_surface_are_degenerate() {
     };
     values[15] = 0.0;
     for broken in [values.clone(), values[..78].to_vec()] {
-        sequence.part.as_mut().unwrap().surface.geometry = Geometry::PolyConic(Arc::new(broken));
+        sequence.part.as_mut().unwrap().surface.geometry = Geometry::PolyConic(Remembering::new(broken));
         assert!(matches!(verify(&sequence, &|| false), Err(VerifyError::Degenerate { .. })));
     }
 }
