@@ -235,7 +235,8 @@ impl<'a> Clearance<'a> {
     }
 
     fn tool(&self, axis: Vec3) -> Tool<'a> {
-        Tool { profile: self.profile, axis, patience: self.patience }
+        let depth = (-self.thickness).max(0.0);
+        Tool { profile: self.profile, axis, patience: self.patience, depth }
     }
 
     pub(super) fn shape(&self) -> Shape {

@@ -32,7 +32,7 @@ const HALVINGS: u32 = 5;
 const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
 /// Share of the radius of the tool behind the surface at which it is met by Newton's method, and of the radius of curvature.
 const BEHIND: f64 = 0.5;
-/// Depth, relative to the radius of the tool, down to which contacts are followed.
+/// Depth, relative to the radius of the tool, beyond what is meant, down to which contacts are followed.
 const DEEPEST: f64 = 0.1;
 
 /// A contact: a place of a part and the tool's place straight across from it.
@@ -118,7 +118,7 @@ impl Following<'_> {
     fn settled(&self, side: f64, last: &mut Option<(usize, [f64; 2])>) -> Option<(f64, Vec3)> {
         let (index, contact) = self.contact(side, last)?;
         let widest = self.tool.profile.widest();
-        if contact.value < -DEEPEST * widest - self.tolerance {
+        if contact.value < -DEEPEST * widest - self.tool.depth - self.tolerance {
             return None;
         }
         let part = self.parts.get(index)?;

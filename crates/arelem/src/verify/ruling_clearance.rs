@@ -36,7 +36,8 @@ const SECTOR: f64 = std::f64::consts::TAU / AZIMUTHS as f64;
 const CLOSING_STEPS: usize = 40;
 /// Sine of the slope of an edge, or width in radians, at which it has closed in.
 const LEVEL: f64 = 1e-10;
-/// Depth, relative to the radius of the tool, up to which it is proven; deeper is no question of tolerance.
+/// Depth, relative to the radius of the tool, up to which it is proven beyond what is meant; deeper is no question of
+/// tolerance.
 const PROVEN_DEPTH: f64 = 0.1;
 /// Translations tried in the proof of a depth, each four times longer.
 const PROOF_STEPS: usize = 14;
@@ -147,7 +148,8 @@ fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
 /// Signed distance of a point along the natural normal and that distance's unit gradient; None beyond the end of a curve.
 pub(super) fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
     let profile = Profile::tool_end();
-    let tool = Tool { profile: &profile, axis: surface.axis().unwrap_or_else(Vec3::z), patience };
+    let axis = surface.axis().unwrap_or_else(Vec3::z);
+    let tool = Tool { profile: &profile, axis, patience, depth: 0.0 };
     if let Some(found) = surface.followed(1.0, x, &tool) {
         return Some((found.value, found.normal));
     }
@@ -193,7 +195,7 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
 /// The clearance without regard to what was found before.
 pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
     let reach = tool.profile.reach();
-    let deep = PROVEN_DEPTH * tool.profile.widest();
+    let deep = PROVEN_DEPTH * tool.profile.widest() + tool.depth;
     let bodies = Bodies { surface, side, tool, reach, resolution: resolution(surface, tip, reach), deep };
     let touch = bodies.touch(tip)?;
     let clear = bodies.is_on_side(&touch)?;

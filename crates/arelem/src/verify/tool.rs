@@ -262,6 +262,8 @@ pub(super) struct Tool<'a> {
     pub(super) axis: Vec3,
     /// Who is asked while it is measured.
     pub(super) patience: Patience<'a>,
+    /// How deep it is meant to be in a surface: stock below zero.
+    pub(super) depth: f64,
 }
 
 #[cfg(test)]
@@ -317,7 +319,7 @@ impl<'a> Tool<'a> {
     /// A cutter with a unit axis, measured with all the time in the world.
     #[cfg(test)]
     pub(super) fn new(profile: &'a Profile, axis: Vec3) -> Self {
-        Self { profile, axis, patience: Patience::default() }
+        Self { profile, axis, patience: Patience::default(), depth: 0.0 }
     }
 
     /// The same place of the axis with another meridian.
@@ -325,7 +327,7 @@ impl<'a> Tool<'a> {
     where
         'a: 'b,
     {
-        Tool { profile, axis: self.axis, patience: self.patience }
+        Tool { profile, ..*self }
     }
 
     /// Distance from the axis, height, and the unit radial direction of a vector from the tool end.

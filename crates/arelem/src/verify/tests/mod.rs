@@ -11,6 +11,7 @@ mod paths;
 mod poly_conics;
 mod ruled;
 mod rulings;
+mod stock;
 mod straight;
 mod turning;
 mod vertices;
