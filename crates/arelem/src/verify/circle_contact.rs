@@ -96,7 +96,7 @@ pub(super) fn at(
     // The tool end is in contact only where the bottom rises from it.
     let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
     let mut done: Option<Meridian> = None;
-    // The nearest of all circles, with its distance; only that can be shown to be.
+    // The nearest of those circles that are not shown to be the nearest at once, with its distance.
     let mut nearest: Option<(f64, Touch, f64)> = None;
     for (p, ball) in corner.into_iter().chain(tip).chain(edges) {
         if done == Some(p) {
@@ -104,8 +104,8 @@ pub(super) fn at(
         }
         done = Some(p);
         let Some(touch) = place.touch(p, ball) else { continue };
-        // The corner is so mostly that it is worth the trial.
-        if Some((p, ball)) == corner
+        // A tangent plane is quickly tried, and the corner is the nearest so mostly that it is worth the longer trial.
+        if (convex || Some((p, ball)) == corner)
             && let Some(reading) = proven(&touch, ball)
         {
             return Some(reading);
@@ -116,7 +116,7 @@ pub(super) fn at(
         }
     }
     let nearest = nearest.map(|(_, touch, ball)| (touch, ball));
-    if let Some((touch, ball)) = nearest.filter(|near| near.1 <= 0.0)
+    if let Some((touch, ball)) = nearest.filter(|near| !convex && near.1 <= 0.0)
         && let Some(reading) = proven(&touch, ball)
     {
         return Some(reading);
