@@ -10,7 +10,10 @@ mod tangency;
 use apt_geometry::{Vec3, motion::CheckSurface};
 
 use self::{scout::Outlook, step::Stepper};
-use super::{Path, Prepared, stop::Watcher};
+use super::{
+    Path, Prepared,
+    stop::{Event, Watcher},
+};
 use crate::{
     attitude::Sweep,
     clearance::{Contact, Shape},
@@ -78,6 +81,11 @@ const FIRST_LOOK: usize = 25;
 const LEAST_FORWARD: f64 = 0.5;
 /// Share of the way to the stop for the vertex before it, when one vector cannot reach it.
 const SHARE_BEFORE_STOP: f64 = 0.55;
+/// The same along a vector that leads beyond the stop, and back along the vector before.
+const SHARES_BEFORE_STOP: [f64; 5] = [0.5, 0.65, 0.35, 0.8, 0.2];
+const SHARES_BACK: [f64; 5] = [0.05, 0.12, 0.25, 0.45, 0.7];
+/// Share of a vector beyond the stop up to it below which the stop lies across the path more than along it.
+const LEAST_BEFORE_STOP: f64 = 0.05;
 
 /// The path of a directed motion.
 pub(super) fn run(
@@ -138,13 +146,13 @@ impl<'a> March<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             let advanced = self.stepper.advance(&mut here, cap);
-            let next = advanced.map_err(|failure| self.without_axis(&here).unwrap_or(failure))?;
-            let before = self.snapshot(&here);
-            let sweep = here.sweep(self.prepared, &next);
-            let event = match self.watcher.scan(&sweep) {
-                Some(event) => Some(event),
-                None => self.tangency.scan(&here, &next)?,
-            };
+            let mut next = advanced.map_err(|failure| self.without_axis(&here).unwrap_or(failure))?;
+            let mut before = self.snapshot(&here);
+            let mut event = self.scan(&here, &next)?;
+            if event.is_none() && self.move_back(&start, (&mut here, &mut next), cap)? {
+                before = self.snapshot(&here);
+                event = self.scan(&here, &next)?;
+            }
             let Some(event) = event else {
                 self.before = Some(before);
                 self.points.push(next.tip);
@@ -158,8 +166,14 @@ impl<'a> March<'a> {
             // path is.
             let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);
             let towards = finish::Towards { event: &event, tangent: &next.tangent, held };
+            let sweep = here.sweep(self.prepared, &next);
             let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
             if self.accept(&here, &end.tip)? {
+                self.points.push(end.tip);
+                self.straighten_end(&start)?;
+                return Ok(self.path(&end));
+            }
+            if self.bend_towards(&here, &next, &end.tip)? {
                 self.points.push(end.tip);
                 self.straighten_end(&start)?;
                 return Ok(self.path(&end));
@@ -247,6 +261,46 @@ impl<'a> March<'a> {
         Some(length)
     }
 
+    /// The first stop on a vector.
+    fn scan(&mut self, here: &Vertex, next: &Vertex) -> Result<Option<Event>, MotionFailure> {
+        match self.watcher.scan(&here.sweep(self.prepared, next)) {
+            Some(event) => Ok(Some(event)),
+            None => self.tangency.scan(here, next),
+        }
+    }
+
+    /// Moves the last vertex back on the vector that leads to it, if the next one then goes farther. Both vectors are to be
+    /// scanned without a stop before.
+    fn move_back(
+        &mut self,
+        start: &Vertex,
+        (here, next): (&mut Vertex, &mut Vertex),
+        cap: f64,
+    ) -> Result<bool, MotionFailure> {
+        let Some(before) = &self.before else { return Ok(false) };
+        let Some(moved) = self.stepper.moved_back(&before.vertex, here, cap)? else { return Ok(false) };
+        let (mut watcher, mut tangency) = (before.watcher.clone(), before.tangency.clone());
+        let (from, revolutions) = (before.vertex, before.revolutions);
+        if moved.all_the_way {
+            self.points.pop();
+            self.before = None;
+        } else {
+            let sweep = from.sweep(self.prepared, &moved.from);
+            if watcher.scan(&sweep).is_some() || tangency.scan(&from, &moved.from)?.is_some() {
+                return Ok(false);
+            }
+            if let Some(last) = self.points.last_mut() {
+                *last = moved.from.tip;
+            }
+        }
+        (self.watcher, self.tangency, self.revolutions) = (watcher, tangency, revolutions);
+        if !moved.all_the_way {
+            self.count_revolution(start, &from, &moved.from)?;
+        }
+        (*here, *next) = (moved.from, moved.next);
+        Ok(true)
+    }
+
     fn path(&mut self, end: &finish::End) -> Path {
         Path { points: std::mem::take(&mut self.points), check: end.check, check_side: end.side }
     }
@@ -264,21 +318,84 @@ impl<'a> March<'a> {
         Ok(self.stepper.proven(here, &end))
     }
 
+    /// Where the last vertex does not see the end: a place that does, on the vector that leads to that vertex or else on the
+    /// one that leads beyond the end, becomes the last vertex. Both vectors are proven.
+    fn bend_towards(&mut self, here: &Vertex, beyond: &Vertex, end: &Vec3) -> Result<bool, MotionFailure> {
+        if self.prepared.attitude.turns() {
+            return Ok(false);
+        }
+        if let Some(before) = &self.before
+            && let Some(place) = self.seen_back(here, &before.vertex, end)?
+            && let Some(last) = self.points.last_mut()
+        {
+            *last = place;
+            return Ok(true);
+        }
+        let vector = beyond.tip - here.tip;
+        let along = ((end - here.tip).dot(&vector) / vector.norm_squared()).min(1.0);
+        if along < LEAST_BEFORE_STOP {
+            return Ok(false);
+        }
+        let place = self.seen_from(here, (vector * along, &vector), &SHARES_BEFORE_STOP, end)?;
+        self.points.extend(place);
+        Ok(place.is_some())
+    }
+
+    /// The same on the vector between a vertex and the one before.
+    fn seen_back(&self, here: &Vertex, before: &Vertex, end: &Vec3) -> Result<Option<Vec3>, MotionFailure> {
+        let forward = here.tip - before.tip;
+        self.seen_from(here, (-forward, &forward), &SHARES_BACK, end)
+    }
+
+    /// The first place at a share of a way, on a vector in the direction `forward`, from which a last vector leads to the end.
+    fn seen_from(
+        &self,
+        here: &Vertex,
+        (way, forward): (Vec3, &Vec3),
+        shares: &[f64],
+        end: &Vec3,
+    ) -> Result<Option<Vec3>, MotionFailure> {
+        for share in shares {
+            let tip = here.tip + way * *share;
+            let last = end - tip;
+            // In a tight bend a place far back would see the end behind it.
+            let is_ahead = last.dot(forward) > LEAST_FORWARD * last.norm() * forward.norm();
+            if is_ahead
+                && last.norm() <= self.state.maximum_step
+                && self.accept(&Vertex::at(self.prepared, tip, forward)?, end)?
+            {
+                return Ok(Some(tip));
+            }
+        }
+        Ok(None)
+    }
+
     /// Leaves out vertices before the end that one straight move can bridge: on a straight stretch the search for the
     /// longest vector looks beyond the stop, where the path may turn, and cuts the stretch into pieces.
     fn straighten_end(&mut self, start: &Vertex) -> Result<(), MotionFailure> {
         let Some(&end) = self.points.last() else { return Ok(()) };
         let end = Vertex::at(self.prepared, end, &self.prepared.tangent)?;
         while let Some(between) = self.points.len().checked_sub(2) {
-            let from = match between.checked_sub(1) {
-                Some(before) => Vertex::at(self.prepared, self.points[before], &self.prepared.tangent)?,
-                None => *start,
+            let vertex = |k: Option<usize>| match k {
+                Some(k) => Vertex::at(self.prepared, self.points[k], &self.prepared.tangent),
+                None => Ok(*start),
             };
+            let from = vertex(between.checked_sub(1))?;
             let long = (end.tip - from.tip).norm() > self.state.maximum_step * (1.0 + 1e-9);
-            if long || !self.stepper.proven(&from, &end) {
-                break;
+            if !long && self.stepper.proven(&from, &end) {
+                self.points.remove(between);
+                continue;
             }
-            self.points.remove(between);
+            // The vertex before may see the end from farther back on the vector that leads to it.
+            if let Some(last) = between.checked_sub(1)
+                && !self.prepared.attitude.turns()
+                && let before = vertex(last.checked_sub(1))?
+                && let Some(place) = self.seen_back(&from, &before, &end.tip)?
+            {
+                self.points[last] = place;
+                self.points.remove(between);
+            }
+            break;
         }
         Ok(())
     }

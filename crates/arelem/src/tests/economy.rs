@@ -116,7 +116,7 @@ pub(super) fn table() -> Geometry {
     tabulated(&TABLE, TABLE_END)
 }
 
-fn tabulated(table: &[[f64; 4]], end: [f64; 2]) -> Geometry {
+pub(super) fn tabulated(table: &[[f64; 4]], end: [f64; 2]) -> Geometry {
     let interval = |[u, v, a, b]: [f64; 4]| Interval { u, v, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
         axes: [Vec3::x(), Vec3::y(), Vec3::z()],
@@ -132,7 +132,7 @@ fn along_table(t: f64) -> [[f64; 2]; 3] {
 }
 
 /// The same for any directrix, given by u, v, a, b of its intervals and its end.
-fn along_directrix(table: &[[f64; 4]], table_end: [f64; 2], t: f64) -> [[f64; 2]; 3] {
+pub(super) fn along_directrix(table: &[[f64; 4]], table_end: [f64; 2], t: f64) -> [[f64; 2]; 3] {
     let k = (t as usize).min(table.len() - 1);
     let [u, v, a, b] = table[k];
     let end = table.get(k + 1).map_or(table_end, |next| [next[0], next[1]]);

@@ -1,5 +1,8 @@
 //! One cut vector: as long as its proof allows (ADELTA, DELTA). Vertices lie at the limit opposite to the sag, so that
-//! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it.
+//! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it. Where the
+//! path begins to bend the other way both limits are tried, and the vertex before may move back on its vector ([`window`]).
+
+mod window;
 
 use apt_geometry::{Vec3, surface::Surface};
 
@@ -29,8 +32,13 @@ const SPARED: f64 = 0.25 * GUARD;
 const AIM: f64 = 0.9999;
 /// Greatest growth of the length from one trial to the next.
 const GREATEST_GROWTH: f64 = 4.0;
+/// Share of the length that the next trial has at least, and where the bend changes: there a vector may be too short as well.
+const GREATEST_SHRINKING: f64 = 0.3;
+const SETTLED_SHRINKING: f64 = 0.9;
 /// Cosine between the directions at both ends below which the vector is shortened (60°).
 const LEAST_TURN_COSINE: f64 = 0.5;
+/// Ratio of the shortest vector that is too long to the longest that is proven at which no better one is looked for.
+const NEARLY: f64 = 1.01;
 /// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
 const CORNER_BANDS: f64 = 20.0;
 /// How many times the width of the bands ahead of a place without a way on it is looked for another contact.
@@ -67,8 +75,8 @@ pub(super) struct Stepper<'a> {
     cancel: &'a dyn Fn() -> bool,
     /// Second derivative of each clearance along the path: part, drive.
     curvature: Option<[f64; 2]>,
-    /// How much longer than predicted the last vector came out.
-    correction: f64,
+    /// The vector found last.
+    latest: Option<Trial>,
     /// Where the path last turned on the spot, and its direction until then.
     turned: Option<(Vec3, Vec3)>,
     /// The last vector; zero before the first.
@@ -79,15 +87,33 @@ pub(super) struct Stepper<'a> {
     ledgers: [Ledger; 2],
 }
 
+#[derive(Clone)]
 struct Trial {
     vertex: Vertex,
     length: f64,
+    /// Second derivative of each clearance along the vector, on average.
     curvature: [f64; 2],
+    /// The bends that tell at which limits it ends.
+    bends: [Bend; 2],
+    /// The bends at its start and at its end, where they count.
+    at_start: [Option<Bend>; 2],
+    at_end: [Option<Bend>; 2],
+    /// What is to be expected of the next vector.
+    next_curvature: [f64; 2],
     /// Factor by which the length could grow, below one if it must shrink.
     growth: f64,
     proven: bool,
     culprit: usize,
     worst: f64,
+}
+
+/// What the search for the longest vector begins with.
+struct Guess {
+    bends: [Bend; 2],
+    curvature: [f64; 2],
+    length: f64,
+    /// The limits to end at are settled, and vectors shorter than this are of no use.
+    settled: Option<f64>,
 }
 
 impl<'a> Stepper<'a> {
@@ -97,7 +123,7 @@ impl<'a> Stepper<'a> {
             maximum,
             cancel,
             curvature: None,
-            correction: 1.0,
+            latest: None,
             turned: None,
             last: Vec3::zeros(),
             arrived: None,
@@ -200,14 +226,36 @@ impl<'a> Stepper<'a> {
             Some(known) => known,
             None => self.probe(here)?,
         };
-        let mut bends = self.bends(&curvature);
-        let mut bent = curvature;
-        let mut length = (self.predict(here, &curvature, &bends) * self.correction).min(cap);
-        let mut best: Option<Trial> = None;
+        let bends = self.bends(&curvature);
+        let length = self.predict(here, &curvature, &bends);
+        let mut best = self.longest(here, cap, places, &Guess { bends, curvature, length, settled: None })?;
+        if places == Places::Limits
+            && let Some(other) = self.at_the_other_limit(here, cap, &best)?
+        {
+            best = other;
+        }
+        self.curvature = Some(best.next_curvature);
+        let vertex = best.vertex;
+        self.latest = Some(best);
+        Ok(vertex)
+    }
+
+    /// The longest vector that is proven, from a first guess.
+    fn longest(
+        &self,
+        here: &Vertex,
+        cap: f64,
+        places: Places,
+        guess: &Guess,
+    ) -> Result<Trial, MotionFailure> {
+        let mut bends = guess.bends;
+        let mut bent = guess.curvature;
+        let mut length = guess.length.min(cap);
+        let mut best: Option<(Trial, f64)> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
         let least = match places {
-            Places::Limits => LEAST_VECTOR * self.prepared.size,
+            Places::Limits => guess.settled.unwrap_or(0.0).max(LEAST_VECTOR * self.prepared.size),
             Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
         };
         for _ in 0..MAX_TRIALS {
@@ -218,7 +266,7 @@ impl<'a> Stepper<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             let targets = self.targets(here, &bends, places);
-            let Some(trial) = self.attempt(here, length, cap, (targets, &bent)) else {
+            let Some(trial) = self.attempt(here, length, cap, (targets, &bent, &bends)) else {
                 shortest_bad = shortest_bad.min(length);
                 length *= 0.5;
                 continue;
@@ -228,41 +276,52 @@ impl<'a> Stepper<'a> {
                 let at_cap = trial.length >= cap * (1.0 - 1e-6);
                 let enough = trial.growth <= 1.0 + LONG_ENOUGH || at_cap || lengthenings >= LENGTHENINGS;
                 let growth = trial.growth;
-                let longer = best.as_ref().is_none_or(|b| trial.length > b.length);
-                if longer {
-                    best = Some(trial);
-                }
                 let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(cap);
-                if enough || next >= shortest_bad * (1.0 - LONG_ENOUGH) || next <= length * (1.0 + 1e-9) {
+                if best.as_ref().is_none_or(|(b, _)| trial.length > b.length) {
+                    best = Some((trial, length));
+                }
+                if enough || next <= length * (1.0 + 1e-9) {
+                    break;
+                }
+                let next_is_bad = next >= shortest_bad * (1.0 - LONG_ENOUGH);
+                if next_is_bad && shortest_bad <= length * NEARLY {
                     break;
                 }
                 lengthenings += 1;
-                length = next;
+                length = if next_is_bad { 0.5 * (length + shortest_bad) } else { next };
             } else {
                 shortest_bad = shortest_bad.min(length);
                 culprit = (self.roles()[trial.culprit].name, trial.worst);
-                if best.is_some() {
-                    break;
+                if let Some((_, known)) = &best {
+                    // Where the bend changes the sag says little about the length.
+                    if shortest_bad <= known * NEARLY || lengthenings >= LENGTHENINGS {
+                        break;
+                    }
+                    lengthenings += 1;
+                    length = 0.5 * (known + shortest_bad);
+                    continue;
                 }
-                bends = self.bends(&trial.curvature);
+                if guess.settled.is_none() {
+                    bends = self.bends(&trial.curvature);
+                }
                 // Where the sag is not quadratic (contact jumps) the prediction is not trusted for long.
                 failures += 1;
-                length *= (trial.growth * AIM).clamp(0.3, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9)));
+                let (least, most) = match guess.settled {
+                    Some(_) => (SETTLED_SHRINKING, 1.0),
+                    None => (GREATEST_SHRINKING, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9))),
+                };
+                length *= (trial.growth * AIM).clamp(least, most);
             }
         }
-        let Some(best) = best else {
-            return Err(if shortest_bad.is_finite() && culprit.1 != 0.0 {
-                MotionFailure::NoAdmissibleVector { role: culprit.0, clearance: culprit.1, tip: here.tip }
-            } else {
-                MotionFailure::IterationLimit {
-                    iteration: Iteration::StepLength,
-                    limit: MAX_TRIALS,
-                    tip: here.tip,
-                }
-            });
-        };
-        self.curvature = Some(best.curvature);
-        Ok(best.vertex)
+        best.map(|(trial, _)| trial).ok_or(if shortest_bad.is_finite() && culprit.1 != 0.0 {
+            MotionFailure::NoAdmissibleVector { role: culprit.0, clearance: culprit.1, tip: here.tip }
+        } else {
+            MotionFailure::IterationLimit {
+                iteration: Iteration::StepLength,
+                limit: MAX_TRIALS,
+                tip: here.tip,
+            }
+        })
     }
 
     /// True if the straight move between two positions keeps both bands.
@@ -334,9 +393,15 @@ impl<'a> Stepper<'a> {
     }
 
     /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
-    fn attempt(&self, here: &Vertex, length: f64, cap: f64, how: ([f64; 2], &[f64; 2])) -> Option<Trial> {
+    fn attempt(
+        &self,
+        here: &Vertex,
+        length: f64,
+        cap: f64,
+        how: ([f64; 2], &[f64; 2], &[Bend; 2]),
+    ) -> Option<Trial> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
-        let (targets, curvature) = how;
+        let (targets, curvature, bends) = how;
         let conditions =
             [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
         let mut attempted = length;
@@ -350,7 +415,7 @@ impl<'a> Stepper<'a> {
                 let axis = attitude.tool_at(&tip).ok()?.axis;
                 let vertex =
                     Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) };
-                return self.judge(here, vertex, chord, reached);
+                return self.judge(here, vertex, (chord, reached), bends);
             }
             // The correction made it longer than allowed: try again a little shorter.
             attempted *= (cap / reached) * (1.0 - 1e-6);
@@ -372,7 +437,13 @@ impl<'a> Stepper<'a> {
         CORNER_BANDS * self.roles().into_iter().filter(may_turn).map(Working::band).sum::<f64>()
     }
 
-    fn judge(&self, here: &Vertex, vertex: Vertex, chord: Vec3, reached: f64) -> Option<Trial> {
+    fn judge(
+        &self,
+        here: &Vertex,
+        vertex: Vertex,
+        (chord, reached): (Vec3, f64),
+        bends: &[Bend; 2],
+    ) -> Option<Trial> {
         let forward = chord.dot(&here.tangent) > 0.5 * reached;
         let least_cosine = if reached <= self.corner() { 0.0 } else { LEAST_TURN_COSINE };
         if !forward
@@ -386,11 +457,16 @@ impl<'a> Stepper<'a> {
         let direction = chord / reached;
         let turn = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&direction) / reached;
         let curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
+        let course = self.course(here, &vertex, &direction, &curvature);
         let extremes = self.extremes(here, &vertex);
         let mut trial = Trial {
             vertex,
             length: reached,
             curvature,
+            bends: *bends,
+            at_start: course.at_start,
+            at_end: course.at_end,
+            next_curvature: course.next_curvature,
             growth: GREATEST_GROWTH,
             proven: extremes.iter().all(|e| e.proven),
             culprit: 0,
