@@ -74,9 +74,17 @@ fn unit(v: &Vec3) -> Option<Vec3> {
 }
 
 impl Surface {
+    /// As accurate as it can be.
+    #[cfg(test)]
+    pub(super) fn of(geometry: &Geometry) -> Result<Self, VerifyError> {
+        Self::within(geometry, 0.0)
+    }
+
+    /// The surface itself, or a model that need not be closer to it than `accuracy`.
+    ///
     /// # Errors
     /// [`VerifyError::Unsupported`] for geometry the verifier has no model of, [`VerifyError::Degenerate`] for a form without a surface.
-    pub(super) fn of(geometry: &Geometry) -> Result<Self, VerifyError> {
+    pub(super) fn within(geometry: &Geometry, accuracy: f64) -> Result<Self, VerifyError> {
         let degenerate = || VerifyError::Degenerate { kind: geometry.kind() };
         let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
         match geometry {
@@ -119,11 +127,11 @@ impl Surface {
                 Ok(Self::Ruled(Box::new(Ruled::Parallel(ruling))))
             }
             Geometry::RuledSurface(surface) => {
-                let strips = RuledStrips::of(surface).ok_or_else(degenerate)?;
+                let strips = RuledStrips::of(surface, accuracy).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Joining(Box::new(strips)))))
             }
             Geometry::PolyConic(values) => {
-                let strips = ConicStrips::of(values).ok_or_else(degenerate)?;
+                let strips = ConicStrips::of(values, accuracy).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Conics(Box::new(strips)))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
@@ -146,7 +154,7 @@ impl Surface {
     }
 
     /// How far the model of the surface may be off it.
-    fn error(&self) -> f64 {
+    pub(super) fn error(&self) -> f64 {
         match self {
             Self::Ruled(surface) => surface.error(),
             _ => 0.0,

@@ -5,11 +5,13 @@
 //! lies in a smaller one about the same centre, nothing of the patch is nearer than the difference of the radii. The same
 //! holds for half-spaces. What cannot be shown is left to the general search.
 
+use std::cell::Cell;
+
 use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
-    patch::{Bends, ball, extent, halves_across, halves_along, held, jet},
+    patch::{held, jet},
     survey::{Part, Sheet, nearest_by},
     tool::{Profile, Tool},
 };
@@ -24,6 +26,8 @@ const SHORTENINGS: usize = 5;
 const DIFFERENCE: f64 = 1e-6;
 /// How far beyond the side of a part, in parameters, a contact still counts as its own.
 const AT_SIDE: f64 = 1e-7;
+/// The same where the part beside it leads back.
+const AT_JOINT: f64 = 1e-3;
 /// Parts that the contact is followed through.
 const HOPS: usize = 24;
 /// Halvings of a part whose distance is not shown at once.
@@ -66,9 +70,14 @@ impl Guard {
                 points.map(|p| outward.dot(p)).fold(f64::INFINITY, f64::min) - height
             }
             Self::Ball(center, radius) => {
-                let away = part.near(center) - center;
-                let size = away.norm();
-                points.map(|p| away.dot(&(p - center))).fold(f64::INFINITY, f64::min) / size - radius
+                let beyond = |place: &Vec3| {
+                    let away = place - center;
+                    let heights = points.clone().map(|p| away.dot(&(p - center)));
+                    heights.fold(f64::INFINITY, f64::min) / away.norm() - radius
+                };
+                // Its middle is known; its nearest place has to be found.
+                let found = beyond(&part.center);
+                if found >= 0.0 { found } else { found.max(beyond(&part.near(center))) }
             }
         }
     }
@@ -93,6 +102,8 @@ pub(super) struct Following<'a> {
     pub(super) tool: &'a Tool<'a>,
     pub(super) size: f64,
     pub(super) tolerance: f64,
+    /// The part and the place of a contact where the bounds of the part are too loose to show it.
+    pub(super) loose: &'a Cell<Option<(usize, [f64; 2])>>,
 }
 
 impl Following<'_> {
@@ -142,7 +153,10 @@ impl Following<'_> {
         let out = self.tip + contact.normal * (-least).max(0.0);
         let led = Following { tip: &out, ..*self };
         let least = least.max(0.0);
-        let (guard, below) = led.guard(part, side, &contact, least)?;
+        let Some((guard, below)) = led.guard(part, side, &contact, least) else {
+            self.loose.set(Some((index, contact.at)));
+            return None;
+        };
         let outward = -contact.normal;
         let level = Guard::Level(outward, outward.dot(&out) + self.tool.support(&outward).0 + least);
         let led_by = (out - self.tip).norm();
@@ -194,11 +208,7 @@ impl Following<'_> {
         if halvings == 0 {
             return None;
         }
-        let [along, across] = extent(&part.net);
-        let halves = if along >= across { halves_along(&part.net) } else { halves_across(&part.net) };
-        for net in halves {
-            let (center, radius) = ball(&net);
-            let half = Part { net, center, radius, bends: Bends::of(&net), ..part.clone() };
+        for half in part.halves().0 {
             if self.far(&half, guards, below, least) < least {
                 self.show(&half, side, guards, below, least, halvings - 1)?;
             }
@@ -248,6 +258,7 @@ impl Following<'_> {
                 (nearest_by(self.parts, apart)?, [0.5; 2])
             }
         };
+        let mut before = None;
         for _ in 0..HOPS {
             let part = self.parts.get(index)?;
             let contact = self.solve(part, side, from)?;
@@ -264,11 +275,15 @@ impl Following<'_> {
                 (other.near(&contact.place) - contact.place).norm()
             };
             let next = nearest_by(self.parts, apart)?;
-            if next == index {
+            // Between two parts of which each leads a little into the other the contact is where they join.
+            let joins =
+                before == Some(next) && contact.at.iter().all(|x| (-AT_JOINT..=1.0 + AT_JOINT).contains(x));
+            if next == index || joins {
                 *last = Some((index, contact.at));
                 return Some((index, contact));
             }
-            (index, from) = (next, [0.5; 2]);
+            before = Some(index);
+            (index, from) = (next, self.parts.get(next)?.nearest_parameters(&contact.place));
         }
         None
     }

@@ -1,6 +1,6 @@
 //! The rules, one after the other.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use apt_geometry::{
     Vec3,
@@ -19,6 +19,8 @@ use super::{
 
 /// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
 const ROUND_OFF: f64 = 1e-9;
+/// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it.
+const MODEL_SHARE: f64 = 2e-4;
 /// Accuracy of the extremes, relative to the band.
 const BAND_SHARE: f64 = 1e-5;
 /// The same where the shape of the clearance along a vector is not known (saddles, turning axes), at first and when
@@ -45,13 +47,18 @@ struct Bound<'a> {
     outtol: f64,
     /// The clearance at each position, where the bands of whole vectors are judged: a position ends one vector and
     /// begins the next.
-    readings: Vec<Reading>,
+    readings: RefCell<Vec<Reading>>,
     /// Who waits for the proof.
     patience: Patience<'a>,
 }
 
 impl<'a> Bound<'a> {
-    fn of(role: &'a Role, profile: &Profile, on: bool, patience: Patience<'a>) -> Result<Self, VerifyError> {
+    fn of(
+        role: &'a Role,
+        profile: &Profile,
+        on: bool,
+        (model_share, patience): (f64, Patience<'a>),
+    ) -> Result<Self, VerifyError> {
         let numbers = [role.side, role.inside_tolerance, role.outside_tolerance, role.thickness];
         if !numbers.iter().all(|x| x.is_finite()) {
             return Err(VerifyError::NotFinite);
@@ -63,34 +70,32 @@ impl<'a> Bound<'a> {
             Some(_) => return Err(VerifyError::NotFinite),
         };
         let wider = role.inside_tolerance.max(role.outside_tolerance);
+        let [intol, outtol] = if on { [wider; 2] } else { [role.inside_tolerance, role.outside_tolerance] };
         Ok(Self {
             role,
-            surface: Surface::of(&role.surface.geometry)?,
+            surface: Surface::within(&role.surface.geometry, model_share * (intol + outtol))?,
             profile,
             raise,
             on,
-            intol: if on { wider } else { role.inside_tolerance },
-            outtol: if on { wider } else { role.outside_tolerance },
-            readings: Vec::new(),
+            intol,
+            outtol,
+            readings: RefCell::default(),
             patience,
         })
     }
 
-    /// Reads the clearance at all positions.
-    fn read(mut self, positions: &[ToolPosition]) -> Result<Self, VerifyError> {
-        let mut readings = Vec::with_capacity(positions.len());
-        let clearance = self.clearance();
-        for (k, place) in positions.iter().enumerate() {
-            let vector = k.saturating_sub(1);
-            readings.push(clearance.at(&place.tip, &place.axis).ok_or(VerifyError::NoDistance { vector })?);
-        }
-        self.readings = readings;
-        Ok(self)
+    /// Reads the clearance at the next position.
+    fn read(&self, place: &ToolPosition) -> Result<Reading, VerifyError> {
+        let mut readings = self.readings.borrow_mut();
+        let lost = VerifyError::NoDistance { vector: readings.len().saturating_sub(1) };
+        let reading = self.clearance().at(&place.tip, &place.axis).ok_or(lost)?;
+        readings.push(reading);
+        Ok(reading)
     }
 
     /// The reading at a position that was read.
-    fn reading(&self, index: usize) -> Result<&Reading, VerifyError> {
-        self.readings.get(index).ok_or(VerifyError::NoDistance { vector: index })
+    fn reading(&self, index: usize) -> Result<Reading, VerifyError> {
+        self.readings.borrow().get(index).copied().ok_or(VerifyError::NoDistance { vector: index })
     }
 
     fn clearance(&self) -> Clearance<'_> {
@@ -171,11 +176,26 @@ pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Re
         given_up.set(given_up.get() || cancel());
         given_up.get()
     };
-    let evidence = judged(sequence, Patience::until(&asked));
+    let evidence = settled(sequence, Patience::until(&asked));
     if given_up.get() { Err(VerifyError::Cancelled) } else { evidence }
 }
 
-fn judged(sequence: &CutSequence, patience: Patience<'_>) -> Result<Evidence, VerifyError> {
+/// No inaccuracy of a model decides that could be less.
+fn settled(sequence: &CutSequence, patience: Patience<'_>) -> Result<Evidence, VerifyError> {
+    let (evidence, is_rough) = judged(sequence, MODEL_SHARE, patience)?;
+    if evidence.verified || !is_rough {
+        Ok(evidence)
+    } else {
+        judged(sequence, 0.0, patience).map(|found| found.0)
+    }
+}
+
+/// The judgement with models of surfaces that may be off by a share of the bands, and whether there are such models.
+fn judged(
+    sequence: &CutSequence,
+    model_share: f64,
+    patience: Patience<'_>,
+) -> Result<(Evidence, bool), VerifyError> {
     let profile = match (&sequence.part, &sequence.drive, &sequence.stop) {
         // Point to point motion needs no cutter.
         (None, None, None) => Profile::tool_end(),
@@ -183,31 +203,21 @@ fn judged(sequence: &CutSequence, patience: Patience<'_>) -> Result<Evidence, Ve
     };
     let positions = positions(sequence)?;
     let mut size = positions.iter().map(|p| p.tip.amax()).fold(profile.widest(), f64::max);
-    let part = sequence
-        .part
-        .as_ref()
-        .map(|r| Bound::of(r, &profile, r.relation == Relation::On, patience))
-        .transpose()?;
-    let drive = sequence
-        .drive
-        .as_ref()
-        .map(|r| Bound::of(r, &profile, r.relation == Relation::On, patience))
-        .transpose()?;
+    let how = (model_share, patience);
+    let of = |r| Bound::of(r, &profile, r.relation == Relation::On, how);
+    let part = sequence.part.as_ref().map(of).transpose()?;
+    let drive = sequence.drive.as_ref().map(of).transpose()?;
     let check = match &sequence.stop {
-        Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role), patience)?),
+        Some(stop) => Some(Bound::of(&stop.role, &profile, stop_is_on(sequence, &stop.role), how)?),
         None => None,
     };
-    let (part, drive) = if sequence.start_up {
-        (part, drive)
-    } else {
-        let part = part.map(|b| b.read(&positions)).transpose()?;
-        (part, drive.map(|b| b.read(&positions)).transpose()?)
-    };
+    let mut is_rough = false;
     for bound in [&part, &drive, &check].into_iter().flatten() {
         size = size.max(bound.surface.size());
+        is_rough |= bound.surface.error() > 0.0;
     }
     let mut judge = Judge { sequence, positions, profile, size, findings: Findings::default(), patience };
-    judge.run(part.as_ref(), drive.as_ref(), check.as_ref())
+    judge.run(part.as_ref(), drive.as_ref(), check.as_ref()).map(|evidence| (evidence, is_rough))
 }
 
 /// Tangent check surfaces stand to the tool as the surface they are tangent to.
@@ -305,8 +315,11 @@ impl Judge<'_> {
         let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
         let allowed = [-bound.intol - guard, bound.outtol + guard];
         let mut all: Option<Extremes> = None;
+        bound.readings.borrow_mut().reserve_exact(self.positions.len());
+        let mut left = bound.read(self.positions.first().ok_or(VerifyError::Empty)?)?;
         for (vector, pair) in self.positions.windows(2).enumerate() {
-            let ends = [*bound.reading(vector)?, *bound.reading(vector + 1)?];
+            let ends = [left, bound.read(&pair[1])?];
+            left = ends[1];
             let span =
                 Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond, band: allowed };
             let lost = VerifyError::NoDistance { vector };

@@ -18,13 +18,39 @@ pub(super) struct Patch {
     pub(super) net: Net,
     /// Whether its normal, along × across, is against the natural one.
     pub(super) against: bool,
-    /// Whether the surface ends or bends sharply at a side of it.
-    pub(super) sharp: bool,
+    /// Where the surface ends or bends sharply on it.
+    pub(super) edges: Edges,
     /// How much more than the patch, in curvature, the surface that it stands for may bend.
     pub(super) slack: f64,
     /// The ends of its middle line across, and how far its control points are from that at most.
     pub(super) spine: [Vec3; 2],
     pub(super) girth: f64,
+}
+
+/// Where a surface ends or bends sharply on a patch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Edges {
+    /// At its sides: the first and the last along it, the first and the last across it.
+    pub(super) sides: [bool; 4],
+    /// Perhaps anywhere on it.
+    pub(super) within: bool,
+}
+
+impl Edges {
+    /// Those of the halves of a patch, cut along it or across it.
+    pub(super) fn halves(self, is_along: bool) -> [Self; 2] {
+        let cut = if is_along { [1, 0] } else { [3, 2] };
+        cut.map(|side| {
+            let mut half = self;
+            half.sides[side] = false;
+            half
+        })
+    }
+}
+
+/// The sides of a patch in the order of [`Edges::sides`].
+pub(super) fn sides(net: &Net) -> [Cubic; 4] {
+    [net.map(|row| row[0]), net.map(|row| row[3]), net[0], net[3]]
 }
 
 /// The four weights of a cubic's control points and their derivatives.
@@ -54,7 +80,7 @@ pub(super) fn turned(net: &Net) -> Net {
 }
 
 /// The two halves of a cubic.
-fn halves(c: &Cubic) -> [Cubic; 2] {
+pub(super) fn halves(c: &Cubic) -> [Cubic; 2] {
     let middle = |a: &Vec3, b: &Vec3| (a + b) * 0.5;
     let (ab, bc, cd) = (middle(&c[0], &c[1]), middle(&c[1], &c[2]), middle(&c[2], &c[3]));
     let (abc, bcd) = (middle(&ab, &bc), middle(&bc, &cd));
@@ -95,7 +121,7 @@ impl Patch {
             net[j].iter().map(|p| (p - middle).norm()).fold(0.0, f64::max)
         };
         let girth = (0..4).map(off).fold(0.0, f64::max);
-        Self { net, against: false, sharp: false, slack: 0.0, spine, girth }
+        Self { net, against: false, edges: Edges::default(), slack: 0.0, spine, girth }
     }
 
     /// Distance of a point to its spine.
@@ -107,6 +133,28 @@ impl Patch {
         (x - a - along * t).norm()
     }
 
+    /// The parameters across it between which it may be as near to a point as a distance.
+    pub(super) fn within(&self, x: &Vec3, distance: f64) -> Option<[f64; 2]> {
+        // The control points of a row stand about the place of the spine with its parameter, and so does the row itself.
+        let [a, b] = self.spine;
+        let (way, from, reach) = (b - a, a - x, distance + self.girth);
+        let (square, along) = (way.norm_squared(), way.dot(&from));
+        let room = reach * reach - from.norm_squared();
+        if reach < 0.0 {
+            return None;
+        }
+        if square <= 0.0 {
+            return (room >= 0.0).then_some([0.0, 1.0]);
+        }
+        let discriminant = along * along + square * room;
+        if discriminant <= 0.0 {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        let [low, high] = [(-along - root) / square, (-along + root) / square];
+        (low < 1.0 && high > 0.0).then_some([low.max(0.0), high.min(1.0)])
+    }
+
     /// Between two cubics with straight lines across.
     pub(super) fn straight([first, last]: &[Cubic; 2]) -> Self {
         let row = |t: f64| std::array::from_fn(|i| lerp(&first[i], &last[i], t));
@@ -116,13 +164,22 @@ impl Patch {
 
 /// The same cubic from −[`BEYOND`] to 1 + [`BEYOND`].
 fn stretched(c: &Cubic) -> Cubic {
+    between(c, [-BEYOND, 1.0 + BEYOND])
+}
+
+/// The part of a patch between two parameters across it.
+pub(super) fn between_across(net: &Net, range: [f64; 2]) -> Net {
+    turned(&turned(net).map(|column| between(&column, range)))
+}
+
+/// The same cubic from one parameter to another.
+fn between(c: &Cubic, [low, high]: [f64; 2]) -> Cubic {
     // The blossom of the cubic at the three parameters.
     let at = |x: f64, y: f64, z: f64| {
         let first = [lerp(&c[0], &c[1], x), lerp(&c[1], &c[2], x), lerp(&c[2], &c[3], x)];
         let second = [lerp(&first[0], &first[1], y), lerp(&first[1], &first[2], y)];
         lerp(&second[0], &second[1], z)
     };
-    let (low, high) = (-BEYOND, 1.0 + BEYOND);
     [at(low, low, low), at(low, low, high), at(low, high, high), at(high, high, high)]
 }
 
@@ -234,6 +291,25 @@ mod tests {
                 let rise = side * normal.dot(&(other - touch));
                 let room = 0.5 * hollow * (other - touch).norm_squared();
                 prop_assert!(rise <= room + 1e-12, "{rise} {room}");
+            }
+        }
+
+        #[test]
+        fn nothing_near_a_point_is_outside_its_range_across(
+            net in bumps(), [u, v] in [0.0..1.0f64, 0.0..1.0f64],
+            point in prop::array::uniform3(-1.0..1.5f64), distance in 0.0..1.0f64,
+        ) {
+            let patch = Patch::new(net);
+            let (place, point) = (jet(&net, [u, v])[0], Vec3::from(point));
+            let range = patch.within(&point, distance);
+            if (place - point).norm() < distance - 1e-9 {
+                let [low, high] = range.expect("a place is near");
+                prop_assert!(v >= low - 1e-12 && v <= high + 1e-12, "{v} of {low} to {high}");
+            }
+            if let Some([low, high]) = range.filter(|[low, high]| low < high) {
+                let part = between_across(&net, [low, high]);
+                let same = jet(&net, [u, low + (high - low) * v])[0];
+                prop_assert!((jet(&part, [u, v])[0] - same).norm() < 1e-12);
             }
         }
 

@@ -15,14 +15,15 @@ use apt_geometry::{
 };
 
 use super::{
-    patch::{Net, Patch, extent, jet, turned},
+    patch::{Edges, Net, Patch, extent, jet, turned},
     ruled::{ERROR_BEND, through},
     strip::Touch,
     survey::Sheet,
 };
 
-/// How far a patch may be off, relative to the size of the surface.
-const ACCURACY: f64 = 3e-9;
+/// How far a patch may be off, relative to the size of the surface, if that must be little and if nothing is asked.
+const FINEST: f64 = 4e-10;
+const COARSEST: f64 = 1e-7;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
 const ALLOWANCE: f64 = 2.0;
 /// Bound of the number of patches; where more were needed they are as accurate as so many can be.
@@ -168,8 +169,7 @@ impl Conics {
         let mut patch = Patch::new(part.fit.net);
         let [along, across] = part.rectangle;
         let stations = self.stations();
-        let is_end =
-            along[0] <= -1.0 || along[1] >= 2.0 || across[0] <= stations[0] || across[1] >= stations[3];
+        let sides = [along[0] <= -1.0, along[1] >= 2.0, across[0] <= stations[0], across[1] >= stations[3]];
         let normals = |at: [f64; 2]| {
             let [_, run, rise] = jet(&patch.net, at);
             let natural = self.normal(inside(along, at[0]), inside(across, at[1]), size)?;
@@ -183,7 +183,7 @@ impl Conics {
             })
         });
         patch.against = against;
-        patch.sharp = is_end || is_edged;
+        patch.edges = Edges { sides, within: is_edged };
         let shortest = extent(&patch.net).into_iter().fold(f64::INFINITY, f64::min);
         patch.slack = ERROR_BEND * part.off / (shortest * shortest);
         patch
@@ -288,8 +288,8 @@ fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> 
 }
 
 impl ConicStrips {
-    /// None if the values describe no surface.
-    pub(super) fn of(values: &[f64]) -> Option<Self> {
+    /// The model of a surface that need not be closer to it than `accuracy`; none if the values describe no surface.
+    pub(super) fn of(values: &[f64], accuracy: f64) -> Option<Self> {
         let conics = Conics { form: PolyConicForm::read(values)? };
         let mut size: f64 = 0.0;
         let mut extent_of_all: f64 = 0.0;
@@ -306,7 +306,8 @@ impl ConicStrips {
         if !(extent_of_all > 0.0 && size.is_finite()) {
             return None;
         }
-        let mut parts = cover(&conics, extent_of_all, ACCURACY * extent_of_all)?.into_vec();
+        let accuracy = accuracy.clamp(FINEST * extent_of_all, COARSEST * extent_of_all);
+        let mut parts = cover(&conics, extent_of_all, accuracy)?.into_vec();
         parts.sort_by_key(|part| part.number);
         let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
         let ranges = parts.iter().map(|part| part.rectangle).collect();

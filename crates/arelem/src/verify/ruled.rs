@@ -19,8 +19,9 @@ use super::{
     survey::Sheet,
 };
 
-/// How far a cubic may be off, relative to the size of the surface.
-const ACCURACY: f64 = 1e-10;
+/// How far a cubic may be off, relative to the size of the surface, if that must be little and if nothing is asked.
+const FINEST: f64 = 1e-10;
+const COARSEST: f64 = 1e-7;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
 const ALLOWANCE: f64 = 2.0;
 /// Bound of the halvings of a piece, and of the number of pieces.
@@ -80,8 +81,9 @@ pub(super) fn through(p: &[Vec3; 4]) -> Cubic {
 }
 
 impl RuledStrips {
-    /// None if the parts are not those of a definition or a section does not join its end points.
-    pub(super) fn of(surface: &RuledSurface) -> Option<Self> {
+    /// The model of a surface that need not be closer to it than `accuracy`; none if the parts are not those of a definition or
+    /// a section does not join its end points.
+    pub(super) fn of(surface: &RuledSurface, accuracy: f64) -> Option<Self> {
         let (first, end) = surface.curves()?;
         let edges = match &end {
             RuledEnd::Curve(second) => [Edge::of(&first)?, Edge::of(second)?],
@@ -89,7 +91,9 @@ impl RuledStrips {
         };
         let extent = edges[1].at(0.5)? - edges[0].at(0.5)?;
         let scale = (first.end - first.start).norm().max(extent.norm());
-        let pieces = pieces(&edges, ACCURACY * scale)?;
+        // Beyond the curves the rulings carry the error along.
+        let accuracy = accuracy / (1.0 + 2.0 * RULED_BEYOND);
+        let pieces = pieces(&edges, accuracy.clamp(FINEST * scale, COARSEST * scale))?;
         let [low, high] = shares(&pieces);
         let mut size: f64 = 0.0;
         let mut error: f64 = 0.0;
@@ -153,7 +157,8 @@ fn mark_edges(patches: &mut [Patch]) {
     let edges: Vec<usize> = (1..patches.len()).filter(|k| is_edge(&patches[k - 1..=*k])).collect();
     let last = patches.len().saturating_sub(1);
     for (k, patch) in patches.iter_mut().enumerate() {
-        patch.sharp = k == 0 || k == last || edges.contains(&k) || edges.contains(&(k + 1));
+        patch.edges.sides[0] = k == 0 || edges.contains(&k);
+        patch.edges.sides[1] = k == last || edges.contains(&(k + 1));
     }
 }
 

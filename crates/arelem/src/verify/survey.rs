@@ -7,13 +7,16 @@ use apt_geometry::Vec3;
 use super::{
     clearance::Reading,
     followed::Following,
-    patch::{Bends, Net, Patch, ball, extent, halves_across, halves_along, jet},
+    patch::{
+        Bends, Edges, Net, Patch, ball, between_across, extent, halves, halves_across, halves_along, jet,
+        sides,
+    },
     span::Bend,
-    strip,
+    strip::Cubic,
     tool::{Profile, Tool},
 };
 
-/// Parts of a survey; where there are more the general search is asked.
+/// Parts of a survey from which on they are not halved.
 const PARTS: usize = 6_000;
 /// Product of size and curvature above which a part is halved.
 const BENT: f64 = 0.25;
@@ -25,8 +28,13 @@ const PART_RADII: f64 = 2.0;
 /// Margin of a survey: in radii of the tool, and for a tool without body relative to the surface.
 const MARGIN_RADII: f64 = 1.0;
 const POINT_MARGIN: f64 = 0.05;
-/// How coarse the first search is, relative to the margin.
-const COARSE: f64 = 0.1;
+/// Halvings of an edge that tell whether it is near.
+const EDGE_HALVINGS: u32 = 6;
+/// Halvings for one reading of the part that the contact is on, and product of its size and curvature below which none helps.
+const DIVISIONS: usize = 12;
+const TIGHT: f64 = 0.01;
+/// Steps between tool and surface to a place that is near.
+const APPROACHES: u32 = 6;
 
 /// A surface in patches, with what was seen of it last.
 #[derive(Debug, Clone)]
@@ -48,7 +56,7 @@ pub(super) struct Part {
     /// Curvature that the surface may have more.
     pub(super) slack: f64,
     pub(super) against: bool,
-    pub(super) sharp: bool,
+    pub(super) edges: Edges,
     /// The way of the tool at which it may come as near as that way: its distance is at least this less the way so far.
     pub(super) far: Cell<f64>,
 }
@@ -66,7 +74,6 @@ struct Near {
     margin: f64,
     /// No other part was nearer.
     bound: f64,
-    /// Empty where there are too many.
     parts: Vec<Part>,
     /// The contact found last.
     last: Option<(usize, [f64; 2])>,
@@ -77,8 +84,8 @@ impl Sheet {
         Self { patches, ends_across, near: RefCell::new([None, None]) }
     }
 
-    /// The parts nearer to the tool than `bound`. None where there are too many.
-    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> Option<Vec<Part>> {
+    /// The parts nearer to the tool than `bound`; where there are very many they are not halved further.
+    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> Vec<Part> {
         let widest = tool.profile.widest();
         let [smallest, greatest] = if widest > 0.0 {
             [SMALLEST_RADII * widest, PART_RADII * widest]
@@ -89,13 +96,14 @@ impl Sheet {
         let middle = tip + tool.axis * half;
         let girth = half.hypot(widest);
         let mut parts = Vec::new();
-        let mut open: Vec<(Net, [bool; 2])> = Vec::new();
+        let mut open: Vec<(Net, Edges)> = Vec::new();
         for patch in &self.patches {
-            if patch.remoteness(&middle) - patch.girth - girth > bound {
-                continue;
-            }
-            open.push((patch.net, [self.ends_across; 2]));
-            while let Some((net, ends)) = open.pop() {
+            let Some(range) = patch.within(&middle, bound + girth) else { continue };
+            let mut edges = patch.edges;
+            edges.sides[2] = (edges.sides[2] || self.ends_across) && range[0] <= 0.0;
+            edges.sides[3] = (edges.sides[3] || self.ends_across) && range[1] >= 1.0;
+            open.push((between_across(&patch.net, range), edges));
+            while let Some((net, edges)) = open.pop() {
                 let (center, radius) = ball(&net);
                 let far = tool.signed_distance(&(center - tip)).0 - radius;
                 if far > bound {
@@ -104,24 +112,17 @@ impl Sheet {
                 let far = Cell::new(far);
                 let bends = if radius > greatest { None } else { Bends::of(&net) };
                 let is_flat = bends.is_some_and(|b| b.hollow[0].max(b.hollow[1]) * radius <= BENT);
-                if radius > smallest && !is_flat {
+                if radius > smallest && !is_flat && parts.len() < PARTS {
                     let [along, across] = extent(&net);
-                    if along >= across {
-                        open.extend(halves_along(&net).map(|half| (half, ends)));
-                    } else {
-                        let [first, last] = halves_across(&net);
-                        open.extend([(first, [ends[0], false]), (last, [false, ends[1]])]);
-                    }
-                } else if parts.len() >= PARTS {
-                    return None;
+                    let halves = if along >= across { halves_along(&net) } else { halves_across(&net) };
+                    open.extend(halves.into_iter().zip(edges.halves(along >= across)));
                 } else {
-                    let sharp = patch.sharp || ends[0] || ends[1];
                     let (slack, against) = (patch.slack, patch.against);
-                    parts.push(Part { net, center, radius, bends, slack, against, sharp, far });
+                    parts.push(Part { net, center, radius, bends, slack, against, edges, far });
                 }
             }
         }
-        Some(parts)
+        parts
     }
 
     /// The clearance on a side, to within `tolerance`, where balls show it.
@@ -135,11 +136,34 @@ impl Sheet {
     ) -> Option<Reading> {
         let slot = usize::from(tool.profile.is_point());
         let mut near = self.take(slot, tip, tool, size)?;
-        let found =
-            Following { sheet: self, parts: &near.parts, way: near.way, side, tip, tool, size, tolerance }
-                .reading(&mut near.last);
+        let mut found = None;
+        for _ in 0..DIVISIONS {
+            let (parts, way, loose) = (&near.parts, near.way, Cell::new(None));
+            let following =
+                Following { sheet: self, parts, way, side, tip, tool, size, tolerance, loose: &loose };
+            found = following.reading(&mut near.last);
+            let is_divided = found.is_none() && loose.get().is_some_and(|at| near.divide(at));
+            if !is_divided {
+                break;
+            }
+        }
         self.near.borrow_mut()[slot] = Some(near);
         found
+    }
+
+    /// A bound from above of the distance: that of a place about as near as any, where tool and surface lead in turns.
+    fn upper(&self, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
+        let mut from = tip + tool.axis * (0.5 * tool.profile.top_height());
+        let apart = |patch: &Patch| patch.remoteness(&from);
+        let patch = self.patches.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        let mut least = f64::INFINITY;
+        for _ in 0..APPROACHES {
+            let place = near(&patch.net, &from).1;
+            let (distance, beside) = tool.signed_distance(&(place - tip));
+            least = least.min(distance);
+            from = tip + beside;
+        }
+        least.is_finite().then_some(least)
     }
 
     /// What is near the tool, from before or seen now.
@@ -163,10 +187,10 @@ impl Sheet {
         });
         let upper = match before {
             Some(place) => tool.signed_distance(&(place - tip)).0,
-            None => strip::nearest(&self.patches, tip, tool, COARSE * margin, 0.0)?.value,
+            None => self.upper(tip, tool)?,
         };
         let bound = upper.max(0.0) + 2.0 * margin;
-        let parts = self.survey(tip, tool, bound, size).unwrap_or_default();
+        let parts = self.survey(tip, tool, bound, size);
         let last = before.and_then(|place| {
             let apart = |part: &Part| (part.center - place).norm() / part.radius;
             nearest_by(&parts, apart).map(|k| (k, [0.5; 2]))
@@ -201,25 +225,26 @@ impl Sheet {
         let reach = first.abs().max(last.abs()) + 1.5 * travel;
         let slot = usize::from(tool.profile.is_point());
         let near = self.near.borrow();
-        let known = near[slot].as_ref().filter(|near| {
-            near.profile == *tool.profile
-                && !near.parts.is_empty()
-                && near.moved(tip, tool) + reach <= near.bound
-        });
+        let known = near[slot]
+            .as_ref()
+            .filter(|near| near.profile == *tool.profile && near.moved(tip, tool) + reach <= near.bound);
         let seen;
-        let parts = match known {
-            Some(near) => &near.parts,
+        // What is known of their distances, and the way since.
+        let (parts, since) = match known {
+            Some(near) => (&near.parts, near.way + near.since(tip, tool)),
             None => {
-                seen = self.survey(tip, tool, reach, size)?;
-                &seen
+                seen = self.survey(tip, tool, reach, size);
+                (&seen, 0.0)
             }
         };
         let mut rate: f64 = 0.0;
         for part in parts {
-            if tool.signed_distance(&(part.center - tip)).0 - part.radius > reach {
+            if part.far.get() - since > reach
+                || tool.signed_distance(&(part.center - tip)).0 - part.radius > reach
+            {
                 continue;
             }
-            if part.sharp {
+            if part.has_edge_within(reach, tip, tool) {
                 return None;
             }
             // Behind the surface.
@@ -231,6 +256,25 @@ impl Sheet {
 }
 
 impl Near {
+    /// Halves a part about a place of it, so that the bounds of its bends are closer there; not where they are close anyway.
+    fn divide(&mut self, (index, at): (usize, [f64; 2])) -> bool {
+        let Some(part) = self.parts.get(index).filter(|_| self.parts.len() < PARTS) else { return false };
+        if part.bends.is_none_or(|b| b.hollow[0].max(b.hollow[1]) * part.radius <= TIGHT) {
+            return false;
+        }
+        let ([first, last], way) = part.halves();
+        let is_last = at[way] >= 0.5;
+        let mut at = at;
+        at[way] = 2.0 * at[way] - if is_last { 1.0 } else { 0.0 };
+        let (here, beside) = if is_last { (last, first) } else { (first, last) };
+        if let Some(place) = self.parts.get_mut(index) {
+            *place = here;
+        }
+        self.parts.push(beside);
+        self.last = Some((index, at));
+        true
+    }
+
     /// No place of the tool is farther from where it was.
     fn moved(&self, tip: &Vec3, tool: &Tool<'_>) -> f64 {
         (tip - self.tip).norm() + (tool.axis - self.axis).norm() * tool.profile.reach()
@@ -249,24 +293,67 @@ pub(super) fn nearest_by(parts: &[Part], apart: impl Fn(&Part) -> f64) -> Option
     all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
 }
 
+/// About the place of a patch nearest to a point, with its parameters.
+fn near(net: &Net, x: &Vec3) -> ([f64; 2], Vec3) {
+    let mut at = [0.5; 2];
+    let mut jets = jet(net, at);
+    for _ in 0..2 {
+        let [here, along, across] = jets;
+        let from = x - here;
+        let (a, b, c) = (along.norm_squared(), along.dot(&across), across.norm_squared());
+        let (p, q) = (along.dot(&from), across.dot(&from));
+        let area = a * c - b * b;
+        if area <= 0.0 {
+            break;
+        }
+        at = [at[0] + (c * p - b * q) / area, at[1] + (a * q - b * p) / area].map(|t| t.clamp(0.0, 1.0));
+        jets = jet(net, at);
+    }
+    (at, jets[0])
+}
+
 impl Part {
+    /// Its halves, and which of its parameters they share out.
+    pub(super) fn halves(&self) -> ([Self; 2], usize) {
+        let [along, across] = extent(&self.net);
+        let is_along = along >= across;
+        let [first, last] = if is_along { halves_along(&self.net) } else { halves_across(&self.net) };
+        let edges = self.edges.halves(is_along);
+        let half = |net: Net, edges: Edges| {
+            let (center, radius) = ball(&net);
+            Self { net, center, radius, bends: Bends::of(&net), edges, ..self.clone() }
+        };
+        ([half(first, edges[0]), half(last, edges[1])], usize::from(!is_along))
+    }
+
+    /// Whether the surface ends or bends sharply on it at a place that may be nearer to a tool than `reach`.
+    fn has_edge_within(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> bool {
+        let apart = |place: &Vec3| tool.signed_distance(&(place - tip)).0;
+        let mut open: Vec<(Cubic, u32)> = Vec::new();
+        let edges = sides(&self.net).into_iter().zip(self.edges.sides);
+        open.extend(edges.filter(|(_, is_edge)| *is_edge).map(|(curve, _)| (curve, EDGE_HALVINGS)));
+        while let Some((curve, halvings)) = open.pop() {
+            let center = curve.iter().sum::<Vec3>() / 4.0;
+            let radius = curve.iter().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
+            if apart(&center) - radius > reach {
+                continue;
+            }
+            if halvings == 0 || apart(&curve[0]) <= reach {
+                return true;
+            }
+            open.extend(halves(&curve).map(|half| (half, halvings - 1)));
+        }
+        self.edges.within
+    }
+
     /// About its place nearest to a point.
     pub(super) fn near(&self, x: &Vec3) -> Vec3 {
-        let mut at = [0.5; 2];
-        let mut place = self.center;
-        for _ in 0..2 {
-            let [here, along, across] = jet(&self.net, at);
-            let from = x - here;
-            let (a, b, c) = (along.norm_squared(), along.dot(&across), across.norm_squared());
-            let (p, q) = (along.dot(&from), across.dot(&from));
-            let area = a * c - b * b;
-            if area <= 0.0 {
-                return place;
-            }
-            at = [at[0] + (c * p - b * q) / area, at[1] + (a * q - b * p) / area].map(|t| t.clamp(0.0, 1.0));
-            place = jet(&self.net, at)[0];
-        }
-        place
+        near(&self.net, x).1
+    }
+
+    /// About the parameters of that place.
+    pub(super) fn nearest_parameters(&self, x: &Vec3) -> [f64; 2] {
+        near(&self.net, x).0
     }
 
     /// Curvature of the balls on a side of the surface that hold no place of the part.
