@@ -12,6 +12,8 @@ mod found;
 mod frugal;
 mod gouges;
 mod hollow;
+#[path = "../../tests/support/lofts.rs"]
+pub(crate) mod lofts;
 mod properties;
 mod refused;
 mod sheets;

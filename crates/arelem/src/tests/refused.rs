@@ -433,7 +433,7 @@ fn a_way_back_into_the_bands_that_maxdp_does_not_allow_is_told() {
         match p.attempt(&command) {
             Ok(_) => _ = p.verified(),
             Err(failure) => {
-                assert!(matches!(failure, MotionFailure::NoAdmissibleVector { .. }), "{failure:?}")
+                assert!(matches!(failure, MotionFailure::NoAdmissibleVector { .. }), "{failure:?}");
             }
         }
     }

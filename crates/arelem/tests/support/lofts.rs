@@ -6,7 +6,7 @@ use apt_geometry::{
 };
 
 /// A roof between arcs of different radius at y = ±2.
-pub(super) fn roof() -> Geometry {
+pub(crate) fn roof() -> Geometry {
     let curve = |y: f64, z: f64, radius: f64| {
         let round = Cylinder { point: Vec3::new(0.0, y, z), axis: Vec3::y(), radius };
         let height = z + (radius * radius - 4.0).sqrt();
@@ -18,7 +18,7 @@ pub(super) fn roof() -> Geometry {
 }
 
 /// A vault along y that widens and flattens: quarter circles change to fuller conics.
-pub(super) fn vault() -> Geometry {
+pub(crate) fn vault() -> Geometry {
     let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     values.extend([0.0, -3.0, 6.0]);
     for [constant, linear] in

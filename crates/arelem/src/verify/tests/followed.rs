@@ -9,11 +9,12 @@ use super::{
         span::{between, turning},
         tool::{Profile, Tool},
     },
-    cutter, cylinder,
-    lofts::{roof, vault},
-    plane, quadric, sphere,
+    cutter, cylinder, plane, quadric, sphere,
 };
-use crate::sequence::ToolPosition;
+use crate::{
+    sequence::ToolPosition,
+    tests::lofts::{roof, vault},
+};
 
 const BALL: [f64; 2] = [0.5, 0.25];
 const FLAT: [f64; 2] = [0.5, 0.0];

@@ -4,8 +4,6 @@ mod branches;
 mod clearances;
 mod every_kind;
 mod followed;
-#[path = "../../../tests/support/lofts.rs"]
-mod lofts;
 mod mutations;
 mod paths;
 mod poly_conics;
@@ -128,5 +126,5 @@ pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64
 
 /// A ruled and a polyconic surface.
 pub(crate) fn lofted() -> [Geometry; 2] {
-    [lofts::roof(), lofts::vault()]
+    [crate::tests::lofts::roof(), crate::tests::lofts::vault()]
 }
