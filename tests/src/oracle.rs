@@ -15,7 +15,7 @@ const MOTION_SLACK: f64 = 1e-5;
 const DEFAULT_TOLERANCE: f64 = 0.0005;
 
 /// The groups of the corpus.
-pub const GROUPS: [&str; 10] = [
+pub const GROUPS: [&str; 11] = [
     "geometry",
     "language",
     "motion2d",
@@ -26,6 +26,7 @@ pub const GROUPS: [&str; 10] = [
     "apt4-language",
     "apt4-motion",
     "sculptured-geometry",
+    "sculptured-motion",
 ];
 
 /// The groups that a test of their own compares (`regional_milling`).
@@ -34,9 +35,12 @@ pub const MILLING_GROUPS: [&str; 2] = ["regional-milling", "interference"];
 /// The dialect in which the programs of a group are written.
 pub fn dialect_of(group: &str) -> DialectName {
     match group {
-        "apt4-language" | "apt4-motion" | "sculptured-geometry" | "regional-milling" | "interference" => {
-            DialectName::Apt4
-        }
+        "apt4-language"
+        | "apt4-motion"
+        | "sculptured-geometry"
+        | "sculptured-motion"
+        | "regional-milling"
+        | "interference" => DialectName::Apt4,
         "errors" => DialectName::Apt3,
         _ => DialectName::Free,
     }
@@ -223,7 +227,9 @@ fn locations(group: &str, expected: &Value, ours: &Value, problems: &mut Vec<Str
         return;
     }
     for (wanted, found) in wanted.iter().zip(&found) {
-        let tolerance = if group.starts_with("motion") || group == "multaxis" || group == "apt4-motion" {
+        let tolerance = if group.starts_with("motion")
+            || ["multaxis", "apt4-motion", "sculptured-motion"].contains(&group)
+        {
             wanted.tolerance + MOTION_SLACK
         } else {
             EXACT

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::matrix::CoordinatePlane,
+    canonical::{Remembering, matrix::CoordinatePlane},
     definition::{
         AxisInput, CurveParameter, CurveProduct, CurveShape, FlowInput, FlowMeasure, LineOrCircle,
         MeshRestriction, ParametricCount, ParametricDirection, ParametricError, ParametricNode,
@@ -483,7 +483,7 @@ fn found(query: &ParametricQuery) -> (Vec3, usize, [f64; 2]) {
 
 #[test]
 fn places_by_lines_planes_and_points() {
-    let made = Arc::new(mesh(MeshRestriction::Free));
+    let made = Remembering::new(mesh(MeshRestriction::Free));
     let line = |point: Vec3| ParametricQuery::SurfaceLine {
         surface: made.clone(),
         point,
@@ -532,7 +532,7 @@ fn places_by_parameters_and_directions() {
     let fault = query(0.5, 4.0).find();
     assert_eq!(fault, Err(ParametricError::NoSuchPart { number: 4.0, count: 3 }));
     assert!(matches!(query(3.5, 0.0).find(), Err(ParametricError::OutOfRange { .. })));
-    let made = Arc::new(mesh(MeshRestriction::Free));
+    let made = Remembering::new(mesh(MeshRestriction::Free));
     let place =
         |u, v, patch| found(&ParametricQuery::SurfaceParameters { surface: made.clone(), u, v, patch });
     assert_eq!(place(0.5, 0.25, 6.0), place(2.5, 1.25, 0.0));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use apt_geometry::{
     Vec3,
     canonical::{
-        Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Plane, Sphere, TabulatedCylinder,
-        matrix::CoordinatePlane,
+        Cone, Cylinder, Geometry, GeometryKind, Interval, Matrix, Plane, Remembering, Sphere,
+        TabulatedCylinder, matrix::CoordinatePlane,
     },
     definition::{
         CurveShape, FlowInput, FlowMeasure, MeshRestriction, ParametricError, ParametricNode,
@@ -553,7 +553,8 @@ fn canonical_rows_come_back_unchanged() {
     let curve = Arc::new(definition.define().expect("a curve").geometry);
     let lofted =
         loft(vec![curve.clone(), Arc::new(curve.transformed(&Matrix::translation(Vec3::z())))], vec![]);
-    for geometry in [Geometry::SpaceCurve(curve), Geometry::Sculptured(Arc::new(lofted.expect("a surface")))]
+    for geometry in
+        [Geometry::SpaceCurve(curve), Geometry::Sculptured(Remembering::new(lofted.expect("a surface")))]
     {
         let values = geometry.canonical_values();
         assert_eq!(Geometry::from_canonical(geometry.kind(), &values), Ok(geometry.clone()));

@@ -2,9 +2,7 @@
 
 mod search;
 
-use std::sync::Arc;
-
-use apt_geometry::{Vec3, parametric::SculpturedSurface};
+use apt_geometry::{Vec3, canonical::Remembering, parametric::SculpturedSurface};
 
 use crate::{
     bounds::PatchTree,
@@ -14,21 +12,21 @@ use crate::{
 /// A surface made ready for checking. The preparation depends on nothing but the surface.
 #[derive(Debug, Clone)]
 pub struct Obstacle {
-    surface: Arc<SculpturedSurface>,
+    surface: Remembering<SculpturedSurface>,
     tree: PatchTree,
     creased: bool,
 }
 
 impl Obstacle {
     /// Makes a surface ready.
-    pub fn new(surface: Arc<SculpturedSurface>) -> Self {
+    pub fn new(surface: Remembering<SculpturedSurface>) -> Self {
         let tree = PatchTree::new(&surface.patches);
         let creased = surface.neighbours.iter().flatten().flatten().any(|next| !next.smooth);
         Self { surface, tree, creased }
     }
 
     /// The surface.
-    pub fn surface(&self) -> &Arc<SculpturedSurface> {
+    pub fn surface(&self) -> &Remembering<SculpturedSurface> {
         &self.surface
     }
 

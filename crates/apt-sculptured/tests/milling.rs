@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Plane},
+    canonical::{Geometry, Plane, Remembering},
     cutter::Cutter,
     motion::NamedSurface,
     parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SpaceCurve},
@@ -43,7 +43,7 @@ fn patch(heights: &[[f64; 4]; 4]) -> NamedSurface {
     });
     let patches = vec![Patch::from_points(&points)];
     let surface = SculpturedSurface::assembled(patches, Some((1, 1)), Vec::new(), 1.0, Mesh::default());
-    NamedSurface { name: "S".to_owned(), geometry: Geometry::Sculptured(Arc::new(surface)) }
+    NamedSurface { name: "S".to_owned(), geometry: Geometry::Sculptured(Remembering::new(surface)) }
 }
 
 const RANGE: ParameterRange = ParameterRange { low: 0.1, high: 0.9 };
@@ -453,7 +453,7 @@ fn two_planes(slope: f64) -> NamedSurface {
     };
     let patches = vec![flat(0.0, 3.0), flat(3.0, 6.0)];
     let surface = SculpturedSurface::assembled(patches, Some((2, 1)), Vec::new(), 1.0, Mesh::default());
-    NamedSurface { name: "S".to_owned(), geometry: Geometry::Sculptured(Arc::new(surface)) }
+    NamedSurface { name: "S".to_owned(), geometry: Geometry::Sculptured(Remembering::new(surface)) }
 }
 
 /// Distance of a ball from the two planes, for its centre at height `z` over `x`.

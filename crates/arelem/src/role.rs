@@ -2,6 +2,7 @@
 
 use apt_geometry::{
     Vec3,
+    canonical::{Cylinder, Geometry, Plane, Sphere},
     motion::{NamedSurface, PerRole, Relation},
     surface::{Surface, SurfaceError},
 };
@@ -19,6 +20,13 @@ pub(crate) const GUARD: f64 = 1e-3;
 /// Place in the band, from the limit that the sag goes to, of the ends of motions on curved surfaces: between the
 /// nominal position and the limit at which vertices lie.
 const REST: f64 = 0.75;
+/// The same on sculptured surfaces, where the APT4 peer is at 0.8 to 1.0 of OUTTOL above the surface however that bends:
+/// as near to that as leaves room for the sag. On convex, concave and other stretches.
+const REST_ABOVE: [f64; 3] = [0.85, 0.6, 0.75];
+/// The same for sculptured check surfaces, TO and PAST which that peer stops as far on the inner side.
+const REST_AT_CHECK: f64 = 0.25;
+/// Distance from a surface, relative to the coordinates, at which a tool end is on it and has no side.
+const ON_SURFACE: f64 = 1e-9;
 /// Share of the squared curvatures above which twice their negative product makes a saddle.
 const SADDLE: f64 = 1e-6;
 /// Curvature, times the size of the coordinates, below which a surface is straight.
@@ -38,9 +46,31 @@ pub(crate) struct Working {
     pub(crate) shape: Shape,
     /// Mean curvature near the tool, turned to its side: where the ends lie when the shape does not tell.
     pub(crate) lean: f64,
-    /// The peer that the part program is written for leaves convex stretches of this surface on the inner side of the
-    /// band: APT4 does so on tabulated cylinders.
-    inner: bool,
+    seat: Seat,
+}
+
+/// Where in the band the ends of motions lie, apart from how the surface bends: the APT4 peer has its own places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Seat {
+    /// Away from the sag.
+    Usual,
+    /// Convex stretches of tabulated cylinders on the inner side.
+    Inner,
+    /// Sculptured surfaces on the outer side.
+    Above,
+    /// Sculptured check surfaces on the inner side.
+    AtCheck,
+}
+
+impl Seat {
+    fn of(state: &State, name: RoleName, surface: &Surface) -> Self {
+        match (state.start_up, surface, name) {
+            (StartUpRule::Apt4, Surface::Tabulated(_), _) => Self::Inner,
+            (StartUpRule::Apt4, Surface::Sculptured(_), RoleName::Check(_)) => Self::AtCheck,
+            (StartUpRule::Apt4, Surface::Sculptured(_), _) => Self::Above,
+            _ => Self::Usual,
+        }
+    }
 }
 
 /// How a path bends against a role's surface.
@@ -60,7 +90,6 @@ impl Working {
         relation: Relation,
         on: bool,
     ) -> Result<Self, MotionFailure> {
-        let surface = surface(name, named)?;
         let pick = |values: &PerRole| match name {
             RoleName::Part => values.part,
             RoleName::Drive => values.drive,
@@ -70,7 +99,14 @@ impl Working {
         if !(inside >= 0.0 && outside >= 0.0 && (inside + outside).is_finite()) {
             return Err(MotionFailure::NoTolerance { role: name, inside, outside });
         }
-        let thickness = if on { 0.0 } else { pick(&state.thickness) };
+        let stock = pick(&state.thickness);
+        // In APT4 stock counts for ON, too.
+        let named = match state.start_up {
+            StartUpRule::Apt4 if on && stock != 0.0 => moved(named, stock, state.tip.as_ref()),
+            _ => named.clone(),
+        };
+        let surface = surface(name, &named)?;
+        let thickness = if on { 0.0 } else { stock };
         let disk = state.disk.filter(|of| match name {
             RoleName::Part => of.part,
             RoleName::Drive => !of.part,
@@ -79,8 +115,16 @@ impl Working {
         let disk = disk.filter(|_| !on).map(|of| of.disk);
         let gauge = Gauge { surface, on, side: 1.0, thickness, disk, memory: Memory::default() };
         let shape = gauge.shape();
-        let inner = state.start_up == StartUpRule::Apt4 && matches!(gauge.surface, Surface::Tabulated(_));
-        Ok(Self { name, named: named.clone(), relation, gauge, inside, outside, shape, lean: 0.0, inner })
+        let seat = Seat::of(state, name, &gauge.surface);
+        Ok(Self { name, named, relation, gauge, inside, outside, shape, lean: 0.0, seat })
+    }
+
+    /// The role in a start-up, where a check surface is one like the others.
+    pub(crate) fn at_start(mut self) -> Self {
+        if self.seat == Seat::AtCheck {
+            self.seat = Seat::Above;
+        }
+        self
     }
 
     pub(crate) fn set_side(&mut self, side: f64) {
@@ -137,7 +181,19 @@ impl Working {
             Shape::Flat => return 0.0,
             Shape::Convex => REST,
             Shape::Concave => 1.0 - REST,
-            Shape::General if self.lean > 0.0 && self.inner => 1.0 - REST,
+            Shape::General if self.seat == Seat::AtCheck && self.gauge.on => 0.5,
+            Shape::General if self.seat == Seat::AtCheck => REST_AT_CHECK,
+            Shape::General if self.seat == Seat::Above => {
+                let [convex, concave, other] = REST_ABOVE;
+                if self.lean > 0.0 {
+                    convex
+                } else if self.lean < 0.0 {
+                    concave
+                } else {
+                    other
+                }
+            }
+            Shape::General if self.lean > 0.0 && self.seat == Seat::Inner => 1.0 - REST,
             Shape::General if self.lean > 0.0 => REST,
             Shape::General if self.lean < 0.0 => 1.0 - REST,
             Shape::General => 0.5,
@@ -169,6 +225,33 @@ impl Working {
             disk: self.gauge.disk,
         }
     }
+}
+
+/// A plane, line, circle, cylinder or sphere moved by stock towards the tool end; from a tool end that is on it, or not known,
+/// against its natural normal. Other surfaces stay: ON measures them without stock.
+fn moved(named: &NamedSurface, stock: f64, tip: Option<&Vec3>) -> NamedSurface {
+    let towards = |surface: &Geometry| {
+        let distance = Surface::from_geometry(surface)
+            .ok()
+            .zip(tip)
+            .map_or(0.0, |(surface, tip)| surface.signed_distance(tip));
+        let on = ON_SURFACE * (1.0 + tip.map_or(0.0, |tip| tip.norm()));
+        if distance > on { stock } else { -stock }
+    };
+    let by = towards(&named.geometry);
+    let plane = |plane: &Plane| Plane { distance: plane.distance + by * plane.normal.norm(), ..*plane };
+    let round = |cylinder: &Cylinder| Cylinder { radius: (cylinder.radius.abs() + by).abs(), ..*cylinder };
+    let geometry = match &named.geometry {
+        Geometry::Plane(given) => Geometry::Plane(plane(given)),
+        Geometry::Line(given) => Geometry::Line(plane(given)),
+        Geometry::Circle(given) => Geometry::Circle(round(given)),
+        Geometry::Cylinder(given) => Geometry::Cylinder(round(given)),
+        Geometry::Sphere(given) => {
+            Geometry::Sphere(Sphere { radius: (given.radius.abs() + by).abs(), ..*given })
+        }
+        other => other.clone(),
+    };
+    NamedSurface { name: named.name.clone(), geometry }
 }
 
 /// The surface of a role.

@@ -184,7 +184,7 @@ impl<'a> StartUp<'a> {
         let mut roles = Vec::with_capacity(3);
         for (start, name) in surfaces.iter().zip(names) {
             let on = start.relation == Relation::On;
-            roles.push(Working::new(state, name, &start.surface, start.relation, on)?);
+            roles.push(Working::new(state, name, &start.surface, start.relation, on)?.at_start());
         }
         if roles.len() == 1 && !state.no_part {
             let on = state.part_side == PartSide::On;

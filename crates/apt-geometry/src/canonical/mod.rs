@@ -207,7 +207,7 @@ pub enum Geometry {
     Mesh(Arc<Vec<f64>>),
     /// As for [`Geometry::Mesh`].
     ElementSurface(Arc<Vec<f64>>),
-    Sculptured(Arc<SculpturedSurface>),
+    Sculptured(Remembering<SculpturedSurface>),
     SpaceCurve(Arc<SpaceCurve>),
 }
 

@@ -85,7 +85,7 @@ impl Geometry {
             })),
             Geometry::Sculptured(surface) => {
                 inverse()?;
-                Geometry::Sculptured(Arc::new(surface.transformed(matrix)))
+                Geometry::Sculptured(Remembering::new(surface.transformed(matrix)))
             }
             Geometry::SpaceCurve(curve) => {
                 inverse()?;

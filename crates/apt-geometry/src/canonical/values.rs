@@ -137,7 +137,9 @@ impl Geometry {
             GeometryKind::ElementSurface => Geometry::ElementSurface(Arc::new(values.to_vec())),
             GeometryKind::TabulatedCylinder => Geometry::TabulatedCylinder(Arc::new(tabulated_from(values)?)),
             GeometryKind::Pattern => Geometry::Pattern(Arc::new(pattern_from(values)?)),
-            GeometryKind::Sculptured => Geometry::Sculptured(Arc::new(sculptured::surface_from(values)?)),
+            GeometryKind::Sculptured => {
+                Geometry::Sculptured(Remembering::new(sculptured::surface_from(values)?))
+            }
             GeometryKind::SpaceCurve => Geometry::SpaceCurve(Arc::new(sculptured::curve_from(values)?)),
             GeometryKind::RuledSurface => return Err(CanonicalError::NoRow { kind }),
         })

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::space_curve::ParametricNode;
 use crate::{
     Vec3,
-    canonical::{Geometry, Matrix, matrix::CoordinatePlane},
+    canonical::{Geometry, Matrix, Remembering, matrix::CoordinatePlane},
     parametric::{SculpturedSurface, SpaceCurve},
 };
 
@@ -127,7 +127,7 @@ pub enum SurfaceShape {
     /// COMBIN.
     Combined {
         /// The surfaces.
-        surfaces: Vec<Arc<SculpturedSurface>>,
+        surfaces: Vec<Remembering<SculpturedSurface>>,
     },
     /// NURBS.
     BSpline {

@@ -1,7 +1,5 @@
 //! SSURF: from typed arguments to a surface.
 
-use std::sync::Arc;
-
 use super::{
     parametric_error::ParametricError,
     sculptured::{AxisInput, CurveProduct, SculpturedDefinition, SurfaceShape},
@@ -11,6 +9,7 @@ use super::{
 };
 use crate::{
     Vec3,
+    canonical::Remembering,
     parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SpaceCurve},
 };
 
@@ -111,7 +110,7 @@ fn multiplied(product: CurveProduct, profile: &SpaceCurve, control: &SpaceCurve)
     meshed(patches, (profile.arcs.len(), control.arcs.len()))
 }
 
-fn combined(surfaces: &[Arc<SculpturedSurface>]) -> Result<SculpturedSurface, ParametricError> {
+fn combined(surfaces: &[Remembering<SculpturedSurface>]) -> Result<SculpturedSurface, ParametricError> {
     match surfaces {
         [] => Err(ParametricError::TooFew { least: 1, found: 0 }),
         // A copy keeps its grid.

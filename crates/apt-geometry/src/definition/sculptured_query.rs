@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::parametric_error::ParametricError;
 use crate::{
     Vec3,
-    canonical::Plane,
+    canonical::{Plane, Remembering},
     parametric::{SculpturedSurface, SpaceCurve},
 };
 
@@ -27,7 +27,7 @@ pub enum ParametricQuery {
     /// `s,PARAM,u,v,k`.
     SurfaceParameters {
         /// The surface.
-        surface: Arc<SculpturedSurface>,
+        surface: Remembering<SculpturedSurface>,
         /// u, local to the patch or global.
         u: f64,
         /// v likewise.
@@ -49,14 +49,14 @@ pub enum ParametricQuery {
     /// `s,p`: the place nearest to a point.
     SurfaceNearest {
         /// The surface.
-        surface: Arc<SculpturedSurface>,
+        surface: Remembering<SculpturedSurface>,
         /// The point.
         point: Vec3,
     },
     /// `s,p,q`, `s,p,v` and `s,p,v,q`: on a line.
     SurfaceLine {
         /// The surface.
-        surface: Arc<SculpturedSurface>,
+        surface: Remembering<SculpturedSurface>,
         /// A point of the line.
         point: Vec3,
         /// Its direction, of any length.

@@ -7,6 +7,7 @@
 mod arc;
 mod basis;
 mod curve;
+mod extended;
 mod flow;
 mod measure;
 mod nearest;
@@ -17,6 +18,7 @@ mod topology;
 
 pub use arc::{ArcPoint, CurveArc};
 pub use curve::{CurveFrame, SpaceCurve};
+pub use extended::{ExtendedPatch, SCULPTURED_BEYOND, Side};
 pub use flow::{Flow, FlowKind, FlowRange, FlowSegment, SegmentMeasure};
 pub use measure::{CurvatureAt, Curvatures};
 pub use nearest::SurfacePlace;

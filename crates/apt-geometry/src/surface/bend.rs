@@ -74,6 +74,12 @@ impl Surface {
                 };
                 return sheet_bend(survey, region.reach(foot), nearest);
             }
+            Self::Sculptured(sheet) => {
+                let survey = |reach: f64| {
+                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
+                };
+                return sheet_bend(survey, region.reach(foot), nearest);
+            }
             Self::PolyConic(sheet) => {
                 // Off a surface that lies at a thickness from its conics distances bend as those from the conics.
                 let stock = side * sheet.thickness();
@@ -107,6 +113,7 @@ impl Surface {
         match self {
             Self::Ruled(sheet) => sheet.common_ruling(),
             Self::PolyConic(sheet) => sheet.common_ruling(),
+            Self::Sculptured(sheet) => sheet.common_ruling(),
             _ => None,
         }
     }

@@ -11,7 +11,7 @@ const STEADY_COSINE: f64 = 0.5;
 const WIDER: f64 = 1.25;
 const STEEPER: f64 = 0.1;
 
-/// A place of a tabulated cylinder, ruled or polyconic surface by its parameters.
+/// A place of a tabulated cylinder, ruled, polyconic or sculptured surface by its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     pub(super) piece: usize,
@@ -87,7 +87,7 @@ impl Facing {
 impl Surface {
     /// Whether places have charts.
     pub fn has_charts(&self) -> bool {
-        matches!(self, Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_))
+        matches!(self, Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_))
     }
 
     /// The nearest place, for the kinds of surface that have charts.
@@ -96,6 +96,7 @@ impl Surface {
             Self::Tabulated(curve) => Some(curve.place_near(p)),
             Self::Ruled(sheet) => Some(sheet.place_near(p)),
             Self::PolyConic(sheet) => Some(sheet.place_near(p)),
+            Self::Sculptured(sheet) => Some(sheet.place_near(p)),
             _ => None,
         }
     }
@@ -106,6 +107,7 @@ impl Surface {
             Self::Tabulated(curve) => curve.chart(place),
             Self::Ruled(sheet) => sheet.chart(place),
             Self::PolyConic(sheet) => sheet.chart(place),
+            Self::Sculptured(sheet) => sheet.chart(place),
             _ => None,
         }
     }
@@ -116,6 +118,7 @@ impl Surface {
             Self::Tabulated(curve) => curve.shifted(place, step),
             Self::Ruled(sheet) => sheet.shifted(place, step),
             Self::PolyConic(sheet) => sheet.shifted(place, step),
+            Self::Sculptured(sheet) => sheet.shifted(place, step),
             _ => None,
         }
     }
@@ -131,7 +134,7 @@ impl Surface {
     /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`.
     pub fn steady(&self, side: f64, center: &Vec3, [radius, depth]: [f64; 2]) -> Option<Steady> {
         let stock = match self {
-            Self::Tabulated(_) | Self::Ruled(_) => 0.0,
+            Self::Tabulated(_) | Self::Ruled(_) | Self::Sculptured(_) => 0.0,
             Self::PolyConic(sheet) => side * sheet.thickness(),
             _ => return None,
         };
@@ -179,6 +182,7 @@ impl Surface {
             Self::Tabulated(curve) => curve.keeps_off(p, distance),
             Self::Ruled(sheet) => sheet.keeps_off(p, distance),
             Self::PolyConic(sheet) => sheet.keeps_off(p, distance),
+            Self::Sculptured(sheet) => sheet.keeps_off(p, distance),
             _ => false,
         }
     }
@@ -191,6 +195,7 @@ impl Surface {
             Self::Tabulated(curve) => curve.facing(center, reach, normal, STEADY_COSINE),
             Self::Ruled(sheet) => sheet.survey(asked()).facing(),
             Self::PolyConic(sheet) => sheet.survey(asked()).facing(),
+            Self::Sculptured(sheet) => sheet.survey(asked()).facing(),
             _ => None,
         }
     }

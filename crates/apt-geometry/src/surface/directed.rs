@@ -94,6 +94,7 @@ impl Surface {
             Self::Tabulated(curve) => selection.choose(curve.ray_roots(from, direction)),
             Self::Ruled(sheet) => selection.choose(sheet.ray_roots(from, direction)),
             Self::PolyConic(sheet) => selection.choose(sheet.ray_roots(from, direction)),
+            Self::Sculptured(sheet) => selection.choose(sheet.ray_roots(from, direction)),
         };
         root.ok_or(NoDistance)
     }

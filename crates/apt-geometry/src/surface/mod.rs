@@ -11,6 +11,7 @@ mod poly_conic;
 mod quadric;
 mod quadric_bound;
 mod ruled;
+mod sculptured;
 mod section_curve;
 mod sheet;
 mod tabulated;
@@ -28,6 +29,7 @@ pub use self::{
     quadric::PrincipalQuadric,
     quadric_bound::{QuadraticFunction, Stationary},
     ruled::RuledSheet,
+    sculptured::SculpturedSheet,
     tabulated::DirectrixCurve,
 };
 use crate::{
@@ -54,6 +56,8 @@ pub enum Surface {
     Ruled(Arc<RuledSheet>),
     /// Polyconic surface with its extensions.
     PolyConic(Arc<PolyConicSheet>),
+    /// Sculptured surface with its extensions.
+    Sculptured(Arc<SculpturedSheet>),
 }
 
 /// Why a geometric entity is no surface here.
@@ -147,6 +151,9 @@ impl Surface {
                 let sheet = values.made(|values| PolyConicSheet::new(values));
                 sheet.map(Self::PolyConic).ok_or(degenerate)
             }
+            Geometry::Sculptured(surface) => {
+                surface.made(SculpturedSheet::new).map(Self::Sculptured).ok_or(degenerate)
+            }
             Geometry::Point(_)
             | Geometry::Vector(_)
             | Geometry::Matrix(_)
@@ -154,7 +161,6 @@ impl Surface {
             | Geometry::Mesh(_)
             | Geometry::ElementSurface(_)
             | Geometry::Pattern(_)
-            | Geometry::Sculptured(_)
             | Geometry::SpaceCurve(_) => Err(SurfaceError::Unsupported { kind }),
         }
     }
@@ -187,6 +193,7 @@ impl Surface {
             Self::Tabulated(curve) => curve.foot(p).0,
             Self::Ruled(sheet) => sheet.foot(p),
             Self::PolyConic(sheet) => sheet.foot(p),
+            Self::Sculptured(sheet) => sheet.foot(p),
         }
     }
 
@@ -231,6 +238,7 @@ impl Surface {
             }
             Self::Ruled(sheet) => sheet.foot_and_hessian(p),
             Self::PolyConic(sheet) => sheet.foot_and_hessian(p),
+            Self::Sculptured(sheet) => sheet.foot_and_hessian(p),
         }
     }
 
@@ -240,7 +248,9 @@ impl Surface {
             Self::Plane(_) => Convexity::Flat,
             Self::Cylinder(_) | Self::Sphere(_) | Self::Cone(_) => Convexity::Convex,
             Self::Quadric(quadric) => quadric.convexity(),
-            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) => Convexity::General,
+            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_) => {
+                Convexity::General
+            }
         }
     }
 
@@ -267,7 +277,9 @@ impl Surface {
             }
             Self::Cone(cone) => cone.natural_normal(p),
             Self::Quadric(quadric) => quadric.natural_normal(p),
-            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) => Ok(self.foot(p).normal),
+            Self::Tabulated(_) | Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_) => {
+                Ok(self.foot(p).normal)
+            }
         }
     }
 }

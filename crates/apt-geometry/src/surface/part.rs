@@ -46,7 +46,7 @@ impl Rectangle {
     }
 
     /// Both halves of one side.
-    fn halves(&self, side: usize) -> [Self; 2] {
+    pub(super) fn halves(&self, side: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|sense| {
             let mut part = *self;
             part.half[side] *= 0.5;
@@ -82,6 +82,20 @@ pub(super) trait Enclose {
 
     /// Counts parts that were made.
     fn made(&self, parts: usize);
+
+    /// Bounds over a rectangle with a side that is one point, where the parameters say nothing of them.
+    fn cap(&self, _: &Rectangle) -> Option<Cap> {
+        None
+    }
+}
+
+/// Bounds about a pole.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cap {
+    /// Greatest curvature seen from the natural side, and from the other.
+    pub(super) curvature: [f64; 2],
+    /// No natural normal differs from that in the middle by a longer vector.
+    pub(super) spread: f64,
 }
 
 /// Bounds over a part of a surface.
@@ -353,6 +367,9 @@ impl Part {
         let radius = (u + v).norm().max((u - v).norm()) + bent;
         let radius = if radius.is_nan() { *reach } else { radius.min(*reach) };
         let mut bounds = Bounds::of(&enclosure, rectangle.half);
+        if let Some(Cap { curvature, spread }) = sheet.cap(&rectangle) {
+            bounds = Bounds { curvature, least: curvature, spread, ..bounds };
+        }
         let sag = bounds.normal.map_or(radius, |normal| {
             let off = |bend: &Box3| bend.dot(&normal).magnitude();
             let sag = 0.5 * (off(duu) * hu * hu + off(dvv) * hv * hv) + off(duv) * hu * hv;
@@ -405,6 +422,11 @@ impl Part {
 
     pub(super) fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Whether no natural normal differs from that in the middle by a longer vector.
+    pub(super) fn turns_at_most(&self, chord: f64) -> bool {
+        self.spread <= chord
     }
 
     /// No place of the part is nearer to a point than this: the part lies in a disc about its middle, as thick as it bends.

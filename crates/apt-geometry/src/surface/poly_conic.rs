@@ -555,7 +555,7 @@ fn conic<T: Number>(controls: &[Control<T>; 3], weight: &Course<T>, t: T) -> [Fl
 }
 
 /// Step of Newton's method, damped; where the second derivatives are no minimum's the metric takes their place.
-fn descent(
+pub(super) fn descent(
     [a, mixed, b]: [f64; 3],
     gradient: &Vector2<f64>,
     held: [bool; 2],

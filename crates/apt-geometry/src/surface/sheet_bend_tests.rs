@@ -1,4 +1,4 @@
-//! Bounds of curvature of tabulated, ruled and polyconic surfaces against differences of their distances.
+//! Bounds of curvature of tabulated, ruled, polyconic and sculptured surfaces against differences of their distances.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,13 +6,14 @@ use nalgebra::SymmetricEigen;
 use proptest::prelude::*;
 
 use super::{
+    sculptured::tests::{barrel, geometry, hill, roof},
     sheet_tests::{half_pipe, sheets, surface},
     *,
 };
 use crate::canonical::{Interval, TabulatedCylinder};
 
 /// How many surfaces [`made`] has.
-pub(super) const COUNT: usize = 8;
+pub(super) const COUNT: usize = 11;
 /// The one with a thickness.
 pub(super) const THICK: usize = 3;
 
@@ -27,11 +28,18 @@ fn wave() -> Geometry {
     }))
 }
 
-/// The sheets, a half pipe, and a tabulated cylinder.
+/// A hill of one patch, a part of a torus, and a roof of two patches.
+fn patches() -> [Geometry; 3] {
+    let moved = barrel(1.5);
+    [geometry(vec![hill()], None, 1.0), geometry(vec![moved], None, 1.0), geometry(roof(), None, 1.0)]
+}
+
+/// The sheets, a half pipe, a tabulated cylinder, and sculptured surfaces.
 pub(super) fn made(which: usize) -> &'static Surface {
     static MADE: OnceLock<Vec<Surface>> = OnceLock::new();
-    &MADE.get_or_init(|| sheets().into_iter().chain([half_pipe(), wave()]).map(|g| surface(&g)).collect())
-        [which]
+    &MADE.get_or_init(|| {
+        sheets().into_iter().chain([half_pipe(), wave()]).chain(patches()).map(|g| surface(&g)).collect()
+    })[which]
 }
 
 proptest! {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Remembering, Sphere},
     parametric::{CurveArc, Mesh, Patch, SculpturedSurface, SpaceCurve},
 };
 
@@ -213,7 +213,7 @@ fn patches_are_drawn_by_their_edges_and_middles() {
     };
     let patches = vec![patch(0.0), patch(3.0)];
     let surface = SculpturedSurface::assembled(patches, Some((2, 1)), Vec::new(), 1.0, Mesh::default());
-    let lines = wireframe::lines(&Geometry::Sculptured(Arc::new(surface.clone())), &bounds);
+    let lines = wireframe::lines(&Geometry::Sculptured(Remembering::new(surface.clone())), &bounds);
     // Four edges and two middles of each, the common edge once.
     assert_eq!(lines.len(), 11);
     for place in lines.iter().flatten() {

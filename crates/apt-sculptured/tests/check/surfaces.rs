@@ -1,9 +1,10 @@
 //! The fifteen test surfaces of the reference (5.3), each twice: as patches and as a function.
 
-use std::{f64::consts::PI, sync::Arc};
+use std::f64::consts::PI;
 
 use apt_geometry::{
     Vec3,
+    canonical::Remembering,
     parametric::{Mesh, Patch, SculpturedSurface},
 };
 use nalgebra::Vector4;
@@ -18,15 +19,15 @@ pub(crate) struct Function {
 }
 
 pub(crate) struct TestSurface {
-    pub(crate) patches: Arc<SculpturedSurface>,
+    pub(crate) patches: Remembering<SculpturedSurface>,
     pub(crate) pieces: Vec<Function>,
 }
 
 /// A homogeneous cubic in a half-plane: (w·radius, w·height, w).
 type Profile = [[f64; 3]; 4];
 
-pub(crate) fn surface(patches: Vec<Patch>, grid: Option<(usize, usize)>) -> Arc<SculpturedSurface> {
-    Arc::new(SculpturedSurface::assembled(patches, grid, Vec::new(), 1.0, Mesh::default()))
+pub(crate) fn surface(patches: Vec<Patch>, grid: Option<(usize, usize)>) -> Remembering<SculpturedSurface> {
+    Remembering::new(SculpturedSurface::assembled(patches, grid, Vec::new(), 1.0, Mesh::default()))
 }
 
 /// The patch of a polynomial `Σ c[i][j] uⁱ vʲ`.

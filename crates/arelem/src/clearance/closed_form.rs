@@ -30,7 +30,7 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
             let parallel = surface.generator()?.cross(&tool.axis).norm() <= PARALLEL;
             parallel.then(|| along_generators(tool, surface, side, tip))
         }
-        Surface::Ruled(_) | Surface::PolyConic(_) => {
+        Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_) => {
             let parallel = surface.common_ruling()?.cross(&tool.axis).norm() <= PARALLEL;
             // Beyond the ends of the rulings the nearest point is no longer beside the tool.
             let contact = parallel.then(|| along_generators(tool, surface, side, tip))?;
@@ -43,7 +43,7 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
 /// Distance of the tool end from the surface at contact where the tool is a disc seen along the rulings of a surface that
 /// ends: there is no bound about its ends.
 pub(super) fn disc(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<f64> {
-    let curve = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_));
+    let curve = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_));
     (curve && contact(tool, surface, side, tip).is_some()).then(|| tool.profile.support(1.0, 0.0).0)
 }
 

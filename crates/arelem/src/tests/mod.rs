@@ -16,6 +16,7 @@ mod hollow;
 pub(crate) mod lofts;
 mod properties;
 mod refused;
+mod sculptured;
 mod sheets;
 mod turning;
 mod worked;

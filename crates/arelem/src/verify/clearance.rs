@@ -17,6 +17,7 @@ use super::{
     ruled::RuledStrips,
     ruling::Ruling,
     ruling_clearance::{self, Ruled},
+    sculptured::SculpturedStrips,
     span::Bend,
     tool::{Patience, Profile, Tool},
 };
@@ -32,7 +33,7 @@ pub(super) enum Surface {
     Pencil(Box<Pencil>),
     /// Quadric with principal axes.
     Quadric(Box<PrincipalQuadric>),
-    /// Tabulated cylinder, ruled or polyconic surface.
+    /// Tabulated cylinder, ruled, polyconic or sculptured surface.
     Ruled(Box<Ruled>),
 }
 
@@ -133,6 +134,10 @@ impl Surface {
             Geometry::PolyConic(values) => {
                 let strips = ConicStrips::of(values, accuracy).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Conics(Box::new(strips)))))
+            }
+            Geometry::Sculptured(surface) => {
+                let strips = SculpturedStrips::of(surface).ok_or_else(degenerate)?;
+                Ok(Self::Ruled(Box::new(Ruled::Sculptured(Box::new(strips)))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
         }

@@ -19,6 +19,7 @@ mod quadric_clearance;
 mod ruled;
 mod ruling;
 mod ruling_clearance;
+mod sculptured;
 mod section;
 mod shadow;
 mod span;

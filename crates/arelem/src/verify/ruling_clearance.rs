@@ -11,6 +11,7 @@ use super::{
     poly_conic::ConicStrips,
     ruled::RuledStrips,
     ruling::Ruling,
+    sculptured::SculpturedStrips,
     span::Bend,
     strip::{Touch, nearest},
     survey::Sheet,
@@ -24,6 +25,8 @@ const RESOLUTION_OF_ERROR: f64 = 0.05;
 const WARM_RESOLUTION_OF_ERROR: f64 = 0.25;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
+/// Sine of the angle to the tool axis at which a normal is square to it.
+const UPRIGHT: f64 = 1e-9;
 /// Distance, relative to the tool, from which on the difference of two places is a direction.
 const SURE_DISTANCE: f64 = 1e-3;
 /// Parameter next to the end of a piece at which the surface may have an edge.
@@ -53,6 +56,8 @@ pub(super) enum Ruled {
     Joining(Box<RuledStrips>),
     /// A polyconic surface, its conics joined by straight lines.
     Conics(Box<ConicStrips>),
+    /// A sculptured surface.
+    Sculptured(Box<SculpturedStrips>),
 }
 
 impl Ruled {
@@ -62,6 +67,7 @@ impl Ruled {
             Self::Parallel(ruling) => ruling.size,
             Self::Joining(surface) => surface.size,
             Self::Conics(surface) => surface.size,
+            Self::Sculptured(surface) => surface.size,
         }
     }
 
@@ -71,6 +77,7 @@ impl Ruled {
             Self::Parallel(ruling) => ruling.nearest(tip, tool, resolution, deep),
             Self::Joining(surface) => nearest(&surface.sheet.patches, tip, tool, resolution, deep),
             Self::Conics(surface) => nearest(&surface.sheet.patches, tip, tool, resolution, deep),
+            Self::Sculptured(surface) => nearest(&surface.sheet.patches, tip, tool, resolution, deep),
         }
     }
 
@@ -90,6 +97,7 @@ impl Ruled {
             Self::Parallel(ruling) => ruling.bend(side, [from, to], values, &ends[0].normal, tool, travel),
             Self::Joining(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
             Self::Conics(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
+            Self::Sculptured(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
         }
     }
 
@@ -98,6 +106,7 @@ impl Ruled {
             Self::Parallel(_) => None,
             Self::Joining(surface) => Some(&surface.sheet),
             Self::Conics(surface) => Some(&surface.sheet),
+            Self::Sculptured(surface) => Some(&surface.sheet),
         }
     }
 
@@ -113,6 +122,7 @@ impl Ruled {
             Self::Parallel(ruling) => ruling.natural(touch),
             Self::Joining(surface) => surface.natural(touch),
             Self::Conics(surface) => surface.natural(touch),
+            Self::Sculptured(surface) => surface.natural(touch),
         }
     }
 
@@ -120,14 +130,17 @@ impl Ruled {
     fn axis(&self) -> Option<Vec3> {
         match self {
             Self::Parallel(ruling) => Some(ruling.axis),
-            Self::Joining(_) | Self::Conics(_) => None,
+            Self::Joining(_) | Self::Conics(_) | Self::Sculptured(_) => None,
         }
     }
 
     /// Whether the surface may have an edge at a place.
     fn may_have_edge(&self, touch: &Touch) -> bool {
-        let at_joint = touch.along <= JOINT || touch.along >= 1.0 - JOINT;
-        at_joint && !matches!(self, Self::Conics(_))
+        match self {
+            Self::Parallel(_) | Self::Joining(_) => touch.along <= JOINT || touch.along >= 1.0 - JOINT,
+            Self::Conics(_) => false,
+            Self::Sculptured(surface) => surface.is_sharp(touch, JOINT),
+        }
     }
 
     /// How far the patches may be off the surface.
@@ -136,6 +149,7 @@ impl Ruled {
             Self::Parallel(_) => 0.0,
             Self::Joining(surface) => surface.error,
             Self::Conics(surface) => surface.error,
+            Self::Sculptured(surface) => surface.error,
         }
     }
 }
@@ -185,11 +199,35 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
         let value = side * distance - tool.profile.widest();
         return Some(Reading { value, normal: normal * side, error });
     }
+    if let Some(found) = beside(surface, side, tip, tool) {
+        return Some(found);
+    }
     if let Some(mut found) = surface.followed(side, tip, tool) {
         found.error += surface.error();
         return Some(found);
     }
     searched(surface, side, tip, tool)
+}
+
+/// The clearance of a tool that stands along the straight lines of a sculptured surface: where both ends of the tool are beside
+/// it, all of the tool is, and it is a disc.
+fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+    let Ruled::Sculptured(strips) = surface else { return None };
+    if tool.axis.cross(&strips.ruling?).norm() > PARALLEL {
+        return None;
+    }
+    let top = tip + tool.axis * tool.profile.top_height();
+    let (distance, normal) = point_distance(surface, tip, tool.patience)?;
+    let (above, other) = point_distance(surface, &top, tool.patience)?;
+    let error = resolution(surface, tip, tool.profile.reach());
+    let level = [normal, other].iter().all(|n| n.dot(&tool.axis).abs() <= UPRIGHT);
+    let value = side * distance - tool.profile.widest();
+    let error = error + surface.error();
+    (level && (above - distance).abs() <= 2.0 * error).then_some(Reading {
+        value,
+        normal: normal * side,
+        error,
+    })
 }
 
 /// The clearance without regard to what was found before.

@@ -15,7 +15,7 @@ pub(crate) use state::RegionalState;
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Geometry, GeometryKind},
+    canonical::{Geometry, GeometryKind, Remembering},
     definition::{Defined, ParametricError},
 };
 use apt_syntax::TextRange;
@@ -122,10 +122,16 @@ impl Evaluator<'_> {
         let mut reader = Reader::new(items, range);
         let made = if kind == GeometryKind::SpaceCurve {
             let read = curve::definition(&mut reader, self.state.z_surface);
-            read.map(|definition| definition.define().map(|made| boxed(made, Geometry::SpaceCurve)))
+            read.map(|definition| {
+                definition.define().map(|made| boxed(made, |curve| Geometry::SpaceCurve(Arc::new(curve))))
+            })
         } else {
             let read = surface::definition(&mut reader);
-            read.map(|definition| definition.define().map(|made| boxed(made, Geometry::Sculptured)))
+            read.map(|definition| {
+                definition
+                    .define()
+                    .map(|made| boxed(made, |surface| Geometry::Sculptured(Remembering::new(surface))))
+            })
         };
         match made {
             Ok(Ok((geometry, warnings))) => {
@@ -159,6 +165,6 @@ impl Evaluator<'_> {
 }
 
 /// What a definition has made, as geometry, with its warnings.
-fn boxed<T>(made: Defined<T>, wrap: fn(Arc<T>) -> Geometry) -> (Geometry, Vec<ParametricError>) {
-    (wrap(Arc::new(made.geometry)), made.warnings)
+fn boxed<T>(made: Defined<T>, wrap: fn(T) -> Geometry) -> (Geometry, Vec<ParametricError>) {
+    (wrap(made.geometry), made.warnings)
 }

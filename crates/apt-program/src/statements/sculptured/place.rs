@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Geometry, GeometryKind},
+    canonical::{Geometry, GeometryKind, Remembering},
     definition::{CurveParameter, ParametricDirection, ParametricError, ParametricPlace, ParametricQuery},
     parametric::{SculpturedSurface, SpaceCurve},
 };
@@ -117,7 +117,7 @@ fn question(reader: &mut Reader<'_>, kind: GeometryKind) -> Read<Question> {
     let query = match reader.peek().and_then(Item::geometry) {
         Some(Geometry::Sculptured(surface)) => {
             reader.skip();
-            surface_query(reader, Arc::clone(surface))?
+            surface_query(reader, surface.clone())?
         }
         Some(Geometry::SpaceCurve(curve)) => {
             reader.skip();
@@ -147,7 +147,7 @@ fn direction(reader: &mut Reader<'_>) -> Read<(ParametricDirection, bool)> {
 }
 
 /// `PARAM,u,v,k`, `p`, `p,q`, `p,v` or `p,v,q`
-fn surface_query(reader: &mut Reader<'_>, surface: Arc<SculpturedSurface>) -> Read<ParametricQuery> {
+fn surface_query(reader: &mut Reader<'_>, surface: Remembering<SculpturedSurface>) -> Read<ParametricQuery> {
     if reader.eat("PARAM") {
         let (u, v, patch) = (reader.scalar()?, reader.scalar()?, reader.scalar()?);
         return Ok(ParametricQuery::SurfaceParameters { surface, u, v, patch });

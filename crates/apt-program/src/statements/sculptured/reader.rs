@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Plane},
+    canonical::{Geometry, Plane, Remembering},
     motion::NamedSurface,
     parametric::{SculpturedSurface, SpaceCurve},
     regional::Sense,
@@ -271,10 +271,10 @@ impl<'a> Reader<'a> {
     }
 
     /// All sculptured surfaces that come next, at least one.
-    pub(super) fn sculptured_surfaces(&mut self) -> Read<Vec<Arc<SculpturedSurface>>> {
+    pub(super) fn sculptured_surfaces(&mut self) -> Read<Vec<Remembering<SculpturedSurface>>> {
         let mut surfaces = Vec::new();
         while let Some(Geometry::Sculptured(surface)) = self.peek().and_then(Item::geometry) {
-            surfaces.push(Arc::clone(surface));
+            surfaces.push(surface.clone());
             self.at += 1;
         }
         if surfaces.is_empty() { Err(self.misfit(Expected::SculpturedSurface)) } else { Ok(surfaces) }

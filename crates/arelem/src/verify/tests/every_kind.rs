@@ -3,9 +3,10 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::Geometry,
+    canonical::{Geometry, Remembering},
     cutter::Cutter,
     motion::{DriveSide, Relation},
+    parametric::{Mesh, Patch, SculpturedSurface},
 };
 
 use super::{
@@ -91,6 +92,17 @@ fn tabulated_cylinder() -> Vec<Ground> {
     };
     let nodes: Vec<[f64; 3]> = (-6..=6).map(wave).collect();
     vec![ground("tabulated cylinder", 2.0, tabulated([Vec3::x(), Vec3::z(), -Vec3::y()], &nodes))]
+}
+
+/// A hill of one patch.
+fn sculptured() -> Vec<Ground> {
+    let heights =
+        [[-0.9, -0.3, -0.4, -1.0], [-0.2, 0.5, 0.4, -0.4], [-0.1, 0.6, 0.3, -0.2], [-0.8, -0.2, -0.5, -1.2]];
+    let hill = Patch::from_points(&std::array::from_fn(|i| {
+        std::array::from_fn(|j| Vec3::new(1.6 * i as f64 - 2.4, 1.4 * j as f64 - 2.1, heights[i][j]))
+    }));
+    let surface = SculpturedSurface::assembled(vec![hill], None, Vec::new(), 1.0, Mesh::default());
+    vec![ground("patch", 2.0, Geometry::Sculptured(Remembering::new(surface)))]
 }
 
 /// All shapes of cutters, so short that they fit into the hollow surfaces when they lie.
@@ -319,6 +331,11 @@ fn try_all(grounds: &[Ground], ways: &[Way]) -> Tally {
             let saddle = ["saddle", "hyperboloid"].contains(&ground.name);
             let pointed = ["drill", "bell", "lens"].contains(&shape);
             let searched = saddle && pointed;
+            // Patches are searched more slowly than other surfaces: one shape stands for all.
+            let patches = matches!(ground.geometry, Geometry::Sculptured(_));
+            if patches && shape != "ball" {
+                continue;
+            }
             let long = saddle || pointed && matches!(ground.geometry, Geometry::Quadric(_));
             let is_quick = |way: &&Way| match way {
                 Way::Part => !searched,
@@ -360,6 +377,12 @@ fn quadrics_with_a_turning_axis() {
         quadrics().into_iter().filter(|g| ["ellipsoid", "dish", "parabola"].contains(&g.name)).collect();
     let tally = try_all(&some, &[Way::Turning]);
     assert!(tally.courses == 5 + 5 + 8 && tally.dropped > 8, "{} {}", tally.courses, tally.dropped);
+}
+
+#[test]
+fn sculptured_surfaces_in_every_role() {
+    let tally = try_all(&sculptured(), &[Way::Part, Way::Drive]);
+    assert!(tally.courses == 2 && tally.dropped > 0, "{} {}", tally.courses, tally.dropped);
 }
 
 #[test]

@@ -1,0 +1,358 @@
+//! Sculptured surfaces: rational bicubic patches, with the straight patches beyond their outer edges that contacts are
+//! solved on. The nearest point is found over a tree of balls whose leaves, parts of patches, are nearly flat.
+
+mod bounds;
+mod rays;
+mod tree;
+
+use nalgebra::{Matrix3, Vector2};
+
+use self::tree::Node;
+use super::{
+    Chart, Foot, Place,
+    part::Count,
+    perpendicular,
+    poly_conic::descent,
+    sheet::{Jet, ON_SURFACE, Rest},
+};
+use crate::{
+    Vec3,
+    canonical::Made,
+    parametric::{Edge, ExtendedPatch, Patch, PatchPoint, SculpturedSurface, Side},
+};
+
+/// Step of the parameters below which its effect on the distance is far below rounding.
+const RESOLUTION: f64 = 1e-13;
+/// Bound of the damped iteration for the nearest point of a leaf.
+const MAX_ITERATIONS: u32 = 40;
+/// Share of an offset along a joint's own surface above which the nearest place stays on the joint.
+const OFF_NORMAL: f64 = 1e-6;
+/// Share of the way to the middle of a patch at which the normal is taken where a place has none.
+const INWARD: f64 = 1e-5;
+/// Bound of the joints that one step crosses.
+const MOST_CROSSINGS: u32 = 4;
+/// Places of each patch, along each parameter, where its curvature is looked at.
+const SAMPLES: u32 = 4;
+
+/// A sculptured surface ready for distance questions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SculpturedSheet {
+    pieces: Vec<ExtendedPatch>,
+    /// A binary tree; the root is first.
+    nodes: Vec<Node>,
+    /// Direction of all rulings, if the surface may be shifted along it.
+    ruling: Option<Vec3>,
+    size: f64,
+    curvature: f64,
+    /// Parts with bounds.
+    parts: Count,
+}
+
+/// The nearest place so far.
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    square: f64,
+    piece: usize,
+    at: [f64; 2],
+}
+
+impl Made for SculpturedSheet {
+    fn parts(&self) -> usize {
+        self.parts.get()
+    }
+}
+
+impl From<PatchPoint> for Jet {
+    fn from(at: PatchPoint) -> Self {
+        let PatchPoint { position, du, dv, duu, duv, dvv } = at;
+        Self { point: position, du, dv, duu, duv, dvv }
+    }
+}
+
+/// The edges of a patch that parameters lie on.
+fn edges_at([u, v]: [f64; 2]) -> [Option<Edge>; 2] {
+    let of = |t: f64, low: Edge, high: Edge| {
+        if t <= 0.0 {
+            Some(low)
+        } else if t >= 1.0 {
+            Some(high)
+        } else {
+            None
+        }
+    };
+    [of(u, Edge::LowU, Edge::HighU), of(v, Edge::LowV, Edge::HighV)]
+}
+
+impl SculpturedSheet {
+    /// `None` if there are no patches, or all of it is one point.
+    pub(super) fn new(surface: &SculpturedSurface) -> Option<Self> {
+        let size = surface.size();
+        if !(surface.is_finite() && size.is_finite() && size > 0.0) {
+            return None;
+        }
+        let pieces = surface.extended();
+        let mut sheet =
+            Self { pieces, nodes: Vec::new(), ruling: None, size, curvature: 0.0, parts: Count::default() };
+        sheet.nodes = tree::grown(&sheet);
+        sheet.ruling = sheet.found_ruling();
+        sheet.curvature = sheet.sampled_curvature(surface.patches.len());
+        (!sheet.nodes.is_empty()).then_some(sheet)
+    }
+
+    /// Greatest principal curvature at places of the definition's own patches.
+    fn sampled_curvature(&self, own: usize) -> f64 {
+        let mut greatest: f64 = 0.0;
+        let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
+        for piece in self.pieces.iter().take(own) {
+            for (i, j) in (0..=SAMPLES).flat_map(|i| (0..=SAMPLES).map(move |j| (i, j))) {
+                let jet = Jet::from(piece.patch.evaluate(share(i), share(j)));
+                if let Some(normal) = jet.natural(piece.patch.size()) {
+                    greatest = greatest.max(jet.greatest_curvature(&normal));
+                }
+            }
+        }
+        greatest
+    }
+
+    /// The direction along which all patches are the same curve, if there is one.
+    fn found_ruling(&self) -> Option<Vec3> {
+        let close = ON_SURFACE * 0.1 * self.size;
+        // Along v; a flat patch may have both directions.
+        let along = |patch: &Patch| -> Option<Vec3> {
+            let points = patch.points();
+            let step: [Vec3; 4] = std::array::from_fn(|j| points[0][j] - points[0][0]);
+            let weights = patch.control.map(|row| row.map(|point| point.w));
+            let shifted = (0..4).all(|i| {
+                (0..4).all(|j| {
+                    let even = (weights[i][j] - weights[i][0]).abs() <= f64::EPSILON * 4.0 * weights[i][0];
+                    even && (points[i][j] - points[i][0] - step[j]).norm() <= close
+                })
+            });
+            let way = step[3].try_normalize(close)?;
+            let straight = step.iter().all(|s| s.cross(&way).norm() <= close);
+            (shifted && straight).then_some(way)
+        };
+        let both = |patch: &Patch| [along(patch), along(&patch.swapped())];
+        let first = both(&self.pieces.first()?.patch);
+        first.into_iter().flatten().find(|way| {
+            let agrees = |other: Vec3| other.cross(way).norm() <= ON_SURFACE;
+            self.pieces.iter().all(|piece| both(&piece.patch).into_iter().flatten().any(agrees))
+        })
+    }
+
+    fn jet(&self, piece: usize, [u, v]: [f64; 2]) -> Jet {
+        self.pieces.get(piece).map_or_else(
+            || {
+                let zero = Vec3::zeros();
+                Jet { point: zero, du: zero, dv: zero, duu: zero, duv: zero, dvv: zero }
+            },
+            |piece| piece.patch.evaluate(u, v).into(),
+        )
+    }
+
+    fn nearest(&self, p: &Vec3) -> Nearest {
+        let mut best = Nearest { square: f64::INFINITY, piece: 0, at: [0.5; 2] };
+        let mut open: Vec<(f64, usize)> = Vec::with_capacity(32);
+        open.push((0.0, 0));
+        let bound = |k: usize| self.nodes.get(k).map_or(f64::INFINITY, |node| node.bound(p));
+        while let Some((least, node)) = open.pop() {
+            if least > 0.0 && least * least >= best.square {
+                continue;
+            }
+            match self.nodes.get(node) {
+                Some(Node::Fork { children: [a, b], .. }) => {
+                    let (a, b) = ((bound(*a), *a), (bound(*b), *b));
+                    // The nearer one is taken first.
+                    open.extend(if a.0 < b.0 { [b, a] } else { [a, b] });
+                }
+                Some(Node::Leaf(leaf)) => self.descend(p, leaf, &mut best),
+                None => {}
+            }
+        }
+        best
+    }
+
+    /// Goes down to the nearest place of a leaf from its middle, by Newton's method damped so that every step descends.
+    fn descend(&self, p: &Vec3, leaf: &tree::Leaf, best: &mut Nearest) {
+        let ranges = [leaf.rectangle.range(0), leaf.rectangle.range(1)];
+        let mut q = Vector2::from(leaf.rectangle.middle);
+        let mut jet = self.jet(leaf.piece, [q.x, q.y]);
+        let mut square = (jet.point - p).norm_squared();
+        let mut damping = 0.0;
+        for _ in 0..MAX_ITERATIONS {
+            let offset = jet.point - p;
+            let gradient = Vector2::new(offset.dot(&jet.du), offset.dot(&jet.dv));
+            let metric = Vector2::new(jet.du.norm_squared(), jet.dv.norm_squared());
+            let bends = [
+                metric.x + offset.dot(&jet.duu),
+                jet.du.dot(&jet.dv) + offset.dot(&jet.duv),
+                metric.y + offset.dot(&jet.dvv),
+            ];
+            // A parameter held at its limit does not move.
+            let held = [0, 1].map(|k: usize| {
+                (q[k] <= ranges[k][0] && gradient[k] > 0.0) || (q[k] >= ranges[k][1] && gradient[k] < 0.0)
+            });
+            let step = descent(bends, &gradient, held, &metric, damping);
+            let next = Vector2::from_fn(|k, _| (q[k] + step[k]).clamp(ranges[k][0], ranges[k][1]));
+            if (next - q).norm() <= RESOLUTION {
+                break;
+            }
+            let there = self.jet(leaf.piece, [next.x, next.y]);
+            let reached = (there.point - p).norm_squared();
+            if reached <= square {
+                let settled = square - reached <= 0.0;
+                (q, jet, square, damping) = (next, there, reached, 0.2 * damping);
+                if settled {
+                    break;
+                }
+            } else {
+                damping = if damping > 0.0 { 4.0 * damping } else { 1e-3 };
+                if damping > 1e12 {
+                    break;
+                }
+            }
+        }
+        if square < best.square {
+            *best = Nearest { square, piece: leaf.piece, at: [q.x, q.y] };
+        }
+    }
+
+    fn side(&self, piece: usize, edge: Edge) -> Side {
+        self.pieces.get(piece).map_or(Side::End, |piece| piece.sides[edge.number()])
+    }
+
+    /// The nearest point with its curvature elements.
+    fn place(&self, p: &Vec3) -> (Foot, Jet, Rest) {
+        let Nearest { piece, at, .. } = self.nearest(p);
+        let jet = self.jet(piece, at);
+        let offset = p - jet.point;
+        let length = offset.norm();
+        let natural = self.natural(piece, at, &jet);
+        let mut facing = natural;
+        let mut held = [false; 2];
+        // On the surface itself the offset is rounding and says nothing.
+        if length > ON_SURFACE * self.size {
+            for (k, edge) in edges_at(at).into_iter().enumerate() {
+                let Some(edge) = edge else { continue };
+                match self.side(piece, edge) {
+                    Side::End => held[k] = true,
+                    side @ Side::Joint { .. } if side.is_crease() => {
+                        let across = if k == 0 { jet.du } else { jet.dv };
+                        if offset.dot(&across).abs() > OFF_NORMAL * length * across.norm() {
+                            held[k] = true;
+                            facing += self.beyond(&side, edge, at).unwrap_or(natural);
+                        }
+                    }
+                    Side::Point | Side::Joint { .. } => {}
+                }
+            }
+        }
+        let rest = match held {
+            [false, false] => Rest::Inside,
+            [true, false] => Rest::AlongV,
+            [false, true] => Rest::AlongU,
+            [true, true] => Rest::Corner,
+        };
+        // At an edge of the surface the side is that of both its patches.
+        let sensed = if held == [false; 2] { natural } else { facing.try_normalize(0.0).unwrap_or(natural) };
+        (jet.foot(p, rest, &sensed, self.size), jet, rest)
+    }
+
+    /// The natural normal at a place; where the patch has none that a little way inside.
+    fn natural(&self, piece: usize, at: [f64; 2], jet: &Jet) -> Vec3 {
+        let size = self.pieces.get(piece).map_or(self.size, |piece| piece.patch.size());
+        let inner = at.map(|t| t + INWARD * (0.5 - t));
+        jet.natural(size)
+            .or_else(|| self.jet(piece, inner).natural(INWARD * 1e-2 * size))
+            .unwrap_or_else(|| jet.du.try_normalize(0.0).map_or_else(Vec3::z, |du| perpendicular(&du)))
+    }
+
+    /// The natural normal on the other side of a joint.
+    fn beyond(&self, side: &Side, own: Edge, at: [f64; 2]) -> Option<Vec3> {
+        let Side::Joint { patch, edge, reversed, .. } = side else { return None };
+        let there = edge.parameters(along(own, at, *reversed));
+        Some(self.natural(*patch, there, &self.jet(*patch, there)))
+    }
+
+    pub(super) fn foot(&self, p: &Vec3) -> Foot {
+        self.place(p).0
+    }
+
+    pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
+        let (foot, jet, rest) = self.place(p);
+        (foot, jet.hessian(&foot, rest))
+    }
+
+    pub(super) fn place_near(&self, p: &Vec3) -> Place {
+        let Nearest { piece, at, .. } = self.nearest(p);
+        Place { piece, at }
+    }
+
+    pub(super) fn chart(&self, place: &Place) -> Option<Chart> {
+        self.pieces.get(place.piece)?;
+        Some(Chart::new(&self.jet(place.piece, place.at), 1.0, 0.0))
+    }
+
+    /// The place at other parameters; over a joint by the vector that is left there.
+    pub(super) fn shifted(&self, place: &Place, step: [f64; 2]) -> Option<Place> {
+        let (mut piece, mut at, mut step) = (place.piece, place.at, step);
+        for _ in 0..MOST_CROSSINGS {
+            let wanted = [at[0] + step[0], at[1] + step[1]];
+            if wanted.iter().all(|t| (0.0..=1.0).contains(t)) {
+                return Some(Place { piece, at: wanted });
+            }
+            // The share of the step at which it comes to the first edge.
+            let share = |k: usize| {
+                let limit = if step[k] > 0.0 { 1.0 } else { 0.0 };
+                if (0.0..=1.0).contains(&wanted[k]) { f64::INFINITY } else { (limit - at[k]) / step[k] }
+            };
+            let shares = [share(0), share(1)];
+            let k = usize::from(shares[1] < shares[0]);
+            let part = shares[k].clamp(0.0, 1.0);
+            let mut edge_at = [at[0] + step[0] * part, at[1] + step[1] * part].map(|t| t.clamp(0.0, 1.0));
+            edge_at[k] = if step[k] > 0.0 { 1.0 } else { 0.0 };
+            let own = edges_at(edge_at)[k]?;
+            let Side::Joint { patch, edge, reversed, stands_out } = self.side(piece, own) else {
+                return None;
+            };
+            if stands_out.contains(&true) {
+                return None;
+            }
+            let here = self.jet(piece, edge_at);
+            let left = (here.du * step[0] + here.dv * step[1]) * (1.0 - part);
+            at = edge.parameters(along(own, edge_at, reversed));
+            let there = self.jet(patch, at);
+            let [a, b, c] = [there.du.norm_squared(), there.du.dot(&there.dv), there.dv.norm_squared()];
+            let determinant = a * c - b * b;
+            if determinant <= 0.0 {
+                return None;
+            }
+            let (x, y) = (left.dot(&there.du), left.dot(&there.dv));
+            step = [(c * x - b * y) / determinant, (a * y - b * x) / determinant];
+            piece = patch;
+        }
+        None
+    }
+
+    /// Direction of all rulings.
+    pub(super) fn common_ruling(&self) -> Option<Vec3> {
+        self.ruling
+    }
+
+    /// Greatest absolute value of a principal curvature, 1/length, looked at in places of the definition's patches.
+    pub fn greatest_curvature(&self) -> f64 {
+        self.curvature
+    }
+}
+
+/// The parameter along an edge at a place of it, as the neighbour counts it.
+fn along(own: Edge, at: [f64; 2], reversed: bool) -> f64 {
+    let t = match own {
+        Edge::LowU | Edge::HighU => at[1],
+        Edge::LowV | Edge::HighV => at[0],
+    };
+    if reversed { 1.0 - t } else { t }
+}
+
+#[cfg(test)]
+pub(super) mod tests;
