@@ -43,7 +43,7 @@ impl Analysis {
             Some(Output::Sequence(sequence)) => {
                 let vectors = counted(sequence.points.len(), "cut vector");
                 text.push_str(&format!("**{vectors}**"));
-                if let Some(minimum) = sequence.minimum {
+                if let Some(minimum) = sequence.minimum.filter(|minimum| *minimum > 1) {
                     text.push_str(&format!(" (no fewer than {minimum} are possible)"));
                 }
                 sequence.points.iter().collect()

@@ -400,7 +400,6 @@ fn cutter(error: &CutterError) -> Text {
         CutterError::ArcAtTop { reached, height } => {
             format!("the corner arc reaches {} and the cutter ends at {}", number(*reached), number(*height))
         }
-        CutterError::NothingLeft => "no part of its profile is left".to_owned(),
         CutterError::CornerTooNear { distance, radius } => format!(
             "the corner radius {} reaches beyond the corner, which is {} from its centre",
             number(*radius),

@@ -81,7 +81,9 @@ fn axis(story: &Story) -> Option<String> {
 fn way(story: &Story) -> String {
     let sense =
         story.forward.map_or(String::new(), |forward| format!(", setting out along {}", place(&forward)));
-    let least = story.minimum.map_or(String::new(), |least| format!("; no fewer than {least} are possible"));
+    // One is the least of every motion.
+    let least = story.minimum.filter(|least| *least > 1);
+    let least = least.map_or(String::new(), |least| format!("; no fewer than {least} are possible"));
     format!(
         "from {} to {}{sense}: {}{least}",
         place(&story.start.tip),
@@ -209,7 +211,7 @@ mod tests {
             start-up computed in closed form, in the plane across the vertical tool
             part surface: a PLANE, flat, TO on the side its normal points to, clearance 0 at the start and 0 at the end, 0 to 0.0005 allowed
             drive surface L1: a LINE, flat, TO on the side away from its normal, clearance 1.75 at the start and 0 at the end, 0 to 0.0005 allowed
-            from (0, 2, 0) to (0, 0.25, 0): 1 cut vector; no fewer than 1 are possible
+            from (0, 2, 0) to (0, 0.25, 0): 1 cut vector
             vector 1 ends at the start-up position (length 1.75)"#]].assert_eq(&told(PROGRAM, 5));
         expect![[r#"
             motion computed in closed form, in the plane across the vertical tool
