@@ -192,6 +192,21 @@ proptest! {
     }
 }
 
+#[test]
+fn a_coarse_model_is_as_close_as_it_was_asked_to_be() {
+    let surface = half_cylinder();
+    for accuracy in [1e-5, 1e-6, 1e-8] {
+        let model = Surface::within(&surface, accuracy).unwrap();
+        assert!(model.error() <= accuracy, "{} for {accuracy}", model.error());
+        for k in 1..40 {
+            let angle = std::f64::consts::PI * f64::from(k) / 40.0;
+            let p = Vec3::new(1.7 * angle.cos(), 1.7 * angle.sin(), 0.3);
+            let distance = model.point_distance(&p).unwrap().0;
+            assert!((distance - 0.3).abs() <= accuracy + 1e-10, "{distance} for {accuracy}");
+        }
+    }
+}
+
 /// A ball over the twisted surface, along x at y = 2: the centre a little more than its radius off the surface.
 fn over_twisted() -> CutSequence {
     let count = 40;
