@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Bend, Region},
+    surface::{Bend, Region, Surface},
 };
 
 use super::{Gauge, Tool, closed_form, near};
@@ -15,6 +15,8 @@ use super::{Gauge, Tool, closed_form, near};
 const MAX_BOXES: u32 = 600;
 /// The same where some box has no bound yet.
 const MAX_BOXES_UNBOUNDED: u32 = 2400;
+/// The same on a sculptured surface, where each box asks many patches: none has a bound where a path leaves the surface.
+const MAX_BOXES_UNBOUNDED_BY_PATCH: u32 = 96;
 /// Boxes that are looked at between two questions whether to give up.
 const BOXES_A_QUESTION: u32 = 8;
 /// A box is small enough when its bound exceeds that of its centre by this factor at most.
@@ -46,6 +48,7 @@ pub(crate) fn upward_bend(
     if gauge.on {
         return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
     }
+    let touch = || gauge.contact(tool, tip).tool;
     let (tool, tip) = &gauge.body(tool, tip);
     if let Some(reach) = closed_form::disc(tool, &gauge.surface, gauge.side, tip) {
         // All of the tool is as near as its end, less its radius.
@@ -60,6 +63,7 @@ pub(crate) fn upward_bend(
     let close = if gauge.surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
+    let mut is_probed = false;
     while let Some(cell) = cells.pop() {
         seen += 1;
         if seen % BOXES_A_QUESTION == 0 && cancel() {
@@ -88,12 +92,27 @@ pub(crate) fn upward_bend(
             }
             Bend::Unbounded => {}
         }
+        // Where the surface ends within reach of the contact no box helps.
+        if found == Bend::Unbounded && !is_probed {
+            is_probed = true;
+            let place = touch();
+            let foot = gauge.surface.foot(&place);
+            let distance = gauge.side * foot.distance;
+            let is_met = distance - spread <= range[1] && distance + spread >= range[0];
+            if is_met && gauge.surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded {
+                return Bend::Unbounded;
+            }
+        }
         let enough = match (found, at_best) {
             (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),
             _ => false,
         };
         let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
-        let limit = if found == Bend::Unbounded { MAX_BOXES_UNBOUNDED } else { MAX_BOXES };
+        let limit = match (found, &gauge.surface) {
+            (Bend::Unbounded, Surface::Sculptured(_)) => MAX_BOXES_UNBOUNDED_BY_PATCH,
+            (Bend::Unbounded, _) => MAX_BOXES_UNBOUNDED,
+            _ => MAX_BOXES,
+        };
         if enough || small || seen >= limit {
             match found {
                 Bend::AtMost(bound) => greatest = greatest.max(bound),

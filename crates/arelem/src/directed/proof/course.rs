@@ -17,6 +17,9 @@ const MAX_DEPTH: u32 = 10;
 const MAX_SAMPLES: usize = 400;
 /// The same once one of them is out of the band: the vector is refused, and so many tell how much shorter it must be.
 const MAX_SAMPLES_REFUSED: usize = 48;
+/// Bound of the stretches on one vector that have no bound, as where the tool comes to the end of a surface: shorter ones may
+/// have, but so many tell that the vector must be shorter.
+const MAX_UNBOUNDED: usize = 12;
 /// Share of what is left of the band below a sample that the proof of its depth may leave open.
 const OPEN: f64 = 0.1;
 /// What it may leave open at least, as a share of the band.
@@ -108,15 +111,22 @@ impl Course<'_, '_> {
         if !samples.iter().all(|sample| self.deep_enough(sample)) {
             return false;
         }
-        let mut count = samples.len();
+        let (mut count, mut unbounded) = (samples.len(), 0);
         let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
         while let Some((a, b)) = open.pop() {
-            if self.holds_between(&a, &b) {
-                continue;
+            match self.bend(&a, &b) {
+                Bend::AtMost(bend) if self.holds_between(&a, &b, bend) => continue,
+                Bend::AtMost(_) => {}
+                Bend::Unbounded => unbounded += 1,
             }
             let x = 0.5 * (a.x + b.x);
             count += 1;
-            if count > MAX_SAMPLES || x <= a.x || x >= b.x || (self.line.cancel)() {
+            if count > MAX_SAMPLES
+                || unbounded > MAX_UNBOUNDED
+                || x <= a.x
+                || x >= b.x
+                || (self.line.cancel)()
+            {
                 return false;
             }
             let middle = self.line.sample(x);
@@ -167,9 +177,8 @@ impl Course<'_, '_> {
         }
     }
 
-    /// Whether the bounds on a stretch are in the band.
-    fn holds_between(&self, a: &Sample, b: &Sample) -> bool {
-        let Bend::AtMost(bend) = self.bend(a, b) else { return false };
+    /// Whether the bounds on a stretch with such a second derivative are in the band.
+    fn holds_between(&self, a: &Sample, b: &Sample, bend: f64) -> bool {
         let low = lowest((a.value - self.open(a), b.value - self.open(b)), bend, b.x - a.x);
         let high = highest(a, b, bend);
         self.line.allows(low) && self.line.allows(high)
