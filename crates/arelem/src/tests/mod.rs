@@ -12,8 +12,6 @@ mod found;
 mod frugal;
 mod gouges;
 mod hollow;
-#[path = "../../tests/support/lofts.rs"]
-pub(crate) mod lofts;
 mod properties;
 mod refused;
 mod sculptured;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use apt_geometry::canonical::{Interval, TabulatedCylinder};
 
 use super::*;
-use crate::{clearance::certify::JUDGED, tests::lofts};
+use crate::{clearance::certify::JUDGED, verify::tests::lofts};
 
 /// A wave of three cubics along a direction, its joints without corners.
 fn wave(axes: [Vec3; 3]) -> Geometry {

@@ -9,12 +9,11 @@ use super::{
         span::{between, turning},
         tool::{Profile, Tool},
     },
-    cutter, cylinder, plane, quadric, sphere,
+    cutter, cylinder,
+    lofts::{roof, vault},
+    plane, quadric, sphere,
 };
-use crate::{
-    sequence::ToolPosition,
-    tests::lofts::{roof, vault},
-};
+use crate::sequence::ToolPosition;
 
 const BALL: [f64; 2] = [0.5, 0.25];
 const FLAT: [f64; 2] = [0.5, 0.0];

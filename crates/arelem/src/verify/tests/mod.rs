@@ -4,6 +4,8 @@ mod branches;
 mod clearances;
 mod every_kind;
 mod followed;
+#[path = "../../../tests/support/lofts.rs"]
+pub(crate) mod lofts;
 mod mutations;
 mod paths;
 mod poly_conics;
@@ -126,5 +128,5 @@ pub(super) fn role(geometry: Geometry, relation: Relation, side: f64, intol: f64
 
 /// A ruled and a polyconic surface.
 pub(crate) fn lofted() -> [Geometry; 2] {
-    [crate::tests::lofts::roof(), crate::tests::lofts::vault()]
+    [lofts::roof(), lofts::vault()]
 }

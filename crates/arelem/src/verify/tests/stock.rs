@@ -13,8 +13,8 @@ use super::{
         tool::Profile,
     },
     cutter,
+    lofts::{roof, vault},
 };
-use crate::tests::lofts::{roof, vault};
 
 /// Tables along y: a hill about x = 0 and the roof and the vault of the bench.
 fn hills() -> [(Geometry, f64); 3] {
