@@ -76,6 +76,14 @@ pub(super) struct Enclosure {
     pub(super) ends: bool,
 }
 
+impl Enclosure {
+    /// Where nothing is known but the middle.
+    pub(super) fn unknown(jet: Jet) -> Self {
+        let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);
+        Self { jet, duu: all, duv: all, dvv: all, reach: f64::INFINITY, sharp: [true; 2], ends: true }
+    }
+}
+
 /// A surface whose derivatives can be enclosed.
 pub(super) trait Enclose {
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure;

@@ -53,18 +53,7 @@ impl Enclose for Stretch<'_> {
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let Rectangle { middle: [t, v], half: [along, across] } = *rectangle;
         let jet = self.sheet.jet(self.piece, t, v);
-        let Some(piece) = self.sheet.pieces.get(self.piece) else {
-            let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);
-            return Enclosure {
-                jet,
-                duu: all,
-                duv: all,
-                dvv: all,
-                reach: f64::INFINITY,
-                sharp: [true; 2],
-                ends: true,
-            };
-        };
+        let Some(piece) = self.sheet.pieces.get(self.piece) else { return Enclosure::unknown(jet) };
         let [_, _, bent] = ranges(piece, t, along, |e, f| e + (f - e) * v);
         let [_, duv, turned] = ranges(piece, t, along, |e, f| f - e);
         let beside = Box3(turned.0.map(|x| Interval::about(0.0, across * x.magnitude())));

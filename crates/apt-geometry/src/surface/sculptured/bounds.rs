@@ -203,18 +203,7 @@ impl Enclose for Stretch<'_> {
 
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let jet = self.sheet.jet(self.piece, rectangle.middle);
-        let Some(piece) = self.sheet.pieces.get(self.piece) else {
-            let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);
-            return Enclosure {
-                jet,
-                duu: all,
-                duv: all,
-                dvv: all,
-                reach: f64::INFINITY,
-                sharp: [true; 2],
-                ends: true,
-            };
-        };
+        let Some(piece) = self.sheet.pieces.get(self.piece) else { return Enclosure::unknown(jet) };
         let Derivatives { duu, duv, dvv, reach } = derivatives(&piece.patch, rectangle, &jet.point);
         let mut ends = false;
         let mut sharp = [false; 2];
