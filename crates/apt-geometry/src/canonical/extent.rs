@@ -1,6 +1,8 @@
 //! How far surfaces go on beyond what their definition gives, and other numbers that belong to the meaning of a form and
 //! not to a method: whoever measures a surface, the engine or the verifier, must mean the same surface.
 
+use crate::Vec3;
+
 /// How far a ruled surface goes on beyond its curves and their ends, as a multiple of itself.
 pub const RULED_BEYOND: f64 = 4.0;
 /// Share of the way to the place where neighbouring rulings meet at which the extension of a ruled surface ends.
@@ -22,3 +24,25 @@ pub const POLYCONIC_ENDS_BEYOND: f64 = 2.0;
 pub const LEAST_FULLNESS: f64 = 0.500_000_5;
 /// Greatest fullness of a conic: at 1 it is its two tangents.
 pub const GREATEST_FULLNESS: f64 = 1.0 - 1e-6;
+
+/// How far from 1 or 0 the rulings meet, as a share, up to which they are taken to meet on the curve itself: an apex.
+const AT_THE_CURVE: f64 = 1e-9;
+
+/// How far the rulings of a ruled surface go on, as shares of the way from its first curve (0) to its second (1): until
+/// neighbours would meet, seen along the mean of both curves. `tangents` are those of the two curves at both ends of
+/// rulings that do not stand near the ends of the chord ([`RULED_STEADY`]).
+pub fn ruled_shares(tangents: impl IntoIterator<Item = [Vec3; 2]>) -> [f64; 2] {
+    let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
+    for [near, far] in tangents {
+        let along = near + far;
+        let (a, b) = (near.dot(&along), far.dot(&along));
+        let meet = a / (a - b);
+        if meet >= 1.0 - AT_THE_CURVE {
+            let apex = meet <= 1.0 + AT_THE_CURVE;
+            high = high.min(if apex { 1.0 } else { 1.0 + RULED_BEFORE_FOLD * (meet - 1.0) });
+        } else if meet <= AT_THE_CURVE {
+            low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
+        }
+    }
+    [low, high]
+}

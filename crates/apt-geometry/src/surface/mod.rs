@@ -4,6 +4,7 @@
 mod bend;
 mod chart;
 mod cone;
+mod descent;
 mod directed;
 mod interval;
 mod part;
@@ -191,9 +192,9 @@ impl Surface {
             Self::Cone(cone) => cone.foot(p),
             Self::Quadric(quadric) => quadric.foot(p).0,
             Self::Tabulated(curve) => curve.foot(p).0,
-            Self::Ruled(sheet) => sheet.foot(p),
+            Self::Ruled(sheet) => sheet.place(p).foot,
             Self::PolyConic(sheet) => sheet.foot(p),
-            Self::Sculptured(sheet) => sheet.foot(p),
+            Self::Sculptured(sheet) => sheet.place(p).foot,
         }
     }
 
@@ -236,9 +237,9 @@ impl Surface {
                 let (foot, curvature) = curve.foot(p);
                 (foot, curve.hessian(&foot, curvature))
             }
-            Self::Ruled(sheet) => sheet.foot_and_hessian(p),
+            Self::Ruled(sheet) => sheet.place(p).with_hessian(),
             Self::PolyConic(sheet) => sheet.foot_and_hessian(p),
-            Self::Sculptured(sheet) => sheet.foot_and_hessian(p),
+            Self::Sculptured(sheet) => sheet.place(p).with_hessian(),
         }
     }
 

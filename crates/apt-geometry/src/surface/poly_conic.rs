@@ -8,15 +8,16 @@
 mod bounds;
 mod tree;
 
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::Matrix3;
 
 use self::tree::{halved, joined};
 use super::{
     Chart, Foot, Place,
+    descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
     part::{Count, Part, Rectangle},
     perpendicular,
-    sheet::{Jet, ON_SURFACE, Rest},
+    sheet::{Jet, Landing, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
@@ -34,15 +35,13 @@ const END_CELLS: usize = 4;
 const STRAYING: f64 = 6.0;
 /// Distance of two places, in halves of a cell, at which they belong to one valley of the distance.
 const SAME: f64 = 0.5;
-/// Step of the parameters below which its effect on the distance is far below rounding.
-const RESOLUTION: f64 = 1e-13;
-/// Bound of the damped iteration for the nearest point.
+/// Bound of the iteration for a crossing.
 const MAX_ITERATIONS: u32 = 40;
 /// Distance from the surface, relative to its size, at which a crossing is looked for, and length of its longest step.
 const CLOSE: f64 = 1e-4;
 const NEAR: f64 = 1e-2;
 /// Bound of the steps along a ray.
-const MAX_STEPS: u32 = 4000;
+const MAX_STRIDES: u32 = 4000;
 
 /// A function of the parameter with two derivatives.
 type Course<T = f64> = [T; 3];
@@ -288,72 +287,39 @@ impl PolyConicSheet {
         best
     }
 
-    /// Half the gradient of the squared distance at parameters and half its second derivatives: tt, ts, ss.
-    fn slopes(&self, p: &Vec3, q: &Vector2<f64>, jet: &Jet) -> (Vector2<f64>, [f64; 3]) {
-        let offset = jet.point - p;
-        let turned = if self.form.roots.is_some() && q.y < 0.0 { -1.0 } else { 1.0 };
-        let gradient = Vector2::new(offset.dot(&jet.du), offset.dot(&jet.dv) * turned);
-        let along = jet.du.norm_squared() + offset.dot(&jet.duu);
-        let across = jet.dv.norm_squared() + offset.dot(&jet.dvv);
-        (gradient, [along, (jet.du.dot(&jet.dv) + offset.dot(&jet.duv)) * turned, across])
+    /// Half the gradient of the squared distance at parameters and half its second derivatives.
+    fn slopes(&self, p: &Vec3, descent: &Descent<'_>) -> Slopes {
+        let mut slopes = Slopes::at(&descent.jet, p);
+        if self.form.roots.is_some() && descent.at.y < 0.0 {
+            slopes.gradient.y = -slopes.gradient.y;
+            slopes.bends[1] = -slopes.bends[1];
+        }
+        slopes
     }
 
-    /// Goes down to the nearest place from the middle of a cell, by Newton's method damped so that every step descends.
+    /// Goes down to the nearest place from the middle of a cell.
     fn descend(&self, p: &Vec3, cell: &Cell, best: &mut (f64, [f64; 2])) {
-        let [[t0, t1], [s0, s1]] = self.limits;
-        let mut q = Vector2::from(cell.middle);
-        let mut jet = self.jet(q.x, q.y);
-        let mut square = (jet.point - p).norm_squared();
-        let mut damping = 0.0;
-        for turn in 0..MAX_ITERATIONS {
-            let (gradient, bends) = self.slopes(p, &q, &jet);
-            // A parameter held at its limit does not move.
-            let held = [
-                (q.x <= t0 && gradient.x > 0.0) || (q.x >= t1 && gradient.x < 0.0),
-                (q.y <= s0 && gradient.y > 0.0) || (q.y >= s1 && gradient.y < 0.0),
-            ];
-            let metric = Vector2::new(jet.du.norm_squared(), jet.dv.norm_squared());
-            let step = descent(bends, &gradient, held, &metric, damping);
-            let next = Vector2::new((q.x + step.x).clamp(t0, t1), (q.y + step.y).clamp(s0, s1));
+        let mut descent = Descent::new(p, self.limits, cell.middle, self.jet(cell.middle[0], cell.middle[1]));
+        for turn in 0..MAX_STEPS {
+            let next = descent.next(&self.slopes(p, &descent));
             // From the middle of its cell a nearest place is not many cells away: another cell has that one.
-            let strays = |moved: f64, half: f64| moved.abs() > STRAYING * half;
-            let moved = next - q;
-            if turn == 0
-                && best.0 < square
-                && (strays(moved.x, cell.half[0]) || strays(moved.y, cell.half[1]))
-            {
-                return;
-            }
+            let strays = |k: usize| (next[k] - descent.at[k]).abs() > STRAYING * cell.half[k];
             // A step to where the nearest place so far is leads to that place again.
             let known = |k: usize| (next[k] - best.1[k]).abs() <= SAME * cell.half[k];
-            if turn == 0 && best.0 < square && known(0) && known(1) {
+            if turn == 0 && best.0 < descent.square && (strays(0) || strays(1) || (known(0) && known(1))) {
                 return;
             }
-            if moved.norm() <= RESOLUTION {
+            if !descent.moves(&next) || !descent.take(next, self.jet(next.x, next.y)) {
                 break;
             }
-            let there = self.jet(next.x, next.y);
-            let reached = (there.point - p).norm_squared();
-            if reached <= square {
-                let settled = square - reached <= 0.0;
-                (q, jet, square, damping) = (next, there, reached, 0.2 * damping);
-                if settled {
-                    break;
-                }
-            } else {
-                damping = if damping > 0.0 { 4.0 * damping } else { 1e-3 };
-                if damping > 1e12 {
-                    break;
-                }
-            }
         }
-        if square < best.0 {
-            *best = (square, [q.x, q.y]);
+        if descent.square < best.0 {
+            *best = (descent.square, [descent.at.x, descent.at.y]);
         }
     }
 
     /// Foot on the conics themselves in the surface's own coordinates.
-    fn place(&self, p: &Vec3) -> (Foot, Jet, Rest) {
+    fn place(&self, p: &Vec3) -> Landing {
         let (_, [t, s]) = self.nearest(p);
         let jet = self.jet(t, s);
         let [[t0, t1], [s0, s1]] = self.limits;
@@ -371,7 +337,7 @@ impl PolyConicSheet {
             .natural(self.size)
             .or_else(|| self.jet(inner[0], inner[1]).natural(1e-7 * self.size))
             .unwrap_or_else(|| jet.du.try_normalize(0.0).map_or_else(Vec3::x, |du| perpendicular(&du)));
-        (jet.foot(p, rest, &natural, self.size), jet, rest)
+        Landing { foot: jet.foot(p, rest, &natural, self.size), jet, rest }
     }
 
     /// From the surface's own coordinates, with its thickness.
@@ -382,13 +348,13 @@ impl PolyConicSheet {
     }
 
     pub(super) fn foot(&self, p: &Vec3) -> Foot {
-        self.outside(p, &self.place(&self.form.map.apply_point(p)).0)
+        self.outside(p, &self.place(&self.form.map.apply_point(p)).foot)
     }
 
     pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
-        let (own, jet, rest) = self.place(&self.form.map.apply_point(p));
+        let (own, hessian) = self.place(&self.form.map.apply_point(p)).with_hessian();
         let linear = self.form.map.linear();
-        let hessian = linear.tr_mul(&(jet.hessian(&own, rest) * linear));
+        let hessian = linear.tr_mul(&(hessian * linear));
         (self.outside(p, &own), hessian)
     }
 
@@ -462,7 +428,7 @@ impl PolyConicSheet {
         }
         let (mut x, last) = (along - half.sqrt(), along + half.sqrt());
         let near = CLOSE * self.size;
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MAX_STRIDES {
             if x > last {
                 break;
             }
@@ -552,34 +518,4 @@ fn conic<T: Number>(controls: &[Control<T>; 3], weight: &Course<T>, t: T) -> [Fl
         }
     }
     found
-}
-
-/// Step of Newton's method, damped; where the second derivatives are no minimum's the metric takes their place.
-pub(super) fn descent(
-    [a, mixed, b]: [f64; 3],
-    gradient: &Vector2<f64>,
-    held: [bool; 2],
-    metric: &Vector2<f64>,
-    damping: f64,
-) -> Vector2<f64> {
-    let tiny = f64::MIN_POSITIVE;
-    let single = |g: f64, bend: f64, m: f64| {
-        let bend = if bend > 1e-9 * m { bend } else { m };
-        -g / (bend + damping * m).max(tiny)
-    };
-    match held {
-        [true, true] => Vector2::zeros(),
-        [true, false] => Vector2::new(0.0, single(gradient.y, b, metric.y)),
-        [false, true] => Vector2::new(single(gradient.x, a, metric.x), 0.0),
-        [false, false] => {
-            let (x, y) = (a + damping * metric.x, b + damping * metric.y);
-            let determinant = x * y - mixed * mixed;
-            if x > 0.0 && determinant > 1e-14 * metric.x * metric.y {
-                let inverse = Matrix2::new(y, -mixed, -mixed, x) / determinant;
-                -(inverse * gradient)
-            } else {
-                Vector2::new(single(gradient.x, a, metric.x), single(gradient.y, b, metric.y))
-            }
-        }
-    }
 }

@@ -7,22 +7,20 @@
 mod bounds;
 mod rays;
 
-use nalgebra::Matrix3;
-
 use self::bounds::ranges;
 use super::{
-    Chart, Foot, Place,
+    Chart, Place,
     interval::Interval,
     part::{Count, Later, Part},
     perpendicular,
     section_curve::{CurvePoint, SectionCurve},
-    sheet::{Jet, ON_SURFACE, Rest},
+    sheet::{Jet, Landing, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
     canonical::{
         Made, RuledEnd, RuledSurface,
-        extent::{RULED_BEFORE_FOLD, RULED_BEYOND, RULED_STEADY},
+        extent::{RULED_BEYOND, RULED_STEADY, ruled_shares},
     },
 };
 
@@ -175,29 +173,18 @@ impl RuledSheet {
         Some(sheet)
     }
 
-    /// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
+    /// How far the rulings go on.
     fn shares(&self) -> [f64; 2] {
-        let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
-        for (k, piece) in self.pieces.iter().enumerate() {
-            for tau in [0.0, 0.5, 1.0] {
-                let t = piece.from + piece.width * tau;
-                if !(RULED_STEADY..=1.0 - RULED_STEADY).contains(&t) {
-                    continue;
-                }
-                let jet = self.jet(k, t, 0.0);
-                let (near, far) = (jet.du, jet.du + jet.duv);
-                let along = near + far;
-                let (a, b) = (near.dot(&along), far.dot(&along));
-                let meet = a / (a - b);
-                if meet >= 1.0 - 1e-9 {
-                    let apex = meet <= 1.0 + 1e-9;
-                    high = high.min(if apex { 1.0 } else { 1.0 + RULED_BEFORE_FOLD * (meet - 1.0) });
-                } else if meet <= 1e-9 {
-                    low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
-                }
-            }
-        }
-        [low, high]
+        let places = self
+            .pieces
+            .iter()
+            .enumerate()
+            .flat_map(|(k, piece)| [0.0, 0.5, 1.0].map(|tau| (k, piece.from + piece.width * tau)));
+        let steady = places.filter(|(_, t)| (RULED_STEADY..=1.0 - RULED_STEADY).contains(t));
+        ruled_shares(steady.map(|(k, t)| {
+            let jet = self.jet(k, t, 0.0);
+            [jet.du, jet.du + jet.duv]
+        }))
     }
 
     fn jet(&self, piece: usize, t: f64, v: f64) -> Jet {
@@ -412,7 +399,7 @@ impl RuledSheet {
     }
 
     /// The nearest point with its curvature elements.
-    fn place(&self, p: &Vec3) -> (Foot, Jet, Rest) {
+    pub(super) fn place(&self, p: &Vec3) -> Landing {
         let nearest = self.nearest(p);
         let start = self.jet(nearest.piece, nearest.t, 0.0);
         let (v, held) = self.share(p, &start.point, &start.dv);
@@ -428,7 +415,7 @@ impl RuledSheet {
             (true, true) => Rest::Corner,
         };
         let natural = self.natural(&nearest, v, &jet);
-        (jet.foot(p, rest, &natural, self.size), jet, rest)
+        Landing { foot: jet.foot(p, rest, &natural, self.size), jet, rest }
     }
 
     /// On a sharp bend of the curves the nearest ruling stays the same, too.
@@ -449,15 +436,6 @@ impl RuledSheet {
                 self.jet(nearest.piece, t, v).natural(1e-6 * self.size)
             })
             .unwrap_or_else(|| jet.dv.try_normalize(0.0).map_or_else(Vec3::z, |dv| perpendicular(&dv)))
-    }
-
-    pub(super) fn foot(&self, p: &Vec3) -> Foot {
-        self.place(p).0
-    }
-
-    pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
-        let (foot, jet, rest) = self.place(p);
-        (foot, jet.hessian(&foot, rest))
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {
@@ -507,7 +485,7 @@ impl RuledSheet {
 
     /// Unit direction of the ruling through the nearest point.
     pub fn ruling(&self, p: &Vec3) -> Option<Vec3> {
-        self.place(p).1.dv.try_normalize(0.0)
+        self.place(p).jet.dv.try_normalize(0.0)
     }
 
     /// Greatest absolute value of a principal curvature between the two curves, 1/length.

@@ -5,15 +5,13 @@ mod bounds;
 mod rays;
 mod tree;
 
-use nalgebra::{Matrix3, Vector2};
-
 use self::tree::Node;
 use super::{
-    Chart, Foot, Place,
+    Chart, Place,
+    descent::{Descent, MAX_STEPS, Slopes},
     part::Count,
     perpendicular,
-    poly_conic::descent,
-    sheet::{Jet, ON_SURFACE, Rest},
+    sheet::{Jet, Landing, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
@@ -21,10 +19,6 @@ use crate::{
     parametric::{Edge, ExtendedPatch, Patch, PatchPoint, SculpturedSurface, Side},
 };
 
-/// Step of the parameters below which its effect on the distance is far below rounding.
-const RESOLUTION: f64 = 1e-13;
-/// Bound of the damped iteration for the nearest point of a leaf.
-const MAX_ITERATIONS: u32 = 40;
 /// Share of an offset along a joint's own surface above which the nearest place stays on the joint.
 const OFF_NORMAL: f64 = 1e-6;
 /// Share of the way to the middle of a patch at which the normal is taken where a place has none.
@@ -172,48 +166,19 @@ impl SculpturedSheet {
         best
     }
 
-    /// Goes down to the nearest place of a leaf from its middle, by Newton's method damped so that every step descends.
+    /// Goes down to the nearest place of a leaf from its middle.
     fn descend(&self, p: &Vec3, leaf: &tree::Leaf, best: &mut Nearest) {
-        let ranges = [leaf.rectangle.range(0), leaf.rectangle.range(1)];
-        let mut q = Vector2::from(leaf.rectangle.middle);
-        let mut jet = self.jet(leaf.piece, [q.x, q.y]);
-        let mut square = (jet.point - p).norm_squared();
-        let mut damping = 0.0;
-        for _ in 0..MAX_ITERATIONS {
-            let offset = jet.point - p;
-            let gradient = Vector2::new(offset.dot(&jet.du), offset.dot(&jet.dv));
-            let metric = Vector2::new(jet.du.norm_squared(), jet.dv.norm_squared());
-            let bends = [
-                metric.x + offset.dot(&jet.duu),
-                jet.du.dot(&jet.dv) + offset.dot(&jet.duv),
-                metric.y + offset.dot(&jet.dvv),
-            ];
-            // A parameter held at its limit does not move.
-            let held = [0, 1].map(|k: usize| {
-                (q[k] <= ranges[k][0] && gradient[k] > 0.0) || (q[k] >= ranges[k][1] && gradient[k] < 0.0)
-            });
-            let step = descent(bends, &gradient, held, &metric, damping);
-            let next = Vector2::from_fn(|k, _| (q[k] + step[k]).clamp(ranges[k][0], ranges[k][1]));
-            if (next - q).norm() <= RESOLUTION {
+        let limits = [leaf.rectangle.range(0), leaf.rectangle.range(1)];
+        let middle = leaf.rectangle.middle;
+        let mut descent = Descent::new(p, limits, middle, self.jet(leaf.piece, middle));
+        for _ in 0..MAX_STEPS {
+            let next = descent.next(&Slopes::at(&descent.jet, p));
+            if !descent.moves(&next) || !descent.take(next, self.jet(leaf.piece, [next.x, next.y])) {
                 break;
             }
-            let there = self.jet(leaf.piece, [next.x, next.y]);
-            let reached = (there.point - p).norm_squared();
-            if reached <= square {
-                let settled = square - reached <= 0.0;
-                (q, jet, square, damping) = (next, there, reached, 0.2 * damping);
-                if settled {
-                    break;
-                }
-            } else {
-                damping = if damping > 0.0 { 4.0 * damping } else { 1e-3 };
-                if damping > 1e12 {
-                    break;
-                }
-            }
         }
-        if square < best.square {
-            *best = Nearest { square, piece: leaf.piece, at: [q.x, q.y] };
+        if descent.square < best.square {
+            *best = Nearest { square: descent.square, piece: leaf.piece, at: [descent.at.x, descent.at.y] };
         }
     }
 
@@ -222,7 +187,7 @@ impl SculpturedSheet {
     }
 
     /// The nearest point with its curvature elements.
-    fn place(&self, p: &Vec3) -> (Foot, Jet, Rest) {
+    pub(super) fn place(&self, p: &Vec3) -> Landing {
         let Nearest { piece, at, .. } = self.nearest(p);
         let jet = self.jet(piece, at);
         let offset = p - jet.point;
@@ -255,7 +220,7 @@ impl SculpturedSheet {
         };
         // At an edge of the surface the side is that of both its patches.
         let sensed = if held == [false; 2] { natural } else { facing.try_normalize(0.0).unwrap_or(natural) };
-        (jet.foot(p, rest, &sensed, self.size), jet, rest)
+        Landing { foot: jet.foot(p, rest, &sensed, self.size), jet, rest }
     }
 
     /// The natural normal at a place; where the patch has none that a little way inside.
@@ -272,15 +237,6 @@ impl SculpturedSheet {
         let Side::Joint { patch, edge, reversed, .. } = side else { return None };
         let there = edge.parameters(along(own, at, *reversed));
         Some(self.natural(*patch, there, &self.jet(*patch, there)))
-    }
-
-    pub(super) fn foot(&self, p: &Vec3) -> Foot {
-        self.place(p).0
-    }
-
-    pub(super) fn foot_and_hessian(&self, p: &Vec3) -> (Foot, Matrix3<f64>) {
-        let (foot, jet, rest) = self.place(p);
-        (foot, jet.hessian(&foot, rest))
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {

@@ -1,5 +1,5 @@
 //! Parametric surfaces near a point: natural normal, nearest point and curvature of the parallel surface from partial
-//! derivatives. Ruled and polyconic surfaces share it.
+//! derivatives. Ruled, polyconic and sculptured surfaces share it.
 
 use nalgebra::Matrix3;
 
@@ -36,6 +36,21 @@ pub(super) enum Rest {
     AlongU,
     /// In a corner.
     Corner,
+}
+
+/// The nearest place to a point: its foot, the surface there and where on the rectangle that is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Landing {
+    pub(super) foot: Foot,
+    pub(super) jet: Jet,
+    pub(super) rest: Rest,
+}
+
+impl Landing {
+    /// The foot, with the second derivatives of the signed distance at the point.
+    pub(super) fn with_hessian(self) -> (Foot, Matrix3<f64>) {
+        (self.foot, self.jet.hessian(&self.foot, self.rest))
+    }
 }
 
 impl Jet {

@@ -9,10 +9,6 @@ use super::*;
 /// The corpus prints seven digits.
 const EXACT: f64 = 2e-6;
 
-fn ground() -> Geometry {
-    plane(0.0, 0.0, 1.0, 0.0)
-}
-
 fn x_axis() -> Geometry {
     line(0.0, 0.0, 1.0, 0.0)
 }

@@ -11,18 +11,6 @@ const TOLERANCE: f64 = 0.00101;
 /// The corpus prints seven digits.
 const EXACT: f64 = 2e-6;
 
-fn x(d: f64) -> Geometry {
-    plane(1.0, 0.0, 0.0, d)
-}
-
-fn y(d: f64) -> Geometry {
-    plane(0.0, 1.0, 0.0, d)
-}
-
-fn ground() -> Geometry {
-    plane(0.0, 0.0, 1.0, 0.0)
-}
-
 fn program(cutter: &[f64], inside: f64, outside: f64) -> Program {
     let mut p = Program::new();
     p.tolerance(inside, outside).cutter(cutter);

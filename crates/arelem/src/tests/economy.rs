@@ -51,14 +51,6 @@ fn assert_frugal(name: &str, sequence: &CutSequence, integral: f64) {
     assert!(f64::from(minimum) <= integral.max(1.0), "{name}: bound {minimum} above the integral {integral}");
 }
 
-pub(super) fn x(d: f64) -> Geometry {
-    plane(1.0, 0.0, 0.0, d)
-}
-
-pub(super) fn ground() -> Geometry {
-    plane(0.0, 0.0, 1.0, 0.0)
-}
-
 const BANDS: [f64; 3] = [1e-2, 1e-3, 1e-5];
 
 #[test]

@@ -10,7 +10,7 @@ use proptest::{
 };
 
 use super::{
-    economy::{Curve, along_directrix, ground, integral, tabulated, x},
+    economy::{Curve, along_directrix, integral, tabulated},
     *,
 };
 

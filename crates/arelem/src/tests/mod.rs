@@ -43,6 +43,23 @@ pub(crate) fn plane(a: f64, b: f64, c: f64, d: f64) -> Geometry {
     Geometry::Plane(Plane { normal: v(a, b, c), distance: d })
 }
 
+/// The planes across the axes, at a distance from the origin.
+pub(crate) fn x(d: f64) -> Geometry {
+    plane(1.0, 0.0, 0.0, d)
+}
+
+pub(crate) fn y(d: f64) -> Geometry {
+    plane(0.0, 1.0, 0.0, d)
+}
+
+pub(crate) fn level(d: f64) -> Geometry {
+    plane(0.0, 0.0, 1.0, d)
+}
+
+pub(crate) fn ground() -> Geometry {
+    level(0.0)
+}
+
 pub(crate) fn line(x1: f64, y1: f64, x2: f64, y2: f64) -> Geometry {
     let normal = v(y1 - y2, x2 - x1, 0.0).normalize();
     Geometry::Line(Plane { normal, distance: normal.dot(&v(x1, y1, 0.0)) })

@@ -12,18 +12,6 @@ use nalgebra::Vector4;
 use super::*;
 use crate::{section2::StartUpRule, verify::verify};
 
-fn x(d: f64) -> Geometry {
-    plane(1.0, 0.0, 0.0, d)
-}
-
-fn y(d: f64) -> Geometry {
-    plane(0.0, 1.0, 0.0, d)
-}
-
-fn level(d: f64) -> Geometry {
-    plane(0.0, 0.0, 1.0, d)
-}
-
 fn made(patches: Vec<Patch>) -> Geometry {
     let surface = SculpturedSurface::assembled(patches, None, Vec::new(), 1.0, Mesh::default());
     Geometry::Sculptured(Remembering::new(surface))

@@ -7,18 +7,6 @@ use apt_geometry::canonical::{Matrix, Remembering, RuledSurface, matrix::Coordin
 
 use super::*;
 
-fn x(d: f64) -> Geometry {
-    plane(1.0, 0.0, 0.0, d)
-}
-
-fn y(d: f64) -> Geometry {
-    plane(0.0, 1.0, 0.0, d)
-}
-
-fn level(d: f64) -> Geometry {
-    plane(0.0, 0.0, 1.0, d)
-}
-
 fn ruled(curves: [(Geometry, Vec3, Vec3, Vec3); 2]) -> Geometry {
     let parts = curves.into_iter().flat_map(|(surface, start, end, across)| {
         [surface, Geometry::Point(start), Geometry::Point(end), Geometry::Vector(across)]

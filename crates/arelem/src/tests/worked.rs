@@ -14,10 +14,6 @@ fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1.1e-9, "found {found}, expected {expected}");
 }
 
-fn ground() -> Geometry {
-    plane(0.0, 0.0, 1.0, 0.0)
-}
-
 fn surface(geometry: &Geometry) -> apt_geometry::surface::Surface {
     apt_geometry::surface::Surface::from_geometry(geometry).expect("surface")
 }

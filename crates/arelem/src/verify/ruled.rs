@@ -8,7 +8,7 @@ use apt_geometry::{
     Vec3,
     canonical::{
         RuledCurve, RuledEnd, RuledSurface,
-        extent::{RULED_BEFORE_FOLD, RULED_BEYOND, RULED_STEADY},
+        extent::{RULED_BEYOND, RULED_STEADY, ruled_shares},
     },
 };
 
@@ -215,22 +215,10 @@ fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece
     Some(())
 }
 
-/// How far the rulings go on: until neighbours would meet, seen along the mean of both curves.
+/// How far the rulings go on.
 fn shares(pieces: &[Piece]) -> [f64; 2] {
-    let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
-    for piece in pieces.iter().filter(|p| p.inner) {
-        for x in [0.0, 0.5, 1.0] {
-            let [near, far] = [0, 1].map(|k| tangent(&piece.curves[k], x));
-            let along = near + far;
-            let (a, b) = (near.dot(&along), far.dot(&along));
-            let meet = a / (a - b);
-            if meet >= 1.0 - 1e-9 {
-                let apex = meet <= 1.0 + 1e-9;
-                high = high.min(if apex { 1.0 } else { 1.0 + RULED_BEFORE_FOLD * (meet - 1.0) });
-            } else if meet <= 1e-9 {
-                low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
-            }
-        }
-    }
-    [low, high]
+    let inner = pieces.iter().filter(|piece| piece.inner);
+    ruled_shares(
+        inner.flat_map(|piece| [0.0, 0.5, 1.0].map(|x| [0, 1].map(|k: usize| tangent(&piece.curves[k], x)))),
+    )
 }

@@ -1,6 +1,6 @@
 //! Sculptured surfaces against dense samples, exact shapes and difference quotients.
 
-use nalgebra::Vector4;
+use nalgebra::{Matrix3, Vector4};
 use proptest::prelude::*;
 
 use super::*;
