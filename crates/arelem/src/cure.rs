@@ -134,6 +134,9 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             let points = (more > *limit).then_some(Cure::Points(more));
             points.into_iter().chain([Cure::Turn(opposite(*turn))]).collect()
         }
+        (MotionFailure::SurfaceEnds { .. }, MotionCommand::Drive { turn, .. }) => {
+            vec![Cure::Turn(opposite(*turn))]
+        }
         (MotionFailure::DirectionUndetermined { .. }, MotionCommand::Drive { turn, .. }) => {
             let turns = [Turn::Left, Turn::Right, Turn::Forward, Turn::Back, Turn::Up, Turn::Down];
             turns.into_iter().filter(|other| other != turn).map(Cure::Turn).collect()

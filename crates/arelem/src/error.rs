@@ -334,6 +334,18 @@ pub enum MotionFailure {
         /// Circle radius.
         circle: f64,
     },
+    /// The path comes to the end of a surface that does not go on, before it meets a check surface (801).
+    #[error("the path comes to the end of the {role:?} surface")]
+    SurfaceEnds {
+        /// Part or drive surface.
+        role: RoleName,
+        /// Tool end where it is over the end.
+        tip: Vec3,
+        /// The place of the surface where it ends.
+        place: Vec3,
+        /// How far the nearest check surface still is there, unless a tangency is asked for.
+        remaining: Option<f64>,
+    },
     /// More cut vectors than NUMPTS allows (803).
     #[error("more than {limit} cut vectors")]
     TooManyPoints {
@@ -410,7 +422,7 @@ impl MotionFailure {
                 Iteration::StepLength | Iteration::FinalVector => 801,
                 Iteration::Stop => 804,
             },
-            Self::NoAdmissibleVector { .. } => 801,
+            Self::NoAdmissibleVector { .. } | Self::SurfaceEnds { .. } => 801,
         })
     }
 }

@@ -166,6 +166,22 @@ impl Surface {
         }
     }
 
+    /// True if the surface ends somewhere and does not go on. Planes, quadrics and tabulated cylinders go on for ever or
+    /// close; the vertex of a cone is no end.
+    pub fn has_ends(&self) -> bool {
+        matches!(self, Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_))
+    }
+
+    /// True if the place nearest to a point lies where the surface ends.
+    pub fn ends_at(&self, p: &Vec3) -> bool {
+        match self {
+            Self::Ruled(sheet) => sheet.ends_at(p),
+            Self::PolyConic(sheet) => sheet.ends_at(p),
+            Self::Sculptured(sheet) => sheet.ends_at(p),
+            _ => false,
+        }
+    }
+
     /// The nearest point with signed distance and natural normal. Where several points are nearest (on an axis or in
     /// a centre) one of them is taken, always the same.
     pub fn foot(&self, p: &Vec3) -> Foot {

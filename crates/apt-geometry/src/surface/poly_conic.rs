@@ -17,7 +17,7 @@ use super::{
     interval::Number,
     part::{Count, Part, Rectangle},
     perpendicular,
-    sheet::{Jet, Landing, ON_SURFACE, Rest},
+    sheet::{Jet, Landing, ON_SURFACE, Rest, at_limits},
 };
 use crate::{
     Vec3,
@@ -356,6 +356,12 @@ impl PolyConicSheet {
         let linear = self.form.map.linear();
         let hessian = linear.tr_mul(&(hessian * linear));
         (self.outside(p, &own), hessian)
+    }
+
+    /// Whether the nearest place lies at an end of a conic or of the stations.
+    pub(super) fn ends_at(&self, p: &Vec3) -> bool {
+        let (_, at) = self.nearest(&self.form.map.apply_point(p));
+        at_limits(at, self.limits).contains(&true)
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {

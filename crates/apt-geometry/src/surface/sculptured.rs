@@ -11,7 +11,7 @@ use super::{
     descent::{Descent, MAX_STEPS, Slopes},
     part::Count,
     perpendicular,
-    sheet::{Jet, Landing, ON_SURFACE, Rest},
+    sheet::{Jet, Landing, ON_SURFACE, Rest, at_limits},
 };
 use crate::{
     Vec3,
@@ -237,6 +237,13 @@ impl SculpturedSheet {
         let Side::Joint { patch, edge, reversed, .. } = side else { return None };
         let there = edge.parameters(along(own, at, *reversed));
         Some(self.natural(*patch, there, &self.jet(*patch, there)))
+    }
+
+    /// Whether the nearest place lies on an edge beyond which there is no patch.
+    pub(super) fn ends_at(&self, p: &Vec3) -> bool {
+        let Nearest { piece, at, .. } = self.nearest(p);
+        let at_edges = Edge::ALL.into_iter().zip(at_limits(at, [[0.0, 1.0]; 2]));
+        at_edges.into_iter().any(|(edge, is_at)| is_at && self.side(piece, edge) == Side::End)
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {

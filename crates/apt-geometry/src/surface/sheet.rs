@@ -38,6 +38,12 @@ pub(super) enum Rest {
     Corner,
 }
 
+/// Which limits of its parameters a place is at, but for rounding: low and high of the first, low and high of the second.
+pub(super) fn at_limits(at: [f64; 2], limits: [[f64; 2]; 2]) -> [bool; 4] {
+    let near = |k: usize, limit: f64| (at[k] - limit).abs() <= ON_SURFACE * (limits[k][1] - limits[k][0]);
+    [near(0, limits[0][0]), near(0, limits[0][1]), near(1, limits[1][0]), near(1, limits[1][1])]
+}
+
 /// The nearest place to a point: its foot, the surface there and where on the rectangle that is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Landing {

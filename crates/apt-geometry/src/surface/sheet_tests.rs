@@ -268,6 +268,25 @@ fn values_without_a_surface_are_degenerate() {
     assert!(matches!(found, Err(crate::canonical::TransformError::Distorted { .. })), "{found:?}");
 }
 
+#[test]
+fn a_surface_ends_where_it_is_left_and_nowhere_else() {
+    for (which, geometry) in sheets().iter().enumerate() {
+        let surface = surface(geometry);
+        assert!(surface.has_ends());
+        let middle = exact(which, 0.45, 0.4);
+        let normal = surface.foot(&middle).normal;
+        let across = perpendicular(&normal);
+        assert!(!surface.ends_at(&middle) && !surface.ends_at(&(middle + normal * 0.1)), "surface {which}");
+        // Far away along the tangent plane nearest places are on an edge, whichever way; ahead of a nose (4) they are not.
+        for k in if which == 4 { 0..0 } else { 0..12 } {
+            let (sine, cosine) = (f64::from(k) * std::f64::consts::PI / 6.0).sin_cos();
+            let far = middle + (across * cosine + normal.cross(&across) * sine) * 300.0;
+            assert!(surface.ends_at(&far), "surface {which}, direction {k}: {}", surface.foot(&far).point);
+        }
+    }
+    assert!(![plane(Vec3::z(), 0.0), circle(0.0, 0.0, 2.0)].iter().any(|g| surface(g).has_ends()));
+}
+
 fn moved(geometry: &Geometry, matrix: &Matrix) -> Surface {
     surface(&geometry.transform(matrix).expect("a rigid motion"))
 }

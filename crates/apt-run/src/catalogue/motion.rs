@@ -345,6 +345,17 @@ fn path(failure: &Failure) -> Text {
             ),
         )
         .hint("the tool may touch the surface at a second place, or the tolerance is too tight"),
+        Failure::SurfaceEnds { role: name, place: at, remaining, .. } => {
+            let text =
+                say("APT0649", format!("the path comes to the end of the {} at {}", role(*name), place(at)));
+            match remaining {
+                Some(distance) => text.hint(format!(
+                    "the surface to stop at is still {} away: check the direction, stop earlier, or define a larger surface",
+                    number(*distance)
+                )),
+                None => text.hint("check the direction, stop earlier, or define a larger surface"),
+            }
+        }
         other => say("APT0699", format!("{other}")),
     }
 }

@@ -36,6 +36,7 @@ pub fn earlier(
             | MotionFailure::DirectionUndetermined { .. }
             | MotionFailure::OutOfToleranceAtStart { .. }
             | MotionFailure::NoAdmissibleVector { .. }
+            | MotionFailure::SurfaceEnds { .. }
             | MotionFailure::IterationLimit { .. }
     );
     let MotionCommand::Drive { .. } = command else { return None };

@@ -5,6 +5,7 @@ mod finish;
 mod scout;
 mod step;
 mod straight;
+mod surface_end;
 mod tangency;
 
 use apt_geometry::{Vec3, motion::CheckSurface};
@@ -107,6 +108,7 @@ pub(super) fn run(
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),
         look: FIRST_LOOK,
+        look_for_end: 1,
         revolutions: 0,
         before: None,
     };
@@ -131,6 +133,8 @@ struct March<'a> {
     points: Vec<Vec3>,
     /// Number of cut vectors after which it is time to look ahead.
     look: usize,
+    /// The same for the end of a surface, where vectors become shorter.
+    look_for_end: usize,
     revolutions: u32,
     before: Option<Before<'a>>,
 }
@@ -146,7 +150,7 @@ impl<'a> March<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             let advanced = self.stepper.advance(&mut here, cap);
-            let mut next = advanced.map_err(|failure| self.without_axis(&here).unwrap_or(failure))?;
+            let mut next = advanced.map_err(|failure| self.without_way(&here).unwrap_or(failure))?;
             let mut before = self.snapshot(&here);
             let mut event = self.scan(&here, &next)?;
             if event.is_none() && self.move_back(&start, (&mut here, &mut next), cap)? {
@@ -158,6 +162,7 @@ impl<'a> March<'a> {
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
                 self.look_ahead(&next, cancel)?;
+                self.look_for_end(&here, &next, cancel)?;
                 here = next;
                 cap = self.state.maximum_step;
                 continue;
@@ -200,9 +205,7 @@ impl<'a> March<'a> {
                 return Ok(self.path(&end));
             }
         }
-        if let Outlook::Nothing { course, nearest, met } = self.outlook(&here, cancel)? {
-            return Err(self.never_met(nearest, course, met));
-        }
+        self.judge_outlook(&here, cancel)?;
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
             remaining: self.watcher.remaining(&here.tip, &here.axis).min(self.tangency.nearest.abs()),
@@ -216,17 +219,24 @@ impl<'a> March<'a> {
             return Ok(());
         }
         self.look *= 2;
-        if let Outlook::Nothing { course, nearest, met } = self.outlook(from, cancel)? {
-            return Err(self.never_met(nearest, course, met));
-        }
-        Ok(())
+        self.judge_outlook(from, cancel)
     }
 
-    /// What lies ahead, as far as the cut vectors that are left can reach.
-    fn outlook(&self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<Outlook, MotionFailure> {
+    /// Looks as far ahead as the cut vectors that are left can reach: an error if nothing there stops the motion.
+    fn judge_outlook(&self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
         let left = (self.state.maximum_points as usize).saturating_sub(self.points.len());
         let reach = left as f64 * self.state.maximum_step;
-        scout::ahead(self.prepared, self.checks, (&self.watcher, &self.tangency), from, reach, cancel)
+        let watches = (&self.watcher, &self.tangency);
+        match scout::ahead(self.prepared, self.checks, watches, from, reach, cancel)? {
+            Outlook::Nothing { course, nearest, met } => Err(self.never_met(nearest, course, met)),
+            Outlook::Ends(end) => Err(self.surface_ends(&end)),
+            Outlook::Open => Ok(()),
+        }
+    }
+
+    /// Why no vector goes on, where that is not the tolerance: the axis has no direction a little ahead, or a surface ends.
+    fn without_way(&self, here: &Vertex) -> Option<MotionFailure> {
+        self.without_axis(here).or_else(|| self.without_surface(here))
     }
 
     /// Where no vector goes on because the axis has no direction a little ahead: that.

@@ -8,6 +8,7 @@ mod corpus_space;
 mod cost;
 mod disk;
 mod economy;
+mod ends;
 mod found;
 mod frugal;
 mod gouges;

@@ -12,13 +12,13 @@ use nalgebra::Vector4;
 use super::*;
 use crate::{section2::StartUpRule, verify::verify};
 
-fn made(patches: Vec<Patch>) -> Geometry {
+pub(super) fn made(patches: Vec<Patch>) -> Geometry {
     let surface = SculpturedSurface::assembled(patches, None, Vec::new(), 1.0, Mesh::default());
     Geometry::Sculptured(Remembering::new(surface))
 }
 
 /// A hill over the rectangle from 0 to 6 and 0 to 4.5: the patch of the corpus.
-fn hill() -> Patch {
+pub(super) fn hill() -> Patch {
     let heights = [[0.0, 0.5, 0.8, 0.2], [0.3, 1.4, 1.1, 0.4], [0.2, 1.2, 1.6, 0.5], [0.1, 0.6, 0.7, 0.0]];
     Patch::from_points(&std::array::from_fn(|i| {
         std::array::from_fn(|j| v(2.0 * i as f64, 1.5 * j as f64, heights[j][i]))

@@ -24,7 +24,7 @@ fn twisted() -> Geometry {
 }
 
 /// The part of a circular wall of radius 6 about (3, −6) with |x − 3| ≤ 4, between two heights.
-fn round_wall() -> Geometry {
+pub(super) fn round_wall() -> Geometry {
     let wall = circle(3.0, -6.0, 6.0);
     let far = 20f64.sqrt() - 6.0;
     ruled([0.0, 4.0].map(|z| (wall.clone(), v(-1.0, far, z), v(7.0, far, z), Vec3::y())))

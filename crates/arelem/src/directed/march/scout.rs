@@ -1,12 +1,13 @@
 //! Progress towards the check surfaces: whether one can be met at all on the way ahead. The path is followed far ahead in
-//! long steps without regard to tolerances, until it meets a check surface, closes on itself, or leaves everything behind.
+//! long steps without regard to tolerances, until it meets a check surface, closes on itself, comes to the end of a surface,
+//! or leaves everything behind.
 //!
 //! A step and the path between its ends are apart by no more than the sag of the step; a check surface that stays farther
 //! away than that is not met.
 
 use apt_geometry::{Vec3, motion::CheckSurface};
 
-use super::{Vertex, tangency};
+use super::{Vertex, surface_end::SurfaceEnd, tangency};
 use crate::{
     directed::{Prepared, is_tangent, stop::Watcher},
     error::{Course, MotionFailure},
@@ -34,14 +35,27 @@ const STRAIGHT: f64 = 0.05;
 /// Distance, relative to the size of the coordinates, within which the path has come back to a place.
 const SAME: f64 = 1e-6;
 
+/// Bound of the halvings that find where a surface ends.
+const MAX_HALVINGS: u32 = 40;
+
 /// What lies ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outlook {
+    /// The end of a surface, and no position before it that stops the motion.
+    Ends(SurfaceEnd),
     /// No position that stops the motion: the nearest approach on the way, how the way ends, and how many positions that
     /// count were met, too few.
     Nothing { course: Course, nearest: (f64, Vec3, usize), met: usize },
     /// A check surface, or nothing that could be told.
     Open,
+}
+
+/// A step of the look ahead.
+enum Leg {
+    /// To a place, and the turn of the path on the way.
+    Along(Vertex, f64),
+    /// To where a surface has ended.
+    Over((Vertex, SurfaceEnd)),
 }
 
 /// A path being looked along.
@@ -81,7 +95,14 @@ pub(super) fn ahead(
         if cancel() {
             return Err(MotionFailure::Cancelled);
         }
-        let Some((to, turn)) = scout.leg(&here, &mut step) else { return Ok(Outlook::Open) };
+        let (to, turn, end) = match scout.leg(&here, &mut step) {
+            None => return Ok(Outlook::Open),
+            Some(Leg::Along(to, turn)) => (to, turn, None),
+            Some(Leg::Over(beyond)) => {
+                let (to, end) = scout.end_between(&here, beyond);
+                (to, TURN[1], Some(end))
+            }
+        };
         let sweep = here.sweep(prepared, &to);
         let sag = sweep.length * turn / 8.0;
         scout.watcher.nearest.0 = f64::INFINITY;
@@ -100,6 +121,9 @@ pub(super) fn ahead(
         }
         if approach.0 < scout.nearest.0 {
             scout.nearest = approach;
+        }
+        if let Some(end) = end {
+            return Ok(Outlook::Ends(end));
         }
         scout.note(sweep.length, turn);
         let closed = scout.log.len() > 3 && scout.passes(&start, &here, &to);
@@ -131,20 +155,43 @@ impl Scout<'_> {
     }
 
     /// The next place and the turn of the path on the way; shortens the step until the path is followed.
-    fn leg(&self, here: &Vertex, step: &mut f64) -> Option<(Vertex, f64)> {
+    fn leg(&self, here: &Vertex, step: &mut f64) -> Option<Leg> {
         while *step > LEAST * self.prepared.size {
             if let Some(to) = self.settled(&(here.tip + here.tangent * *step), &here.tangent) {
+                if let Some(end) = SurfaceEnd::at(self.prepared, &to) {
+                    return Some(Leg::Over((to, end)));
+                }
                 let chord = to.tip - here.tip;
                 let length = chord.norm();
                 let turn = here.tangent.cross(&to.tangent).norm().atan2(here.tangent.dot(&to.tangent));
                 let ahead = chord.dot(&here.tangent) > (1.0 - TURN[1]) * length;
                 if length > 0.0 && ahead && turn <= TURN[1] && length <= 2.0 * *step {
-                    return Some((to, turn));
+                    return Some(Leg::Along(to, turn));
                 }
             }
             *step *= 0.5;
         }
         None
+    }
+
+    /// Where a surface ends, between a place that has it below and one that does not.
+    fn end_between(
+        &self,
+        from: &Vertex,
+        (mut beyond, mut end): (Vertex, SurfaceEnd),
+    ) -> (Vertex, SurfaceEnd) {
+        let mut before = from.tip;
+        for _ in 0..MAX_HALVINGS {
+            if (beyond.tip - before).norm() <= SAME * self.prepared.size {
+                break;
+            }
+            let Some(middle) = self.settled(&(0.5 * (before + beyond.tip)), &from.tangent) else { break };
+            match SurfaceEnd::at(self.prepared, &middle) {
+                Some(there) => (beyond, end) = (middle, there),
+                None => before = middle.tip,
+            }
+        }
+        (beyond, end)
     }
 
     fn met(&self) -> usize {
