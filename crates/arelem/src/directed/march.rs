@@ -150,7 +150,7 @@ impl<'a> March<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             let advanced = self.stepper.advance(&mut here, cap);
-            let mut next = advanced.map_err(|failure| self.without_way(&here).unwrap_or(failure))?;
+            let mut next = advanced.map_err(|failure| self.explained(&here, failure))?;
             let mut before = self.snapshot(&here);
             let mut event = self.scan(&here, &next)?;
             if event.is_none() && self.move_back(&start, (&mut here, &mut next), cap)? {
@@ -235,8 +235,11 @@ impl<'a> March<'a> {
     }
 
     /// Why no vector goes on, where that is not the tolerance: the axis has no direction a little ahead, or a surface ends.
-    fn without_way(&self, here: &Vertex) -> Option<MotionFailure> {
-        self.without_axis(here).or_else(|| self.without_surface(here))
+    fn explained(&self, here: &Vertex, failure: MotionFailure) -> MotionFailure {
+        if failure == MotionFailure::Cancelled {
+            return failure;
+        }
+        self.without_axis(here).or_else(|| self.without_surface(here)).unwrap_or(failure)
     }
 
     /// Where no vector goes on because the axis has no direction a little ahead: that.

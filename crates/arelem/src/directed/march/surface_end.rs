@@ -44,10 +44,10 @@ impl March<'_> {
         next: &Vertex,
         cancel: &dyn Fn() -> bool,
     ) -> Result<(), MotionFailure> {
-        let Prepared { part, drive, .. } = self.prepared;
-        if ![part, drive].into_iter().any(|role| role.gauge.surface.has_ends()) {
+        if !self.has_ends() {
             return Ok(());
         }
+        let Prepared { part, drive, .. } = self.prepared;
         let length = (next.tip - here.tip).norm();
         if length <= CREEPING * (part.band() + drive.band())
             && let Some(failure) = self.without_surface(here)
@@ -69,11 +69,19 @@ impl March<'_> {
 
     /// Where no vector goes on because a surface ends within reach of the tool: that.
     pub(super) fn without_surface(&self, here: &Vertex) -> Option<MotionFailure> {
+        if !self.has_ends() {
+            return None;
+        }
         let Prepared { tool, part, drive, .. } = self.prepared;
         [AHEAD * (part.band() + drive.band()), tool.radius()].into_iter().find_map(|reach| {
             let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent).ok()?;
             SurfaceEnd::at(self.prepared, &ahead).map(|end| self.surface_ends(&end))
         })
+    }
+
+    fn has_ends(&self) -> bool {
+        let Prepared { part, drive, .. } = self.prepared;
+        [part, drive].into_iter().any(|role| role.gauge.surface.has_ends())
     }
 
     /// The evidence.
