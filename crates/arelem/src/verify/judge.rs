@@ -11,7 +11,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
-    clearance::{Clearance, Reading, Shape, Surface},
+    clearance::{Clearance, Reading, Surface},
     span::{Extremes, Span},
     stop,
     tool::{Patience, Profile},
@@ -21,11 +21,9 @@ use super::{
 const ROUND_OFF: f64 = 1e-9;
 /// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it.
 const MODEL_SHARE: f64 = 2e-4;
-/// Accuracy of the extremes, relative to the band.
-const BAND_SHARE: f64 = 1e-5;
-/// The same where the shape of the clearance along a vector is not known (saddles, turning axes), at first and when
-/// it would decide.
-const FREE_SHARE: [f64; 3] = [4e-4, 2e-5, 0.0];
+/// Accuracy of the bounds of a clearance on a vector, relative to the band, at first and when it would decide: less than
+/// sequences leave of the band.
+const BAND_SHARES: [f64; 3] = [4e-4, 2e-5, 0.0];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
 /// Sine below which a surface is neither left nor right of the motion (3°).
@@ -307,10 +305,7 @@ impl Judge<'_> {
         }
         let clearance = bound.clearance();
         let width = bound.intol + bound.outtol;
-        let turns = self.positions.windows(2).any(|p| p[0].axis != p[1].axis);
-        let shares =
-            if turns || clearance.shape() == Shape::Free { FREE_SHARE } else { [BAND_SHARE, 0.0, 0.0] };
-        let tolerances = shares.map(|s| (s * width).max(0.1 * guard));
+        let tolerances = BAND_SHARES.map(|s| (s * width).max(0.1 * guard));
         // A whole band outside is out of tolerance whatever else there is on the vector.
         let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
         let allowed = [-bound.intol - guard, bound.outtol + guard];

@@ -157,11 +157,13 @@ impl Span<'_> {
             Shape::Linear => Some(Extremes::within(error, low, high)),
             Shape::Convex => {
                 let (min, gap) = self.trough(first, last, 1.0, tolerance)?;
-                Some(Extremes::within(error.max(gap), min.min(low), high))
+                let min = min.min(low);
+                Some(Extremes { min, max: high, low: min - error.max(gap), high: high + error })
             }
             Shape::Concave => {
                 let (depth, gap) = self.trough(first, last, -1.0, tolerance)?;
-                Some(Extremes::within(error.max(gap), low, (-depth).max(high)))
+                let max = (-depth).max(high);
+                Some(Extremes { min: low, max, low: low - error, high: max + error.max(gap) })
             }
             Shape::Free => match self.bend() {
                 Some(bend) => self.bent(first, last, bend, tolerance),
@@ -188,10 +190,9 @@ impl Span<'_> {
             if gap <= tolerance || b.t - a.t <= 4.0 * f64::EPSILON {
                 break;
             }
-            let secant = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
-            let t = match step % 3 {
-                0 => secant,
-                1 => meet,
+            let t = match step % 4 {
+                0 | 1 => lowest_of_cubic([a, b]),
+                2 => meet,
                 _ => 0.5 * (a.t + b.t),
             };
             let t = if t > a.t && t < b.t { t } else { 0.5 * (a.t + b.t) };
@@ -299,6 +300,16 @@ impl Span<'_> {
         }
         Some(Extremes::within(error, found.min, found.max))
     }
+}
+
+/// Where the cubic with the values and slopes of two samples is lowest, of which the first falls and the last rises.
+fn lowest_of_cubic([a, b]: [Sample; 2]) -> f64 {
+    let width = b.t - a.t;
+    let (first, last, rise) = (a.slope * width, b.slope * width, b.value - a.value);
+    // Its slope is `first + linear·u + square·u²` for u from 0 to 1.
+    let square = 3.0 * (first + last) - 6.0 * rise;
+    let linear = 6.0 * rise - 4.0 * first - 2.0 * last;
+    a.t - 2.0 * first * width / (linear + (linear * linear - 4.0 * square * first).max(0.0).sqrt())
 }
 
 /// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
