@@ -10,13 +10,19 @@ use super::{
     circle_contact,
     clearance::{Reading, Shape},
     quadric::{Convexity, PrincipalQuadric},
-    tool::{Tool, perpendicular},
+    tool::{Tool, TurningSupport, perpendicular},
 };
 
 /// Directions looked at before the search closes in.
 const SECTORS: usize = 16;
 /// Bisection of one sector to round-off.
 const BISECTIONS: usize = 100;
+/// Steps of Newton's method towards the best plane; the greatest, radians; and the last, of which only the square counts.
+const STEPS: usize = 12;
+const LARGEST_TURN: f64 = 1.0;
+const LAST_TURN: f64 = 1e-6;
+/// Rounding of a clearance, relative to the distances that go into it.
+const ROUNDING: f64 = 1e-14;
 /// Arcs looked at by the branch and bound of the hollow case; what is left then goes into the error term.
 const ARC_BUDGET: usize = 600;
 
@@ -104,7 +110,8 @@ impl Pencil {
             let (distance, normal) = self.point_distance(tip);
             return Found { value: distance - tool.profile.widest(), normal, error: 0.0 };
         }
-        if let Some(found) = self.by_circle(Shape::Convex, 1.0, &w, tool) {
+        let found = self.touched(&w, tool).or_else(|| self.by_circle(Shape::Convex, 1.0, &w, tool));
+        if let Some(found) = found {
             return found;
         }
         // The plane at φ and how it changes with φ.
@@ -116,6 +123,39 @@ impl Pencil {
         let mut best = self.search(&plane, &w, &self.knees(tool));
         self.raise_by_vertex(&w, tool, &mut best);
         best
+    }
+
+    /// The clearance of a tool outside by the tangent plane that leaves most, found by Newton's method: the plane is a bound from
+    /// below, and the place of the tool that is nearest to it one from above. None where the two do not agree.
+    fn touched(&self, w: &Vec3, tool: &Tool<'_>) -> Option<Found> {
+        let across = |v: &Vec3| v - self.axis * v.dot(&self.axis);
+        let mut radial = across(&(w + tool.axis * tool.profile.edges()[1][1])).try_normalize(0.0)?;
+        for _ in 0..STEPS {
+            let round = self.axis.cross(&radial);
+            let n = radial * self.cosine - self.axis * self.sine;
+            let TurningSupport { value: reach, center, ball, swing } = tool.turning_support(&-n, &round);
+            // All by the angle of the plane about the axis.
+            let place = w + center - n * ball;
+            let rate = self.cosine * round.dot(&place);
+            let bend = -self.cosine * (radial.dot(&place) + self.cosine * swing);
+            let turn = -rate / bend;
+            if !(bend < 0.0 && turn.abs() <= LARGEST_TURN) {
+                return None;
+            }
+            if turn.abs() <= LAST_TURN {
+                let value = n.dot(w) - self.radius - reach;
+                let gap = self.point_distance(&(place + self.origin)).0 - value;
+                let slack = ROUNDING * (w.norm() + self.radius + tool.profile.reach());
+                let normal = (n + round * (self.cosine * turn)).try_normalize(0.0)?;
+                return (gap.abs() <= slack + place.norm() * turn * turn).then_some(Found {
+                    value,
+                    normal,
+                    error: gap.max(slack),
+                });
+            }
+            radial = (radial + round * turn).try_normalize(0.0)?;
+        }
+        None
     }
 
     /// The clearance of a tool that touches with its corner or an edge, on this nappe of a cone.

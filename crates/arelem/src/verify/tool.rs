@@ -170,19 +170,27 @@ impl Profile {
 
     /// Support: greatest `direction·p` over the meridian for a direction with ρ-part ≥ 0, and the point that has it.
     pub(super) fn support(&self, direction: Meridian) -> (f64, Meridian) {
-        let mut best = (0.0, [0.0; 2]);
+        let (value, center, ball) = self.support_ball(direction);
+        if ball <= 0.0 {
+            return (value, center);
+        }
+        let k = ball / dot(direction, direction).sqrt();
+        (value, [center[0] + k * direction[0], center[1] + k * direction[1]])
+    }
+
+    /// The same with the centre and the radius of the circle that the point is on: of the corner arc, or of none for a vertex.
+    fn support_ball(&self, direction: Meridian) -> (f64, Meridian, f64) {
+        let mut best = (0.0, [0.0; 2], 0.0);
         for vertex in self.edges() {
             let value = dot(direction, vertex);
             if value > best.0 {
-                best = (value, vertex);
+                best = (value, vertex, 0.0);
             }
         }
-        let size = dot(direction, direction).sqrt();
-        if size > 0.0 && self.fan_holds(direction) {
-            let value = dot(direction, self.center) + self.radius * size;
+        if self.fan_holds(direction) {
+            let value = dot(direction, self.center) + self.radius * dot(direction, direction).sqrt();
             if value > best.0 {
-                let k = self.radius / size;
-                best = (value, [self.center[0] + k * direction[0], self.center[1] + k * direction[1]]);
+                best = (value, self.center, self.radius);
             }
         }
         best
@@ -251,6 +259,18 @@ impl Profile {
         }
         (best.0, [-best.1[0], best.1[1]])
     }
+}
+
+/// How far a body goes in a direction, and how that changes as the direction turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TurningSupport {
+    /// Greatest product of a place with the direction.
+    pub(super) value: f64,
+    /// The body holds a ball about this place, perhaps without radius, that goes as far.
+    pub(super) center: Vec3,
+    pub(super) ball: f64,
+    /// How fast the place that goes farthest moves the way that the direction turns.
+    pub(super) swing: f64,
 }
 
 /// A cutter with its axis in space; points are relative to the tool end.
@@ -344,6 +364,15 @@ impl<'a> Tool<'a> {
         let (direction, out) = self.split(n);
         let (value, p) = self.profile.support(direction);
         (value, out * p[0] + self.axis * p[1])
+    }
+
+    /// Where the body goes farthest in a unit direction `n`, and how that changes as it turns along a unit vector across.
+    pub(super) fn turning_support(&self, n: &Vec3, along: &Vec3) -> TurningSupport {
+        let (direction, out) = self.split(n);
+        let (value, [rho, height], ball) = self.profile.support_ball(direction);
+        let round = self.axis.cross(&out).dot(along);
+        let swing = if rho > 0.0 { rho * round * round / direction[0] } else { 0.0 };
+        TurningSupport { value, center: out * rho + self.axis * height, ball, swing: swing + ball }
     }
 
     /// Signed distance of a point to the body (negative inside) and the nearest boundary point.
