@@ -6,10 +6,13 @@
 use apt_geometry::Vec3;
 use nalgebra::Vector2;
 
-use super::tool::{Patience, Tool};
+use super::tool::{Patience, Tool, TurningSupport};
 
 /// Arcs of directions looked at for one distance; what is left then is the gap.
 const ARCS: usize = 48;
+/// Steps of Newton's method towards the best direction, and the greatest of them, radians.
+const STEPS: usize = 6;
+const LARGEST_TURN: f64 = 1.0;
 /// Two places nearer than this, relative to their distance from the point, are one.
 const SAME: f64 = 1e-15;
 
@@ -141,9 +144,39 @@ impl<'a> Shadow<'a> {
         Level { normal, height: self.tip.dot(&normal) + height, support }
     }
 
+    /// The distance of a point that is nearest to the corner or to an edge of the tool, by Newton's method from a direction on:
+    /// the tool holds a ball about a place, perhaps without radius, and no point is farther from the tool than from the ball.
+    fn to_ball(&self, x: &Flat, first: Flat, tolerance: f64) -> Option<Distance> {
+        let [u, v] = self.frame;
+        let lifted = |n: &Flat| u * n.x + v * n.y;
+        let mut normal = first;
+        for _ in 0..STEPS {
+            let across = left(&normal);
+            let TurningSupport { value, center, ball, swing } =
+                self.tool.turning_support(&lifted(&normal), &lifted(&across));
+            let center = self.tip + Flat::new(u.dot(&center), v.dot(&center));
+            let away = x - center;
+            let ahead = normal.dot(&away);
+            let gap = away.norm() - ahead;
+            if gap <= tolerance {
+                let height = self.tip.dot(&normal) + value;
+                let level = Level { normal, height, support: center + normal * ball };
+                return Some(Distance { value: level.above(x), gap: gap.max(0.0), level });
+            }
+            let turn = across.dot(&away) / (ahead + swing - ball);
+            // Where the height of the point is no concave function of the direction: straight away from the ball.
+            let is_good = ahead + swing > ball && turn.abs() <= LARGEST_TURN;
+            normal = if is_good { normal + across * turn } else { away }.try_normalize(0.0)?;
+        }
+        None
+    }
+
     /// The distance of a point, to within `tolerance` if the budget allows.
     pub(super) fn distance(&self, x: &Flat, tolerance: f64) -> Distance {
         let first = self.direction_to(x).unwrap_or_else(Flat::x);
+        if let Some(found) = self.to_ball(x, first, tolerance) {
+            return found;
+        }
         let across = left(&first);
         let levels = [first, across, -first, -across].map(|n| self.level(n));
         let mut best = levels[0];
