@@ -169,23 +169,24 @@ impl Surface {
     /// Signed distance of a point along the natural normal, with all the time in the world.
     #[cfg(test)]
     pub(super) fn point_distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
-        self.distance(x, Patience::default())
+        self.distance(x, Patience::default()).map(|found| (found.value, found.normal))
     }
 
     /// Signed distance of a point along the natural normal, and that distance's unit gradient. None where there is none, or
     /// when it is given up.
-    fn distance(&self, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
-        match self {
-            Self::Plane(normal, distance) => Some((normal.dot(x) - distance, *normal)),
+    fn distance(&self, x: &Vec3, patience: Patience<'_>) -> Option<Reading> {
+        let (value, normal) = match self {
+            Self::Plane(normal, distance) => (normal.dot(x) - distance, *normal),
             Self::Sphere(center, radius) => {
                 let w = x - center;
                 let size = w.norm();
-                Some((size - radius, if size > 0.0 { w / size } else { Vec3::z() }))
+                (size - radius, if size > 0.0 { w / size } else { Vec3::z() })
             }
-            Self::Pencil(pencil) => Some(pencil.point_distance(x)),
-            Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal)),
-            Self::Ruled(surface) => ruling_clearance::point_distance(surface, x, patience),
-        }
+            Self::Pencil(pencil) => pencil.point_distance(x),
+            Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal))?,
+            Self::Ruled(surface) => return ruling_clearance::point(surface, x, patience),
+        };
+        Some(Reading { value, normal, error: 0.0 })
     }
 
     /// The greatest curvature with which it bends away from a tool on a side, at places nearer to the tool than `reach`.
@@ -307,9 +308,8 @@ impl<'a> Clearance<'a> {
     fn bare(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
         let tool = self.tool(*axis);
         if self.profile.is_point() {
-            let (distance, normal) = self.surface.distance(tip, self.patience)?;
-            let error = self.surface.error();
-            return Some(Reading { value: self.side * distance, normal: normal * self.side, error });
+            let Reading { value, normal, error } = self.surface.distance(tip, self.patience)?;
+            return Some(Reading { value: self.side * value, normal: normal * self.side, error });
         }
         match self.surface {
             Surface::Plane(normal, distance) => {

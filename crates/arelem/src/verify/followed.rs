@@ -12,7 +12,7 @@ use apt_geometry::Vec3;
 use super::{
     clearance::Reading,
     patch::{held, jet},
-    survey::{Part, Sheet, nearest_by},
+    survey::{Accuracy, Part, Sheet, nearest_by},
     tool::{Profile, Tool},
 };
 
@@ -142,7 +142,8 @@ impl Following<'_> {
             let profile = Profile::tool_end();
             let point = self.tool.with(&profile);
             let place = self.tip + contact.opposite;
-            let under = self.sheet.at(side, &place, &point, self.size, self.tolerance)?;
+            let accuracy = Accuracy { rounding: self.tolerance, error: 0.0 };
+            let (under, _) = self.sheet.at(side, &place, &point, self.size, accuracy)?;
             value = value.min(under.value + under.error);
         }
         if (value - contact.value).abs() > 2.0 * self.tolerance {
@@ -267,14 +268,7 @@ impl Following<'_> {
                 return Some((index, contact));
             }
             // Where its own polynomial leads is near another part.
-            let apart = |other: &Part| {
-                let from_center = (other.center - contact.place).norm();
-                if from_center > other.radius + part.radius {
-                    return f64::INFINITY;
-                }
-                (other.near(&contact.place) - contact.place).norm()
-            };
-            let next = nearest_by(self.parts, apart)?;
+            let next = self.nearest_to(&contact.place, part.radius)?;
             // Between two parts of which each leads a little into the other the contact is where they join.
             let joins =
                 before == Some(next) && contact.at.iter().all(|x| (-AT_JOINT..=1.0 + AT_JOINT).contains(x));
@@ -286,6 +280,25 @@ impl Following<'_> {
             (index, from) = (next, self.parts.get(next)?.nearest_parameters(&contact.place));
         }
         None
+    }
+
+    /// The part nearest to a place, if one is as near as `close`: that in whose middle the place is most first, so that few others
+    /// can be nearer.
+    fn nearest_to(&self, place: &Vec3, close: f64) -> Option<usize> {
+        let least = |part: &Part| (part.center - place).norm() - part.radius;
+        let first = nearest_by(self.parts, least)?;
+        let apart = |part: &Part| (part.near(place) - place).norm();
+        let mut best = (first, apart(self.parts.get(first)?));
+        for (k, part) in self.parts.iter().enumerate() {
+            if k == first || least(part) > close.min(best.1) {
+                continue;
+            }
+            let distance = apart(part);
+            if distance < best.1 {
+                best = (k, distance);
+            }
+        }
+        Some(best.0)
     }
 
     /// The contact with the surface that a part belongs to, near the part.

@@ -20,7 +20,7 @@ use super::{
 /// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
 const ROUND_OFF: f64 = 1e-9;
 /// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it.
-const MODEL_SHARE: f64 = 2e-4;
+const MODEL_SHARE: f64 = 4e-4;
 /// Accuracy of the bounds of a clearance on a vector, relative to the band, at first and when it would decide: less than
 /// sequences leave of the band.
 const BAND_SHARES: [f64; 3] = [4e-4, 2e-5, 0.0];

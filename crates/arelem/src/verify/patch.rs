@@ -22,6 +22,11 @@ pub(super) struct Patch {
     pub(super) edges: Edges,
     /// How much more than the patch, in curvature, the surface that it stands for may bend.
     pub(super) slack: f64,
+    /// The shares of the way from one curve to another at which its sides across lie: beyond the curves it may be farther off the
+    /// surface, as the shares grow.
+    pub(super) shares: [f64; 2],
+    /// How far it may be off between the curves, relative to the one that may be farthest off.
+    pub(super) roughness: f64,
     /// The ends of its middle line across, and how far its control points are from that at most.
     pub(super) spine: [Vec3; 2],
     pub(super) girth: f64,
@@ -74,6 +79,12 @@ pub(super) fn jet(net: &Net, [along, across]: [f64; 2]) -> [Vec3; 3] {
     [mixed(&rows, &v), mixed(&rates, &v), mixed(&rows, &dv)]
 }
 
+/// A place.
+pub(super) fn place_on(net: &Net, [along, across]: [f64; 2]) -> Vec3 {
+    let ([u, _], [v, _]) = (weights(along), weights(across));
+    mixed(&net.map(|row| mixed(&row, &u)), &v)
+}
+
 /// Rows and columns changed.
 pub(super) fn turned(net: &Net) -> Net {
     std::array::from_fn(|i| std::array::from_fn(|j| net[j][i]))
@@ -121,7 +132,17 @@ impl Patch {
             net[j].iter().map(|p| (p - middle).norm()).fold(0.0, f64::max)
         };
         let girth = (0..4).map(off).fold(0.0, f64::max);
-        Self { net, against: false, edges: Edges::default(), slack: 0.0, spine, girth }
+        let (against, edges, slack) = (false, Edges::default(), 0.0);
+        Self { net, against, edges, slack, shares: [0.0, 1.0], roughness: 1.0, spine, girth }
+    }
+
+    /// How far it may be off the surface between two parameters across it, relative to what one of all patches may be off between
+    /// the curves.
+    pub(super) fn stretch(&self, range: [f64; 2]) -> f64 {
+        let [low, high] = self.shares;
+        let at = |across: f64| low + (high - low) * across;
+        range.map(|across| at(across).abs() + (1.0 - at(across)).abs()).into_iter().fold(0.0, f64::max)
+            * self.roughness
     }
 
     /// Distance of a point to its spine.

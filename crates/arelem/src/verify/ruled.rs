@@ -24,8 +24,9 @@ const FINEST: f64 = 1e-10;
 const COARSEST: f64 = 1e-7;
 /// How much farther off it may be than at the places looked at, which lie near its worst ones.
 const ALLOWANCE: f64 = 2.0;
-/// Bound of the halvings of a piece, and of the number of pieces.
-const HALVINGS: u32 = 24;
+/// Bounds of how often a piece is divided, in how many at once, and of the number of pieces.
+const DIVISIONS: u32 = 16;
+const GREATEST_DIVISION: u32 = 8;
 const PIECES: usize = 4096;
 /// Parameter next to the end of a piece that counts as the joint with its neighbour.
 const JOINT: f64 = 1e-7;
@@ -42,8 +43,9 @@ pub(super) struct RuledStrips {
     pub(super) sheet: Sheet,
     /// Greatest distance from the origin of the surface between its curves.
     pub(super) size: f64,
-    /// How far a place of a strip may be off the surface.
+    /// How far a place of a strip may be off the surface between the curves, and anywhere.
     pub(super) error: f64,
+    pub(super) greatest_error: f64,
 }
 
 /// A curve or the point that all rulings meet in.
@@ -91,12 +93,10 @@ impl RuledStrips {
         };
         let extent = edges[1].at(0.5)? - edges[0].at(0.5)?;
         let scale = (first.end - first.start).norm().max(extent.norm());
-        // Beyond the curves the rulings carry the error along.
-        let accuracy = accuracy / (1.0 + 2.0 * RULED_BEYOND);
         let pieces = pieces(&edges, accuracy.clamp(FINEST * scale, COARSEST * scale))?;
         let [low, high] = shares(&pieces);
         let mut size: f64 = 0.0;
-        let mut error: f64 = 0.0;
+        let error = pieces.iter().map(|piece| piece.error).fold(0.0, f64::max);
         let mut patches = Vec::with_capacity(pieces.len());
         for piece in &pieces {
             let [e, f] = &piece.curves;
@@ -104,19 +104,22 @@ impl RuledStrips {
             let mut patch = Patch::straight(&[edge(low), edge(high)]);
             let along = [e, f].map(|c| (c[3] - c[0]).norm()).into_iter().fold(0.0, f64::max);
             patch.slack = ERROR_BEND * piece.error / (along * along);
+            // Beyond the curves the rulings carry the error along.
+            patch.shares = [low, high];
+            patch.roughness = if error > 0.0 { piece.error / error } else { 0.0 };
             patches.push(patch);
             if piece.inner {
                 size = e.iter().chain(f).map(|p| p.norm()).fold(size, f64::max);
             }
-            error = error.max(piece.error);
         }
-        error *= (low.abs() + (1.0 - low)).max(high.abs() + (high - 1.0).abs());
+        let stretch = patches.iter().map(|patch: &Patch| patch.stretch([0.0, 1.0])).fold(0.0, f64::max);
         mark_edges(&mut patches);
         let sheet = Sheet::new(patches, true);
         (error.is_finite() && size.is_finite() && !sheet.patches.is_empty()).then_some(Self {
             sheet,
             size,
             error,
+            greatest_error: stretch * error,
         })
     }
 
@@ -176,12 +179,26 @@ fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
     cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
     let mut found = Vec::new();
     for pair in cuts.windows(2) {
-        halve(edges, [pair[0], pair[1]], accuracy, &mut found)?;
+        divide(edges, [pair[0], pair[1]], accuracy, &mut found)?;
     }
     Some(found)
 }
 
-fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece>) -> Option<()> {
+/// A range in equal parts.
+pub(super) fn divided([low, high]: [f64; 2], parts: u32) -> impl DoubleEndedIterator<Item = [f64; 2]> {
+    let cut =
+        move |k: u32| if k == parts { high } else { low + (high - low) * f64::from(k) / f64::from(parts) };
+    (0..parts).map(move |k| [cut(k), cut(k + 1)])
+}
+
+/// In how many parts a piece is divided for cubics that are off by `error` to be off by `accuracy`: the error of a cubic falls with
+/// the fourth power of the length.
+pub(super) fn parts_for(accuracy: f64, error: f64) -> u32 {
+    let wanted = (error / accuracy).sqrt().sqrt().ceil();
+    (2..GREATEST_DIVISION).find(|parts| f64::from(*parts) >= wanted).unwrap_or(GREATEST_DIVISION)
+}
+
+fn divide(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece>) -> Option<()> {
     let inner = ends[0] >= -1e-12 && ends[1] <= 1.0 + 1e-12;
     // The parameter: an angle between the ends of the chord, the share itself beyond.
     let share = |w: f64| if inner { 0.5 * (1.0 - (std::f64::consts::PI * w).cos()) } else { w };
@@ -203,10 +220,9 @@ fn halve(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece
         if !error.is_finite() || found.len() + open.len() > PIECES {
             return None;
         }
-        if error > accuracy && depth < HALVINGS {
-            let middle = 0.5 * (low + high);
-            open.push(([middle, high], depth + 1));
-            open.push(([low, middle], depth + 1));
+        if error > accuracy && depth < DIVISIONS {
+            let parts = parts_for(accuracy, error);
+            open.extend(divided([low, high], parts).rev().map(|range| (range, depth + 1)));
         } else {
             let middle = share(0.5 * (low + high));
             found.push(Piece { curves, error, inner: (RULED_STEADY..=1.0 - RULED_STEADY).contains(&middle) });

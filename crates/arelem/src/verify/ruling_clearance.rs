@@ -14,15 +14,14 @@ use super::{
     sculptured::SculpturedStrips,
     span::Bend,
     strip::{Touch, nearest},
-    survey::Sheet,
+    survey::{Accuracy, Sheet},
     tool::{Meridian, Patience, Profile, Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
 const RESOLUTION: f64 = 2e-11;
-/// The same, relative to how far the patches may be off the surface, and where the contact of before is followed.
+/// The same, relative to how far the patches may be off the surface.
 const RESOLUTION_OF_ERROR: f64 = 0.05;
-const WARM_RESOLUTION_OF_ERROR: f64 = 0.25;
 /// Sine of the angle to the rulings below which the tool is a disc seen along them.
 const PARALLEL: f64 = 1e-13;
 /// Sine of the angle to the tool axis at which a normal is square to it.
@@ -112,9 +111,11 @@ impl Ruled {
 
     /// The clearance by the contact of before, if it is shown.
     pub(super) fn followed(&self, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
-        let (size, reach) = (self.size(), tool.profile.reach());
-        let tolerance = resolution(self, tip, reach).max(WARM_RESOLUTION_OF_ERROR * self.error());
-        self.sheet()?.at(side, tip, tool, size, tolerance)
+        let (size, error) = (self.size(), self.error());
+        let rounding = rounding(self, tip, tool.profile.reach());
+        let (mut reading, off) = self.sheet()?.at(side, tip, tool, size, Accuracy { rounding, error })?;
+        reading.error += off;
+        Some(reading)
     }
 
     fn natural(&self, touch: &Touch) -> Option<Vec3> {
@@ -143,7 +144,15 @@ impl Ruled {
         }
     }
 
-    /// How far the patches may be off the surface.
+    /// How far the patches may be off the surface, also where they go on beyond its curves.
+    fn greatest_error(&self) -> f64 {
+        match self {
+            Self::Joining(surface) => surface.greatest_error,
+            _ => self.error(),
+        }
+    }
+
+    /// How far the patches may be off the surface between its curves.
     pub(super) fn error(&self) -> f64 {
         match self {
             Self::Parallel(_) => 0.0,
@@ -154,29 +163,38 @@ impl Ruled {
     }
 }
 
-fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
-    let rounding = RESOLUTION * (surface.size().max(tip.norm()) + reach);
-    rounding.max(RESOLUTION_OF_ERROR * surface.error())
+fn rounding(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
+    RESOLUTION * (surface.size().max(tip.norm()) + reach)
 }
 
-/// Signed distance of a point along the natural normal and that distance's unit gradient; None beyond the end of a curve.
-pub(super) fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
+fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
+    rounding(surface, tip, reach).max(RESOLUTION_OF_ERROR * surface.error())
+}
+
+fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
+    point(surface, x, patience).map(|found| (found.value, found.normal))
+}
+
+/// Signed distance of a point along the natural normal; None beyond the end of a curve.
+pub(super) fn point(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<Reading> {
     let profile = Profile::tool_end();
     let axis = surface.axis().unwrap_or_else(Vec3::z);
     let tool = Tool { profile: &profile, axis, patience, depth: 0.0 };
     if let Some(found) = surface.followed(1.0, x, &tool) {
-        return Some((found.value, found.normal));
+        return Some(found);
     }
     let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
+    let error = surface.greatest_error();
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
     // At a joint the point is in the fan of its normals.
     let size = away.norm();
     if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) {
-        return Some((size.copysign(height), away * (height.signum() / size)));
+        let normal = away * (height.signum() / size);
+        return Some(Reading { value: size.copysign(height), normal, error });
     }
-    Some((height, natural))
+    Some(Reading { value: height, normal: natural, error })
 }
 
 struct Bodies<'a> {
@@ -202,8 +220,7 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
     if let Some(found) = beside(surface, side, tip, tool) {
         return Some(found);
     }
-    if let Some(mut found) = surface.followed(side, tip, tool) {
-        found.error += surface.error();
+    if let Some(found) = surface.followed(side, tip, tool) {
         return Some(found);
     }
     searched(surface, side, tip, tool)
@@ -222,7 +239,7 @@ fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Rea
     let error = resolution(surface, tip, tool.profile.reach());
     let level = [normal, other].iter().all(|n| n.dot(&tool.axis).abs() <= UPRIGHT);
     let value = side * distance - tool.profile.widest();
-    let error = error + surface.error();
+    let error = error + surface.greatest_error();
     (level && (above - distance).abs() <= 2.0 * error).then_some(Reading {
         value,
         normal: normal * side,
@@ -243,7 +260,7 @@ pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) 
     } else {
         bodies.violation(tip, &touch)?
     };
-    reading.error += surface.error();
+    reading.error += surface.greatest_error();
     Some(reading)
 }
 

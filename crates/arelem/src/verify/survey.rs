@@ -33,6 +33,8 @@ const EDGE_HALVINGS: u32 = 6;
 /// Halvings for one reading of the part that the contact is on, and product of its size and curvature below which none helps.
 const DIVISIONS: usize = 12;
 const TIGHT: f64 = 0.01;
+/// Accuracy of a distance, relative to how far the patches may be off the surface.
+const WARM_RESOLUTION_OF_ERROR: f64 = 0.25;
 /// Steps between tool and surface to a place that is near.
 const APPROACHES: u32 = 6;
 
@@ -44,6 +46,14 @@ pub(super) struct Sheet {
     ends_across: bool,
     /// For tools with a body, and for points.
     near: RefCell<[Option<Near>; 2]>,
+}
+
+/// What a distance need not be closer than.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Accuracy {
+    pub(super) rounding: f64,
+    /// How far the patches may be off the surface between the curves.
+    pub(super) error: f64,
 }
 
 /// A part of a patch.
@@ -74,6 +84,8 @@ struct Near {
     margin: f64,
     /// No other part was nearer.
     bound: f64,
+    /// How far the parts may be off the surface, relative to its patches between the curves.
+    stretch: f64,
     parts: Vec<Part>,
     /// The contact found last.
     last: Option<(usize, [f64; 2])>,
@@ -84,8 +96,9 @@ impl Sheet {
         Self { patches, ends_across, near: RefCell::new([None, None]) }
     }
 
-    /// The parts nearer to the tool than `bound`; where there are very many they are not halved further.
-    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> Vec<Part> {
+    /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
+    /// curves; where there are very many they are not halved further.
+    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> (Vec<Part>, f64) {
         let widest = tool.profile.widest();
         let [smallest, greatest] = if widest > 0.0 {
             [SMALLEST_RADII * widest, PART_RADII * widest]
@@ -96,9 +109,11 @@ impl Sheet {
         let middle = tip + tool.axis * half;
         let girth = half.hypot(widest);
         let mut parts = Vec::new();
+        let mut stretch: f64 = 0.0;
         let mut open: Vec<(Net, Edges)> = Vec::new();
         for patch in &self.patches {
             let Some(range) = patch.within(&middle, bound + girth) else { continue };
+            stretch = stretch.max(patch.stretch(range));
             let mut edges = patch.edges;
             edges.sides[2] = (edges.sides[2] || self.ends_across) && range[0] <= 0.0;
             edges.sides[3] = (edges.sides[3] || self.ends_across) && range[1] >= 1.0;
@@ -122,20 +137,22 @@ impl Sheet {
                 }
             }
         }
-        parts
+        (parts, stretch)
     }
 
-    /// The clearance on a side, to within `tolerance`, where balls show it.
+    /// The clearance on a side where balls show it, and how far the parts near the tool may be off the surface.
     pub(super) fn at(
         &self,
         side: f64,
         tip: &Vec3,
         tool: &Tool<'_>,
         size: f64,
-        tolerance: f64,
-    ) -> Option<Reading> {
+        accuracy: Accuracy,
+    ) -> Option<(Reading, f64)> {
         let slot = usize::from(tool.profile.is_point());
         let mut near = self.take(slot, tip, tool, size)?;
+        let off = near.stretch * accuracy.error;
+        let tolerance = accuracy.rounding.max(WARM_RESOLUTION_OF_ERROR * off);
         let mut found = None;
         for _ in 0..DIVISIONS {
             let (parts, way, loose) = (&near.parts, near.way, Cell::new(None));
@@ -148,7 +165,7 @@ impl Sheet {
             }
         }
         self.near.borrow_mut()[slot] = Some(near);
-        found
+        found.map(|reading| (reading, off))
     }
 
     /// A bound from above of the distance: that of a place about as near as any, where tool and surface lead in turns.
@@ -190,7 +207,7 @@ impl Sheet {
             None => self.upper(tip, tool)?,
         };
         let bound = upper.max(0.0) + 2.0 * margin;
-        let parts = self.survey(tip, tool, bound, size);
+        let (parts, stretch) = self.survey(tip, tool, bound, size);
         let last = before.and_then(|place| {
             let apart = |part: &Part| (part.center - place).norm() / part.radius;
             nearest_by(&parts, apart).map(|k| (k, [0.5; 2]))
@@ -203,6 +220,7 @@ impl Sheet {
             way: 0.0,
             margin,
             bound,
+            stretch,
             parts,
             last,
         })
@@ -233,7 +251,7 @@ impl Sheet {
         let (parts, since) = match known {
             Some(near) => (&near.parts, near.way + near.since(tip, tool)),
             None => {
-                seen = self.survey(tip, tool, reach, size);
+                seen = self.survey(tip, tool, reach, size).0;
                 (&seen, 0.0)
             }
         };
