@@ -15,8 +15,8 @@ use apt_geometry::{
 };
 
 use super::{
-    patch::{Edges, Net, Patch, extent, jet, turned},
-    ruled::{ERROR_BEND, through},
+    patch::{Edges, Net, Patch, extent, jet, place_on, turned},
+    ruled::{ERROR_BEND, divided, parts_for, through},
     strip::Touch,
     survey::Sheet,
 };
@@ -68,6 +68,53 @@ struct Jet {
 /// A number or a vector with its derivative by `s`.
 type Rate<T> = [T; 2];
 
+/// A conic by the ends of its curved part, the point where its tangents there meet and the weight of that.
+struct Station {
+    start: Rate<Vec3>,
+    meet: Rate<Vec3>,
+    end: Rate<Vec3>,
+    weight: Rate<f64>,
+}
+
+impl Station {
+    /// How much of the curve's start, of the meeting point and of its end makes a place between the ends, and their sum.
+    fn shares(&self, t: f64) -> ([f64; 3], f64) {
+        let r = 1.0 - t;
+        let shares = [r * r, 2.0 * self.weight[0] * t * r, t * t];
+        (shares, shares[0] + shares[1] + shares[2])
+    }
+
+    fn point(&self, t: f64) -> Vec3 {
+        if !(0.0..=1.0).contains(&t) {
+            return self.jet(t).point;
+        }
+        let ([first, middle, last], sum) = self.shares(t);
+        (self.start[0] * first + self.meet[0] * middle + self.end[0] * last) / sum
+    }
+
+    fn jet(&self, t: f64) -> Jet {
+        let Self { start, meet, end, weight: [w, dw] } = self;
+        let straight = |from: &Rate<Vec3>, share: f64, sense: f64| {
+            let way = [0, 1].map(|k| (meet[k] - from[k]) * POLYCONIC_ENDS_BEYOND);
+            Jet { point: from[0] + way[0] * share, along: way[0] * sense, across: from[1] + way[1] * share }
+        };
+        if t < 0.0 {
+            return straight(start, t, 1.0);
+        }
+        if t > 1.0 {
+            return straight(end, 1.0 - t, -1.0);
+        }
+        let r = 1.0 - t;
+        let (_, below) = self.shares(t);
+        let point = self.point(t);
+        let along = (meet[0] * *w - start[0]) * (2.0 * r) + (end[0] - meet[0] * *w) * (2.0 * t)
+            - point * ((w - 1.0) * 2.0 * r + (1.0 - w) * 2.0 * t);
+        let across =
+            start[1] * (r * r) + (meet[1] * *w + (meet[0] - point) * *dw) * (2.0 * t * r) + end[1] * (t * t);
+        Jet { point, along: along / below, across: across / below }
+    }
+}
+
 fn sum(a: Rate<f64>, b: Rate<f64>) -> Rate<f64> {
     [a[0] + b[0], a[1] + b[1]]
 }
@@ -98,7 +145,7 @@ impl Conics {
         [(held - 0.5) / rest, 0.5 * rate / (rest * rest)]
     }
 
-    fn jet(&self, t: f64, s: f64) -> Jet {
+    fn station(&self, s: f64) -> Station {
         let [a, b, c, d, l, h] = std::array::from_fn(|k| self.control(k, s));
         let station = match self.form.roots {
             None => [s, 1.0],
@@ -112,25 +159,11 @@ impl Conics {
         let (y, z) = (sum(l, c), sum(h, b));
         let meet = lift(y, z);
         let end = lift(sum(y, a), sum(z, d));
-        let straight = |from: Rate<Vec3>, share: f64, sense: f64| {
-            let way = [0, 1].map(|k| (meet[k] - from[k]) * POLYCONIC_ENDS_BEYOND);
-            Jet { point: from[0] + way[0] * share, along: way[0] * sense, across: from[1] + way[1] * share }
-        };
-        if t < 0.0 {
-            return straight(start, t, 1.0);
-        }
-        if t > 1.0 {
-            return straight(end, 1.0 - t, -1.0);
-        }
-        let [w, dw] = self.weight(s);
-        let r = 1.0 - t;
-        let below = r * r + 2.0 * w * t * r + t * t;
-        let point = (start[0] * (r * r) + meet[0] * (2.0 * w * t * r) + end[0] * (t * t)) / below;
-        let along = (meet[0] * w - start[0]) * (2.0 * r) + (end[0] - meet[0] * w) * (2.0 * t)
-            - point * ((w - 1.0) * 2.0 * r + (1.0 - w) * 2.0 * t);
-        let across =
-            start[1] * (r * r) + (meet[1] * w + (meet[0] - point) * dw) * (2.0 * t * r) + end[1] * (t * t);
-        Jet { point, along: along / below, across: across / below }
+        Station { start, meet, end, weight: self.weight(s) }
+    }
+
+    fn jet(&self, t: f64, s: f64) -> Jet {
+        self.station(s).jet(t)
     }
 
     /// The natural normal in the coordinates of the surface: along the conic × along growing stations.
@@ -153,9 +186,9 @@ impl Conics {
         self.normal(t, s, size).or_else(|| self.normal(toward(t), toward(s), size))
     }
 
-    /// A place of the surface, off the conics by its thickness, in program coordinates.
-    fn at(&self, t: f64, s: f64, size: f64) -> Option<Vec3> {
-        let mut point = self.jet(t, s).point;
+    /// A place of the surface at a station, off the conics by its thickness, in program coordinates.
+    fn at(&self, t: f64, (s, station): (f64, &Station), size: f64) -> Option<Vec3> {
+        let mut point = station.point(t);
         if self.form.thickness != 0.0 {
             point += self.sure_normal(t, s, size)? * self.form.thickness;
         }
@@ -211,19 +244,26 @@ fn inside([low, high]: [f64; 2], share: f64) -> f64 {
 }
 
 fn fit(conics: &Conics, [along, across]: &Rectangle, size: f64) -> Option<Fit> {
-    let at = |t: f64, s: f64| conics.at(inside(*along, t), inside(*across, s), size);
     let thirds = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+    let between = [0.127, 0.5, 0.873];
+    let station = |share: f64| {
+        let s = inside(*across, share);
+        (share, s, conics.station(s))
+    };
+    let (nodes, others) = (thirds.map(station), between.map(station));
+    let at =
+        |t: f64, (_, s, station): &(f64, f64, Station)| conics.at(inside(*along, t), (*s, station), size);
     let mut rows = [[Vec3::zeros(); 4]; 4];
-    for (row, s) in rows.iter_mut().zip(thirds) {
+    for (row, s) in rows.iter_mut().zip(&nodes) {
         *row = through(&[at(thirds[0], s)?, at(thirds[1], s)?, at(thirds[2], s)?, at(thirds[3], s)?]);
     }
     let net = turned(&turned(&rows).map(|column| through(&column)));
-    let off = |t: f64, s: f64| Some((at(t, s)? - jet(&net, [t, s])[0]).norm());
-    let mut errors = [off(0.5, 0.5)?; 2];
-    for between in [0.127, 0.5, 0.873] {
-        for node in [thirds[0], thirds[2]] {
-            errors[0] = errors[0].max(off(between, node)?);
-            errors[1] = errors[1].max(off(1.0 - node, between)?);
+    let off = |t: f64, s: &(f64, f64, Station)| Some((at(t, s)? - place_on(&net, [t, s.0])).norm());
+    let mut errors = [off(0.5, &others[1])?; 2];
+    for (share, other) in between.iter().zip(&others) {
+        for (node, at_node) in [(thirds[0], &nodes[0]), (thirds[2], &nodes[2])] {
+            errors[0] = errors[0].max(off(*share, at_node)?);
+            errors[1] = errors[1].max(off(1.0 - node, other)?);
         }
     }
     errors.iter().all(|e| e.is_finite()).then_some(Fit { net, errors })
@@ -273,14 +313,14 @@ fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> 
         }
     }
     while parts.len() < PATCHES && parts.peek().is_some_and(|worst| worst.off > accuracy) {
-        let Some(Part { rectangle: [along, across], fit, .. }) = parts.pop() else { break };
-        let halves = |range: [f64; 2]| [[range[0], inside(range, 0.5)], [inside(range, 0.5), range[1]]];
-        let halved = if fit.errors[0] > fit.errors[1] {
-            halves(along).map(|half| [half, across])
-        } else {
-            halves(across).map(|half| [along, half])
-        };
-        for rectangle in halved {
+        let Some(Part { rectangle, fit, .. }) = parts.pop() else { break };
+        let way = usize::from(fit.errors[0] <= fit.errors[1]);
+        // What the other direction leaves, at least half.
+        let left = (accuracy / ALLOWANCE - fit.errors[1 - way]).max(0.5 * accuracy / ALLOWANCE);
+        let count = parts_for(left, fit.errors[way]);
+        for range in divided(rectangle[way], count) {
+            let mut rectangle = rectangle;
+            rectangle[way] = range;
             parts.push(part(rectangle)?);
         }
     }
