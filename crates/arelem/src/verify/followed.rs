@@ -8,6 +8,7 @@
 use std::cell::Cell;
 
 use apt_geometry::Vec3;
+use nalgebra::{Matrix2, Vector2};
 
 use super::{
     clearance::Reading,
@@ -18,8 +19,10 @@ use super::{
 
 /// Steps of Newton's method, the last of them, and the greatest, in parameters.
 const STEPS: usize = 14;
-const LAST_STEP: f64 = 1e-10;
+const LAST_STEP: f64 = 1e-7;
 const GREATEST_STEP: f64 = 0.5;
+/// How much nearer a step must lead for the derivatives of before to serve the next.
+const GOOD_STEP: f64 = 0.2;
 /// Halvings of a step that leads farther from the contact.
 const SHORTENINGS: usize = 5;
 /// Step of the derivatives, in parameters.
@@ -81,6 +84,15 @@ impl Guard {
             }
         }
     }
+}
+
+/// What is shown of all parts: the bounds of the one in contact, how far up they hold, the distance wanted, and the contact.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    guards: [&'a Guard; 2],
+    below: f64,
+    least: f64,
+    place: &'a Vec3,
 }
 
 impl Contact {
@@ -169,7 +181,8 @@ impl Following<'_> {
             if far >= least {
                 other.far.set(far - led_by + self.way);
             } else {
-                led.show(other, side, [&level, &guard], below, least, HALVINGS)?;
+                let shown = Shown { guards: [&level, &guard], below, least, place: &contact.place };
+                led.show(other, side, &shown, HALVINGS)?;
             }
         }
         Some((value, contact.normal))
@@ -191,17 +204,10 @@ impl Following<'_> {
         far.max((guard.outside(part) + least).min(above))
     }
 
-    /// Shows that a part is no nearer than `least`, from its own contact; in halves if need be.
-    fn show(
-        &self,
-        part: &Part,
-        side: f64,
-        guards: [&Guard; 2],
-        below: f64,
-        least: f64,
-        halvings: u32,
-    ) -> Option<()> {
-        if let Some(contact) = self.solve(part, side, [0.5; 2])
+    /// Shows that a part is no nearer than is wanted, from its own contact; in halves if need be.
+    fn show(&self, part: &Part, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
+        let Shown { guards, below, least, place } = *shown;
+        if let Some(contact) = self.solve(part, side, part.nearest_parameters(place))
             && self.guard(part, side, &contact, least).is_some()
         {
             return Some(());
@@ -211,7 +217,7 @@ impl Following<'_> {
         }
         for half in part.halves().0 {
             if self.far(&half, guards, below, least) < least {
-                self.show(&half, side, guards, below, least, halvings - 1)?;
+                self.show(&half, side, shown, halvings - 1)?;
             }
         }
         Some(())
@@ -308,22 +314,28 @@ impl Following<'_> {
         let offset = (BEHIND * widest).min(BEHIND / behind);
         let sense = part.sense(side);
         // The tool's place nearest to a place straight behind that of the surface, and how far it is beside.
-        let beside = |at: [f64; 2]| -> Option<([f64; 2], Contact)> {
+        let beside = |at: [f64; 2]| -> Option<(Vector2<f64>, Contact)> {
             let [place, along, across] = jet(&part.net, at);
             let normal = along.cross(&across).try_normalize(0.0)? * sense;
             let opposite = self.tool.signed_distance(&(place - normal * offset - self.tip)).1;
             let apart = self.tip + opposite - place;
             let value = normal.dot(&apart);
             let contact = Contact { at, place, normal, opposite, value };
-            Some(([apart.dot(&along), apart.dot(&across)], contact))
+            Some((Vector2::new(apart.dot(&along), apart.dot(&across)), contact))
         };
         let mut at = held(from);
         let (mut off, mut contact) = beside(at)?;
+        let mut known: Option<Matrix2<f64>> = None;
         for _ in 0..STEPS {
             let [u, v] = at;
-            let (by_u, by_v) = (beside([u + DIFFERENCE, v])?.0, beside([u, v + DIFFERENCE])?.0);
-            let [a, c] = [0, 1].map(|i| (by_u[i] - off[i]) / DIFFERENCE);
-            let [b, d] = [0, 1].map(|i| (by_v[i] - off[i]) / DIFFERENCE);
+            let matrix = match known {
+                Some(matrix) => matrix,
+                None => {
+                    let (by_u, by_v) = (beside([u + DIFFERENCE, v])?.0, beside([u, v + DIFFERENCE])?.0);
+                    Matrix2::from_columns(&[by_u - off, by_v - off]) / DIFFERENCE
+                }
+            };
+            let ([a, b, c, d], off_before) = ([matrix.m11, matrix.m12, matrix.m21, matrix.m22], off);
             let area = a * d - b * c;
             let mut step = [(b * off[1] - d * off[0]) / area, (c * off[0] - a * off[1]) / area];
             if !step.iter().all(|x| x.is_finite()) {
@@ -345,6 +357,11 @@ impl Following<'_> {
             if size <= LAST_STEP || left || at == [u, v] {
                 break;
             }
+            // Good derivatives are made better by what the step has shown (Broyden).
+            let way = Vector2::new(at[0] - u, at[1] - v);
+            let is_good = off.norm() <= GOOD_STEP * off_before.norm();
+            known = is_good
+                .then(|| matrix + (off - off_before - matrix * way) * way.transpose() / way.norm_squared());
         }
         Some(contact)
     }

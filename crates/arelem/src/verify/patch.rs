@@ -59,6 +59,7 @@ pub(super) fn sides(net: &Net) -> [Cubic; 4] {
 }
 
 /// The four weights of a cubic's control points and their derivatives.
+#[inline]
 fn weights(t: f64) -> [[f64; 4]; 2] {
     let r = 1.0 - t;
     [
@@ -67,6 +68,7 @@ fn weights(t: f64) -> [[f64; 4]; 2] {
     ]
 }
 
+#[inline]
 fn mixed(points: &Cubic, weights: &[f64; 4]) -> Vec3 {
     points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2] + points[3] * weights[3]
 }
@@ -74,23 +76,27 @@ fn mixed(points: &Cubic, weights: &[f64; 4]) -> Vec3 {
 /// A place with its derivatives along and across.
 pub(super) fn jet(net: &Net, [along, across]: [f64; 2]) -> [Vec3; 3] {
     let ([u, du], [v, dv]) = (weights(along), weights(across));
-    let rows = net.map(|row| mixed(&row, &u));
-    let rates = net.map(|row| mixed(&row, &du));
+    let [first, second, third, last] = net;
+    let mixed_rows = |w: &[f64; 4]| [mixed(first, w), mixed(second, w), mixed(third, w), mixed(last, w)];
+    let (rows, rates) = (mixed_rows(&u), mixed_rows(&du));
     [mixed(&rows, &v), mixed(&rates, &v), mixed(&rows, &dv)]
 }
 
 /// A place.
 pub(super) fn place_on(net: &Net, [along, across]: [f64; 2]) -> Vec3 {
     let ([u, _], [v, _]) = (weights(along), weights(across));
-    mixed(&net.map(|row| mixed(&row, &u)), &v)
+    let [first, second, third, last] = net;
+    mixed(&[mixed(first, &u), mixed(second, &u), mixed(third, &u), mixed(last, &u)], &v)
 }
 
 /// Rows and columns changed.
-pub(super) fn turned(net: &Net) -> Net {
-    std::array::from_fn(|i| std::array::from_fn(|j| net[j][i]))
+#[inline]
+pub(super) fn turned([a, b, c, d]: &Net) -> Net {
+    [[a[0], b[0], c[0], d[0]], [a[1], b[1], c[1], d[1]], [a[2], b[2], c[2], d[2]], [a[3], b[3], c[3], d[3]]]
 }
 
 /// The two halves of a cubic.
+#[inline]
 pub(super) fn halves(c: &Cubic) -> [Cubic; 2] {
     let middle = |a: &Vec3, b: &Vec3| (a + b) * 0.5;
     let (ab, bc, cd) = (middle(&c[0], &c[1]), middle(&c[1], &c[2]), middle(&c[2], &c[3]));
@@ -101,13 +107,15 @@ pub(super) fn halves(c: &Cubic) -> [Cubic; 2] {
 
 /// Halves of a patch along it.
 pub(super) fn halves_along(net: &Net) -> [Net; 2] {
-    let parts = net.map(|row| halves(&row));
-    [parts.map(|p| p[0]), parts.map(|p| p[1])]
+    let [[a, b], [c, d], [e, f], [g, h]] =
+        [halves(&net[0]), halves(&net[1]), halves(&net[2]), halves(&net[3])];
+    [[a, c, e, g], [b, d, f, h]]
 }
 
 /// Halves of a patch across it.
 pub(super) fn halves_across(net: &Net) -> [Net; 2] {
-    halves_along(&turned(net)).map(|half| turned(&half))
+    let [first, last] = halves_along(&turned(net));
+    [turned(&first), turned(&last)]
 }
 
 /// The ball about the middle of the control points that holds a patch.
@@ -176,6 +184,18 @@ impl Patch {
         (low < 1.0 && high > 0.0).then_some([low.max(0.0), high.min(1.0)])
     }
 
+    /// The parameters across it between which its places in a ball are.
+    pub(super) fn range_in(&self, center: &Vec3, radius: f64) -> [f64; 2] {
+        let [a, b] = self.spine;
+        let way = b - a;
+        let square = way.norm_squared();
+        if square <= 0.0 {
+            return [0.0, 1.0];
+        }
+        let (middle, room) = (way.dot(&(center - a)) / square, (radius + self.girth) / square.sqrt());
+        [middle - room, middle + room].map(|across| across.clamp(0.0, 1.0))
+    }
+
     /// Between two cubics with straight lines across.
     pub(super) fn straight([first, last]: &[Cubic; 2]) -> Self {
         let row = |t: f64| std::array::from_fn(|i| lerp(&first[i], &last[i], t));
@@ -190,7 +210,8 @@ fn stretched(c: &Cubic) -> Cubic {
 
 /// The part of a patch between two parameters across it.
 pub(super) fn between_across(net: &Net, range: [f64; 2]) -> Net {
-    turned(&turned(net).map(|column| between(&column, range)))
+    let [a, b, c, d] = turned(net);
+    turned(&[between(&a, range), between(&b, range), between(&c, range), between(&d, range)])
 }
 
 /// The same cubic from one parameter to another.
@@ -327,6 +348,8 @@ mod tests {
                 let [low, high] = range.expect("a place is near");
                 prop_assert!(v >= low - 1e-12 && v <= high + 1e-12, "{v} of {low} to {high}");
             }
+            let [low, high] = patch.range_in(&(place + point * distance), point.norm() * distance);
+            prop_assert!(v >= low - 1e-12 && v <= high + 1e-12, "{v} of {low} to {high}");
             if let Some([low, high]) = range.filter(|[low, high]| low < high) {
                 let part = between_across(&net, [low, high]);
                 let same = jet(&net, [u, low + (high - low) * v])[0];

@@ -144,10 +144,14 @@ impl Ruled {
         }
     }
 
-    /// How far the patches may be off the surface, also where they go on beyond its curves.
-    fn greatest_error(&self) -> f64 {
+    /// How far the patches may be off the surface, also where they go on beyond its curves, as far as that matters to a tool that
+    /// is as far away as `value`.
+    fn error_near(&self, tip: &Vec3, tool: &Tool<'_>, value: f64) -> f64 {
         match self {
-            Self::Joining(surface) => surface.greatest_error,
+            Self::Joining(surface) => {
+                let reach = value.max(0.0) + 2.0 * surface.greatest_error;
+                surface.error * surface.sheet.stretch(tip, tool, reach).max(1.0)
+            }
             _ => self.error(),
         }
     }
@@ -185,7 +189,7 @@ pub(super) fn point(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option
     }
     let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
-    let error = surface.greatest_error();
+    let error = surface.error_near(x, &tool, touch.value + touch.gap);
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
     // At a joint the point is in the fan of its normals.
@@ -239,7 +243,7 @@ fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Rea
     let error = resolution(surface, tip, tool.profile.reach());
     let level = [normal, other].iter().all(|n| n.dot(&tool.axis).abs() <= UPRIGHT);
     let value = side * distance - tool.profile.widest();
-    let error = error + surface.greatest_error();
+    let error = error + surface.error();
     (level && (above - distance).abs() <= 2.0 * error).then_some(Reading {
         value,
         normal: normal * side,
@@ -260,7 +264,7 @@ pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) 
     } else {
         bodies.violation(tip, &touch)?
     };
-    reading.error += surface.greatest_error();
+    reading.error += surface.error_near(tip, tool, reading.value + reading.error);
     Some(reading)
 }
 

@@ -1,6 +1,6 @@
 //! What of a surface of patches is near a tool: one survey serves until the tool has moved by its margin.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
 use apt_geometry::Vec3;
 
@@ -20,6 +20,12 @@ use super::{
 const PARTS: usize = 6_000;
 /// Product of size and curvature above which a part is halved.
 const BENT: f64 = 0.25;
+/// How far the control points of a part may be from those of a parallelogram, relative to its shorter side, for its parameters to
+/// spread evenly.
+const PLAIN: f64 = 0.05;
+/// Steps towards the place of a part that is nearest to a point, and the last of them, in parameters.
+const NEARING_STEPS: u32 = 6;
+const LAST_NEARING: f64 = 1e-6;
 /// Size below which a part is not halved: in radii of the tool, and for a tool without body relative to the surface.
 const SMALLEST_RADII: f64 = 0.25;
 const SMALLEST: f64 = 0.01;
@@ -62,7 +68,8 @@ pub(super) struct Part {
     pub(super) net: Net,
     pub(super) center: Vec3,
     pub(super) radius: f64,
-    pub(super) bends: Option<Bends>,
+    /// Found when they are asked for.
+    bends: OnceCell<Option<Bends>>,
     /// Curvature that the surface may have more.
     pub(super) slack: f64,
     pub(super) against: bool,
@@ -105,15 +112,12 @@ impl Sheet {
         } else {
             [SMALLEST * size, f64::INFINITY]
         };
-        let half = 0.5 * tool.profile.top_height();
-        let middle = tip + tool.axis * half;
-        let girth = half.hypot(widest);
+        let (middle, girth) = tool.ball_about(tip);
         let mut parts = Vec::new();
         let mut stretch: f64 = 0.0;
         let mut open: Vec<(Net, Edges)> = Vec::new();
         for patch in &self.patches {
             let Some(range) = patch.within(&middle, bound + girth) else { continue };
-            stretch = stretch.max(patch.stretch(range));
             let mut edges = patch.edges;
             edges.sides[2] = (edges.sides[2] || self.ends_across) && range[0] <= 0.0;
             edges.sides[3] = (edges.sides[3] || self.ends_across) && range[1] >= 1.0;
@@ -124,20 +128,29 @@ impl Sheet {
                 if far > bound {
                     continue;
                 }
-                let far = Cell::new(far);
-                let bends = if radius > greatest { None } else { Bends::of(&net) };
-                let is_flat = bends.is_some_and(|b| b.hollow[0].max(b.hollow[1]) * radius <= BENT);
-                if radius > smallest && !is_flat && parts.len() < PARTS {
-                    let [along, across] = extent(&net);
-                    let halves = if along >= across { halves_along(&net) } else { halves_across(&net) };
-                    open.extend(halves.into_iter().zip(edges.halves(along >= across)));
+                let (far, slack, against) = (Cell::new(far), patch.slack, patch.against);
+                let part = Part { net, center, radius, bends: OnceCell::new(), slack, against, edges, far };
+                let is_flat = || radius <= greatest && (part.is_plain() || part.bend_at_most(BENT));
+                if radius <= smallest || parts.len() >= PARTS || is_flat() {
+                    stretch = stretch.max(patch.stretch(patch.range_in(&center, radius)));
+                    parts.push(part);
                 } else {
-                    let (slack, against) = (patch.slack, patch.against);
-                    parts.push(Part { net, center, radius, bends, slack, against, edges, far });
+                    let [along, across] = extent(&part.net);
+                    let is_along = along >= across;
+                    let halves = if is_along { halves_along(&part.net) } else { halves_across(&part.net) };
+                    open.extend(halves.into_iter().zip(edges.halves(is_along)));
                 }
             }
         }
         (parts, stretch)
+    }
+
+    /// How far patches may be off the surface where they are nearer to a tool than `reach`, relative to those between the curves.
+    pub(super) fn stretch(&self, tip: &Vec3, tool: &Tool<'_>, reach: f64) -> f64 {
+        let (middle, girth) = tool.ball_about(tip);
+        let near =
+            self.patches.iter().filter_map(|patch| Some((patch, patch.within(&middle, reach + girth)?)));
+        near.map(|(patch, range)| patch.stretch(range)).fold(0.0, f64::max)
     }
 
     /// The clearance on a side where balls show it, and how far the parts near the tool may be off the surface.
@@ -267,7 +280,7 @@ impl Sheet {
             }
             // Behind the surface.
             let behind = usize::from((side > 0.0) != part.against);
-            rate = rate.max(part.bends?.hollow[behind] + part.slack);
+            rate = rate.max(part.bends()?.hollow[behind] + part.slack);
         }
         Bend::over(rate, depth)
     }
@@ -277,7 +290,7 @@ impl Near {
     /// Halves a part about a place of it, so that the bounds of its bends are closer there; not where they are close anyway.
     fn divide(&mut self, (index, at): (usize, [f64; 2])) -> bool {
         let Some(part) = self.parts.get(index).filter(|_| self.parts.len() < PARTS) else { return false };
-        if part.bends.is_none_or(|b| b.hollow[0].max(b.hollow[1]) * part.radius <= TIGHT) {
+        if part.bends().is_none() || part.bend_at_most(TIGHT) {
             return false;
         }
         let ([first, last], way) = part.halves();
@@ -315,7 +328,7 @@ pub(super) fn nearest_by(parts: &[Part], apart: impl Fn(&Part) -> f64) -> Option
 fn near(net: &Net, x: &Vec3) -> ([f64; 2], Vec3) {
     let mut at = [0.5; 2];
     let mut jets = jet(net, at);
-    for _ in 0..2 {
+    for _ in 0..NEARING_STEPS {
         let [here, along, across] = jets;
         let from = x - here;
         let (a, b, c) = (along.norm_squared(), along.dot(&across), across.norm_squared());
@@ -324,13 +337,45 @@ fn near(net: &Net, x: &Vec3) -> ([f64; 2], Vec3) {
         if area <= 0.0 {
             break;
         }
+        let before = at;
         at = [at[0] + (c * p - b * q) / area, at[1] + (a * q - b * p) / area].map(|t| t.clamp(0.0, 1.0));
         jets = jet(net, at);
+        if (at[0] - before[0]).abs().max((at[1] - before[1]).abs()) <= LAST_NEARING {
+            break;
+        }
     }
     (at, jets[0])
 }
 
 impl Part {
+    fn bends(&self) -> Option<Bends> {
+        *self.bends.get_or_init(|| Bends::of(&self.net))
+    }
+
+    /// Whether the product of its size and curvature is known to be no more.
+    fn bend_at_most(&self, most: f64) -> bool {
+        self.bends().is_some_and(|b| b.hollow[0].max(b.hollow[1]) * self.radius <= most)
+    }
+
+    /// Whether its control points are so near to those of a parallelogram that its bends, which cost more, need not be found to
+    /// say that they are little.
+    fn is_plain(&self) -> bool {
+        let [first, .., last] = &self.net;
+        let (corner, across) = (first[0], last[0] - first[0]);
+        let along = first[3] - corner;
+        let shortest = along.norm().min(across.norm());
+        let twist = last[3] - last[0] - along;
+        let off = |j: usize, i: usize| {
+            let [u, v] = [i, j].map(|k| k as f64 / 3.0);
+            self.net[j][i] - corner - along * u - across * v - twist * (u * v)
+        };
+        let most =
+            (0..4).flat_map(|j| (0..4).map(move |i| off(j, i).norm_squared())).fold(0.0, f64::max).sqrt();
+        // The control points of a bend stand out by a ninth of its curvature times the square of its length.
+        let (room, bend) = (PLAIN * shortest, 9.0 * most / (shortest * shortest));
+        most <= room && twist.norm() <= room && bend * self.radius <= BENT
+    }
+
     /// Its halves, and which of its parameters they share out.
     pub(super) fn halves(&self) -> ([Self; 2], usize) {
         let [along, across] = extent(&self.net);
@@ -339,7 +384,7 @@ impl Part {
         let edges = self.edges.halves(is_along);
         let half = |net: Net, edges: Edges| {
             let (center, radius) = ball(&net);
-            Self { net, center, radius, bends: Bends::of(&net), edges, ..self.clone() }
+            Self { net, center, radius, bends: OnceCell::new(), edges, ..self.clone() }
         };
         ([half(first, edges[0]), half(last, edges[1])], usize::from(!is_along))
     }
@@ -376,7 +421,7 @@ impl Part {
 
     /// Curvature of the balls on a side of the surface that hold no place of the part.
     pub(super) fn hollow(&self, side: f64) -> Option<f64> {
-        self.bends.map(|b| b.hollow[usize::from(self.sense(side) < 0.0)])
+        self.bends().map(|b| b.hollow[usize::from(self.sense(side) < 0.0)])
     }
 
     /// The side of the surface as one of along × across.

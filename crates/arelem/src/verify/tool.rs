@@ -359,6 +359,12 @@ impl<'a> Tool<'a> {
         ([rho, z], out)
     }
 
+    /// A ball that holds the body with its end at a place: its centre and radius.
+    pub(super) fn ball_about(&self, tip: &Vec3) -> (Vec3, f64) {
+        let half = 0.5 * self.profile.top_height();
+        (tip + self.axis * half, half.hypot(self.profile.widest()))
+    }
+
     /// Greatest `n·p` over the body, and the point that has it.
     pub(super) fn support(&self, n: &Vec3) -> (f64, Vec3) {
         let (direction, out) = self.split(n);
