@@ -3,9 +3,8 @@
 //!
 //! The contact is a place of a circle of the tool with its foot on the surface, both found by Newton's method from the
 //! azimuth that faces the surface. It counts only if it is shown to be the nearest. For a convex solid the tangent plane
-//! shows it. For any other the multipliers do: of the contact's foot, of the circle, of the height on a straight piece.
-//! With multipliers the squared distance has a lower bound that is the least value of one quadratic function without
-//! conditions.
+//! shows it. For any other the multipliers do, of the contact's foot and of the circle: with them the squared distance has a
+//! lower bound that is the least value of one quadratic function, on a straight piece between two heights.
 
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -402,8 +401,7 @@ impl Place<'_> {
         !bowl || middle + least_of(&form, mu, &g) - mu * rho * rho >= demand.least
     }
 
-    /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from
-    /// the axis and for staying between the circles.
+    /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from the axis.
     fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch) -> bool {
         let facing = self.facing(touch);
         let mut open = vec![ends];
@@ -433,7 +431,7 @@ impl Place<'_> {
         lower.at(&apex) + (2.0 * least_slope + bend.min(0.0)).min(0.0) >= demand.least
     }
 
-    /// The best of the bounds with the multipliers of either end and, if contact is in between, of the contact.
+    /// The best of the bounds with the multipliers of either end, of the middle and, if contact is in between, of the contact.
     fn best_between(
         &self,
         demand: &Demand,
@@ -442,7 +440,7 @@ impl Place<'_> {
         facing: &Vector2<f64>,
     ) -> f64 {
         let mut best = f64::NEG_INFINITY;
-        for at in [0.0, 1.0] {
+        for at in [0.0, 1.0, 0.5] {
             best = best.max(self.between(demand, ends, facing, at));
             if best >= demand.least {
                 return best;
@@ -455,8 +453,9 @@ impl Place<'_> {
         if at > 0.0 && at < 1.0 { best.max(self.between(demand, ends, facing, at)) } else { best }
     }
 
-    /// A lower bound on the piece between two circles, with the multipliers of the place `at` of 0 … 1 on the line that
-    /// faces the contact.
+    /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the place `at` of
+    /// 0 … 1 on the line that faces the contact: the least value over the places at each height, wherever they are, is a quadratic
+    /// function of the height, and that is lowest at an end or where it is level.
     fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: &Vector2<f64>, at: f64) -> f64 {
         let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
         let rho = a[0] + spread * at;
@@ -472,29 +471,21 @@ impl Place<'_> {
         let cross = Vector2::new(lower.form(u, &way), lower.form(v, &way));
         let place = facing * rho;
         let mu = -(form * place + g + cross * at).dot(&place) / (rho * rho);
-        let climb = slope.dot(&way) + cross.dot(&place) + lower.form(&way, &way) * at - mu * spread * rho;
-        let nu = if at <= 0.0 {
-            (2.0 * climb).max(0.0)
-        } else if at >= 1.0 {
-            (-2.0 * climb).max(0.0)
-        } else {
-            0.0
+        let held = form + Matrix2::identity() * mu;
+        let determinant = held.determinant();
+        if !(determinant > 0.0 && held.trace() > 0.0) {
+            return f64::NEG_INFINITY;
+        }
+        let solved = |w: &Vector2<f64>| {
+            Vector2::new(held.m22 * w.x - held.m12 * w.y, held.m11 * w.y - held.m12 * w.x) / determinant
         };
-        let bent = lower.form(&way, &way) - mu * spread * spread + nu;
-        let matrix = Matrix3::new(
-            form.m11 + mu,
-            form.m12,
-            cross.x,
-            form.m12,
-            form.m22 + mu,
-            cross.y,
-            cross.x,
-            cross.y,
-            bent,
-        );
-        let half = Vec3::new(g.x, g.y, slope.dot(&way) - mu * a[0] * spread - 0.5 * nu);
-        let Some(factors) = matrix.cholesky() else { return f64::NEG_INFINITY };
-        lower.at(&start) - mu * a[0] * a[0] - half.dot(&factors.solve(&half))
+        let (of_g, of_cross) = (solved(&g), solved(&cross));
+        let first = lower.at(&start) - mu * a[0] * a[0] - g.dot(&of_g);
+        let climb = slope.dot(&way) - mu * a[0] * spread - g.dot(&of_cross);
+        let bend = lower.form(&way, &way) - mu * spread * spread - cross.dot(&of_cross);
+        let ends = first.min(first + 2.0 * climb + bend);
+        let level = -climb / bend;
+        if bend > 0.0 && level > 0.0 && level < 1.0 { ends.min(first + climb * level) } else { ends }
     }
 }
 
