@@ -65,16 +65,78 @@ impl Ring {
     }
 }
 
+/// What is known of the bend along the beginning of a path from how its vectors were proven.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bent {
+    /// The position that the path has come to.
+    pub(crate) to: Vec3,
+    /// Integral of √(κ/8τ) until there, for part and drive surface.
+    pub(crate) integral: [f64; 2],
+}
+
+impl Bent {
+    /// The beginning of a path.
+    pub(crate) fn none(from: &Vec3) -> Self {
+        Self { to: *from, integral: [0.0; 2] }
+    }
+}
+
+/// The bend along a path that grows vector by vector, the last of which may be taken back.
+#[derive(Debug)]
+pub(crate) struct Record {
+    /// The last positions, the latest at the end.
+    last: Vec<Bent>,
+}
+
+/// How many of the last positions are kept.
+const KEPT: usize = 4;
+
+impl Record {
+    /// A path that begins at a position.
+    pub(crate) fn new(from: &Vec3) -> Self {
+        Self { last: vec![Bent::none(from)] }
+    }
+
+    /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`].
+    pub(crate) fn add(&mut self, from: &Vec3, to: &Vec3, roles: [&Working; 2], turning: [f64; 2]) {
+        let known = self.last.iter().rev().find(|bent| bent.to == *from).or(self.last.last());
+        let before = known.map_or([0.0; 2], |bent| bent.integral);
+        let integral = [0, 1].map(|k: usize| before[k] + share(roles[k], turning[k]));
+        if self.last.len() >= KEPT {
+            self.last.remove(0);
+        }
+        self.last.push(Bent { to: *to, integral });
+    }
+
+    /// What is known of a path with these positions.
+    pub(crate) fn along(&self, from: &Vec3, points: &[Vec3]) -> Bent {
+        let known = |tip: &Vec3| self.last.iter().find(|bent| bent.to == *tip);
+        let latest = points.iter().rev().take(KEPT).find_map(known).or(self.last.first());
+        latest.copied().unwrap_or(Bent::none(from))
+    }
+}
+
+/// Integral of √|κ| over a stretch over which a slope changes.
+pub(crate) fn turning(range: [f64; 2], slopes: [f64; 2]) -> f64 {
+    ((slopes[1] - slopes[0]).abs() * (range[1] - range[0]).max(0.0)).sqrt()
+}
+
+/// What a vector adds to the integral of √(κ/8τ). It keeps the band, so that it counts for one at most: where contact jumps
+/// the slope turns without need of another vector.
+fn share(role: &Working, turning: f64) -> f64 {
+    (turning / (8.0 * role.band()).sqrt()).min(1.0)
+}
+
 /// The number of cut vectors that no sequence within tolerance can beat.
-pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared) -> u32 {
+pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) -> u32 {
     if prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat {
         return 1;
     }
     let mut path = Vec::with_capacity(sequence.points.len() + 1);
     path.push(sequence.start.tip);
     path.extend(sequence.points.iter().map(|p| p.tip));
-    let part = least(prepared, &prepared.part, &prepared.drive, &path);
-    let drive = least(prepared, &prepared.drive, &prepared.part, &path);
+    let part = least(prepared, [&prepared.part, &prepared.drive], &path, (&bent.to, bent.integral[0]));
+    let drive = least(prepared, [&prepared.drive, &prepared.part], &path, (&bent.to, bent.integral[1]));
     // The straight way from start to end at MAXDP a vector.
     let straight = match (path.first(), path.last()) {
         (Some(first), Some(last)) => (last - first).norm(),
@@ -83,16 +145,20 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared) -> u32 {
     part.max(drive).max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
 }
 
-/// The least number of vectors that one role asks for.
-fn least(prepared: &Prepared, role: &Working, other: &Working, path: &[Vec3]) -> u32 {
+/// The least number of vectors that one role asks for, the integral being known to a position.
+fn least(prepared: &Prepared, [role, other]: [&Working; 2], path: &[Vec3], (to, known): (&Vec3, f64)) -> u32 {
     if role.shape == Shape::Flat {
         return 1;
     }
     match ring(prepared, role, other) {
         Some(ring) => ring.of_path(path),
         None => {
-            let share: f64 = path.windows(2).map(|pair| share(prepared, role, &pair[0], &pair[1])).sum();
-            whole(share * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+            // The end of a motion may leave out that position, or come before it.
+            let met = path.iter().rposition(|tip| tip == to).unwrap_or(path.len().saturating_sub(2));
+            let rest = std::iter::once(to).chain(&path[met + 1..]);
+            let rest: f64 =
+                rest.clone().zip(rest.skip(1)).map(|(a, b)| share(role, turn(prepared, role, a, b))).sum();
+            whole((known + rest) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
         }
     }
 }
@@ -100,9 +166,8 @@ fn least(prepared: &Prepared, role: &Working, other: &Working, path: &[Vec3]) ->
 /// Part of the integral that sampling the bend at the ends and in the middle of each vector may add.
 const SAMPLED: f64 = 0.01;
 
-/// What one vector of the path adds to the integral of √(κ/8τ). It keeps the band, so that it counts for one at most:
-/// where contact jumps the slope turns without need of another vector.
-fn share(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
+/// The turning of the slope along a vector.
+fn turn(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
     let length = (to - from).norm();
     if length <= 0.0 {
         return 0.0;
@@ -111,8 +176,7 @@ fn share(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
     let slope = |tip: &Vec3| role.gauge.contact(&prepared.tool, tip).gradient.dot(&direction);
     let half = 0.5 * length;
     let slopes = [from, &(0.5 * (from + to)), to].map(slope);
-    let of_half = |a: f64, b: f64| half * ((b - a).abs() / half / (8.0 * role.band())).sqrt();
-    (of_half(slopes[0], slopes[1]) + of_half(slopes[1], slopes[2])).min(1.0)
+    turning([0.0, half], [slopes[0], slopes[1]]) + turning([half, length], [slopes[1], slopes[2]])
 }
 
 /// The next whole number.

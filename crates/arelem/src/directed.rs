@@ -16,7 +16,7 @@ use apt_geometry::{
 
 pub(crate) use self::prepare::Prepared;
 use crate::{
-    bound,
+    bound::{self, Bent},
     clearance::Shape,
     error::{MotionFailure, MotionWarning},
     role::Working,
@@ -30,6 +30,7 @@ pub(crate) struct Path {
     pub(crate) points: Vec<Vec3>,
     pub(crate) check: usize,
     pub(crate) check_side: f64,
+    pub(crate) bent: Bent,
 }
 
 /// Computes one directed motion.
@@ -120,7 +121,7 @@ fn sequence(
         minimum: None,
     };
     if !prepared.attitude.turns() {
-        sequence.minimum = Some(bound::minimum(&sequence, prepared));
+        sequence.minimum = Some(bound::minimum(&sequence, prepared, &path.bent));
     }
     Ok(sequence)
 }

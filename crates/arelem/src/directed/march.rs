@@ -108,6 +108,7 @@ pub(super) fn run(
         tangency: tangency::Watch::new(prepared, checks),
         points: Vec::new(),
         look: FIRST_LOOK,
+        ahead: 0.0,
         look_for_end: 1,
         revolutions: 0,
         before: None,
@@ -131,9 +132,11 @@ struct March<'a> {
     watcher: Watcher<'a>,
     tangency: tangency::Watch<'a>,
     points: Vec<Vec3>,
-    /// Number of cut vectors after which it is time to look ahead.
+    /// Number of cut vectors after which it is time to look ahead, and the way along which a check surface is known to lie
+    /// ahead.
     look: usize,
-    /// The same for the end of a surface, where vectors become shorter.
+    ahead: f64,
+    /// The same number for the end of a surface, where vectors become shorter.
     look_for_end: usize,
     revolutions: u32,
     before: Option<Before<'a>>,
@@ -161,7 +164,7 @@ impl<'a> March<'a> {
                 self.before = Some(before);
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
-                self.look_ahead(&next, cancel)?;
+                self.look_ahead((&here, &next), cancel)?;
                 self.look_for_end(&here, &next, cancel)?;
                 here = next;
                 cap = self.state.maximum_step;
@@ -213,24 +216,32 @@ impl<'a> March<'a> {
         })
     }
 
-    /// From time to time, while the check surfaces come no nearer: ends a motion that cannot meet any.
-    fn look_ahead(&mut self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
-        if self.points.len() < self.look {
+    /// From time to time, beyond where a check surface was seen ahead: ends a motion that cannot meet any.
+    fn look_ahead(
+        &mut self,
+        (here, next): (&Vertex, &Vertex),
+        cancel: &dyn Fn() -> bool,
+    ) -> Result<(), MotionFailure> {
+        self.ahead -= (next.tip - here.tip).norm();
+        if self.points.len() < self.look || self.ahead > 0.0 {
             return Ok(());
         }
-        self.look *= 2;
-        self.judge_outlook(from, cancel)
+        self.look = 2 * self.points.len();
+        self.judge_outlook(next, cancel)
     }
 
     /// Looks as far ahead as the cut vectors that are left can reach: an error if nothing there stops the motion.
-    fn judge_outlook(&self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
+    fn judge_outlook(&mut self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
         let left = (self.state.maximum_points as usize).saturating_sub(self.points.len());
         let reach = left as f64 * self.state.maximum_step;
         let watches = (&self.watcher, &self.tangency);
         match scout::ahead(self.prepared, self.checks, watches, from, reach, cancel)? {
             Outlook::Nothing { course, nearest, met } => Err(self.never_met(nearest, course, met)),
             Outlook::Ends(end) => Err(self.surface_ends(&end)),
-            Outlook::Open => Ok(()),
+            Outlook::Open { way } => {
+                self.ahead = way;
+                Ok(())
+            }
         }
     }
 
@@ -315,7 +326,9 @@ impl<'a> March<'a> {
     }
 
     fn path(&mut self, end: &finish::End) -> Path {
-        Path { points: std::mem::take(&mut self.points), check: end.check, check_side: end.side }
+        let points = std::mem::take(&mut self.points);
+        let bent = self.stepper.record.along(&self.prepared.tip, &points);
+        Path { points, check: end.check, check_side: end.side, bent }
     }
 
     /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.

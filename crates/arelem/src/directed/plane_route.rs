@@ -10,6 +10,7 @@ use apt_geometry::{
 
 use super::{Path, Prepared};
 use crate::{
+    bound::Bent,
     error::{Course, MotionFailure},
     plane_curve::{Curve, flat},
     role::GUARD,
@@ -140,7 +141,7 @@ pub(super) fn run(
         let found = choose(prepared, check, &track, &stop)?;
         let points = cut(state, prepared, &track, found.x)?;
         let check_side = side(prepared, &stop, &track, found);
-        Ok(Path { points, check: 0, check_side })
+        Ok(Path { points, check: 0, check_side, bent: Bent::none(&prepared.tip) })
     };
     // The path through the present position; if that meets nothing, others in the band.
     along(0.0)

@@ -12,6 +12,7 @@ pub(super) use self::course::lowest;
 pub(crate) use self::ledger::Ledger;
 use crate::{
     attitude::Sweep,
+    bound,
     clearance::{Contact, Shape},
     role::{ROUNDING, Working},
 };
@@ -32,6 +33,8 @@ pub(crate) struct Extremes {
     pub(crate) least: f64,
     pub(crate) greatest: f64,
     pub(crate) proven: bool,
+    /// Integral of the root of how much the slope changes, by the distance, as far as samples tell: see [`crate::bound`].
+    pub(crate) turning: f64,
 }
 
 /// Clearance and its derivative at a place along the vector.
@@ -98,7 +101,10 @@ pub(crate) fn extremes(
 ) -> Extremes {
     let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
     let length = sweep.length;
-    let ends = Extremes { least, greatest, proven: role.holds(least, size) && role.holds(greatest, size) };
+    let proven = role.holds(least, size) && role.holds(greatest, size);
+    let slope = |contact: &Contact| sweep.direction.dot(&contact.gradient);
+    let turning = bound::turning([0.0, length], [slope(from.1), slope(to.1)]);
+    let ends = Extremes { least, greatest, proven, turning };
     let turns = sweep.turns() && !role.gauge.on;
     let shape = match role.shape {
         Shape::Convex if !turns => role.gauge.shape_along(&sweep.at(0.0).1, [from.0, to.0]),
@@ -125,47 +131,65 @@ pub(crate) fn extremes(
     match shape {
         Shape::Flat => ends,
         Shape::Convex => {
-            let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let Minimum { value, bound, turning } = convex_minimum(&line, a, b, ENOUGH * role.band());
             let proven = ends.proven && bound >= limits[0];
-            Extremes { least: value.min(least), greatest, proven }
+            Extremes { least: value.min(least), greatest, proven, turning }
         }
         Shape::Concave => {
-            let (value, bound) = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let Minimum { value, bound, turning } = convex_minimum(&line, a, b, ENOUGH * role.band());
             // The least values are those of the ends, if no other part of the tool is deeper there.
             let deepest = |x| line.certified(x, -role.inside - ROUNDING * size);
             let proven = ends.proven && -bound <= limits[1] && deepest(0.0) && deepest(length);
-            Extremes { least, greatest: (-value).max(greatest), proven }
+            Extremes { least, greatest: (-value).max(greatest), proven, turning }
         }
         Shape::General => course::extremes(&line, a, b, ends),
     }
 }
 
-/// Minimum of a convex function between two samples: its least value found and a lower bound from tangents.
-fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f64) {
+/// The minimum of a convex function: its least value found, a lower bound from tangents, and how the slope turns.
+struct Minimum {
+    value: f64,
+    bound: f64,
+    turning: f64,
+}
+
+/// Minimum of a convex function between two samples.
+fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> Minimum {
+    let turning = |a: Sample, b: Sample| bound::turning([a.x, b.x], [a.slope, b.slope]);
+    let whole = [a, b];
+    let mut value = a.value.min(b.value);
+    let found = |value: f64, bound: f64, between: Option<Sample>| Minimum {
+        value,
+        bound,
+        turning: match between {
+            Some(middle) => turning(whole[0], middle) + turning(middle, whole[1]),
+            None => turning(whole[0], whole[1]),
+        },
+    };
     if a.slope >= 0.0 || b.slope <= 0.0 {
-        let value = a.value.min(b.value);
-        return (value, value);
+        return found(value, value, None);
     }
     let (mut a, mut b) = (a, b);
-    let mut value = a.value.min(b.value);
+    let mut last = None;
     for iteration in 0..MAX_ITERATIONS {
         if (line.cancel)() {
-            return (value, f64::NEG_INFINITY);
+            return found(value, f64::NEG_INFINITY, last);
         }
         let (meeting, bound) = tangents_meet(a, b);
         if value - bound <= enough {
-            return (value, bound);
+            return found(value, bound, last);
         }
         // Where contact jumps the tangents meet at the minimum, elsewhere it is that of the cubic.
         let x = if iteration % TANGENTS_EVERY == TANGENTS_EVERY - 1 { meeting } else { cubic_minimum(a, b) };
         let middle = line.sample(x);
+        last = Some(middle);
         value = value.min(middle.value);
         // With the new tangent both sides are bounded.
         let left = tangents_meet(a, middle).1;
         let right = tangents_meet(middle, b).1;
         let bound = if middle.slope >= 0.0 { left } else { right }.min(middle.value);
         if value - bound <= enough {
-            return (value, bound);
+            return found(value, bound, last);
         }
         if middle.slope >= 0.0 {
             b = middle;
@@ -173,7 +197,7 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> (f64, f
             a = middle;
         }
     }
-    (value, tangents_meet(a, b).1)
+    found(value, tangents_meet(a, b).1, last)
 }
 
 /// Where the cubic through two samples with slopes of opposite sign, falling and rising, has its minimum.

@@ -7,11 +7,11 @@
 
 use apt_geometry::{Vec3, motion::CheckSurface};
 
-use super::{Vertex, surface_end::SurfaceEnd, tangency};
+use super::{Vertex, surface_end::SurfaceEnd, tangency, tangent};
 use crate::{
     directed::{Prepared, is_tangent, stop::Watcher},
     error::{Course, MotionFailure},
-    position::{self, Condition},
+    position::{self, Condition, Solution},
 };
 
 /// Bound of the steps of one look ahead.
@@ -46,8 +46,8 @@ pub(super) enum Outlook {
     /// No position that stops the motion: the nearest approach on the way, how the way ends, and how many positions that
     /// count were met, too few.
     Nothing { course: Course, nearest: (f64, Vec3, usize), met: usize },
-    /// A check surface, or nothing that could be told.
-    Open,
+    /// A check surface is met, at the latest after this way (zero where nothing could be told).
+    Open { way: f64 },
 }
 
 /// A step of the look ahead.
@@ -86,7 +86,8 @@ pub(super) fn ahead(
         nearest,
         log: vec![[0.0; 2]],
     };
-    let Some(start) = scout.settled(&from.tip, &from.tangent) else { return Ok(Outlook::Open) };
+    let untold = Outlook::Open { way: 0.0 };
+    let Some(start) = scout.settled(&from.tip, &from.tangent) else { return Ok(untold) };
     let met = scout.met();
     let least = least.clamp(REACH * prepared.size, LONGEST * prepared.size);
     let (mut here, mut step) = (start, FIRST * prepared.size);
@@ -96,7 +97,7 @@ pub(super) fn ahead(
             return Err(MotionFailure::Cancelled);
         }
         let (to, turn, end) = match scout.leg(&here, &mut step) {
-            None => return Ok(Outlook::Open),
+            None => return Ok(untold),
             Some(Leg::Along(to, turn)) => (to, turn, None),
             Some(Leg::Over(beyond)) => {
                 let (to, end) = scout.end_between(&here, beyond);
@@ -108,14 +109,14 @@ pub(super) fn ahead(
         scout.watcher.nearest.0 = f64::INFINITY;
         let before = scout.watcher.clone();
         if scout.watcher.scan(&sweep).is_some() || scout.tangency.scan(&here, &to)?.is_some() {
-            return Ok(Outlook::Open);
+            return Ok(Outlook::Open { way: scout.travelled() + sweep.length });
         }
         let approach = scout.watcher.nearest;
         if !tangent && approach.0 <= MARGIN * sag {
             step = 0.25 * sweep.length;
             scout.watcher = before;
             if step <= LEAST * prepared.size {
-                return Ok(Outlook::Open);
+                return Ok(untold);
             }
             continue;
         }
@@ -131,7 +132,7 @@ pub(super) fn ahead(
         if let Some(course) = course {
             // On a closed path those that were met come again.
             return Ok(if closed && scout.met() > met {
-                Outlook::Open
+                untold
             } else {
                 Outlook::Nothing { course, nearest: scout.nearest, met: scout.met() }
             });
@@ -139,7 +140,7 @@ pub(super) fn ahead(
         step = sweep.length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);
         here = to;
     }
-    Ok(Outlook::Open)
+    Ok(untold)
 }
 
 impl Scout<'_> {
@@ -150,8 +151,10 @@ impl Scout<'_> {
             Condition::Clearance(&part.gauge, part.rest()),
             Condition::Clearance(&drive.gauge, drive.rest()),
         ];
-        let tip = position::solve(attitude, &conditions, place).ok()?.tip;
-        Vertex::at(self.prepared, tip, sense).ok()
+        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, place).ok()?;
+        let [Some(part), Some(drive), _] = contacts else { return None };
+        let axis = attitude.tool_at(&tip).ok()?.axis;
+        Some(Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
     }
 
     /// The next place and the turn of the path on the way; shortens the step until the path is followed.

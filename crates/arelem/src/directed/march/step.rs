@@ -2,12 +2,15 @@
 //! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it. Where the
 //! path begins to bend the other way both limits are tried, and the vertex before may move back on its vector ([`window`]).
 
+mod trend;
 mod window;
 
 use apt_geometry::{Vec3, surface::Surface};
 
+use self::trend::Trend;
 use super::{Prepared, Vertex, tangent};
 use crate::{
+    bound::Record,
     clearance::{Contact, Shape},
     directed::proof::{self, Extremes, Ledger},
     error::{Iteration, MotionFailure},
@@ -73,8 +76,8 @@ pub(super) struct Stepper<'a> {
     prepared: &'a Prepared,
     maximum: f64,
     cancel: &'a dyn Fn() -> bool,
-    /// Second derivative of each clearance along the path: part, drive.
-    curvature: Option<[f64; 2]>,
+    /// How clearances are expected to bend along the next vector.
+    trend: Trend,
     /// The vector found last.
     latest: Option<Trial>,
     /// Where the path last turned on the spot, and its direction until then.
@@ -85,6 +88,8 @@ pub(super) struct Stepper<'a> {
     arrived: Option<(Vec3, Vec3)>,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
+    /// How the path bends so far, for the least number of vectors.
+    pub(super) record: Record,
 }
 
 #[derive(Clone)]
@@ -103,6 +108,8 @@ struct Trial {
     /// Factor by which the length could grow, below one if it must shrink.
     growth: f64,
     proven: bool,
+    /// How the slopes of both clearances turn along the vector.
+    turning: [f64; 2],
     culprit: usize,
     worst: f64,
 }
@@ -122,12 +129,13 @@ impl<'a> Stepper<'a> {
             prepared,
             maximum,
             cancel,
-            curvature: None,
+            trend: Trend::default(),
             latest: None,
             turned: None,
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
+            record: Record::new(&prepared.tip),
         }
     }
 
@@ -149,7 +157,7 @@ impl<'a> Stepper<'a> {
                 continue;
             }
             let turned = Vertex { tangent, ..*here };
-            self.curvature = None;
+            self.trend.forget();
             if let Ok(next) = self.onward(&turned, cap, Places::Limits) {
                 self.turned = Some((here.tip, here.tangent));
                 *here = turned;
@@ -157,7 +165,7 @@ impl<'a> Stepper<'a> {
             }
         }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
-        self.curvature = None;
+        self.trend.forget();
         let level = self.onward(here, cap, Places::Level);
         if matches!(level, Ok(_) | Err(MotionFailure::Cancelled)) {
             return self.noted(here, level);
@@ -222,7 +230,7 @@ impl<'a> Stepper<'a> {
     /// The next vertex along the tangent, at most `cap` away.
     fn onward(&mut self, here: &Vertex, cap: f64, places: Places) -> Result<Vertex, MotionFailure> {
         let cap = cap.min(self.maximum);
-        let curvature = match self.curvature {
+        let curvature = match self.trend.curvature() {
             Some(known) => known,
             None => self.probe(here)?,
         };
@@ -234,10 +242,16 @@ impl<'a> Stepper<'a> {
         {
             best = other;
         }
-        self.curvature = Some(best.next_curvature);
+        self.follow(&here.tip, &best);
         let vertex = best.vertex;
         self.latest = Some(best);
         Ok(vertex)
+    }
+
+    /// Goes on with a vector.
+    fn follow(&mut self, from: &Vec3, found: &Trial) {
+        self.trend.follow(found);
+        self.record.add(from, &found.vertex.tip, [&self.prepared.part, &self.prepared.drive], found.turning);
     }
 
     /// The longest vector that is proven, from a first guess.
@@ -469,6 +483,7 @@ impl<'a> Stepper<'a> {
             next_curvature: course.next_curvature,
             growth: GREATEST_GROWTH,
             proven: extremes.iter().all(|e| e.proven),
+            turning: [extremes[0].turning, extremes[1].turning],
             culprit: 0,
             worst: 0.0,
         };

@@ -4,6 +4,7 @@ use apt_geometry::motion::CheckSurface;
 
 use super::{Vertex, finish, tangency};
 use crate::{
+    bound::Bent,
     directed::{Path, Prepared, is_tangent, stop::Watcher},
     error::{Course, MotionFailure},
 };
@@ -36,7 +37,8 @@ pub(super) fn run(
         if let Some(event) = event {
             let towards = finish::Towards { event: &event, tangent: &here.tangent, held: None };
             let end = finish::end(prepared, checks, (&watcher, &sweep), &towards)?;
-            return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side });
+            let bent = Bent::none(&prepared.tip);
+            return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side, bent });
         }
         travelled += length;
         length *= 2.0;

@@ -60,7 +60,7 @@ impl March<'_> {
             count => self.points[count - 3],
         };
         let shrinks = length < SHRINKING * (here.tip - earlier).norm();
-        if !shrinks || self.points.len() < self.look_for_end {
+        if !shrinks || self.ahead > 0.0 || self.points.len() < self.look_for_end {
             return Ok(());
         }
         self.look_for_end = 2 * self.points.len();

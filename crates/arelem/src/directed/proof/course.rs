@@ -6,6 +6,7 @@
 use apt_geometry::surface::Bend;
 
 use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample};
+use crate::bound;
 
 /// Pieces into which a vector is cut at first.
 const PIECES: usize = 3;
@@ -38,8 +39,9 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
         course.samples.push(to);
         from = to;
     }
+    let turning = course.turning();
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
-    Extremes { least: course.least, greatest: course.greatest, proven }
+    Extremes { least: course.least, greatest: course.greatest, proven, turning }
 }
 
 struct Course<'a, 'b> {
@@ -104,10 +106,16 @@ impl Course<'_, '_> {
         self.samples.push(last);
     }
 
-    /// Halves stretches until all of them are proven.
+    /// How the slope turns from sample to sample, which come to be in order.
+    fn turning(&mut self) -> f64 {
+        self.samples.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let pairs = self.samples.windows(2);
+        pairs.map(|pair| bound::turning([pair[0].x, pair[1].x], [pair[0].slope, pair[1].slope])).sum()
+    }
+
+    /// Halves stretches until all of them are proven. Samples are in order.
     fn prove(&mut self) -> bool {
-        let mut samples = std::mem::take(&mut self.samples);
-        samples.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let samples = std::mem::take(&mut self.samples);
         if !samples.iter().all(|sample| self.deep_enough(sample)) {
             return false;
         }

@@ -100,7 +100,7 @@ pub(super) fn extremes(sweep: &Sweep<'_>, role: &Working, ends: Extremes, size: 
 
 impl Turning<'_> {
     fn extremes(&self, ends: Extremes) -> Option<Extremes> {
-        let Extremes { mut least, mut greatest, .. } = ends;
+        let Extremes { mut least, mut greatest, turning, .. } = ends;
         let mut open = Vec::with_capacity(PIECES);
         let mut from = self.sample(0.0)?;
         for k in 1..=PIECES {
@@ -113,7 +113,7 @@ impl Turning<'_> {
         let mut count = PIECES + 1;
         while let Some((a, b)) = open.pop() {
             if !self.role.holds(least, self.size) || !self.role.holds(greatest, self.size) {
-                return Some(Extremes { least, greatest, proven: false });
+                return Some(Extremes { least, greatest, proven: false, turning });
             }
             if self.holds_between(&a, &b) {
                 continue;
@@ -128,7 +128,7 @@ impl Turning<'_> {
             open.push((a, middle));
             open.push((middle, b));
         }
-        Some(Extremes { least, greatest, proven: ends.proven })
+        Some(Extremes { least, greatest, proven: ends.proven, turning })
     }
 
     fn sample(&self, x: f64) -> Option<Sample> {

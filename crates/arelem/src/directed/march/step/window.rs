@@ -5,6 +5,7 @@
 
 use super::{Guess, Places, Stepper, Trial};
 use crate::{
+    bound,
     clearance::{Contact, Shape},
     directed::march::Vertex,
     error::MotionFailure,
@@ -103,7 +104,8 @@ impl Stepper<'_> {
             return Ok(None);
         }
         if let Some(trial) = self.past(before, here, cap, &latest)? {
-            self.curvature = Some(trial.next_curvature);
+            self.trend.forget();
+            self.follow(&before.tip, &trial);
             self.last = trial.vertex.tip - before.tip;
             return Ok(Some(Moved { from: *before, next: trial.vertex, all_the_way: true }));
         }
@@ -129,9 +131,22 @@ impl Stepper<'_> {
             return Ok(None);
         }
         let Some((from, trial)) = search.found else { return Ok(None) };
-        self.curvature = Some(trial.next_curvature);
+        self.trend.forget();
+        self.record_shortened(before, &from);
+        self.follow(&from.tip, &trial);
         self.last = trial.vertex.tip - from.tip;
         Ok(Some(Moved { from, next: trial.vertex, all_the_way: false }))
+    }
+
+    /// Notes the bend along a vector that has come to end at another vertex.
+    fn record_shortened(&mut self, from: &Vertex, to: &Vertex) {
+        let way = to.tip - from.tip;
+        let turning = |a: &Contact, b: &Contact| {
+            let length = way.norm();
+            bound::turning([0.0, length], [a, b].map(|contact| contact.gradient.dot(&way) / length))
+        };
+        let both = [turning(&from.part, &to.part), turning(&from.drive, &to.drive)];
+        self.record.add(&from.tip, &to.tip, [&self.prepared.part, &self.prepared.drive], both);
     }
 
     /// A vector from the vertex before that leads past the last vertex to the other limits: that vertex can be spared.
