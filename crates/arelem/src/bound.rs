@@ -99,8 +99,11 @@ impl Record {
 
     /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`].
     pub(crate) fn add(&mut self, from: &Vec3, to: &Vec3, roles: [&Working; 2], turning: [f64; 2]) {
-        let known = self.last.iter().rev().find(|bent| bent.to == *from).or(self.last.last());
-        let before = known.map_or([0.0; 2], |bent| bent.integral);
+        if let Some(known) = self.last.iter().rposition(|bent| bent.to == *from) {
+            // What led on from there has been taken back.
+            self.last.truncate(known + 1);
+        }
+        let before = self.last.last().map_or([0.0; 2], |bent| bent.integral);
         let integral = [0, 1].map(|k: usize| before[k] + share(roles[k], turning[k]));
         if self.last.len() >= KEPT {
             self.last.remove(0);
@@ -116,9 +119,9 @@ impl Record {
     }
 }
 
-/// Integral of √|κ| over a stretch over which a slope changes.
-pub(crate) fn turning(range: [f64; 2], slopes: [f64; 2]) -> f64 {
-    ((slopes[1] - slopes[0]).abs() * (range[1] - range[0]).max(0.0)).sqrt()
+/// Integral of √|κ| over a stretch of a length over which a slope changes.
+pub(crate) fn turning(length: f64, slopes: [f64; 2]) -> f64 {
+    ((slopes[1] - slopes[0]).abs() * length).sqrt()
 }
 
 /// What a vector adds to the integral of √(κ/8τ). It keeps the band, so that it counts for one at most: where contact jumps
@@ -176,7 +179,7 @@ fn turn(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
     let slope = |tip: &Vec3| role.gauge.contact(&prepared.tool, tip).gradient.dot(&direction);
     let half = 0.5 * length;
     let slopes = [from, &(0.5 * (from + to)), to].map(slope);
-    turning([0.0, half], [slopes[0], slopes[1]]) + turning([half, length], [slopes[1], slopes[2]])
+    turning(half, [slopes[0], slopes[1]]) + turning(half, [slopes[1], slopes[2]])
 }
 
 /// The next whole number.

@@ -50,6 +50,10 @@ impl Chart {
 pub struct Steady {
     /// Greatest curvature towards the points of the ball, not negative.
     hollow: f64,
+    /// Greatest curvature away from them, not negative; infinite over an edge.
+    round: f64,
+    /// Greatest distance from the surface for which this is known.
+    depth: f64,
     /// What the surface of the charts is farther away.
     stock: f64,
     /// Depth beyond the surface up to which points of the ball have one nearest place, too.
@@ -64,6 +68,16 @@ impl Steady {
     /// surface is nowhere nearer than a sphere of curvature κ that touches it at the foot.
     pub fn bend(&self, distance: f64) -> f64 {
         parallel_bend(self.hollow, -(distance + self.stock))
+    }
+
+    /// Greatest second derivative along any line of the distance of points in the ball that are at least `nearest` from the
+    /// surface (negative: no deeper beyond it), if there is a bound.
+    ///
+    /// With one nearest place for each point it is at most `κ/(1 + dκ)` at a distance d, κ being the greatest curvature
+    /// away from the point at that place.
+    pub fn upward_bend(&self, nearest: f64) -> Option<f64> {
+        let bend = parallel_bend(self.round, nearest + self.stock);
+        (-nearest <= self.beyond.min(self.depth) && bend.is_finite()).then_some(bend)
     }
 }
 
@@ -110,6 +124,22 @@ impl Surface {
             Self::Sculptured(sheet) => sheet.chart(place),
             _ => None,
         }
+    }
+
+    /// The chart of a place at a step from that of another chart so short that third derivatives change nothing.
+    pub fn chart_beside(
+        &self,
+        place: &Place,
+        (last, chart): (&Place, &Chart),
+        [u, v]: [f64; 2],
+    ) -> Option<Chart> {
+        if place.piece != last.piece {
+            return self.chart(place);
+        }
+        let ([du, dv], [duu, duv, dvv]) = (chart.first, chart.second);
+        let (along, across) = (duu * u + duv * v, duv * u + dvv * v);
+        let point = chart.point + (du + along * 0.5) * u + (dv + across * 0.5) * v;
+        Some(Chart { point, first: [du + along, dv + across], ..*chart })
     }
 
     /// The place at other parameters; `None` beyond the end of the surface and where its natural side turns over.
@@ -170,9 +200,12 @@ impl Surface {
         if far * against.max(0.0) * lean >= 1.0 {
             return None;
         }
-        let hollow = if side > 0.0 { near.curvature[1] } else { near.curvature[0] }.max(0.0);
+        let [natural, other] = near.curvature;
+        let (hollow, round) = if side > 0.0 { (other, natural) } else { (natural, other) };
+        let (hollow, round) = (hollow.max(0.0), round.max(0.0));
         let beyond = if along > 0.0 { 0.5 / (along * lean) } else { f64::INFINITY };
-        hollow.is_finite().then_some(Steady { hollow, stock, beyond: (beyond + stock).max(0.0) })
+        let beyond = (beyond + stock).max(0.0);
+        hollow.is_finite().then_some(Steady { hollow, round, depth, stock, beyond })
     }
 
     /// Whether all of the surface is known, from the sizes of its parts, to be farther from a point than a distance. For

@@ -98,6 +98,11 @@ proptest! {
             let deepest = (1..20).map(|k| side * surface.signed_distance(&(p + x * (f64::from(k) / 20.0))));
             if deepest.clone().all(deep) {
                 prop_assert!(there >= least - 1e-9, "{which}: {there} below {least}");
+                if let Some(bend) = steady.upward_bend(d.min(there).min(deepest.clone().fold(f64::INFINITY, f64::min))) {
+                    let middle = side * surface.signed_distance(&((p + q) * 0.5));
+                    let sag = 0.5 * (d + there) - middle;
+                    prop_assert!(sag <= bend * x.norm_squared() / 8.0 + 1e-9, "{which}: {sag} with {bend}");
+                }
             }
             let share = e[0].abs() * depth;
             let reached = at.point + at.normal * (side * share);

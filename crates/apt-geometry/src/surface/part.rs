@@ -144,6 +144,11 @@ impl<T> Later<T> {
     pub(super) fn get(&self, make: impl FnOnce() -> T) -> &T {
         self.0.get_or_init(make)
     }
+
+    /// What has been made, if it has been asked for.
+    pub(super) fn made(&self) -> Option<&T> {
+        self.0.get()
+    }
 }
 
 impl<T> PartialEq for Later<T> {
@@ -175,6 +180,46 @@ impl Clone for Count {
 impl PartialEq for Count {
     fn eq(&self, _: &Self) -> bool {
         true
+    }
+}
+
+/// Bounds over one or several parts as wholes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Summary {
+    /// Greatest curvature seen from the natural side, and from the other.
+    curvature: [f64; 2],
+    /// A unit vector near all natural normals, if every part has some.
+    normal: Option<Vec3>,
+    /// No natural normal differs from that by a longer vector.
+    spread: f64,
+    /// Whether the surface ends here.
+    ends: bool,
+}
+
+impl Summary {
+    /// That of a part.
+    pub(super) fn of(part: &Part) -> Self {
+        let Part { curvature, normal, spread, ends, .. } = part;
+        Self { curvature: *curvature, normal: *normal, spread: *spread, ends: *ends }
+    }
+
+    /// Those of two places as one.
+    pub(super) fn and(&self, other: &Self) -> Self {
+        let middle = self.normal.zip(other.normal).and_then(|(a, b)| (a + b).try_normalize(0.0));
+        let spread = |one: &Self, middle: &Vec3| {
+            one.normal.map_or(f64::INFINITY, |normal| one.spread + (normal - middle).norm())
+        };
+        Self {
+            curvature: [0, 1].map(|k: usize| self.curvature[k].max(other.curvature[k])),
+            normal: middle,
+            spread: middle.map_or(f64::INFINITY, |n| spread(self, &n).max(spread(other, &n))),
+            ends: self.ends || other.ends,
+        }
+    }
+
+    /// Greatest curvature seen from a side.
+    pub(super) fn curvature(&self, side: f64) -> f64 {
+        if side > 0.0 { self.curvature[0] } else { self.curvature[1] }
     }
 }
 
@@ -255,6 +300,29 @@ impl Survey {
 
     pub(super) fn reach(&self) -> f64 {
         self.reach
+    }
+
+    pub(super) fn side(&self) -> f64 {
+        self.side
+    }
+
+    /// Whether parts with such bounds as wholes add nothing to what has been found.
+    pub(super) fn is_settled_by(&self, parts: &Summary) -> bool {
+        self.jumps || self.has(parts, self.cosine_of(parts))
+    }
+
+    /// Least cosine between the normals of parts and the one asked about.
+    fn cosine_of(&self, parts: &Summary) -> f64 {
+        parts.normal.map_or(-1.0, |normal| normal.dot(&self.normal) - parts.spread)
+    }
+
+    /// Whether what has been found is no less than parts with normals of at least a cosine.
+    fn has(&self, parts: &Summary, cosine: f64) -> bool {
+        parts.curvature(self.side) <= self.curvature
+            && cosine >= self.cosine
+            && !parts.ends
+            && cosine >= self.least_cosine
+            && (!self.strict || parts.curvature(-self.side) <= self.behind)
     }
 
     /// Bound of the second derivatives of the distance over places at least `nearest` from the surface (negative: so far
@@ -463,13 +531,12 @@ impl Part {
         let [seen, behind] = if survey.side > 0.0 { [0, 1] } else { [1, 0] };
         let bound = self.curvature[seen];
         let faced = !survey.strict && survey.faced_by(self);
-        let cosine =
-            if faced { 1.0 } else { self.normal.map_or(-1.0, |n| n.dot(&survey.normal) - self.spread) };
-        let jumps = !faced && (self.ends || cosine < survey.least_cosine);
-        let known = !survey.strict || self.curvature[behind] <= survey.behind;
-        if bound <= survey.curvature && cosine >= survey.cosine && !jumps && known {
+        let all = Summary { ends: self.ends && !faced, ..Summary::of(self) };
+        let cosine = if faced { 1.0 } else { survey.cosine_of(&all) };
+        if survey.has(&all, cosine) {
             return;
         }
+        let jumps = all.ends || cosine < survey.least_cosine;
         let close = bound <= (self.least[seen] + self.close).max(survey.enough) && !jumps;
         let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         if close || fine {

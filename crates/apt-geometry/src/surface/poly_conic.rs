@@ -15,7 +15,7 @@ use super::{
     Chart, Foot, Place,
     descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
-    part::{Count, Part, Rectangle},
+    part::{Count, Part, Rectangle, Summary},
     perpendicular,
     sheet::{Jet, Landing, ON_SURFACE, Rest, at_limits},
 };
@@ -57,6 +57,8 @@ struct Cell {
     half: [f64; 2],
     /// The curvature of a leaf.
     part: Option<Box<Part>>,
+    /// That of all leaves below.
+    summary: Option<Summary>,
 }
 
 /// A polyconic surface ready for distance questions.
@@ -220,7 +222,8 @@ impl PolyConicSheet {
         let rectangle = Rectangle::between(t, s);
         let part = Part::new(self, rectangle);
         let Rectangle { middle, half } = rectangle;
-        Cell { center: *part.center(), radius: part.radius(), middle, half, part: Some(Box::new(part)) }
+        let (center, radius, summary) = (*part.center(), part.radius(), Some(Summary::of(&part)));
+        Cell { center, radius, middle, half, part: Some(Box::new(part)), summary }
     }
 
     /// Cuts the surface into cells and builds the tree over them.
@@ -236,8 +239,14 @@ impl PolyConicSheet {
         let stations = even(low, high, STATION_CELLS);
         let cells = halved(&conic, &stations);
         let leaves = cells.len().next_power_of_two();
-        let empty =
-            Cell { center: Vec3::zeros(), radius: -1.0, middle: [0.0; 2], half: [0.0; 2], part: None };
+        let empty = Cell {
+            center: Vec3::zeros(),
+            radius: -1.0,
+            middle: [0.0; 2],
+            half: [0.0; 2],
+            part: None,
+            summary: None,
+        };
         let mut nodes = vec![empty.clone(); leaves - 1];
         nodes.extend(cells.iter().map(|&(i, j)| self.cell(conic[i], stations[j])));
         nodes.resize(2 * leaves - 1, empty);

@@ -11,7 +11,7 @@ use self::bounds::ranges;
 use super::{
     Chart, Place,
     interval::Interval,
-    part::{Count, Later, Part},
+    part::{Count, Later, Part, Summary},
     perpendicular,
     section_curve::{CurvePoint, SectionCurve},
     sheet::{Jet, Landing, ON_SURFACE, Rest, at_limits},
@@ -64,6 +64,8 @@ struct Strip {
     radius: f64,
     /// The curvature of a leaf.
     part: Later<Box<Part>>,
+    /// That of all leaves below, once all of them are known.
+    summary: Later<Summary>,
 }
 
 /// A ruled surface ready for distance questions: `E(t) + v·(F(t) − E(t))`.
@@ -254,6 +256,7 @@ impl RuledSheet {
             middle: [Vec3::zeros(); 2],
             radius: f64::NEG_INFINITY,
             part: Later::new(),
+            summary: Later::new(),
         };
         let mut nodes = vec![empty.clone(); leaves - 1];
         nodes.extend(ranges.iter().map(|&(piece, range)| self.strip(piece, range, shares)));
@@ -279,7 +282,15 @@ impl RuledSheet {
             }
         }
         let radius = radius + 1e-13 * self.size;
-        Strip { piece, range, shares, middle: [ends[0], ends[1] - ends[0]], radius, part: Later::new() }
+        Strip {
+            piece,
+            range,
+            shares,
+            middle: [ends[0], ends[1] - ends[0]],
+            radius,
+            part: Later::new(),
+            summary: Later::new(),
+        }
     }
 
     /// Two neighbouring strips about the ruling between them. Points at the same share of two rulings are farthest apart
@@ -300,6 +311,7 @@ impl RuledSheet {
             middle: [ends[0], ends[1] - ends[0]],
             radius: reach(a).max(reach(b)),
             part: Later::new(),
+            summary: Later::new(),
         }
     }
 

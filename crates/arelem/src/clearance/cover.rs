@@ -32,6 +32,18 @@ struct Cell {
     half: [f64; 3],
 }
 
+/// The bound of [`upward_bend`] where the tool is in a ball in which nearest places do not jump: that takes no search.
+pub(crate) fn steady_bend(
+    gauge: &Gauge,
+    tool: &Tool,
+    tip: &Vec3,
+    spread: f64,
+    range: [f64; 2],
+) -> Option<f64> {
+    let (tool, tip) = &gauge.body(tool, tip);
+    if gauge.on { None } else { near::Around::new(gauge, tool, tip).upward_bend(spread, range) }
+}
+
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
 /// strays farther than `spread` from its place for the given tool end. There is none once `cancel`, asked once in
@@ -77,12 +89,23 @@ pub(crate) fn upward_bend(
             + tool.across[1] * cell.middle[1]
             + tool.axis * cell.middle[2];
         let reach = Vec3::from(cell.half).norm() + spread;
-        let foot = near.foot(&center).unwrap_or_else(|| gauge.surface.foot(&center));
+        let foot = match near.foot(&center) {
+            Some(foot) => foot,
+            None if gauge.surface.keeps_off(&center, reach + range[1].max(-range[0])) => continue,
+            None => gauge.surface.foot(&center),
+        };
         let distance = gauge.side * foot.distance;
         if distance - reach > range[1] || distance + reach < range[0] {
             continue;
         }
         let found = gauge.surface.bend(gauge.side, &foot, &region(center, reach));
+        let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
+        if let Bend::AtMost(bound) = found
+            && (small || bound <= greatest.max(close * needed))
+        {
+            greatest = greatest.max(bound);
+            continue;
+        }
         let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
         match at_best {
             Bend::AtMost(least) => needed = needed.max(least),
@@ -107,7 +130,6 @@ pub(crate) fn upward_bend(
             (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),
             _ => false,
         };
-        let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
         let limit = match (found, &gauge.surface) {
             (Bend::Unbounded, Surface::Sculptured(_)) => MAX_BOXES_UNBOUNDED_BY_PATCH,
             (Bend::Unbounded, _) => MAX_BOXES_UNBOUNDED,

@@ -27,9 +27,12 @@ use apt_geometry::{
 
 pub(crate) use self::{
     certify::{Certificate, Face},
-    cover::upward_bend,
+    cover::{steady_bend, upward_bend},
 };
-use self::{floor::Bases, near::Followed};
+use self::{
+    floor::Bases,
+    near::{Around, Followed},
+};
 pub use self::{memory::Memory, tool::Tool};
 
 /// Where tool and surface are nearest.
@@ -149,6 +152,51 @@ impl Gauge {
         let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref());
         self.memory.keep_proof(self.side, proof);
         found
+    }
+
+    /// Whether the clearance is known to be nowhere below a level on the straight way of the tool end from one contact to another.
+    /// Half of it, up to a third position, is looked at from either.
+    pub(crate) fn keeps_between(
+        &self,
+        tool: &Tool,
+        contacts: [(&Vec3, &Contact); 2],
+        between: &Vec3,
+        level: f64,
+    ) -> bool {
+        if self.on || !self.surface.has_charts() {
+            return false;
+        }
+        let (tool, middle) = &self.body(tool, between);
+        let around = Around::new(self, tool, middle);
+        contacts.into_iter().all(|(tip, contact)| {
+            let contact = Contact { clearance: contact.clearance + self.thickness, ..*contact };
+            around.keeps(&contact, [&(tip + (middle - between)), middle], level + self.thickness)
+        })
+    }
+
+    /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does
+    /// not cut in. The tool is no farther from the surface than from each of its two points of contact, and its distance from a
+    /// point is a convex function of its place.
+    pub(crate) fn at_most_between(&self, tool: &Tool, contacts: [(&Vec3, &Contact); 2]) -> Option<f64> {
+        if self.on {
+            return None;
+        }
+        let [(from, first), (to, last)] = contacts;
+        let distance = |point: &Vec3, tip: &Vec3| {
+            let (tool, tip) = self.body(tool, tip);
+            let (along, across, _) = tool.split(&(point - tip));
+            tool.profile.distance(across, along).0 - self.thickness
+        };
+        let (ahead, behind) = (distance(&first.surface, to), distance(&last.surface, from));
+        let (start, end) = (first.clearance, last.clearance);
+        let outside =
+            [start, end, ahead, behind].into_iter().all(|clearance| clearance + self.thickness >= 0.0);
+        outside.then(|| {
+            // Where the two chords meet.
+            let (falls, rises) = ((behind - start).max(0.0), (ahead - end).max(0.0));
+            let share = if falls + rises > 0.0 { falls / (falls + rises) } else { 0.0 };
+            (start + share * (ahead - start)).max(behind + share * (end - behind)).max(start.max(end))
+        })
     }
 
     /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.

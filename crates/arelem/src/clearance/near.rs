@@ -41,7 +41,9 @@ const BESIDE: f64 = 3.0;
 /// corner; in radii of the tool.
 const BALLS: [[f64; 2]; 6] =
     [[0.8, f64::INFINITY], [0.8, 1.0], [0.8, 0.3], [0.3, 0.3], [0.1, 0.1], [0.03, 0.05]];
-/// The same for a single point.
+/// Share of the distance that the tool may move in a ball by which it lies ahead.
+const AHEAD: f64 = 0.75;
+/// Sizes of balls for a single point.
 const POINT_BALLS: [f64; 4] = [2.0, 0.5, 0.1, 0.02];
 /// Way, in radii of the tool, after which a ball is tried for again.
 const PATIENCE: f64 = 0.1;
@@ -60,6 +62,8 @@ const SHORTEST: f64 = 0.1;
 pub(crate) struct Near {
     side: f64,
     start: Start,
+    /// The surface's point at the last contact.
+    surface: Vec3,
     zone: Result<Zone, Vec3>,
     far: Option<Far>,
     /// Where that was not shown.
@@ -84,6 +88,8 @@ struct Zone {
     /// Greatest distance from the surface for which it is steady.
     depth: f64,
     top: f64,
+    /// Which of the sizes it has.
+    size: usize,
     steady: Steady,
 }
 
@@ -126,12 +132,21 @@ pub(super) enum Followed {
 /// The contact near the last one.
 pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3, memory: &Memory) -> Followed {
     let Ok(mut memory) = memory.near.try_borrow_mut() else { return Followed::Lost };
-    let Some(known) = memory.as_mut().filter(|known| known.side == side) else { return Followed::Lost };
+    if !surface.has_charts() {
+        return Followed::Lost;
+    }
     let pose = Pose { tool, surface, side, tip };
+    let known = match memory.as_mut().filter(|known| known.side == side) {
+        Some(known) => known,
+        None => match pose.first() {
+            Some(first) => memory.insert(first),
+            None => return Followed::Lost,
+        },
+    };
     let Some(found) = known.touch(&pose) else { return Followed::Lost };
     let slack = pose.slack();
     if known.proves(&pose, &found, slack) {
-        known.start = found.start;
+        (known.start, known.surface) = (found.start, found.contact.surface);
         return Followed::Proven(found.contact, slack);
     }
     found.start.piece.map_or(Followed::Lost, |piece| Followed::Likely(piece, found.contact))
@@ -153,11 +168,8 @@ pub(super) fn remember(
     let Some(place) = surface.place(&(contact.tool + contact.gradient * circle.ball)) else { return };
     let start = Start { piece: Some(piece), direction: pose.facing(&contact.gradient), place };
     match memory.as_mut().filter(|known| known.side == side) {
-        Some(known) => known.start = start,
-        None => {
-            *memory =
-                Some(Near { side, start, zone: Err(Vec3::repeat(f64::INFINITY)), far: None, doubtful: None });
-        }
+        Some(known) => (known.start, known.surface) = (start, contact.surface),
+        None => *memory = Some(Near::new(side, start, contact.surface)),
     }
 }
 
@@ -169,24 +181,21 @@ pub(super) fn foot(
     tip: &Vec3,
     memory: &Memory,
 ) -> Option<Contact> {
+    if !surface.has_charts() {
+        return None;
+    }
     let mut memory = memory.near.try_borrow_mut().ok()?;
     let pose = Pose { tool, surface, side, tip };
     let known = match memory.as_mut().filter(|known| known.side == side) {
         Some(known) => known,
         None => {
             let start = Start { piece: None, direction: [1.0, 0.0], place: surface.place(tip)? };
-            memory.insert(Near {
-                side,
-                start,
-                zone: Err(Vec3::repeat(f64::INFINITY)),
-                far: None,
-                doubtful: None,
-            })
+            memory.insert(Near::new(side, start, *tip))
         }
     };
     match pose.touch(&known.start) {
         Some(found) if known.is_steady(&pose, &found) => {
-            known.start = found.start;
+            (known.start, known.surface) = (found.start, found.contact.surface);
             Some(found.contact)
         }
         _ => {
@@ -196,10 +205,19 @@ pub(super) fn foot(
     }
 }
 
+/// What is known about a contact in a steady ball.
+#[derive(Clone, Copy)]
+struct Known {
+    start: Start,
+    surface: Vec3,
+    zone: Zone,
+    far: Option<Far>,
+}
+
 /// What is known about a tool and a surface, for questions about points near by.
 pub(super) struct Around<'a> {
     pose: Pose<'a>,
-    known: Option<(Start, Zone, Option<Far>)>,
+    known: Option<Known>,
 }
 
 impl<'a> Around<'a> {
@@ -207,14 +225,15 @@ impl<'a> Around<'a> {
         let Gauge { surface, side, memory, .. } = gauge;
         let known = memory.near.try_borrow().ok().and_then(|near| {
             let near = near.as_ref().filter(|near| near.side == *side)?;
-            Some((near.start, *near.zone.as_ref().ok()?, near.far))
+            let zone = *near.zone.as_ref().ok()?;
+            Some(Known { start: near.start, surface: near.surface, zone, far: near.far })
         });
         Self { pose: Pose { tool, surface, side: *side, tip }, known }
     }
 
     /// The foot of a point, if that is known to be the only one.
     pub(super) fn foot(&self, p: &Vec3) -> Option<Foot> {
-        let (start, zone, _) = self.known?;
+        let Known { start, zone, .. } = self.known?;
         let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..start })?;
         let Contact { clearance, gradient, surface, .. } = found.contact;
         let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
@@ -224,14 +243,50 @@ impl<'a> Around<'a> {
         known.then_some(Foot { distance: side * clearance, point: surface, normal: gradient * side })
     }
 
+    /// A bound of the second derivatives of the distances of all points of the tool that are not farther than `range[1]` while
+    /// no point strays farther than `spread` from its place and none comes nearer than `range[0]`.
+    pub(super) fn upward_bend(&self, spread: f64, range: [f64; 2]) -> Option<f64> {
+        let Known { start, surface, zone, .. } = self.known.as_ref()?;
+        start.piece?;
+        let (whole, level) = (zone.top >= self.pose.tool.profile.top.height, range[1] + spread);
+        let alone = self.pose.stays_in(zone, surface, spread)
+            && (whole || self.top(level).is_some() || self.pose.is_off(zone.top, level));
+        alone.then(|| zone.steady.upward_bend(range[0])).flatten()
+    }
+
+    /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
+    /// contact in one of them.
+    pub(super) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
+        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, .. }) = &self.known else {
+            return false;
+        };
+        let Tool { axis, profile, .. } = self.pose.tool;
+        let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
+        let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
+        let ball = if on_corner { profile.arc } else { 0.0 };
+        let kept = |tip: &Vec3| {
+            let pose = Pose { tip, ..self.pose };
+            let flank = zone.top >= profile.top.height
+                || far.is_some_and(|far| far.from == zone.top && far.keeps(&pose, level));
+            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.keeps(contact, ball, zone, level)
+        };
+        contact.clearance + ball >= -zone.steady.beyond && way.into_iter().all(kept)
+    }
+
     /// A height above which the flank is known to be farther from the surface than a level.
     pub(super) fn top(&self, level: f64) -> Option<f64> {
-        let (_, zone, far) = self.known?;
+        let Known { zone, far, .. } = self.known?;
         far.filter(|far| far.from == zone.top && far.keeps(&self.pose, level)).map(|far| far.from)
     }
 }
 
 impl Near {
+    /// A contact about which nothing is known.
+    fn new(side: f64, start: Start, surface: Vec3) -> Self {
+        let zone = Err(Vec3::repeat(f64::INFINITY));
+        Self { side, start, surface, zone, far: None, doubtful: None }
+    }
+
     /// A contact on the last piece of the tool or on the one that faces the surface.
     fn touch(&self, pose: &Pose<'_>) -> Option<Touch> {
         let first = pose.touch(&self.start);
@@ -250,7 +305,7 @@ impl Near {
             return false;
         }
         let Ok(zone) = self.zone else { return false };
-        pose.keeps(found, &zone, found.contact.clearance - slack)
+        pose.keeps(&found.contact, found.circle.ball, &zone, found.contact.clearance - slack)
             && (zone.top >= pose.tool.profile.top.height || self.is_alone(pose, found, zone.top, slack))
     }
 
@@ -263,7 +318,7 @@ impl Near {
                 Err(tried) => (pose.tip - tried).norm() > PATIENCE * pose.scale(),
             };
             if again {
-                self.zone = pose.zone(found).ok_or(*pose.tip);
+                self.zone = pose.zone(found, self.zone.as_ref().ok()).ok_or(*pose.tip);
             }
         }
         let Ok(zone) = &self.zone else { return false };
@@ -359,6 +414,7 @@ fn valley([xx, xy, yy]: [f64; 3], slope: [f64; 2], scale: f64) -> Option<[f64; 2
 }
 
 /// A tool in a position beside a surface.
+#[derive(Clone, Copy)]
 struct Pose<'a> {
     tool: &'a Tool,
     surface: &'a Surface,
@@ -377,6 +433,16 @@ impl Pose<'_> {
         let height = SLENDER * self.tool.profile.top.height;
         let scale = self.tool.radius().max(height);
         if scale > 0.0 { scale } else { 1.0 }
+    }
+
+    /// Where contact may be, seen from the corner of the tool.
+    fn first(&self) -> Option<Near> {
+        let middle = self.tip + self.tool.axis * self.tool.profile.center.height;
+        let foot = self.surface.foot(&middle);
+        let gradient = foot.normal * self.side;
+        let (piece, place) = (Some(self.circle_towards(&gradient)?), self.surface.place(&middle)?);
+        let start = Start { piece, direction: self.facing(&gradient), place };
+        Some(Near::new(self.side, start, foot.point))
     }
 
     fn circle(&self, piece: Option<usize>) -> Option<Circle> {
@@ -504,12 +570,14 @@ impl Pose<'_> {
                     turn = 1.0;
                 }
             }
-            place = self.surface.shifted(&place, step)?;
+            let last = place;
+            place = self.surface.shifted(&last, step)?;
             let moved =
                 (chart.first[0] * step[0] + chart.first[1] * step[1]).norm() + turn.abs() * circle.radius;
             if moved <= resolution {
                 let start = Start { piece: start.piece, direction, place };
-                return self.made(circle, base + radial(direction) * circle.radius, start);
+                let chart = self.surface.chart_beside(&place, (&last, &chart), step)?;
+                return self.made(circle, base + radial(direction) * circle.radius, start, &chart);
             }
             if moved.is_nan() {
                 return None;
@@ -545,7 +613,8 @@ impl Pose<'_> {
             if moved <= resolution || length(at) > BESIDE * radius {
                 let center = self.tip + x * at[0] + y * at[1];
                 let start = Start { piece: start.piece, direction: at, place };
-                return self.made(Circle { radius: 0.0, height: 0.0, ball: 0.0 }, center, start);
+                let chart = self.surface.chart(&place)?;
+                return self.made(Circle { radius: 0.0, height: 0.0, ball: 0.0 }, center, start, &chart);
             }
             if moved.is_nan() {
                 return None;
@@ -554,8 +623,7 @@ impl Pose<'_> {
         None
     }
 
-    fn made(&self, circle: Circle, center: Vec3, start: Start) -> Option<Touch> {
-        let chart = self.surface.chart(&start.place)?;
+    fn made(&self, circle: Circle, center: Vec3, start: Start, chart: &Chart) -> Option<Touch> {
         let normal = chart.first[0].cross(&chart.first[1]).try_normalize(0.0)? * chart.sense;
         let distance = (center - chart.point).dot(&normal) - chart.thickness;
         let gradient = normal * self.side;

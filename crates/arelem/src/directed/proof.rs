@@ -45,6 +45,7 @@ struct Sample {
     slope: f64,
     /// How much less the value may be for all that the search knows.
     missed: f64,
+    contact: Contact,
 }
 
 /// A clearance along a straight line.
@@ -84,7 +85,8 @@ impl Line<'_> {
 
     fn known(&self, x: f64, contact: &Contact, tip: &Vec3) -> Sample {
         let (value, slope) = (contact.clearance, self.sweep.slope(contact, tip));
-        Sample { x, value: self.sign * value, slope: self.sign * slope, missed: f64::INFINITY }
+        let (value, slope) = (self.sign * value, self.sign * slope);
+        Sample { x, value, slope, missed: f64::INFINITY, contact: *contact }
     }
 }
 
@@ -103,7 +105,7 @@ pub(crate) fn extremes(
     let length = sweep.length;
     let proven = role.holds(least, size) && role.holds(greatest, size);
     let slope = |contact: &Contact| sweep.direction.dot(&contact.gradient);
-    let turning = bound::turning([0.0, length], [slope(from.1), slope(to.1)]);
+    let turning = bound::turning(length, [slope(from.1), slope(to.1)]);
     let ends = Extremes { least, greatest, proven, turning };
     let turns = sweep.turns() && !role.gauge.on;
     let shape = match role.shape {
@@ -155,7 +157,7 @@ struct Minimum {
 
 /// Minimum of a convex function between two samples.
 fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> Minimum {
-    let turning = |a: Sample, b: Sample| bound::turning([a.x, b.x], [a.slope, b.slope]);
+    let turning = |a: Sample, b: Sample| bound::turning(b.x - a.x, [a.slope, b.slope]);
     let whole = [a, b];
     let mut value = a.value.min(b.value);
     let found = |value: f64, bound: f64, between: Option<Sample>| Minimum {

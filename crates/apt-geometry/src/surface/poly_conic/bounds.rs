@@ -13,6 +13,8 @@ use crate::Vec3;
 const AT_END: f64 = 1e-9;
 /// Coefficients of a control function by the station parameter: the seventh power of a squared root, and the root.
 const COEFFICIENTS: usize = 15;
+/// Nodes of a tree that wait to be looked at, usually.
+const DEEP: usize = 32;
 /// Number of the function that is the fullness.
 const FULLNESS: usize = 6;
 
@@ -110,15 +112,25 @@ impl PolyConicSheet {
         let own = self.form.map.apply_point(survey.center());
         let normal = self.form.map.apply_vector(survey.normal());
         let mut survey = survey.within(own, normal);
-        let mut open = vec![0usize];
+        let mut open = Vec::with_capacity(DEEP);
+        open.push(0usize);
         while let Some(node) = open.pop() {
             let Some(cell) = self.cells.get(node).filter(|cell| cell.radius >= 0.0) else { continue };
-            if (own - cell.center).norm() > survey.reach() + cell.radius {
+            if cell.summary.is_some_and(|all| survey.is_settled_by(&all))
+                || (own - cell.center).norm() > survey.reach() + cell.radius
+            {
                 continue;
             }
             match &cell.part {
                 Some(part) => part.survey(self, &mut survey),
-                None => open.extend([2 * node + 2, 2 * node + 1]),
+                None => {
+                    // What bends most first: much of the rest then adds nothing.
+                    let [first, second] = [2 * node + 1, 2 * node + 2];
+                    let summary = |k: usize| self.cells.get(k).and_then(|cell| cell.summary);
+                    let bent = |k: usize| summary(k).map(|all| all.curvature(survey.side()));
+                    let other = bent(first) < bent(second);
+                    open.extend(if other { [first, second] } else { [second, first] });
+                }
             }
         }
         survey

@@ -19,11 +19,21 @@ pub(super) fn halved(rows: &[[f64; 2]], columns: &[[f64; 2]]) -> Vec<(usize, usi
     cells
 }
 
-/// The smallest ball about two.
+/// The smallest ball about two, with the bounds of both.
 pub(super) fn joined(a: &Cell, b: &Cell) -> Cell {
+    let summary = match (&a.summary, &b.summary) {
+        (Some(one), Some(other)) => Some(one.and(other)),
+        (one, other) => one.or(*other),
+    };
     let apart = (b.center - a.center).norm();
-    let about =
-        |center: Vec3, radius: f64| Cell { center, radius, middle: a.middle, half: a.half, part: None };
+    let about = |center: Vec3, radius: f64| Cell {
+        center,
+        radius,
+        middle: a.middle,
+        half: a.half,
+        part: None,
+        summary,
+    };
     if b.radius < 0.0 || a.radius >= apart + b.radius {
         return about(a.center, a.radius);
     }

@@ -3,9 +3,9 @@
 use super::{
     super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
-        part::{Enclose, Enclosure, Part, Rectangle, Survey},
+        part::{Enclose, Enclosure, Part, Rectangle, Summary, Survey},
     },
-    Piece, RuledSheet,
+    Piece, RuledSheet, Strip,
 };
 use crate::Vec3;
 
@@ -13,6 +13,8 @@ use crate::Vec3;
 const AT_END: f64 = 1e-9;
 /// How far curves may be from being shifted copies of each other, relative to the surface.
 const SHIFTED: f64 = 1e-10;
+/// Nodes of a tree that wait to be looked at, usually.
+const DEEP: usize = 32;
 /// Length of the difference of two unit normals below which pieces join smoothly.
 const SMOOTH: f64 = 1e-7;
 
@@ -128,15 +130,23 @@ impl RuledSheet {
 
     /// Answers a question about the curvature near a place.
     pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
+        let mut open = Vec::with_capacity(DEEP);
         for nodes in &self.bands {
-            let mut open = vec![0usize];
+            open.push(0usize);
             while let Some(node) = open.pop() {
                 let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };
-                if strip.bound(survey.center()) > survey.reach() {
+                let all = summary(nodes, node);
+                if all.is_some_and(|all| survey.is_settled_by(all))
+                    || strip.bound(survey.center()) > survey.reach()
+                {
                     continue;
                 }
-                if 2 * node + 1 < nodes.len() {
-                    open.extend([2 * node + 2, 2 * node + 1]);
+                let [first, second] = [2 * node + 1, 2 * node + 2];
+                if first < nodes.len() {
+                    // What bends most first: much of the rest then adds nothing.
+                    let bent = |k: usize| summary(nodes, k).map(|all| all.curvature(survey.side()));
+                    let other = bent(first) < bent(second);
+                    open.extend(if other { [first, second] } else { [second, first] });
                     continue;
                 }
                 let stretch = Stretch { sheet: self, piece: strip.piece };
@@ -148,4 +158,24 @@ impl RuledSheet {
         }
         survey
     }
+}
+
+/// The bounds over all strips below a node, as far as they have been asked for: each question makes those of one level more.
+fn summary(nodes: &[Strip], node: usize) -> Option<&Summary> {
+    let strip = nodes.get(node)?;
+    if let Some(known) = strip.summary.made() {
+        return Some(known);
+    }
+    let made = if 2 * node + 1 < nodes.len() {
+        let known = |k: usize| nodes.get(k).filter(|strip| strip.piece != usize::MAX);
+        let below = |k: usize| known(k).map(|strip| strip.summary.made());
+        match (below(2 * node + 1), below(2 * node + 2)) {
+            (Some(first), Some(second)) => first?.and(second?),
+            (Some(one), None) | (None, Some(one)) => *one?,
+            (None, None) => return None,
+        }
+    } else {
+        Summary::of(strip.part.made()?)
+    };
+    Some(strip.summary.get(|| made))
 }

@@ -3,12 +3,12 @@
 
 use apt_geometry::Vec3;
 
-use super::{BALLS, Circle, DEEPER, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, Zone};
+use super::{AHEAD, BALLS, Circle, DEEPER, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, Zone};
 use crate::clearance::{Contact, Tool, waves::length};
 
 impl Pose<'_> {
     /// A steady ball about the tool at a contact.
-    pub(super) fn zone(&self, found: &Touch) -> Option<Zone> {
+    pub(super) fn zone(&self, found: &Touch, last: Option<&Zone>) -> Option<Zone> {
         let Tool { axis, profile, .. } = self.tool;
         let (scale, surface, side) = (self.scale(), self.surface, self.side);
         if found.start.piece.is_none() {
@@ -17,17 +17,24 @@ impl Pose<'_> {
                 let radius = share * scale;
                 let depth = found.contact.clearance.max(0.0) + radius;
                 let steady = surface.steady(side, &center, [radius, depth])?;
-                Some(Zone { center, radius, depth, top: 0.0, steady })
+                Some(Zone { center, radius, depth, top: 0.0, size: 0, steady })
             });
         }
-        BALLS.iter().find_map(|[ease, above]| {
+        // What was too large near by is so again, but perhaps for the one size next to that.
+        let first = last.as_ref().map_or(0, |last| last.size.saturating_sub(1));
+        BALLS.iter().enumerate().skip(first).find_map(|(size, [ease, above])| {
             let top = profile.top.height.min(profile.upper.height + above * scale);
-            let center = self.tip + axis * (0.5 * top);
+            let middle = self.tip + axis * (0.5 * top);
             let half = self.tool.radius().hypot(0.5 * top);
-            let away = (center - found.contact.surface).norm();
+            let away = (middle - found.contact.surface).norm();
             let (radius, depth) = (half.max(away) + ease * scale, DEEPER * (away + half));
+            // Ahead on the way from the last one, as far as the tool and the contact remain in it.
+            let way =
+                last.as_ref().map_or(Vec3::zeros(), |last| self.tip + axis * (0.5 * last.top) - last.center);
+            let ahead = way.try_normalize(0.0).map_or(Vec3::zeros(), |way| way * (AHEAD * ease * scale));
+            let center = middle + ahead;
             let steady = surface.steady(side, &center, [radius, depth])?;
-            Some(Zone { center, radius, depth, top, steady })
+            Some(Zone { center, radius, depth, top, size, steady })
         })
     }
 
@@ -56,36 +63,44 @@ impl Pose<'_> {
 
     /// Whether the tool up to the top of a zone, and the contact, are in its ball.
     pub(super) fn is_in(&self, zone: &Zone, found: &Touch) -> bool {
-        let contact = (zone.center - found.contact.surface).norm() <= zone.radius;
-        let w = zone.center - self.tip;
-        if found.start.piece.is_none() {
-            return contact && w.norm() <= zone.radius && found.contact.clearance <= zone.depth;
-        }
-        let (along, across, _) = self.tool.split(&w);
-        let wide = across + self.tool.radius();
-        // No point is farther from the surface than from the contact.
-        let middle = self.tip + self.tool.axis * (0.5 * zone.top);
-        let deepest = (middle - found.contact.surface).norm() + self.tool.radius().hypot(0.5 * zone.top);
-        contact
-            && deepest <= zone.depth
-            && along.hypot(wide) <= zone.radius
-            && (along - zone.top).hypot(wide) <= zone.radius
+        let Contact { clearance, surface, .. } = found.contact;
+        (zone.center - surface).norm() <= zone.radius
+            && match found.start.piece {
+                None => (zone.center - self.tip).norm() <= zone.radius && clearance <= zone.depth,
+                Some(_) => self.stays_in(zone, &surface, 0.0),
+            }
     }
 
-    /// Whether the tool up to the top of a zone keeps a level: bounds that touch the distance at the contact are nowhere less on
-    /// circles, and between circles on a straight line they are least at one of them.
-    pub(super) fn keeps(&self, found: &Touch, zone: &Zone, level: f64) -> bool {
+    /// Whether the tool up to the top of a zone is in its ball wherever it moves by no more than a distance, given some point
+    /// of the surface.
+    pub(super) fn stays_in(&self, zone: &Zone, surface: &Vec3, spread: f64) -> bool {
+        let (along, across, _) = self.tool.split(&(zone.center - self.tip));
+        let wide = across + self.tool.radius();
+        // No point is farther from the surface than from that point of it.
+        let middle = self.tip + self.tool.axis * (0.5 * zone.top);
+        let deepest = (middle - surface).norm() + self.tool.radius().hypot(0.5 * zone.top);
+        deepest + spread <= zone.depth
+            && along.hypot(wide) + spread <= zone.radius
+            && (along - zone.top).hypot(wide) + spread <= zone.radius
+    }
+
+    /// Whether the tool up to the top of a zone keeps a level, by a contact in this position or another one, on a ball or an edge:
+    /// bounds that touch the distance at the contact are nowhere less on circles, and between circles on a straight line they
+    /// are least at one of them.
+    ///
+    /// Over a straight way of the tool each of these bounds is a concave function, so that what holds at both its ends by the same
+    /// contact holds all along it.
+    pub(super) fn keeps(&self, contact: &Contact, ball: f64, zone: &Zone, level: f64) -> bool {
         let profile = &self.tool.profile;
-        let Contact { clearance, tool: point, .. } = found.contact;
-        let from_point = (point, clearance);
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        let from_point = (*point, *clearance);
         let edge = |radius: f64, height: f64| {
-            self.floor(from_point, zone, found, Circle { radius, height, ball: 0.0 }) >= level
+            self.floor(from_point, gradient, zone, Circle { radius, height, ball: 0.0 }) >= level
         };
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
-        let own = found.circle.ball > 0.0;
-        let from_corner = if own { (found.center, clearance + found.circle.ball) } else { from_point };
-        (profile.arc <= 0.0 || self.floor(from_corner, zone, found, corner) >= level)
+        let from_corner = (point + gradient * ball, clearance + ball);
+        (profile.arc <= 0.0 || self.floor(from_corner, gradient, zone, corner) >= level)
             && edge(profile.lower.radius, profile.lower.height)
             && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
             && (profile.top.height <= profile.upper.height || {
@@ -96,9 +111,8 @@ impl Pose<'_> {
     }
 
     /// Lower bound of the distance of a circle of balls, from a place on the normal of a contact with its distance.
-    fn floor(&self, (place, distance): (Vec3, f64), zone: &Zone, found: &Touch, circle: Circle) -> f64 {
+    fn floor(&self, (place, distance): (Vec3, f64), normal: &Vec3, zone: &Zone, circle: Circle) -> f64 {
         let bend = zone.steady.bend(distance);
-        let normal = found.contact.gradient;
         let w = self.tip + self.tool.axis * circle.height - place;
         let middle =
             distance + normal.dot(&w) - 0.5 * bend * (w.norm_squared() + circle.radius * circle.radius);

@@ -28,7 +28,7 @@ const LENGTHENINGS: u32 = 4;
 /// reader of the path takes two positions for one.
 const LEAST_VECTOR: f64 = 1e-8;
 /// A vector whose length could grow by less than this share is long enough.
-const LONG_ENOUGH: f64 = 6e-4;
+const LONG_ENOUGH: f64 = 2e-4;
 /// Share of the band that the sag leaves: the less of it, the more places its proof takes.
 const SPARED: f64 = 0.25 * GUARD;
 /// Share of the predicted length that is tried.

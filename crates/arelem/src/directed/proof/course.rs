@@ -5,7 +5,7 @@
 
 use apt_geometry::surface::Bend;
 
-use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample};
+use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample, tangents_meet};
 use crate::bound;
 
 /// Pieces into which a vector is cut at first.
@@ -33,13 +33,17 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     let (least, greatest) = (ends.least, ends.greatest);
     let mut course = Course { line, samples: vec![a], least, greatest, is_exhausted: false };
     let mut from = a;
+    // The slope in the middle, from places on both sides of it.
+    let mut middle = 0.0;
     for k in 1..=PIECES {
         let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
+        middle += if k == PIECES { 0.0 } else { to.slope / (PIECES - 1) as f64 };
         course.between(from, to, 0);
         course.samples.push(to);
         from = to;
     }
-    let turning = course.turning();
+    let half = 0.5 * (b.x - a.x);
+    let turning = bound::turning(half, [a.slope, middle]) + bound::turning(half, [middle, b.slope]);
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
     Extremes { least: course.least, greatest: course.greatest, proven, turning }
 }
@@ -106,27 +110,21 @@ impl Course<'_, '_> {
         self.samples.push(last);
     }
 
-    /// How the slope turns from sample to sample, which come to be in order.
-    fn turning(&mut self) -> f64 {
-        self.samples.sort_by(|a, b| a.x.total_cmp(&b.x));
-        let pairs = self.samples.windows(2);
-        pairs.map(|pair| bound::turning([pair[0].x, pair[1].x], [pair[0].slope, pair[1].slope])).sum()
-    }
-
-    /// Halves stretches until all of them are proven. Samples are in order.
+    /// Halves stretches until all of them are proven.
     fn prove(&mut self) -> bool {
-        let samples = std::mem::take(&mut self.samples);
+        let mut samples = std::mem::take(&mut self.samples);
+        samples.sort_by(|a, b| a.x.total_cmp(&b.x));
         if !samples.iter().all(|sample| self.deep_enough(sample)) {
             return false;
         }
         let (mut count, mut unbounded) = (samples.len(), 0);
         let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
         while let Some((a, b)) = open.pop() {
-            match self.bend(&a, &b) {
-                Bend::AtMost(bend) if self.holds_between(&a, &b, bend) => continue,
-                Bend::AtMost(_) => {}
-                Bend::Unbounded => unbounded += 1,
+            let bend = self.bend(&a, &b);
+            if self.holds_between(&a, &b, bend) {
+                continue;
             }
+            unbounded += usize::from(bend == Bend::Unbounded);
             let x = 0.5 * (a.x + b.x);
             count += 1;
             if count > MAX_SAMPLES
@@ -185,11 +183,38 @@ impl Course<'_, '_> {
         }
     }
 
-    /// Whether the bounds on a stretch with such a second derivative are in the band.
-    fn holds_between(&self, a: &Sample, b: &Sample, bend: f64) -> bool {
-        let low = lowest((a.value - self.open(a), b.value - self.open(b)), bend, b.x - a.x);
-        let high = highest(a, b, bend);
-        self.line.allows(low) && self.line.allows(high)
+    /// Whether the bounds on a stretch with such a second derivative, or those from the contacts at both ends, are in the band.
+    fn holds_between(&self, a: &Sample, b: &Sample, bend: Bend) -> bool {
+        let (low, high) = match bend {
+            Bend::AtMost(bend) => {
+                let ends = (a.value - self.open(a), b.value - self.open(b));
+                (self.line.allows(lowest(ends, bend, b.x - a.x)), self.line.allows(highest(a, b, bend)))
+            }
+            Bend::Unbounded => (false, false),
+        };
+        (high || self.is_held_from_both(a, b)) && (low || self.is_kept_from_both(a, b))
+    }
+
+    /// Whether the places of contact at both ends of a stretch show that the tool is nowhere above the band on it.
+    fn is_held_from_both(&self, a: &Sample, b: &Sample) -> bool {
+        let Line { sweep, role, limits, .. } = self.line;
+        let at = |x: f64| sweep.at(x).0;
+        let (from, to) = (at(a.x), at(b.x));
+        let contacts = [(&from, &a.contact), (&to, &b.contact)];
+        !sweep.turns()
+            && role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
+    }
+
+    /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.
+    fn is_kept_from_both(&self, a: &Sample, b: &Sample) -> bool {
+        let Line { sweep, role, limits, .. } = self.line;
+        if sweep.turns() {
+            return false;
+        }
+        let at = |x: f64| sweep.at(x).0;
+        let (from, to, meeting) = (at(a.x), at(b.x), at(tangents_meet(*a, *b).0));
+        let contacts = [(&from, &a.contact), (&to, &b.contact)];
+        role.gauge.keeps_between(&sweep.at(a.x).1, contacts, &meeting, limits[0])
     }
 }
 
@@ -222,12 +247,16 @@ fn highest(a: &Sample, b: &Sample, bend: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use apt_geometry::Vec3;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::clearance::Contact;
 
     fn sample(x: f64, value: f64, slope: f64) -> Sample {
-        Sample { x, value, slope, missed: 0.0 }
+        let none = Vec3::zeros();
+        let contact = Contact { clearance: value, gradient: none, tool: none, surface: none };
+        Sample { x, value, slope, missed: 0.0, contact }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, upward_bend};
+use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, steady_bend, upward_bend};
 
 /// How much farther a bound reaches than the stretch it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
@@ -76,6 +76,9 @@ impl Ledger {
             && range[1] <= bound.range[1]
         {
             return Bend::AtMost(bound.bend);
+        }
+        if let Some(bend) = steady_bend(gauge, tool, tip, spread, range) {
+            return Bend::AtMost(bend);
         }
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));

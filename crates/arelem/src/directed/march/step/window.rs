@@ -143,7 +143,7 @@ impl Stepper<'_> {
         let way = to.tip - from.tip;
         let turning = |a: &Contact, b: &Contact| {
             let length = way.norm();
-            bound::turning([0.0, length], [a, b].map(|contact| contact.gradient.dot(&way) / length))
+            bound::turning(length, [a, b].map(|contact| contact.gradient.dot(&way) / length))
         };
         let both = [turning(&from.part, &to.part), turning(&from.drive, &to.drive)];
         self.record.add(&from.tip, &to.tip, [&self.prepared.part, &self.prepared.drive], both);
