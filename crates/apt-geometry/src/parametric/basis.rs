@@ -7,14 +7,55 @@ use crate::Vec3;
 /// A point in homogeneous coordinates `(wx, wy, wz, w)`.
 pub(super) type Homogeneous = Vector4<f64>;
 
+/// What control points and their differences count in a cubic and its derivatives at a parameter.
+pub(super) struct Weights {
+    value: [f64; 4],
+    first: [f64; 3],
+    second: [f64; 2],
+}
+
+impl Weights {
+    pub(super) fn at(t: f64) -> Self {
+        let s = 1.0 - t;
+        Self {
+            value: [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t],
+            first: [3.0 * s * s, 6.0 * s * t, 3.0 * t * t],
+            second: [6.0 * s, 6.0 * t],
+        }
+    }
+
+    /// The value of a cubic.
+    #[inline]
+    pub(super) fn value(&self, [a, b, c, d]: &[Homogeneous; 4]) -> Homogeneous {
+        let by = &self.value;
+        let at = |k: usize| a[k] * by[0] + b[k] * by[1] + c[k] * by[2] + d[k] * by[3];
+        Homogeneous::new(at(0), at(1), at(2), at(3))
+    }
+
+    /// Its first derivative. Of differences, because coordinates may be far greater than these.
+    #[inline]
+    pub(super) fn first(&self, [a, b, c, d]: &[Homogeneous; 4]) -> Homogeneous {
+        let by = &self.first;
+        let at = |k: usize| (b[k] - a[k]) * by[0] + (c[k] - b[k]) * by[1] + (d[k] - c[k]) * by[2];
+        Homogeneous::new(at(0), at(1), at(2), at(3))
+    }
+
+    /// Its second derivative.
+    #[inline]
+    pub(super) fn second(&self, [a, b, c, d]: &[Homogeneous; 4]) -> Homogeneous {
+        let by = &self.second;
+        let at = |k: usize| {
+            let (low, middle, high) = (b[k] - a[k], c[k] - b[k], d[k] - c[k]);
+            (middle - low) * by[0] + (high - middle) * by[1]
+        };
+        Homogeneous::new(at(0), at(1), at(2), at(3))
+    }
+}
+
 /// Four control points of a cubic, and the value with two derivatives at `t`.
 pub(super) fn cubic(control: &[Homogeneous; 4], t: f64) -> [Homogeneous; 3] {
-    let [a, b, c, d] = control;
-    let s = 1.0 - t;
-    let value = a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t);
-    let first = ((b - a) * (s * s) + (c - b) * (2.0 * s * t) + (d - c) * (t * t)) * 3.0;
-    let second = ((c - b * 2.0 + a) * s + (d - c * 2.0 + b) * t) * 6.0;
-    [value, first, second]
+    let weights = Weights::at(t);
+    [weights.value(control), weights.first(control), weights.second(control)]
 }
 
 /// Both parts of a cubic cut at `t` (de Casteljau).

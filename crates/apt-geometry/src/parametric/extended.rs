@@ -2,7 +2,7 @@
 //! patches along the tangents beyond the outer edges (reference on sculptured surfaces 2.3: contacts are solved on the
 //! ruled extension).
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use super::{
     basis::Homogeneous,
@@ -10,7 +10,10 @@ use super::{
     surface::SculpturedSurface,
     topology::{self, Edge, Neighbour},
 };
-use crate::Vec3;
+use crate::{
+    Vec3,
+    canonical::{Made, Remembering},
+};
 
 /// How far the straight patches reach, in sizes of the surface.
 pub const SCULPTURED_BEYOND: f64 = 0.1;
@@ -79,6 +82,28 @@ struct Outer {
     patch: usize,
     edge: Edge,
     chain: usize,
+}
+
+/// The patches that motions see, kept with the definition of their surface.
+#[derive(Debug)]
+pub struct Extended(Vec<ExtendedPatch>);
+
+impl Made for Extended {
+    fn parts(&self) -> usize {
+        self.0.len()
+    }
+}
+
+impl Extended {
+    /// Those of a surface: first its own in their order, then the extensions. `None` if its numbers are none.
+    pub fn of(surface: &Remembering<SculpturedSurface>) -> Option<Arc<Self>> {
+        surface.made(|definition| definition.is_finite().then(|| Self(definition.extended())))
+    }
+
+    /// The patches.
+    pub fn patches(&self) -> &[ExtendedPatch] {
+        &self.0
+    }
 }
 
 impl SculpturedSurface {
@@ -183,7 +208,7 @@ impl SculpturedSurface {
             let ([u, v], [s, w]) = (edge.parameters(*t), opposite(edge).parameters(*t));
             let far = straight.evaluate(u, v).position;
             let length = (far - straight.evaluate(s, w).position).norm();
-            self.nearest(&far).is_ok_and(|near| (near.position - far).norm() >= AWAY * length)
+            self.keeps_off(&far, AWAY * length)
         })
     }
 }

@@ -18,7 +18,7 @@ mod topology;
 
 pub use arc::{ArcPoint, CurveArc};
 pub use curve::{CurveFrame, SpaceCurve};
-pub use extended::{ExtendedPatch, SCULPTURED_BEYOND, Side};
+pub use extended::{Extended, ExtendedPatch, SCULPTURED_BEYOND, Side};
 pub use flow::{Flow, FlowKind, FlowRange, FlowSegment, SegmentMeasure};
 pub use measure::{CurvatureAt, Curvatures};
 pub use nearest::SurfacePlace;

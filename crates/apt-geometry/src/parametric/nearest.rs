@@ -150,6 +150,26 @@ impl SculpturedSurface {
         best.map(|found| found.1).ok_or(f64::INFINITY)
     }
 
+    /// Whether no place is nearer to a point than a distance; not where the search ran out of cells.
+    pub(super) fn keeps_off(&self, point: &Vec3, distance: f64) -> bool {
+        let mut open: Vec<Cell> =
+            self.patches.iter().enumerate().map(|(index, patch)| Cell::whole(index, patch)).collect();
+        let mut seen = 0;
+        while let Some(cell) = open.pop() {
+            let points = cell.patch.points();
+            let middle = cell.patch.evaluate(0.5, 0.5).position;
+            if box_distance(&points, point).max(along(&points, point, &middle)) >= distance {
+                continue;
+            }
+            seen += 1;
+            if (middle - point).norm() < distance || seen > MOST_CELLS {
+                return false;
+            }
+            open.extend(cell.halves());
+        }
+        true
+    }
+
     /// The nearest place that steps from a start in a patch lead to, not leaving it.
     fn polished(&self, index: usize, start: [f64; 2], point: &Vec3) -> SurfacePlace {
         let Some(patch) = self.patches.get(index) else {

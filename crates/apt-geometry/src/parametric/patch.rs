@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     arc::CurveArc,
-    basis::{self, Homogeneous},
+    basis::{self, Homogeneous, Weights},
     topology::Edge,
 };
 use crate::{Vec3, canonical::Matrix};
@@ -116,9 +116,14 @@ impl Patch {
 
     /// The place at (u, v) and its derivatives.
     pub fn evaluate(&self, u: f64, v: f64) -> PatchPoint {
-        let rows = self.control.map(|row| basis::cubic(&row, v));
-        let by = |order: usize| basis::cubic(&rows.map(|row| row[order]), u);
-        let ([a, au, auu], [av, auv, _], [avv, _, _]) = (by(0), by(1), by(2));
+        let (by_u, by_v) = (Weights::at(u), Weights::at(v));
+        // Rows one by one: mapped arrays are not taken apart by the compiler.
+        let [one, two, three, four] = &self.control;
+        let value = [by_v.value(one), by_v.value(two), by_v.value(three), by_v.value(four)];
+        let first = [by_v.first(one), by_v.first(two), by_v.first(three), by_v.first(four)];
+        let second = [by_v.second(one), by_v.second(two), by_v.second(three), by_v.second(four)];
+        let (a, au, auu) = (by_u.value(&value), by_u.first(&value), by_u.second(&value));
+        let (av, auv, avv) = (by_u.value(&first), by_u.first(&first), by_u.value(&second));
         let w = a.w;
         let position = a.xyz() / w;
         let du = (au.xyz() - position * au.w) / w;

@@ -36,6 +36,7 @@ pub use self::{
 use crate::{
     Vec3,
     canonical::{Cylinder, Geometry, GeometryKind, Plane, Sphere},
+    parametric::Extended,
 };
 
 /// A surface ready for distance questions.
@@ -153,7 +154,9 @@ impl Surface {
                 sheet.map(Self::PolyConic).ok_or(degenerate)
             }
             Geometry::Sculptured(surface) => {
-                surface.made(SculpturedSheet::new).map(Self::Sculptured).ok_or(degenerate)
+                let extended = Extended::of(surface).ok_or(degenerate)?;
+                let sheet = surface.made(|own| SculpturedSheet::new(own, extended.patches()));
+                sheet.map(Self::Sculptured).ok_or(degenerate)
             }
             Geometry::Point(_)
             | Geometry::Vector(_)

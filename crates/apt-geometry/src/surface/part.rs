@@ -115,6 +115,8 @@ pub(super) struct Part {
     radius: f64,
     /// No place is farther from the tangent plane in the middle.
     sag: f64,
+    /// The part lies between two pairs of planes: their unit normals, in the tangent plane, and how far they are from the centre.
+    strips: [(Vec3, f64); 2],
     /// Greatest curvature seen from the natural side (positive where the surface curves away from it), and from the other.
     curvature: [f64; 2],
     /// The same in the middle.
@@ -433,6 +435,16 @@ impl Bounds {
     }
 }
 
+/// The planes that a part lies between which goes no farther from its centre than half its sides `u` and `v` and, beside
+/// these, a length. A part without tangent plane may lie anywhere.
+fn strips(normal: Option<Vec3>, [u, v]: [&Vec3; 2], bent: f64) -> [(Vec3, f64); 2] {
+    let strip = |along: &Vec3, other: &Vec3| {
+        let across = normal.and_then(|normal| normal.cross(along).try_normalize(0.0));
+        across.map_or((Vec3::zeros(), f64::INFINITY), |across| (across, other.dot(&across).abs() + bent))
+    };
+    [strip(u, v), strip(v, u)]
+}
+
 impl Part {
     pub(super) fn new(sheet: &impl Enclose, rectangle: Rectangle) -> Self {
         let enclosure = sheet.enclose(&rectangle);
@@ -452,6 +464,7 @@ impl Part {
             // Over an edge or a crease derivatives tell nothing of that.
             if sag.is_nan() || sharp.contains(&true) { radius } else { sag.min(radius) }
         });
+        let strips = strips(bounds.normal.filter(|_| !sharp.contains(&true)), [&u, &v], bent);
         for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
             if *sharp || curvature.is_nan() {
                 *curvature = f64::INFINITY;
@@ -466,6 +479,7 @@ impl Part {
             center: jet.point,
             radius,
             sag,
+            strips,
             curvature: bounds.curvature,
             least: bounds.least,
             close: bounds.close.max(FLAT / radius),
@@ -505,14 +519,20 @@ impl Part {
         self.spread <= chord
     }
 
-    /// No place of the part is nearer to a point than this: the part lies in a disc about its middle, as thick as it bends.
+    /// No place of the part is nearer to a point than this: the part lies in a disc about its middle, as thick as it bends, and in
+    /// the parallelogram of its parameters there.
     pub(super) fn bound(&self, p: &Vec3) -> f64 {
         let w = p - self.center;
-        let away = w.norm() - self.radius;
+        let square = w.norm_squared();
+        let away = square.sqrt() - self.radius;
         let Some(normal) = self.normal else { return away };
         let height = w.dot(&normal);
-        let beside = (w.norm_squared() - height * height).max(0.0).sqrt() - self.radius;
-        away.max(beside.max(0.0).hypot((height.abs() - self.sag).max(0.0)))
+        let mut beside = (square - height * height).max(0.0).sqrt() - self.radius;
+        for (across, half) in &self.strips {
+            beside = beside.max(w.dot(across).abs() - half);
+        }
+        let (beside, above) = (beside.max(0.0), (height.abs() - self.sag).max(0.0));
+        away.max((beside * beside + above * above).sqrt())
     }
 
     /// Adds what this part means for a question.

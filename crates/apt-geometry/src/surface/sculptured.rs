@@ -79,12 +79,12 @@ fn edges_at([u, v]: [f64; 2]) -> [Option<Edge>; 2] {
 
 impl SculpturedSheet {
     /// `None` if there are no patches, or all of it is one point.
-    pub(super) fn new(surface: &SculpturedSurface) -> Option<Self> {
+    pub(super) fn new(surface: &SculpturedSurface, extended: &[ExtendedPatch]) -> Option<Self> {
         let size = surface.size();
         if !(surface.is_finite() && size.is_finite() && size > 0.0) {
             return None;
         }
-        let pieces = surface.extended();
+        let pieces = extended.to_vec();
         let mut sheet =
             Self { pieces, nodes: Vec::new(), ruling: None, size, curvature: 0.0, parts: Count::default() };
         sheet.nodes = tree::grown(&sheet);
@@ -169,8 +169,7 @@ impl SculpturedSheet {
     /// Goes down to the nearest place of a leaf from its middle.
     fn descend(&self, p: &Vec3, leaf: &tree::Leaf, best: &mut Nearest) {
         let limits = [leaf.rectangle.range(0), leaf.rectangle.range(1)];
-        let middle = leaf.rectangle.middle;
-        let mut descent = Descent::new(p, limits, middle, self.jet(leaf.piece, middle));
+        let mut descent = Descent::new(p, limits, leaf.rectangle.middle, leaf.jet);
         for _ in 0..MAX_STEPS {
             let next = descent.next(&Slopes::at(&descent.jet, p));
             if !descent.moves(&next) || !descent.take(next, self.jet(leaf.piece, [next.x, next.y])) {

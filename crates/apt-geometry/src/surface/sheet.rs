@@ -15,7 +15,7 @@ pub(super) const ON_SURFACE: f64 = 1e-9;
 const FOCUS: f64 = 1e-12;
 
 /// A place of a parametric surface with its partial derivatives.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet {
     pub(super) point: Vec3,
     pub(super) du: Vec3,

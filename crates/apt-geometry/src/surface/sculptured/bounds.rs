@@ -27,8 +27,8 @@ const LEVEL: f64 = 0.35;
 
 /// A homogeneous value in intervals: three coordinates and the weight.
 type Range = [Interval; 4];
-/// Homogeneous control points with some of their differences.
-type Net = Vec<Vec<[f64; 4]>>;
+/// Homogeneous control points, or differences of them: rows that are in use are whole.
+type Net<const ROWS: usize, const COLUMNS: usize> = [[[f64; 4]; COLUMNS]; ROWS];
 
 /// One patch.
 pub(super) struct Stretch<'a> {
@@ -48,32 +48,43 @@ fn cut(patch: &Patch, rectangle: &Rectangle) -> Patch {
     shorten(along, rectangle.range(1), true)
 }
 
-/// Differences of control points along the first index.
-fn differences(net: &Net) -> Net {
-    let apart = |[a, b]: [&Vec<[f64; 4]>; 2]| {
-        a.iter().zip(b).map(|(a, b)| std::array::from_fn(|k| b[k] - a[k])).collect()
-    };
-    net.windows(2).map(|pair| apart([&pair[0], &pair[1]])).collect()
+/// Differences of control points along the first index, of which there is one less.
+fn differences<const R: usize, const LESS: usize, const C: usize>(net: &Net<R, C>) -> Net<LESS, C> {
+    let mut apart = [[[0.0; 4]; C]; LESS];
+    for (i, row) in apart.iter_mut().enumerate() {
+        for (j, point) in row.iter_mut().enumerate() {
+            for (k, x) in point.iter_mut().enumerate() {
+                *x = net[i + 1][j][k] - net[i][j][k];
+            }
+        }
+    }
+    apart
 }
 
 /// The same along the second.
-fn differences_across(net: &Net) -> Net {
-    let apart = |pair: &[[f64; 4]]| std::array::from_fn(|k| pair[1][k] - pair[0][k]);
-    net.iter().map(|row| row.windows(2).map(apart).collect()).collect()
-}
-
-/// What a form with these control points, times a factor, can be.
-fn range(net: &Net, factor: f64) -> Range {
-    let mut found: Option<Range> = None;
-    for point in net.iter().flatten() {
-        let value = point.map(|x| x * factor);
-        let known = found.get_or_insert(value.map(Interval::from));
-        for (interval, x) in known.iter_mut().zip(value) {
-            interval.low = interval.low.min(x);
-            interval.high = interval.high.max(x);
+fn differences_across<const R: usize, const C: usize, const LESS: usize>(net: &Net<R, C>) -> Net<R, LESS> {
+    let mut apart = [[[0.0; 4]; LESS]; R];
+    for (i, row) in apart.iter_mut().enumerate() {
+        for (j, point) in row.iter_mut().enumerate() {
+            for (k, x) in point.iter_mut().enumerate() {
+                *x = net[i][j + 1][k] - net[i][j][k];
+            }
         }
     }
-    found.unwrap_or([Interval::from(0.0); 4])
+    apart
+}
+
+/// What a form with these control points, times a factor that is not negative, can be.
+fn range<const R: usize, const C: usize>(net: &Net<R, C>, factor: f64) -> Range {
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+    for point in net.iter().flatten() {
+        for k in 0..4 {
+            // Not `min` and `max`: what is not a number is to be seen.
+            low[k] = if point[k] >= low[k] { low[k] } else { point[k] };
+            high[k] = if point[k] <= high[k] { high[k] } else { point[k] };
+        }
+    }
+    std::array::from_fn(|k| Interval { low: low[k] * factor, high: high[k] * factor })
 }
 
 /// The quotient rule: `(A − Σ kᵢ·wᵢ·pᵢ)/w`, coordinate by coordinate.
@@ -97,22 +108,20 @@ struct Derivatives {
 /// Derivatives by the parameters of the whole patch; `middle` is the place in the middle of the rectangle.
 fn derivatives(patch: &Patch, rectangle: &Rectangle, middle: &Vec3) -> Derivatives {
     let part = cut(patch, rectangle);
-    let net: Net = part
-        .control
-        .iter()
-        .map(|row| {
+    let mut net = [[[0.0; 4]; 4]; 4];
+    for (row, controls) in net.iter_mut().zip(&part.control) {
+        for (point, c) in row.iter_mut().zip(controls) {
             // From the middle, so that intervals of places are small.
-            let local =
-                row.iter().map(|c| [c.x - c.w * middle.x, c.y - c.w * middle.y, c.z - c.w * middle.z, c.w]);
-            local.collect()
-        })
-        .collect();
+            *point = [c.x - c.w * middle.x, c.y - c.w * middle.y, c.z - c.w * middle.z, c.w];
+        }
+    }
     let [u, v] = rectangle.half.map(|half| 0.5 / half);
-    let (by_u, by_v) = (differences(&net), differences_across(&net));
+    let by_u: Net<3, 4> = differences(&net);
+    let by_v: Net<4, 3> = differences_across(&net);
     let (value, au, av) = (range(&net, 1.0), range(&by_u, 3.0 * u), range(&by_v, 3.0 * v));
-    let auu = range(&differences(&by_u), 6.0 * u * u);
-    let auv = range(&differences_across(&by_u), 9.0 * u * v);
-    let avv = range(&differences_across(&by_v), 6.0 * v * v);
+    let auu = range::<2, 4>(&differences(&by_u), 6.0 * u * u);
+    let auv = range::<3, 3>(&differences_across(&by_u), 9.0 * u * v);
+    let avv = range::<4, 2>(&differences_across(&by_v), 6.0 * v * v);
     let w = value[3];
     let place = quotient(&value, &[], w);
     let du = quotient(&au, &[(1.0, au[3], &place)], w);

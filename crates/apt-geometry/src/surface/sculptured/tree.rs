@@ -1,7 +1,10 @@
 //! The tree of a sculptured surface: balls about nearly flat parts of patches.
 
 use super::{
-    super::part::{Part, Rectangle},
+    super::{
+        part::{Part, Rectangle},
+        sheet::Jet,
+    },
     SculpturedSheet,
     bounds::Stretch,
 };
@@ -36,6 +39,8 @@ pub(super) struct Leaf {
     pub(super) piece: usize,
     pub(super) rectangle: Rectangle,
     pub(super) part: Part,
+    /// The surface in the middle.
+    pub(super) jet: Jet,
 }
 
 impl Node {
@@ -65,7 +70,8 @@ pub(super) fn grown(sheet: &SculpturedSheet) -> Vec<Node> {
         while let Some((rectangle, depth)) = open.pop() {
             let part = Part::new(&stretch, rectangle);
             if depth >= MAX_DEPTH || part.radius() <= SMALLEST * sheet.size || part.turns_at_most(TURN) {
-                leaves.push(Leaf { piece, rectangle, part });
+                let jet = sheet.jet(piece, rectangle.middle);
+                leaves.push(Leaf { piece, rectangle, part, jet });
             } else {
                 let halves = rectangle.halves(stretch.looser(&rectangle));
                 open.extend(halves.map(|half| (half, depth + 1)));
