@@ -136,7 +136,7 @@ impl Surface {
                 Ok(Self::Ruled(Box::new(Ruled::Conics(Box::new(strips)))))
             }
             Geometry::Sculptured(surface) => {
-                let strips = SculpturedStrips::of(surface).ok_or_else(degenerate)?;
+                let strips = SculpturedStrips::of(surface, accuracy).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Sculptured(Box::new(strips)))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),

@@ -1,24 +1,33 @@
 //! Sculptured surfaces as patches that are cubic both ways. A patch without weights is one; for the others cubics through four
-//! places each way stand, and how far those are off is measured between them and counted as an error of every distance.
+//! places each way stand, and how far those are off at most counts as an error of every distance ([`misfit`]).
+
+mod misfit;
+
+use std::sync::{Arc, OnceLock};
 
 use apt_geometry::{
     Vec3,
-    parametric::{self, ExtendedPatch, SculpturedSurface, Side},
+    canonical::{Made, Remembering},
+    parametric::{self, Extended, ExtendedPatch, SculpturedSurface, Side},
 };
 
+use self::misfit::Misfit;
 use super::{
-    patch::{Net, Patch, extent, jet, turned},
-    ruled::{ERROR_BEND, through},
+    patch::{Net, Patch, jet, turned},
+    ruled::through,
     strip::Touch,
     survey::Sheet,
 };
 
-/// How far a patch may be off, relative to the size of the surface.
-const ACCURACY: f64 = 6e-9;
-/// How much farther off it may be than at the places looked at, which lie near its worst ones.
-const ALLOWANCE: f64 = 2.0;
+/// How far the finest model may be off, relative to the size of the surface; each coarser one is off so many times more.
+const FINEST: f64 = 6e-9;
+const COARSER: f64 = 8.0;
+/// Number of the models.
+const MODELS: usize = 6;
 /// Bound of the number of patches that stand for one with weights; where more were needed they are as accurate as so many can be.
 const PATCHES: usize = 4096;
+/// Side, in parameters, of a part beside a pole that is not halved only because its bend has no bound.
+const LEAST_SIDE: f64 = 1e-3;
 /// Share of the way to the middle at which the normal is taken where a place has none.
 const INWARD: f64 = 1e-5;
 /// How far curves may be from being shifted copies of each other, relative to the surface.
@@ -40,17 +49,37 @@ pub(super) struct SculpturedStrips {
     pub(super) ruling: Option<Vec3>,
 }
 
-/// A net in place of a part of the surface, how far it is off, and which of its sides are sharp: low and high along, low and high
-/// across.
+/// The models of one surface, from the finest on, as far as they were asked for.
+#[derive(Debug, Default)]
+struct Models([OnceLock<Option<Model>>; MODELS]);
+
+/// What is the same for all motions.
+#[derive(Debug, Clone)]
+struct Model {
+    patches: Arc<[Patch]>,
+    size: f64,
+    error: f64,
+    ruling: Option<Vec3>,
+}
+
+/// A net in place of a part of the surface, how far it is off, how much more the part may bend, and which of its sides are
+/// sharp: low and high along, low and high across.
 struct Part {
     net: Net,
     off: f64,
+    slack: f64,
     sharp: [bool; 4],
 }
 
-impl SculpturedStrips {
+impl Made for Models {
+    fn parts(&self) -> usize {
+        self.0.iter().filter_map(|model| model.get()?.as_ref()).map(|model| model.patches.len()).sum()
+    }
+}
+
+impl Model {
     /// None if there is nothing to measure.
-    pub(super) fn of(surface: &SculpturedSurface) -> Option<Self> {
+    fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64) -> Option<Self> {
         let extent = surface.size();
         if !(surface.is_finite() && extent > 0.0 && extent.is_finite()) {
             return None;
@@ -58,14 +87,27 @@ impl SculpturedStrips {
         let [low, high] = surface.bounds();
         let size = low.abs().sup(&high.abs()).norm();
         let mut parts = Vec::new();
-        for patch in surface.extended() {
-            cover(&patch, ACCURACY * extent, &mut parts);
+        for patch in Extended::of(surface)?.patches() {
+            cover(patch, accuracy * extent, &mut parts);
         }
         let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
         let ruling = ruling(&parts, SHIFTED * extent);
-        let patches: Vec<Patch> = parts.iter().map(patch).collect();
-        let whole = !patches.is_empty() && error.is_finite() && size.is_finite();
-        whole.then(|| Self { sheet: Sheet::new(patches, false), size, error, ruling })
+        let whole = !parts.is_empty() && error.is_finite() && size.is_finite();
+        whole.then(|| Self { patches: parts.iter().map(patch).collect(), size, error, ruling })
+    }
+}
+
+impl SculpturedStrips {
+    /// A model of a surface that need not be closer to it than `accuracy`; none if there is nothing to measure.
+    pub(super) fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64) -> Option<Self> {
+        // One of few, so that motions share it, and none depends on those before.
+        let finer = (accuracy / (FINEST * surface.size())).log(COARSER).floor();
+        let number = if finer > 0.0 { (finer as usize).min(MODELS - 1) } else { 0 };
+        let models = surface.made(|_| Some(Models::default()))?;
+        let relative = FINEST * COARSER.powi(number as i32);
+        let model = models.0.get(number)?.get_or_init(|| Model::of(surface, relative)).as_ref()?;
+        let Model { patches, size, error, ruling } = model.clone();
+        Some(Self { sheet: Sheet::shared(patches), size, error, ruling })
     }
 
     /// The natural normal at a place of a patch.
@@ -109,8 +151,7 @@ fn ruling(parts: &[Part], close: f64) -> Option<Vec3> {
 fn patch(part: &Part) -> Patch {
     let mut patch = Patch::new(part.net);
     patch.edges.sides = part.sharp;
-    let shortest = extent(&part.net).into_iter().fold(f64::INFINITY, f64::min);
-    patch.slack = if part.off > 0.0 { ERROR_BEND * part.off / (shortest * shortest) } else { 0.0 };
+    patch.slack = part.slack;
     patch
 }
 
@@ -119,41 +160,44 @@ fn cover(given: &ExtendedPatch, accuracy: f64, parts: &mut Vec<Part>) {
     // Edges by their numbers: low and high along u, low and high along v.
     let sharp = given.sides.map(|side| side == Side::End || side.is_crease());
     if given.patch.is_polynomial() {
-        parts.push(Part { net: turned(&given.patch.points()), off: 0.0, sharp });
+        parts.push(Part { net: turned(&given.patch.points()), off: 0.0, slack: 0.0, sharp });
         return;
     }
     let most = parts.len() + PATCHES;
-    let mut open = vec![([[0.0, 1.0], [0.0, 1.0]], sharp)];
-    while let Some((ranges, sharp)) = open.pop() {
-        let (net, errors) = fit(&given.patch, ranges);
-        let off = ALLOWANCE * (errors[0] + errors[1]);
-        if off <= accuracy || parts.len() + open.len() >= most {
-            parts.push(Part { net, off, sharp });
+    let mut open = vec![(given.patch, [1.0f64; 2], sharp)];
+    while let Some((whole, sides, sharp)) = open.pop() {
+        let net = fit(&whole);
+        let misfit = Misfit::between(&whole, &net);
+        let slack = misfit.slack(&net);
+        let is_close = misfit.off <= accuracy;
+        let is_done = is_close && (slack.is_finite() || sides[0].min(sides[1]) <= LEAST_SIDE);
+        if is_done || parts.len() + open.len() >= most {
+            parts.push(Part { net, off: misfit.off, slack, sharp });
             continue;
         }
-        let k = usize::from(errors[1] > errors[0]);
-        let middle = 0.5 * (ranges[k][0] + ranges[k][1]);
-        let (mut low, mut high) = ((ranges, sharp), (ranges, sharp));
-        (low.0[k][1], high.0[k][0]) = (middle, middle);
-        (low.1[2 * k + 1], high.1[2 * k]) = (false, false);
-        open.extend([high, low]);
+        let k = usize::from(if is_close { turns_across(&net) } else { misfit.is_across() });
+        let [first, last] = if k == 0 { whole.halved_u() } else { whole.halved_v() };
+        let mut sides = sides;
+        sides[k] *= 0.5;
+        let (mut low, mut high) = (sharp, sharp);
+        (low[2 * k + 1], high[2 * k]) = (false, false);
+        open.extend([(last, sides, high), (first, sides, low)]);
     }
 }
 
-/// The cubics through four places each way of a part of a patch, and how far they are off along and across.
-fn fit(given: &parametric::Patch, [along, across]: [[f64; 2]; 2]) -> (Net, [f64; 2]) {
-    let within = |[low, high]: [f64; 2], share: f64| low + (high - low) * share;
-    let at = |u: f64, v: f64| given.evaluate(within(along, u), within(across, v)).position;
+/// Whether the derivatives of a patch change more across it than along it.
+fn turns_across(net: &Net) -> bool {
+    let [_, along, across] = jet(net, [0.5; 2]);
+    let changes = |places: [[f64; 2]; 2]| {
+        let [[_, a, c], [_, b, d]] = places.map(|at| jet(net, at));
+        (b - a).norm() / along.norm() + (d - c).norm() / across.norm()
+    };
+    changes([[0.5, 0.0], [0.5, 1.0]]) > changes([[0.0, 0.5], [1.0, 0.5]])
+}
+
+/// The cubics through four places each way.
+fn fit(given: &parametric::Patch) -> Net {
     let thirds = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
-    let rows = thirds.map(|v| through(&thirds.map(|u| at(u, v))));
-    let net = turned(&turned(&rows).map(|column| through(&column)));
-    let off = |u: f64, v: f64| (at(u, v) - jet(&net, [u, v])[0]).norm();
-    let mut errors = [0.0f64; 2];
-    for between in [0.127, 0.5, 0.873] {
-        for node in thirds {
-            errors[0] = errors[0].max(off(between, node));
-            errors[1] = errors[1].max(off(node, between));
-        }
-    }
-    (net, errors)
+    let rows = thirds.map(|v| through(&thirds.map(|u| given.evaluate(u, v).position)));
+    turned(&turned(&rows).map(|column| through(&column)))
 }

@@ -1,6 +1,9 @@
 //! What of a surface of patches is near a tool: one survey serves until the tool has moved by its margin.
 
-use std::cell::{Cell, OnceCell, RefCell};
+use std::{
+    cell::{Cell, OnceCell, RefCell},
+    sync::Arc,
+};
 
 use apt_geometry::Vec3;
 
@@ -47,7 +50,7 @@ const APPROACHES: u32 = 6;
 /// A surface in patches, with what was seen of it last.
 #[derive(Debug, Clone)]
 pub(super) struct Sheet {
-    pub(super) patches: Vec<Patch>,
+    pub(super) patches: Arc<[Patch]>,
     /// Whether it ends at both sides of all patches, across.
     ends_across: bool,
     /// For tools with a body, and for points.
@@ -100,7 +103,12 @@ struct Near {
 
 impl Sheet {
     pub(super) fn new(patches: Vec<Patch>, ends_across: bool) -> Self {
-        Self { patches, ends_across, near: RefCell::new([None, None]) }
+        Self { ends_across, ..Self::shared(patches.into()) }
+    }
+
+    /// Of patches that other surveys are made of too; where it ends their sides tell.
+    pub(super) fn shared(patches: Arc<[Patch]>) -> Self {
+        Self { patches, ends_across: false, near: RefCell::new([None, None]) }
     }
 
     /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
@@ -116,7 +124,7 @@ impl Sheet {
         let mut parts = Vec::new();
         let mut stretch: f64 = 0.0;
         let mut open: Vec<(Net, Edges)> = Vec::new();
-        for patch in &self.patches {
+        for patch in self.patches.iter() {
             let Some(range) = patch.within(&middle, bound + girth) else { continue };
             let mut edges = patch.edges;
             edges.sides[2] = (edges.sides[2] || self.ends_across) && range[0] <= 0.0;
