@@ -441,7 +441,7 @@ impl Place<'_> {
     ) -> f64 {
         let mut best = f64::NEG_INFINITY;
         for at in [0.0, 1.0, 0.5] {
-            best = best.max(self.between(demand, ends, facing, at));
+            best = best.max(self.between(demand, ends, Some(facing), at));
             if best >= demand.least {
                 return best;
             }
@@ -450,13 +450,23 @@ impl Place<'_> {
         let way = [b[0] - a[0], b[1] - a[1]];
         let from = [touch.meridian[0] - a[0], touch.meridian[1] - a[1]];
         let at = (from[0] * way[0] + from[1] * way[1]) / (way[0] * way[0] + way[1] * way[1]);
-        if at > 0.0 && at < 1.0 { best.max(self.between(demand, ends, facing, at)) } else { best }
+        if at > 0.0 && at < 1.0 {
+            best = best.max(self.between(demand, ends, Some(facing), at));
+        }
+        // Another side of the tool may be lower.
+        for at in [0.0, 1.0, 0.5] {
+            if best >= demand.least {
+                break;
+            }
+            best = best.max(self.between(demand, ends, None, at));
+        }
+        best
     }
 
-    /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the place `at` of
-    /// 0 … 1 on the line that faces the contact: the least value over the places at each height, wherever they are, is a quadratic
+    /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the circle `at` of
+    /// 0 … 1, of its place that faces the contact or of its lowest: the least value over the places at each height, wherever they are, is a quadratic
     /// function of the height, and that is lowest at an end or where it is level.
-    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: &Vector2<f64>, at: f64) -> f64 {
+    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: Option<&Vector2<f64>>, at: f64) -> f64 {
         let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
         let rho = a[0] + spread * at;
         if rho <= 0.0 {
@@ -469,8 +479,11 @@ impl Place<'_> {
         let (form, slope) = (self.form(lower), lower.slope(&start));
         let g = Vector2::new(slope.dot(u), slope.dot(v));
         let cross = Vector2::new(lower.form(u, &way), lower.form(v, &way));
-        let place = facing * rho;
-        let mu = -(form * place + g + cross * at).dot(&place) / (rho * rho);
+        let pull = g + cross * at;
+        let mu = match facing {
+            Some(facing) => -(form * facing * rho + pull).dot(facing) / rho,
+            None => multiplier_of_circle(&form, &pull, rho),
+        };
         let held = form + Matrix2::identity() * mu;
         let determinant = held.determinant();
         if !(determinant > 0.0 && held.trace() > 0.0) {
@@ -487,6 +500,29 @@ impl Place<'_> {
         let level = -climb / bend;
         if bend > 0.0 && level > 0.0 && level < 1.0 { ends.min(first + climb * level) } else { ends }
     }
+}
+
+/// The multiplier with which `wᵀ(H + μ)w + 2g·w` is least at the place of a circle about the origin where it is least of all on
+/// the circle, or one a little greater: from where that place is within the circle, Newton's method on the reciprocal of its radius
+/// never leaves that side.
+fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f64 {
+    let (mean, half) = (0.5 * form.trace(), (0.5 * (form.m11 - form.m22)).hypot(form.m12));
+    let mut mu = half - mean + g.norm() / radius;
+    for _ in 0..STEPS {
+        let held = form + Matrix2::identity() * mu;
+        let Some(inverse) = held.try_inverse() else { break };
+        let place = inverse * g;
+        let size = place.norm();
+        let step = size * size / place.dot(&(inverse * place)) * (size - radius) / radius;
+        if !step.is_finite() {
+            break;
+        }
+        mu += step;
+        if step.abs() <= LAST_STEP * mu.abs() {
+            break;
+        }
+    }
+    mu
 }
 
 /// Least value of `wᵀ(H + μ)w + 2g·w`; −∞ if there is none.
