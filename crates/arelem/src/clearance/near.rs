@@ -5,6 +5,7 @@
 //! more than a sphere's does, and circles of the tool have closed bounds. The rest of the flank is far away, as is
 //! shown once for many positions.
 
+mod around;
 mod zone;
 
 use apt_geometry::{
@@ -12,8 +13,9 @@ use apt_geometry::{
     surface::{Chart, Foot, Place, Steady, Surface},
 };
 
+pub(super) use self::around::Around;
 use super::{
-    Contact, Gauge, Tool,
+    Contact, Tool,
     certify::{Certificate, Face, Proof, certify},
     memory::Memory,
     patch::flank_from,
@@ -202,81 +204,6 @@ pub(super) fn foot(
             known.start.place = surface.place(tip)?;
             None
         }
-    }
-}
-
-/// What is known about a contact in a steady ball.
-#[derive(Clone, Copy)]
-struct Known {
-    start: Start,
-    surface: Vec3,
-    zone: Zone,
-    far: Option<Far>,
-}
-
-/// What is known about a tool and a surface, for questions about points near by.
-pub(super) struct Around<'a> {
-    pose: Pose<'a>,
-    known: Option<Known>,
-}
-
-impl<'a> Around<'a> {
-    pub(super) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3) -> Self {
-        let Gauge { surface, side, memory, .. } = gauge;
-        let known = memory.near.try_borrow().ok().and_then(|near| {
-            let near = near.as_ref().filter(|near| near.side == *side)?;
-            let zone = *near.zone.as_ref().ok()?;
-            Some(Known { start: near.start, surface: near.surface, zone, far: near.far })
-        });
-        Self { pose: Pose { tool, surface, side: *side, tip }, known }
-    }
-
-    /// The foot of a point, if that is known to be the only one.
-    pub(super) fn foot(&self, p: &Vec3) -> Option<Foot> {
-        let Known { start, zone, .. } = self.known?;
-        let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..start })?;
-        let Contact { clearance, gradient, surface, .. } = found.contact;
-        let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
-        let steady = clearance <= zone.depth && clearance >= -zone.steady.beyond;
-        let known = inside(p) && inside(&surface) && steady;
-        let side = self.pose.side;
-        known.then_some(Foot { distance: side * clearance, point: surface, normal: gradient * side })
-    }
-
-    /// A bound of the second derivatives of the distances of all points of the tool that are not farther than `range[1]` while
-    /// no point strays farther than `spread` from its place and none comes nearer than `range[0]`.
-    pub(super) fn upward_bend(&self, spread: f64, range: [f64; 2]) -> Option<f64> {
-        let Known { start, surface, zone, .. } = self.known.as_ref()?;
-        start.piece?;
-        let (whole, level) = (zone.top >= self.pose.tool.profile.top.height, range[1] + spread);
-        let alone = self.pose.stays_in(zone, surface, spread)
-            && (whole || self.top(level).is_some() || self.pose.is_off(zone.top, level));
-        alone.then(|| zone.steady.upward_bend(range[0])).flatten()
-    }
-
-    /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
-    /// contact in one of them.
-    pub(super) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
-        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, .. }) = &self.known else {
-            return false;
-        };
-        let Tool { axis, profile, .. } = self.pose.tool;
-        let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
-        let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
-        let ball = if on_corner { profile.arc } else { 0.0 };
-        let kept = |tip: &Vec3| {
-            let pose = Pose { tip, ..self.pose };
-            let flank = zone.top >= profile.top.height
-                || far.is_some_and(|far| far.from == zone.top && far.keeps(&pose, level));
-            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.keeps(contact, ball, zone, level)
-        };
-        contact.clearance + ball >= -zone.steady.beyond && way.into_iter().all(kept)
-    }
-
-    /// A height above which the flank is known to be farther from the surface than a level.
-    pub(super) fn top(&self, level: f64) -> Option<f64> {
-        let Known { zone, far, .. } = self.known?;
-        far.filter(|far| far.from == zone.top && far.keeps(&self.pose, level)).map(|far| far.from)
     }
 }
 

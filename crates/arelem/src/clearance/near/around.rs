@@ -1,0 +1,81 @@
+//! What the contact near by tells about other points and about moves of the tool.
+
+use apt_geometry::{Vec3, surface::Foot};
+
+use super::{Far, Pose, Start, Zone};
+use crate::clearance::{Contact, Gauge, Tool};
+
+/// What is known about a contact in a steady ball.
+#[derive(Clone, Copy)]
+struct Known {
+    start: Start,
+    surface: Vec3,
+    zone: Zone,
+    far: Option<Far>,
+}
+
+/// What is known about a tool and a surface, for questions about points near by.
+pub(in crate::clearance) struct Around<'a> {
+    pose: Pose<'a>,
+    known: Option<Known>,
+}
+
+impl<'a> Around<'a> {
+    pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3) -> Self {
+        let Gauge { surface, side, memory, .. } = gauge;
+        let known = memory.near.try_borrow().ok().and_then(|near| {
+            let near = near.as_ref().filter(|near| near.side == *side)?;
+            let zone = *near.zone.as_ref().ok()?;
+            Some(Known { start: near.start, surface: near.surface, zone, far: near.far })
+        });
+        Self { pose: Pose { tool, surface, side: *side, tip }, known }
+    }
+
+    /// The foot of a point, if that is known to be the only one.
+    pub(in crate::clearance) fn foot(&self, p: &Vec3) -> Option<Foot> {
+        let Known { start, zone, .. } = self.known?;
+        let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..start })?;
+        let Contact { clearance, gradient, surface, .. } = found.contact;
+        let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
+        let steady = clearance <= zone.depth && clearance >= -zone.steady.beyond;
+        let known = inside(p) && inside(&surface) && steady;
+        let side = self.pose.side;
+        known.then_some(Foot { distance: side * clearance, point: surface, normal: gradient * side })
+    }
+
+    /// A bound of the second derivatives of the distances of all points of the tool that are not farther than `range[1]` while
+    /// no point strays farther than `spread` from its place and none comes nearer than `range[0]`.
+    pub(in crate::clearance) fn upward_bend(&self, spread: f64, range: [f64; 2]) -> Option<f64> {
+        let Known { start, surface, zone, .. } = self.known.as_ref()?;
+        start.piece?;
+        let (whole, level) = (zone.top >= self.pose.tool.profile.top.height, range[1] + spread);
+        let alone = self.pose.stays_in(zone, surface, spread)
+            && (whole || self.top(level).is_some() || self.pose.is_off(zone.top, level));
+        alone.then(|| zone.steady.upward_bend(range[0])).flatten()
+    }
+
+    /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
+    /// contact in one of them.
+    pub(in crate::clearance) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
+        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, .. }) = &self.known else {
+            return false;
+        };
+        let Tool { axis, profile, .. } = self.pose.tool;
+        let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
+        let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
+        let ball = if on_corner { profile.arc } else { 0.0 };
+        let kept = |tip: &Vec3| {
+            let pose = Pose { tip, ..self.pose };
+            let flank = zone.top >= profile.top.height
+                || far.is_some_and(|far| far.from == zone.top && far.keeps(&pose, level));
+            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.keeps(contact, ball, zone, level)
+        };
+        contact.clearance + ball >= -zone.steady.beyond && way.into_iter().all(kept)
+    }
+
+    /// A height above which the flank is known to be farther from the surface than a level.
+    pub(in crate::clearance) fn top(&self, level: f64) -> Option<f64> {
+        let Known { zone, far, .. } = self.known?;
+        far.filter(|far| far.from == zone.top && far.keeps(&self.pose, level)).map(|far| far.from)
+    }
+}
