@@ -237,6 +237,8 @@ pub(super) struct Clearance<'a> {
     pub(super) side: f64,
     /// Stock added to the surface.
     pub(super) thickness: f64,
+    /// How deep in that the tool may be: the inner width of the band.
+    pub(super) allowed: f64,
     /// Who is asked before each reading, and while it is made.
     pub(super) patience: Patience<'a>,
 }
@@ -245,11 +247,19 @@ impl<'a> Clearance<'a> {
     /// Of a tool without stock, with all the time in the world.
     #[cfg(test)]
     pub(super) fn new(surface: &'a Surface, profile: &'a Profile, side: f64) -> Self {
-        Self { surface, profile, raise: 0.0, side, thickness: 0.0, patience: Patience::default() }
+        Self {
+            surface,
+            profile,
+            raise: 0.0,
+            side,
+            thickness: 0.0,
+            allowed: 0.0,
+            patience: Patience::default(),
+        }
     }
 
     fn tool(&self, axis: Vec3) -> Tool<'a> {
-        let depth = (-self.thickness).max(0.0);
+        let depth = (-self.thickness).max(0.0) + self.allowed;
         Tool { profile: self.profile, axis, patience: self.patience, depth }
     }
 

@@ -34,10 +34,11 @@ const AT_JOINT: f64 = 1e-3;
 /// Parts that the contact is followed through.
 const HOPS: usize = 24;
 /// Halvings of a part whose distance is not shown at once.
-const HALVINGS: u32 = 5;
+const HALVINGS: u32 = 12;
 /// Radii of the balls tried, in radii of the tool, before that of the surface itself.
 const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
-/// Share of the radius of the tool behind the surface at which it is met by Newton's method, and of the radius of curvature.
+/// Share of the radius of the tool behind the deepest place that is meant at which it is met by Newton's method, and of the radius
+/// of curvature.
 const BEHIND: f64 = 0.5;
 /// Depth, relative to the radius of the tool, beyond what is meant, down to which contacts are followed.
 const DEEPEST: f64 = 0.1;
@@ -311,7 +312,7 @@ impl Following<'_> {
     fn solve(&self, part: &Part, side: f64, from: [f64; 2]) -> Option<Contact> {
         let widest = self.tool.profile.widest();
         let behind = part.hollow(-side)?;
-        let offset = (BEHIND * widest).min(BEHIND / behind);
+        let offset = (BEHIND * widest + self.tool.depth).min(BEHIND / behind);
         let sense = part.sense(side);
         // The tool's place nearest to a place straight behind that of the surface, and how far it is beside.
         let beside = |at: [f64; 2]| -> Option<(Vector2<f64>, Contact)> {

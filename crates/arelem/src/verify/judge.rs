@@ -103,6 +103,7 @@ impl<'a> Bound<'a> {
             raise: self.raise,
             side: if self.role.side < 0.0 { -1.0 } else { 1.0 },
             thickness: if self.on { 0.0 } else { self.role.thickness },
+            allowed: self.intol,
             patience: self.patience,
         }
     }

@@ -57,7 +57,8 @@ pub(super) fn replay(
     }
     let thickness = if on { 0.0 } else { role.thickness };
     // The cutter itself stops at check surfaces, whatever disk there is for the others.
-    let make = |side: f64| Clearance { surface, profile, raise: 0.0, side, thickness, patience };
+    let allowed = role.inside_tolerance;
+    let make = |side: f64| Clearance { surface, profile, raise: 0.0, side, thickness, allowed, patience };
     let (natural, opposite) = (make(1.0), make(-1.0));
     let measure = |p: &ToolPosition| -> Option<f64> {
         let first = natural.at(&p.tip, &p.axis)?.value;

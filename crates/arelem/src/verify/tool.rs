@@ -282,7 +282,7 @@ pub(super) struct Tool<'a> {
     pub(super) axis: Vec3,
     /// Who is asked while it is measured.
     pub(super) patience: Patience<'a>,
-    /// How deep it is meant to be in a surface: stock below zero.
+    /// How deep it is meant to be in a surface: stock below zero, and the band.
     pub(super) depth: f64,
 }
 
