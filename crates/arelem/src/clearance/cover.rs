@@ -4,12 +4,14 @@
 //! For every single point of the tool the distance to the surface bends by no more than the surface's bound. The
 //! clearance, the least of these functions, then bends by no more either, whatever jumps contact makes.
 
+use std::f64::consts::FRAC_PI_2;
+
 use apt_geometry::{
     Vec3,
     surface::{Bend, Region, Surface},
 };
 
-use super::{Gauge, Tool, closed_form, near};
+use super::{Gauge, Tool, closed_form, near, tool::Circle};
 
 /// Bound of the boxes into which the tool is cut.
 const MAX_BOXES: u32 = 600;
@@ -25,11 +27,16 @@ const CLOSE: f64 = 1.25;
 /// The same for surfaces whose bounds over large boxes are near enough.
 const CLOSE_BY_CHART: f64 = 1.5;
 
+/// Angle, radians, and share of a length that are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// A box of points in the frame of the tool: across, across, along the axis.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     middle: [f64; 3],
     half: [f64; 3],
+    /// Radius of balls about the points, which then count in place of them.
+    ball: f64,
 }
 
 /// The bound of [`upward_bend`] where the tool is in a ball in which nearest places do not jump: that takes no search.
@@ -71,7 +78,8 @@ pub(crate) fn upward_bend(
     // Of a flank that is known to be far away nothing comes within range.
     let near = near::Around::new(gauge, tool, tip);
     let height = near.top(range[1] + spread).unwrap_or(height);
-    let mut cells = vec![Cell { middle: [0.0, 0.0, 0.5 * height], half: [radius, radius, 0.5 * height] }];
+    let corner = corner(tool);
+    let mut cells = boxes(tool, corner.as_ref(), height);
     let close = if gauge.surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
@@ -81,9 +89,11 @@ pub(crate) fn upward_bend(
         if seen % BOXES_A_QUESTION == 0 && cancel() {
             return Bend::Unbounded;
         }
-        if cell.beside(radius) {
+        if cell.beside(radius) || corner.is_some_and(|corner| cell.is_held(tool, &corner)) {
             continue;
         }
+        let range = range.map(|distance| distance + cell.ball);
+        let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
         let center = tip
             + tool.across[0] * cell.middle[0]
             + tool.across[1] * cell.middle[1]
@@ -119,10 +129,14 @@ pub(crate) fn upward_bend(
         if found == Bend::Unbounded && !is_probed {
             is_probed = true;
             let place = touch();
+            let is_round = corner.is_some() && is_at_corner(tool, &(place - tip));
             let foot = gauge.surface.foot(&place);
             let distance = gauge.side * foot.distance;
             let is_met = distance - spread <= range[1] && distance + spread >= range[0];
-            if is_met && gauge.surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded {
+            if is_met
+                && !is_round
+                && gauge.surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded
+            {
                 return Bend::Unbounded;
             }
         }
@@ -147,7 +161,63 @@ pub(crate) fn upward_bend(
     Bend::AtMost(greatest)
 }
 
+/// The balls of a round corner, if they are all in the tool and hold what of it is neither above the corner nor nearer to the
+/// axis: the distances of that part, less than those of their centres by the radius of the balls, bend as these do, so that
+/// neither an edge of the surface nor a sharp bend of it lets them bend without bound.
+fn corner(tool: &Tool) -> Option<Circle> {
+    let profile = &tool.profile;
+    let (center, ball) = (profile.center, profile.arc);
+    // Its arc touches both lines.
+    let normals = [tool.cutter.alpha, FRAC_PI_2 - tool.cutter.beta];
+    let touches = profile.fan.iter().zip(normals).all(|(end, normal)| (end - normal).abs() <= ROUNDING);
+    let inside = center.height + ball <= profile.top.height * (1.0 + ROUNDING);
+    let within = profile.lower.radius - center.radius;
+    let holds = within.hypot(profile.upper.height - center.height) <= ball * (1.0 + ROUNDING);
+    (ball > 0.0 && touches && inside && holds).then_some(Circle {
+        radius: center.radius,
+        height: center.height,
+        ball,
+    })
+}
+
+/// Whether a place of the tool, from its end, is neither above a round corner nor nearer to the axis.
+fn is_at_corner(tool: &Tool, place: &Vec3) -> bool {
+    let (along, across, _) = tool.split(place);
+    let (lower, upper) = (tool.profile.lower, tool.profile.upper);
+    across >= lower.radius * (1.0 - ROUNDING) && along <= upper.height * (1.0 + ROUNDING)
+}
+
+/// Boxes that hold the tool up to a height, with the centres of its corner in place of what its balls hold.
+fn boxes(tool: &Tool, corner: Option<&Circle>, height: f64) -> Vec<Cell> {
+    let between = |radius: f64, [low, high]: [f64; 2], ball: f64| Cell {
+        middle: [0.0, 0.0, 0.5 * (low + high)],
+        half: [radius, radius, 0.5 * (high - low)],
+        ball,
+    };
+    let Some(corner) = corner else { return vec![between(tool.radius(), [0.0, height], 0.0)] };
+    let (lower, upper) = (tool.profile.lower, tool.profile.upper);
+    let mut cells = vec![between(corner.radius, [corner.height; 2], corner.ball)];
+    if lower.radius > 0.0 {
+        cells.push(between(lower.radius, [0.0, upper.height], 0.0));
+    }
+    if height > upper.height {
+        cells.push(between(tool.radius(), [upper.height, height], 0.0));
+    }
+    cells
+}
+
 impl Cell {
+    /// Whether no place of the box counts: none of the circle of centres, or the balls of the corner hold what of the tool is in it.
+    fn is_held(&self, tool: &Tool, corner: &Circle) -> bool {
+        let near = |k: usize| (self.middle[k].abs() - self.half[k]).max(0.0);
+        let far = |k: usize| self.middle[k].abs() + self.half[k];
+        if self.ball > 0.0 {
+            return near(0).hypot(near(1)) > corner.radius || far(0).hypot(far(1)) < corner.radius;
+        }
+        let (lower, upper) = (tool.profile.lower, tool.profile.upper);
+        near(0).hypot(near(1)) >= lower.radius && self.middle[2] + self.half[2] <= upper.height
+    }
+
     /// True if the box lies farther from the axis than any point of the tool.
     fn beside(&self, radius: f64) -> bool {
         let near = |k: usize| (self.middle[k].abs() - self.half[k]).max(0.0);

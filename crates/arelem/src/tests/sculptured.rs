@@ -10,7 +10,10 @@ use apt_geometry::{
 use nalgebra::Vector4;
 
 use super::*;
-use crate::{section2::StartUpRule, verify::verify};
+use crate::{
+    section2::StartUpRule,
+    verify::{WORK, verify},
+};
 
 pub(super) fn made(patches: Vec<Patch>) -> Geometry {
     let surface = SculpturedSurface::assembled(patches, None, Vec::new(), 1.0, Mesh::default());
@@ -227,6 +230,54 @@ fn stock_and_the_tool_end_on_a_hill() {
     p.indirv(1.0, 0.0, 0.0).side(TlOn).drive(Forward, &y(2.0), On, &x(5.0));
     let end = hill().evaluate(5.0 / 6.0, 2.0 / 4.5).position;
     p.ends(end.x, end.y, end.z, 0.001).verified();
+    proven(&p);
+}
+
+/// Distances of parts of surfaces that the verifier may take where it need not search.
+const FOLLOWED: u64 = 2000;
+
+#[test]
+fn tools_that_band_or_stock_lets_deep_into_a_surface_are_followed_without_a_search() {
+    let mut wide = Program::new();
+    wide.tolerance(0.05, 0.02).cutter(&[0.5, 0.0]).from(1.0, 2.0, 6.0);
+    wide.go(&[(On, &y(2.0)), (To, &made(vec![hill()])), (On, &x(1.0))]);
+    wide.indirv(1.0, 0.0, 0.0).side(TlOn).drive(Forward, &y(2.0), On, &x(5.0)).verified();
+    // More than all of the tool is behind the wall.
+    let bent = made(vec![wall([[0.0, 1.0], [2.0, 1.5], [4.0, 1.5], [6.0, 1.0]])]);
+    let mut behind = Program::new();
+    behind.run(&MotionCommand::Thickness(PerRole { part: 0.0, drive: -0.1, check: [0.0; 2] }));
+    behind.tolerance(0.002, 0.002).cutter(&[0.125, 0.0]).from(1.0, 4.0, 0.5);
+    behind.go(&[(To, &bent), (To, &level(0.0)), (On, &x(1.0))]);
+    behind.indirv(1.0, 0.0, 0.0).side(Left).drive(Forward, &bent, On, &x(5.0)).verified();
+    for (name, program) in [("band", wide), ("stock", behind)] {
+        let before = WORK.get();
+        proven(&program);
+        let cells = WORK.get() - before;
+        assert!(cells <= FOLLOWED, "{name}: {cells}");
+    }
+}
+
+/// Two flat patches that meet over x = 3.
+fn ridge() -> Geometry {
+    let half = |from: f64, rise: f64, height: f64| {
+        Patch::from_points(&std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                v(from + i as f64, 1.5 * j as f64, height + rise * i as f64 - 0.05 * j as f64)
+            })
+        }))
+    };
+    made(vec![half(0.0, 0.2, 0.3), half(3.0, -0.2, 0.9)])
+}
+
+#[test]
+fn a_ball_passes_over_a_ridge() {
+    let mut p = Program::new();
+    p.tolerance(0.002, 0.002).cutter(&[0.5, 0.25]).from(1.0, 2.0, 6.0);
+    p.go(&[(On, &y(2.0)), (To, &ridge()), (On, &x(1.0))]);
+    p.indirv(1.0, 0.0, 0.0).side(TlOn).drive(Forward, &y(2.0), On, &x(5.0)).verified();
+    // One vector up, a few about the ridge, one down.
+    let count = p.sequences.last().map(|sequence| sequence.points.len());
+    assert!(count.is_some_and(|count| count < 10), "{count:?}");
     proven(&p);
 }
 
