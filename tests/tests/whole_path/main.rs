@@ -9,5 +9,6 @@ mod economy;
 mod interpreter;
 mod invariance;
 mod labels;
+mod sculptured;
 mod tapes;
 mod verified;
