@@ -10,7 +10,7 @@ mod zone;
 
 use apt_geometry::{
     Vec3,
-    surface::{Chart, Foot, Place, Steady, Surface},
+    surface::{Chart, Place, Steady, Surface},
 };
 
 pub(super) use self::around::Around;
