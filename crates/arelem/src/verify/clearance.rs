@@ -189,9 +189,9 @@ impl Surface {
         Some(Reading { value, normal, error: 0.0 })
     }
 
-    /// The greatest curvature with which it bends away from a tool on a side, at places nearer to the tool than `reach`.
-    /// None where there is no bound.
-    fn hill(&self, side: f64, tip: &Vec3, tool: &Tool<'_>, reach: f64) -> Option<f64> {
+    /// The greatest curvature with which it bends away from a tool on a side, at places nearer to the tool than `reach`; what is
+    /// less than `enough` need not be told apart. None where there is no bound.
+    fn hill(&self, side: f64, tip: &Vec3, tool: &Tool<'_>, [reach, enough]: [f64; 2]) -> Option<f64> {
         let is_hollow = side < 0.0;
         let found = match self {
             Self::Plane(..) => 0.0,
@@ -199,9 +199,8 @@ impl Surface {
             Self::Sphere(_, radius) => 1.0 / radius,
             Self::Pencil(pencil) => pencil.curvature(tip, tool, reach)?,
             Self::Quadric(quadric) => {
-                let half = 0.5 * tool.profile.top_height();
-                let ball = half.hypot(tool.profile.widest()) + reach;
-                quadric.hill(side, &(tip + tool.axis * half), ball)
+                let line = [*tip, tip + tool.axis * tool.profile.top_height()];
+                quadric.hill_along(side, line, [tool.profile.widest(), reach], enough)?
             }
             Self::Ruled(_) => return None,
         };
@@ -285,12 +284,12 @@ impl<'a> Clearance<'a> {
     }
 
     /// How its slope can grow on a vector, where no place of the tool moves farther than `travel`, from the readings at both
-    /// ends; None where that is not known.
+    /// ends; None where that is not known. Growth of less than `enough` need not be told apart.
     pub(super) fn bend_along(
         &self,
         [from, to]: [&ToolPosition; 2],
         ends: [&Reading; 2],
-        travel: f64,
+        [travel, enough]: [f64; 2],
     ) -> Option<Bend> {
         let tool = self.tool(from.axis);
         let tips = [from, to].map(|p| p.tip + p.axis * self.raise);
@@ -300,7 +299,7 @@ impl<'a> Clearance<'a> {
         let values = ends.map(|end| end.value + self.thickness);
         let [least, most] = [values[0].min(values[1]), values[0].abs().max(values[1].abs())];
         let depth = (0.5 * travel - least).max(0.0);
-        let hill = self.surface.hill(self.side, &tips[0], &tool, most + 1.5 * travel)?;
+        let hill = self.surface.hill(self.side, &tips[0], &tool, [most + 1.5 * travel, enough])?;
         Bend::over(hill, depth)
     }
 

@@ -14,6 +14,8 @@ const ROOT_STEPS: usize = 200;
 /// Distance from the pole of the secular equation, relative to where it starts, below which the search goes to it in long
 /// steps: the root is as near to it as the point is to a symmetry plane.
 const NEAR_POLE: f64 = 1e-3;
+/// How often the line of a body is halved where the bend of the surface beside it is bounded.
+const MOST_HALVINGS: u32 = 6;
 /// Rounding of the sine of the angle at which a body that does not end lies level.
 const NEARLY_LEVEL: f64 = 1e-9;
 /// Below this distance from the pole, at which squares of the foot are about to overflow, the point is on the plane.
@@ -159,8 +161,36 @@ impl PrincipalQuadric {
         Some(place)
     }
 
+    /// Bound of the curvature with which the surface bends away from what is on a side of it, at places nearer than `reach` to a
+    /// round body of a radius about a straight line; parts of it whose ball has more than `enough` are halved.
+    pub(super) fn hill_along(
+        &self,
+        side: f64,
+        line: [Vec3; 2],
+        [radius, reach]: [f64; 2],
+        enough: f64,
+    ) -> Option<f64> {
+        let mut greatest: f64 = 0.0;
+        let mut open = vec![(line, 0)];
+        while let Some(([from, to], depth)) = open.pop() {
+            let middle = 0.5 * (from + to);
+            let ball = (0.5 * (to - from).norm()).hypot(radius) + reach;
+            let hill = self.hill(side, &middle, ball);
+            if hill <= enough.max(greatest) {
+                greatest = greatest.max(hill);
+            } else if self.distance(&middle)?.distance.abs() <= ball {
+                if depth == MOST_HALVINGS {
+                    greatest = hill;
+                } else {
+                    open.extend([([from, middle], depth + 1), ([middle, to], depth + 1)]);
+                }
+            }
+        }
+        Some(greatest)
+    }
+
     /// Bound of the curvature with which the surface bends away from what is on a side of it, in a ball.
-    pub(super) fn hill(&self, side: f64, center: &Vec3, radius: f64) -> f64 {
+    fn hill(&self, side: f64, center: &Vec3, radius: f64) -> f64 {
         let slope = self.slope(&self.turned_in(center));
         let local = Vec3::from_fn(|i, _| (slope[i].abs() - self.a[i].abs() * radius).max(0.0)).norm();
         let greatest = self.a.iter().map(|a| side * a).fold(0.0, f64::max);

@@ -10,6 +10,10 @@ const EVALUATIONS: usize = 60;
 const FIRST_PIECES: usize = 4;
 /// Evaluations over one vector of unknown shape.
 const FREE_EVALUATIONS: usize = 4096;
+/// Rate with which the slope of a clearance grows, in bands and the length of the vector, on a vector that fills its band twice.
+const FULL: f64 = 16.0;
+/// Pieces of a vector that a bound of that rate may ask for.
+const PIECES: f64 = 1024.0;
 /// Sine below which two opposite axes leave the plane open in which the axis turns.
 const OPPOSITE: f64 = 1e-9;
 /// Step of the derivative with respect to the vector parameter when the tool axis turns.
@@ -214,8 +218,12 @@ impl Span<'_> {
         let swing = turn * self.clearance.reach();
         let travel = (self.to.tip - self.from.tip).norm() + swing;
         let [first, last] = &self.ends;
-        let bend = self.clearance.bend_along([&self.from, &self.to], [first, last], travel)?;
-        Some(Bend { rate: bend.rate * travel * travel + turn * swing, jumps: bend.jumps * travel })
+        let room = self.band[1] - self.band[0];
+        let enough = FULL * room / (travel * travel);
+        let bend = self.clearance.bend_along([&self.from, &self.to], [first, last], [travel, enough])?;
+        let rate = bend.rate * travel * travel + turn * swing;
+        // A bound that tells nothing, as beside the tip of what is nearly a cone, is none.
+        (rate <= 8.0 * PIECES * PIECES * room).then_some(Bend { rate, jumps: bend.jumps * travel })
     }
 
     /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::{
     super::{
         clearance::{Clearance, Surface},
+        quadric::PrincipalQuadric,
         tool::Profile,
     },
     cone, cutter, cylinder, plane, quadric, sphere,
@@ -313,5 +314,37 @@ proptest! {
         } else {
             prop_assert!(value < 5e-3, "value {value} sampled {sampled}");
         }
+    }
+}
+
+/// A cone that is blunt at its tip by next to nothing bends sharply there; a tool farther up is bounded by what is beside it.
+#[test]
+fn the_bend_beside_a_long_tool_is_that_of_the_places_beside_it() {
+    let [least, radius, reach] = [0.5, 0.5, 1.0];
+    let Geometry::Quadric(blunt) = quadric([1.0, 1.0, -1.0, -1e-12, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) else {
+        panic!("a quadric")
+    };
+    let form = PrincipalQuadric::of(&blunt).unwrap();
+    for x in [3.0, 5.0, 9.0] {
+        let line = [Vec3::new(x, 0.0, least), Vec3::new(x, 0.0, least + 20.0)];
+        let bound = form.hill_along(1.0, line, [radius, reach], 0.0).unwrap();
+        let mut greatest: f64 = 0.0;
+        for k in 0..=400 {
+            for turn in 0..60 {
+                let (z, (s, c)) =
+                    (f64::from(k) * 0.1 - 10.0, (f64::from(turn) * std::f64::consts::PI / 30.0).sin_cos());
+                let place = Vec3::new(z * c, z * s, z);
+                let beside = (place.x - x).hypot(place.y) - radius;
+                let over = (least - z).max(z - least - 20.0);
+                if beside.max(0.0).hypot(over.max(0.0)) <= reach {
+                    // Across a generator, 1/(z√2).
+                    greatest = greatest.max(1.0 / (z.abs() * std::f64::consts::SQRT_2));
+                }
+            }
+        }
+        assert!(greatest > 0.0 && bound >= greatest && bound <= 2.0 * greatest, "{bound} {greatest}");
+        // One ball about the whole tool holds the tip.
+        let all = form.hill_along(1.0, line, [radius, reach], f64::MAX).unwrap();
+        assert!(all > 1e3 * bound, "{all}");
     }
 }

@@ -93,7 +93,7 @@ fn the_slope_of_a_clearance_grows_no_faster_than_its_bound() {
         let turn = turning(from, to);
         let swing = turn * clearance.reach();
         let travel = (to.tip - from.tip).norm() + swing;
-        let bend = clearance.bend_along([from, to], [&readings[0], &readings[1]], travel);
+        let bend = clearance.bend_along([from, to], [&readings[0], &readings[1]], [travel, 0.0]);
         let bend = bend.unwrap_or_else(|| panic!("{geometry:?} {profile:?}"));
         let most = bend.rate * travel * travel + turn * swing;
         let count = 40;
