@@ -16,13 +16,12 @@ const SOON: u64 = 10_000;
 
 const BALL: &[f64] = &[0.5, 0.25];
 
-/// Surfaces with ends, with the place where a pass along x begins, and the cutters.
-fn passes() -> [(&'static str, Geometry, Vec3, Vec<&'static [f64]>); 3] {
-    let every: Vec<&[f64]> = vec![BALL, &[0.5], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+/// Surfaces with ends, with the place where a pass along x begins.
+fn passes() -> [(&'static str, Geometry, Vec3); 3] {
     [
-        ("ruled", lofts::roof(), v(4.0, 0.4, 6.0), every),
-        ("polyconic", lofts::vault(), v(-1.0, 0.4, 6.0), vec![BALL]),
-        ("patch", made(vec![hill()]), v(1.0, 2.0, 6.0), vec![BALL]),
+        ("ruled", lofts::roof(), v(4.0, 0.4, 6.0)),
+        ("polyconic", lofts::vault(), v(-1.0, 0.4, 6.0)),
+        ("patch", made(vec![hill()]), v(1.0, 2.0, 6.0)),
     ]
 }
 
@@ -38,21 +37,18 @@ fn on_part(part: &Geometry, at: Vec3, cutter: &[f64]) -> (Program, Geometry) {
 
 #[test]
 fn a_part_surface_that_ends_before_the_check_surface_is_told_soon() {
-    for (name, part, at, cutters) in passes() {
-        for cutter in cutters {
-            let (mut p, drive) = on_part(&part, at, cutter);
-            let before = EVALUATIONS.get();
-            let failure =
-                p.attempt(&motion(Forward, &drive, &[(On, 1, &x(500.0))])).expect_err("no way there");
-            let cost = EVALUATIONS.get() - before;
-            let MotionFailure::SurfaceEnds { role: RoleName::Part, tip, place, remaining } = failure else {
-                panic!("{name}, {cutter:?}: {failure:?}");
-            };
-            let remaining = remaining.expect("a check surface that is crossed");
-            assert!((remaining - (500.0 - tip.x)).abs() < 1e-6, "{name}: {remaining} at {tip}");
-            assert!((place - tip).norm() < 2.0, "{name}, {cutter:?}: {place} {tip}");
-            assert!(cost <= SOON, "{name}, {cutter:?}: {cost} clearances");
-        }
+    for (name, part, at) in passes() {
+        let (mut p, drive) = on_part(&part, at, BALL);
+        let before = EVALUATIONS.get();
+        let failure = p.attempt(&motion(Forward, &drive, &[(On, 1, &x(500.0))])).expect_err("no way there");
+        let cost = EVALUATIONS.get() - before;
+        let MotionFailure::SurfaceEnds { role: RoleName::Part, tip, place, remaining } = failure else {
+            panic!("{name}: {failure:?}");
+        };
+        let remaining = remaining.expect("a check surface that is crossed");
+        assert!((remaining - (500.0 - tip.x)).abs() < 1e-6, "{name}: {remaining} at {tip}");
+        assert!((place - tip).norm() < 2.0, "{name}: {place} {tip}");
+        assert!(cost <= SOON, "{name}: {cost} clearances");
     }
 }
 
