@@ -118,14 +118,16 @@ fn counts_agree(a: usize, b: usize) -> bool {
 /// The motion under a map is the image of the motion.
 fn image(case: &Case, path: &CutSequence, matrix: &Matrix) -> Result<(), Broken> {
     let mapped = case.under(matrix);
+    let factor = matrix.linear().determinant().abs().cbrt();
     let mut runner = Runner::new(case);
+    // How exactly the numbers of a cutter must agree is a length in inches.
+    runner.state.units *= factor;
     runner.run(&mapped.commands())?;
     proven(&runner, &runner.sequences)?;
     let image = runner.sequences.last().ok_or_else(|| "no motion".to_owned())?;
     if !counts_agree(path.points.len(), image.points.len()) {
         return Err(format!("{} vectors instead of {}", image.points.len(), path.points.len()).into());
     }
-    let factor = matrix.linear().determinant().abs().cbrt();
     let wanted = matrix.apply_point(&end(path));
     let off = (end(image) - wanted).norm();
     let size = factor * (10.0 + end(path).norm());
