@@ -464,8 +464,8 @@ impl Place<'_> {
     }
 
     /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the circle `at` of
-    /// 0 … 1, of its place that faces the contact or of its lowest: the least value over the places at each height, wherever they are, is a quadratic
-    /// function of the height, and that is lowest at an end or where it is level.
+    /// 0 … 1: that of its place that faces the contact, or without one that of its lowest place. The least value over the places
+    /// at each height, wherever they are, is a quadratic function of the height, lowest at an end or where it is level.
     fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: Option<&Vector2<f64>>, at: f64) -> f64 {
         let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
         let rho = a[0] + spread * at;
