@@ -31,6 +31,9 @@ const MAX_DEPTH: u32 = 24;
 /// Bound of the parts that one question looks at.
 const MAX_PARTS: u32 = 3000;
 
+/// Parts of a surface that are kept, some 40 MB of them: those beyond are made for each question that needs them.
+const MOST_KEPT: usize = 100_000;
+
 /// A rectangle of parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rectangle {
@@ -88,8 +91,8 @@ impl Enclosure {
 pub(super) trait Enclose {
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure;
 
-    /// Counts parts that were made.
-    fn made(&self, parts: usize);
+    /// The number of parts that were made.
+    fn parts(&self) -> &Count;
 
     /// Bounds over a rectangle with a side that is one point, where the parameters say nothing of them.
     fn cap(&self, _: &Rectangle) -> Option<Cap> {
@@ -493,7 +496,7 @@ impl Part {
 
     /// Both halves: of the side whose halves have the closer bounds.
     fn halved(&self, sheet: &impl Enclose) -> [Self; 2] {
-        sheet.made(2);
+        sheet.parts().add(2);
         let cut = |side: usize| self.rectangle.halves(side).map(|half| Self::new(sheet, half));
         if let Some(side) = self.halved {
             return cut(side);
@@ -565,7 +568,16 @@ impl Part {
             survey.cosine = survey.cosine.min(cosine);
             survey.jumps |= jumps;
         } else {
-            for half in self.halves.get(|| Box::new(self.halved(sheet))).iter().rev() {
+            let passing: [Self; 2];
+            let halves: &[Self; 2] = match self.halves.made() {
+                Some(known) => known,
+                None if sheet.parts().get() >= MOST_KEPT => {
+                    passing = self.halved(sheet);
+                    &passing
+                }
+                None => self.halves.get(|| Box::new(self.halved(sheet))),
+            };
+            for half in halves.iter().rev() {
                 half.survey_within(sheet, survey, depth + 1);
             }
         }

@@ -3,7 +3,7 @@
 use super::{
     super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
-        part::{Enclose, Enclosure, Rectangle, Survey},
+        part::{Count, Enclose, Enclosure, Rectangle, Survey},
     },
     Control, Course, Flat, GREATEST_FULLNESS, LEAST_FULLNESS, PolyConicSheet, controls, section, weight,
 };
@@ -49,8 +49,8 @@ impl PolyConicSheet {
 }
 
 impl Enclose for PolyConicSheet {
-    fn made(&self, parts: usize) {
-        self.parts.add(parts);
+    fn parts(&self) -> &Count {
+        &self.parts
     }
 
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {

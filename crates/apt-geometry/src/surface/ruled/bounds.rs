@@ -3,7 +3,7 @@
 use super::{
     super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
-        part::{Enclose, Enclosure, Part, Rectangle, Summary, Survey},
+        part::{Count, Enclose, Enclosure, Part, Rectangle, Summary, Survey},
     },
     Piece, RuledSheet, Strip,
 };
@@ -48,8 +48,8 @@ struct Stretch<'a> {
 }
 
 impl Enclose for Stretch<'_> {
-    fn made(&self, parts: usize) {
-        self.sheet.parts.add(parts);
+    fn parts(&self) -> &Count {
+        &self.sheet.parts
     }
 
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {

@@ -5,7 +5,7 @@ use super::{
     super::{
         Foot,
         interval::{Box3, Interval},
-        part::{Cap, Enclose, Enclosure, Rectangle, Survey},
+        part::{Cap, Count, Enclose, Enclosure, Rectangle, Survey},
         sheet::{Jet, Rest},
     },
     SculpturedSheet,
@@ -169,8 +169,8 @@ impl Stretch<'_> {
 }
 
 impl Enclose for Stretch<'_> {
-    fn made(&self, parts: usize) {
-        self.sheet.parts.add(parts);
+    fn parts(&self) -> &Count {
+        &self.sheet.parts
     }
 
     /// About a pole the parameters have no frame. There the surface is looked at in many places; how far it may bend more
