@@ -220,6 +220,35 @@ impl Gauge {
     }
 }
 
+impl Gauge {
+    /// Whether the tool, on a straight way of its end between two contacts, is beside one of the two convex halves that a solid
+    /// consists of, and farther than a clearance from the other: its clearance is then that from a convex solid.
+    pub(crate) fn is_beside_one_half(
+        &self,
+        tool: &Tool,
+        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
+        clearance: f64,
+    ) -> bool {
+        if self.on || !matches!(self.surface, Surface::Quadric(_)) {
+            return false;
+        }
+        let (body, start) = self.body(tool, from);
+        let end = to + (start - from);
+        let posed = |tip: &Vec3| quadric::Posed::new(&body, &self.surface, self.side, tip);
+        let (Some(here), Some(there)) = (posed(&start), posed(&end)) else { return false };
+        let touched =
+            |contact: &Contact| Contact { clearance: contact.clearance + self.thickness, ..*contact };
+        let (first, last) = (touched(first), touched(last));
+        let (Some(half), Some(same)) = (here.half_beside(&first), there.half_beside(&last)) else {
+            return false;
+        };
+        let far = clearance + self.thickness + (to - from).norm();
+        half.is(&same)
+            && here.keeps_off(&half, far, &first)
+            && !open_top::is_entered(&body, &self.surface, self.side, [&start, &end])
+    }
+}
+
 /// How the distance of a tool on one side of a surface behaves along a straight line.
 fn shape(surface: &Surface, side: f64) -> Shape {
     match (surface.convexity(), side > 0.0) {

@@ -6,6 +6,7 @@
 //! tangent planes for convex solids, and for all others by quadratic functions below the squared distance, which have
 //! closed bounds over whole circles and patches of the tool.
 
+mod halves;
 mod patch;
 
 use std::borrow::Cow;
@@ -251,11 +252,14 @@ pub(super) fn is_way_out(tool: &Tool, surface: &Surface, contact: &Contact) -> b
 /// Whether the tangent plane at a contact has the whole tool on one side, a convex solid being on the other: two convex
 /// bodies are nearest where their normals match.
 fn touches_by_plane(tool: &Tool, contact: &Contact, tip: &Vec3) -> bool {
-    let (along, across, _) = tool.split(&contact.gradient);
-    let reach = tool.profile.support(across, -along).0;
-    let by_plane = contact.gradient.dot(&(tip - contact.surface)) - reach;
     let size = tool.radius() + tool.profile.top.height + (tip - contact.surface).norm();
-    by_plane >= contact.clearance - GAP * size
+    above_plane(tool, contact, tip) >= contact.clearance - GAP * size
+}
+
+/// Distance of the tool from the tangent plane at a contact.
+fn above_plane(tool: &Tool, contact: &Contact, tip: &Vec3) -> f64 {
+    let (along, across, _) = tool.split(&contact.gradient);
+    contact.gradient.dot(&(tip - contact.surface)) - tool.profile.support(across, -along).0
 }
 
 impl<'a> Posed<'a> {
@@ -354,14 +358,13 @@ impl<'a> Posed<'a> {
     /// Whether no point of the tool is nearer to the surface than a level, by bounds made from a contact. If not, there may
     /// be one or the bounds are too weak.
     pub(super) fn clears(&self, level: f64, contact: &Contact) -> bool {
-        let foot = self.form.to_principal(&contact.surface);
-        let steepness = self.form.stationary(&foot, 0.0).gradient.norm();
-        let towards = self.form.direction_to_principal(&contact.gradient);
-        if steepness <= 0.0 || steepness.is_nan() {
-            return false;
+        if let Some(half) = self.half_by_plane(level, contact)
+            && self.keeps_off(&half, level, contact)
+        {
+            return true;
         }
+        let Some((sharp, steepness, towards)) = self.bound_from(level, contact) else { return false };
         let profile = &self.tool.profile;
-        let Some(sharp) = self.bound(level, steepness, &towards) else { return false };
         let corner = if profile.arc > 0.0 {
             let balls = (level + profile.arc > 0.0)
                 .then(|| self.bound(level + profile.arc, steepness, &towards))
@@ -380,6 +383,18 @@ impl<'a> Posed<'a> {
             }
             && (profile.top.height <= profile.upper.height
                 || self.flank(&sharp, [&profile.upper, &profile.top], &towards))
+    }
+
+    /// The function for a distance by the steepness of F at a contact, that steepness, and the direction in which the contact is
+    /// left.
+    fn bound_from(&self, level: f64, contact: &Contact) -> Option<(Bound, f64, Vec3)> {
+        let foot = self.form.to_principal(&contact.surface);
+        let steepness = self.form.stationary(&foot, 0.0).gradient.norm();
+        let towards = self.form.direction_to_principal(&contact.gradient);
+        if steepness <= 0.0 || steepness.is_nan() {
+            return None;
+        }
+        Some((self.bound(level, steepness, &towards)?, steepness, towards))
     }
 
     /// The function for a distance that points must keep; for a depth, F for the tool shifted out by it.

@@ -110,6 +110,11 @@ pub(crate) fn extremes(
     let turns = sweep.turns() && !role.gauge.on;
     let shape = match role.shape {
         Shape::Convex if !turns => role.gauge.shape_along(&sweep.at(0.0).1, [from.0, to.0]),
+        Shape::General if !turns && length > 0.0 => {
+            let contacts = [(from.0, from.1), (to.0, to.1)];
+            let is_convex = role.gauge.is_beside_one_half(sweep.tool(), contacts, role.outside);
+            if is_convex { Shape::Convex } else { Shape::General }
+        }
         shape => shape,
     };
     if length > 0.0
