@@ -231,3 +231,119 @@ fn between_two_sides_in_tolerance_the_side_told_decides() {
     };
     is_delivered(&motion);
 }
+
+/// The path meets its stop on a kink, right behind a place where it turns: neither is found by following slopes.
+#[test]
+fn a_lens_cutter_stops_on_a_kink() {
+    let motion = Found {
+        cutter: &[1.0, 0.1875, 0.33, 0.22, 8.867206503621937, 5.0, 2.5665999423951833],
+        axis: v(0.44043501321344997, -0.026224198619435764, 0.8974014099289329),
+        from: v(0.5681609920134517, -1.090967461681523, 1.354272019146752),
+        band: [0.001, 0.001],
+        thickness: 0.061657537307898344,
+        drive_side: DriveSide::Right,
+        forward: v(-0.6582224827054662, -0.5744169935957502, 0.48660896079857824),
+        part: (
+            Relation::To,
+            Geometry::Sphere(Sphere {
+                center: v(2.7250043427322876, 2.0225366960243587, 7.492993426787426),
+                radius: 7.736484929979694,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Hyperbola(Quadric {
+                coefficients: [
+                    0.5588948215754924,
+                    0.22597735546073242,
+                    0.0,
+                    2.9054311368818864,
+                    0.0,
+                    0.0,
+                    -0.5125559641761737,
+                    -1.8198740852893016,
+                    0.9667362629398542,
+                    0.0,
+                ],
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.6582224827054661, -0.5744169935957502, 0.48660896079857835),
+                distance: 0.5762378765440257,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.13984855105821933,
+                    0.14236822221865994,
+                    0.042222927589588705,
+                    -0.44539691324839414,
+                    -0.09758172902929371,
+                    0.017562477013940387,
+                    0.20678290173143293,
+                    -0.135723177743098,
+                    0.2024649604667238,
+                    0.05173595427198133,
+                ],
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// A flat bottom lies on a ruling of a cone, along which no bend of the clearance has a bound near the vertex.
+#[test]
+fn a_flat_cutter_goes_along_a_ruling_of_a_cone() {
+    let motion = Found {
+        cutter: &[1.1210241276703612],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-1.547930607334039, -1.5970102085779296, 1.8629244281812245),
+        band: [0.001, 0.001],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(0.926025364234117, -0.37746128913449006, 0.0),
+        part: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.17438285248871851,
+                    0.20312921419567492,
+                    -0.14067084979744748,
+                    -1.0008515973768741,
+                    0.010863527193828618,
+                    -0.1039450150433783,
+                    0.009482537987498573,
+                    0.36942939486572157,
+                    0.17973514729605244,
+                    0.5631456713598391,
+                ],
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(0.3774612891344901, 0.926025364234117, 7.140313134131847e-17),
+                distance: -0.7163963688057049,
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.926025364234117, 0.37746128913448995, 5.304659199275757e-17),
+                distance: 0.14724984732465649,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Sphere(Sphere {
+                center: v(0.39151049561122575, -1.7421794450228687, 1.3540223760455137),
+                radius: 1.0994168506722175,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}

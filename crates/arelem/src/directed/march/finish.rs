@@ -10,6 +10,7 @@ use crate::{
     },
     error::{Iteration, MotionFailure},
     position::{self, Condition},
+    role::Working,
 };
 
 /// Where a motion ends.
@@ -67,10 +68,20 @@ fn locate(
     ];
     match position::solve(&prepared.attitude, &conditions, &event.tip) {
         Ok(solution) => Ok(End { tip: solution.tip, check: event.check, side: event.side }),
+        // The event lies on a vector that is proven.
+        Err(_) if keeps(prepared, &check, &event.tip) => {
+            Ok(End { tip: event.tip, check: event.check, side: event.side })
+        }
         Err(unsolved) => Err(MotionFailure::IterationLimit {
             iteration: Iteration::ThreeSurfaces,
             limit: unsolved.iterations,
             tip: unsolved.tip,
         }),
     }
+}
+
+/// True if the tool, at a place of the path, is in the band of a check surface.
+fn keeps(prepared: &Prepared, check: &Working, tip: &Vec3) -> bool {
+    let posture = prepared.attitude.posture(tip);
+    posture.is_ok_and(|posture| check.holds(posture.contact(&check.gauge, tip).clearance, prepared.size))
 }

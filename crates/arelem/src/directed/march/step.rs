@@ -2,6 +2,8 @@
 //! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it. Where the
 //! path begins to bend the other way both limits are tried, and the vertex before may move back on its vector ([`window`]).
 
+mod corner;
+mod exhaustive;
 mod trend;
 mod window;
 
@@ -20,6 +22,8 @@ use crate::{
 
 /// Bound of the trials for one vector.
 const MAX_TRIALS: u32 = 60;
+/// Bound of the corrections for the end of a vector: far above what a vector that leads on needs.
+const CORRECTIONS: u32 = 20;
 /// Bound of the trials that shorten a vector which the way back into the bands makes longer than is allowed.
 const MOST_SHORTENINGS: u32 = 12;
 /// Trials that try to lengthen a vector already proven.
@@ -44,14 +48,8 @@ const LEAST_TURN_COSINE: f64 = 0.5;
 const NEARLY: f64 = 1.01;
 /// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
 const CORNER_BANDS: f64 = 20.0;
-/// How many times the width of the bands ahead of a place without a way on it is looked for another contact.
-const CORNER_PROBES: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
 /// How many times the width of the bands a path goes on before what it does there is not turning on the spot any more.
 const KINK_BANDS: f64 = 0.1;
-/// Sine between the normals of two contacts above which they are not the same one.
-const OTHER_CONTACT_SINE: f64 = 0.05;
-/// Cosine between two directions above which both need not be tried.
-const SAME_TANGENT_COSINE: f64 = 0.999;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Share of a vector's length by which its end may be expected aside of its tangent.
@@ -150,19 +148,9 @@ impl<'a> Stepper<'a> {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
             found => return self.noted(here, found),
         };
-        let places: Vec<SecondPlace> =
-            CORNER_PROBES.iter().filter_map(|share| self.second_place(here, *share)).collect();
-        for tangent in tangents_beyond(here, &places) {
-            if self.leads_back(here, &tangent) {
-                continue;
-            }
-            let turned = Vertex { tangent, ..*here };
-            self.trend.forget();
-            if let Ok(next) = self.onward(&turned, cap, Places::Limits) {
-                self.turned = Some((here.tip, here.tangent));
-                *here = turned;
-                return self.noted(here, Ok(next));
-            }
+        let corner = self.corner_at(here);
+        if let Some(next) = self.around(&corner, here, cap) {
+            return self.noted(here, Ok(next));
         }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
         self.trend.forget();
@@ -170,10 +158,10 @@ impl<'a> Stepper<'a> {
         if matches!(level, Ok(_) | Err(MotionFailure::Cancelled)) {
             return self.noted(here, level);
         }
-        Err(match (failure, places.first()) {
-            (MotionFailure::IterationLimit { .. }, Some(place)) => place.prevents(self.prepared, here),
-            (failure, _) => failure,
-        })
+        match self.anywhere_onward(&corner, here, cap)? {
+            Some(next) => self.noted(here, Ok(next)),
+            None => Err(corner.explained(self.prepared, here, failure)),
+        }
     }
 
     /// Remembers the direction of a vector.
@@ -215,16 +203,6 @@ impl<'a> Stepper<'a> {
             || self
                 .turned
                 .is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
-    }
-
-    /// The contacts so many bands ahead, if one of them is another than here.
-    fn second_place(&self, here: &Vertex, bands: f64) -> Option<SecondPlace> {
-        let Prepared { part, drive, .. } = self.prepared;
-        let reach = bands * (part.band() + drive.band());
-        let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent).ok()?;
-        let is_other = |a: &Contact, b: &Contact| a.gradient.cross(&b.gradient).norm() > OTHER_CONTACT_SINE;
-        let others = [is_other(&here.part, &ahead.part), is_other(&here.drive, &ahead.drive)];
-        others.contains(&true).then_some(SecondPlace { ahead, others })
     }
 
     /// The next vertex along the tangent, at most `cap` away.
@@ -421,7 +399,8 @@ impl<'a> Stepper<'a> {
         let mut attempted = length;
         for _ in 0..MOST_SHORTENINGS {
             let start = ahead(here, attempted, targets, curvature);
-            let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, &start).ok()?;
+            let Solution { tip, contacts, .. } =
+                position::solve_within(attitude, &conditions, &start, CORRECTIONS).ok()?;
             let [Some(part), Some(drive), _] = contacts else { return None };
             let chord = tip - here.tip;
             let reached = chord.norm();
@@ -519,46 +498,6 @@ fn ahead(here: &Vertex, length: f64, targets: [f64; 2], curvature: &[f64; 2]) ->
     // No longer than asked for: an arc sags a little more than the parabola that the length is predicted for.
     let way = along + aside;
     here.tip + way * (length * length / way.norm_squared())
-}
-
-/// A place ahead at which the tool touches a surface elsewhere.
-struct SecondPlace {
-    ahead: Vertex,
-    /// Whether the contacts with part and drive surface are others.
-    others: [bool; 2],
-}
-
-impl SecondPlace {
-    /// What is told where the path cannot go on along the second contact.
-    fn prevents(&self, prepared: &Prepared, here: &Vertex) -> MotionFailure {
-        let (role, clearance) = match self.others {
-            [true, _] => (prepared.part.name, self.ahead.part.clearance),
-            _ => (prepared.drive.name, self.ahead.drive.clearance),
-        };
-        MotionFailure::NoAdmissibleVector { role, clearance, tip: here.tip }
-    }
-}
-
-/// Directions in which the path may go on from a corner: along the second contact and away from the present one, but not
-/// back. Where a second wall would lead the tool back the path ends.
-fn tangents_beyond(here: &Vertex, places: &[SecondPlace]) -> Vec<Vec3> {
-    let mut found: Vec<Vec3> = Vec::new();
-    for SecondPlace { ahead, others } in places {
-        for [part_turns, drive_turns] in [[true, false], [false, true], [true, true]] {
-            if (part_turns && !others[0]) || (drive_turns && !others[1]) {
-                continue;
-            }
-            let part = if part_turns { &ahead.part } else { &here.part };
-            let drive = if drive_turns { &ahead.drive } else { &here.drive };
-            let along = tangent(part, drive, &here.tangent);
-            let away = |turns: bool, contact: &Contact| !turns || contact.gradient.dot(&along) >= 0.0;
-            let is_known = found.iter().any(|t| t.dot(&along) > SAME_TANGENT_COSINE);
-            if away(part_turns, &here.part) && away(drive_turns, &here.drive) && !is_known {
-                found.push(along);
-            }
-        }
-    }
-    found
 }
 
 /// Factor by which the length may grow until the sag fills the band, taking the sag as quadratic in the length.
