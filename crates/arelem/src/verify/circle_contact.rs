@@ -505,7 +505,7 @@ impl Place<'_> {
 /// The multiplier with which `wᵀ(H + μ)w + 2g·w` is least at the place of a circle about the origin where it is least of all on
 /// the circle, or one a little greater: from where that place is within the circle, Newton's method on the reciprocal of its radius
 /// never leaves that side.
-fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f64 {
+pub(super) fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f64 {
     let (mean, half) = (0.5 * form.trace(), (0.5 * (form.m11 - form.m22)).hypot(form.m12));
     let mut mu = half - mean + g.norm() / radius;
     for _ in 0..STEPS {
@@ -526,7 +526,7 @@ fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f
 }
 
 /// Least value of `wᵀ(H + μ)w + 2g·w`; −∞ if there is none.
-fn least_of(form: &Matrix2<f64>, mu: f64, g: &Vector2<f64>) -> f64 {
+pub(super) fn least_of(form: &Matrix2<f64>, mu: f64, g: &Vector2<f64>) -> f64 {
     let (a, b, c) = (form.m11 + mu, form.m12, form.m22 + mu);
     let determinant = a * c - b * b;
     if determinant > 0.0 && a + c > 0.0 {

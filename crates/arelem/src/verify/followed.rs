@@ -3,7 +3,8 @@
 //!
 //! Where a ball that touches the surface at the contact, on the tool's side, has no place of a patch inside, and the tool
 //! lies in a smaller one about the same centre, nothing of the patch is nearer than the difference of the radii. The same
-//! holds for half-spaces. What cannot be shown is left to the general search.
+//! holds for half-spaces, and for cylinders along a straight piece of the tool ([`super::trough`]). What cannot be shown is left to
+//! the general search.
 
 use std::cell::Cell;
 
@@ -15,6 +16,7 @@ use super::{
     patch::{held, jet},
     survey::{Accuracy, Part, Sheet, nearest_by},
     tool::{Profile, Tool},
+    trough::{Rise, farthest_from_line, straight_direction},
 };
 
 /// Steps of Newton's method, the last of them, and the greatest, in parameters.
@@ -63,6 +65,8 @@ enum Guard {
     Level(Vec3, f64),
     /// Centre and radius.
     Ball(Vec3, f64),
+    /// A place of the axis of a cylinder, its direction, and the radius.
+    Trough(Vec3, Vec3, f64),
 }
 
 impl Guard {
@@ -73,18 +77,24 @@ impl Guard {
             Self::Level(outward, height) => {
                 points.map(|p| outward.dot(p)).fold(f64::INFINITY, f64::min) - height
             }
-            Self::Ball(center, radius) => {
-                let beyond = |place: &Vec3| {
-                    let away = place - center;
-                    let heights = points.clone().map(|p| away.dot(&(p - center)));
-                    heights.fold(f64::INFINITY, f64::min) / away.norm() - radius
-                };
-                // Its middle is known; its nearest place has to be found.
-                let found = beyond(&part.center);
-                if found >= 0.0 { found } else { found.max(beyond(&part.near(center))) }
-            }
+            Self::Ball(center, radius) => beyond(part, center, None, *radius),
+            Self::Trough(center, along, radius) => beyond(part, center, Some(along), *radius),
         }
     }
+}
+
+/// How far a part is beyond a ball, or beyond a cylinder along a direction, at least.
+fn beyond(part: &Part, center: &Vec3, along: Option<&Vec3>, radius: f64) -> f64 {
+    let onward = |from: Vec3| along.map_or(Vec3::zeros(), |along| along * along.dot(&from));
+    let over = |place: &Vec3| {
+        let from = place - center;
+        let away = from - onward(from);
+        let heights = part.net.iter().flatten().map(|p| away.dot(&(p - center)));
+        heights.fold(f64::INFINITY, f64::min) / away.norm() - radius
+    };
+    // Its middle is known; its nearest place has to be found.
+    let found = over(&part.center);
+    if found >= 0.0 { found } else { found.max(over(&part.near(&(center + onward(part.center - center))))) }
 }
 
 /// What is shown of all parts: the bounds of the one in contact, how far up they hold, the distance wanted, and the contact.
@@ -239,8 +249,8 @@ impl Following<'_> {
         let below = top.max(tool.profile.edges()[1][1]) + widest;
         let low = (below < tool.profile.top_height()).then(|| tool.profile.below(below));
         let limit = 1.0 / hollow;
-        let tried =
-            BALLS.iter().map(|k| k * widest.max(contact.value.abs())).filter(|r| *r > 0.0 && *r < limit);
+        let radii = BALLS.map(|k| k * widest.max(contact.value.abs()));
+        let tried = radii.into_iter().filter(|r| *r > 0.0 && *r < limit);
         let greatest = limit.min(1e4 * (widest + contact.value.abs() + part.radius));
         for radius in tried.chain([greatest]) {
             let center = contact.place + contact.normal * radius;
@@ -252,6 +262,17 @@ impl Following<'_> {
                 && radius - tool.with(low).farthest(&from).0 >= least
             {
                 return Some((Guard::Ball(center, radius), below));
+            }
+        }
+        let along = straight_direction(tool, &contact.opposite, &contact.normal)?;
+        let rise = Rise::of(&part.net, contact.at, &contact.normal, &contact.normal.cross(&along))?;
+        for radius in radii.into_iter().filter(|r| *r > 0.0 && rise.is_below(1.0 / r)) {
+            let center = contact.place + contact.normal * radius;
+            let from = center - self.tip;
+            let low = low.as_ref().map_or(*tool, |low| tool.with(low));
+            if radius - farthest_from_line(&low, &from, &along) >= least {
+                let below = if low.profile == tool.profile { f64::INFINITY } else { below };
+                return Some((Guard::Trough(center, along, radius), below));
             }
         }
         None

@@ -28,6 +28,7 @@ mod straight_contact;
 mod strip;
 mod survey;
 mod tool;
+mod trough;
 mod vertex;
 
 #[cfg(test)]

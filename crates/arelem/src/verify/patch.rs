@@ -230,6 +230,21 @@ pub(super) fn held(parameters: [f64; 2]) -> [f64; 2] {
     parameters.map(|x| x.clamp(-BEYOND, 1.0 + BEYOND))
 }
 
+/// The same patch with what is a little beyond its sides.
+fn stretched_net(net: &Net) -> Net {
+    turned(&turned(&net.map(|row| stretched(&row))).map(|row| stretched(&row)))
+}
+
+/// A patch as far as it reaches from a place on it, or a little beyond its sides, to all of its places.
+pub(super) fn reached(net: &Net, at: [f64; 2]) -> Net {
+    if at.iter().all(|x| (0.0..=1.0).contains(x)) { *net } else { stretched_net(net) }
+}
+
+/// Thirds of the derivative along a patch, by control points.
+pub(super) fn differences(net: &Net) -> [[Vec3; 3]; 4] {
+    net.map(|row| [row[1] - row[0], row[2] - row[1], row[3] - row[2]])
+}
+
 /// How much a patch, with what is a little beyond its sides, can bend.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bends {
@@ -244,9 +259,7 @@ impl Bends {
     /// From one place to another, a and b away in the parameters, a patch goes by `aU + bV` with U and V among the convex
     /// hulls of the differences of its control points, and leaves the tangent plane by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv`.
     pub(super) fn of(net: &Net) -> Option<Self> {
-        let wide = turned(&net.map(|row| stretched(&row))).map(|row| stretched(&row));
-        let wide = turned(&wide);
-        let differences = |net: &Net| net.map(|row| [row[1] - row[0], row[2] - row[1], row[3] - row[2]]);
+        let wide = stretched_net(net);
         let (along, across) = (differences(&wide), differences(&turned(&wide)));
         let spread = |all: &[[Vec3; 3]; 4]| {
             let mean = all.iter().flatten().sum::<Vec3>() / 12.0;

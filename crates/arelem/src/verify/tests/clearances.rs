@@ -85,7 +85,7 @@ fn a_pin_inside_the_tool_is_deep_penetration() {
 }
 
 /// Points all over the tool's boundary.
-pub(super) fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
+pub(crate) fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
     let profile = Profile::of(tool).unwrap();
     let mut meridian = Vec::new();
     for (a, b) in profile.lines() {

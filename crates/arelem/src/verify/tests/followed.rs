@@ -18,6 +18,7 @@ use crate::sequence::ToolPosition;
 const BALL: [f64; 2] = [0.5, 0.25];
 const FLAT: [f64; 2] = [0.5, 0.0];
 const BULL: [f64; 2] = [0.5, 0.1];
+const SEVEN: [f64; 7] = [0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
 
 fn saddle() -> Geometry {
     quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5])
@@ -26,16 +27,18 @@ fn saddle() -> Geometry {
 #[test]
 fn contacts_are_followed_and_are_those_of_the_search() {
     for (geometry, side, tool) in [
-        (roof(), 1.0, BALL),
-        (roof(), 1.0, FLAT),
-        (roof(), 1.0, BULL),
-        (vault(), -1.0, BULL),
-        (vault(), -1.0, FLAT),
-        (vault(), -1.0, BALL),
+        (roof(), 1.0, &BALL[..]),
+        (roof(), 1.0, &FLAT),
+        (roof(), 1.0, &BULL),
+        (roof(), 1.0, &SEVEN),
+        (vault(), -1.0, &BULL),
+        (vault(), -1.0, &FLAT),
+        (vault(), -1.0, &BALL),
+        (vault(), -1.0, &SEVEN),
     ] {
         let surface = Surface::of(&geometry).unwrap();
         let Surface::Ruled(ruled) = &surface else { panic!("{geometry:?}") };
-        let profile = Profile::of(&cutter(&tool)).unwrap();
+        let profile = Profile::of(&cutter(tool)).unwrap();
         let tool = Tool::new(&profile, Vec3::z());
         let mut tip = Vec3::new(-0.6, 0.4, 5.0);
         for _ in 0..60 {

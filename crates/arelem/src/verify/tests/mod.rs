@@ -1,7 +1,7 @@
 //! Tests of the verifier against closed forms, dense sampling and deliberately broken sequences.
 
 mod branches;
-mod clearances;
+pub(crate) mod clearances;
 mod every_kind;
 mod followed;
 #[path = "../../../tests/support/lofts.rs"]

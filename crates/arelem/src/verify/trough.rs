@@ -1,0 +1,197 @@
+//! Troughs: cylinders that hold a tool which touches a bent surface with a straight piece of its meridian.
+//!
+//! No ball touches such a tool there and holds it, but a cylinder along the straight piece does; and where the surface bends
+//! away along that direction, none of it is inside the cylinder, though across it the surface may be hollow.
+
+use apt_geometry::Vec3;
+use nalgebra::{Matrix2, Vector2};
+
+use super::{
+    circle_contact::{least_of, multiplier_of_circle},
+    patch::{Net, differences, reached, turned},
+    tool::{Meridian, Tool, perpendicular},
+};
+
+/// How a patch rises over its tangent plane at a place, relative to how far it goes across a direction.
+///
+/// From the place to another, a and b away in the parameters, it goes by `aU + bV` with U and V among the convex hulls of the
+/// differences of its control points, and rises by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv` with those of the second ones.
+pub(super) struct Rise {
+    /// The greatest form of the second differences along the normal, the parameters measured by the lengths they stand for.
+    greatest: Matrix2<f64>,
+    /// What way across there is in both parameters, and how far that may be from everywhere the same.
+    across: Vector2<f64>,
+    spread: f64,
+}
+
+/// The middle of an interval that holds some numbers, and half of its length.
+fn interval(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    [0.5 * (low + high), 0.5 * (high - low)]
+}
+
+impl Rise {
+    /// Over the tangent plane at a place with its unit normal, and across a unit direction in that plane. None where the
+    /// parameters do not spread.
+    pub(super) fn of(net: &Net, at: [f64; 2], normal: &Vec3, across: &Vec3) -> Option<Self> {
+        let net = reached(net, at);
+        let (along_all, across_all) = (differences(&net), differences(&turned(&net)));
+        let length = |all: &[[Vec3; 3]; 4]| (all.iter().flatten().sum::<Vec3>() / 12.0).norm();
+        let (u, v) = (length(&along_all), length(&across_all));
+        let way = |all: &[[Vec3; 3]; 4], size: f64| {
+            interval(all.iter().flatten().map(|d| across.dot(d))).map(|x| x / size)
+        };
+        let ([way_u, off_u], [way_v, off_v]) = (way(&along_all, u), way(&across_all, v));
+        // The differences count thirds of the first derivatives, and so ninths of the mixed and two thirds of the others.
+        let bend = |all: &[[Vec3; 3]; 4], size: f64| {
+            let second = all.iter().flat_map(|d| [d[1] - d[0], d[2] - d[1]]);
+            interval(second.map(|d| normal.dot(&d))).map(|x| x * (2.0 / 3.0) / (size * size))
+        };
+        let ([uu, more_u], [vv, more_v]) = (bend(&along_all, u), bend(&across_all, v));
+        let twists =
+            along_all.windows(2).flat_map(|rows| (0..3).map(move |i| normal.dot(&(rows[1][i] - rows[0][i]))));
+        let [uv, more] = interval(twists).map(|x| x / (u * v));
+        // 2ab·x is not more than (a² + b²)·|x|.
+        let greatest = Matrix2::new(uu + more_u + more, uv, uv, vv + more_v + more);
+        let spread = off_u.hypot(off_v);
+        let is_finite = greatest.iter().all(|x| x.is_finite()) && spread.is_finite();
+        is_finite.then(|| Self { greatest, across: Vector2::new(way_u, way_v), spread })
+    }
+
+    /// Whether it rises nowhere by more than half of `curvature` times the square of the way across: whether it stays outside
+    /// a cylinder of that curvature that touches it at the place.
+    pub(super) fn is_below(&self, curvature: f64) -> bool {
+        // (x·T)² with a T that is off by δ is not less than (1 − ε)(x·T)² − (1/ε − 1)δ²·|x|².
+        let size = self.across.norm();
+        let share = self.spread / size;
+        if share >= 1.0 || size <= 0.0 {
+            return false;
+        }
+        let lost = (1.0 - share) * self.spread * size;
+        let least = self.across * self.across.transpose() * (1.0 - share) - Matrix2::identity() * lost;
+        let rest = self.greatest - least * curvature;
+        rest.trace() <= 0.0 && rest.determinant() >= 0.0
+    }
+}
+
+/// The direction of the straight piece of the meridian that is nearest to a place of the tool (from its end), where it faces
+/// against a normal. None where the tool has no straight piece, or all of it that faces so is level.
+pub(super) fn straight_direction(tool: &Tool<'_>, place: &Vec3, normal: &Vec3) -> Option<Vec3> {
+    let facing = (tool.axis * tool.axis.dot(normal) - normal).try_normalize(0.0)?;
+    let at = [facing.dot(place), tool.axis.dot(place)];
+    let from = |(a, b): &(Meridian, Meridian)| {
+        let way = [b[0] - a[0], b[1] - a[1]];
+        let square = way[0] * way[0] + way[1] * way[1];
+        let share = (((at[0] - a[0]) * way[0] + (at[1] - a[1]) * way[1]) / square).clamp(0.0, 1.0);
+        (at[0] - a[0] - share * way[0]).hypot(at[1] - a[1] - share * way[1])
+    };
+    let pieces = tool.profile.lines().into_iter().filter(|(a, b)| a != b);
+    let (a, b) = pieces.min_by(|x, y| from(x).total_cmp(&from(y)))?;
+    let way = facing * (b[0] - a[0]) + tool.axis * (b[1] - a[1]);
+    (way - normal * normal.dot(&way)).try_normalize(0.0)
+}
+
+/// No place of a tool is farther from the line through a place (from the tool end) in a unit direction.
+pub(super) fn farthest_from_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3) -> f64 {
+    let across = |w: Vec3| w - along * along.dot(&w);
+    let first = perpendicular(&tool.axis);
+    let frame = [first, tool.axis.cross(&first)];
+    let lean = Vector2::new(frame[0].dot(along), frame[1].dot(along));
+    // The square of the distance on a circle, turned about: a form in the plane of the circle.
+    let form = lean * lean.transpose() - Matrix2::identity();
+    let circle = |[rho, height]: Meridian| {
+        let middle = across(tool.axis * height - center);
+        if rho <= 0.0 {
+            return middle.norm();
+        }
+        let pull = -Vector2::new(frame[0].dot(&middle), frame[1].dot(&middle));
+        let mu = multiplier_of_circle(&form, &pull, rho);
+        (middle.norm_squared() + mu * rho * rho - least_of(&form, mu, &pull)).sqrt()
+    };
+    let [lower, upper, top] = tool.profile.edges();
+    let ends = || circle(lower).max(circle(upper));
+    let corner = match tool.profile.corner() {
+        // The balls of the corner hold its arc, and so do its ends with where its tangents there meet.
+        Some((center, radius)) => {
+            let balls = circle(center) + radius;
+            let tangents =
+                meeting([lower, upper], center, radius).map_or(f64::INFINITY, |p| circle(p).max(ends()));
+            balls.min(tangents)
+        }
+        None => ends(),
+    };
+    circle([0.0; 2]).max(corner).max(circle(top))
+}
+
+/// A place that makes with the ends of an arc a triangle beyond the arc: where its tangents there meet, or a little beyond where
+/// rounded numbers let an end stand off the circle.
+fn meeting(ends: [Meridian; 2], center: Meridian, radius: f64) -> Option<Meridian> {
+    let [first, last] = ends.map(|p| Vector2::new(p[0] - center[0], p[1] - center[1]));
+    let beyond = first.norm().max(last.norm()).max(radius);
+    let (first, last) = (first.try_normalize(0.0)?, last.try_normalize(0.0)?);
+    let place = (first + last) * (beyond / (1.0 + first.dot(&last)));
+    place.iter().all(|x| x.is_finite()).then(|| [center[0] + place.x, center[1] + place.y])
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{super::patch::jet, *};
+    use crate::verify::{
+        tests::{clearances::samples, cutter},
+        tool::Profile,
+    };
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        /// A patch that bends away along about x and is hollow across it.
+        #[test]
+        fn no_place_of_a_patch_is_in_a_cylinder_that_it_is_below(
+            bumps in proptest::collection::vec(-1e-3..1e-3f64, 48), bends in (-1.0..0.0f64, -0.5..0.5f64),
+            places in proptest::collection::vec([-0.2..1.2f64, -0.2..1.2f64], 16), turn in -0.5..0.5f64,
+            [u, v] in [-0.2..1.2f64, -0.2..1.2f64], curvature in 0.0..3.0f64,
+        ) {
+            let net: Net = std::array::from_fn(|j| std::array::from_fn(|i| {
+                let k = 3 * (4 * j + i);
+                let [x, y] = [i, j].map(|k| k as f64 / 3.0);
+                let z = bends.0 * x * x + bends.1 * y * y;
+                Vec3::new(x + bumps[k], 0.8 * y + bumps[k + 1], z + bumps[k + 2])
+            }));
+            let [touch, along, across] = jet(&net, [u, v]);
+            let normal = along.cross(&across).normalize();
+            let straight = (along + across * turn).normalize();
+            let side = normal.cross(&straight);
+            let Some(rise) = Rise::of(&net, [u, v], &normal, &side) else { return Ok(()) };
+            prop_assume!(rise.is_below(curvature));
+            let is_inside = [u, v].iter().all(|x| (0.0..=1.0).contains(x));
+            for at in places {
+                let at = if is_inside { at.map(|x| x.clamp(0.0, 1.0)) } else { at };
+                let apart = jet(&net, at)[0] - touch;
+                let room = 0.5 * curvature * side.dot(&apart).powi(2);
+                prop_assert!(normal.dot(&apart) <= room + 1e-12, "{} {room}", normal.dot(&apart));
+            }
+        }
+
+        #[test]
+        fn no_place_of_a_tool_is_farther_from_a_line_and_one_is_as_far(
+            tool in 0usize..4, center in prop::array::uniform3(-6.0..6.0f64), along in prop::array::uniform3(-1.0..1.0f64),
+            lean in prop::array::uniform2(-0.5..0.5f64),
+        ) {
+            prop_assume!(Vec3::from(along).norm() > 0.1);
+            let (center, along) = (Vec3::from(center), Vec3::from(along).normalize());
+            let tools: [&[f64]; 4] =
+                [&[0.5, 0.25], &[0.5, 0.0], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+            let cutter = cutter(tools[tool]);
+            let profile = Profile::of(&cutter).unwrap();
+            let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();
+            let bound = farthest_from_line(&Tool::new(&profile, axis), &center, &along);
+            let apart = |x: &Vec3| (x - center).cross(&along).norm();
+            let found = samples(&cutter, Vec3::zeros(), axis).iter().map(apart).fold(0.0, f64::max);
+            prop_assert!(found <= bound + 1e-9, "{found} {bound}");
+            // Beside the line a whole ball of the corner may stand out of the tool.
+            prop_assert!(bound - found < 0.12, "{found} {bound}");
+        }
+    }
+}
