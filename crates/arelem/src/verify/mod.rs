@@ -10,6 +10,7 @@ mod clearance;
 mod directrix;
 mod followed;
 mod judge;
+mod models;
 mod patch;
 mod pencil;
 mod pocket;

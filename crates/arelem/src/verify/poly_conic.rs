@@ -4,17 +4,18 @@
 //! The places and the natural normal come from the control functions themselves; the patches serve to find the nearest
 //! place. How far they are off is measured between the places they go through and counted as an error of every distance.
 
-use std::{cmp::Ordering, collections::BinaryHeap};
+use std::{cmp::Ordering, collections::BinaryHeap, sync::Arc};
 
 use apt_geometry::{
     Vec3,
     canonical::{
-        PolyConicForm,
+        Made, PolyConicForm, Remembering,
         extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
     },
 };
 
 use super::{
+    models::Models,
     patch::{Edges, Net, Patch, extent, jet, place_on, turned},
     ruled::{ERROR_BEND, divided, parts_for, through},
     strip::Touch,
@@ -41,14 +42,38 @@ type Rectangle = [[f64; 2]; 2];
 /// A polyconic surface.
 #[derive(Debug, Clone)]
 pub(super) struct ConicStrips {
-    conics: Conics,
+    form: Arc<Form>,
     pub(super) sheet: Sheet,
     /// The part of the surface that each patch replaces.
-    ranges: Vec<Rectangle>,
+    ranges: Arc<[Rectangle]>,
     /// Greatest distance from the origin between the ends of the conics and stations 0 and 1.
     pub(super) size: f64,
     /// How far a place of a patch may be off the surface.
     pub(super) error: f64,
+}
+
+/// The surface itself with its size, and the models made from it.
+#[derive(Debug)]
+struct Form {
+    conics: Conics,
+    /// Greatest distance from the origin, and from the middle of the surface.
+    size: f64,
+    extent: f64,
+    models: Models<Model>,
+}
+
+/// What is the same for all motions.
+#[derive(Debug)]
+struct Model {
+    patches: Arc<[Patch]>,
+    ranges: Arc<[Rectangle]>,
+    error: f64,
+}
+
+impl Made for Form {
+    fn parts(&self) -> usize {
+        self.models.sum(|model| model.patches.len())
+    }
 }
 
 /// The surface by its parameters: `t` from 0 to 1 along the conic, straight beyond; `s` is the station, or with square
@@ -327,40 +352,52 @@ fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> 
     Some(parts)
 }
 
-impl ConicStrips {
-    /// The model of a surface that need not be closer to it than `accuracy`; none if the values describe no surface.
-    pub(super) fn of(values: &[f64], accuracy: f64) -> Option<Self> {
+impl Form {
+    /// None if the values describe no surface.
+    fn of(values: &[f64]) -> Option<Self> {
         let conics = Conics { form: PolyConicForm::read(values)? };
         let mut size: f64 = 0.0;
-        let mut extent_of_all: f64 = 0.0;
+        let mut extent: f64 = 0.0;
         let shift = conics.form.map.shift();
         let middle = conics.jet(0.5, 0.5).point;
         for i in 0..=8 {
             for k in 0..=8 {
                 let point = conics.jet(f64::from(i) / 8.0, f64::from(k) / 8.0).point;
                 size = size.max((point - shift).norm());
-                extent_of_all = extent_of_all.max((point - middle).norm());
+                extent = extent.max((point - middle).norm());
             }
         }
         size += conics.form.thickness.abs();
-        if !(extent_of_all > 0.0 && size.is_finite()) {
-            return None;
-        }
-        let accuracy = accuracy.clamp(FINEST * extent_of_all, COARSEST * extent_of_all);
-        let mut parts = cover(&conics, extent_of_all, accuracy)?.into_vec();
+        (extent > 0.0 && size.is_finite()).then(|| Self { conics, size, extent, models: Models::default() })
+    }
+
+    fn model(&self, accuracy: f64) -> Option<Model> {
+        let mut parts = cover(&self.conics, self.extent, accuracy)?.into_vec();
         parts.sort_by_key(|part| part.number);
         let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
         let ranges = parts.iter().map(|part| part.rectangle).collect();
-        let patches = parts.iter().map(|part| conics.patch(part, extent_of_all)).collect();
-        let sheet = Sheet::new(patches, false);
-        Some(Self { conics, sheet, ranges, size, error })
+        let patches = parts.iter().map(|part| self.conics.patch(part, self.extent)).collect();
+        Some(Model { patches, ranges, error })
+    }
+}
+
+impl ConicStrips {
+    /// The model of a surface that need not be closer to it than `accuracy`; none if the values describe no surface.
+    pub(super) fn of(values: &Remembering<Vec<f64>>, accuracy: f64) -> Option<Self> {
+        let form = values.made(|values| Form::of(values))?;
+        let accuracy = accuracy.clamp(FINEST * form.extent, COARSEST * form.extent);
+        let model = form.models.within(accuracy, |accuracy| form.model(accuracy))?;
+        let (patches, ranges, error) = (Arc::clone(&model.patches), Arc::clone(&model.ranges), model.error);
+        let size = form.size;
+        Some(Self { sheet: Sheet::new(patches, false), ranges, size, error, form })
     }
 
     /// The natural normal of the surface itself at a place of a patch.
     pub(super) fn natural(&self, touch: &Touch) -> Option<Vec3> {
         let [along, across] = self.ranges.get(touch.piece)?;
         let (t, s) = (inside(*along, touch.along), inside(*across, touch.across));
-        let normal = self.conics.sure_normal(t, s, self.size)?;
-        Some(self.conics.form.map.linear().tr_mul(&normal))
+        let conics = &self.form.conics;
+        let normal = conics.sure_normal(t, s, self.size)?;
+        Some(conics.form.map.linear().tr_mul(&normal))
     }
 }

@@ -4,15 +4,18 @@
 //! like a half circle, is smooth in it. Cubics through four places of each piece replace the curves; how far they are off
 //! is measured between those places and counted as an error of every distance.
 
+use std::sync::Arc;
+
 use apt_geometry::{
     Vec3,
     canonical::{
-        RuledCurve, RuledEnd, RuledSurface,
+        Made, Remembering, RuledCurve, RuledEnd, RuledSurface,
         extent::{RULED_BEYOND, RULED_STEADY, ruled_shares},
     },
 };
 
 use super::{
+    models::Models,
     patch::{Patch, jet},
     section::Section,
     strip::{Cubic, Touch, lerp, place, tangent},
@@ -46,6 +49,28 @@ pub(super) struct RuledStrips {
     /// How far a place of a strip may be off the surface between the curves, and anywhere.
     pub(super) error: f64,
     pub(super) greatest_error: f64,
+}
+
+/// The curves of a surface and the models made from them.
+struct Curves {
+    edges: [Edge; 2],
+    scale: f64,
+    models: Models<Model>,
+}
+
+/// What is the same for all motions.
+#[derive(Debug)]
+struct Model {
+    patches: Arc<[Patch]>,
+    size: f64,
+    error: f64,
+    greatest_error: f64,
+}
+
+impl Made for Curves {
+    fn parts(&self) -> usize {
+        self.models.sum(|model| model.patches.len())
+    }
 }
 
 /// A curve or the point that all rulings meet in.
@@ -82,10 +107,9 @@ pub(super) fn through(p: &[Vec3; 4]) -> Cubic {
     [p[0], first, second, p[3]]
 }
 
-impl RuledStrips {
-    /// The model of a surface that need not be closer to it than `accuracy`; none if the parts are not those of a definition or
-    /// a section does not join its end points.
-    pub(super) fn of(surface: &RuledSurface, accuracy: f64) -> Option<Self> {
+impl Curves {
+    /// None if the parts are not those of a definition or a section does not join its end points.
+    fn of(surface: &RuledSurface) -> Option<Self> {
         let (first, end) = surface.curves()?;
         let edges = match &end {
             RuledEnd::Curve(second) => [Edge::of(&first)?, Edge::of(second)?],
@@ -93,7 +117,14 @@ impl RuledStrips {
         };
         let extent = edges[1].at(0.5)? - edges[0].at(0.5)?;
         let scale = (first.end - first.start).norm().max(extent.norm());
-        let pieces = pieces(&edges, accuracy.clamp(FINEST * scale, COARSEST * scale))?;
+        scale.is_finite().then(|| Self { edges, scale, models: Models::default() })
+    }
+}
+
+impl Model {
+    /// None if a section does not go all the way or a number is not finite.
+    fn of(edges: &[Edge; 2], accuracy: f64) -> Option<Self> {
+        let pieces = pieces(edges, accuracy)?;
         let [low, high] = shares(&pieces);
         let mut size: f64 = 0.0;
         let error = pieces.iter().map(|piece| piece.error).fold(0.0, f64::max);
@@ -114,13 +145,20 @@ impl RuledStrips {
         }
         let stretch = patches.iter().map(|patch: &Patch| patch.stretch([0.0, 1.0])).fold(0.0, f64::max);
         mark_edges(&mut patches);
-        let sheet = Sheet::new(patches, true);
-        (error.is_finite() && size.is_finite() && !sheet.patches.is_empty()).then_some(Self {
-            sheet,
-            size,
-            error,
-            greatest_error: stretch * error,
-        })
+        let whole = error.is_finite() && size.is_finite() && !patches.is_empty();
+        whole.then(|| Self { patches: patches.into(), size, error, greatest_error: stretch * error })
+    }
+}
+
+impl RuledStrips {
+    /// The model of a surface that need not be closer to it than `accuracy`; none if the parts are not those of a definition or
+    /// a section does not join its end points.
+    pub(super) fn of(surface: &Remembering<RuledSurface>, accuracy: f64) -> Option<Self> {
+        let curves = surface.made(Curves::of)?;
+        let accuracy = accuracy.clamp(FINEST * curves.scale, COARSEST * curves.scale);
+        let model = curves.models.within(accuracy, |accuracy| Model::of(&curves.edges, accuracy))?;
+        let sheet = Sheet::new(Arc::clone(&model.patches), true);
+        Some(Self { sheet, size: model.size, error: model.error, greatest_error: model.greatest_error })
     }
 
     fn normal_at(&self, piece: usize, along: f64, across: f64) -> Option<Vec3> {

@@ -3,7 +3,7 @@
 
 mod misfit;
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
@@ -13,6 +13,7 @@ use apt_geometry::{
 
 use self::misfit::Misfit;
 use super::{
+    models::Models,
     patch::{Net, Patch, jet, turned},
     ruled::through,
     strip::Touch,
@@ -49,12 +50,8 @@ pub(super) struct SculpturedStrips {
     pub(super) ruling: Option<Vec3>,
 }
 
-/// The models of one surface, from the finest on, as far as they were asked for.
-#[derive(Debug, Default)]
-struct Models([OnceLock<Option<Model>>; MODELS]);
-
 /// What is the same for all motions.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Model {
     patches: Arc<[Patch]>,
     size: f64,
@@ -71,9 +68,9 @@ struct Part {
     sharp: [bool; 4],
 }
 
-impl Made for Models {
+impl Made for Models<Model> {
     fn parts(&self) -> usize {
-        self.0.iter().filter_map(|model| model.get()?.as_ref()).map(|model| model.patches.len()).sum()
+        self.sum(|model| model.patches.len())
     }
 }
 
@@ -100,14 +97,14 @@ impl Model {
 impl SculpturedStrips {
     /// A model of a surface that need not be closer to it than `accuracy`; none if there is nothing to measure.
     pub(super) fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64) -> Option<Self> {
-        // One of few, so that motions share it, and none depends on those before.
+        // One of few, so that motions share it.
         let finer = (accuracy / (FINEST * surface.size())).log(COARSER).floor();
         let number = if finer > 0.0 { (finer as usize).min(MODELS - 1) } else { 0 };
         let models = surface.made(|_| Some(Models::default()))?;
         let relative = FINEST * COARSER.powi(number as i32);
-        let model = models.0.get(number)?.get_or_init(|| Model::of(surface, relative)).as_ref()?;
-        let Model { patches, size, error, ruling } = model.clone();
-        Some(Self { sheet: Sheet::shared(patches), size, error, ruling })
+        let model = models.within(relative, |relative| Model::of(surface, relative))?;
+        let sheet = Sheet::new(Arc::clone(&model.patches), false);
+        Some(Self { sheet, size: model.size, error: model.error, ruling: model.ruling })
     }
 
     /// The natural normal at a place of a patch.

@@ -102,13 +102,9 @@ struct Near {
 }
 
 impl Sheet {
-    pub(super) fn new(patches: Vec<Patch>, ends_across: bool) -> Self {
-        Self { ends_across, ..Self::shared(patches.into()) }
-    }
-
-    /// Of patches that other surveys are made of too; where it ends their sides tell.
-    pub(super) fn shared(patches: Arc<[Patch]>) -> Self {
-        Self { patches, ends_across: false, near: RefCell::new([None, None]) }
+    /// Of patches that other surveys are made of too; where it ends their sides tell, and perhaps all their sides across.
+    pub(super) fn new(patches: Arc<[Patch]>, ends_across: bool) -> Self {
+        Self { patches, ends_across, near: RefCell::new([None, None]) }
     }
 
     /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
