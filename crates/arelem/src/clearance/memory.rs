@@ -14,6 +14,8 @@ use super::{Contact, Tool, certify::Proof, near::Near, quadric::Start, tool::Pie
 const FORESIGHT: f64 = 3.0;
 /// What is left of the length of a step with the next one, if that is shorter.
 const FADING: f64 = 0.7;
+/// Way of the tool, in radii of it, over which contact may jump back to where it was before.
+const BACK: f64 = 0.1;
 
 /// Where on the tool contact was.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +46,8 @@ struct Known {
     axis: Vec3,
     side: f64,
     place: Place,
+    /// Where contact was on another piece of the tool, and the last tool end there.
+    other: Option<(Place, Vec3)>,
     /// How far the tool moved lately between two contacts.
     stride: f64,
     proof: Option<Proof>,
@@ -71,6 +75,14 @@ impl Memory {
         known.as_ref().filter(|k| k.axis == tool.axis && k.side == side).map(|k| k.place)
     }
 
+    /// Where contact was on another piece before, if the tool has moved little since.
+    pub(super) fn other_place(&self, tool: &Tool, side: f64, tip: &Vec3) -> Option<Place> {
+        let known = self.known.try_borrow().ok()?;
+        let known = known.as_ref().filter(|k| k.axis == tool.axis && k.side == side)?;
+        let (place, at) = known.other?;
+        ((tip - at).norm() <= BACK * tool.radius()).then_some(place)
+    }
+
     /// What is proven of the tool about there; the proof is taken out.
     pub(super) fn proof(&self, tool: &Tool, side: f64, tip: &Vec3) -> Proof {
         let Ok(mut known) = self.known.try_borrow_mut() else { return Proof::of_tool(tool) };
@@ -95,9 +107,22 @@ impl Memory {
         let Ok(mut memory) = self.known.try_borrow_mut() else { return };
         match memory.as_mut() {
             Some(known) if known.side == side => {
+                if known.place.piece != place.piece {
+                    known.other = Some((known.place, known.tip));
+                }
                 (known.tip, known.axis, known.place) = (*tip, tool.axis, place);
             }
-            _ => *memory = Some(Known { tip: *tip, axis: tool.axis, side, place, stride: 0.0, proof: None }),
+            _ => {
+                *memory = Some(Known {
+                    tip: *tip,
+                    axis: tool.axis,
+                    side,
+                    place,
+                    other: None,
+                    stride: 0.0,
+                    proof: None,
+                });
+            }
         }
     }
 

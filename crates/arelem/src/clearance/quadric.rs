@@ -87,7 +87,8 @@ pub(super) struct Start {
     pub(super) multiplier: Option<f64>,
 }
 
-/// The contact on the part of the tool where the last one was, if it is proven; and how much nearer another point may be.
+/// The contact on the part of the tool where the last one was, or on the one before from which it jumped, if it is proven; and
+/// how much nearer another point may be.
 pub(super) fn contact(
     tool: &Tool,
     surface: &Surface,
@@ -97,8 +98,15 @@ pub(super) fn contact(
 ) -> Option<(Contact, f64)> {
     let place = memory.place(tool, side)?;
     let scene = Scene::new(tool, surface, side, tip)?;
-    let touch = scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool))?;
-    scene.proven(place.piece, &touch, Some(memory))
+    let near = |place: Place| {
+        Some((place.piece, scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool))?))
+    };
+    let found = [near(place), memory.other_place(tool, side, tip).and_then(near)];
+    let nearest = |(_, a): &(usize, Touch), (_, b): &(usize, Touch)| {
+        a.contact.clearance.total_cmp(&b.contact.clearance)
+    };
+    let (piece, touch) = found.into_iter().flatten().min_by(nearest)?;
+    scene.proven(piece, &touch, Some(memory))
 }
 
 /// The contact on whichever part of the tool it is, if that is proven; and how much nearer another point may be.

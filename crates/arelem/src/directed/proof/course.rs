@@ -68,7 +68,7 @@ impl Course<'_, '_> {
     }
 
     /// Looks for extremes between two samples. Where the values do not fit the slopes, contact jumps from one part of
-    /// the tool to another in between, and the stretch is halved.
+    /// the tool to another in between, where their clearances are equal: about where the tangents meet.
     fn between(&mut self, a: Sample, b: Sample, depth: u32) {
         self.note(a.value);
         self.note(b.value);
@@ -80,7 +80,13 @@ impl Course<'_, '_> {
                 self.is_exhausted = true;
                 return;
             }
-            let middle = self.line.sample(0.5 * (a.x + b.x));
+            let x = match kink(a, b) {
+                // Between two parts of the tool there is nothing higher.
+                Some((_, value)) if value - a.value.max(b.value) <= ENOUGH * band => return,
+                Some((x, _)) => x,
+                None => 0.5 * (a.x + b.x),
+            };
+            let middle = self.line.sample(x);
             self.between(a, middle, depth + 1);
             self.samples.push(middle);
             self.between(middle, b, depth + 1);
@@ -216,6 +222,15 @@ impl Course<'_, '_> {
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
         role.gauge.keeps_between(&sweep.at(a.x).1, contacts, &meeting, limits[0])
     }
+}
+
+/// Where the tangents of two samples meet and what they say there, if the second one rises less: the lesser of two clearances
+/// then changes between.
+fn kink(a: Sample, b: Sample) -> Option<(f64, f64)> {
+    let turn = a.slope - b.slope;
+    let x = (((b.value - b.slope * b.x) - (a.value - a.slope * a.x)) / turn).clamp(a.x, b.x);
+    let tangents = [a, b].map(|end| end.value + end.slope * (x - end.x));
+    (turn > 0.0).then(|| (x, tangents[0].min(tangents[1])))
 }
 
 /// Least value on a stretch of the chord between the end values, sagging with the given second derivative.
