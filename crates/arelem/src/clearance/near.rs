@@ -55,6 +55,10 @@ const SLENDER: f64 = 0.05;
 const FAR: [f64; 3] = [0.5, 0.1, 0.02];
 /// How much deeper than at first the tool may come to lie in a steady ball.
 const DEEPER: f64 = 1.2;
+/// Bound of the stretches of the corner's arc that are looked at, and half the widest one (radians): the tangents at its ends meet
+/// near by.
+const MAX_ARCS: u32 = 24;
+const WIDEST_ARC: f64 = 0.8;
 /// Bound of the balls that cover a flank, and the shortest stretch, in radii of the tool, that one of them covers.
 const MAX_COVER: u32 = 40;
 const SHORTEST: f64 = 0.1;

@@ -1,9 +1,11 @@
 //! What proves a contact: balls about the tool in which the distance is bounded by its tangent, and balls along the flank
 //! that keep off the surface.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, cutter::Profile};
 
-use super::{AHEAD, BALLS, Circle, DEEPER, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, Zone};
+use super::{
+    AHEAD, BALLS, Circle, DEEPER, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, WIDEST_ARC, Zone,
+};
 use crate::clearance::{Contact, Tool, waves::length};
 
 impl Pose<'_> {
@@ -25,7 +27,8 @@ impl Pose<'_> {
         BALLS.iter().enumerate().skip(first).find_map(|(size, [ease, above])| {
             let top = profile.top.height.min(profile.upper.height + above * scale);
             let middle = self.tip + axis * (0.5 * top);
-            let half = self.tool.radius().hypot(0.5 * top);
+            let [width, height] = self.holder(top);
+            let half = width.hypot(height - 0.5 * top);
             let away = (middle - found.contact.surface).norm();
             let (radius, depth) = (half.max(away) + ease * scale, DEEPER * (away + half));
             // Ahead on the way from the last one, as far as the tool and the contact remain in it.
@@ -36,6 +39,17 @@ impl Pose<'_> {
             let steady = surface.steady(side, &center, [radius, depth])?;
             Some(Zone { center, radius, depth, top, size, steady })
         })
+    }
+
+    /// Radius and height of a cylinder about the axis, from the tool end, that holds the tool up to a height on its flank, and the
+    /// centres of its corner.
+    fn holder(&self, top: f64) -> [f64; 2] {
+        let Profile { lower, upper, center, arc, top: end, .. } = &self.tool.profile;
+        let rise = (top - upper.height) / (end.height - upper.height);
+        let flank = if rise > 0.0 { upper.radius + rise.min(1.0) * (end.radius - upper.radius) } else { 0.0 };
+        let [beside, above] = if *arc > 0.0 { [center.radius + arc, center.height] } else { [0.0; 2] };
+        let width = lower.radius.max(upper.radius).max(flank).max(beside).min(self.tool.radius());
+        [width.max(center.radius), top.max(above)]
     }
 
     /// Whether balls that cover the flank above a height keep off the surface by a level. Then the flank, which begins on the
@@ -75,13 +89,14 @@ impl Pose<'_> {
     /// of the surface.
     pub(super) fn stays_in(&self, zone: &Zone, surface: &Vec3, spread: f64) -> bool {
         let (along, across, _) = self.tool.split(&(zone.center - self.tip));
-        let wide = across + self.tool.radius();
+        let [width, height] = self.holder(zone.top);
+        let wide = across + width;
         // No point is farther from the surface than from that point of it.
         let middle = self.tip + self.tool.axis * (0.5 * zone.top);
-        let deepest = (middle - surface).norm() + self.tool.radius().hypot(0.5 * zone.top);
+        let deepest = (middle - surface).norm() + width.hypot(height - 0.5 * zone.top);
         deepest + spread <= zone.depth
             && along.hypot(wide) + spread <= zone.radius
-            && (along - zone.top).hypot(wide) + spread <= zone.radius
+            && (along - height).hypot(wide) + spread <= zone.radius
     }
 
     /// Whether the tool up to the top of a zone keeps a level, by a contact in this position or another one, on a ball or an edge:
@@ -100,7 +115,8 @@ impl Pose<'_> {
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
         let from_corner = (point + gradient * ball, clearance + ball);
-        (profile.arc <= 0.0 || self.floor(from_corner, gradient, zone, corner) >= level)
+        let corner = || self.floor(from_corner, gradient, zone, corner) >= level || self.arcs_keep(&edge);
+        (profile.arc <= 0.0 || corner())
             && edge(profile.lower.radius, profile.lower.height)
             && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
             && (profile.top.height <= profile.upper.height || {
@@ -108,6 +124,29 @@ impl Pose<'_> {
                 let radius = profile.upper.radius + rise * (profile.top.radius - profile.upper.radius);
                 edge(profile.upper.radius, profile.upper.height) && edge(radius, zone.top)
             })
+    }
+
+    /// Whether the corner keeps what its circles keep, where its whole balls stand out from the tool: stretches of its arc lie in the
+    /// triangles of their ends and of the place where the tangents there meet, and what is nowhere less on circles is between
+    /// them least at one of them.
+    fn arcs_keep(&self, edge: &dyn Fn(f64, f64) -> bool) -> bool {
+        let profile = &self.tool.profile;
+        let keeps = |polar: f64, away: f64| {
+            let (sin, cos) = polar.sin_cos();
+            edge(profile.center.radius + away * sin, profile.center.height - away * cos)
+        };
+        let mut open = vec![profile.fan];
+        for _ in 0..MAX_ARCS {
+            let Some([from, to]) = open.pop() else { return true };
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            if !keeps(from, profile.arc) || !keeps(to, profile.arc) {
+                return false;
+            }
+            if half > WIDEST_ARC || !keeps(middle, profile.arc / half.cos()) {
+                open.extend([[middle, to], [from, middle]]);
+            }
+        }
+        open.is_empty()
     }
 
     /// Lower bound of the distance of a circle of balls, from a place on the normal of a contact with its distance.
