@@ -69,6 +69,9 @@ struct Bound {
     target: f64,
 }
 
+/// A circle of the tool, and what a function is nowhere on it below.
+type Circled = (ProfilePoint, f64);
+
 /// A contact on a circle.
 pub(super) struct Touch {
     pub(super) contact: Contact,
@@ -373,24 +376,26 @@ impl<'a> Posed<'a> {
         }
         let Some((sharp, steepness, towards)) = self.bound_from(level, contact) else { return false };
         let profile = &self.tool.profile;
+        let floor = |circle: &ProfilePoint| (*circle, self.floor(&sharp, circle, &towards));
+        let ends = [floor(&profile.lower), floor(&profile.upper)];
         let corner = if profile.arc > 0.0 {
             let balls = (level + profile.arc > 0.0)
                 .then(|| self.bound(level + profile.arc, steepness, &towards))
                 .flatten();
             balls.is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
-                || self.arcs(&sharp, &towards)
+                || self.arcs(&sharp, ends, &towards)
         } else {
-            self.floor(&sharp, &profile.lower, &towards) >= sharp.target
+            ends[0].1 >= sharp.target
         };
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         corner
             && if profile.lower.height > 0.0 {
-                self.flank(&sharp, [&tip, &profile.lower], &towards)
+                self.flank(&sharp, [floor(&tip), ends[0]], &towards)
             } else {
-                self.bottom(&sharp, &profile.lower, &towards)
+                self.bottom(&sharp, ends[0])
             }
             && (profile.top.height <= profile.upper.height
-                || self.flank(&sharp, [&profile.upper, &profile.top], &towards))
+                || self.flank(&sharp, [ends[1], floor(&profile.top)], &towards))
     }
 
     /// The function for a distance by the steepness of F at a contact, that steepness, and the direction in which the contact is
@@ -420,20 +425,23 @@ impl<'a> Posed<'a> {
 
     /// Whether the corner keeps a distance, where its whole balls stand out from the tool: patches along the tangents at both
     /// ends of stretches of its arc have the arc behind them. An end that is the contact itself is no obstacle to that.
-    fn arcs(&self, bound: &Bound, towards: &Vec3) -> bool {
+    fn arcs(&self, bound: &Bound, ends: [Circled; 2], towards: &Vec3) -> bool {
         let profile = &self.tool.profile;
-        let at = |polar: f64, away: f64| ProfilePoint {
-            radius: profile.center.radius + away * polar.sin(),
-            height: profile.center.height - away * polar.cos(),
+        let at = |polar: f64, away: f64| {
+            let circle = ProfilePoint {
+                radius: profile.center.radius + away * polar.sin(),
+                height: profile.center.height - away * polar.cos(),
+            };
+            (circle, self.floor(bound, &circle, towards))
         };
-        let mut open = vec![profile.fan];
+        let mut open = vec![(profile.fan, ends)];
         for _ in 0..MAX_ARCS {
-            let Some([from, to]) = open.pop() else { return true };
+            let Some(([from, to], ends)) = open.pop() else { return true };
             let middle = 0.5 * (from + to);
             let meeting = at(middle, profile.arc / (0.5 * (to - from)).cos());
-            let ends = [from, to].map(|polar| at(polar, profile.arc));
-            if !ends.iter().all(|end| self.flank(bound, [end, &meeting], towards)) {
-                open.extend([[middle, to], [from, middle]]);
+            if !ends.iter().all(|end| self.flank(bound, [*end, meeting], towards)) {
+                let between = at(middle, profile.arc);
+                open.extend([([middle, to], [between, ends[1]]), ([from, middle], [ends[0], between])]);
             }
         }
         open.is_empty()
@@ -462,7 +470,7 @@ impl<'a> Posed<'a> {
     /// Whether a function is nowhere on the flat bottom below its target: not on its edge, and inside there is a least value
     /// only where the function is bowl-shaped. That the edge keeps its distance as part of the corner is not enough, for
     /// this function may be lower there than the one that shows it.
-    fn bottom(&self, bound: &Bound, edge: &ProfilePoint, towards: &Vec3) -> bool {
+    fn bottom(&self, bound: &Bound, (edge, least): Circled) -> bool {
         let [uu, vv, uv] = bound.across;
         let determinant = uu * vv - uv * uv;
         let radius = edge.radius;
@@ -470,7 +478,7 @@ impl<'a> Posed<'a> {
             // It is the edge, and the corner's.
             return true;
         }
-        if self.floor(bound, edge, towards) < bound.target {
+        if least < bound.target {
             return false;
         }
         if determinant <= 0.0 || uu + vv <= 0.0 {
@@ -484,7 +492,7 @@ impl<'a> Posed<'a> {
 
     /// Whether a function is nowhere below its target on the patch between two circles. Along each straight line of the
     /// patch it is a parabola whose second derivative is known.
-    fn flank(&self, bound: &Bound, [low, high]: [&ProfilePoint; 2], towards: &Vec3) -> bool {
+    fn flank(&self, bound: &Bound, [(low, first), (high, last)]: [Circled; 2], towards: &Vec3) -> bool {
         let (rise, spread) = (high.height - low.height, high.radius - low.radius);
         let [uu, vv, uv] = bound.across;
         let along = bound.function.square.component_mul(&self.axis);
@@ -494,7 +502,6 @@ impl<'a> Posed<'a> {
             + spread * spread * (0.5 * (uu + vv) + length([0.5 * (uu - vv), uv]));
         let at = |t: f64| ProfilePoint { radius: low.radius + t * spread, height: low.height + t * rise };
         let floor = |t: f64| self.floor(bound, &at(t), towards);
-        let (first, last) = (floor(0.0), floor(1.0));
         if first < bound.target || last < bound.target {
             return false;
         }

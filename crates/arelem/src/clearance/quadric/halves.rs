@@ -75,47 +75,47 @@ impl Posed<'_> {
     fn keeps_off_by(&self, bound: &Bound, half: &Half, level: f64, towards: &Vec3) -> bool {
         let profile = &self.tool.profile;
         let is_beyond = |circle: &ProfilePoint| half.room(self, circle) >= level;
+        let floor = |circle: &ProfilePoint| (*circle, self.floor(bound, circle, towards));
+        let lower = || floor(&profile.lower);
         let corner = if profile.arc > 0.0 {
-            half.room(self, &profile.center) - profile.arc >= level || self.arcs(bound, towards)
+            half.room(self, &profile.center) - profile.arc >= level
+                || self.arcs(bound, [lower(), floor(&profile.upper)], towards)
         } else {
-            is_beyond(&profile.lower) || self.floor(bound, &profile.lower, towards) >= bound.target
+            is_beyond(&profile.lower) || lower().1 >= bound.target
+        };
+        let flank = |ends: [&ProfilePoint; 2]| {
+            self.not_beyond(half, level, ends)
+                .is_none_or(|ends| self.flank(bound, ends.map(|circle| floor(&circle)), towards))
         };
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         let bottom = if profile.lower.height > 0.0 {
-            self.flank_keeps_off(half, level, (bound, towards), [&tip, &profile.lower])
+            flank([&tip, &profile.lower])
         } else {
-            is_beyond(&profile.lower) || self.bottom(bound, &profile.lower, towards)
+            is_beyond(&profile.lower) || self.bottom(bound, lower())
         };
         let is_high = profile.top.height > profile.upper.height;
-        corner
-            && bottom
-            && (!is_high
-                || self.flank_keeps_off(half, level, (bound, towards), [&profile.upper, &profile.top]))
+        corner && bottom && (!is_high || flank([&profile.upper, &profile.top]))
     }
 
-    /// The same of the patch between two circles.
-    fn flank_keeps_off(
+    /// What of the patch between two circles does not lie beyond the plane between both halves by a level. Along the profile the
+    /// room changes linearly.
+    fn not_beyond(
         &self,
         half: &Half,
         level: f64,
-        (bound, towards): (&Bound, &Vec3),
         [low, high]: [&ProfilePoint; 2],
-    ) -> bool {
-        // Along the profile the room changes linearly.
+    ) -> Option<[ProfilePoint; 2]> {
         let [first, last] = [low, high].map(|circle| half.room(self, circle) - level);
-        if first >= 0.0 && last >= 0.0 {
-            return true;
-        }
         let share = first / (first - last);
         let between = ProfilePoint {
             radius: low.radius + share * (high.radius - low.radius),
             height: low.height + share * (high.height - low.height),
         };
-        let ends = match (first >= 0.0, last >= 0.0) {
-            (true, _) => [&between, high],
-            (_, true) => [low, &between],
-            _ => [low, high],
-        };
-        self.flank(bound, ends, towards)
+        match (first >= 0.0, last >= 0.0) {
+            (true, true) => None,
+            (true, false) => Some([between, *high]),
+            (false, true) => Some([*low, between]),
+            (false, false) => Some([*low, *high]),
+        }
     }
 }
