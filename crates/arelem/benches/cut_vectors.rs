@@ -133,7 +133,7 @@ fn bull(bencher: Bencher<'_, '_>, which: usize) {
 }
 
 /// A corner that touches neither of its lines.
-#[divan::bench(args = [0, 1, 2, 3, 4, 5])]
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7, 8])]
 fn seven_numbers(bencher: Bencher<'_, '_>, which: usize) {
     bench(bencher, which, &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]);
 }
