@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use super::{turning::waves_across, *};
+use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
     clearance::EVALUATIONS,
     verify::{VerifyError, WORK, tests::lofted, verify},
@@ -164,4 +164,20 @@ fn vectors_along_generators_cost_little() {
         assert!(clearances <= 5000, "cutter {cutter:?}: {clearances}");
         p.verified();
     }
+}
+
+/// Distances and parts of a surface that the verifier may look at for all of a motion along a strip.
+const STRIP_WORK: u64 = 500_000;
+
+/// Over a twisted strip of straight lines the contact of a slanted bottom jumps from its tip to its edge.
+#[test]
+fn the_verifier_looks_at_little_where_contact_jumps_on_a_twisted_strip() {
+    let (strip, drive) = (twisted_to(0.0), y(2.0));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]).from(1.0, 2.0, 4.0);
+    p.go(&[(Relation::On, &drive), (Relation::To, &strip), (Relation::On, &x(1.0))]);
+    p.side(DriveSide::On).drive(Turn::Right, &drive, Relation::On, &x(5.0));
+    let before = WORK.get();
+    let evidence = verify(p.last(), &|| WORK.get() - before > STRIP_WORK).expect("evidence");
+    assert!(evidence.verified, "{evidence:?}");
 }

@@ -14,13 +14,17 @@ fn ruled(curves: [(Geometry, Vec3, Vec3, Vec3); 2]) -> Geometry {
     Geometry::RuledSurface(Remembering::new(RuledSurface { parts: parts.collect() }))
 }
 
-/// The twisted strip of the corpus program rldsrf-ps.
-fn twisted() -> Geometry {
-    let upper = plane(-1.0, 0.0, 6.0, 6.0);
+/// The twisted strip of the corpus program rldsrf-ps, its upper curve in a plane -x + 6z = `upper`.
+pub(super) fn twisted_to(upper: f64) -> Geometry {
+    let upper = plane(-1.0, 0.0, 6.0, upper);
     ruled([
         (level(0.0), v(0.0, 0.0, 0.0), v(6.0, 0.0, 0.0), Vec3::z()),
         (upper, v(0.0, 4.0, 1.0), v(6.0, 4.0, 2.0), v(-1.0, 0.0, 6.0)),
     ])
+}
+
+fn twisted() -> Geometry {
+    twisted_to(6.0)
 }
 
 /// The part of a circular wall of radius 6 about (3, −6) with |x − 3| ≤ 4, between two heights.

@@ -135,7 +135,12 @@ impl Following<'_> {
         if self.tool.profile.is_point() {
             return self.point(last);
         }
-        let (value, normal) = self.settled(self.side, last)?;
+        let found = self.settled(self.side, last).or_else(|| {
+            // A contact that is far from where it was may not be found from there.
+            let is_anew = last.take().is_some() && self.loose.get().is_none();
+            if is_anew { self.settled(self.side, last) } else { None }
+        });
+        let (value, normal) = found?;
         Some(Reading { value, normal, error: self.tolerance })
     }
 

@@ -44,7 +44,7 @@ const PROVEN_DEPTH: f64 = 0.1;
 /// Translations tried in the proof of a depth, each four times longer.
 const PROOF_STEPS: usize = 14;
 /// The same for a depth that need not be the greatest yet.
-const QUICK_PROOF_STEPS: usize = 4;
+const QUICK_PROOF_STEPS: usize = 2;
 
 /// A surface made of straight rulings.
 #[derive(Debug, Clone)]

@@ -6,6 +6,10 @@ use super::clearance::{Clearance, Reading, Shape};
 
 /// Evaluations that one extreme may cost; the gap left then is the error term.
 const EVALUATIONS: usize = 60;
+/// Halvings of a vector on which the bend is not bounded, so that it may be on its parts.
+const HALVINGS: u32 = 6;
+/// Share of the error of a reading that what lies between two need not be known closer than.
+const SHARE_OF_ERROR: f64 = 0.1;
 /// Pieces a vector is cut into where nothing is known about the shape of the clearance.
 const FIRST_PIECES: usize = 4;
 /// Evaluations over one vector of unknown shape.
@@ -169,11 +173,47 @@ impl Span<'_> {
                 let max = (-depth).max(high);
                 Some(Extremes { min: low, max, low: low - error, high: max + error.max(gap) })
             }
-            Shape::Free => match self.bend() {
-                Some(bend) => self.bent(first, last, bend, tolerance),
-                None => self.free(first, last, tolerance),
-            },
+            Shape::Free => self.unshaped(tolerance, HALVINGS),
         }
+    }
+
+    /// Extremes where nothing is known of the shape: by the bend, if that is bounded, of the vector or of halves of it.
+    fn unshaped(&self, tolerance: f64, halvings: u32) -> Option<Extremes> {
+        let [first, last] = [self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?];
+        if let Some(bend) = self.bend() {
+            return self.bent(first, last, bend, tolerance);
+        }
+        if halvings == 0 || !self.bends_anywhere(0.5f64.powi(halvings as i32))? {
+            return self.free(first, last, tolerance);
+        }
+        let middle = between(&self.from, &self.to, 0.5)?;
+        let reading = self.clearance.at(&middle.tip, &middle.axis)?;
+        if reading.value < self.beyond[0] || reading.value > self.beyond[1] {
+            let [low, high] = [first.value.min(last.value), first.value.max(last.value)];
+            let error = first.error.max(last.error).max(reading.error);
+            return Some(Extremes::within(error, low.min(reading.value), high.max(reading.value)));
+        }
+        let halves = [
+            Span { to: middle, ends: [self.ends[0], reading], ..*self },
+            Span { from: middle, ends: [reading, self.ends[1]], ..*self },
+        ];
+        let mut found: Option<Extremes> = None;
+        for half in halves {
+            let part = half.unshaped(tolerance, halvings - 1)?;
+            found = Some(found.map_or(part, |f| f.join(part)));
+            if part.min < self.beyond[0] || part.max > self.beyond[1] {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Whether the bend is bounded on some share of it at one of its ends.
+    fn bends_anywhere(&self, share: f64) -> Option<bool> {
+        let [near, far] = [share, 1.0 - share].map(|t| between(&self.from, &self.to, t));
+        let first = Span { to: near?, ends: [self.ends[0]; 2], ..*self };
+        let last = Span { from: far?, ends: [self.ends[1]; 2], ..*self };
+        Some(first.bend().is_some() || last.bend().is_some())
     }
 
     /// Least value of the convex function `sign`·clearance between two samples, and the gap to the lower bound that the
@@ -245,7 +285,9 @@ impl Span<'_> {
             // Where the slope changes its sign, an extreme is looked at once.
             let turn = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
             let between = turn > a.t && turn < b.t && a.slope * b.slope < 0.0;
-            let settled = within || part.error() <= tolerance + a.error.max(b.error) || budget == 0;
+            let error = a.error.max(b.error);
+            let close = part.error() <= tolerance.max(SHARE_OF_ERROR * error) + error;
+            let settled = within || close || budget == 0;
             let beyond = part.min < self.beyond[0] || part.max > self.beyond[1];
             if beyond || settled && !(is_whole && between) {
                 found = Some(found.map_or(part, |f| f.join(part)));
@@ -298,7 +340,7 @@ impl Span<'_> {
             if found.min < self.beyond[0] || found.max > self.beyond[1] {
                 return Some(Extremes::within(error, found.min, found.max));
             }
-            if hidden <= tolerance || budget == 0 {
+            if hidden <= tolerance.max(SHARE_OF_ERROR * reading) || budget == 0 {
                 error = error.max(reading + hidden);
             } else {
                 budget -= 1;
