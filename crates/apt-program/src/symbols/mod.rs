@@ -7,7 +7,6 @@ mod system;
 use std::sync::Arc;
 
 use apt_geometry::canonical::Geometry;
-use rustc_hash::FxBuildHasher;
 use smol_str::SmolStr;
 
 pub(crate) use array::{Array, ArrayElement};
@@ -65,9 +64,9 @@ pub(crate) struct Symbol {
 }
 
 /// The table. Persistent, so that a checkpoint costs little: the copies of its nodes that checkpoints keep are small,
-/// because symbols stand outside of them.
-pub(crate) type SymbolTable =
-    imbl::GenericHashMap<SmolStr, Arc<Symbol>, FxBuildHasher, imbl::shared_ptr::DefaultSharedPtr>;
+/// because symbols stand outside of them. Ordered, because programs number their names: those that are defined between
+/// two checkpoints are mostly neighbours and share the nodes that are copied for them.
+pub(crate) type SymbolTable = imbl::OrdMap<SmolStr, Arc<Symbol>>;
 
 impl Meaning {
     /// What the name is, as evidence of a finding.
