@@ -30,6 +30,16 @@ impl Encoding {
         }
     }
 
+    /// The length of a text.
+    pub(crate) fn length(self, text: &str) -> usize {
+        match self {
+            Self::Utf8 => text.len(),
+            _ if text.is_ascii() => text.len(),
+            Self::Utf16 => text.encode_utf16().count(),
+            Self::Utf32 => text.chars().count(),
+        }
+    }
+
     /// Its name in the protocol.
     pub(crate) fn kind(self) -> PositionEncodingKind {
         match self {
@@ -72,20 +82,44 @@ impl TextIndex {
     pub(crate) fn position(&self, offset: usize) -> Position {
         let offset = offset.min(self.rope.len_bytes());
         let line = self.rope.byte_to_line(offset);
-        let slice = self.rope.line(line);
         let within = offset - self.rope.line_to_byte(line);
-        let character = slice.byte_to_char(within);
-        let count = match self.encoding {
-            Encoding::Utf8 => slice.char_to_byte(character),
-            Encoding::Utf16 => slice.char_to_utf16_cu(character),
-            Encoding::Utf32 => character,
-        };
+        let count = self.count_in_piece(offset, within).unwrap_or_else(|| {
+            let slice = self.rope.line(line);
+            let character = slice.byte_to_char(within);
+            match self.encoding {
+                Encoding::Utf8 => slice.char_to_byte(character),
+                Encoding::Utf16 => slice.char_to_utf16_cu(character),
+                Encoding::Utf32 => character,
+            }
+        });
         Position { line: protocol_number(line), character: protocol_number(count) }
+    }
+
+    /// The characters of the `within` bytes before an offset, if one piece of the rope holds them all: then they need no
+    /// search.
+    fn count_in_piece(&self, offset: usize, within: usize) -> Option<usize> {
+        let (piece, start, ..) = self.rope.chunk_at_byte(offset);
+        let end = offset - start;
+        let before = piece.get(end.checked_sub(within)?..end)?;
+        Some(self.encoding.length(before))
     }
 
     /// Range of a byte range.
     pub(crate) fn range(&self, bytes: &ops::Range<usize>) -> Range {
-        Range { start: self.position(bytes.start), end: self.position(bytes.end) }
+        let start = self.position(bytes.start);
+        let end = self.end_on_line(bytes, start).unwrap_or_else(|| self.position(bytes.end));
+        Range { start, end }
+    }
+
+    /// The end of a range with its start, if both stand on one line in one piece of the rope: then it needs no search.
+    fn end_on_line(&self, bytes: &ops::Range<usize>, start: Position) -> Option<Position> {
+        if bytes.start >= self.rope.len_bytes() {
+            return None;
+        }
+        let (piece, before, ..) = self.rope.chunk_at_byte(bytes.start);
+        let text = piece.get(bytes.start - before..bytes.end.checked_sub(before)?)?;
+        let character = start.character.checked_add(protocol_number(self.encoding.length(text)))?;
+        (!text.contains(['\n', '\r'])).then_some(Position { line: start.line, character })
     }
 }
 
@@ -168,6 +202,21 @@ mod tests {
                     continue; // Between CR and LF there is no position.
                 }
                 assert_eq!(index.offset(index.position(offset)), offset, "{encoding:?} at {offset}");
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_are_told_as_their_two_ends_are() {
+        let mut text = "C1=CIRCLE/0 $$ é😀\r\nFINI\r\n\n".to_owned();
+        text.push_str(&"P1=POINT/1,2 $$ 😀\n".repeat(200)); // Several pieces of a rope.
+        for encoding in [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32] {
+            let index = index(&text, encoding);
+            for start in 0..=text.len() {
+                for end in (start..text.len() + 3).step_by(7).take(6) {
+                    let ends = Range { start: index.position(start), end: index.position(end) };
+                    assert_eq!(index.range(&(start..end)), ends, "{encoding:?} {start}..{end}");
+                }
             }
         }
     }

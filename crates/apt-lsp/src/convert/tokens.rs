@@ -100,12 +100,7 @@ impl CurrentLine {
     fn range(&self, bytes: &Range<usize>, encoding: Encoding) -> Option<lsp::Range> {
         let position = |offset: usize| {
             let before = self.text.get(..offset.checked_sub(self.start)?)?;
-            let character = match encoding {
-                Encoding::Utf8 => before.len(),
-                _ if before.is_ascii() => before.len(),
-                Encoding::Utf16 => before.encode_utf16().count(),
-                Encoding::Utf32 => before.chars().count(),
-            };
+            let character = encoding.length(before);
             Some(lsp::Position { line: self.number, character: protocol_number(character) })
         };
         Some(lsp::Range { start: position(bytes.start)?, end: position(bytes.end)? })
