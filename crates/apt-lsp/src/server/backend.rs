@@ -1,6 +1,7 @@
 //! The handlers: each puts an event into the queue, or asks for a snapshot and has work done on it.
 
 mod sent_tokens;
+mod whole;
 mod wishes;
 
 use std::collections::{BTreeMap, HashMap};
@@ -9,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use serde_json::{Value, json};
 use tokio::sync::mpsc;
-use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
+use tower_lsp::jsonrpc::{ErrorCode, Result};
 use tower_lsp::ls_types::{self as lsp, ProgressToken, Uri};
 use tower_lsp::{Client, LanguageServer};
 
@@ -18,10 +19,11 @@ use super::capabilities::{ClientFeatures, server_capabilities};
 use super::documents::{self, Event, Snapshot};
 use super::job::{self, Events};
 use super::outbox::Outbox;
+use super::parcels::Parcels;
 use super::progress::Cancellations;
 use super::{commands, diagnostics, lifetime, symbols};
-use crate::analysis::{ActionKind, Answer, Control, Interrupted, Language, Level, Located, Refusal, Spot};
-use crate::convert::{outgoing, tokens};
+use crate::analysis::{ActionKind, Answer, Control, Language, Level, Located, Refusal, Spot};
+use crate::convert::{joined, outgoing, tokens};
 use crate::settings::{self, Values};
 
 /// The server gave up the work, and the client may ask again (an error code of the protocol).
@@ -34,6 +36,7 @@ pub(super) struct Backend {
     events: Events,
     outbox: Outbox,
     features: OnceLock<ClientFeatures>,
+    parcels: Parcels,
     cancellations: Cancellations,
     offered: AtomicU64,
     /// What was last sent, for differences.
@@ -41,11 +44,16 @@ pub(super) struct Backend {
 }
 
 impl Backend {
-    /// Starts the tasks of a conversation.
-    pub(super) fn new(client: Client, language: Arc<dyn Language>) -> Self {
+    /// Starts the tasks of a conversation. `notices` takes the bodies of messages to the client.
+    pub(super) fn new(
+        client: Client,
+        language: Arc<dyn Language>,
+        parcels: Parcels,
+        notices: mpsc::WeakSender<Vec<u8>>,
+    ) -> Self {
         let (events, waiting) = mpsc::unbounded_channel();
         let (touched, touches) = mpsc::unbounded_channel();
-        let outbox = Outbox::start(client.clone());
+        let outbox = Outbox::start(client.clone(), notices);
         if let Err(error) = documents::start(Arc::clone(&language), waiting, touched, outbox.clone()) {
             lifetime::complain(&format!("cannot start a thread: {error}"));
         }
@@ -56,6 +64,7 @@ impl Backend {
             events,
             outbox,
             features: OnceLock::new(),
+            parcels,
             cancellations: Cancellations::default(),
             offered: AtomicU64::new(0),
             sent_tokens: Mutex::default(),
@@ -119,15 +128,6 @@ impl Backend {
         .await
     }
 
-    async fn formatted(&self, uri: Uri, range: Option<lsp::Range>) -> Result<Option<Vec<lsp::TextEdit>>> {
-        self.ask("formatting", uri, move |snapshot, _| {
-            let range = range.map(|range| snapshot.index.bytes(range));
-            let edits = snapshot.document.format(range).edits.into_iter();
-            Ok(Some(edits.map(|edit| outgoing::edit(&snapshot.index, edit)).collect()))
-        })
-        .await
-    }
-
     async fn own(&self, command: &str, mut params: Value) -> Result<Value> {
         let token = params.as_object_mut().and_then(|fields| fields.remove("workDoneToken"));
         let token = token.and_then(|token| serde_json::from_value(token).ok());
@@ -161,6 +161,17 @@ impl Backend {
     pub(super) async fn cancel_progress(&self, params: lsp::WorkDoneProgressCancelParams) {
         self.cancellations.cancel(&params.token);
     }
+}
+
+/// Edits of one answer: more cost an editor far more time than the text between them.
+const MOST_EDITS: usize = 1_000;
+
+/// The edits that give a document its style, or the statements in a range of it.
+fn formatting_edits(snapshot: &Snapshot, range: Option<lsp::Range>) -> Vec<lsp::TextEdit> {
+    let range = range.map(|range| snapshot.index.bytes(range));
+    let edits = snapshot.document.format(range).edits;
+    let edits = joined(&snapshot.index.rope, edits, MOST_EDITS).into_iter();
+    edits.map(|edit| outgoing::edit(&snapshot.index, edit)).collect()
 }
 
 /// Places in the files of the program that a document belongs to, as locations.
@@ -296,18 +307,6 @@ impl LanguageServer for Backend {
         .await
     }
 
-    async fn references(&self, params: lsp::ReferenceParams) -> Result<Option<Vec<lsp::Location>>> {
-        let with_definition = params.context.include_declaration;
-        self.ask_at("references", params.text_document_position, move |snapshot, offset, _| {
-            let file = snapshot.included_path();
-            let spot = Spot { file: file.as_deref(), offset };
-            let mut found = snapshot.program().document.references(spot);
-            found.retain(|one| with_definition || !one.occurrence.defines);
-            Ok(Some(locations(snapshot, &found)))
-        })
-        .await
-    }
-
     async fn document_highlight(
         &self,
         params: lsp::DocumentHighlightParams,
@@ -349,22 +348,6 @@ impl LanguageServer for Backend {
         })
         .await?;
         Ok(Some(lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }))
-    }
-
-    async fn document_symbol(
-        &self,
-        params: lsp::DocumentSymbolParams,
-    ) -> Result<Option<lsp::DocumentSymbolResponse>> {
-        let nested = self.features().nested_symbols;
-        self.ask("document symbols", params.text_document.uri, move |snapshot, _| {
-            let (index, outline) = (&snapshot.index, snapshot.document.outline());
-            Ok(Some(if nested {
-                outline.into_iter().map(|entry| outgoing::symbol(index, entry)).collect::<Vec<_>>().into()
-            } else {
-                outgoing::flat_symbols(index, &snapshot.uri, outline).into()
-            }))
-        })
-        .await
     }
 
     async fn inlay_hint(&self, params: lsp::InlayHintParams) -> Result<Option<Vec<lsp::InlayHint>>> {
@@ -427,14 +410,6 @@ impl LanguageServer for Backend {
         .await
     }
 
-    async fn folding_range(&self, params: lsp::FoldingRangeParams) -> Result<Option<Vec<lsp::FoldingRange>>> {
-        self.ask("folding ranges", params.text_document.uri, |snapshot, _| {
-            let folds = snapshot.document.folds();
-            Ok(Some(folds.iter().filter_map(|fold| outgoing::fold(&snapshot.index, fold)).collect()))
-        })
-        .await
-    }
-
     async fn code_action(&self, params: lsp::CodeActionParams) -> Result<Option<lsp::CodeActionResponse>> {
         let wanted = wanted_actions(params.context.only.as_deref());
         // What the editor shows says how far the findings go that are asked about.
@@ -452,55 +427,15 @@ impl LanguageServer for Backend {
         .await
     }
 
-    async fn formatting(&self, params: lsp::DocumentFormattingParams) -> Result<Option<Vec<lsp::TextEdit>>> {
-        // The style is that of the project, not of the editor: columns have a meaning in part programs.
-        self.formatted(params.text_document.uri, None).await
-    }
-
     async fn range_formatting(
         &self,
         params: lsp::DocumentRangeFormattingParams,
     ) -> Result<Option<Vec<lsp::TextEdit>>> {
-        self.formatted(params.text_document.uri, Some(params.range)).await
-    }
-
-    async fn code_lens(&self, params: lsp::CodeLensParams) -> Result<Option<Vec<lsp::CodeLens>>> {
-        self.ask("code lenses", params.text_document.uri, |snapshot, _| {
-            let program = snapshot.program();
-            let mut lenses = snapshot.document.lenses();
-            if program.uri != snapshot.uri {
-                // An included file runs with its program only.
-                lenses.retain(|lens| lens.run.is_none());
-            }
-            let lenses = lenses.into_iter();
-            Ok(Some(lenses.map(|lens| outgoing::lens(&snapshot.index, &program.uri, lens)).collect()))
+        let range = params.range;
+        self.ask("formatting", params.text_document.uri, move |snapshot, _| {
+            Ok(Some(formatting_edits(snapshot, Some(range))))
         })
         .await
-    }
-
-    async fn semantic_tokens_full(
-        &self,
-        params: lsp::SemanticTokensParams,
-    ) -> Result<Option<lsp::SemanticTokensResult>> {
-        let (id, tokens) = self.all_tokens(params.text_document.uri).await?;
-        let data = Arc::unwrap_or_clone(tokens);
-        Ok(Some(lsp::SemanticTokens { result_id: Some(id), data }.into()))
-    }
-
-    async fn semantic_tokens_full_delta(
-        &self,
-        params: lsp::SemanticTokensDeltaParams,
-    ) -> Result<Option<lsp::SemanticTokensFullDeltaResult>> {
-        let uri = params.text_document.uri;
-        let before = self.sent_tokens(&uri).filter(|(id, _)| *id == params.previous_result_id);
-        let (id, tokens) = self.all_tokens(uri).await?;
-        Ok(Some(match before {
-            Some((_, old)) => {
-                let edits = tokens::difference(&old, &tokens);
-                lsp::SemanticTokensDelta { result_id: Some(id), edits }.into()
-            }
-            None => lsp::SemanticTokens { result_id: Some(id), data: Arc::unwrap_or_clone(tokens) }.into(),
-        }))
     }
 
     async fn semantic_tokens_range(
@@ -514,47 +449,6 @@ impl LanguageServer for Backend {
             Ok(Some(lsp::SemanticTokens { result_id: None, data }.into()))
         })
         .await
-    }
-
-    async fn diagnostic(
-        &self,
-        params: lsp::DocumentDiagnosticParams,
-    ) -> Result<lsp::DocumentDiagnosticReportResult> {
-        let snapshot = job::snapshot(&self.events, params.text_document.uri).await?;
-        let id = snapshot.revision.to_string();
-        if params.previous_result_id.as_ref() == Some(&id) {
-            let unchanged = lsp::UnchangedDocumentDiagnosticReport { result_id: id };
-            return Ok(lsp::DocumentDiagnosticReport::Unchanged(
-                lsp::RelatedUnchangedDocumentDiagnosticReport {
-                    related_documents: None,
-                    unchanged_document_diagnostic_report: unchanged,
-                },
-            )
-            .into());
-        }
-        let level = if diagnostics::wants_motion(&snapshot) { Level::Motion } else { Level::Section1 };
-        let superseded = snapshot.superseded.clone();
-        let found = job::on_snapshot("diagnostics", snapshot, move |snapshot, control| {
-            diagnostics::findings(snapshot, level, control)
-        })
-        .await;
-        let items = found.map_err(|error| {
-            if superseded.is_cancelled() && error.code == ErrorCode::ContentModified {
-                let retrigger = json!({ "retriggerRequest": true });
-                return Error {
-                    code: SERVER_CANCELLED,
-                    message: Interrupted.to_string().into(),
-                    data: Some(retrigger),
-                };
-            }
-            error
-        })?;
-        let full = lsp::FullDocumentDiagnosticReport { result_id: Some(id), items };
-        Ok(lsp::DocumentDiagnosticReport::Full(lsp::RelatedFullDocumentDiagnosticReport {
-            related_documents: None,
-            full_document_diagnostic_report: full,
-        })
-        .into())
     }
 
     async fn execute_command(&self, params: lsp::ExecuteCommandParams) -> Result<Option<Value>> {

@@ -13,6 +13,7 @@ use tokio::sync::mpsc;
 use tower_lsp::jsonrpc::{Error, Id, Request, Response};
 
 use super::Ending;
+use super::parcels::{self, Parcels};
 
 /// A longer message is refused and skipped (bytes).
 const MESSAGE_LIMIT: u64 = 1 << 30;
@@ -23,6 +24,21 @@ const HEADER_LINE_LIMIT: u64 = 8 << 10;
 /// Frames waiting for the client to read them before the service waits.
 const WAITING_FRAMES: usize = 64;
 
+/// The bodies of messages that the client has not read yet.
+pub(super) struct Outgoing {
+    /// Where they are put in.
+    pub frames: mpsc::Sender<Vec<u8>>,
+    waiting: mpsc::Receiver<Vec<u8>>,
+}
+
+impl Outgoing {
+    /// None yet.
+    pub(super) fn new() -> Self {
+        let (frames, waiting) = mpsc::channel(WAITING_FRAMES);
+        Self { frames, waiting }
+    }
+}
+
 /// How long unfinished answers may take after the end of input.
 const LAST_ANSWERS: std::time::Duration = std::time::Duration::from_secs(2);
 
@@ -32,9 +48,11 @@ pub(super) async fn run(
     to_service: impl AsyncWrite + Unpin + Send + 'static,
     from_service: impl AsyncRead + Unpin + Send + 'static,
     output: impl AsyncWrite + Unpin + Send + 'static,
+    outgoing: Outgoing,
+    parcels: Parcels,
 ) -> Ending {
-    let (frames, waiting) = mpsc::channel(WAITING_FRAMES);
-    let answers = tokio::spawn(forward_answers(from_service, frames.clone()));
+    let Outgoing { frames, waiting } = outgoing;
+    let answers = tokio::spawn(forward_answers(from_service, frames.clone(), parcels));
     let writer = tokio::spawn(write_frames(waiting, output));
     let ending = read_messages(input, to_service, frames).await;
     let _ = tokio::time::timeout(LAST_ANSWERS, async {
@@ -91,10 +109,16 @@ struct Message {
 /// the library's eyes, so one reading covers both.
 fn check(body: Vec<u8>) -> Result<Message, Error> {
     match serde_json::from_slice::<Request>(&body) {
-        Ok(request) => Ok(Message { method: request.method().to_owned(), body }),
+        Ok(request) => Ok(Message { method: request.method().to_owned(), body: for_service(&request, body) }),
         Err(error) if error.is_data() => Err(Error::invalid_request()),
         Err(_) => Err(Error::parse_error()),
     }
+}
+
+/// The body of a request as the service is to see it.
+fn for_service(request: &Request, body: Vec<u8>) -> Vec<u8> {
+    // What has been read can be written.
+    parcels::renamed(request).and_then(|renamed| serde_json::to_vec(&renamed).ok()).unwrap_or(body)
 }
 
 enum Frame {
@@ -157,11 +181,16 @@ async fn write_frame(output: &mut (impl AsyncWrite + Unpin), body: &[u8]) -> io:
     output.flush().await
 }
 
-/// Takes the service's frames apart, so that our own answers fall between them and not into them.
-async fn forward_answers(from_service: impl AsyncRead + Unpin, frames: mpsc::Sender<Vec<u8>>) {
+/// Takes the service's frames apart, so that our own answers fall between them and not into them, and those that are
+/// only tickets become what they stand for.
+async fn forward_answers(
+    from_service: impl AsyncRead + Unpin,
+    frames: mpsc::Sender<Vec<u8>>,
+    parcels: Parcels,
+) {
     let mut input = BufReader::new(from_service);
     while let Ok(Some(Frame::Message(body))) = read_frame(&mut input).await {
-        if frames.send(body).await.is_err() {
+        if frames.send(parcels.filled(body)).await.is_err() {
             return;
         }
     }

@@ -13,6 +13,7 @@ mod framing;
 mod job;
 mod lifetime;
 mod outbox;
+mod parcels;
 mod progress;
 mod symbols;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 
 use self::backend::Backend;
+use self::parcels::{Parcels, method};
 use crate::analysis::Language;
 
 /// Requests answered at the same time. Order does not depend on it; a small number would only delay
@@ -75,18 +77,29 @@ pub(crate) async fn serve(
     output: impl AsyncWrite + Unpin + Send + 'static,
     language: Arc<dyn Language>,
 ) -> Ending {
-    let (service, socket) = LspService::build(|client| Backend::new(client, language))
-        .custom_method("apt/runMotion", Backend::run_motion)
-        .custom_method("apt/expand", Backend::expand)
-        .custom_method("apt/canonicalForm", Backend::canonical_form)
-        .custom_method("apt/post", Backend::post)
-        .custom_method("apt/syntaxTree", Backend::syntax_tree)
-        .custom_method("apt/machines", Backend::machines)
-        .custom_method("window/workDoneProgress/cancel", Backend::cancel_progress)
-        .finish();
+    let (outgoing, parcels) = (framing::Outgoing::new(), Parcels::default());
+    let notices = outgoing.frames.downgrade();
+    let (service, socket) =
+        LspService::build(|client| Backend::new(client, language, parcels.clone(), notices))
+            .custom_method("apt/runMotion", Backend::run_motion)
+            .custom_method("apt/expand", Backend::expand)
+            .custom_method("apt/canonicalForm", Backend::canonical_form)
+            .custom_method("apt/post", Backend::post)
+            .custom_method("apt/syntaxTree", Backend::syntax_tree)
+            .custom_method("apt/machines", Backend::machines)
+            .custom_method(method::SYMBOLS, Backend::symbols)
+            .custom_method(method::REFERENCES, Backend::all_references)
+            .custom_method(method::FOLDS, Backend::folds)
+            .custom_method(method::LENSES, Backend::lenses)
+            .custom_method(method::FORMATTING, Backend::format)
+            .custom_method(method::TOKENS, Backend::tokens)
+            .custom_method(method::TOKENS_DELTA, Backend::tokens_delta)
+            .custom_method(method::DIAGNOSTIC, Backend::pulled_findings)
+            .custom_method("window/workDoneProgress/cancel", Backend::cancel_progress)
+            .finish();
     let (frames_in, service_in) = tokio::io::duplex(PIPE_SIZE);
     let (service_out, frames_out) = tokio::io::duplex(PIPE_SIZE);
-    let mut framing = tokio::spawn(framing::run(input, frames_in, frames_out, output));
+    let mut framing = tokio::spawn(framing::run(input, frames_in, frames_out, output, outgoing, parcels));
     let server = Server::new(service_in, service_out, socket).concurrency_level(CONCURRENT_REQUESTS);
     let ending = tokio::select! {
         () = server.serve(service) => framing.await,

@@ -2,18 +2,20 @@
 
 use std::sync::{Arc, PoisonError};
 
+use serde::Serialize;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{self as lsp, Uri};
 
 use super::Backend;
 use crate::convert::tokens;
+use crate::server::parcels::{Ticket, packed};
 
 /// Encoded tokens of a document, with the id under which the client knows them.
 pub(super) type SentTokens = (String, Arc<Vec<lsp::SemanticToken>>);
 
 impl Backend {
     /// Keeps what was sent, for the differences to it.
-    pub(super) fn remember_tokens(&self, uri: Uri, id: String, tokens: Arc<Vec<lsp::SemanticToken>>) {
+    fn remember_tokens(&self, uri: Uri, id: String, tokens: Arc<Vec<lsp::SemanticToken>>) {
         self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(uri, (id, tokens));
     }
 
@@ -27,15 +29,21 @@ impl Backend {
         self.sent_tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(uri);
     }
 
-    /// All tokens of a document, which are kept as sent.
-    pub(super) async fn all_tokens(&self, uri: Uri) -> Result<SentTokens> {
-        let (id, tokens) = self
+    /// An answer about all tokens of a document, which are kept as sent.
+    pub(super) async fn answer_tokens<T: Serialize>(
+        &self,
+        uri: Uri,
+        answer: impl FnOnce(String, &[lsp::SemanticToken]) -> T + Send + 'static,
+    ) -> Result<Ticket> {
+        let (id, tokens, packed) = self
             .ask("semantic tokens", uri.clone(), |snapshot, _| {
-                let found = snapshot.document.tokens(None);
-                Ok((snapshot.revision.to_string(), Arc::new(tokens::encode(&snapshot.index, &found))))
+                let id = snapshot.revision.to_string();
+                let tokens = tokens::encode(&snapshot.index, &snapshot.document.tokens(None));
+                let packed = packed(&answer(id.clone(), &tokens));
+                Ok((id, Arc::new(tokens), packed))
             })
             .await?;
-        self.remember_tokens(uri, id.clone(), Arc::clone(&tokens));
-        Ok((id, tokens))
+        self.remember_tokens(uri, id, tokens);
+        Ok(self.parcels.put(packed?))
     }
 }
