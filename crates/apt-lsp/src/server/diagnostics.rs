@@ -1,7 +1,9 @@
-//! Pushed findings: after a moment of quiet, or at once if there was quiet already.
+//! Pushed findings: at once if there was quiet, or nothing to do, and else after a moment of quiet.
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use tokio::sync::mpsc;
@@ -28,6 +30,8 @@ pub(super) struct Touched(pub Uri);
 pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events: Events) {
     let mut due: BTreeMap<Uri, Instant> = BTreeMap::new();
     let mut last_touched: BTreeMap<Uri, Instant> = BTreeMap::new();
+    // The last check of each document, and whether it has told all that there was to tell.
+    let mut checks: BTreeMap<Uri, Arc<AtomicBool>> = BTreeMap::new();
     loop {
         let next = due.values().min().copied();
         let quiet_over = async {
@@ -41,7 +45,9 @@ pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events:
                 let Some(Touched(uri)) = message else { return };
                 let now = Instant::now();
                 let was = last_touched.insert(uri.clone(), now);
-                let idle = was.is_none_or(|was| now - was >= QUIET);
+                checks.retain(|_, told| !told.load(Ordering::Acquire));
+                let done = !checks.contains_key(&uri) && !due.contains_key(&uri);
+                let idle = done || was.is_none_or(|was| now - was >= QUIET);
                 due.insert(uri, if idle { now } else { now + QUIET });
                 last_touched.retain(|_, at| now - *at < QUIET);
             }
@@ -50,16 +56,20 @@ pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events:
                 let ready: Vec<Uri> = due.iter().filter(|(_, at)| **at <= now).map(|(uri, _)| uri.clone()).collect();
                 for uri in ready {
                     due.remove(&uri);
-                    tokio::spawn(check(uri, events.clone()));
+                    let told = Arc::new(AtomicBool::new(false));
+                    checks.insert(uri.clone(), Arc::clone(&told));
+                    let check = check(uri, events.clone());
+                    tokio::spawn(async move { told.store(check.await, Ordering::Release) });
                 }
             }
         }
     }
 }
 
-/// Checks a document, and gives the findings to the owner, who knows whether they still matter.
-async fn check(uri: Uri, events: Events) {
-    let Ok(snapshot) = job::snapshot(&events, uri.clone()).await else { return };
+/// Checks a document, and gives the findings to the owner, who knows whether they still matter. Tells whether the check
+/// came to its end.
+async fn check(uri: Uri, events: Events) -> bool {
+    let Ok(snapshot) = job::snapshot(&events, uri.clone()).await else { return false };
     let revision = snapshot.revision;
     let give = |diagnostics| {
         let _ = events.send(Event::Found { uri: uri.clone(), revision, diagnostics });
@@ -68,18 +78,28 @@ async fn check(uri: Uri, events: Events) {
     if wants_motion(&snapshot) {
         let mut work = tokio::spawn(findings_of(snapshot.clone(), Level::Motion));
         match timeout(MOTION_GRACE, &mut work).await {
-            Ok(Ok(Ok(diagnostics))) => return give(diagnostics),
+            Ok(Ok(Ok(diagnostics))) => {
+                give(diagnostics);
+                return true;
+            }
             Ok(_) => {} // Cancelled or broken: what Section 1 finds is still worth telling.
             Err(_) => motion = Some(work),
         }
     }
+    let mut told = false;
     if let Ok(diagnostics) = findings_of(snapshot, Level::Section1).await {
         give(diagnostics);
+        told = true;
     }
-    if let Some(work) = motion
-        && let Ok(Ok(diagnostics)) = work.await
-    {
-        give(diagnostics);
+    match motion {
+        None => told,
+        Some(work) => match work.await {
+            Ok(Ok(diagnostics)) => {
+                give(diagnostics);
+                true
+            }
+            _ => false,
+        },
     }
 }
 
