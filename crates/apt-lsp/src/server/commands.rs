@@ -14,6 +14,7 @@ use super::backend::Backend;
 use super::documents::{Snapshot, file_path};
 use super::job;
 use super::progress::{self, Display};
+use super::workers::Workers;
 use crate::analysis::{Control, Refusal, RunRequest, Surroundings};
 use crate::convert::{TextIndex, Uris, outgoing};
 use crate::settings::{Settings, Values};
@@ -177,6 +178,7 @@ async fn present(server: &Backend, uri: Uri) -> Result<Snapshot> {
             superseded: CancellationToken::new(),
             includers: Vec::new(),
             uris: Uris::default(),
+            workers: Workers::default(),
         })
     };
     match tokio::task::spawn_blocking(read).await {

@@ -12,6 +12,7 @@ use tower_lsp::ls_types::{self as lsp, TextDocumentContentChangeEvent, Uri};
 
 use super::diagnostics::Touched;
 use super::outbox::{Notice, Outbox};
+use super::workers::Workers;
 use crate::analysis::{Document, Files, Language, Surroundings, TextEdit, normalised};
 use crate::convert::{Encoding, Places, TextIndex, Uris, changes};
 use crate::settings::{Settings, Values};
@@ -91,6 +92,8 @@ pub(super) struct Snapshot {
     pub includers: Vec<Snapshot>,
     /// What the client calls the files that it has opened.
     pub uris: Uris,
+    /// Who does work on it.
+    pub workers: Workers,
 }
 
 impl Snapshot {
@@ -137,6 +140,7 @@ pub(super) fn start(
         told: BTreeSet::new(),
         touched,
         outbox,
+        workers: Workers::default(),
     };
     std::thread::Builder::new().name("documents".to_owned()).spawn(move || documents.run(events)).map(drop)
 }
@@ -158,6 +162,7 @@ struct Documents {
     told: BTreeSet<String>,
     touched: mpsc::UnboundedSender<Touched>,
     outbox: Outbox,
+    workers: Workers,
 }
 
 struct OpenDocument {
@@ -437,6 +442,7 @@ impl Documents {
             document: analysed,
             settings: Arc::clone(&document.settings),
             superseded: document.superseded.clone(),
+            workers: self.workers.clone(),
         })
     }
 

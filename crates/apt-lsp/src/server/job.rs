@@ -34,7 +34,7 @@ pub(super) async fn snapshots(events: &Events) -> Result<Vec<Snapshot>> {
     answer.await.map_err(|_| internal_fault("reading the documents"))
 }
 
-/// Does work on the blocking pool. It is cancelled when the caller is dropped (that is what the
+/// Does work on a thread of its own. It is cancelled when the caller is dropped (that is what the
 /// cancelling of a request does) and when the document changes.
 pub(super) async fn on_snapshot<T: Send + 'static, E: Into<Refusal> + Send + 'static>(
     name: &'static str,
@@ -55,7 +55,8 @@ pub(super) async fn with_progress<T: Send + 'static, E: Into<Refusal> + Send + '
 ) -> Result<T> {
     let superseded = snapshot.superseded.clone();
     let _guard = token.clone().drop_guard();
-    let done = tokio::task::spawn_blocking(move || {
+    let workers = snapshot.workers.clone();
+    let done = workers.run(move || {
         let mut control = Control::new(token);
         if let Some(reporter) = reporter {
             control = control.with_progress(move |progress| reporter.report(progress));

@@ -2,7 +2,7 @@
 //!
 //! One thread owns the documents and applies events in the order in which they arrive; handlers ask it
 //! for immutable snapshots through the same queue, so each sees every edit that was sent before it.
-//! Work happens on the blocking pool, with a token that ends it when nobody wants the answer any more.
+//! Work happens on threads of its own, with a token that ends it when nobody wants the answer any more.
 
 mod backend;
 mod capabilities;
@@ -18,6 +18,7 @@ mod progress;
 mod symbols;
 #[cfg(test)]
 mod tests;
+mod workers;
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -36,9 +37,8 @@ const CONCURRENT_REQUESTS: usize = 256;
 /// Bytes between the framing and the service before the reader waits.
 const PIPE_SIZE: usize = 1 << 16;
 
-/// Threads for work on snapshots, and for the two standard streams. Each has memory of its own that it keeps, so few
-/// are better than many; work that nobody wants any more ends soon and gives its thread back.
-const WORKERS: usize = 10;
+/// Threads for the two standard streams, and for files of machines. Work on snapshots has threads of its own.
+const BLOCKING_THREADS: usize = 4;
 
 /// How the conversation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(crate) enum Ending {
 /// Runs the server on standard input and output, and ends the process.
 pub(crate) fn run(language: Arc<dyn Language>) -> ExitCode {
     let mut builder = tokio::runtime::Builder::new_multi_thread();
-    builder.enable_all().max_blocking_threads(WORKERS);
+    builder.enable_all().max_blocking_threads(BLOCKING_THREADS);
     let runtime = match builder.build() {
         Ok(runtime) => runtime,
         Err(error) => {
