@@ -11,12 +11,13 @@ use std::{
 
 use apt_program::{Options, Program, evaluate};
 use apt_syntax::{
-    StatementChange, SyntaxTree, TextRange, TextSize,
+    SyntaxTree, TextRange, TextSize,
     dialect::{DetectionReason, Dialect, DialectName, detect},
 };
 
 use crate::{
     Cancel, Cancelled,
+    basis::Basis,
     catalogue::{self, Worst},
     diagnostic::Diagnostic,
     include::FolderResolver,
@@ -46,13 +47,6 @@ pub enum DialectReason {
     Detected(DetectionReason),
 }
 
-/// The change between an evaluated version and this one.
-#[derive(Debug, Clone)]
-struct Basis {
-    program: Arc<Program>,
-    change: StatementChange,
-}
-
 /// One version of one part program.
 #[derive(Debug)]
 pub struct Document {
@@ -62,6 +56,7 @@ pub struct Document {
     settings: Arc<Settings>,
     dialect_reason: DialectReason,
     memo: MotionMemo,
+    /// The last version that was evaluated, with the edits since.
     basis: Option<Basis>,
     program: OnceLock<Arc<Program>>,
     result: OnceLock<Arc<RunResult>>,
@@ -107,13 +102,11 @@ impl Document {
     pub fn edit(&self, range: Range<usize>, insert: &str) -> Self {
         let range = TextRange::new(TextSize::new(range.start as u32), TextSize::new(range.end as u32));
         let (tree, change) = self.tree.edit(range, insert);
-        let basis = match (self.program.get(), &self.basis) {
-            (Some(program), _) => Some(Basis { program: Arc::clone(program), change }),
-            (None, Some(basis)) => {
-                Some(Basis { program: Arc::clone(&basis.program), change: merge(&basis.change, &change) })
-            }
-            (None, None) => None,
+        let basis = match self.program.get() {
+            Some(program) => Some(Basis::of(&self.tree, program)),
+            None => self.basis.clone(),
         };
+        let basis = basis.map(|basis| basis.after(&tree, change));
         Self {
             tree,
             file: self.file.clone(),
@@ -173,7 +166,7 @@ impl Document {
         }
         let options = self.options();
         let program = match &self.basis {
-            Some(basis) => basis.program.update(&self.tree, &basis.change, &options, &cancel),
+            Some(basis) => basis.evaluate(&self.tree, &options, &cancel),
             None => evaluate(&self.tree, &options, &cancel),
         };
         if !program.is_complete() {
@@ -299,19 +292,5 @@ impl From<&Settings> for Options {
             macro_depth: settings.budget.macro_depth,
             ..Options::default()
         }
-    }
-}
-
-/// One change that has the effect of two, the second coming after the first.
-fn merge(a: &StatementChange, b: &StatementChange) -> StatementChange {
-    let first = a.first.min(b.first);
-    let middle_end = (a.first + a.inserted).max(b.first + b.removed);
-    let old_end = middle_end - a.inserted + a.removed;
-    let new_end = middle_end - b.removed + b.inserted;
-    StatementChange {
-        first,
-        removed: old_end - first,
-        inserted: new_end - first,
-        scanned: a.scanned + b.scanned,
     }
 }

@@ -4,6 +4,7 @@
 //! Nothing here knows a protocol or prints.
 
 pub mod allow;
+mod basis;
 pub mod catalogue;
 pub mod diagnostic;
 pub mod document;

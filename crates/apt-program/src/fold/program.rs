@@ -78,6 +78,38 @@ impl Program {
         Program::assemble(kept, outcome, Some(self), tree.dialect().name)
     }
 
+    /// [`Program::update`] for one edit after the other: each with the program after it. Only the last of them may be
+    /// incomplete, when `cancel` said so.
+    pub fn update_in_steps(
+        &self,
+        steps: &[(SyntaxTree, StatementChange)],
+        options: &Options,
+        cancel: &dyn Fn() -> bool,
+    ) -> Program {
+        let mut program = self.clone();
+        let mut evaluated = 0;
+        program.statistics.reused_statements += program.statistics.evaluated_statements;
+        program.statistics.evaluated_statements = 0;
+        for (tree, change) in steps {
+            program = program.update(tree, change, options, cancel);
+            evaluated += program.statistics.evaluated_statements;
+            if !program.complete {
+                break;
+            }
+        }
+        // What one step has evaluated is no result from before the edits when the next one takes it over.
+        let statistics = &mut program.statistics;
+        let earlier = evaluated - statistics.evaluated_statements;
+        statistics.reused_statements = statistics.reused_statements.saturating_sub(earlier);
+        statistics.evaluated_statements = evaluated;
+        program
+    }
+
+    /// Whether a statement asked for a file: then only a new evaluation is sure to be up to date.
+    pub fn asked_for_files(&self) -> bool {
+        self.asked_for_files
+    }
+
     /// Puts kept, new and reused chunks together.
     fn assemble(kept: Vec<Chunk>, outcome: Outcome, old: Option<&Program>, dialect: DialectName) -> Program {
         let mut reused: u64 = outcome.reused + kept.iter().map(Chunk::steps).sum::<u64>();
