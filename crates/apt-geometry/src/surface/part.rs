@@ -31,8 +31,8 @@ const MAX_DEPTH: u32 = 24;
 /// Bound of the parts that one question looks at.
 const MAX_PARTS: u32 = 3000;
 
-/// Parts of a surface that are kept, some 40 MB of them: those beyond are made for each question that needs them.
-const MOST_KEPT: usize = 100_000;
+/// Parts of a surface that are kept, some 160 MB of them: those beyond are made for each question that needs them.
+const MOST_KEPT: usize = 400_000;
 
 /// A rectangle of parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]

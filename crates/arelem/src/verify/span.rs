@@ -173,18 +173,31 @@ impl Span<'_> {
                 let max = (-depth).max(high);
                 Some(Extremes { min: low, max, low: low - error, high: max + error.max(gap) })
             }
-            Shape::Free => self.unshaped(tolerance, HALVINGS),
+            Shape::Free => {
+                let found = self.unshaped(tolerance, HALVINGS)?;
+                // Bounds of the halves that are too wide to decide: samples, as if there were none.
+                let is_open = self.is_within(found.min, found.max) && !self.is_within(found.low, found.high);
+                if is_open && self.bend().is_none() {
+                    return self.free(first, last, tolerance);
+                }
+                Some(found)
+            }
         }
     }
 
-    /// Extremes where nothing is known of the shape: by the bend, if that is bounded, of the vector or of halves of it.
+    fn is_within(&self, low: f64, high: f64) -> bool {
+        low >= self.band[0] && high <= self.band[1]
+    }
+
+    /// Extremes where nothing is known of the shape: by the bend, if that is bounded, of the vector or of halves of it. A bound
+    /// that tells nothing tells no more on halves.
     fn unshaped(&self, tolerance: f64, halvings: u32) -> Option<Extremes> {
         let [first, last] = [self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?];
-        if let Some(bend) = self.bend() {
-            return self.bent(first, last, bend, tolerance);
-        }
-        if halvings == 0 || !self.bends_anywhere(0.5f64.powi(halvings as i32))? {
-            return self.free(first, last, tolerance);
+        let share = 0.5f64.powi((HALVINGS - halvings) as i32);
+        match self.bend() {
+            Some(bend) if self.tells(&bend, share) => return self.bent(first, last, bend, tolerance),
+            None if halvings > 0 && self.bends_anywhere(0.5f64.powi(halvings as i32))? => {}
+            _ => return self.free(first, last, tolerance),
         }
         let middle = between(&self.from, &self.to, 0.5)?;
         let reading = self.clearance.at(&middle.tip, &middle.axis)?;
@@ -262,8 +275,14 @@ impl Span<'_> {
         let enough = FULL * room / (travel * travel);
         let bend = self.clearance.bend_along([&self.from, &self.to], [first, last], [travel, enough])?;
         let rate = bend.rate * travel * travel + turn * swing;
-        // A bound that tells nothing, as beside the tip of what is nearly a cone, is none.
-        (rate <= 8.0 * PIECES * PIECES * room).then_some(Bend { rate, jumps: bend.jumps * travel })
+        Some(Bend { rate, jumps: bend.jumps * travel })
+    }
+
+    /// Whether a bound of the bend tells something, for such a share of a vector: beside the tip of what is nearly a cone it does
+    /// not.
+    fn tells(&self, bend: &Bend, share: f64) -> bool {
+        let pieces = PIECES * share;
+        bend.rate <= 8.0 * pieces * pieces * (self.band[1] - self.band[0])
     }
 
     /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the
