@@ -9,7 +9,7 @@ use crate::{directed::march::Vertex, error::MotionFailure, role::Working};
 /// Places in a band at which a vector may end, as shares of it from its inner limit.
 const PLACES: [f64; 3] = [0.02, 0.5, 0.98];
 /// Each length that is tried is this share of the one before.
-const SHORTER: f64 = 0.3;
+const SHORTER: f64 = 0.25;
 /// The longest and the shortest one, as shares of the bands: behind the turn vectors are as long as the path bends.
 const LONGEST: f64 = 20.0;
 const SHORTEST: f64 = 0.1;
