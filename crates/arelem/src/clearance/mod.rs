@@ -312,14 +312,17 @@ fn offset_contact(
 }
 
 /// Distance of the whole tool from a surface without regard to sides: positive when they do not touch, on whichever
-/// side the tool is; the side with the greater clearance.
+/// side the tool is; the side with the greater clearance. The side that the tool end is on is asked first: how deep a tool
+/// that is clear on one side is from the other is dear and of no account.
 pub(crate) fn separation(tool: &Tool, surface: &Surface, tip: &Vec3) -> (Contact, f64) {
-    let above = offset_contact(tool, surface, 1.0, tip, None).0;
-    if above.clearance >= 0.0 {
-        return (above, 1.0);
+    let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
+    let here = offset_contact(tool, surface, side, tip, None).0;
+    if here.clearance >= 0.0 {
+        return (here, side);
     }
-    let below = offset_contact(tool, surface, -1.0, tip, None).0;
-    if above.clearance >= below.clearance { (above, 1.0) } else { (below, -1.0) }
+    let beyond = offset_contact(tool, surface, -side, tip, None).0;
+    let is_here = here.clearance > beyond.clearance || here.clearance == beyond.clearance && side > 0.0;
+    if is_here { (here, side) } else { (beyond, -side) }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use apt_geometry::{
 };
 
 use crate::{
+    clearance::EVALUATIONS,
     error::MotionFailure,
     tests::{Program, circle, cylinder, motion, plane, sphere, v},
     verify::verify,
@@ -79,4 +80,18 @@ fn a_needle_counts_both_walls_of_a_post() {
         let refused = p.attempt(&third);
         assert!(matches!(refused, Err(MotionFailure::NoneAhead { .. })), "{refused:?}");
     }
+}
+
+#[test]
+fn a_check_surface_costs_as_much_from_behind_as_from_the_front() {
+    // The path runs along a plane a tenth beside it, and ends at another one.
+    let clearances = |beside: Geometry| {
+        let mut p = needle(0.01, 0.005);
+        let checks = [(Relation::To, 1, &plane(1.0, 0.0, 0.0, 1.25)), (Relation::To, 1, &beside)];
+        let before = EVALUATIONS.get();
+        p.run(&motion(Turn::Forward, &plane(0.0, 1.0, 0.0, 0.0), &checks));
+        EVALUATIONS.get() - before
+    };
+    let [front, behind] = [plane(0.0, -1.0, 0.0, -0.1), plane(0.0, 1.0, 0.0, 0.1)].map(clearances);
+    assert_eq!(front, behind);
 }
