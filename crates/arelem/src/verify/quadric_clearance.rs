@@ -18,6 +18,9 @@ use super::{
 
 /// Azimuths sampled on a circle before local minima are closed in.
 const AZIMUTHS: usize = 16;
+/// Halvings of a sector between two azimuths where the surface is a saddle and a circle may have two troughs beside each
+/// other: two that are farther apart than a 512th of a turn are told apart.
+const SECTOR_HALVINGS: u32 = 5;
 /// Steps of a safeguarded secant search; bisection alone reaches round-off in fewer.
 const STEPS: usize = 100;
 /// Shortest part of a straight piece between two readings where the surface is a saddle.
@@ -237,6 +240,30 @@ impl Search<'_> {
                 let floor = from.0.min(to.0) + step * from.1.min(-to.1);
                 if floor - radius < self.best_value() || radius > 0.0 {
                     let trough = self.trough(p, [phi, phi + step], [from.1, to.1])?;
+                    self.accept(p, trough, radius)?;
+                }
+            }
+        }
+        if self.shape == Shape::Free { self.lower_troughs(p, radius, &samples) } else { Some(()) }
+    }
+
+    /// Looks for more troughs of a circle than its samples show, in those sectors that could hold a lower place: distance
+    /// changes no faster than the place moves.
+    fn lower_troughs(&mut self, p: Meridian, radius: f64, samples: &[(f64, f64)]) -> Option<()> {
+        let step = std::f64::consts::TAU / samples.len() as f64;
+        let finest = step / f64::from(1u32 << SECTOR_HALVINGS);
+        for (k, (from, to)) in samples.iter().zip(samples.iter().cycle().skip(1)).enumerate() {
+            let mut open = vec![(step * k as f64, step, *from, *to)];
+            while let Some((phi, width, from, to)) = open.pop() {
+                if 0.5 * (from.0 + to.0 - p[0] * width) - radius >= self.best_value() {
+                    continue;
+                }
+                if width > 1.5 * finest {
+                    let half = 0.5 * width;
+                    let middle = self.on_circle(p, phi + half)?;
+                    open.extend([(phi + half, half, middle, to), (phi, half, from, middle)]);
+                } else if from.1 <= 0.0 && to.1 >= 0.0 {
+                    let trough = self.trough(p, [phi, phi + width], [from.1, to.1])?;
                     self.accept(p, trough, radius)?;
                 }
             }
