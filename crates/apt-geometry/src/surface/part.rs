@@ -404,13 +404,15 @@ impl Bounds {
         let xx = duu.scaled(1.0 / (a * a));
         let xy = duv.plus(&duu.scaled(-b / a)).scaled(1.0 / (a * c));
         let yy = dvv.plus(&duv.scaled(-2.0 * b / a)).plus(&duu.scaled(b * b / (a * a))).scaled(1.0 / (c * c));
-        let [uu, uv, vv] = [duu.length(), duv.length(), dvv.length()];
-        let change = |hu: f64, hv: f64| {
+        let changed = |[uu, uv, vv]: [f64; 3], [hu, hv]: [f64; 2]| {
             let (u, v) = (uu * hu + uv * hv, uv * hu + vv * hv);
             (u / a).hypot(v / c.abs() + u * b.abs() / (a * c.abs()))
         };
-        let loose = [change(half[0], 0.0), change(0.0, half[1])];
-        let change = change(half[0], half[1]);
+        let lengths = [duu, duv, dvv].map(Box3::length);
+        let loose = [changed(lengths, [half[0], 0.0]), changed(lengths, [0.0, half[1]])];
+        let change = changed(lengths, half);
+        // Only what stands out of the tangent plane in the middle turns it.
+        let tilt = changed([duu, duv, dvv].map(|bend| bend.dot(&normal).magnitude()), half);
         let bends = [xx.dot(&normal), xy.dot(&normal), yy.dot(&normal)];
         let [p, q, r] = bends.map(Interval::middle);
         let center = |d: &Vec3, e: &Vec3, f: &Vec3| {
@@ -423,8 +425,8 @@ impl Bounds {
         if change.is_nan() || change > STEADY {
             return Self { least, close, normal: Some(normal), loose, ..unknown };
         }
-        // Sine of the angle between the tangent planes, and the chord of that angle.
-        let sine = change / (1.0 - change);
+        // Bound of the tangent of the angle between the tangent planes, and the chord of an angle with that sine.
+        let sine = tilt / (1.0 - change);
         let spread = 2.0 * (0.5 * sine.asin()).sin();
         let size = greatest(xx.length(), xy.length(), yy.length());
         let [dp, dq, dr] = bends.map(Interval::radius);

@@ -10,7 +10,7 @@ use super::{
     sheet_tests::{half_pipe, sheets, surface},
     *,
 };
-use crate::canonical::{Interval, TabulatedCylinder};
+use crate::canonical::{Interval, Made, Plane, Remembering, RuledSurface, TabulatedCylinder};
 
 /// How many surfaces [`made`] has.
 pub(super) const COUNT: usize = 11;
@@ -134,4 +134,27 @@ fn a_region_about_an_edge_has_no_bound() {
     let cone = made(2);
     let region = Region { center: Vec3::new(0.0, 0.0, 3.0), radius: 0.01, lowest: -0.01, highest: 0.01 };
     assert_eq!(cone.bend(1.0, &cone.foot(&region.center), &region), Bend::Unbounded);
+}
+
+/// Rulings from a line to a point lie in a plane, and their directions change fast near the point: that bends nothing.
+#[test]
+fn a_flat_fan_of_rulings_is_flat_in_few_parts() {
+    let plane = Geometry::Plane(Plane { normal: Vec3::y(), distance: 0.0 });
+    let [from, to, apex] = [[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.5, 8.0, 0.0]].map(Vec3::from);
+    let parts = vec![
+        plane,
+        Geometry::Point(from),
+        Geometry::Point(to),
+        Geometry::Vector(Vec3::y()),
+        Geometry::Point(apex),
+    ];
+    let fan = surface(&Geometry::RuledSurface(Remembering::new(RuledSurface { parts })));
+    let center = Vec3::new(0.4, 5.0, 0.1);
+    let region = Region { center, radius: 0.2, lowest: -0.1, highest: 0.5 };
+    for side in [1.0, -1.0] {
+        let bend = fan.bend(side, &fan.foot(&center), &region);
+        assert!(matches!(bend, Bend::AtMost(bound) if bound < 1e-3), "{bend:?}");
+    }
+    let Surface::Ruled(sheet) = &fan else { panic!("not ruled") };
+    assert!(Made::parts(&**sheet) < 300, "{} parts", Made::parts(&**sheet));
 }
