@@ -8,6 +8,9 @@ use super::{
 };
 use crate::clearance::{Contact, Tool, waves::length};
 
+/// Angle (radians) between an arc and a straight piece below which they are tangent.
+const TANGENT: f64 = 1e-9;
+
 impl Pose<'_> {
     /// A steady ball about the tool at a contact.
     pub(super) fn zone(&self, found: &Touch, last: Option<&Zone>) -> Option<Zone> {
@@ -115,7 +118,10 @@ impl Pose<'_> {
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
         let from_corner = (point + gradient * ball, clearance + ball);
-        let corner = || self.floor(from_corner, gradient, zone, corner) >= level || self.arcs_keep(&edge);
+        let corner = || {
+            self.floor(from_corner, gradient, zone, corner) >= level
+                || corner_stands_out(profile) && self.arcs_keep(&edge)
+        };
         (profile.arc <= 0.0 || corner())
             && edge(profile.lower.radius, profile.lower.height)
             && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
@@ -126,7 +132,7 @@ impl Pose<'_> {
             })
     }
 
-    /// Whether the corner keeps what its circles keep, where its whole balls stand out from the tool: stretches of its arc lie in the
+    /// Whether the corner keeps what its circles keep, also where its whole balls stand out from the tool: stretches of its arc lie in the
     /// triangles of their ends and of the place where the tangents there meet, and what is nowhere less on circles is between
     /// them least at one of them.
     fn arcs_keep(&self, edge: &dyn Fn(f64, f64) -> bool) -> bool {
@@ -159,4 +165,13 @@ impl Pose<'_> {
         let across = length(self.tool.across.map(|across| slope.dot(&across)));
         middle - circle.radius * across - circle.ball
     }
+}
+
+/// Whether balls of the corner stand out from the tool: its arc is not tangent to both straight pieces.
+fn corner_stands_out(profile: &Profile) -> bool {
+    let Profile { lower, upper, top, fan: [first, last], .. } = profile;
+    // Angles of outward normals from straight down.
+    let bottom = lower.height.atan2(lower.radius);
+    let flank = (top.height - upper.height).atan2(top.radius - upper.radius);
+    first - bottom > TANGENT || flank - last > TANGENT
 }
