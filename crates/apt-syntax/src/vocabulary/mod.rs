@@ -1,11 +1,15 @@
 //! The vocabulary: one data file, `vocabulary.toml`, holds class, code, forms and help of every word.
 //!
 //! `cargo xtask codegen` turns it into the table of the module `generated`, so that a start of the program costs
-//! nothing; a test keeps the two equal.
+//! next to nothing; a test keeps the two equal.
 
 pub mod generate;
 #[rustfmt::skip]
 mod generated;
+
+use std::sync::LazyLock;
+
+use rustc_hash::FxHashMap;
 
 use crate::dialect::DialectName;
 
@@ -155,50 +159,12 @@ pub fn words() -> &'static [Word] {
 
 /// The word of a spelling (upper case), in whatever dialect it is reserved.
 pub fn lookup(spelling: &str) -> Option<&'static Word> {
-    let mut slot = slot_of(spelling.as_bytes());
-    loop {
-        // Number 0 is an empty slot; there are some, so that the search ends.
-        let number = usize::from(*SLOTS.get(slot)?);
-        let word = words().get(number.checked_sub(1)?)?;
-        if word.spelling == spelling {
-            return Some(word);
-        }
-        slot = (slot + 1) % SLOT_COUNT;
-    }
+    BY_SPELLING.get(spelling).copied()
 }
 
 /// Every lexed word is looked up, so that a search by halves would be a fifth of the time of parsing.
-static SLOTS: [u16; SLOT_COUNT] = slots();
-
-/// Several times the number of words, so that most stand where they are first looked for.
-const SLOT_COUNT: usize = 2_048;
-
-/// The numbers of the words, counted from 1, each in the first free slot from its own on.
-const fn slots() -> [u16; SLOT_COUNT] {
-    let words = generated::WORDS;
-    let mut slots = [0; SLOT_COUNT];
-    let mut index = 0;
-    while index < words.len() {
-        let mut slot = slot_of(words[index].spelling.as_bytes());
-        while slots[slot] != 0 {
-            slot = (slot + 1) % SLOT_COUNT;
-        }
-        index += 1;
-        slots[slot] = index as u16;
-    }
-    slots
-}
-
-/// The slot where a spelling is first looked for (the hash of Fowler, Noll and Vo).
-const fn slot_of(spelling: &[u8]) -> usize {
-    let mut hash: u32 = 0x811c_9dc5;
-    let mut index = 0;
-    while index < spelling.len() {
-        hash = (hash ^ spelling[index] as u32).wrapping_mul(0x0100_0193);
-        index += 1;
-    }
-    (hash ^ (hash >> 16)) as usize % SLOT_COUNT
-}
+static BY_SPELLING: LazyLock<FxHashMap<&'static str, &'static Word>> =
+    LazyLock::new(|| words().iter().map(|word| (word.spelling, word)).collect());
 
 /// The function that later systems know by this spelling, whether or not the dialect reserves it.
 pub fn later_function(spelling: &str) -> Option<&'static Word> {
@@ -242,7 +208,6 @@ mod tests {
         assert_eq!(lookup("NOSUCH"), None);
         assert_eq!(lookup(""), None);
         assert_eq!(lookup("goto"), None, "spellings are upper case");
-        assert!(words().len() < SLOT_COUNT / 3, "the search for what is no word is short");
     }
 
     #[test]
