@@ -1,7 +1,12 @@
 //! Tabulated cylinders, ruled and polyconic surfaces about one of their places: parameters to begin a search for contact
 //! with, derivatives by them, and balls about which it is known that such a search finds the nearest place.
 
-use super::{Surface, bend::parallel_bend, part::Survey, sheet::Jet};
+use super::{
+    Surface,
+    bend::parallel_bend,
+    part::{Form, Survey},
+    sheet::Jet,
+};
 use crate::Vec3;
 
 /// Cosine of the angle to the middle normal up to which normals may turn within a steady ball.
@@ -10,6 +15,9 @@ const STEADY_COSINE: f64 = 0.5;
 /// cosine is expected to be over them where that is not far enough.
 const WIDER: f64 = 1.25;
 const STEEPER: f64 = 0.1;
+/// How often a wider region is looked at if the paths reach out of one, and how much wider than they reach.
+const WIDENINGS: u32 = 3;
+const FURTHER: f64 = 1.05;
 
 /// A place of a tabulated cylinder, ruled, polyconic or sculptured surface by its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,11 +171,10 @@ impl Surface {
     /// and the path between them that is straight as seen along the middle normal leads through a place where distance
     /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`.
     pub fn steady(&self, side: f64, center: &Vec3, [radius, depth]: [f64; 2]) -> Option<Steady> {
-        let stock = match self {
-            Self::Tabulated(_) | Self::Ruled(_) | Self::Sculptured(_) => 0.0,
-            Self::PolyConic(sheet) => side * sheet.thickness(),
-            _ => return None,
-        };
+        if !self.has_charts() {
+            return None;
+        }
+        let stock = self.stock(side);
         let foot = self.foot(center);
         if side * foot.distance + stock < 0.0 {
             return None;
@@ -189,8 +196,15 @@ impl Surface {
                 None => {
                     let near = all(reach)?;
                     let least = Facing { cosine: (near.cosine - STEEPER).max(STEADY_COSINE), ..near };
-                    let asked = wide(&near, &least);
-                    (near, all(asked).filter(|path| wide(&near, path) <= asked)?)
+                    let mut asked = wide(&near, &least);
+                    let path = (0..WIDENINGS).find_map(|_| {
+                        let path = all(asked)?;
+                        let needed = wide(&near, &path);
+                        let serves = needed <= asked;
+                        asked = FURTHER * needed;
+                        serves.then_some(path)
+                    });
+                    (near, path?)
                 }
             }
         };
@@ -206,6 +220,27 @@ impl Surface {
         let beyond = if along > 0.0 { 0.5 / (along * lean) } else { f64::INFINITY };
         let beyond = (beyond + stock).max(0.0);
         hollow.is_finite().then_some(Steady { hollow, round, depth, stock, beyond })
+    }
+
+    /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of
+    /// surface, and where it ends or has an edge or no tangent plane there.
+    pub fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
+        let asked = || Survey::of_forms(center, reach, side);
+        match self {
+            Self::Tabulated(curve) => curve.forms(side, center, reach),
+            Self::Ruled(sheet) => sheet.survey(asked()).forms(),
+            Self::PolyConic(sheet) => sheet.forms(asked()),
+            Self::Sculptured(sheet) => sheet.survey(asked()).forms(),
+            _ => None,
+        }
+    }
+
+    /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.
+    pub fn stock(&self, side: f64) -> f64 {
+        match self {
+            Self::PolyConic(sheet) => side * sheet.thickness(),
+            _ => 0.0,
+        }
     }
 
     /// Whether all of the surface is known, from the sizes of its parts, to be farther from a point than a distance. For

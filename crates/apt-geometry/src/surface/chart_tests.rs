@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::SymmetricEigen;
 use proptest::prelude::*;
 
 use super::{
@@ -177,4 +178,68 @@ fn there_is_no_steady_ball_and_no_bound_between_the_walls_of_a_slot() {
     assert!(slot.steady(side, &beside, [0.2, 0.6]).is_some());
     let region = Region { center: beside, radius: 0.2, lowest: -0.6, highest: 0.0 };
     assert_eq!(slot.bend(-side, &slot.foot(&beside), &region), Bend::AtMost(0.0));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+    /// In each direction the surface bends towards a side no more than a cylinder with the curvature that was asked for.
+    #[test]
+    fn no_place_within_reach_bends_more_than_the_cylinder_across_a_direction(
+        which in 0usize..COUNT, natural in prop::bool::ANY, near in prop::array::uniform3(-1.0..6.0f64), reach in 0.05..1.0f64,
+        alongs in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 12),
+        ways in prop::collection::vec(prop::array::uniform6(-1.0..1.0f64), 40),
+    ) {
+        let surface = made(which);
+        let side = if natural { 1.0 } else { -1.0 };
+        let foot = surface.foot(&Vec3::from(near));
+        let center = foot.point - foot.normal * surface.stock(1.0);
+        let Some(forms) = surface.forms(side, &center, reach) else { return Ok(()) };
+        prop_assert!(!forms.is_empty());
+        for along in alongs.into_iter().filter_map(|along| Vec3::from(along).try_normalize(0.1)) {
+            let curvatures: Option<Vec<f64>> = forms.iter().map(|form| form.curvature_across(&along, 0.0)).collect();
+            let Some(curvature) = curvatures.and_then(|all| all.into_iter().reduce(f64::max)) else { continue };
+            for e in &ways {
+                let foot = surface.foot(&(center + Vec3::new(e[0], e[1], e[2]) * reach));
+                let place = foot.point - foot.normal * surface.stock(1.0);
+                if (place - center).norm() > reach {
+                    continue;
+                }
+                let way = Vec3::new(e[3], e[4], e[5]);
+                let bend = -side * way.dot(&(surface.foot_and_hessian(&place).1 * way));
+                let across = way.norm_squared() - way.dot(&along).powi(2);
+                prop_assert!(bend <= curvature * across + 1e-6, "{which}: {bend} with {curvature}");
+            }
+        }
+    }
+}
+
+#[test]
+fn cylinders_across_a_direction_are_found_where_surfaces_bend_away_along_it() {
+    let mut found = [0; COUNT];
+    for (which, found) in found.iter_mut().enumerate() {
+        let surface = made(which);
+        for near in places(40) {
+            for side in [1.0, -1.0] {
+                let foot = surface.foot(&near);
+                let hessian = surface.foot_and_hessian(&foot.point).1 * side;
+                let eigen = SymmetricEigen::new(hessian);
+                let (away, most) = eigen.eigenvalues.argmax();
+                if !(0.05..10.0).contains(&most) {
+                    continue;
+                }
+                let along: Vec3 = eigen.eigenvectors.column(away).into();
+                let Some(forms) = surface.forms(side, &(foot.point - foot.normal * surface.stock(1.0)), 0.02)
+                else {
+                    continue;
+                };
+                let curvatures: Option<Vec<f64>> =
+                    forms.iter().map(|form| form.curvature_across(&along, 0.0)).collect();
+                let Some(curvature) = curvatures.and_then(|all| all.into_iter().reduce(f64::max)) else {
+                    continue;
+                };
+                *found += usize::from(curvature <= 0.5 * most + 2.0 * (-eigen.eigenvalues.min()).max(0.0));
+            }
+        }
+    }
+    assert!(found.iter().filter(|found| **found > 10).count() >= 9, "{found:?}");
 }

@@ -26,6 +26,7 @@ pub use self::{
     chart::{Chart, Place, Steady},
     cone::ConeForm,
     directed::{NoDistance, RootSelection, solve_quadratic},
+    part::Form,
     poly_conic::PolyConicSheet,
     quadric::PrincipalQuadric,
     quadric_bound::{QuadraticFunction, Stationary},

@@ -1,11 +1,14 @@
 //! Parts of parametric surfaces with bounds that hold over all of them: of their extent, their curvature and the turn of
 //! their normal. Parts are halved where a question needs closer bounds; what was found stays with them.
 
+mod form;
+
 use std::sync::{
     OnceLock,
     atomic::{AtomicUsize, Ordering},
 };
 
+pub use self::form::Form;
 use super::{
     bend::{Bend, parallel_bend},
     chart::Facing,
@@ -253,6 +256,8 @@ pub(super) struct Survey {
     strict: bool,
     /// A curvature up to which bounds are close enough.
     enough: f64,
+    /// The forms of all parts within reach, if these are asked for and nothing else.
+    forms: Option<Vec<Form>>,
 }
 
 impl Survey {
@@ -273,6 +278,7 @@ impl Survey {
             least_cosine: LEAST_COSINE,
             strict: false,
             enough: f64::NEG_INFINITY,
+            forms: None,
         }
     }
 
@@ -323,7 +329,8 @@ impl Survey {
 
     /// Whether what has been found is no less than parts with normals of at least a cosine.
     fn has(&self, parts: &Summary, cosine: f64) -> bool {
-        parts.curvature(self.side) <= self.curvature
+        self.forms.is_none()
+            && parts.curvature(self.side) <= self.curvature
             && cosine >= self.cosine
             && !parts.ends
             && cosine >= self.least_cosine
@@ -381,6 +388,7 @@ struct Bounds {
     spread: f64,
     /// How much each side of the rectangle changes the frame and the curvature.
     loose: [f64; 2],
+    form: Option<Form>,
 }
 
 impl Bounds {
@@ -395,6 +403,7 @@ impl Bounds {
             normal: None,
             spread: 2.0,
             loose: [half[0] * jet.du.norm(), half[1] * jet.dv.norm()],
+            form: None,
         };
         let Some(normal) = jet.du.cross(&jet.dv).try_normalize(0.0) else { return unknown };
         let Some(x) = jet.du.try_normalize(0.0) else { return unknown };
@@ -436,7 +445,8 @@ impl Bounds {
             let stretch = if most > 0.0 { 1.0 - change } else { 1.0 + change };
             most / (stretch * stretch)
         });
-        Self { curvature, least, close, normal: Some(normal), spread, loose }
+        let form = Form::about([x, y], [p, q, r], error, change);
+        Self { curvature, least, close, normal: Some(normal), spread, loose, form: Some(form) }
     }
 }
 
@@ -549,6 +559,9 @@ impl Part {
         if survey.jumps {
             return;
         }
+        if survey.forms.is_some() {
+            return self.survey_forms(sheet, survey, depth);
+        }
         survey.seen += 1;
         if (self.center - survey.center).norm() > survey.reach + self.radius {
             return;
@@ -570,18 +583,14 @@ impl Part {
             survey.cosine = survey.cosine.min(cosine);
             survey.jumps |= jumps;
         } else {
-            let passing: [Self; 2];
-            let halves: &[Self; 2] = match self.halves.made() {
-                Some(known) => known,
-                None if sheet.parts().get() >= MOST_KEPT => {
-                    passing = self.halved(sheet);
-                    &passing
-                }
-                None => self.halves.get(|| Box::new(self.halved(sheet))),
-            };
-            for half in halves.iter().rev() {
-                half.survey_within(sheet, survey, depth + 1);
-            }
+            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
+        }
+    }
+
+    fn for_halves(&self, sheet: &impl Enclose, look: impl FnMut(&Self)) {
+        match self.halves.made() {
+            None if sheet.parts().get() >= MOST_KEPT => self.halved(sheet).iter().rev().for_each(look),
+            _ => self.halves.get(|| Box::new(self.halved(sheet))).iter().rev().for_each(look),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Tabulated cylinders: a piecewise cubic directrix ruled along a straight line.
 
+mod forms;
+
 use nalgebra::{Matrix3, Vector2};
 
 use super::{Chart, Foot, Place, chart::Facing, part::LEAST_COSINE, sheet::Jet};

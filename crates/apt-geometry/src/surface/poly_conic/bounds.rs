@@ -3,7 +3,7 @@
 use super::{
     super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
-        part::{Count, Enclose, Enclosure, Rectangle, Survey},
+        part::{Count, Enclose, Enclosure, Form, Rectangle, Survey},
     },
     Control, Course, Flat, GREATEST_FULLNESS, LEAST_FULLNESS, PolyConicSheet, controls, section, weight,
 };
@@ -134,5 +134,12 @@ impl PolyConicSheet {
             }
         }
         survey
+    }
+
+    /// How the conics' surface bends, asked and told in program coordinates.
+    pub(in super::super) fn forms(&self, asked: Survey) -> Option<Vec<Form>> {
+        let linear = self.form.map.linear();
+        let forms = self.survey(asked).forms()?;
+        Some(forms.iter().map(|form| form.turned(&linear)).collect())
     }
 }

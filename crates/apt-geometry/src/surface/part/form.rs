@@ -1,0 +1,117 @@
+//! The second fundamental form over parts of a surface: how it bends in each direction, not only how much at most.
+
+use nalgebra::Matrix3;
+
+use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
+use crate::Vec3;
+
+/// Which multiple of the change of a frame its pseudo-inverse may change by, times the norms of both pseudo-inverses, if both frames
+/// have full rank (Wedin).
+const PSEUDO_INVERSE: f64 = std::f64::consts::SQRT_2;
+/// Size of a part, as a share of the reach of a question, from which on it is not halved.
+const FINE: f64 = 1.0 / 32.0;
+
+/// Second fundamental forms of all places of a part of a surface, as forms on vectors in space: that of a vector is that of its
+/// part in the tangent plane. Positive where the surface bends towards the side asked about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Form {
+    middle: Matrix3<f64>,
+    /// The form of no unit vector differs by more from that of `middle`.
+    error: f64,
+}
+
+impl Form {
+    /// Forms along the natural normal from a form in an orthonormal frame, given how much the form in such frames may differ
+    /// (`error`), and how much frames do (`change`, less than one).
+    ///
+    /// A vector w stands for `a = J⁺w` in another frame J. With `‖J − J₀‖ ≤ ε` it is at most `|w|/(1 − ε)` long and by
+    /// `√2 ε/(1 − ε)|w|` off that in the first.
+    pub(super) fn about([x, y]: [Vec3; 2], [p, q, r]: [f64; 3], error: f64, change: f64) -> Self {
+        let mixed = x * y.transpose();
+        let middle = x * x.transpose() * p + (mixed + mixed.transpose()) * q + y * y.transpose() * r;
+        let greatest = 0.5 * (p + r).abs() + (0.5 * (p - r)).hypot(q) + error;
+        let longest = 1.0 / (1.0 - change);
+        let off = PSEUDO_INVERSE * change * longest;
+        Self { middle, error: error + greatest * (longest + 1.0) * off }
+    }
+
+    /// That of a surface that bends along one unit direction alone.
+    pub(in super::super) fn of_ridge(direction: &Vec3, bend: f64, error: f64) -> Self {
+        Self { middle: direction * direction.transpose() * bend, error }
+    }
+
+    /// Along the natural normal or against it.
+    #[must_use]
+    fn seen_from(&self, side: f64) -> Self {
+        Self { middle: self.middle * side, ..*self }
+    }
+
+    /// In other coordinates, given the vectors of these there.
+    #[must_use]
+    pub(in super::super) fn turned(&self, map: &Matrix3<f64>) -> Self {
+        Self { middle: map.transpose() * self.middle * map, ..*self }
+    }
+
+    /// Which curvature a cylinder along a unit direction needs at least to bend at all these places towards the side as much as
+    /// the surface in each direction, and more by a margin; `None` if the surface may bend to that side along the direction itself.
+    ///
+    /// The least b with `S ≤ b (I − t tᵀ)` for all forms S: with `c` the mixed terms of t and the rest, and `s < 0` that of t,
+    /// what is left across is `S − c cᵀ/s`. Its greater eigenvalue follows from the trace and the sum of squares.
+    pub fn curvature_across(&self, along: &Vec3, margin: f64) -> Option<f64> {
+        let error = self.error + margin;
+        let own = self.middle * along;
+        let straight = own.dot(along);
+        let least = straight + error;
+        if least >= 0.0 || !error.is_finite() {
+            return None;
+        }
+        let mixed = own - along * straight;
+        let size = mixed.norm_squared() / -least;
+        let trace = self.middle.trace() - straight + size;
+        let crossed = mixed.dot(&(self.middle * mixed)) / -least;
+        let square = self.middle.norm_squared() - 2.0 * own.norm_squared()
+            + straight * straight
+            + 2.0 * crossed
+            + size * size;
+        let greatest = 0.5 * (trace + (2.0 * square - trace * trace).max(0.0).sqrt());
+        Some((greatest + error).max(0.0))
+    }
+}
+
+impl Survey {
+    /// Asks for the forms of all parts within reach of a point, as bent towards a side.
+    pub(in super::super) fn of_forms(center: &Vec3, reach: f64, side: f64) -> Self {
+        Self { forms: Some(Vec::new()), ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+    }
+
+    /// The forms asked for, unless some place within reach has none.
+    pub(in super::super) fn forms(self) -> Option<Vec<Form>> {
+        self.forms.filter(|_| !self.jumps)
+    }
+}
+
+impl Part {
+    /// Adds the forms of the places within reach.
+    pub(super) fn survey_forms(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
+        if self.bound(&survey.center) > survey.reach {
+            return;
+        }
+        survey.seen += 1;
+        let enclosure = sheet.enclose(&self.rectangle);
+        let form = Bounds::of(&enclosure, self.rectangle.half).form;
+        let is_smooth = !enclosure.ends && enclosure.sharp == [false; 2];
+        let close = |form: &Form| form.error <= CLOSE * form.middle.norm();
+        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        if !(fine || is_smooth && form.as_ref().is_some_and(close)) {
+            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
+            return;
+        }
+        match form.filter(|_| is_smooth) {
+            Some(form) => {
+                let form = form.seen_from(survey.side);
+                survey.forms.iter_mut().for_each(|forms| forms.push(form));
+            }
+            None => survey.jumps = true,
+        }
+    }
+}
