@@ -8,7 +8,7 @@ use std::cell::RefCell;
 
 use apt_geometry::Vec3;
 
-use super::{Contact, Tool, certify::Proof, near::Near, quadric::Start, tool::Piece};
+use super::{Contact, Tool, certify::Proof, near::Contacts, quadric::Start, tool::Piece};
 
 /// How many times the last steps the tool may move before the bends are looked at again.
 const FORESIGHT: f64 = 3.0;
@@ -58,7 +58,7 @@ struct Known {
 pub struct Memory {
     known: RefCell<Option<Known>>,
     /// The same for surfaces with charts.
-    pub(super) near: RefCell<Option<Near>>,
+    pub(super) near: RefCell<Contacts>,
 }
 
 /// Memories do not tell gauges apart.

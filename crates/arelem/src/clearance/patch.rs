@@ -121,13 +121,14 @@ pub(super) fn boundary(tool: &Tool) -> Vec<Patch> {
     patches
 }
 
-/// The flank above a height.
-pub(super) fn flank_from(tool: &Tool, height: f64) -> Patch {
+/// The flank between two heights.
+pub(super) fn flank_between(tool: &Tool, heights: [f64; 2]) -> Patch {
     let (upper, top) = (tool.profile.upper, tool.profile.top);
-    let share = ((height - upper.height) / (top.height - upper.height)).clamp(0.0, 1.0);
-    let radius = upper.radius + share * (top.radius - upper.radius);
-    let stretch = Stretch::Line([[radius, height], [top.radius, top.height]]);
-    Patch { stretch, azimuth: 0.0, half: PI }
+    let ends = heights.map(|height| {
+        let share = ((height - upper.height) / (top.height - upper.height)).clamp(0.0, 1.0);
+        [upper.radius + share * (top.radius - upper.radius), height]
+    });
+    Patch { stretch: Stretch::Line(ends), azimuth: 0.0, half: PI }
 }
 
 impl Stretch {

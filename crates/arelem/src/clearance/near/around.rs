@@ -1,17 +1,24 @@
 //! What the contact near by tells about other points and about moves of the tool.
 
+use std::sync::Arc;
+
 use apt_geometry::{Vec3, surface::Foot};
 
-use super::{Far, Pose, Start, Zone};
+use super::{
+    Far, Pose, Start, Zone,
+    trough::{Across, Bends, Grounds},
+};
 use crate::clearance::{Contact, Gauge, Tool};
 
 /// What is known about a contact in a steady ball.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Known {
     start: Start,
     surface: Vec3,
     zone: Zone,
     far: Option<Far>,
+    bends: Option<Arc<Bends>>,
+    across: Option<Across>,
 }
 
 /// What is known about a tool and a surface, for questions about points near by.
@@ -23,17 +30,26 @@ pub(in crate::clearance) struct Around<'a> {
 impl<'a> Around<'a> {
     pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3) -> Self {
         let Gauge { surface, side, memory, .. } = gauge;
+        let pose = Pose { tool, surface, side: *side, tip };
         let known = memory.near.try_borrow().ok().and_then(|near| {
-            let near = near.as_ref().filter(|near| near.side == *side)?;
+            let near = near.at(&pose)?;
             let zone = *near.zone.as_ref().ok()?;
-            Some(Known { start: near.start, surface: near.surface, zone, far: near.far })
+            let bends = near.bends.as_ref().ok().cloned();
+            Some(Known {
+                start: near.start,
+                surface: near.surface,
+                zone,
+                far: near.far,
+                bends,
+                across: near.across,
+            })
         });
-        Self { pose: Pose { tool, surface, side: *side, tip }, known }
+        Self { pose, known }
     }
 
     /// The foot of a point, if that is known to be the only one.
     pub(in crate::clearance) fn foot(&self, p: &Vec3) -> Option<Foot> {
-        let Known { start, zone, .. } = self.known?;
+        let Known { start, zone, .. } = *self.known.as_ref()?;
         let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..start })?;
         let Contact { clearance, gradient, surface, .. } = found.contact;
         let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
@@ -57,7 +73,8 @@ impl<'a> Around<'a> {
     /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
     /// contact in one of them.
     pub(in crate::clearance) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
-        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, .. }) = &self.known else {
+        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, bends, across, .. }) = &self.known
+        else {
             return false;
         };
         let Tool { axis, profile, .. } = self.pose.tool;
@@ -68,14 +85,31 @@ impl<'a> Around<'a> {
             let pose = Pose { tip, ..self.pose };
             let flank = zone.top >= profile.top.height
                 || far.is_some_and(|far| far.from == zone.top && far.keeps(&pose, level));
-            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.keeps(contact, ball, zone, level)
+            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.flank_keeps(contact, zone, level)
         };
-        contact.clearance + ball >= -zone.steady.beyond && way.into_iter().all(kept)
+        let by_ball = |tip: &Vec3| Pose { tip, ..self.pose }.bottom_keeps(contact, ball, zone, level);
+        let by_cylinder = || {
+            let bends = bends.as_ref().filter(|_| profile.lower.height > 0.0);
+            let grounds = Grounds { steady: zone.steady, level, stray: (way[1] - way[0]).norm() };
+            let mut across = *across;
+            bends.is_some_and(|bends| {
+                way.into_iter().all(|tip| {
+                    let pose = Pose { tip, ..self.pose };
+                    let trough = bends
+                        .trough(&pose, contact, &grounds, &mut across)
+                        .filter(|_| bends.hold(&pose, contact, &grounds));
+                    trough.is_some_and(|trough| pose.bottom_lies_in(&trough, contact, level))
+                })
+            })
+        };
+        contact.clearance + ball >= -zone.steady.beyond
+            && way.into_iter().all(kept)
+            && (way.into_iter().all(by_ball) || by_cylinder())
     }
 
     /// A height above which the flank is known to be farther from the surface than a level.
     pub(in crate::clearance) fn top(&self, level: f64) -> Option<f64> {
-        let Known { zone, far, .. } = self.known?;
+        let Known { zone, far, .. } = self.known.as_ref()?;
         far.filter(|far| far.from == zone.top && far.keeps(&self.pose, level)).map(|far| far.from)
     }
 }

@@ -55,27 +55,32 @@ impl Pose<'_> {
         [width.max(center.radius), top.max(above)]
     }
 
-    /// Whether balls that cover the flank above a height keep off the surface by a level. Then the flank, which begins on the
-    /// right side, is on that side.
-    pub(super) fn is_off(&self, from: f64, level: f64) -> bool {
-        let top = self.tool.profile.top.height;
-        let (mut low, mut length) = (from, top - from);
+    /// A height of the flank, not below another one, above which balls that cover it keep off the surface by a level. That part is
+    /// on the right side if it reaches down to what is.
+    pub(super) fn off_above(&self, from: f64, level: f64) -> f64 {
+        let mut high = self.tool.profile.top.height;
+        let mut length = high - from;
         for _ in 0..MAX_COVER {
-            let middle = self.tip + self.tool.axis * (low + 0.5 * length);
+            let middle = self.tip + self.tool.axis * (high - 0.5 * length);
             if self.surface.keeps_off(&middle, self.tool.radius().hypot(0.5 * length) + level.max(0.0)) {
-                low += length;
-                length = (2.0 * length).min(top - low);
-                if low >= top {
-                    return true;
+                high -= length;
+                length = (2.0 * length).min(high - from);
+                if high <= from || length <= 0.0 {
+                    return from;
                 }
             } else {
                 length *= 0.5;
                 if length < SHORTEST * self.scale() {
-                    return false;
+                    break;
                 }
             }
         }
-        false
+        high
+    }
+
+    /// Whether balls that cover the flank above a height keep off the surface by a level.
+    pub(super) fn is_off(&self, from: f64, level: f64) -> bool {
+        self.off_above(from, level) <= from
     }
 
     /// Whether the tool up to the top of a zone, and the contact, are in its ball.
@@ -102,40 +107,49 @@ impl Pose<'_> {
             && (along - height).hypot(wide) + spread <= zone.radius
     }
 
-    /// Whether the tool up to the top of a zone keeps a level, by a contact in this position or another one, on a ball or an edge:
-    /// bounds that touch the distance at the contact are nowhere less on circles, and between circles on a straight line they
+    /// Whether the bottom of the tool and its corner keep a level, by a contact in this position or another one, on a ball or an
+    /// edge: bounds that touch the distance at the contact are nowhere less on circles, and between circles on a straight line they
     /// are least at one of them.
     ///
     /// Over a straight way of the tool each of these bounds is a concave function, so that what holds at both its ends by the same
     /// contact holds all along it.
-    pub(super) fn keeps(&self, contact: &Contact, ball: f64, zone: &Zone, level: f64) -> bool {
+    pub(super) fn bottom_keeps(&self, contact: &Contact, ball: f64, zone: &Zone, level: f64) -> bool {
         let profile = &self.tool.profile;
-        let Contact { clearance, tool: point, gradient, .. } = contact;
-        let from_point = (*point, *clearance);
-        let edge = |radius: f64, height: f64| {
-            self.floor(from_point, gradient, zone, Circle { radius, height, ball: 0.0 }) >= level
-        };
+        let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
-        let from_corner = (point + gradient * ball, clearance + ball);
+        let from_corner = (contact.tool + contact.gradient * ball, contact.clearance + ball);
         let corner = || {
-            self.floor(from_corner, gradient, zone, corner) >= level
+            self.floor(from_corner, &contact.gradient, zone, corner) >= level
                 || corner_stands_out(profile) && self.arcs_keep(&edge)
         };
         (profile.arc <= 0.0 || corner())
             && edge(profile.lower.radius, profile.lower.height)
             && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
-            && (profile.top.height <= profile.upper.height || {
-                let rise = (zone.top - profile.upper.height) / (profile.top.height - profile.upper.height);
-                let radius = profile.upper.radius + rise * (profile.top.radius - profile.upper.radius);
-                edge(profile.upper.radius, profile.upper.height) && edge(radius, zone.top)
-            })
+    }
+
+    /// The same of the flank up to the top of a zone.
+    pub(super) fn flank_keeps(&self, contact: &Contact, zone: &Zone, level: f64) -> bool {
+        let profile = &self.tool.profile;
+        if profile.top.height <= profile.upper.height {
+            return true;
+        }
+        let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
+        let rise = (zone.top - profile.upper.height) / (profile.top.height - profile.upper.height);
+        let radius = profile.upper.radius + rise * (profile.top.radius - profile.upper.radius);
+        edge(profile.upper.radius, profile.upper.height) && edge(radius, zone.top)
+    }
+
+    /// Lower bound of the distance of an edge by a contact.
+    fn edge_floor(&self, contact: &Contact, zone: &Zone, [radius, height]: [f64; 2]) -> f64 {
+        let base = (contact.tool, contact.clearance);
+        self.floor(base, &contact.gradient, zone, Circle { radius, height, ball: 0.0 })
     }
 
     /// Whether the corner keeps what its circles keep, also where its whole balls stand out from the tool: stretches of its arc lie in the
     /// triangles of their ends and of the place where the tangents there meet, and what is nowhere less on circles is between
     /// them least at one of them.
-    fn arcs_keep(&self, edge: &dyn Fn(f64, f64) -> bool) -> bool {
+    pub(super) fn arcs_keep(&self, edge: &dyn Fn(f64, f64) -> bool) -> bool {
         let profile = &self.tool.profile;
         let keeps = |polar: f64, away: f64| {
             let (sin, cos) = polar.sin_cos();

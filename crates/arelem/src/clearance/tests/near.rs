@@ -61,10 +61,15 @@ fn pass(geometry: &Geometry, on: bool, tool: &Tool, from: &Vec3, step: &Vec3, co
 
 #[test]
 fn passes_over_sheets_find_what_a_complete_search_finds() {
-    // With the tenths of the positions that are to be proven without a search: none where the corner does not touch its lines,
-    // less where a flat tool jumps from one side of its edge to the other.
-    let cutters: [(&[f64], u32); 4] =
-        [(&[0.5, 0.25], 7), (&[0.5, 0.1], 7), (&[0.6], 4), (&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0], 0)];
+    // With the tenths of the positions that are to be proven without a search: less where a flat tool jumps from one side of its
+    // edge to the other, none where a tool is so large that the surface turns away or ends beside it.
+    let cutters: [(&[f64], u32); 5] = [
+        (&[0.5, 0.25], 7),
+        (&[0.5, 0.1], 7),
+        (&[0.6], 4),
+        (&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 7),
+        (&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0], 0),
+    ];
     let mut few = Vec::new();
     for (which, geometry) in charted().iter().enumerate() {
         for (numbers, tenths) in cutters {

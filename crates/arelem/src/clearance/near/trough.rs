@@ -1,0 +1,257 @@
+//! Contact along a straight piece of the tool: there no ball about the tool proves it, because it would have to touch the piece
+//! where it bends and the piece does not, but a cylinder along the piece may.
+//!
+//! Where a surface bends at all places about towards the tool no more than a cylinder along a direction t, with a curvature b
+//! (see [`Form::curvature_across`]), the distance from it falls at a vector w from a place with distance d below its tangent by no
+//! more than `b′ (w² − (t·w)²)/2`. Its second derivatives are `−S (1 − d S)⁻¹` with the form S at the foot, which grows with S; so
+//! `b′ = b/(1 − d b)` serves as far as d on the way.
+
+use apt_geometry::{
+    Vec3,
+    surface::{Form, Steady},
+};
+
+use super::Pose;
+use crate::clearance::{Contact, Tool, waves::length};
+
+/// How far the tool may move in a ball of forms, in radii of the tool.
+const EASE: f64 = 0.5;
+
+/// Length of the difference of directions that a curvature is found for at once, and which share of it that is let to cost.
+const TURN: f64 = 0.05;
+const MARGIN: f64 = 0.1;
+
+/// How the surface bends about the bottom of the tool.
+#[derive(Debug, Clone)]
+pub(super) struct Bends {
+    center: Vec3,
+    radius: f64,
+    /// Greatest distance from the surface for which it is known.
+    depth: f64,
+    forms: Vec<Form>,
+}
+
+/// The curvature of cylinders along a direction and all near by that bend as much as the surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Across {
+    along: Vec3,
+    curvature: f64,
+    /// No longer difference of directions.
+    turn: f64,
+}
+
+/// A bound of how the distance falls below its tangent: as from a cylinder.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Trough {
+    along: Vec3,
+    bend: f64,
+}
+
+/// What is known of a contact: the steady ball that it and the tool are in, the level that is asked about, and how far the tool end
+/// strays.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grounds {
+    pub(super) steady: Steady,
+    pub(super) level: f64,
+    pub(super) stray: f64,
+}
+
+impl Bends {
+    /// About the bottom and the corner of a tool in a steady ball.
+    pub(super) fn about(pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> Option<Self> {
+        let (middle, half) = pose.bottom();
+        let ease = EASE * pose.scale();
+        let (radius, depth) = (half + ease, pose.deepest(contact, grounds)? + ease);
+        let forms = pose.surface.forms(pose.side, &middle, radius + depth + pose.stock())?;
+        Some(Self { center: middle, radius, depth, forms })
+    }
+
+    /// Whether the bottom of the tool, given a contact in a steady ball here or elsewhere, is where the forms are known.
+    pub(super) fn hold(&self, pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> bool {
+        let (middle, half) = pose.bottom();
+        (middle - self.center).norm() + half <= self.radius
+            && (contact.tool - self.center).norm() <= self.radius
+            && pose.deepest(contact, grounds).is_some_and(|deepest| deepest <= self.depth)
+    }
+
+    /// What cylinders along a direction bend as much as the surface: with a margin for those near by, where it has one.
+    ///
+    /// `t tᵀ` differs from that of another unit vector by no more than both differ.
+    fn across(&self, along: &Vec3) -> Option<Across> {
+        let curvature = |margin: f64| {
+            let mut all = self.forms.iter().map(|form| form.curvature_across(along, margin));
+            all.try_fold(0.0, |most: f64, one| one.map(|one| most.max(one)))
+        };
+        let exact = curvature(0.0)?;
+        let wide = exact * (1.0 + MARGIN);
+        let serves = curvature(wide * TURN).is_some_and(|curvature| curvature <= wide);
+        let (curvature, turn) = if serves { (wide, TURN) } else { (exact, 0.0) };
+        Some(Across { along: *along, curvature, turn })
+    }
+
+    /// The bound from a contact along the bottom's straight piece, wherever the tool end strays by no more than a distance.
+    pub(super) fn trough(
+        &self,
+        pose: &Pose<'_>,
+        contact: &Contact,
+        grounds: &Grounds,
+        known: &mut Option<Across>,
+    ) -> Option<Trough> {
+        let Tool { axis, profile, across, .. } = pose.tool;
+        let gradient = &contact.gradient;
+        let [c, s] = pose.facing(gradient);
+        let radial = across[0] * c + across[1] * s;
+        let way = radial * profile.lower.radius + axis * profile.lower.height;
+        let along = (way - gradient * gradient.dot(&way)).try_normalize(0.0)?;
+        if known.is_none_or(|known| (known.along - along).norm() > known.turn) {
+            *known = self.across(&along);
+        }
+        let curvature = known.as_ref()?.curvature;
+        let deepest = pose.deepest(contact, grounds)? + pose.stock();
+        let left = 1.0 - deepest * curvature;
+        (left > 0.0).then(|| Trough { along, bend: curvature / left })
+    }
+}
+
+impl Pose<'_> {
+    /// Centre and radius of a ball about the bottom of the tool and its corner.
+    fn bottom(&self) -> (Vec3, f64) {
+        let Tool { axis, profile, .. } = self.tool;
+        let top = profile.upper.height.max(profile.lower.height);
+        let wide = profile.lower.radius.max(profile.upper.radius);
+        let beside = if profile.arc > 0.0 { (profile.center.radius + profile.arc).max(wide) } else { wide };
+        (self.tip + axis * (0.5 * top), beside.hypot(0.5 * top))
+    }
+
+    /// No place of the bottom and its corner is farther from the surface, as long as none is nearer than the level: the distance rises
+    /// above its tangent at the contact by no more than it may bend.
+    fn deepest(&self, contact: &Contact, grounds: &Grounds) -> Option<f64> {
+        let Tool { axis, profile, across, .. } = self.tool;
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        let aside = length(across.map(|across| gradient.dot(&across)));
+        let circle =
+            |radius: f64, height: f64| gradient.dot(&(self.tip + axis * height - point)) + radius * aside;
+        let corner = if profile.arc > 0.0 {
+            circle(profile.center.radius, profile.center.height) + profile.arc
+        } else {
+            circle(profile.upper.radius, profile.upper.height)
+        };
+        let highest = circle(0.0, 0.0).max(circle(profile.lower.radius, profile.lower.height)).max(corner);
+        let (middle, half) = self.bottom();
+        let farthest = (middle - point).norm() + half + grounds.stray;
+        // Beside an edge that stands out there is no bound, but the distance rises by no more than the way.
+        let bend = grounds.steady.upward_bend(grounds.level.min(*clearance)).unwrap_or(f64::INFINITY);
+        let by_bend = highest + grounds.stray + 0.5 * bend * farthest * farthest;
+        let deepest = clearance + by_bend.min(farthest);
+        deepest.is_finite().then_some(deepest.max(0.0))
+    }
+
+    /// What the surface of the charts is farther away.
+    fn stock(&self) -> f64 {
+        self.surface.stock(self.side).max(0.0)
+    }
+
+    /// Whether the bottom of the tool and its corner keep a level, in this position, by a contact on an edge or inside a straight
+    /// piece.
+    ///
+    /// The bound is a concave function of the place, so that between circles on a straight line it is least at one of them, and so it is
+    /// between two positions of the tool.
+    pub(super) fn bottom_lies_in(&self, trough: &Trough, contact: &Contact, level: f64) -> bool {
+        let profile = &self.tool.profile;
+        let edge = |radius: f64, height: f64| self.trough_floor(contact, trough, [radius, height]) >= level;
+        edge(0.0, 0.0)
+            && edge(profile.lower.radius, profile.lower.height)
+            && (profile.arc <= 0.0 || self.arcs_keep(&edge))
+    }
+
+    /// Lower bound of the distance of an edge of the tool.
+    ///
+    /// With a number τ `(t·w)² ≥ 2τ (t·w) − τ²`; it is that of the point of the circle which faces the surface.
+    fn trough_floor(&self, contact: &Contact, trough: &Trough, [radius, height]: [f64; 2]) -> f64 {
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        let Trough { along, bend } = trough;
+        let w = self.tip + self.tool.axis * height - point;
+        let [c, s] = self.facing(gradient);
+        let nearest = w + (self.tool.across[0] * c + self.tool.across[1] * s) * radius;
+        let way = along.dot(&nearest);
+        let slope = gradient + along * (bend * way);
+        let middle =
+            clearance + slope.dot(&w) - 0.5 * bend * (w.norm_squared() + radius * radius + way * way);
+        let turning = slope - w * *bend;
+        middle - radius * length(self.tool.across.map(|across| turning.dot(&across)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use apt_geometry::{cutter::Cutter, surface::Surface};
+
+    use super::*;
+    use crate::{
+        clearance::{memory::Memory, near},
+        tests::v,
+        verify::tests::lofts,
+    };
+
+    /// The floors of the edges of the bottom by a trough, and how far they are below the least distance of places on them.
+    fn margins(surface: &Surface, tool: &Tool, tip: &Vec3) -> Vec<f64> {
+        let side = surface.foot(&v(0.0, 0.0, 9.0)).distance.signum();
+        let pose = Pose { tool, surface, side, tip };
+        let memory = Memory::default();
+        near::contact(tool, surface, side, tip, &memory);
+        let known = memory.near.borrow();
+        let Some(known) = known.at(&pose) else { return Vec::new() };
+        let Some(contact) = known.touch(&pose).map(|touch| touch.contact) else { return Vec::new() };
+        let (Ok(zone), Ok(bends)) = (&known.zone, &known.bends) else { return Vec::new() };
+        let grounds = Grounds { steady: zone.steady, level: contact.clearance, stray: 0.0 };
+        let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut None) else { return Vec::new() };
+        if !bends.hold(&pose, &contact, &grounds) {
+            return Vec::new();
+        }
+        let profile = &tool.profile;
+        let edges = [
+            [0.0; 2],
+            [profile.lower.radius, profile.lower.height],
+            [profile.upper.radius, profile.upper.height],
+        ];
+        edges
+            .map(|[radius, height]| {
+                let places = (0..64).map(|k| {
+                    let (sin, cos) = (TAU * f64::from(k) / 64.0).sin_cos();
+                    let aside = tool.across[0] * cos + tool.across[1] * sin;
+                    side * surface.signed_distance(&(tip + tool.axis * height + aside * radius))
+                });
+                let least = places.fold(f64::INFINITY, f64::min);
+                least - pose.trough_floor(&contact, &trough, [radius, height])
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn no_edge_is_nearer_than_its_floor_over_a_cylinder_and_the_bottoms_own_are_close() {
+        let cutter = Cutter::from_numbers(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 1.0).expect("cutter");
+        let (mut seen, mut close) = (0, 0);
+        for geometry in [lofts::roof(), lofts::vault()] {
+            let surface = Surface::from_geometry(&geometry).expect("surface");
+            for axis in [Vec3::z(), v(0.05, -0.1, 1.0).normalize()] {
+                let tool = Tool::new(cutter, axis);
+                for k in 0..60 {
+                    let mut tip = v(-0.9 + 0.03 * f64::from(k), 0.3, 4.0);
+                    // Down to the surface by its own distance below the tool end.
+                    for _ in 0..20 {
+                        tip.z -= surface.signed_distance(&tip).abs() - 0.05;
+                    }
+                    let margins = margins(&surface, &tool, &tip);
+                    seen += margins.len();
+                    close += margins.iter().filter(|margin| **margin < 0.01).count();
+                    for margin in margins {
+                        assert!(margin > -1e-9, "{margin} at {tip}");
+                    }
+                }
+            }
+        }
+        assert!(seen >= 60 && close >= 20, "{seen} edges, {close} close");
+    }
+}
