@@ -120,7 +120,7 @@ impl Pencil {
             let (reach, p) = tool.support(&-n);
             (n.dot(&w) - self.radius - reach, self.normal_rate(phi).dot(&(w + p)))
         };
-        let mut best = self.search(&plane, &w, &self.knees(tool));
+        let mut best = self.search(&plane, &w, &self.knees(&w, tool));
         self.raise_by_vertex(&w, tool, &mut best);
         best
     }
@@ -165,9 +165,10 @@ impl Pencil {
         ours.then_some(Found { value, normal, error })
     }
 
-    /// Where `plane` for a tool outside may bend sharply: the angles at which it lies on a straight part of the tool, and
-    /// those at which it is most nearly square to the tool axis. The parts between are smooth.
-    fn knees(&self, tool: &Tool<'_>) -> Vec<f64> {
+    /// Where `plane` for a tool outside may bend sharply: the angles at which it lies on a straight part of the tool, those at
+    /// which it is most nearly square to the tool axis, and those at which it touches the side of the tool that is turned to the
+    /// origin. The parts between are smooth. A rim above a vertex has a crest at each of the last, which may be close together.
+    fn knees(&self, w: &Vec3, tool: &Tool<'_>) -> Vec<f64> {
         let (fixed, first, second) = (
             -self.sine * self.axis.dot(&tool.axis),
             self.cosine * self.frame[0].dot(&tool.axis),
@@ -176,6 +177,13 @@ impl Pencil {
         let swing = first.hypot(second);
         let toward = second.atan2(first);
         let mut knees = vec![toward, toward + std::f64::consts::PI];
+        let aside = tool.axis.cross(w);
+        let [first, second] = self.frame.map(|e| self.cosine * e.dot(&aside));
+        let turn = (self.sine * self.axis.dot(&aside) / first.hypot(second)).acos();
+        if turn.is_finite() {
+            let facing = second.atan2(first);
+            knees.extend([facing + turn, facing - turn]);
+        }
         for (a, b) in tool.profile.closed_lines() {
             let [out, up] = [b[0] - a[0], b[1] - a[1]];
             // n·axis = −(outward normal of the straight part)·axis

@@ -128,3 +128,29 @@ proptest! {
         prop_assert!(value - best < 0.08 * (w.norm() + profile.reach()), "{value} ± {error} but {best}");
     }
 }
+
+/// Over a vertex beside its rim a flat tool is left alone most by one of two planes, whose directions are close together.
+#[test]
+fn the_better_of_two_planes_beside_a_rim_is_found() {
+    let vertex = Vec3::new(0.42019088193205056, 2.1891450898765585, -1.5971004661473838);
+    let axis = Vec3::new(0.1572990016479519, -0.8644689768872117, -0.47744152739381107);
+    let cosine = 0.7455130481320136_f64;
+    let solid = cone(vertex.into(), axis.into(), cosine.acos().to_degrees());
+    let tool = cutter(&[0.95051726928291, 0.0, 0.475258634641455, 0.0, 0.0, 5.090617643105038, 4.3]);
+    let profile = Profile::of(&tool).unwrap();
+    let body = Tool::new(&profile, Vec3::z());
+    let first = axis.cross(&Vec3::x()).normalize();
+    let frame = [first, axis.cross(&first)];
+    for share in [0.0, 0.3, 0.6, 0.7, 1.0] {
+        let tip = Vec3::new(0.7640799882692666, 2.5171263426203696, -1.597088997828671)
+            + Vec3::new(4.3e-5, 2.26e-4, -1.79e-4) * share;
+        let value = clearance(&tool, &solid, 1.0, tip.into(), [0.0, 0.0, 1.0]).0;
+        let best = (0..40_000).map(|k| {
+            let (y, x) = (std::f64::consts::TAU * f64::from(k) / 40_000.0).sin_cos();
+            let n = (frame[0] * x + frame[1] * y) * cosine - axis * cosine.acos().sin();
+            n.dot(&(tip - vertex)) - body.support(&-n).0
+        });
+        let best = best.fold(f64::NEG_INFINITY, f64::max);
+        assert!(value >= best - 1e-9 && value < best + 1e-6, "{share}: {value} but {best}");
+    }
+}
