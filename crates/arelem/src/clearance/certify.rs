@@ -24,6 +24,10 @@ use super::{
 
 /// Bound of the patches looked at. A proof takes some dozens; where contact is nearly flat, a few hundred.
 const MAX_PATCHES: u32 = 1500;
+/// How many are looked at where no size of them can be shown, and the gap, as a share of the tool's size, that distances alone do
+/// not show.
+const FEW_PATCHES: u32 = 300;
+const HAIR: f64 = 1e-6;
 /// Share of the coordinates that is rounding of a distance.
 const ROUNDING: f64 = 1e-15;
 /// Half a range of azimuth (radians) below which the ball of a corner is left for the corner itself.
@@ -220,6 +224,7 @@ pub(super) fn certify(
     let pose = Pose::of(tool, tip);
     let mut leaves = std::mem::take(&mut proof.leaves);
     let mut done = Vec::with_capacity(leaves.len());
+    let mut hopeless = None;
     loop {
         while let Some(leaf) = leaves.pop() {
             if let Some(leaf) = question.still_keeps(&leaf) {
@@ -244,7 +249,8 @@ pub(super) fn certify(
             proof.take(done);
             return Certificate::Holds;
         };
-        if seen > MAX_PATCHES {
+        if seen > MAX_PATCHES || seen > FEW_PATCHES && *hopeless.get_or_insert_with(|| question.is_hopeless())
+        {
             return Certificate::Undecided;
         }
         split(&mut leaves, tool, &patch, &judged);
@@ -252,6 +258,17 @@ pub(super) fn certify(
 }
 
 impl Question<'_> {
+    /// Whether even at the contact itself the distance has no bound of its bend, as far from a surface that ends in sight, and the
+    /// level is so close to it that distances alone show nothing.
+    fn is_hopeless(&self) -> bool {
+        let size = self.tool.radius() + self.tool.profile.top.height;
+        self.bases.is_some_and(|Bases { contact: Base { place, distance, .. }, .. }| {
+            let foot = self.face.surface.foot(place);
+            distance - self.level <= HAIR * size
+                && matches!(downward_bend(self.face, &foot, place, 0.0), Bend::Unbounded)
+        })
+    }
+
     /// A leaf of an earlier proof, if it is known without a new look at the surface that its patch keeps the level.
     fn still_keeps(&self, leaf: &Leaf) -> Option<Leaf> {
         if leaf.least - leaf.pose.moved(self.tool, self.tip) >= self.level {
