@@ -54,25 +54,26 @@ pub(crate) fn steady_bend(
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
 /// strays farther than `spread` from its place for the given tool end. There is none once `cancel`, asked once in
-/// [`BOXES_A_QUESTION`] boxes, says true.
+/// [`BOXES_A_QUESTION`] boxes, says true; `None` where it is greater than what `is_of_use` takes.
 pub(crate) fn upward_bend(
     gauge: &Gauge,
     tool: &Tool,
     tip: &Vec3,
     spread: f64,
     range: [f64; 2],
+    is_of_use: &dyn Fn(f64) -> bool,
     cancel: &dyn Fn() -> bool,
-) -> Bend {
+) -> Option<Bend> {
     let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
     if gauge.on {
-        return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread));
+        return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread)));
     }
     let touch = || gauge.contact(tool, tip).tool;
     let (tool, tip) = &gauge.body(tool, tip);
     if let Some(reach) = closed_form::disc(tool, &gauge.surface, gauge.side, tip) {
         // All of the tool is as near as its end, less its radius.
         let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };
-        return gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region);
+        return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region));
     }
     let (radius, height) = (tool.radius(), tool.profile.top.height);
     // Of a flank that is known to be far away nothing comes within range.
@@ -87,7 +88,7 @@ pub(crate) fn upward_bend(
     while let Some(cell) = cells.pop() {
         seen += 1;
         if seen % BOXES_A_QUESTION == 0 && cancel() {
-            return Bend::Unbounded;
+            return Some(Bend::Unbounded);
         }
         if cell.beside(radius) || corner.is_some_and(|corner| cell.is_held(tool, &corner)) {
             continue;
@@ -117,12 +118,12 @@ pub(crate) fn upward_bend(
             continue;
         }
         let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
+        // Every box about a place in contact has it within its reach, and no better bound.
+        let is_met = distance - spread <= range[1] && distance + spread >= range[0];
         match at_best {
+            Bend::AtMost(least) if is_met && !is_of_use(least) => return None,
             Bend::AtMost(least) => needed = needed.max(least),
-            // Every box about that place has it within its reach, and no better bound.
-            Bend::Unbounded if distance - spread <= range[1] && distance + spread >= range[0] => {
-                return at_best;
-            }
+            Bend::Unbounded if is_met => return Some(at_best),
             Bend::Unbounded => {}
         }
         // Where the surface ends within reach of the contact no box helps.
@@ -137,7 +138,7 @@ pub(crate) fn upward_bend(
                 && !is_round
                 && gauge.surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded
             {
-                return Bend::Unbounded;
+                return Some(Bend::Unbounded);
             }
         }
         let enough = match (found, at_best) {
@@ -152,13 +153,13 @@ pub(crate) fn upward_bend(
         if enough || small || seen >= limit {
             match found {
                 Bend::AtMost(bound) => greatest = greatest.max(bound),
-                other => return other,
+                other => return Some(other),
             }
         } else {
             cells.extend(cell.halves());
         }
     }
-    Bend::AtMost(greatest)
+    Some(Bend::AtMost(greatest))
 }
 
 /// The balls of a round corner, if they are all in the tool and hold what of it is neither above the corner nor nearer to the

@@ -22,7 +22,7 @@ use std::borrow::Cow;
 use apt_geometry::{
     Vec3,
     cutter::Disk,
-    surface::{Convexity, Surface},
+    surface::{Bend, Convexity, Region, Surface},
 };
 
 pub(crate) use self::{
@@ -163,15 +163,28 @@ impl Gauge {
         between: &Vec3,
         level: f64,
     ) -> bool {
-        if self.on || !self.surface.has_charts() {
+        if self.on {
             return false;
         }
         let (tool, middle) = &self.body(tool, between);
-        let around = Around::new(self, tool, middle);
-        contacts.into_iter().all(|(tip, contact)| {
+        let level = level + self.thickness;
+        let contacts = contacts.map(|(tip, contact)| {
             let contact = Contact { clearance: contact.clearance + self.thickness, ..*contact };
-            around.keeps(&contact, [&(tip + (middle - between)), middle], level + self.thickness)
-        })
+            (tip + (middle - between), contact)
+        });
+        let posed = |tip| quadric::Posed::new(tool, &self.surface, self.side, tip);
+        if let [(Some(first), from), (Some(last), to)] =
+            contacts.each_ref().map(|(tip, contact)| (posed(tip), contact))
+        {
+            return [(first, from), (last, to)]
+                .into_iter()
+                .all(|(posed, contact)| posed.on_the_way_to(middle).clears(level, contact));
+        }
+        if !self.surface.has_charts() {
+            return false;
+        }
+        let around = Around::new(self, tool, middle);
+        contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does
@@ -197,6 +210,18 @@ impl Gauge {
             let share = if falls + rises > 0.0 { falls / (falls + rises) } else { 0.0 };
             (start + share * (ahead - start)).max(behind + share * (end - behind)).max(start.max(end))
         })
+    }
+
+    /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.
+    pub(crate) fn bend_at(&self, point: &Vec3, way: &Vec3) -> Option<f64> {
+        let (center, radius) = (point + way * 0.5, 0.5 * way.norm());
+        let foot = self.surface.foot(&center);
+        let distance = self.side * foot.distance;
+        let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };
+        match self.surface.bend(self.side, &foot, &region) {
+            Bend::AtMost(bend) => Some(bend),
+            Bend::Unbounded => None,
+        }
     }
 
     /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.

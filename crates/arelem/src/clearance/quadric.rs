@@ -56,6 +56,8 @@ pub(super) struct Posed<'a> {
     tip: Vec3,
     axis: Vec3,
     across: [Vec3; 2],
+    /// The straight way from here to another tool end, on all of which bounds are to hold.
+    way: Option<Vec3>,
 }
 
 /// A quadratic function with its values on the directions of the tool.
@@ -280,7 +282,13 @@ impl<'a> Posed<'a> {
         let axis = form.direction_to_principal(&tool.axis);
         let across = [0, 1].map(|k| form.direction_to_principal(&tool.across[k]));
         let tip = form.to_principal(tip);
-        Some(Self { form, tool, side, tip, axis, across })
+        Some(Self { form, tool, side, tip, axis, across, way: None })
+    }
+
+    /// The same on the straight way from here to another tool end.
+    pub(super) fn on_the_way_to(self, end: &Vec3) -> Self {
+        let way = self.form.to_principal(end) - self.tip;
+        Self { way: Some(way), ..self }
     }
 
     /// The contact of a circle of balls near a place of it: where the nearest point of the surface is stationary.
@@ -366,8 +374,8 @@ impl<'a> Posed<'a> {
         next
     }
 
-    /// Whether no point of the tool is nearer to the surface than a level, by bounds made from a contact. If not, there may
-    /// be one or the bounds are too weak.
+    /// Whether no point of the tool is nearer to the surface than a level, here and on the way, by bounds made from a contact. If
+    /// not, there may be one or the bounds are too weak.
     pub(super) fn clears(&self, level: f64, contact: &Contact) -> bool {
         if let Some(half) = self.half_by_plane(level, contact)
             && self.keeps_off(&half, level, contact)
@@ -417,10 +425,16 @@ impl<'a> Posed<'a> {
         let [u, v] = &self.across;
         Some(Bound {
             across: [function.form(u, u), function.form(v, v), function.form(u, v)],
-            function,
             tip: self.tip + towards * (least - distance),
-            target: least * steepness,
+            target: least * steepness + self.sag(&function),
+            function,
         })
+    }
+
+    /// How much lower a function may be on the way than at the lower of its ends: along a straight line it is a parabola, whose
+    /// second derivative is the same wherever the line lies.
+    fn sag(&self, function: &QuadraticFunction) -> f64 {
+        self.way.map_or(0.0, |way| 0.25 * function.form(&way, &way).max(0.0))
     }
 
     /// Whether the corner keeps a distance, where its whole balls stand out from the tool: patches along the tangents at both
@@ -447,9 +461,19 @@ impl<'a> Posed<'a> {
         open.is_empty()
     }
 
-    /// A lower bound of a function over a circle about the axis.
+    /// A lower bound of a function over a circle about the axis, at both ends of the way.
     fn floor(&self, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
-        let center = bound.tip + self.axis * circle.height;
+        let here = self.floor_at(&bound.tip, bound, circle, towards);
+        match self.way {
+            Some(way) if here >= bound.target => {
+                here.min(self.floor_at(&(bound.tip + way), bound, circle, towards))
+            }
+            _ => here,
+        }
+    }
+
+    fn floor_at(&self, tip: &Vec3, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
+        let center = tip + self.axis * circle.height;
         let middle = bound.function.at(&center);
         let rho = circle.radius;
         if rho == 0.0 {
@@ -484,10 +508,13 @@ impl<'a> Posed<'a> {
         if determinant <= 0.0 || uu + vv <= 0.0 {
             return true;
         }
-        let slope = bound.function.half_gradient(&bound.tip);
-        let (a, b) = (slope.dot(&self.across[0]), slope.dot(&self.across[1]));
-        let (x, y) = ((uv * b - vv * a) / determinant, (uv * a - uu * b) / determinant);
-        length([x, y]) >= radius || bound.function.at(&bound.tip) + a * x + b * y >= bound.target
+        let keeps_at = |tip: &Vec3| {
+            let slope = bound.function.half_gradient(tip);
+            let (a, b) = (slope.dot(&self.across[0]), slope.dot(&self.across[1]));
+            let (x, y) = ((uv * b - vv * a) / determinant, (uv * a - uu * b) / determinant);
+            length([x, y]) >= radius || bound.function.at(tip) + a * x + b * y >= bound.target
+        };
+        keeps_at(&bound.tip) && self.way.is_none_or(|way| keeps_at(&(bound.tip + way)))
     }
 
     /// Whether a function is nowhere below its target on the patch between two circles. Along each straight line of the

@@ -276,7 +276,9 @@ impl<'a> Watcher<'a> {
                 let base = if on { 0.0 } else { thickness + working.rest() };
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
-                if let Bend::AtMost(bend) = upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|| false) {
+                if let Some(Bend::AtMost(bend)) =
+                    upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|_| true, &|| false)
+                {
                     let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;
                     if clear || bend * step * step / 8.0 <= LEAST_STEP * working.band() {

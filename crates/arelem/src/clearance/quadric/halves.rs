@@ -26,11 +26,13 @@ impl Half {
         self.inward == other.inward
     }
 
-    /// No point of a circle about the tool's axis, nor of the disc in it, is nearer to the other half than this.
+    /// No point of a circle about the tool's axis, nor of the disc in it, is nearer to the other half than this, here and on the
+    /// way.
     fn room(&self, posed: &Posed<'_>, circle: &ProfilePoint) -> f64 {
         let center = posed.tip + posed.axis * circle.height;
         let aside = posed.across.map(|u| u.dot(&self.inward));
-        self.inward.dot(&center) - circle.radius * aside[0].hypot(aside[1]) + self.gap
+        let nearer = posed.way.map_or(0.0, |way| self.inward.dot(&way).min(0.0));
+        self.inward.dot(&center) + nearer - circle.radius * aside[0].hypot(aside[1]) + self.gap
     }
 }
 
@@ -50,11 +52,13 @@ impl Posed<'_> {
         })
     }
 
-    /// The half that a contact is on, if the tangent plane there shows that no point of the tool is nearer to it than a level.
+    /// The half that a contact is on, if the tangent plane there shows that no point of the tool is nearer to it than a level, here
+    /// and on the way.
     pub(in crate::clearance) fn half_by_plane(&self, level: f64, contact: &Contact) -> Option<Half> {
         let half = self.half_touched(contact)?;
-        let tip = self.form.from_principal(&self.tip);
-        (above_plane(self.tool, contact, &tip) >= level).then_some(half)
+        let is_above = |tip: &Vec3| above_plane(self.tool, contact, &self.form.from_principal(tip)) >= level;
+        let ends = [Some(self.tip), self.way.map(|way| self.tip + way)];
+        ends.iter().flatten().all(is_above).then_some(half)
     }
 
     /// The half that a contact is on, if the tool is nowhere nearer to it.

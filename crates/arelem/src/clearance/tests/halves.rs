@@ -4,7 +4,7 @@ use super::*;
 use crate::clearance::quadric::Posed;
 
 /// A cone with its vertex in the origin whose ruling along +x has the plane z = 0 for tangent plane; above it is outside.
-fn cone_under_x(width: f64) -> Geometry {
+pub(super) fn cone_under_x(width: f64) -> Geometry {
     let mut coefficients = [0.0; 10];
     (coefficients[1], coefficients[2], coefficients[5]) = (1.0, 1.0, width);
     Geometry::Quadric(Quadric { coefficients })
@@ -38,7 +38,7 @@ fn a_tool_between_both_halves_is_beside_none() {
 }
 
 /// Least distance of points of the boundary, the disc at the top left out: nothing touches it.
-fn least_of_boundary(tool: &Tool, gauge: &Gauge, tip: &Vec3) -> f64 {
+pub(super) fn least_of_boundary(tool: &Tool, gauge: &Gauge, tip: &Vec3) -> f64 {
     let profile = &tool.profile;
     let line = |from: [f64; 2], to: [f64; 2], t: f64| [0, 1].map(|k| from[k] + t * (to[k] - from[k]));
     let at = |p: &apt_geometry::cutter::ProfilePoint| [p.radius, p.height];

@@ -3,10 +3,15 @@
 //! clearance, the least of them, wherever contact jumps. It is then above every chord less K·s(h − s)/2, and below the
 //! parabolas of curvature K from both ends.
 
-use apt_geometry::surface::Bend;
+use std::borrow::Cow;
+
+use apt_geometry::{Vec3, surface::Bend};
 
 use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample, tangents_meet};
-use crate::bound;
+use crate::{
+    bound,
+    clearance::{Contact, Tool},
+};
 
 /// Pieces into which a vector is cut at first.
 const PIECES: usize = 3;
@@ -46,6 +51,39 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     let turning = bound::turning(half, [a.slope, middle]) + bound::turning(half, [middle, b.slope]);
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
     Extremes { least: course.least, greatest: course.greatest, proven, turning }
+}
+
+/// What is known of the clearance between two samples.
+enum Stretch {
+    /// It is in the band.
+    Held,
+    /// It may leave the band for all that is known; with the bound of its second derivative, unless that is too great to help.
+    Open(Option<Bend>),
+}
+
+/// The places for which a bound of the bend is asked.
+struct Asked<'a> {
+    /// The tool in the middle of the stretch.
+    tip: Vec3,
+    tool: Cow<'a, Tool>,
+    /// No point of the tool strays farther from its place there.
+    spread: f64,
+    /// Least and greatest distance from the surface of what may be in contact.
+    range: [f64; 2],
+    /// Of a point of the tool across the generators of the surface, by the way of the tool end.
+    speed: f64,
+    /// Second derivative of the place of a point of a tool that turns.
+    swing: f64,
+}
+
+impl Asked<'_> {
+    /// The bound along the way of the tool end.
+    fn scaled(&self, bend: Bend) -> Bend {
+        match bend {
+            Bend::AtMost(bend) => Bend::AtMost(bend * self.speed * self.speed + self.swing),
+            other => other,
+        }
+    }
 }
 
 struct Course<'a, 'b> {
@@ -126,11 +164,10 @@ impl Course<'_, '_> {
         let (mut count, mut unbounded) = (samples.len(), 0);
         let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
         while let Some((a, b)) = open.pop() {
-            let bend = self.bend(&a, &b);
-            if self.holds_between(&a, &b, bend) {
-                continue;
+            match self.stretch(&a, &b) {
+                Stretch::Held => continue,
+                Stretch::Open(bend) => unbounded += usize::from(bend == Some(Bend::Unbounded)),
             }
-            unbounded += usize::from(bend == Bend::Unbounded);
             let x = 0.5 * (a.x + b.x);
             count += 1;
             if count > MAX_SAMPLES
@@ -163,9 +200,34 @@ impl Course<'_, '_> {
         sample.missed <= open || self.line.certified(sample.x, sample.value - open)
     }
 
-    /// Bound of the second derivative along the stretch between two samples.
-    fn bend(&self, a: &Sample, b: &Sample) -> Bend {
-        let Line { sweep, role, ledger, cancel, .. } = self.line;
+    /// Whether the clearance is in the band between two samples: by a bound that is known already, by the contacts at both ends, or
+    /// by a bound for all of the tool, which takes longest.
+    fn stretch(&self, a: &Sample, b: &Sample) -> Stretch {
+        let asked = self.ask(a, b);
+        let Line { role, ledger, cancel, .. } = self.line;
+        let about = (&asked.tip, asked.spread);
+        let known = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
+        let (high, low) = known.map_or((false, false), |bend| self.bounded(a, b, asked.scaled(bend)));
+        let high = high || self.is_held_from_both(a, b);
+        let low = low || high && self.is_kept_from_both(a, b);
+        if high && low {
+            return Stretch::Held;
+        }
+        let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
+        let is_of_use = |bend| {
+            let (held, kept) = bounded(Bend::AtMost(bend));
+            high && kept || low && held || held && kept
+        };
+        let found = || ledger.bend(&role.gauge, &asked.tool, about, asked.range, &is_of_use, cancel);
+        let bend = known.map_or_else(found, Some);
+        let (held, kept) = bend.map_or((false, false), bounded);
+        let is_held = (high || held) && (low || kept || !high && self.is_kept_from_both(a, b));
+        if is_held { Stretch::Held } else { Stretch::Open(bend) }
+    }
+
+    /// For which places a bound of the bend is needed on the stretch between two samples.
+    fn ask(&self, a: &Sample, b: &Sample) -> Asked<'_> {
+        let Line { sweep, role, .. } = self.line;
         let reach = role.gauge.reach(sweep.tool());
         let stretch = if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
         // Along its generators a surface does not change, so that only the way across them counts.
@@ -176,39 +238,49 @@ impl Course<'_, '_> {
         let way = (b.x - a.x) * stretch * across.max(LEAST_ACROSS);
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
         let thickness = role.gauge.thickness;
-        // A point that is in contact on the way is nowhere farther from contact than the way is long.
-        let range = [low - way + thickness, high + 2.0 * way + thickness];
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
-        match ledger.bend(&role.gauge, &tool, (&tip, 0.5 * way), range, cancel) {
-            Bend::AtMost(bend) if role.gauge.on => Bend::AtMost(bend * across * across),
-            Bend::AtMost(bend) => {
-                let speed = stretch * across;
-                Bend::AtMost(bend * speed * speed + sweep.swing(reach))
-            }
-            other => other,
+        Asked {
+            tip,
+            tool,
+            spread: 0.5 * way,
+            // A point that is in contact on the way is nowhere farther from contact than the way is long.
+            range: [low - way + thickness, high + 2.0 * way + thickness],
+            speed: stretch * across,
+            swing: if role.gauge.on { 0.0 } else { sweep.swing(reach) },
         }
     }
 
-    /// Whether the bounds on a stretch with such a second derivative, or those from the contacts at both ends, are in the band.
-    fn holds_between(&self, a: &Sample, b: &Sample, bend: Bend) -> bool {
-        let (low, high) = match bend {
+    /// Whether a bound of the second derivative shows that the clearance is nowhere above the band on a stretch, and nowhere below.
+    fn bounded(&self, a: &Sample, b: &Sample, bend: Bend) -> (bool, bool) {
+        match bend {
             Bend::AtMost(bend) => {
                 let ends = (a.value - self.open(a), b.value - self.open(b));
-                (self.line.allows(lowest(ends, bend, b.x - a.x)), self.line.allows(highest(a, b, bend)))
+                (self.line.allows(highest(a, b, bend)), self.line.allows(lowest(ends, bend, b.x - a.x)))
             }
             Bend::Unbounded => (false, false),
-        };
-        (high || self.is_held_from_both(a, b)) && (low || self.is_kept_from_both(a, b))
+        }
     }
 
     /// Whether the places of contact at both ends of a stretch show that the tool is nowhere above the band on it.
     fn is_held_from_both(&self, a: &Sample, b: &Sample) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
+        if sweep.turns() {
+            return false;
+        }
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
-        !sweep.turns()
-            && role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
+        role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
+            || self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
+    }
+
+    /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the
+    /// clearance is nowhere greater than either of these, wherever on the tool contact is there.
+    fn bend_of_contacts(&self, a: &Sample, b: &Sample) -> Option<f64> {
+        let Line { sweep, role, .. } = self.line;
+        let way = sweep.direction * (b.x - a.x);
+        let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&contact.tool, &(way * sense));
+        Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
     }
 
     /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.
@@ -262,11 +334,9 @@ fn highest(a: &Sample, b: &Sample, bend: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use apt_geometry::Vec3;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::clearance::Contact;
 
     fn sample(x: f64, value: f64, slope: f64) -> Sample {
         let none = Vec3::zeros();

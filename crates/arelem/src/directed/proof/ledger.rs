@@ -59,44 +59,57 @@ pub(crate) struct Ledger {
 }
 
 impl Ledger {
-    /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
-    /// distances of the points of contact are in `range`. There is none once `cancel` says true.
-    pub(super) fn bend(
+    /// The bound of [`Ledger::bend`], if one is known that holds there.
+    pub(super) fn known_bend(
         &self,
         gauge: &Gauge,
         tool: &Tool,
         (tip, spread): (&Vec3, f64),
         range: [f64; 2],
-        cancel: &dyn Fn() -> bool,
-    ) -> Bend {
+    ) -> Option<f64> {
         if let Some(bound) = self.bound.get()
             && (tip - bound.tip).norm() + spread <= bound.spread
             && tool.axis == bound.axis
             && range[0] >= bound.range[0]
             && range[1] <= bound.range[1]
         {
-            return Bend::AtMost(bound.bend);
+            return Some(bound.bend);
         }
-        if let Some(bend) = steady_bend(gauge, tool, tip, spread, range) {
-            return Bend::AtMost(bend);
-        }
+        steady_bend(gauge, tool, tip, spread, range)
+    }
+
+    /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
+    /// distances of the points of contact are in `range`. There is none once `cancel` says true; `None` where it is greater than
+    /// what `is_of_use` takes.
+    pub(super) fn bend(
+        &self,
+        gauge: &Gauge,
+        tool: &Tool,
+        (tip, spread): (&Vec3, f64),
+        range: [f64; 2],
+        is_of_use: &dyn Fn(f64) -> bool,
+        cancel: &dyn Fn() -> bool,
+    ) -> Option<Bend> {
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
+        let mut found = Some(Bend::Unbounded);
         for (spread, more) in [(ample, ample), (spread, 0.0)] {
             let range = [range[0] - more, range[1] + more];
             let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
             if self.gap.get().is_some_and(|known| known.lies_in(tip, &tool.axis, spread, range)) {
                 continue;
             }
-            match upward_bend(gauge, tool, tip, spread, range, cancel) {
-                Bend::AtMost(bend) => {
+            found = upward_bend(gauge, tool, tip, spread, range, is_of_use, cancel);
+            match found {
+                Some(Bend::AtMost(bend)) => {
                     self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread, range, bend }));
-                    return Bend::AtMost(bend);
+                    return found;
                 }
-                Bend::Unbounded => self.gap.set(Some(gap)),
+                Some(Bend::Unbounded) => self.gap.set(Some(gap)),
+                None => {}
             }
         }
-        Bend::Unbounded
+        found
     }
 
     /// True if no part of the tool is nearer to the surface than a level.
