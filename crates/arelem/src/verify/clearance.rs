@@ -9,7 +9,7 @@ use apt_geometry::{
 use crate::sequence::ToolPosition;
 
 use super::{
-    VerifyError,
+    VerifyError, halves,
     pencil::Pencil,
     poly_conic::ConicStrips,
     quadric::{Convexity, PrincipalQuadric},
@@ -276,6 +276,16 @@ impl<'a> Clearance<'a> {
             }
             _ => self.shape(),
         }
+    }
+
+    /// Whether the surface is two convex bodies and the tool beside one of them on a straight move with a fixed axis, by the
+    /// readings at both ends.
+    pub(super) fn is_beside_one_body(&self, tips: [&Vec3; 2], ends: [&Reading; 2], axis: &Vec3) -> bool {
+        let Surface::Quadric(quadric) = self.surface else { return false };
+        let [from, to] = tips.map(|tip| tip + axis * self.raise);
+        let [first, last] = ends.map(|end| Reading { value: end.value + self.thickness, ..*end });
+        !self.profile.is_point()
+            && halves::is_beside_one(quadric, self.side, [(&from, &first), (&to, &last)], &self.tool(*axis))
     }
 
     /// A distance from the tool end beyond which there is nothing of the tool.

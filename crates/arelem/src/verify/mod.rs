@@ -9,6 +9,7 @@ mod circle_contact;
 mod clearance;
 mod directrix;
 mod followed;
+mod halves;
 mod judge;
 mod models;
 mod patch;

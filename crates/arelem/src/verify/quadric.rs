@@ -440,6 +440,91 @@ impl PrincipalQuadric {
     }
 }
 
+/// Two convex bodies `Σ aᵢ (yᵢ − zᵢ)² + c ≤ 0` in principal axes, one coefficient being negative and c not. A body is told by the
+/// sign of its outward normals along that axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pair {
+    a: Vec3,
+    center: Vec3,
+    constant: f64,
+    /// The coordinate across the plane between both.
+    axis: usize,
+}
+
+impl PrincipalQuadric {
+    /// The two bodies on the other side than `side`, if there are two.
+    pub(super) fn pair(&self, side: f64) -> Option<Pair> {
+        if self.convexity != (if side > 0.0 { Convexity::InnerPair } else { Convexity::OuterPair }) {
+            return None;
+        }
+        let a = Vec3::from(self.a) * side;
+        let center = Vec3::from_fn(|i, _| if a[i] == 0.0 { 0.0 } else { -self.b[i] / self.a[i] });
+        let constant = (side * self.value(&center)).max(0.0);
+        Some(Pair { a, center, constant, axis: (0..3).find(|i| a[*i] < 0.0)? })
+    }
+}
+
+impl Pair {
+    /// The body that may have an outward normal.
+    pub(super) fn body_with(&self, normal: &Vec3) -> f64 {
+        normal[self.axis].signum()
+    }
+
+    /// Unit vector from one body to the other.
+    pub(super) fn outward(&self, body: f64) -> Vec3 {
+        let mut outward = Vec3::zeros();
+        outward[self.axis] = body;
+        outward
+    }
+
+    /// Place of a body that is nearest to the other one.
+    pub(super) fn tip(&self, body: f64) -> Vec3 {
+        self.center - self.outward(body) * (self.constant / -self.a[self.axis]).sqrt()
+    }
+
+    /// What the squares of a direction along the axis and across it come to, each over its coefficient.
+    fn dual(&self, direction: &Vec3) -> (f64, f64) {
+        let share =
+            |i: usize| if self.a[i] == 0.0 { 0.0 } else { direction[i] * direction[i] / self.a[i].abs() };
+        let all = (0..3).map(share).sum::<f64>();
+        (share(self.axis), all - share(self.axis))
+    }
+
+    /// Unit normal near a given one and level of a plane that has the body with such normals behind it: a body has normals only as
+    /// far as its asymptotic cone has them, and of a cylinder none along its generators.
+    pub(super) fn plane(&self, normal: &Vec3) -> Option<(Vec3, f64)> {
+        let (along, across) = self.dual(normal);
+        let share = if across > along { (along / across).sqrt() } else { 1.0 };
+        let kept = Vec3::from_fn(|i, _| {
+            if i == self.axis {
+                normal[i]
+            } else if self.a[i] == 0.0 {
+                0.0
+            } else {
+                share * normal[i]
+            }
+        });
+        let kept = kept.try_normalize(0.0)?;
+        let (along, across) = self.dual(&kept);
+        let behind = kept.dot(&self.center) - (self.constant * (along - across).max(0.0)).sqrt();
+        (kept[self.axis] != 0.0).then_some((kept, behind))
+    }
+
+    /// The place of a body that is farthest along a unit direction; what is not determined is as at a given place. None where
+    /// nothing is farthest.
+    pub(super) fn farthest(&self, body: f64, direction: &Vec3, about: &Vec3) -> Option<Vec3> {
+        let (along, across) = self.dual(direction);
+        let is_level = |i: usize| self.a[i] != 0.0 || direction[i].abs() <= NEARLY_LEVEL;
+        if self.body_with(direction) != body || along < across || !(0..3).all(is_level) {
+            return None;
+        }
+        let stretch = if self.constant > 0.0 { (self.constant / (along - across)).sqrt() } else { 0.0 };
+        let place = |i: usize| self.center[i] + stretch * direction[i] / self.a[i];
+        let farthest = Vec3::from_fn(|i, _| if self.a[i] == 0.0 { about[i] } else { place(i) });
+        farthest.iter().all(|x| x.is_finite()).then_some(farthest)
+    }
+}
+
 /// Convexity of the regions from the signs of the principal coefficients.
 fn classify(a: &[f64; 3], b: &[f64; 3], constant: f64) -> Convexity {
     let positive = a.iter().filter(|x| **x > 0.0).count();

@@ -65,15 +65,20 @@ struct Search<'a> {
 /// disc there, and not as deep as the middle of the tool. Nothing touches that disc (arelem reference 1.3), and where it is
 /// what is nearest of the tool as a closed body, the clearance of the others is no convex function of the way.
 fn may_reach_into_top(quadric: &PrincipalQuadric, side: f64, ends: [&Vec3; 2], tool: &Tool<'_>) -> bool {
-    let Some(radius) = tool.profile.open_top() else { return false };
     let (up, tip) = (quadric.turned_in(&tool.axis), quadric.turned_in(ends[0]));
-    let Some(lowest) = quadric.farthest(side, &-up, &tip) else { return false };
-    let away = lowest - tip;
-    let height = away.dot(&up);
+    let lowest = quadric.farthest(side, &-up, &tip);
+    lowest.is_some_and(|lowest| is_over_top(&quadric.turned_out(&lowest), ends, tool))
+}
+
+/// The same by the lowest place of the solid.
+pub(super) fn is_over_top(lowest: &Vec3, ends: [&Vec3; 2], tool: &Tool<'_>) -> bool {
+    let Some(radius) = tool.profile.open_top() else { return false };
+    let away = lowest - ends[0];
+    let height = away.dot(&tool.axis);
     let way = ends[1] - ends[0];
     let climb = way.dot(&tool.axis);
     let across = (way - tool.axis * climb).norm();
-    (away - up * height).norm() <= radius + across
+    (away - tool.axis * height).norm() <= radius + across
         && height - climb.min(0.0) >= 0.5 * tool.profile.top_height()
 }
 

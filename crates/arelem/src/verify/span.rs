@@ -159,7 +159,13 @@ impl Span<'_> {
         let shape = if self.turns() {
             Shape::Free
         } else {
-            self.clearance.shape_along([&self.from.tip, &self.to.tip], &self.from.axis)
+            let (tips, ends) = ([&self.from.tip, &self.to.tip], [&self.ends[0], &self.ends[1]]);
+            match self.clearance.shape_along(tips, &self.from.axis) {
+                Shape::Free if self.clearance.is_beside_one_body(tips, ends, &self.from.axis) => {
+                    Shape::Convex
+                }
+                shape => shape,
+            }
         };
         match shape {
             Shape::Linear => Some(Extremes::within(error, low, high)),

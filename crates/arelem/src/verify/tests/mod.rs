@@ -4,6 +4,7 @@ mod branches;
 pub(crate) mod clearances;
 mod every_kind;
 mod followed;
+mod halves;
 #[path = "../../../tests/support/lofts.rs"]
 pub(crate) mod lofts;
 mod mutations;
