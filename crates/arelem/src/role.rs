@@ -214,6 +214,13 @@ impl Working {
         clearance >= -self.inside - ROUNDING * size && clearance <= self.outside + ROUNDING * size
     }
 
+    /// Whether a tool that begins a motion with such a clearance, stock left out, may be taken to stand in the position that this
+    /// check surface gives: in the band, which for ON is as wide on both sides. Out of it a position ahead is met.
+    pub(crate) fn is_there(&self, clearance: f64, size: f64) -> bool {
+        let wider = self.inside.max(self.outside);
+        if self.gauge.on { clearance.abs() <= wider + ROUNDING * size } else { self.holds(clearance, size) }
+    }
+
     pub(crate) fn role(&self) -> Role {
         Role {
             surface: self.named.clone(),

@@ -259,15 +259,15 @@ fn crossing(
         });
     }
     let found = all.len();
-    let band = prepared.checks[0].inside.max(prepared.checks[0].outside) + 1e-9 * prepared.size;
+    let is_there = |value: f64| prepared.checks[0].is_there(value, prepared.size);
     let ahead = turns(track, &all, check.occurrence);
     let mut remaining = check.occurrence.max(1);
-    let mut clear = start > band;
-    let mut leaving = start.abs() <= band;
+    let mut leaving = is_there(start);
+    let mut clear = !leaving && start > 0.0;
     let mut previous = 0.0;
     for candidate in ahead {
         // Already there at the start: only the next position counts.
-        if leaving && (1..=3).all(|k| value(candidate.x * f64::from(k) / 4.0).abs() <= band) {
+        if leaving && (1..=3).all(|k| is_there(value(candidate.x * f64::from(k) / 4.0))) {
             previous = candidate.x;
             continue;
         }

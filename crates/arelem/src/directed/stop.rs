@@ -99,8 +99,8 @@ impl<'a> Watcher<'a> {
                 watcher.value(index, &prepared.tool, &prepared.tip).0
             };
             let working = &prepared.checks[index];
-            let band = working.inside.max(working.outside) + 1e-9 * prepared.size;
-            let status = if value.abs() <= band {
+            let rest = if working.gauge.on { 0.0 } else { working.rest() };
+            let status = if working.is_there(value + rest, prepared.size) {
                 Status::Touching
             } else if value > 0.0 {
                 Status::Clear

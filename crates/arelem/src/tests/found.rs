@@ -381,3 +381,23 @@ fn the_lower_of_two_troughs_of_a_rim_over_a_saddle_is_found_by_both_measures() {
         assert!((engine - verifier).abs() < 1e-9 && engine < 0.000_98, "{share}: {engine:e}, {verifier:e}");
     }
 }
+
+/// The tool begins out of the band of the check surface by less than the inner half of the band is wide: it was taken to stand in
+/// its position already, and the one ahead was passed.
+#[test]
+fn a_position_just_ahead_is_met_where_the_band_is_wider_inside() {
+    let wall = line(-5.0, 0.0, 5.0, 0.0);
+    for ahead in [0.0045, 0.006, 0.0085] {
+        let mut program = Program::new();
+        program.cutter(&[1.0, 0.0]).tolerance(0.01, 0.002).from(0.0, -2.0, 0.0).indirv(0.0, 1.0, 0.0);
+        program.side(DriveSide::Right);
+        program.go(&[(Relation::To, &wall), (Relation::To, &ground())]);
+        let begin = program.tip().x;
+        let at = begin + 0.5 + ahead;
+        program.indirv(1.0, 0.0, 0.0);
+        let command = motion(Turn::Forward, &wall, &[(Relation::To, 1, &line(at, -5.0, at, 5.0))]);
+        proven(&mut program, &[command]);
+        let moved = program.tip().x - begin;
+        assert!(moved > 0.0 && moved < ahead + 0.01, "{moved} for {ahead}");
+    }
+}
