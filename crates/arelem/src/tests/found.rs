@@ -382,6 +382,36 @@ fn the_lower_of_two_troughs_of_a_rim_over_a_saddle_is_found_by_both_measures() {
     }
 }
 
+/// The flank of a bell has two troughs beside each other over a hyperboloid, nearer than a sixteenth of a turn.
+#[test]
+fn the_lower_of_two_troughs_of_a_flank_is_found_by_both_measures() {
+    let surface = Geometry::Quadric(Quadric {
+        coefficients: [
+            0.1852532284562447,
+            1.0892371150203712,
+            0.16298235302763742,
+            1.7874930071453683,
+            -0.05803327269809824,
+            0.006159222839704108,
+            0.5332487437727983,
+            -0.5257773672327355,
+            -0.42859155681236405,
+            -0.5511870463812865,
+        ],
+    });
+    let numbers = [0.6, 0.11, 0.2, 0.13, 8.852994872936975, 3.291762228402378, 2.3522839411302594];
+    let cutter = Cutter::from_numbers(&numbers, 1.0).expect("a cutter");
+    let ends = [
+        v(-2.4794610988147054, 1.351351329673124, 2.02577224781508),
+        v(-2.4972714181783884, 1.355950105266015, 2.0417754404780024),
+    ];
+    for share in 0..=12 {
+        let tip = ends[0].lerp(&ends[1], f64::from(share) / 12.0);
+        let [engine, verifier] = outside(&surface, cutter, ToolPosition { tip, axis: Vec3::z() });
+        assert!((engine - verifier).abs() < 1e-9 && engine < 0.0, "{share}: {engine:e}, {verifier:e}");
+    }
+}
+
 /// The tool begins out of the band of the check surface by less than the inner half of the band is wide: it was taken to stand in
 /// its position already, and the one ahead was passed.
 #[test]

@@ -410,6 +410,30 @@ impl Search<'_> {
                 self.close_in(a, b, phi - step, phi + step)?;
             }
         }
+        if self.shape == Shape::Free { self.lower_lines(a, b, &lines) } else { Some(()) }
+    }
+
+    /// Looks for more troughs of a patch than its samples show, as [`Search::lower_troughs`] does for a circle.
+    fn lower_lines(&mut self, a: Meridian, b: Meridian, lines: &[OnLine]) -> Option<()> {
+        let step = std::f64::consts::TAU / lines.len() as f64;
+        let finest = step / f64::from(1u32 << SECTOR_HALVINGS);
+        let widest = a[0].max(b[0]);
+        for (k, (from, to)) in lines.iter().zip(lines.iter().cycle().skip(1)).enumerate() {
+            let mut open = vec![(step * k as f64, step, from.value, to.value)];
+            while let Some((phi, width, from, to)) = open.pop() {
+                if 0.5 * (from + to - widest * width) >= self.best_value() {
+                    continue;
+                }
+                if width > 1.5 * finest {
+                    let half = 0.5 * width;
+                    let middle = self.on_line(a, b, phi + half)?;
+                    self.offer_on_line(a, b, phi + half, middle.t)?;
+                    open.extend([(phi + half, half, middle.value, to), (phi, half, from, middle.value)]);
+                } else {
+                    self.close_in(a, b, phi, phi + width)?;
+                }
+            }
+        }
         Some(())
     }
 
