@@ -507,7 +507,9 @@ impl Place<'_> {
 /// never leaves that side.
 pub(super) fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f64 {
     let (mean, half) = (0.5 * form.trace(), (0.5 * (form.m11 - form.m22)).hypot(form.m12));
-    let mut mu = half - mean + g.norm() / radius;
+    // Between the multiplier that makes the form just positive and one that is enough for any form so.
+    let (mut low, mut high) = (half - mean, half - mean + g.norm() / radius);
+    let mut mu = high;
     for _ in 0..STEPS {
         let held = form + Matrix2::identity() * mu;
         let Some(inverse) = held.try_inverse() else { break };
@@ -517,10 +519,16 @@ pub(super) fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius
         if !step.is_finite() {
             break;
         }
-        mu += step;
-        if step.abs() <= LAST_STEP * mu.abs() {
-            break;
+        if size > radius {
+            low = mu;
+        } else {
+            high = mu;
         }
+        let next = mu + step;
+        if step.abs() <= LAST_STEP * next.abs() {
+            return next;
+        }
+        mu = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     mu
 }

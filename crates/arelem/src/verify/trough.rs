@@ -12,6 +12,9 @@ use super::{
     tool::{Meridian, Tool, perpendicular},
 };
 
+/// Least value of a form, relative to its greatest, that is positive for certain.
+const POSITIVE: f64 = 1e-9;
+
 /// How a patch rises over its tangent plane at a place, relative to how far it goes across a direction.
 ///
 /// From the place to another, a and b away in the parameters, it goes by `aU + bV` with U and V among the convex hulls of the
@@ -105,8 +108,10 @@ pub(super) fn farthest_from_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3) -
             return middle.norm();
         }
         let pull = -Vector2::new(frame[0].dot(&middle), frame[1].dot(&middle));
-        let mu = multiplier_of_circle(&form, &pull, rho);
-        (middle.norm_squared() + mu * rho * rho - least_of(&form, mu, &pull)).sqrt()
+        // Every multiplier for which the form is positive gives a bound; the least of the form's two values is −1.
+        let best = multiplier_of_circle(&form, &pull, rho);
+        let bound = |mu: f64| middle.norm_squared() + mu * rho * rho - least_of(&form, mu, &pull);
+        bound(best).min(bound(best.max(1.0 + POSITIVE))).sqrt()
     };
     let [lower, upper, top] = tool.profile.edges();
     let ends = || circle(lower).max(circle(upper));
@@ -180,18 +185,31 @@ mod tests {
             lean in prop::array::uniform2(-0.5..0.5f64),
         ) {
             prop_assume!(Vec3::from(along).norm() > 0.1);
-            let (center, along) = (Vec3::from(center), Vec3::from(along).normalize());
-            let tools: [&[f64]; 4] =
-                [&[0.5, 0.25], &[0.5, 0.0], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
-            let cutter = cutter(tools[tool]);
-            let profile = Profile::of(&cutter).unwrap();
-            let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();
-            let bound = farthest_from_line(&Tool::new(&profile, axis), &center, &along);
-            let apart = |x: &Vec3| (x - center).cross(&along).norm();
-            let found = samples(&cutter, Vec3::zeros(), axis).iter().map(apart).fold(0.0, f64::max);
+            let [found, bound] = from_line(tool, center, along, lean);
             prop_assert!(found <= bound + 1e-9, "{found} {bound}");
             // Beside the line a whole ball of the corner may stand out of the tool.
             prop_assert!(bound - found < 0.12, "{found} {bound}");
         }
+    }
+
+    /// Greatest distance of sampled places of a tool from a line, and its bound.
+    fn from_line(tool: usize, center: [f64; 3], along: [f64; 3], lean: [f64; 2]) -> [f64; 2] {
+        let (center, along) = (Vec3::from(center), Vec3::from(along).normalize());
+        let tools: [&[f64]; 4] =
+            [&[0.5, 0.25], &[0.5, 0.0], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+        let cutter = cutter(tools[tool]);
+        let profile = Profile::of(&cutter).unwrap();
+        let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();
+        let bound = farthest_from_line(&Tool::new(&profile, axis), &center, &along);
+        let apart = |x: &Vec3| (x - center).cross(&along).norm();
+        [samples(&cutter, Vec3::zeros(), axis).iter().map(apart).fold(0.0, f64::max), bound]
+    }
+
+    #[test]
+    fn a_circle_whose_best_multiplier_leaves_nothing_has_a_bound() {
+        let center = [0.7428797089516813, -2.104753444745214, 3.866597629602039];
+        let along = [0.6924128563884951, -0.6987785676831421, 0.28328497887246323];
+        let [found, bound] = from_line(0, center, along, [-0.38750552498363805, -0.043242945435448835]);
+        assert!(found <= bound + 1e-9 && bound - found < 0.12, "{found} {bound}");
     }
 }
