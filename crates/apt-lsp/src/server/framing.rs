@@ -4,12 +4,13 @@
 //! after an error). So messages are checked here: what is broken is answered with an error here, and
 //! the service sees only messages that it can read.
 
-use std::io;
+use std::io::{self, Write};
 
 use tokio::io::{
     AsyncBufRead, AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, BufReader,
 };
 use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
 use tower_lsp::jsonrpc::{Error, Id, Request, Response};
 
 use super::Ending;
@@ -28,8 +29,11 @@ const WAITING_FRAMES: usize = 64;
 pub(super) struct Outgoing {
     /// Where they are put in.
     pub frames: mpsc::Sender<Vec<u8>>,
-    waiting: mpsc::Receiver<Vec<u8>>,
+    waiting: Waiting,
 }
+
+/// Where the bodies come out again.
+pub(super) type Waiting = mpsc::Receiver<Vec<u8>>;
 
 impl Outgoing {
     /// None yet.
@@ -42,18 +46,18 @@ impl Outgoing {
 /// How long unfinished answers may take after the end of input.
 const LAST_ANSWERS: std::time::Duration = std::time::Duration::from_secs(2);
 
-/// Moves frames both ways until `exit` or the end of input.
+/// Moves frames both ways, out by a writer, until `exit` or the end of input.
 pub(super) async fn run(
     input: impl AsyncRead + Unpin + Send + 'static,
     to_service: impl AsyncWrite + Unpin + Send + 'static,
     from_service: impl AsyncRead + Unpin + Send + 'static,
-    output: impl AsyncWrite + Unpin + Send + 'static,
+    writer: impl FnOnce(Waiting) -> JoinHandle<()>,
     outgoing: Outgoing,
     parcels: Parcels,
 ) -> Ending {
     let Outgoing { frames, waiting } = outgoing;
     let answers = tokio::spawn(forward_answers(from_service, frames.clone(), parcels));
-    let writer = tokio::spawn(write_frames(waiting, output));
+    let writer = writer(waiting);
     let ending = read_messages(input, to_service, frames).await;
     let _ = tokio::time::timeout(LAST_ANSWERS, async {
         let _ = answers.await;
@@ -175,9 +179,15 @@ fn content_length(header: &[u8]) -> Option<Result<u64, ()>> {
     Some(std::str::from_utf8(value).ok().and_then(|text| text.parse().ok()).ok_or(()))
 }
 
-async fn write_frame(output: &mut (impl AsyncWrite + Unpin), body: &[u8]) -> io::Result<()> {
-    output.write_all(format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes()).await?;
-    output.write_all(body).await?;
+/// A message in one piece, so that nobody wakes for half of it.
+fn frame(body: &[u8]) -> Vec<u8> {
+    let header = format!("Content-Length: {}\r\n\r\n", body.len());
+    [header.as_bytes(), body].concat()
+}
+
+/// Writes a message.
+pub(super) async fn write_frame(output: &mut (impl AsyncWrite + Unpin), body: &[u8]) -> io::Result<()> {
+    output.write_all(&frame(body)).await?;
     output.flush().await
 }
 
@@ -196,17 +206,42 @@ async fn forward_answers(
     }
 }
 
-async fn write_frames(mut waiting: mpsc::Receiver<Vec<u8>>, mut output: impl AsyncWrite + Unpin) {
-    while let Some(body) = waiting.recv().await {
-        if write_frame(&mut output, &body).await.is_err() {
-            return; // The client is gone; the end of input follows.
+/// Writes frames to standard output on a thread of its own: by way of the runtime each would wait for that thread three
+/// times.
+pub(super) fn to_standard_output(mut waiting: Waiting) -> JoinHandle<()> {
+    tokio::task::spawn_blocking(move || {
+        let Ok(mut output) = standard_output() else { return };
+        while let Some(body) = waiting.blocking_recv() {
+            if output.write_all(&frame(&body)).and_then(|()| output.flush()).is_err() {
+                return; // The client is gone; the end of input follows.
+            }
         }
-    }
+    })
+}
+
+/// Standard output without a buffer, which would divide each message at its last line.
+#[cfg(unix)]
+fn standard_output() -> io::Result<impl Write> {
+    use std::os::fd::AsFd as _;
+    Ok(std::fs::File::from(io::stdout().as_fd().try_clone_to_owned()?))
+}
+
+#[cfg(not(unix))]
+fn standard_output() -> io::Result<impl Write> {
+    Ok(io::stdout())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Bodies go out in the frames in which they are read.
+    #[tokio::test]
+    async fn a_frame_is_read_as_it_was_written() {
+        let mut written = frame(b"{}");
+        written.extend(frame(&[b'x'; 3_000]));
+        assert_eq!(frames(&written).await, [good("{}"), Some("x".repeat(3_000))]);
+    }
 
     async fn frames(input: &[u8]) -> Vec<Option<String>> {
         let mut reader = BufReader::new(input);

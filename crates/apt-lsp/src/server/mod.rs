@@ -23,7 +23,8 @@ mod workers;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::io::AsyncRead;
+use tokio::task::JoinHandle;
 use tower_lsp::{LspService, Server};
 
 use self::backend::Backend;
@@ -61,7 +62,7 @@ pub(crate) fn run(language: Arc<dyn Language>) -> ExitCode {
         }
     };
     lifetime::report_panics();
-    let conversation = serve(tokio::io::stdin(), tokio::io::stdout(), language);
+    let conversation = serve(tokio::io::stdin(), framing::to_standard_output, language);
     let ending = runtime.block_on(async { tokio::spawn(conversation).await });
     // Not a return: the thread that reads standard input would keep the process.
     std::process::exit(match ending {
@@ -71,10 +72,10 @@ pub(crate) fn run(language: Arc<dyn Language>) -> ExitCode {
     });
 }
 
-/// Holds one conversation, until `exit` or the end of input.
+/// Holds one conversation, whose messages a writer takes out, until `exit` or the end of input.
 pub(crate) async fn serve(
     input: impl AsyncRead + Unpin + Send + 'static,
-    output: impl AsyncWrite + Unpin + Send + 'static,
+    writer: impl FnOnce(framing::Waiting) -> JoinHandle<()> + Send + 'static,
     language: Arc<dyn Language>,
 ) -> Ending {
     let (outgoing, parcels) = (framing::Outgoing::new(), Parcels::default());
@@ -99,7 +100,7 @@ pub(crate) async fn serve(
             .finish();
     let (frames_in, service_in) = tokio::io::duplex(PIPE_SIZE);
     let (service_out, frames_out) = tokio::io::duplex(PIPE_SIZE);
-    let mut framing = tokio::spawn(framing::run(input, frames_in, frames_out, output, outgoing, parcels));
+    let mut framing = tokio::spawn(framing::run(input, frames_in, frames_out, writer, outgoing, parcels));
     let server = Server::new(service_in, service_out, socket).concurrency_level(CONCURRENT_REQUESTS);
     let ending = tokio::select! {
         () = server.serve(service) => framing.await,

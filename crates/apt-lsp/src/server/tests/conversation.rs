@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, ReadHalf, WriteHalf};
 use tokio::task::JoinHandle;
 
+use super::super::framing::{Waiting, write_frame};
 use super::super::{Ending, serve};
 use crate::analysis::fake::FakeLanguage;
 
@@ -17,6 +18,14 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The document that most tests talk about.
 pub(super) const URI: &str = "file:///part.apt";
+
+async fn write_frames(mut waiting: Waiting, mut output: WriteHalf<DuplexStream>) {
+    while let Some(body) = waiting.recv().await {
+        if write_frame(&mut output, &body).await.is_err() {
+            return;
+        }
+    }
+}
 
 /// A conversation with a server.
 pub(super) struct Conversation {
@@ -38,7 +47,8 @@ impl Conversation {
         let (here, there) = tokio::io::duplex(1 << 16);
         let language = FakeLanguage::default();
         let (there_in, there_out) = tokio::io::split(there);
-        let server = tokio::spawn(serve(there_in, there_out, Arc::new(language.clone())));
+        let writer = |waiting| tokio::spawn(write_frames(waiting, there_out));
+        let server = tokio::spawn(serve(there_in, writer, Arc::new(language.clone())));
         let (input, output) = tokio::io::split(here);
         Self {
             input: BufReader::new(input),
