@@ -122,10 +122,10 @@ impl Program {
             .map_err(tape_refusal)
     }
 
-    fn diagnostic(&self, one: &found::Diagnostic) -> Diagnostic {
+    fn diagnostic(&self, one: found::Diagnostic) -> Diagnostic {
         let tree = self.0.document().tree();
         let (mut related, mut elsewhere) = (Vec::new(), Vec::new());
-        for (message, place) in found::related_places(tree, one) {
+        for (message, place) in found::related_places(tree, &one) {
             match place.source {
                 None => related.push(Related { message, range: place.range }),
                 Some(source) => elsewhere.push(Elsewhere { message, source, range: place.range }),
@@ -134,8 +134,8 @@ impl Program {
         Diagnostic {
             code: one.wording.code.to_owned(),
             severity: one.severity,
-            message: one.wording.message.clone(),
-            hint: one.wording.hint.clone(),
+            message: one.wording.message,
+            hint: one.wording.hint,
             isn: Some(one.origin.place_in_program().0),
             apt3: one.wording.apt3,
             range: found::absolute_range(tree, &one.origin),
@@ -143,7 +143,7 @@ impl Program {
             related,
             elsewhere,
             unnecessary: one.unnecessary,
-            fixes: one.fixes.clone(),
+            fixes: one.fixes,
         }
     }
 }
@@ -164,7 +164,7 @@ impl Program {
             range: place.range.clone(),
             origin: Vec::new(),
             fixes: Vec::new(),
-            ..self.diagnostic(one)
+            ..self.diagnostic(one.clone())
         }
     }
 }
@@ -210,14 +210,14 @@ impl Document for Program {
 
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
         let all = with(control, "checking", |cancel, progress| self.0.diagnostics(level, cancel, progress))?;
-        Ok(all.iter().map(|one| self.diagnostic(one)).collect())
+        Ok(all.into_iter().map(|one| self.diagnostic(one)).collect())
     }
 
     fn worst_diagnostics(&self, level: Level, most: usize, control: &Control) -> Answer<Worst> {
         let worst = with(control, "checking", |cancel, progress| {
             self.0.worst_diagnostics(level, most, cancel, progress)
         })?;
-        let diagnostics = worst.diagnostics.iter().map(|one| self.diagnostic(one)).collect();
+        let diagnostics = worst.diagnostics.into_iter().map(|one| self.diagnostic(one)).collect();
         Ok(Worst { diagnostics, left_out: worst.left_out })
     }
 
@@ -292,7 +292,7 @@ impl Document for Program {
             kind: one.kind,
             edits: one.edits.into_iter().map(|(range, text)| TextEdit { range, text }).collect(),
             preferred: one.preferred,
-            settles: one.settles.map(|finding| self.diagnostic(&finding)),
+            settles: one.settles.map(|finding| self.diagnostic(finding)),
         };
         Ok(found.into_iter().map(action).collect())
     }
@@ -378,7 +378,7 @@ impl Document for Program {
 
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
         let made = self.control_tape(machine, control)?;
-        Ok(made.diagnostics.iter().map(|one| self.diagnostic(one)).collect())
+        Ok(made.diagnostics.into_iter().map(|one| self.diagnostic(one)).collect())
     }
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {

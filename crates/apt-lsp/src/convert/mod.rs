@@ -6,7 +6,8 @@ pub(crate) mod outgoing;
 mod places;
 pub(crate) mod position;
 pub(crate) mod tokens;
+pub(crate) mod written;
 
 pub(crate) use self::joined::joined;
 pub(crate) use self::places::{Places, Uris};
-pub(crate) use self::position::{Encoding, TextIndex};
+pub(crate) use self::position::{Encoding, Positions, TextIndex};

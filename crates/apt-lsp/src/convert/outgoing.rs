@@ -2,40 +2,12 @@
 
 use tower_lsp::ls_types::{self as lsp, Uri};
 
-use super::{Places, TextIndex, Uris};
+use super::{Places, Positions, TextIndex, Uris, written};
 use crate::analysis::{
     Action, Completion, CompletionKind, Diagnostic, ExpandedLine, Expansion, Fold, FoldKind, Hover,
-    Inclusion, Inlay, Lens, Occurrence, OriginFrame, OutlineEntry, OutlineKind, Severity, Signature,
-    SignatureHelp, TextEdit,
+    Inclusion, Inlay, Lens, Occurrence, OriginFrame, OutlineEntry, OutlineKind, Signature, SignatureHelp,
+    TextEdit,
 };
-
-/// Who found it, as editors show it.
-pub(crate) const SOURCE: &str = "apt";
-
-/// A finding. Hints become part of the message, since the protocol has no place for them; origins
-/// and related places become related information.
-pub(crate) fn diagnostic(index: &TextIndex, places: &mut Places<'_>, found: &Diagnostic) -> lsp::Diagnostic {
-    let message = match &found.hint {
-        Some(hint) => format!("{}\nhelp: {hint}", found.message),
-        None => found.message.clone(),
-    };
-    lsp::Diagnostic {
-        range: index.range(&found.range),
-        severity: Some(match found.severity {
-            Severity::Error => lsp::DiagnosticSeverity::ERROR,
-            Severity::Warning => lsp::DiagnosticSeverity::WARNING,
-            Severity::Information => lsp::DiagnosticSeverity::INFORMATION,
-            Severity::Hint => lsp::DiagnosticSeverity::HINT,
-        }),
-        code: Some(lsp::NumberOrString::String(found.code.clone())),
-        source: Some(SOURCE.to_owned()),
-        message,
-        related_information: related_information(places, found),
-        tags: found.unnecessary.then(|| vec![lsp::DiagnosticTag::UNNECESSARY]),
-        data: Some(serde_json::json!({ "isn": found.isn, "apt3": found.apt3, "hint": found.hint })),
-        code_description: None,
-    }
-}
 
 /// Whether a finding, as the client has it, came with the motion.
 pub(crate) fn is_of_motion(found: &lsp::Diagnostic) -> bool {
@@ -48,13 +20,14 @@ pub(crate) fn is_of_motion(found: &lsp::Diagnostic) -> bool {
 pub(crate) fn left_out(count: usize) -> lsp::Diagnostic {
     lsp::Diagnostic {
         severity: Some(lsp::DiagnosticSeverity::INFORMATION),
-        source: Some(SOURCE.to_owned()),
+        source: Some(written::SOURCE.to_owned()),
         message: format!("{count} more findings are not shown; `apt-lsp --check` lists all"),
         ..lsp::Diagnostic::default()
     }
 }
 
-fn related_information(
+/// The places that belong to a finding.
+pub(super) fn related_information(
     places: &mut Places<'_>,
     found: &Diagnostic,
 ) -> Option<Vec<lsp::DiagnosticRelatedInformation>> {
@@ -182,13 +155,18 @@ pub(crate) fn action(index: &TextIndex, uri: &Uri, version: Option<i32>, found: 
     lsp::CodeAction {
         title: found.title,
         kind: Some(lsp::CodeActionKind::new(found.kind.name())),
-        diagnostics: found
-            .settles
-            .map(|finding| vec![diagnostic(index, &mut Places::new(uri, index, &Uris::default()), &finding)]),
+        diagnostics: found.settles.and_then(|finding| as_shown(index, uri, &finding)),
         edit: Some(change),
         is_preferred: found.preferred.then_some(true),
         ..lsp::CodeAction::default()
     }
+}
+
+/// A finding as the client has it. What has been written as one can be read as one.
+fn as_shown(index: &TextIndex, uri: &Uri, found: &Diagnostic) -> Option<Vec<lsp::Diagnostic>> {
+    let (mut out, uris) = (Vec::new(), Uris::default());
+    written::diagnostic(&mut out, &mut Positions::of(index), &mut Places::new(uri, index, &uris), found);
+    Some(vec![serde_json::from_slice(&out).ok()?])
 }
 
 /// The links to the files that a document includes; names of files that are not there are no links.
@@ -258,24 +236,8 @@ pub(crate) fn highlight(index: &TextIndex, found: &Occurrence) -> lsp::DocumentH
     lsp::DocumentHighlight { range: index.range(&found.range), kind: Some(kind) }
 }
 
-/// An entry of the outline with everything inside it.
-pub(crate) fn symbol(index: &TextIndex, found: OutlineEntry) -> lsp::DocumentSymbol {
-    let children: Vec<_> = found.children.into_iter().map(|child| symbol(index, child)).collect();
-    #[expect(deprecated, reason = "the field has no default")]
-    lsp::DocumentSymbol {
-        // Clients reject an empty name.
-        name: if found.name.trim().is_empty() { "(no name)".to_owned() } else { found.name },
-        detail: (!found.detail.is_empty()).then_some(found.detail),
-        kind: symbol_kind(found.kind),
-        tags: None,
-        deprecated: None,
-        range: index.range(&found.range),
-        selection_range: index.range(&found.focus),
-        children: (!children.is_empty()).then_some(children),
-    }
-}
-
-fn symbol_kind(kind: OutlineKind) -> lsp::SymbolKind {
+/// What an entry of the outline is to editors.
+pub(super) fn symbol_kind(kind: OutlineKind) -> lsp::SymbolKind {
     match kind {
         OutlineKind::Part => lsp::SymbolKind::MODULE,
         OutlineKind::Macro => lsp::SymbolKind::FUNCTION,

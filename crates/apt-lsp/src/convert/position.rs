@@ -80,45 +80,101 @@ impl TextIndex {
 
     /// Position of a byte offset. Past the end means the end, inside a character its beginning.
     pub(crate) fn position(&self, offset: usize) -> Position {
-        let offset = offset.min(self.rope.len_bytes());
-        let line = self.rope.byte_to_line(offset);
-        let within = offset - self.rope.line_to_byte(line);
-        let count = self.count_in_piece(offset, within).unwrap_or_else(|| {
-            let slice = self.rope.line(line);
-            let character = slice.byte_to_char(within);
-            match self.encoding {
+        Positions::of(self).position(offset)
+    }
+
+    /// Range of a byte range.
+    pub(crate) fn range(&self, bytes: &ops::Range<usize>) -> Range {
+        Positions::of(self).range(bytes)
+    }
+}
+
+/// The positions of many offsets of a text: one that stands soon after the one before needs no search in the rope.
+#[derive(Debug)]
+pub(crate) struct Positions<'a> {
+    index: &'a TextIndex,
+    /// A line with the byte where it begins.
+    line: usize,
+    start: usize,
+    /// A piece of the rope in which the line goes on, with the byte where the piece begins.
+    piece: &'a str,
+    begin: usize,
+}
+
+impl<'a> Positions<'a> {
+    /// None is known yet.
+    pub(crate) fn of(index: &'a TextIndex) -> Self {
+        Self { index, line: 0, start: 0, piece: "", begin: 0 }
+    }
+
+    /// [`TextIndex::position`].
+    pub(crate) fn position(&mut self, offset: usize) -> Position {
+        self.in_piece(offset).unwrap_or_else(|| self.searched(offset))
+    }
+
+    /// [`TextIndex::range`].
+    pub(crate) fn range(&mut self, bytes: &ops::Range<usize>) -> Range {
+        let start = self.position(bytes.start);
+        // What follows mostly stands inside: so a search for the end does not go there.
+        let end = self.end_on_line(bytes, start);
+        let end = end.unwrap_or_else(|| Self::of(self.index).position(bytes.end));
+        Range { start, end }
+    }
+
+    /// Goes on through the piece, line by line.
+    fn in_piece(&mut self, offset: usize) -> Option<Position> {
+        let mut from = self.start.saturating_sub(self.begin);
+        let to = offset.checked_sub(self.begin).filter(|to| *to < self.piece.len())?;
+        let bytes = self.piece.as_bytes();
+        let passed = bytes.get(from..to)?;
+        let is_break = |at: usize| match bytes.get(at) {
+            Some(b'\n') => true,
+            Some(b'\r') => bytes.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        // Counted over all bytes first, which is quick; breaks of other kinds than these are rare.
+        let mut breaks = passed.iter().filter(|byte| **byte == b'\n').count();
+        if passed.contains(&b'\r') {
+            breaks = (from..to).filter(|at| is_break(*at)).count();
+        }
+        if breaks > 0 {
+            from = (from..to).rev().find(|at| is_break(*at))? + 1;
+            (self.line, self.start) = (self.line + breaks, self.begin + from);
+        }
+        let before = (self.start >= self.begin).then(|| self.piece.get(from..to))??;
+        Some(self.in_line(self.index.encoding.length(before)))
+    }
+
+    /// Goes to an offset by a search in the rope.
+    fn searched(&mut self, offset: usize) -> Position {
+        let rope = &self.index.rope;
+        let offset = offset.min(rope.len_bytes());
+        (self.piece, self.begin, ..) = rope.chunk_at_byte(offset);
+        self.line = rope.byte_to_line(offset);
+        self.start = rope.line_to_byte(self.line);
+        let piece =
+            self.start.checked_sub(self.begin).and_then(|from| self.piece.get(from..offset - self.begin));
+        let count = piece.map(|before| self.index.encoding.length(before)).unwrap_or_else(|| {
+            let slice = rope.line(self.line);
+            let character = slice.byte_to_char(offset - self.start);
+            match self.index.encoding {
                 Encoding::Utf8 => slice.char_to_byte(character),
                 Encoding::Utf16 => slice.char_to_utf16_cu(character),
                 Encoding::Utf32 => character,
             }
         });
-        Position { line: protocol_number(line), character: protocol_number(count) }
+        self.in_line(count)
     }
 
-    /// The characters of the `within` bytes before an offset, if one piece of the rope holds them all: then they need no
-    /// search.
-    fn count_in_piece(&self, offset: usize, within: usize) -> Option<usize> {
-        let (piece, start, ..) = self.rope.chunk_at_byte(offset);
-        let end = offset - start;
-        let before = piece.get(end.checked_sub(within)?..end)?;
-        Some(self.encoding.length(before))
+    fn in_line(&self, character: usize) -> Position {
+        Position { line: protocol_number(self.line), character: protocol_number(character) }
     }
 
-    /// Range of a byte range.
-    pub(crate) fn range(&self, bytes: &ops::Range<usize>) -> Range {
-        let start = self.position(bytes.start);
-        let end = self.end_on_line(bytes, start).unwrap_or_else(|| self.position(bytes.end));
-        Range { start, end }
-    }
-
-    /// The end of a range with its start, if both stand on one line in one piece of the rope: then it needs no search.
+    /// The end of a range with its start, if both stand on one line in the piece: then it needs no search.
     fn end_on_line(&self, bytes: &ops::Range<usize>, start: Position) -> Option<Position> {
-        if bytes.start >= self.rope.len_bytes() {
-            return None;
-        }
-        let (piece, before, ..) = self.rope.chunk_at_byte(bytes.start);
-        let text = piece.get(bytes.start - before..bytes.end.checked_sub(before)?)?;
-        let character = start.character.checked_add(protocol_number(self.encoding.length(text)))?;
+        let from = bytes.start.checked_sub(self.begin)?;
+        let text = self.piece.get(from..bytes.end.checked_sub(self.begin)?)?;
+        let character = start.character.checked_add(protocol_number(self.index.encoding.length(text)))?;
         (!text.contains(['\n', '\r'])).then_some(Position { line: start.line, character })
     }
 }
@@ -216,6 +272,27 @@ mod tests {
                 for end in (start..text.len() + 3).step_by(7).take(6) {
                     let ends = Range { start: index.position(start), end: index.position(end) };
                     assert_eq!(index.range(&(start..end)), ends, "{encoding:?} {start}..{end}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn positions_do_not_depend_on_those_before() {
+        let mut text = "C1=CIRCLE/0 $$ é😀\r\nFINI\rX\r\n\n".to_owned();
+        text.push_str(&"P1=POINT/1,2 $$ 😀\r\n".repeat(150));
+        text.push_str(&"é".repeat(2_000)); // A line of several pieces.
+        text.push_str(&"\n\nL1=LINE/P1,P2".repeat(150));
+        for encoding in [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32] {
+            let index = index(&text, encoding);
+            for step in [1, 2, 17, 400, 4_003] {
+                let (mut ahead, mut around) = (Positions::of(&index), Positions::of(&index));
+                for offset in (0..text.len() + 3).step_by(step) {
+                    let alone = index.position(offset);
+                    assert_eq!(ahead.position(offset), alone, "{encoding:?} {offset}");
+                    let other = offset * 7_919 % text.len();
+                    assert_eq!(around.range(&(offset..other)).start, alone, "{encoding:?} {offset}");
+                    assert_eq!(around.position(other), index.position(other), "{encoding:?} {other}");
                 }
             }
         }

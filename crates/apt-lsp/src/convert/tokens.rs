@@ -5,7 +5,7 @@ use std::ops::Range;
 use tower_lsp::ls_types::{self as lsp, SemanticTokenModifier, SemanticTokenType, SemanticTokensEdit};
 
 use super::position::protocol_number;
-use super::{Encoding, TextIndex};
+use super::{Positions, TextIndex};
 use crate::analysis::{Token, TokenClass};
 
 /// Numbers of one encoded token.
@@ -41,7 +41,7 @@ pub(crate) fn legend() -> lsp::SemanticTokensLegend {
 pub(crate) fn encode(index: &TextIndex, tokens: &[Token]) -> Vec<lsp::SemanticToken> {
     let mut encoded = Vec::with_capacity(tokens.len());
     let mut last = lsp::Position::default();
-    let mut line = CurrentLine::default();
+    let mut positions = Positions::of(index);
     for token in tokens {
         let token_type = type_number(token.class);
         let mut tell = |range: lsp::Range| {
@@ -59,52 +59,14 @@ pub(crate) fn encode(index: &TextIndex, tokens: &[Token]) -> Vec<lsp::SemanticTo
             });
             last = range.start;
         };
-        line.go_to(index, token.range.start);
-        match line.range(&token.range, index.encoding) {
-            Some(range) => tell(range),
-            None => lines_of(index, &token.range).iter().for_each(|piece| tell(index.range(piece))),
+        let range = positions.range(&token.range);
+        if range.start.line == range.end.line {
+            tell(range);
+        } else {
+            lines_of(index, &token.range).iter().for_each(|piece| tell(positions.range(piece)));
         }
     }
     encoded
-}
-
-/// In longer lines, columns are looked up in the rope (bytes).
-const SHORT_LINE: usize = 1_000;
-
-/// The line of the last token: the next one is nearly always on it, and needs no search in the rope.
-#[derive(Default)]
-struct CurrentLine {
-    number: u32,
-    start: usize,
-    /// Without its line break; empty for a line that is not short.
-    text: String,
-}
-
-impl CurrentLine {
-    fn go_to(&mut self, index: &TextIndex, offset: usize) {
-        if (self.start..self.start + self.text.len()).contains(&offset) || offset >= index.rope.len_bytes() {
-            return;
-        }
-        let line = index.rope.byte_to_line(offset);
-        let slice = index.rope.line(line);
-        self.number = protocol_number(line);
-        self.start = index.rope.line_to_byte(line);
-        self.text.clear();
-        if slice.len_bytes() <= SHORT_LINE {
-            slice.chunks().for_each(|chunk| self.text.push_str(chunk));
-            self.text.truncate(self.text.trim_end_matches(['\r', '\n']).len());
-        }
-    }
-
-    /// The range of bytes that lie on this line.
-    fn range(&self, bytes: &Range<usize>, encoding: Encoding) -> Option<lsp::Range> {
-        let position = |offset: usize| {
-            let before = self.text.get(..offset.checked_sub(self.start)?)?;
-            let character = encoding.length(before);
-            Some(lsp::Position { line: self.number, character: protocol_number(character) })
-        };
-        Some(lsp::Range { start: position(bytes.start)?, end: position(bytes.end)? })
-    }
 }
 
 fn type_number(class: TokenClass) -> u32 {
@@ -149,6 +111,7 @@ pub(crate) fn difference(old: &[lsp::SemanticToken], new: &[lsp::SemanticToken])
 mod tests {
     use ropey::Rope;
 
+    use super::super::Encoding;
     use super::*;
 
     fn token(range: Range<usize>, class: TokenClass) -> Token {

@@ -8,12 +8,12 @@ use std::time::Duration;
 
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until, timeout};
-use tower_lsp::ls_types::{self as lsp, Uri};
+use tower_lsp::ls_types::Uri;
 
 use super::documents::{Event, Snapshot};
 use super::job::{self, Events};
-use crate::analysis::{Answer, Control, Level};
-use crate::convert::{Places, outgoing};
+use crate::analysis::{Answer, Control, Interrupted, Level};
+use crate::convert::{Places, Positions, outgoing, written};
 
 /// Quiet after which a changed document is checked.
 const QUIET: Duration = Duration::from_millis(40);
@@ -40,28 +40,33 @@ pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events:
                 None => std::future::pending().await,
             }
         };
-        tokio::select! {
+        let ready: Vec<Uri> = tokio::select! {
             message = touched.recv() => {
                 let Some(Touched(uri)) = message else { return };
                 let now = Instant::now();
                 let was = last_touched.insert(uri.clone(), now);
                 checks.retain(|_, told| !told.load(Ordering::Acquire));
                 let done = !checks.contains_key(&uri) && !due.contains_key(&uri);
-                let idle = done || was.is_none_or(|was| now - was >= QUIET);
-                due.insert(uri, if idle { now } else { now + QUIET });
                 last_touched.retain(|_, at| now - *at < QUIET);
+                if done || was.is_none_or(|was| now - was >= QUIET) {
+                    // Not by way of the timer, which counts whole milliseconds.
+                    vec![uri]
+                } else {
+                    due.insert(uri, now + QUIET);
+                    Vec::new()
+                }
             }
             () = quiet_over => {
                 let now = Instant::now();
-                let ready: Vec<Uri> = due.iter().filter(|(_, at)| **at <= now).map(|(uri, _)| uri.clone()).collect();
-                for uri in ready {
-                    due.remove(&uri);
-                    let told = Arc::new(AtomicBool::new(false));
-                    checks.insert(uri.clone(), Arc::clone(&told));
-                    let check = check(uri, events.clone());
-                    tokio::spawn(async move { told.store(check.await, Ordering::Release) });
-                }
+                due.iter().filter(|(_, at)| **at <= now).map(|(uri, _)| uri.clone()).collect()
             }
+        };
+        for uri in ready {
+            due.remove(&uri);
+            let told = Arc::new(AtomicBool::new(false));
+            checks.insert(uri.clone(), Arc::clone(&told));
+            let check = check(uri, events.clone());
+            tokio::spawn(async move { told.store(check.await, Ordering::Release) });
         }
     }
 }
@@ -71,15 +76,15 @@ pub(super) async fn watch(mut touched: mpsc::UnboundedReceiver<Touched>, events:
 async fn check(uri: Uri, events: Events) -> bool {
     let Ok(snapshot) = job::snapshot(&events, uri.clone()).await else { return false };
     let revision = snapshot.revision;
-    let give = |diagnostics| {
-        let _ = events.send(Event::Found { uri: uri.clone(), revision, diagnostics });
+    let give = |message| {
+        let _ = events.send(Event::Found { uri: uri.clone(), revision, message });
     };
     let mut motion = None;
     if wants_motion(&snapshot) {
-        let mut work = tokio::spawn(findings_of(snapshot.clone(), Level::Motion));
+        let mut work = Box::pin(findings_of(snapshot.clone(), Level::Motion));
         match timeout(MOTION_GRACE, &mut work).await {
-            Ok(Ok(Ok(diagnostics))) => {
-                give(diagnostics);
+            Ok(Ok(message)) => {
+                give(message);
                 return true;
             }
             Ok(_) => {} // Cancelled or broken: what Section 1 finds is still worth telling.
@@ -87,25 +92,49 @@ async fn check(uri: Uri, events: Events) -> bool {
         }
     }
     let mut told = false;
-    if let Ok(diagnostics) = findings_of(snapshot, Level::Section1).await {
-        give(diagnostics);
+    if let Ok(message) = findings_of(snapshot, Level::Section1).await {
+        give(message);
         told = true;
     }
     match motion {
         None => told,
         Some(work) => match work.await {
-            Ok(Ok(diagnostics)) => {
-                give(diagnostics);
+            Ok(message) => {
+                give(message);
                 true
             }
-            _ => false,
+            Err(_) => false,
         },
     }
 }
 
-async fn findings_of(snapshot: Snapshot, level: Level) -> tower_lsp::jsonrpc::Result<Vec<lsp::Diagnostic>> {
-    job::on_snapshot("diagnostics", snapshot, move |snapshot, control| findings(snapshot, level, control))
-        .await
+/// The message that tells the findings of a snapshot.
+async fn findings_of(snapshot: Snapshot, level: Level) -> tower_lsp::jsonrpc::Result<Vec<u8>> {
+    job::on_snapshot("diagnostics", snapshot, move |snapshot, control| {
+        let mut message = begun(&snapshot.uri);
+        write_findings(&mut message, snapshot, level, control)?;
+        message.extend_from_slice(b",\"version\":");
+        written::value(&mut message, &snapshot.version);
+        message.extend_from_slice(b"}}");
+        Ok::<_, Interrupted>(message)
+    })
+    .await
+}
+
+/// The message that a document has no findings any more.
+pub(super) fn none(uri: &Uri) -> Vec<u8> {
+    let mut message = begun(uri);
+    message.extend_from_slice(b"[]}}");
+    message
+}
+
+/// The message that tells findings, up to these.
+fn begun(uri: &Uri) -> Vec<u8> {
+    let method = "\"method\":\"textDocument/publishDiagnostics\"";
+    let mut message = format!("{{\"jsonrpc\":\"2.0\",{method},\"params\":{{\"uri\":").into_bytes();
+    written::value(&mut message, uri);
+    message.extend_from_slice(b",\"diagnostics\":");
+    message
 }
 
 /// True if the findings of motion are wanted.
@@ -114,39 +143,53 @@ pub(super) fn wants_motion(snapshot: &Snapshot) -> bool {
 }
 
 /// The findings of an included file: what the programs that include it find in it. By itself it is no program.
-fn findings_inside(
+fn write_findings_inside(
+    out: &mut Vec<u8>,
     snapshot: &Snapshot,
     path: &Path,
     level: Level,
     control: &Control,
-) -> Answer<Vec<lsp::Diagnostic>> {
-    let mut shown: Vec<lsp::Diagnostic> = Vec::new();
-    let mut places = Places::new(&snapshot.uri, &snapshot.index, &snapshot.uris);
+) -> Answer<()> {
+    let mut shown: Vec<Vec<u8>> = Vec::new();
+    let (mut positions, mut places) =
+        (Positions::of(&snapshot.index), Places::new(&snapshot.uri, &snapshot.index, &snapshot.uris));
     for program in &snapshot.includers {
         for found in program.document.diagnostics_in(path, level, control)? {
-            let found = outgoing::diagnostic(&snapshot.index, &mut places, &found);
-            if !shown.contains(&found) && shown.len() < MOST_SHOWN {
-                shown.push(found);
+            let mut one = Vec::new();
+            written::diagnostic(&mut one, &mut positions, &mut places, &found);
+            if !shown.contains(&one) && shown.len() < MOST_SHOWN {
+                shown.push(one);
             }
         }
     }
-    Ok(shown)
+    written::list(out, &shown, |out, one| out.extend_from_slice(one));
+    Ok(())
 }
 
 /// Findings shown of one document. Nobody reads more, and editors show no more.
 const MOST_SHOWN: usize = 1_000;
 
-/// The findings of a snapshot: the gravest, and how many there are besides.
-pub(super) fn findings(snapshot: &Snapshot, level: Level, control: &Control) -> Answer<Vec<lsp::Diagnostic>> {
+/// What a finding usually takes in a message (bytes).
+const USUAL_LENGTH: usize = 256;
+
+/// Writes the findings of a snapshot as a list: the gravest, and how many there are besides.
+pub(super) fn write_findings(
+    out: &mut Vec<u8>,
+    snapshot: &Snapshot,
+    level: Level,
+    control: &Control,
+) -> Answer<()> {
     if let Some(path) = snapshot.included_path() {
-        return findings_inside(snapshot, &path, level, control);
+        return write_findings_inside(out, snapshot, &path, level, control);
     }
     let found = snapshot.document.worst_diagnostics(level, MOST_SHOWN, control)?;
-    let mut places = snapshot.places();
-    let convert = |found| outgoing::diagnostic(&snapshot.index, &mut places, found);
-    let mut shown: Vec<_> = found.diagnostics.iter().map(convert).collect();
-    if found.left_out > 0 {
-        shown.push(outgoing::left_out(found.left_out));
-    }
-    Ok(shown)
+    let (mut positions, mut places) = (Positions::of(&snapshot.index), snapshot.places());
+    let left_out = (found.left_out > 0).then(|| outgoing::left_out(found.left_out));
+    let shown = found.diagnostics.iter().map(Some).chain(left_out.is_some().then_some(None));
+    out.reserve(found.diagnostics.len() * USUAL_LENGTH);
+    written::list(out, shown, |out, one| match one {
+        Some(one) => written::diagnostic(out, &mut positions, &mut places, one),
+        None => written::value(out, &left_out),
+    });
+    Ok(())
 }

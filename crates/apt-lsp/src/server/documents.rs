@@ -10,7 +10,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use tower_lsp::ls_types::{self as lsp, TextDocumentContentChangeEvent, Uri};
 
-use super::diagnostics::Touched;
+use super::diagnostics::{self, Touched};
 use super::outbox::{Notice, Outbox};
 use super::workers::Workers;
 use crate::analysis::{Document, Files, Language, Surroundings, TextEdit, normalised};
@@ -66,8 +66,8 @@ pub(super) enum Event {
         uri: Uri,
         /// The revision in which they were found.
         revision: u64,
-        /// The findings.
-        diagnostics: Vec<lsp::Diagnostic>,
+        /// The message that tells them.
+        message: Vec<u8>,
     },
 }
 
@@ -224,7 +224,7 @@ impl Documents {
                 let all = uris.iter().filter_map(|uri| self.plain_snapshot(uri)).collect();
                 let _ = reply.send(all);
             }
-            Event::Found { uri, revision, diagnostics } => self.tell(uri, revision, diagnostics),
+            Event::Found { uri, revision, message } => self.tell(&uri, revision, message),
         }
     }
 
@@ -404,8 +404,7 @@ impl Documents {
             self.supersede(&uri, |_| {});
         }
         if self.push {
-            let notice = Notice::Findings { uri: uri.clone(), diagnostics: Vec::new(), version: None };
-            self.outbox.tell(notice);
+            self.outbox.tell(Notice::Findings(diagnostics::none(uri)));
         }
     }
 
@@ -446,11 +445,9 @@ impl Documents {
         })
     }
 
-    fn tell(&self, uri: Uri, revision: u64, diagnostics: Vec<lsp::Diagnostic>) {
-        if let Some(document) = self.open.get(&uri)
-            && document.revision == revision
-        {
-            self.outbox.tell(Notice::Findings { uri, diagnostics, version: Some(document.version) });
+    fn tell(&self, uri: &Uri, revision: u64, message: Vec<u8>) {
+        if self.open.get(uri).is_some_and(|document| document.revision == revision) {
+            self.outbox.tell(Notice::Findings(message));
         }
     }
 

@@ -2,27 +2,17 @@
 //!
 //! Those who tell something only put it here; nobody who handles a message ever waits for the client.
 
-use serde::Serialize;
 use serde_json::json;
 use tokio::sync::mpsc;
 use tower_lsp::Client;
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{
-    Diagnostic, MessageType, PublishDiagnosticsParams, Registration, Unregistration, Uri,
-};
+use tower_lsp::ls_types::{MessageType, Registration, Unregistration};
 
 /// Something to tell.
 #[derive(Debug)]
 pub(super) enum Notice {
-    /// The findings in one version of a document.
-    Findings {
-        /// The document.
-        uri: Uri,
-        /// The findings.
-        diagnostics: Vec<Diagnostic>,
-        /// The version in which they were found; none for a closed document.
-        version: Option<i32>,
-    },
+    /// A message that is written already: the findings in a version of a document.
+    Findings(Vec<u8>),
     /// A line for the log of the client.
     Log(MessageType, String),
     /// Something that the user should see.
@@ -58,23 +48,6 @@ async fn watch_included(client: &Client, names: &[String], again: bool) -> Resul
     client.register_capability(vec![registration]).await
 }
 
-/// The findings of a document as a message. The library would make a JSON value of them first, which takes most of the
-/// time of an edit.
-#[derive(Serialize)]
-struct Published {
-    jsonrpc: &'static str,
-    method: &'static str,
-    params: PublishDiagnosticsParams,
-}
-
-/// Sends findings. After the end of the conversation they go nowhere.
-async fn publish(frames: &mpsc::WeakSender<Vec<u8>>, params: PublishDiagnosticsParams) {
-    let message = Published { jsonrpc: "2.0", method: "textDocument/publishDiagnostics", params };
-    if let (Some(frames), Ok(body)) = (frames.upgrade(), serde_json::to_vec(&message)) {
-        let _ = frames.send(body).await;
-    }
-}
-
 /// The way into the outbox.
 #[derive(Debug, Clone)]
 pub(super) struct Outbox(mpsc::UnboundedSender<Notice>);
@@ -97,8 +70,11 @@ impl Outbox {
         tokio::spawn(async move {
             while let Some(notice) = waiting.recv().await {
                 match notice {
-                    Notice::Findings { uri, diagnostics, version } => {
-                        publish(&frames, PublishDiagnosticsParams { uri, diagnostics, version }).await;
+                    // After the end of the conversation they go nowhere.
+                    Notice::Findings(message) => {
+                        if let Some(frames) = frames.upgrade() {
+                            let _ = frames.send(message).await;
+                        }
                     }
                     Notice::Log(level, text) => client.log_message(level, text).await,
                     Notice::Show(text) => client.show_message(MessageType::WARNING, text).await,

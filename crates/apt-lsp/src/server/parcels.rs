@@ -56,9 +56,14 @@ struct Waiting {
 #[serde(transparent)]
 pub(super) struct Ticket(String);
 
+/// The beginning of a message, to which its answer is to be written.
+pub(super) fn begun() -> Vec<u8> {
+    Vec::from(ANSWER)
+}
+
 /// The beginning of a message with an answer.
 pub(super) fn packed(answer: &impl Serialize) -> Result<Vec<u8>> {
-    let mut bytes = Vec::from(ANSWER);
+    let mut bytes = begun();
     serde_json::to_writer(&mut bytes, answer)
         .map_err(|error| Error { message: error.to_string().into(), ..Error::internal_error() })?;
     Ok(bytes)

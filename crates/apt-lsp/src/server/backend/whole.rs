@@ -7,9 +7,9 @@ use tower_lsp::ls_types::{self as lsp, Uri};
 
 use super::{Backend, SERVER_CANCELLED, locations};
 use crate::analysis::{Answer, Control, Interrupted, Level, Spot};
-use crate::convert::{outgoing, tokens};
+use crate::convert::{outgoing, tokens, written};
 use crate::server::documents::Snapshot;
-use crate::server::parcels::{Ticket, packed};
+use crate::server::parcels::{Ticket, begun, packed};
 use crate::server::{diagnostics, job};
 
 impl Backend {
@@ -25,16 +25,18 @@ impl Backend {
     }
 
     pub(in crate::server) async fn symbols(&self, params: lsp::DocumentSymbolParams) -> Result<Ticket> {
-        let nested = self.features().nested_symbols;
-        self.ask_whole("document symbols", params.text_document.uri, move |snapshot, _| {
+        let (uri, nested) = (params.text_document.uri, self.features().nested_symbols);
+        let answer = self.ask("document symbols", uri, move |snapshot, _| {
             let (index, outline) = (&snapshot.index, snapshot.document.outline());
-            Ok(if nested {
-                outline.into_iter().map(|entry| outgoing::symbol(index, entry)).collect::<Vec<_>>().into()
+            let mut packed = begun();
+            if nested {
+                written::symbols(&mut packed, index, &outline);
             } else {
-                lsp::DocumentSymbolResponse::from(outgoing::flat_symbols(index, &snapshot.uri, outline))
-            })
-        })
-        .await
+                written::value(&mut packed, &outgoing::flat_symbols(index, &snapshot.uri, outline));
+            }
+            Ok(packed)
+        });
+        Ok(self.parcels.put(answer.await?))
     }
 
     pub(in crate::server) async fn all_references(&self, params: lsp::ReferenceParams) -> Result<Ticket> {
@@ -124,14 +126,13 @@ impl Backend {
         let level = if diagnostics::wants_motion(&snapshot) { Level::Motion } else { Level::Section1 };
         let superseded = snapshot.superseded.clone();
         let found = job::on_snapshot("diagnostics", snapshot, move |snapshot, control| {
-            let items = diagnostics::findings(snapshot, level, control)?;
-            let full = lsp::FullDocumentDiagnosticReport { result_id: Some(id), items };
-            Ok::<_, Interrupted>(packed(&lsp::DocumentDiagnosticReport::Full(
-                lsp::RelatedFullDocumentDiagnosticReport {
-                    related_documents: None,
-                    full_document_diagnostic_report: full,
-                },
-            )))
+            let mut packed = begun();
+            packed.extend_from_slice(b"{\"kind\":\"full\",\"resultId\":");
+            written::value(&mut packed, &id);
+            packed.extend_from_slice(b",\"items\":");
+            diagnostics::write_findings(&mut packed, snapshot, level, control)?;
+            packed.push(b'}');
+            Ok::<_, Interrupted>(packed)
         })
         .await;
         let packed = found.map_err(|error| {
@@ -144,7 +145,7 @@ impl Backend {
                 };
             }
             error
-        })??;
+        })?;
         Ok(self.parcels.put(packed))
     }
 }
