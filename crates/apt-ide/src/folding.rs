@@ -2,12 +2,9 @@
 
 use std::ops::Range;
 
-use apt_syntax::{
-    statement::{Body, Clause},
-    tree::{StatementView, SyntaxTree},
-};
+use apt_syntax::tree::SyntaxTree;
 
-use crate::{Analysis, search::contains};
+use crate::Analysis;
 
 /// The kind of a fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +42,7 @@ impl Analysis {
             })
             .collect();
         // The clause that ends a branch stays in sight.
-        folds.extend(branches(tree).into_iter().map(|branch| Fold {
+        folds.extend(self.marks().branches().into_iter().map(|branch| Fold {
             kind: FoldKind::Region,
             range: bytes(branch.start).start..bytes(branch.end).start,
         }));
@@ -65,39 +62,6 @@ impl Analysis {
         close(&mut folds, tree, &mut comment);
         folds.sort_by_key(|fold| (fold.range.start, std::cmp::Reverse(fold.range.end)));
         folds
-    }
-}
-
-/// The branches of all IFs over several statements: from the clause that opens a branch to the one that ends it.
-/// Branches that nothing ends are left out.
-pub(crate) fn branches(tree: &SyntaxTree) -> Vec<Range<usize>> {
-    let mut branches = Vec::new();
-    if !tree.dialect().structured_if {
-        return branches;
-    }
-    // The clauses that opened the branches which are open, innermost last.
-    let mut open: Vec<usize> = Vec::new();
-    for view in tree.statements() {
-        let Some((opens, closes)) = branch_ends(&view) else { continue };
-        let first = if closes { open.pop() } else { None };
-        branches.extend(first.map(|first| first..view.index));
-        open.extend(opens.then_some(view.index));
-    }
-    branches
-}
-
-/// Whether a statement opens and whether it closes a branch of an IF over several statements; nothing if neither.
-fn branch_ends(view: &StatementView) -> Option<(bool, bool)> {
-    let text = view.text().as_bytes();
-    if ![b"THEN".as_slice(), b"ELSE", b"ENDIF"].iter().any(|word| contains(text, word)) {
-        return None;
-    }
-    let parsed = view.parsed();
-    match &parsed.statement.parts.first()?.body {
-        Body::Clause { clause: Clause::If(_), .. } => Some((true, false)),
-        Body::Clause { clause: Clause::ElseIf(_) | Clause::Else, .. } => Some((true, true)),
-        Body::Clause { clause: Clause::End, .. } => Some((false, true)),
-        _ => None,
     }
 }
 

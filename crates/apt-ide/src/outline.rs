@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, ops::Range};
 
 use apt_syntax::statement::{Body, Clause};
 
-use crate::{Analysis, absolute, folding::branches};
+use crate::{Analysis, absolute};
 
 /// The kind of an outline entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl Analysis {
         let mut top = Vec::new();
         let mut count = 0;
         let branches: BTreeMap<usize, usize> =
-            branches(tree).into_iter().map(|branch| (branch.start, branch.end)).collect();
+            self.marks().branches().into_iter().map(|branch| (branch.start, branch.end)).collect();
         for view in tree.statements() {
             while stack.last().is_some_and(|(last, _)| *last < view.index) {
                 pop(&mut stack, &mut top);
@@ -62,9 +62,9 @@ impl Analysis {
                 let whole = absolute(&view, part.range);
                 let Some(mut entry) = entry(&view, &part.body, whole.clone()) else { continue };
                 count += 1;
-                let region = self.regions().iter().find(|region| region.first == view.index);
+                let region = || self.regions().iter().find(|region| region.first == view.index);
                 let last = match entry.kind {
-                    OutlineKind::Macro | OutlineKind::Loop => region.map(|region| region.last),
+                    OutlineKind::Macro | OutlineKind::Loop => region().map(|region| region.last),
                     // The clause that ends a branch belongs to the next one, or to none.
                     OutlineKind::Branch => branch.map(|end| end.saturating_sub(1)),
                     _ => None,

@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use apt_syntax::{statement::Body, tree::SyntaxTree};
+use apt_syntax::{
+    statement::{Body, Clause},
+    tree::SyntaxTree,
+};
 use smol_str::SmolStr;
 
 use crate::{carry::Carried, files::names_of_files, search::contains};
@@ -46,9 +49,16 @@ enum Mark {
     EndLoop,
     /// A statement that puts in another file.
     Inclusion,
+    /// A clause of an IF over several statements.
+    Branch {
+        /// It opens a branch.
+        opens: bool,
+        /// It closes the one before it.
+        closes: bool,
+    },
 }
 
-/// The statements that open or close regions, in order; after an edit only the statements that it touched are looked
+/// The statements that open or close regions and branches, in order; after an edit only the statements that it touched are looked
 /// at again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Marks(Vec<(usize, Mark)>);
@@ -69,10 +79,12 @@ impl Marks {
 
     fn among(tree: &SyntaxTree, statements: Range<usize>) -> impl Iterator<Item = (usize, Mark)> {
         const WORDS: [&str; 7] = ["MACRO", "TERMAC", "LOOPST", "LOOPND", "INCLUD", "LIBRY", "READ"];
+        const CLAUSES: [&str; 3] = ["THEN", "ELSE", "ENDIF"];
+        let clauses: &[&str] = if tree.dialect().structured_if { &CLAUSES } else { &[] };
         statements.filter_map(move |index| {
             let view = tree.statement(index);
             let text = view.text().as_bytes();
-            let may_mark = WORDS.iter().any(|word| contains(text, word.as_bytes()));
+            let may_mark = WORDS.iter().chain(clauses).any(|word| contains(text, word.as_bytes()));
             Some((index, may_mark.then(|| mark(tree, index)).flatten()?))
         })
     }
@@ -80,6 +92,21 @@ impl Marks {
     /// The statements that put in other files.
     pub(crate) fn inclusions(&self) -> impl Iterator<Item = usize> {
         self.0.iter().filter(|(_, mark)| *mark == Mark::Inclusion).map(|(index, _)| *index)
+    }
+
+    /// The branches of all IFs over several statements: from the clause that opens a branch to the one that ends it.
+    /// Branches that nothing ends are left out.
+    pub(crate) fn branches(&self) -> Vec<Range<usize>> {
+        let mut branches = Vec::new();
+        // The clauses that opened the branches which are open, innermost last.
+        let mut open: Vec<usize> = Vec::new();
+        for (index, mark) in &self.0 {
+            let Mark::Branch { opens, closes } = mark else { continue };
+            let first = if *closes { open.pop() } else { None };
+            branches.extend(first.map(|first| first..*index));
+            open.extend(opens.then_some(*index));
+        }
+        branches
     }
 
     /// All regions, in order of their opening statements.
@@ -99,7 +126,7 @@ impl Marks {
                     close(&mut regions, &mut open, RegionKind::Loop, *index);
                     continue;
                 }
-                Mark::Inclusion => continue,
+                Mark::Inclusion | Mark::Branch { .. } => continue,
             };
             open.push(regions.len());
             regions.push(Region { kind, name, first: *index, last: end, variables });
@@ -118,7 +145,8 @@ fn close(regions: &mut [Region], open: &mut Vec<usize>, kind: RegionKind, index:
 
 fn mark(tree: &SyntaxTree, index: usize) -> Option<Mark> {
     let parsed = tree.statement(index).parsed();
-    parsed.statement.parts.iter().find_map(|part| match &part.body {
+    let parts = &parsed.statement.parts;
+    let region = parts.iter().find_map(|part| match &part.body {
         Body::Macro { name, parameters, .. } => {
             let variables = parameters.iter().map(|parameter| parameter.name.text.clone()).collect();
             Some(Mark::Macro(name.text.clone(), variables))
@@ -130,5 +158,17 @@ fn mark(tree: &SyntaxTree, index: usize) -> Option<Mark> {
             _ => (!names_of_files(&part.body).is_empty()).then_some(Mark::Inclusion),
         },
         _ => None,
-    })
+    });
+    region.or_else(|| branch(&parts.first()?.body).filter(|_| tree.dialect().structured_if))
+}
+
+/// What a clause does to the branches of its IF.
+fn branch(body: &Body) -> Option<Mark> {
+    let (opens, closes) = match body {
+        Body::Clause { clause: Clause::If(_), .. } => (true, false),
+        Body::Clause { clause: Clause::ElseIf(_) | Clause::Else, .. } => (true, true),
+        Body::Clause { clause: Clause::End, .. } => (false, true),
+        _ => return None,
+    };
+    Some(Mark::Branch { opens, closes })
 }
