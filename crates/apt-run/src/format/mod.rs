@@ -21,7 +21,7 @@ mod tests;
 
 use std::ops::Range;
 
-use apt_syntax::{Dialect, SyntaxTree, record::Layout, tree::StatementView};
+use apt_syntax::{Dialect, SyntaxTree, lexer::lex, record::Layout, tree::StatementView};
 
 pub use options::{FormatOptions, FormatSettings, LAST_STATEMENT_COLUMN, LetterCase};
 
@@ -203,7 +203,8 @@ fn laid_out(
     options: &FormatOptions,
     layout: &Layout,
 ) -> Result<Vec<Line>, KeptReason> {
-    let records = match record::divide(text, layout) {
+    let lexed = lex(text, layout);
+    let records = match record::divide(text, &lexed, layout) {
         Division::Records(records) => records,
         Division::Verbatim => return Ok(Vec::new()),
         Division::Kept(reason) => return Err(reason),
@@ -216,7 +217,7 @@ fn laid_out(
     for line in &lines {
         line.write(line.own_column(), &mut new);
     }
-    if new == text || verify::same_statement(text, &new, layout) {
+    if new == text || verify::same_statement((text, &lexed), &new, layout) {
         Ok(lines)
     } else {
         Err(KeptReason::ReadOtherwise)

@@ -2,6 +2,7 @@
 
 use apt_syntax::{
     SyntaxKind,
+    lexer::Lexed,
     record::{Layout, StatementForm, record_length, statement_form},
     tree,
 };
@@ -48,8 +49,8 @@ pub(super) enum Division<'a> {
     Kept(KeptReason),
 }
 
-/// Divides a statement.
-pub(super) fn divide<'a>(text: &'a str, layout: &Layout) -> Division<'a> {
+/// Divides a statement, which has been lexed.
+pub(super) fn divide<'a>(text: &'a str, lexed: &Lexed, layout: &Layout) -> Division<'a> {
     let first_record = text.get(..record_length(text).0).unwrap_or(text);
     if statement_form(first_record, layout) != StatementForm::Ordinary {
         return Division::Verbatim;
@@ -57,7 +58,7 @@ pub(super) fn divide<'a>(text: &'a str, layout: &Layout) -> Division<'a> {
     let mut records = Vec::new();
     let mut record = Record { at_margin: is_at_margin(text), ..Record::default() };
     let mut after_blank = false;
-    for token in tree::tokens(text, layout) {
+    for token in tree::tokens_of(lexed) {
         let range = std::ops::Range::<usize>::from(token.range);
         let piece = text.get(range.clone()).unwrap_or("");
         match token.kind {

@@ -9,20 +9,20 @@ use apt_syntax::{
 use super::record::BLANKS;
 
 /// Whether two texts of a statement have the same elements, the same mistakes, the same comments and the same sequence
-/// fields, and the new one is still one statement.
-pub(super) fn same_statement(old: &str, new: &str, layout: &Layout) -> bool {
+/// fields, and the new one is still one statement. The old one has been lexed.
+pub(super) fn same_statement((old, before): (&str, &Lexed), new: &str, layout: &Layout) -> bool {
     if statement_boundaries(new, layout).starts.len() != 1 {
         return false;
     }
-    let (before, after) = (lex(old, layout), lex(new, layout));
+    let after = lex(new, layout);
     let elements = before.elements.len() == after.elements.len()
         && before.elements.iter().zip(&after.elements).all(|(a, b)| a.kind == b.kind && a.text == b.text);
     let mistakes =
         before.errors.iter().map(|error| &error.kind).eq(after.errors.iter().map(|error| &error.kind));
     elements
         && mistakes
-        && texts(old, &before, SyntaxKind::Comment).eq(texts(new, &after, SyntaxKind::Comment))
-        && texts(old, &before, SyntaxKind::SequenceField).eq(texts(new, &after, SyntaxKind::SequenceField))
+        && texts(old, before, SyntaxKind::Comment).eq(texts(new, &after, SyntaxKind::Comment))
+        && texts(old, before, SyntaxKind::SequenceField).eq(texts(new, &after, SyntaxKind::SequenceField))
 }
 
 /// The texts of the tokens of a kind, without trailing blanks and without those that are nothing else.

@@ -41,6 +41,9 @@ pub(super) struct Reduced {
 /// Reduces a statement.
 pub(super) fn reduce(text: &str, form: StatementForm, layout: &Layout) -> Reduced {
     let mut reduced = Reduced::default();
+    if form == StatementForm::Ordinary {
+        reduced.characters.reserve_exact(text.len());
+    }
     let mut offset = 0;
     let mut text_end = 0;
     while let Some(rest) = text.get(offset..).filter(|rest| !rest.is_empty()) {

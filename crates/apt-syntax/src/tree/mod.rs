@@ -14,7 +14,7 @@ use std::sync::Arc;
 use rowan::{TextRange, TextSize};
 
 pub use edit::StatementChange;
-pub use view::{BlockView, StatementView, TokenView, tokens};
+pub use view::{BlockView, StatementView, TokenView, tokens, tokens_of};
 
 use crate::dialect::{Dialect, SequenceFieldRule};
 use crate::kind::SyntaxNode;

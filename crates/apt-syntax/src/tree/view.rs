@@ -121,7 +121,11 @@ impl StatementView {
 
 /// The tokens of one statement's text.
 pub fn tokens(text: &str, layout: &Layout) -> Vec<TokenView> {
-    let lexed = lexer::lex(text, layout);
+    tokens_of(&lexer::lex(text, layout))
+}
+
+/// The tokens of a statement that has been lexed.
+pub fn tokens_of(lexed: &lexer::Lexed) -> Vec<TokenView> {
     let mut views: Vec<TokenView> = lexed
         .tokens
         .iter()
