@@ -9,7 +9,7 @@ use crate::grammar::{ParsedStatement, parse_statement};
 use crate::record::{Layout, SequenceEvidence, statement_boundaries};
 
 /// How many statements a new block has. An edit copies the text of its block, some kilobytes.
-const STATEMENTS_PER_BLOCK: usize = 256;
+const STATEMENTS_PER_BLOCK: usize = 128;
 
 /// A parsed statement that is made when it is first asked.
 type Kept = OnceLock<Arc<ParsedStatement>>;
