@@ -39,7 +39,7 @@ fn program(bencher: Bencher<'_, '_>, path: &str) {
 fn motion(bencher: Bencher<'_, '_>, text: &str) {
     let result = analysis(text, "free").document().run(&|| false, &mut |_, _| {}).unwrap();
     assert_eq!(result.findings.len(), 0, "only whole paths are measured");
-    let vectors = result.totals.points;
+    let vectors = result.totals().points;
     bencher
         .counter(ItemsCount::new(vectors))
         .bench(|| analysis(text, "free").document().run(&|| false, &mut |_, _| {}).unwrap());

@@ -53,7 +53,7 @@ fn a_million_lines_of_cl_text_open_and_take_edits() {
 fn a_million_lines_of_cl_text_run() {
     let whole = analysis(&cl_lines(MILLION), "cl");
     let result = whole.document().run(&|| false, &mut |_, _| {}).unwrap();
-    assert_eq!(result.totals.points, MILLION);
+    assert_eq!(result.totals().points, MILLION);
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn evaluated(statements: usize) -> Analysis {
     let program = whole.document().program(&|| false).unwrap();
     assert_eq!(program.statistics().evaluated_statements as usize, whole.document().tree().statement_count());
     let result = whole.document().run(&|| false, &mut |_, _| {}).unwrap();
-    assert_eq!(result.totals.points, statements / 8 + 1);
+    assert_eq!(result.totals().points, statements / 8 + 1);
     whole
 }
 

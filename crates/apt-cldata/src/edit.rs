@@ -208,6 +208,8 @@ pub fn edit_within(items: Vec<EditItem>, most_indexes: usize) -> (Vec<ClRecord>,
     let spans = spans(&items);
     let (levels, indexes) = (vec![Level::base()], BTreeSet::new());
     let mut editor = Editor { levels, errors, made: 0, indexes, most_indexes };
+    // Most programs copy nothing: then all items come there.
+    editor.levels.iter_mut().for_each(|base| base.held.reserve(items.len()));
     for (at, item) in items.into_iter().enumerate() {
         editor.item(item, spans.get(&at).copied());
     }

@@ -340,11 +340,10 @@ impl Walk {
         }
         self.surface_vectors = false;
         self.stop = None;
-        let (Some(tool), Some((origin, numbers))) = (self.tool, self.cutter.clone()) else { return };
-        let (first, dimensions) =
-            self.cutters.entry(tool).or_insert_with(|| (origin.clone(), numbers.clone()));
-        if *dimensions != numbers {
-            let first = first.clone();
+        let (Some(tool), Some(cutter)) = (self.tool, &self.cutter) else { return };
+        let first = self.cutters.entry(tool).or_insert_with(|| cutter.clone());
+        if first.1 != cutter.1 {
+            let (first, origin) = (first.0.clone(), cutter.0.clone());
             self.add(LintKind::ToolWithTwoCutters { tool }, &origin, Some(&first));
         }
     }

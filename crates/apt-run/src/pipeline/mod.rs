@@ -132,8 +132,13 @@ pub struct RunResult {
     pub milled: Vec<Milling>,
     /// What is to be said about them.
     pub findings: Vec<RunFinding>,
+}
+
+impl RunResult {
     /// Lengths, time and box of the final path.
-    pub totals: Totals,
+    pub fn totals(&self) -> Totals {
+        totals(&self.records)
+    }
 }
 
 /// Runs Sections 2 and 3 over a program; nothing comes out of them if the program says PTONLY/1. `progress` gets the
@@ -153,18 +158,11 @@ pub fn run(
     memo.begin_run();
     if program.skips_motion() {
         let (records, origins) = (Vec::new(), Vec::new());
-        let totals = totals(&records);
-        return Ok(RunResult {
-            records,
-            origins,
-            motions: Vec::new(),
-            milled: Vec::new(),
-            findings: Vec::new(),
-            totals,
-        });
+        let (motions, milled, findings) = (Vec::new(), Vec::new(), Vec::new());
+        return Ok(RunResult { records, origins, motions, milled, findings });
     }
-    let mut section2 = section2::Section2::new(settings, tree.dialect().name, memo, cancel);
     let total = program.record_count();
+    let mut section2 = section2::Section2::new(total, settings, tree.dialect().name, memo, cancel);
     for (done, record) in program.records().enumerate() {
         if done % 64 == 0 {
             if cancel() {
@@ -193,13 +191,11 @@ pub fn run(
             record.isn = origin.place_in_program().0;
         }
     }
-    let totals = totals(&records);
     Ok(RunResult {
         records,
         origins: output.origins,
         motions: output.motions,
         milled: output.milled,
         findings,
-        totals,
     })
 }

@@ -78,15 +78,17 @@ struct Cures {
 }
 
 impl<'a> Section2<'a> {
+    /// Begins a run of so many records.
     pub(super) fn new(
+        records: usize,
         settings: &Settings,
         dialect: DialectName,
         memo: &'a MotionMemo,
         cancel: Cancel<'a>,
     ) -> Self {
         let output = SectionTwoOutput {
-            items: Vec::new(),
-            origins: Vec::new(),
+            items: Vec::with_capacity(records),
+            origins: Vec::with_capacity(records),
             motions: Vec::new(),
             milled: Vec::new(),
             findings: Vec::new(),
@@ -124,7 +126,7 @@ impl<'a> Section2<'a> {
                 }
             }
             RecordKind::Postprocessor { word, code, arguments } => {
-                let arguments = arguments.iter().flat_map(cl_words).collect();
+                let arguments = cl_words(arguments);
                 let kind = ClKind::Postprocessor { word: word.clone(), code: Some(*code), arguments };
                 self.push(record.origin.isn, source, kind);
             }
@@ -159,7 +161,7 @@ impl<'a> Section2<'a> {
                 });
             }
             RecordKind::Control { word, code, arguments } => {
-                let arguments = arguments.iter().flat_map(cl_words).collect();
+                let arguments = cl_words(arguments);
                 self.push(
                     record.origin.isn,
                     source,
@@ -475,13 +477,17 @@ fn units(word: &str, arguments: &[PostArgument]) -> Option<Units> {
 }
 
 /// A canonical form goes into the record as its numbers.
-fn cl_words(argument: &PostArgument) -> Vec<ClWord> {
-    match argument {
-        PostArgument::Number(number) => vec![ClWord::Number(*number)],
-        PostArgument::Word(word, _) => vec![ClWord::Word(word.clone())],
-        PostArgument::Text(text) => vec![ClWord::Word(text.clone())],
-        PostArgument::Geometry(geometry) => {
-            geometry.canonical_values().into_iter().map(ClWord::Number).collect()
+fn cl_words(arguments: &[PostArgument]) -> Vec<ClWord> {
+    let mut words = Vec::with_capacity(arguments.len());
+    for argument in arguments {
+        match argument {
+            PostArgument::Number(number) => words.push(ClWord::Number(*number)),
+            PostArgument::Word(word, _) => words.push(ClWord::Word(word.clone())),
+            PostArgument::Text(text) => words.push(ClWord::Word(text.clone())),
+            PostArgument::Geometry(geometry) => {
+                words.extend(geometry.canonical_values().into_iter().map(ClWord::Number));
+            }
         }
     }
+    words
 }

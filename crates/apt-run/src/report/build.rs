@@ -303,7 +303,7 @@ fn statement_text(tree: &SyntaxTree, isn: u32) -> String {
 }
 
 fn totals_entry(result: &RunResult) -> TotalsEntry {
-    let totals = &result.totals;
+    let totals = result.totals();
     TotalsEntry {
         points: totals.points,
         length: clean(totals.length),
