@@ -62,6 +62,21 @@ fn an_edit_in_the_middle_evaluates_little() {
 }
 
 #[test]
+fn an_edit_of_a_short_program_evaluates_a_small_part_of_it() {
+    for lines in [200, 1_000, 2_000] {
+        let text = long_program(lines);
+        let tree = parse(&text);
+        let program = run(&tree);
+        let at = text.find(&format!("GOTO/{},", lines / 2)).expect("the line");
+        let (tree, change) = edited(&tree, at + 5, at + 6, "7");
+        let updated = program.update(&tree, &change, &options(), &|| false);
+        assert_same(&updated, &run(&tree), "an edited line");
+        let most = (lines as u64 / 16).max(32);
+        assert!(updated.statistics().evaluated_statements <= most, "{lines}: {:?}", updated.statistics());
+    }
+}
+
+#[test]
 fn inserted_lines_move_the_rest() {
     let text = long_program(2_000);
     let tree = parse(&text);

@@ -230,10 +230,10 @@ impl Chunk {
         self.data.inner_labels.contains(label)
     }
 
-    /// The same chunk after statements before it were inserted or removed, and after names that it does not depend on
-    /// got another meaning.
-    pub(super) fn moved(&self, shift: Shift, patch: &Patch) -> Chunk {
-        let mut chunk = self.clone();
+    /// The same chunk after statements before it were inserted or removed; names of which `patch` says something have
+    /// that meaning before it.
+    fn moved(&self, shift: Shift, patch: Patch) -> Chunk {
+        let mut chunk = Self { patch, ..self.clone() };
         if !shift.is_nothing() {
             // What was already worked out is the new base, so that shifts do not pile up.
             if let Some(shifted) = self.shifted.get() {
@@ -243,9 +243,22 @@ impl Chunk {
             shift.append_to(&mut chunk.shifts);
             shift.append_to(&mut chunk.before_shifts);
             chunk.shifted = Arc::new(OnceLock::new());
-            chunk.patch = chunk.patch.moved(shift);
         }
-        chunk.patch = chunk.patch.then(patch);
         chunk
     }
+}
+
+/// Chunks after statements before them were inserted or removed, and after names that they do not depend on got another
+/// meaning. Those that remembered the same meanings share the new ones: of each edit of a long session there are some.
+pub(super) fn moved(chunks: &[Chunk], shift: Shift, patch: &Patch) -> impl Iterator<Item = Chunk> {
+    let mut last: Option<(&Patch, Patch)> = None;
+    chunks.iter().map(move |chunk| {
+        let known = last.as_ref().filter(|(before, _)| before.is_same(&chunk.patch));
+        let now = known.map(|(_, now)| now.clone()).unwrap_or_else(|| {
+            let now = chunk.patch.moved(shift).then(patch);
+            last = Some((&chunk.patch, now.clone()));
+            now
+        });
+        chunk.moved(shift, now)
+    })
 }

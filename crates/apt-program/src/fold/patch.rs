@@ -41,9 +41,18 @@ impl Patch {
         }
     }
 
+    /// Whether it is another clone of the same patch.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (None, None) => true,
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            _ => false,
+        }
+    }
+
     /// The same after statements were inserted or removed.
     pub(super) fn moved(&self, shift: Shift) -> Self {
-        let Some(meanings) = &self.0 else { return Self::default() };
+        let Some(meanings) = self.0.as_ref().filter(|_| !shift.is_nothing()) else { return self.clone() };
         let mut meanings = (**meanings).clone();
         meanings.values_mut().flatten().for_each(|symbol| shift.symbol(symbol));
         Self(Some(Arc::new(meanings)))

@@ -6,7 +6,7 @@ use apt_syntax::{StatementChange, SyntaxTree, dialect::DialectName};
 use smol_str::SmolStr;
 
 use super::{
-    chunk::Chunk,
+    chunk::{Chunk, moved},
     close::closing_findings,
     run::{End, Old, Outcome, evaluate_from},
     unused::{Replacement, Unused},
@@ -123,10 +123,8 @@ impl Program {
             End::Cancelled => (Arc::new(State::default()), false),
             End::Converged(first, shift, patch) => {
                 let Some(old) = old else { return Program::assemble_nothing() };
-                for chunk in &old.chunks[first..] {
-                    reused += chunk.steps();
-                    chunks.push(chunk.moved(shift, &patch));
-                }
+                reused += old.chunks[first..].iter().map(Chunk::steps).sum::<u64>();
+                chunks.extend(moved(&old.chunks[first..], shift, &patch));
                 // The states agree at the seam but for names that nothing behind it changes: so do they at the end.
                 let mut end = (*old.end).clone();
                 if !shift.is_nothing() {

@@ -5,7 +5,7 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::{
-    chunk::{Chunk, ChunkData},
+    chunk::{Chunk, ChunkData, moved},
     converge::differing,
     patch::Patch,
     shift::Shift,
@@ -15,8 +15,18 @@ use crate::{
     options::Options,
 };
 
-/// Top-level statements between two checkpoints.
-const CHUNK_STEPS: u64 = 128;
+/// Most top-level statements between two checkpoints, and least.
+const CHUNK_STEPS: [u64; 2] = [128, 16];
+
+/// Checkpoints of a program in which they stand closer than the most: with fewer, an edit would evaluate much of a short
+/// program again; more of them would cost more than they save.
+const CHUNKS: u64 = 32;
+
+/// Top-level statements between two checkpoints of a program.
+fn chunk_steps(statements: usize) -> u64 {
+    let [most, least] = CHUNK_STEPS;
+    (statements as u64 / CHUNKS).clamp(least, most)
+}
 
 /// Chunks a program had before an edit, for reuse.
 pub(super) struct Old<'o> {
@@ -80,10 +90,9 @@ pub(crate) fn evaluate_from(
                 outcome.end = End::Converged(first, reuse.shift, patch);
                 return outcome;
             };
-            for chunk in &reuse.old.chunks[first..until] {
-                outcome.reused += chunk.steps();
-                outcome.chunks.push(chunk.moved(reuse.shift, &patch));
-            }
+            let taken_over = &reuse.old.chunks[first..until];
+            outcome.reused += taken_over.iter().map(Chunk::steps).sum::<u64>();
+            outcome.chunks.extend(moved(taken_over, reuse.shift, &patch));
             let mut state = next.before();
             if !reuse.shift.is_nothing() {
                 reuse.shift.state(&mut state);
@@ -136,6 +145,7 @@ fn run_chunk(
     until: Option<usize>,
 ) -> (ChunkData, usize) {
     let count = top.tree.statement_count();
+    let chunk_steps = chunk_steps(count);
     let mut index = start;
     let mut steps = 0;
     let (mut read_from, mut read_to) = (start, start);
@@ -146,10 +156,10 @@ fn run_chunk(
         read_to = read_to.max(end.read_to);
         index = end.next;
         let settled = evaluator.pending.is_none() && top.is_settled(index);
-        if settled && (steps >= CHUNK_STEPS || until == Some(index)) {
+        if settled && (steps >= chunk_steps || until == Some(index)) {
             break;
         }
-        if steps % CHUNK_STEPS == 0 && evaluator.is_cancelled() {
+        if steps % chunk_steps == 0 && evaluator.is_cancelled() {
             break;
         }
     }
