@@ -393,7 +393,7 @@ impl Search<'_> {
     /// the nearest place is closed in.
     fn patch(&mut self, a: Meridian, b: Meridian) -> Option<()> {
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
-        let mut lines = [OnLine { t: 0.0, value: 0.0, rate: 0.0 }; AZIMUTHS];
+        let mut lines = [OnLine { t: 0.0, value: 0.0, rate: 0.0, normal: Vec3::zeros() }; AZIMUTHS];
         for (k, line) in lines.iter_mut().enumerate() {
             let phi = step * k as f64;
             *line = self.on_line(a, b, phi)?;
@@ -419,17 +419,19 @@ impl Search<'_> {
         let finest = step / f64::from(1u32 << SECTOR_HALVINGS);
         let widest = a[0].max(b[0]);
         for (k, (from, to)) in lines.iter().zip(lines.iter().cycle().skip(1)).enumerate() {
-            let mut open = vec![(step * k as f64, step, from.value, to.value)];
+            let mut open = vec![(step * k as f64, step, *from, *to)];
             while let Some((phi, width, from, to)) = open.pop() {
-                if 0.5 * (from + to - widest * width) >= self.best_value() {
+                if 0.5 * (from.value + to.value - widest * width) >= self.best_value() {
                     continue;
                 }
+                // The least distance of a line changes with the azimuth as that of its nearest place does.
+                let slope = |line: &OnLine, phi: f64| line.normal.dot(&self.radial_rate(phi));
                 if width > 1.5 * finest {
                     let half = 0.5 * width;
                     let middle = self.on_line(a, b, phi + half)?;
                     self.offer_on_line(a, b, phi + half, middle.t)?;
-                    open.extend([(phi + half, half, middle.value, to), (phi, half, from, middle.value)]);
-                } else {
+                    open.extend([(phi + half, half, middle, to), (phi, half, from, middle)]);
+                } else if slope(&from, phi) <= 0.0 && slope(&to, phi + width) >= 0.0 {
                     self.close_in(a, b, phi, phi + width)?;
                 }
             }
@@ -516,6 +518,8 @@ struct OnLine {
     t: f64,
     value: f64,
     rate: f64,
+    /// Gradient of the distance there.
+    normal: Vec3,
 }
 
 impl OnLine {
@@ -535,7 +539,7 @@ struct Line<'a> {
 impl Line<'_> {
     fn read(&self, t: f64) -> Option<OnLine> {
         let (value, normal) = self.search.distance(&(self.start + self.along * t))?;
-        Some(OnLine { t, value, rate: normal.dot(&self.along) })
+        Some(OnLine { t, value, rate: normal.dot(&self.along), normal })
     }
 
     /// Lowers `best` to the least value between two readings, if the slope changes from − to + between them.
