@@ -291,6 +291,9 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
 }
 
 #[cfg(test)]
+pub(crate) use self::quadric::FLOORS;
+
+#[cfg(test)]
 thread_local! {
     /// Clearances that this thread has computed.
     pub(crate) static EVALUATIONS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };

@@ -60,6 +60,12 @@ pub(super) struct Posed<'a> {
     way: Option<Vec3>,
 }
 
+#[cfg(test)]
+thread_local! {
+    /// Bounds over circles of the tool that this thread has computed.
+    pub(crate) static FLOORS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// A quadratic function with its values on the directions of the tool.
 struct Bound {
     function: QuadraticFunction,
@@ -473,6 +479,8 @@ impl<'a> Posed<'a> {
     }
 
     fn floor_at(&self, tip: &Vec3, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
+        #[cfg(test)]
+        FLOORS.set(FLOORS.get() + 1);
         let center = tip + self.axis * circle.height;
         let middle = bound.function.at(&center);
         let rho = circle.radius;

@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
-    clearance::EVALUATIONS,
+    clearance::{EVALUATIONS, FLOORS},
     verify::{VerifyError, WORK, tests::lofted, verify},
 };
 
@@ -61,6 +61,20 @@ fn cost_is_linear_in_the_number_of_cut_vectors() {
             let each = [little as f64 / few as f64, much as f64 / many as f64];
             assert!(each[1] <= 1.15 * each[0], "{name}, cutter {cutter:?}: {each:?} clearances a vector");
             assert!(each[1] <= 30.0, "{name}, cutter {cutter:?}: {each:?} clearances a vector");
+        }
+    }
+}
+
+/// Where pieces of a vector are shown by a bound that holds for many of them, no bounds are made from the contacts at their ends.
+#[test]
+fn few_circles_are_bounded_for_a_vector_over_a_quadric() {
+    for (name, part) in parts() {
+        for cutter in CUTTERS {
+            let (mut p, command) = pass(&part, cutter, 10.0);
+            let before = FLOORS.get();
+            p.run(&command);
+            let each = (FLOORS.get() - before) as f64 / p.last().points.len() as f64;
+            assert!(each <= 200.0, "{name}, cutter {cutter:?}: {each} bounds a vector");
         }
     }
 }

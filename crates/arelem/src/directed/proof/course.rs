@@ -30,6 +30,8 @@ const MAX_UNBOUNDED: usize = 12;
 const OPEN: f64 = 0.1;
 /// What it may leave open at least, as a share of the band.
 const LEAST_OPEN: f64 = 1e-5;
+/// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
+const MOST_PIECES: f64 = 8.0;
 /// Sine between the move and the generators of the surface with which regions are laid out at least.
 const LEAST_ACROSS: f64 = 0.01;
 
@@ -200,29 +202,45 @@ impl Course<'_, '_> {
         sample.missed <= open || self.line.certified(sample.x, sample.value - open)
     }
 
-    /// Whether the clearance is in the band between two samples: by a bound that is known already, by the contacts at both ends, or
-    /// by a bound for all of the tool, which takes longest.
+    /// Whether the clearance is in the band between two samples: by a bound for all of the tool, if one is known or likely to be of
+    /// use, by the contacts at both ends, or by a bound after all.
     fn stretch(&self, a: &Sample, b: &Sample) -> Stretch {
         let asked = self.ask(a, b);
         let Line { role, ledger, cancel, .. } = self.line;
         let about = (&asked.tip, asked.spread);
-        let known = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
-        let (high, low) = known.map_or((false, false), |bend| self.bounded(a, b, asked.scaled(bend)));
-        let high = high || self.is_held_from_both(a, b);
-        let low = low || high && self.is_kept_from_both(a, b);
+        let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
+        let found = |is_of_use: &dyn Fn(f64) -> bool| {
+            ledger.bend(&role.gauge, &asked.tool, about, asked.range, is_of_use, cancel)
+        };
+        let piece = (b.x - a.x) / MOST_PIECES;
+        let is_of_use = |bend| match asked.scaled(Bend::AtMost(bend)) {
+            Bend::AtMost(bend) => 0.125 * bend * piece * piece <= role.band(),
+            Bend::Unbounded => false,
+        };
+        let serves = |bend: Option<Bend>| matches!(bend, Some(Bend::AtMost(bend)) if is_of_use(bend));
+        let mut bend = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
+        let mut is_asked = bend.is_some();
+        if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
+            (bend, is_asked) = (found(&is_of_use), true);
+            ledger.note_use(&asked.tip, serves(bend));
+        }
+        // Where pieces will do, that takes less than the contacts on a quadric.
+        let by_contacts = !serves(bend) || role.gauge.surface.has_charts();
+        let (held, kept) = bend.map_or((false, false), bounded);
+        let high = held || self.is_held_from_both(a, b, by_contacts);
+        let low = kept || high && by_contacts && self.is_kept_from_both(a, b);
         if high && low {
             return Stretch::Held;
         }
-        let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
-        let is_of_use = |bend| {
-            let (held, kept) = bounded(Bend::AtMost(bend));
-            high && kept || low && held || held && kept
-        };
-        let found = || ledger.bend(&role.gauge, &asked.tool, about, asked.range, &is_of_use, cancel);
-        let bend = known.map_or_else(found, Some);
+        if !is_asked {
+            bend = found(&|bend| {
+                let (held, kept) = bounded(Bend::AtMost(bend));
+                (high || held) && (low || kept)
+            });
+        }
         let (held, kept) = bend.map_or((false, false), bounded);
-        let is_held = (high || held) && (low || kept || !high && self.is_kept_from_both(a, b));
-        if is_held { Stretch::Held } else { Stretch::Open(bend) }
+        let is_low = low || kept || !high && by_contacts && self.is_kept_from_both(a, b);
+        if (high || held) && is_low { Stretch::Held } else { Stretch::Open(bend) }
     }
 
     /// For which places a bound of the bend is needed on the stretch between two samples.
@@ -262,7 +280,7 @@ impl Course<'_, '_> {
     }
 
     /// Whether the places of contact at both ends of a stretch show that the tool is nowhere above the band on it.
-    fn is_held_from_both(&self, a: &Sample, b: &Sample) -> bool {
+    fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
         if sweep.turns() {
             return false;
@@ -271,7 +289,8 @@ impl Course<'_, '_> {
         let (from, to) = (at(a.x), at(b.x));
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
         role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
-            || self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
+            || by_contacts
+                && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
     }
 
     /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the

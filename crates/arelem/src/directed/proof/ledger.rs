@@ -54,11 +54,24 @@ struct Level {
 pub(crate) struct Ledger {
     bound: Cell<Option<Bound>>,
     gap: Cell<Option<Gap>>,
+    /// Where a bound for all of the tool was of no use when one was last asked for.
+    useless: Cell<Option<Vec3>>,
     /// The last two: where a vector begins and where it ends.
     levels: Cell<[Option<Level>; 2]>,
 }
 
 impl Ledger {
+    /// Whether a bound for all of the tool, which serves many stretches, is to be asked for first: not where the last one near by was
+    /// of no use.
+    pub(super) fn expects_use(&self, tool: &Tool, tip: &Vec3) -> bool {
+        self.useless.get().is_none_or(|last| (tip - last).norm() > tool.radius())
+    }
+
+    /// Notes of what use a bound was.
+    pub(super) fn note_use(&self, tip: &Vec3, is_of_use: bool) {
+        self.useless.set((!is_of_use).then_some(*tip));
+    }
+
     /// The bound of [`Ledger::bend`], if one is known that holds there.
     pub(super) fn known_bend(
         &self,
