@@ -83,12 +83,13 @@ impl Waves {
         let (level, along, across) = (-cosine1 - 2.0 * cosine2, -2.0 * cosine2, sine1);
         let tilt = length([along, across]);
         let least = level - tilt;
+        let floor = (here - left + 2.0 * least.min(0.0)).max(self.coarse_floor());
         if least >= 0.0 || tilt <= 0.0 {
-            return (here - left + 2.0 * least.min(0.0), None);
+            return (floor, None);
         }
         let (cos, sin) = (-along / tilt, -across / tilt);
         let [c, s] = direction;
-        ((here + 2.0 * least - left).max(self.coarse_floor()), Some([c * cos - s * sin, s * cos + c * sin]))
+        (floor, Some([c * cos - s * sin, s * cos + c * sin]))
     }
 }
 
@@ -117,6 +118,16 @@ mod tests {
             // The lower of at most two valleys, but for starts on a crest.
             prop_assert!(floor >= least - 1e-4 * 4.0 || floor >= waves.coarse_floor());
         }
+    }
+
+    /// Newton's method does not come to the valley from there within its bound.
+    #[test]
+    fn a_search_that_ends_early_is_no_worse_than_none() {
+        let (first, second) =
+            ([0.9443235081984734, -0.8270099798133431], [0.49046878746631795, 0.34494331003618867]);
+        let waves = Waves { constant: 0.3, first, second };
+        let start: f64 = 6.175408838975481;
+        assert!(waves.floor([start.cos(), start.sin()]) >= waves.coarse_floor());
     }
 
     #[test]
