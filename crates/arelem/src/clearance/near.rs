@@ -1,8 +1,9 @@
 //! Contact with tabulated cylinders, ruled and polyconic surfaces from the last contact near by.
 //!
-//! Newton's method moves the azimuth on a circle of the tool and the place of the surface at once. What it finds is the
-//! contact if the tool about it lies in a ball that is known to be steady: there the distance falls below its tangent by no
-//! more than a sphere's does, and circles of the tool have closed bounds. The rest of the flank is far away, as is
+//! Newton's method moves the azimuth on a circle of the tool, or the place on its flat bottom or on a slanted piece, and the place of
+//! the surface at once. What it finds is the contact if the tool about it lies in a ball that is known to be steady: there the
+//! distance falls below its tangent by no more than a sphere's does, along a slanted bottom by no more than a cylinder's
+//! ([`trough`]), and circles of the tool have closed bounds. The rest of the flank is far away, as is
 //! shown once for many positions.
 
 mod around;
