@@ -10,12 +10,14 @@ use apt_geometry::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 
 pub(crate) use self::law::Law;
+use self::run_in::RunIn;
 use crate::{
     clearance::{Contact, Gauge, Tool},
     error::{AxisFailure, MotionFailure},
 };
 
 mod law;
+mod run_in;
 #[cfg(test)]
 mod tests;
 
@@ -28,6 +30,8 @@ pub(crate) struct Attitude {
     /// The tool at the start of the motion, all along it if there is no law.
     tool: Tool,
     law: Option<Law>,
+    /// How the axis comes to follow the law, unless the first vector turns it.
+    run_in: Option<RunIn>,
 }
 
 /// The tool at a position, and how fast its axis turns when the position changes.
@@ -38,19 +42,24 @@ pub(crate) struct Posture<'a> {
 
 impl Attitude {
     pub(crate) fn fixed(tool: Tool) -> Self {
-        Self { tool, law: None }
+        Self { tool, law: None, run_in: None }
     }
 
     /// An axis that follows a law.
     pub(crate) fn following(tool: &Tool, law: Law) -> Self {
-        Self { tool: tool.clone(), law: Some(law) }
+        Self { tool: tool.clone(), law: Some(law), run_in: None }
     }
 
     /// The same surfaces with an axis that turns evenly from one position to another, each an axis and a tool end. A fixed
     /// axis stays as it is.
     pub(crate) fn fanned(&self, from: (&Vec3, &Vec3), to: (&Vec3, &Vec3)) -> Result<Self, AxisFailure> {
         let law = self.law.as_ref().map(|law| law.fan(from, to)).transpose()?;
-        Ok(Self { tool: self.tool.clone(), law })
+        Ok(Self { tool: self.tool.clone(), law, run_in: None })
+    }
+
+    /// The same law, to which the axis turns over a way from the place where the tool begins.
+    pub(crate) fn running_in(&self, origin: &Vec3, way: &Vec3) -> Self {
+        Self { run_in: Some(RunIn::new(&self.tool.axis, origin, way)), ..self.clone() }
     }
 
     /// The cutter, whatever its axis.
@@ -67,11 +76,16 @@ impl Attitude {
     pub(crate) fn tool_at(&self, tip: &Vec3) -> Result<Cow<'_, Tool>, MotionFailure> {
         match &self.law {
             None => Ok(Cow::Borrowed(&self.tool)),
-            Some(law) => law
-                .axis(&self.tool, tip)
+            Some(law) => self
+                .axis(law, tip)
                 .map(|axis| Cow::Owned(self.tool.turned(axis)))
                 .map_err(|cause| undetermined(cause, tip)),
         }
+    }
+
+    fn axis(&self, law: &Law, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+        let axis = law.axis(&self.tool, tip)?;
+        self.run_in.as_ref().map_or(Ok(axis), |run_in| run_in.axis(&axis, tip))
     }
 
     /// The tool at a position with the rate of its axis.
@@ -83,7 +97,9 @@ impl Attitude {
 
     /// Derivatives of the axis by the coordinates of the tool end, as columns; `None` at the brink of the law's domain.
     fn rate(&self, law: &Law, tip: &Vec3) -> Option<Matrix3<f64>> {
-        if let Some(rate) = law.rate(tip) {
+        if self.run_in.is_none()
+            && let Some(rate) = law.rate(tip)
+        {
             return Some(rate);
         }
         let step = DERIVATIVE_STEP * crate::position::size(&self.tool, tip);
@@ -91,8 +107,8 @@ impl Attitude {
         for (k, column) in columns.iter_mut().enumerate() {
             let mut reach = Vec3::zeros();
             reach[k] = step;
-            let ahead = law.axis(&self.tool, &(tip + reach)).ok()?;
-            let behind = law.axis(&self.tool, &(tip - reach)).ok()?;
+            let ahead = self.axis(law, &(tip + reach)).ok()?;
+            let behind = self.axis(law, &(tip - reach)).ok()?;
             *column = (ahead - behind) / (2.0 * step);
         }
         Some(Matrix3::from_columns(&columns))

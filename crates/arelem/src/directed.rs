@@ -7,6 +7,7 @@ mod march;
 mod plane_route;
 mod prepare;
 mod proof;
+mod run_in;
 mod stop;
 
 use apt_geometry::{
@@ -50,10 +51,7 @@ pub(crate) fn run(
         ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => {
             fan::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?
         }
-        _ => {
-            let path = follow(state, &prepared, checks, warnings, cancel)?;
-            (prepared, path)
-        }
+        _ => run_in::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?,
     };
     let sequence = sequence(state, &prepared, checks, path)?;
     if state.gouge_check {

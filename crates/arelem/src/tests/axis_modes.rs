@@ -141,7 +141,7 @@ proptest! {
         p.run(&MotionCommand::ToolAxis(mode));
         let from = p.tip();
         p.go(&[(relation, &drive), (Relation::To, &part), (Relation::On, &x(-1.0))]);
-        // GO takes the sense of a lead angle from its own move: one across the motion behind it would leave that behind.
+        // GO takes the sense of a lead angle from its own move: where that changes the first positions are on the way to it.
         let (way, normal) = (p.tip() - from, surface(&part).foot(&p.tip()).normal);
         let along = way - normal * normal.dot(&way);
         prop_assume!(modes != 3 || along.x > AHEAD * along.norm());
@@ -230,5 +230,38 @@ fn axes_along_the_rulings_of_either_surface() {
             assert!(point.axis.z > 0.5 && point.axis.cross(&ruling).norm() <= EXACT, "{point:?}");
         }
         proven(&p).expect("in its bands");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// A motion that goes back along the way of its start-up leads the other way: the tool turns to that over several vectors
+    /// where one cannot turn it, and keeps its bands.
+    #[test]
+    fn a_lead_angle_whose_sense_changes_is_turned_to_on_the_way(
+        (hills, walls, shape) in (0usize..3, 0usize..4, 0.1..1.0f64),
+        (angle, lead) in (prop_oneof![-12.0..-4.0f64, 4.0..12.0f64], 0.3..0.8f64),
+        corner in prop_oneof![Just(0.0), Just(0.05), Just(BALL)],
+        on in any::<bool>(),
+    ) {
+        let relation = if on { Relation::On } else { Relation::To };
+        let (part, drive) = (hill(hills, shape, 0.2), wall(walls, 0.1, relation));
+        let mode = axis_mode(true, 3, angle, lead, Vec3::zeros());
+        let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, corner]).from(-3.0, 0.0, 9.0);
+        p.run(&MotionCommand::ToolAxis(mode));
+        p.go(&[(relation, &drive), (Relation::To, &part), (Relation::On, &x(-0.5))]);
+        let side = if on { DriveSide::On } else { DriveSide::Left };
+        p.side(side).indirv(-1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(-2.0));
+        proven(&p)?;
+        let CutSequence { start, points, .. } = p.last();
+        let (last, before) = points.split_last().expect("a path");
+        if corner >= BALL {
+            let ahead = last.tip - before.last().unwrap_or(start).tip;
+            let off = misfit(&mode, &surface(&part), &surface(&drive), &last.tip, &last.axis, &ahead);
+            prop_assert!(off <= EXACT, "{off:e}");
+        }
     }
 }

@@ -1,0 +1,73 @@
+//! The beginning of a motion whose law wants another axis than the tool has: over a short way the axis turns towards that of
+//! the law.
+//!
+//! One cut vector turns it if the tool stays in its bands all along. Where it does not, because contact wanders about the tool
+//! while that turns, several vectors do, and they have to lead on.
+
+use apt_geometry::Vec3;
+
+use crate::error::AxisFailure;
+
+/// Sine between opposite axes below which there is no telling about which vector to turn.
+const OPPOSITE: f64 = 1e-6;
+
+/// A way over which the axis turns evenly but for its ends, where it sets out and arrives level.
+#[derive(Debug, Clone)]
+pub(super) struct RunIn {
+    from: Vec3,
+    origin: Vec3,
+    /// Direction of the way divided by its length.
+    line: Vec3,
+}
+
+impl RunIn {
+    /// From an axis at a place, over a way from there.
+    pub(super) fn new(from: &Vec3, origin: &Vec3, way: &Vec3) -> Self {
+        Self { from: *from, origin: *origin, line: way / way.norm_squared() }
+    }
+
+    /// The axis at a place where the law has one.
+    pub(super) fn axis(&self, to: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+        let share = self.line.dot(&(tip - self.origin)).clamp(0.0, 1.0);
+        if share >= 1.0 {
+            return Ok(*to);
+        }
+        let across = self.from.cross(to);
+        let (sine, cosine) = (across.norm(), self.from.dot(to));
+        if cosine < 0.0 && sine <= OPPOSITE {
+            return Err(AxisFailure::SignUnresolved);
+        }
+        let Some(about) = across.try_normalize(0.0) else { return Ok(*to) };
+        // Neither at its beginning nor at its end does the turn change by leaps.
+        let turned = sine.atan2(cosine) * share * share * (3.0 - 2.0 * share);
+        let (sin, cos) = turned.sin_cos();
+        (self.from * cos + about.cross(&self.from) * sin).try_normalize(0.0).ok_or(AxisFailure::NoNormal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::v;
+
+    #[test]
+    fn the_axis_is_the_tools_own_before_and_that_of_the_law_behind() {
+        let (from, to) = (Vec3::z(), v(0.6, 0.0, 0.8));
+        let run_in = RunIn::new(&from, &v(1.0, 2.0, 3.0), &v(0.0, 0.5, 0.0));
+        let at = |y: f64| run_in.axis(&to, &v(7.0, y, 0.0)).unwrap();
+        assert!((at(1.0) - from).norm() < 1e-15 && (at(2.0) - from).norm() < 1e-15);
+        assert!((at(2.5) - to).norm() < 1e-15 && (at(9.0) - to).norm() < 1e-15);
+        let middle = (from + to).normalize();
+        assert!((at(2.25) - middle).norm() < 1e-15);
+        let (first, last) = (at(2.01), at(2.49));
+        assert!(first.dot(&from) > middle.dot(&from) && last.dot(&to) > middle.dot(&to));
+        assert!((first.norm() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn between_opposite_axes_there_is_no_way() {
+        let run_in = RunIn::new(&Vec3::z(), &Vec3::zeros(), &Vec3::x());
+        assert_eq!(run_in.axis(&-Vec3::z(), &v(0.5, 0.0, 0.0)), Err(AxisFailure::SignUnresolved));
+        assert_eq!(run_in.axis(&Vec3::z(), &v(0.5, 0.0, 0.0)), Ok(Vec3::z()));
+    }
+}

@@ -1,0 +1,55 @@
+//! A motion whose first vector cannot turn the tool to the axis that the law wants: several vectors turn it, over a way that is
+//! as short as the turn allows.
+
+use super::{Path, Prepared};
+use crate::error::{Iteration, MotionFailure};
+
+/// The first way that is tried, as a multiple of what the turn moves the rim of the tool by, and how many, each twice as long as
+/// the one before.
+const FIRST: f64 = 2.0;
+const WAYS: u32 = 5;
+/// Angle, radians, below which the tool is not turned by the first vector.
+const NO_TURN: f64 = 1e-9;
+
+/// The path, and what it was computed with.
+pub(super) fn follow(
+    prepared: Prepared,
+    path: &mut dyn FnMut(&Prepared) -> Result<Path, MotionFailure>,
+) -> Result<(Prepared, Path), MotionFailure> {
+    let failure = match path(&prepared) {
+        Ok(found) => return Ok((prepared, found)),
+        Err(failure) => failure,
+    };
+    let angle = turn_at_start(&prepared)?;
+    if angle <= NO_TURN || !is_stuck_within(&failure, &prepared, 0.0) {
+        return Err(failure);
+    }
+    let shortest = FIRST * angle * prepared.tool.radius();
+    for k in 0..WAYS {
+        let length = shortest * f64::from(1u32 << k);
+        let attitude = prepared.attitude.running_in(&prepared.tip, &(prepared.tangent * length));
+        let running = Prepared { attitude, ..prepared.clone() };
+        match path(&running) {
+            Err(again) if is_stuck_within(&again, &prepared, length) => {}
+            found => return found.map(|found| (running, found)),
+        }
+    }
+    Err(failure)
+}
+
+/// Angle between the axis that the tool has and the one that it is to have.
+fn turn_at_start(prepared: &Prepared) -> Result<f64, MotionFailure> {
+    let (has, wants) = (prepared.tool.axis, prepared.attitude.tool_at(&prepared.tip)?.axis);
+    Ok(has.cross(&wants).norm().atan2(has.dot(&wants)))
+}
+
+/// Whether no vector was found that leads on, not farther from where the motion begins.
+fn is_stuck_within(failure: &MotionFailure, prepared: &Prepared, distance: f64) -> bool {
+    match failure {
+        MotionFailure::NoAdmissibleVector { tip, .. }
+        | MotionFailure::IterationLimit { iteration: Iteration::StepLength, tip, .. } => {
+            (tip - prepared.tip).norm() <= distance
+        }
+        _ => false,
+    }
+}
