@@ -209,11 +209,13 @@ impl<'a> Watcher<'a> {
             let (next, side) = self.value(index, &tool, &tip);
             self.note(index, next, &tip);
             let label = transition(&mut watch.status, next, band + 1e-9 * size, on);
-            if let Some(label) = label {
-                crossed = true;
-                watch.count += u32::from(label == relation);
-                if label == relation && watch.count >= wanted {
-                    let (at, side) = self.bracket(index, sweep, [x, next_x], value > 0.0, (label, side));
+            let crossing = label
+                .filter(|label| *label == relation)
+                .and_then(|label| self.bracket(index, sweep, [(x, value), (next_x, next)], (label, side)));
+            crossed |= label.is_some_and(|label| label != relation) || crossing.is_some();
+            if let Some((at, side)) = crossing {
+                watch.count += 1;
+                if watch.count >= wanted {
                     let tip = sweep.at(at).0;
                     return (Some(Event { check: index, tip, x: at, side, grazed: false }), watch);
                 }
@@ -332,31 +334,33 @@ impl<'a> Watcher<'a> {
     }
 
     /// Bisects a sign change; the side is that on which the tool is clear (TO: before, PAST: after), for ON that it
-    /// comes from.
+    /// comes from. `None` where the tool only gets around the end of the surface, beyond which the sign says nothing: there the
+    /// value leaps.
     fn bracket(
         &self,
         index: usize,
         sweep: &Sweep<'_>,
-        [low, high]: [f64; 2],
-        positive: bool,
+        [from, to]: [(f64, f64); 2],
         (label, after): (Relation, f64),
-    ) -> (f64, f64) {
-        let (mut low, mut high) = (low, high);
-        let mut before = self.value_at(index, sweep, low).1;
+    ) -> Option<(f64, f64)> {
+        let (mut low, mut high) = (from, to);
+        let mut before = self.value_at(index, sweep, from.0).1;
         let mut beyond = after;
         for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
+            let middle = 0.5 * (low.0 + high.0);
+            if middle <= low.0 || middle >= high.0 {
                 break;
             }
             let (value, side) = self.value_at(index, sweep, middle);
-            if (value > 0.0) == positive {
-                (low, before) = (middle, side);
+            if (value > 0.0) == (from.1 > 0.0) {
+                (low, before) = ((middle, value), side);
             } else {
-                (high, beyond) = (middle, side);
+                (high, beyond) = ((middle, value), side);
             }
         }
-        (0.5 * (low + high), if label == Relation::Past { beyond } else { before })
+        let touching = SAME_PLACE * self.prepared.size;
+        let met = low.1.abs().min(high.1.abs()) <= touching;
+        met.then(|| (0.5 * (low.0 + high.0), if label == Relation::Past { beyond } else { before }))
     }
 }
 

@@ -114,6 +114,8 @@ fn walk(
     let mut since = none;
     // Path length that is known to hold no change of state.
     let mut safe = 0.0;
+    // The clearance before, and how far the tool end has come since.
+    let mut last: Option<(f64, f64)> = None;
     for pair in positions.windows(2) {
         let (from, to) = (pair[0], pair[1]);
         let move_length = (to.tip - from.tip).norm();
@@ -130,7 +132,12 @@ fn walk(
             } else {
                 None
             };
+            // No clearance changes by more than the way, but around the end of a surface its sign does.
+            let leaps = last.is_some_and(|(before, way)| {
+                (relation == Relation::On || turn <= 0.0) && (value - before).abs() > way + band
+            });
             match seen {
+                Some(next) if leaps => (state, brushed, since) = (next, false, none),
                 Some(next) => {
                     record(&mut count, relation, state, next, brushed);
                     (state, brushed, since) = (next, false, none);
@@ -138,7 +145,9 @@ fn walk(
                 None => (brushed, since) = (true, [since[0].min(value), since[1].max(value)]),
             }
             let step = if turn > 0.0 { finest.max(move_length / 64.0) } else { finest };
-            at += (value.abs() - band).max(step);
+            let ahead = (value.abs() - band).max(step);
+            last = Some((value, ahead));
+            at += ahead;
         }
         safe = at - move_length;
     }

@@ -40,6 +40,9 @@ const SHOWN: usize = 12;
 /// Shapes that touch a surface under them at the corner: there the angles hold.
 const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
 
+/// The way over which the axis comes to follow its law, as a multiple of what the turn moves the tool by at most.
+const RUN_IN: f64 = 2.0;
+
 /// A motion with the law of its axis.
 #[derive(Debug)]
 pub(crate) struct Turning {
@@ -189,11 +192,18 @@ fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
     let (base, other) = if part_guides { (part, drive) } else { (drive, part) };
     let (base, other) = (Guide::base(base, &sequence.start), Guide::other(other));
     let cutter = sequence.cutter;
-    let mut from = sequence.start.tip;
+    let off = |at: &ToolPosition, ahead: &Vec3| {
+        off(&turning.mode, (&base, &other), &cutter, (&at.tip, &at.axis), ahead)
+    };
+    let ToolPosition { tip: mut from, .. } = sequence.start;
+    // A tool that stands otherwise at the start may turn over a way.
+    let widest = 0.5 * cutter.diameter + cutter.height;
+    let run_in = RUN_IN * widest * off(&sequence.start, &sequence.forward);
+    let mut runs_in = true;
     for point in &sequence.points {
-        let off =
-            off(&turning.mode, (&base, &other), &cutter, (&point.tip, &point.axis), &(point.tip - from));
-        if off > turning.exact {
+        let off = off(point, &(point.tip - from));
+        runs_in &= (point.tip - sequence.start.tip).norm() <= run_in && off > turning.exact;
+        if off > turning.exact && !runs_in {
             return Some(format!("axis off by {off:e} at {point:?}"));
         }
         from = point.tip;
