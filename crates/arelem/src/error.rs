@@ -456,6 +456,13 @@ pub enum MotionWarning {
         /// True where the motion failed, and this is what lies ahead.
         ahead: bool,
     },
+    /// A surface of a motion that failed ends beside the tool: what lies beyond its end is not part of it.
+    EndsBesideTool {
+        /// Part, drive or check surface.
+        role: RoleName,
+        /// The place of its end next to the tool axis.
+        place: Vec3,
+    },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {
         /// The value.
@@ -470,7 +477,7 @@ impl MotionWarning {
             Self::WrongSideOfDrive { .. } => Some(1601),
             Self::Cutter(warning) => warning.apt3(),
             Self::AutomaticPartWithTiltedAxis { .. } => Some(3520),
-            Self::Gouge { .. } | Self::NegativeTolerance { .. } => None,
+            Self::Gouge { .. } | Self::EndsBesideTool { .. } | Self::NegativeTolerance { .. } => None,
         }
     }
 }

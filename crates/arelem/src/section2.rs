@@ -1,5 +1,6 @@
 //! The state machine of Section 2 (SECTN2): modal state, one command at a time, restart mode after a failure.
 
+mod ends;
 mod modal;
 mod restart;
 mod state;
@@ -59,6 +60,7 @@ pub fn execute(state: &State, command: &MotionCommand, cancel: &dyn Fn() -> bool
             failure: Some(MotionFailure::Cancelled),
         },
         Err(failure) => {
+            warnings.extend(ends::beside(state, command, &failure));
             let mut failed = state.clone();
             failed.fail(command);
             Execution { state: failed, output: None, warnings, failure: Some(failure) }

@@ -119,6 +119,8 @@ fn a_surface_that_ends_beside_the_tool_end_is_not_met_by_getting_around_it() {
         let message = errors[0]["message"].as_str().unwrap();
         assert_eq!(errors[0]["code"], "APT0641", "{drive}: {message}");
         assert!(message.contains("nearest approach to ON is 4.25"), "{drive}: {message}");
+        let told = findings.iter().find(|finding| finding["code"] == "APT0666").expect("where it ends");
+        assert!(told["message"].as_str().unwrap().contains(", 4.25), beside the tool"), "{drive}: {told}");
     }
 }
 

@@ -458,6 +458,13 @@ fn warning_text(warning: &Warning) -> Text {
             "the tool end would be at {}; take a smaller tool, or stop before the narrow place",
             place(&contact.tip)
         )),
+        Warning::EndsBesideTool { role: name, place: end } => say(
+            "APT0666",
+            format!("the {} ends at {}, beside the tool", role(*name), place(end)),
+        )
+        .hint(
+            "beyond its end a surface has no sides: one that reaches farther, or a shorter tool, settles it",
+        ),
         Warning::NegativeTolerance { value } => {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
         }
