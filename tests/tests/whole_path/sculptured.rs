@@ -1,4 +1,4 @@
-//! Sculptured surfaces of every form of SSURF as part surface, from the source text to proven cut vectors.
+//! Sculptured surfaces of every form of SSURF as part, drive and check surface, from the source text to proven cut vectors.
 
 use std::fmt::Write as _;
 
@@ -52,7 +52,13 @@ const FORMS: [(&str, &str); 19] = [
     ("rulings between points", "S=SSURF/RULED,CA,AXIS,(POINT/0,0,.5),(POINT/.2,4.5,.7)"),
     ("surface of revolution", "S=SSURF/REVOLV,CT,AXIS,(POINT/3,0,-5.5),(VECTOR/0,1,0),CCLW,0,50"),
     ("curve along a curve", "S=SSURF/TRANSL,CA,CROSS,CC"),
-    ("patches side by side", "S2=SSURF/RULED,CA,AXIS,(VECTOR/0,-3,0)\nS=SSURF/COMBIN,S1,S2"),
+    (
+        "patches side by side",
+        "S2=SSURF/PATCH,POLYGN,PLUS,(POINT/0,-4.5,.1),(POINT/2,-4.5,.3),$\n\
+         (POINT/4,-4.5,.6),(POINT/6,-4.5,0),(POINT/0,-3,.2),(POINT/2,-3,.1),$\n\
+         (POINT/4,-3,.7),(POINT/6,-3,.1),(POINT/0,-1.5,-.3),(POINT/2,-1.5,-.4),$\n\
+         (POINT/4,-1.5,.5),(POINT/6,-1.5,0),P(1,THRU,4)\nS=SSURF/COMBIN,S1,S2",
+    ),
     ("a transformed copy", "S=SSURF/COMBIN,S1,TRFORM,(MATRIX/TRANSL,.1,.05,.1)"),
     (
         "B-spline with weights",
@@ -72,14 +78,18 @@ const FORMS: [(&str, &str); 19] = [
 const WAYS: [(&str, &str, &str); 3] =
     [(".5,.25", "TO", "TLON"), (".5,.25", "ON", "TLONPS,TLON"), (".5", "ON", "TLONPS,TLON")];
 
-fn program(form: &str, (cutter, start, motion): (&str, &str, &str)) -> String {
+/// A cutter, tolerances, and the hill S.
+fn hill(form: &str, cutter: &str) -> String {
     let mut text = format!("CUTTER/{cutter}\nINTOL/.002\nOUTTOL/.002\nRESERV/P,16\n");
     for (k, height) in HEIGHTS.iter().flatten().enumerate() {
         let (x, y) = (2 * (k % 4), 1.5 * (k / 4) as f64);
         writeln!(text, "P({})=POINT/{x},{y},{height}", k + 1).unwrap();
     }
-    text + CURVES
-        + form
+    text + CURVES + form
+}
+
+fn program(form: &str, (cutter, start, motion): (&str, &str, &str)) -> String {
+    hill(form, cutter)
         + "\nK1=PLANE/0,1,0,2\nK2=PLANE/1,0,0,1\nK3=PLANE/1,0,0,5\nFROM/1,2,6\nPSIS/S\nGO/ON,K1,"
         + start
         + ",S,ON,K2\nINDIRV/1,0,0\n"
@@ -106,6 +116,34 @@ fn every_form_is_a_part_surface() {
     }
     // A start and a motion each.
     assert_eq!(count, 2 * FORMS.len() * WAYS.len());
+}
+
+/// A tool that ends below the upper end of the hill stood on edge, W, which faces the tool that comes along y; and motions
+/// along it, up to it and past it.
+const SHORT: &str = ".5,.25,0,.25,0,0,.5";
+const STOOD: &str = "\nW=SSURF/COMBIN,S,TRFORM,(MATRIX/YZROT,90)\nPZ=PLANE/0,0,1,1.2\nDL=PLANE/1,-.2,0,3.2\n\
+    K2=PLANE/1,0,0,1\nK3=PLANE/1,0,0,5\n";
+const ROLES: [(&str, &str); 8] = [
+    ("right of it", "FROM/1,-4,2\nGO/TO,W,TO,PZ,ON,K2\nINDIRV/1,0,0\nTLRGT,GOFWD/W,ON,K3"),
+    ("left of it", "FROM/1,4,2\nGO/TO,W,TO,PZ,ON,K2\nINDIRV/1,0,0\nTLLFT,GOFWD/W,ON,K3"),
+    ("past it and along", "FROM/1,-4,2\nGO/PAST,W,TO,PZ,ON,K2\nINDIRV/1,0,0\nTLLFT,GOFWD/W,ON,K3"),
+    ("on it", "FROM/1,-4,2\nGO/ON,W,TO,PZ,ON,K2\nINDIRV/1,0,0\nTLON,GOFWD/W,ON,K3"),
+    ("to it", "FROM/3,-4,2\nGO/ON,DL,TO,PZ,ON,(PLANE/0,1,0,-4)\nINDIRV/0,1,0\nTLON,GOFWD/DL,TO,W"),
+    ("stop on it", "FROM/3,-4,2\nGO/ON,DL,TO,PZ,ON,(PLANE/0,1,0,-4)\nINDIRV/0,1,0\nTLON,GOFWD/DL,ON,W"),
+    ("past it", "FROM/3,-4,2\nGO/ON,DL,TO,PZ,ON,(PLANE/0,1,0,-4)\nINDIRV/0,1,0\nTLON,GOFWD/DL,PAST,W"),
+    ("from behind", "FROM/3,3,2\nGO/ON,DL,TO,PZ,ON,(PLANE/0,1,0,3)\nINDIRV/0,-1,0\nTLON,GOFWD/DL,TO,W"),
+];
+
+#[test]
+fn every_form_is_a_drive_and_a_check_surface() {
+    let mut count = 0;
+    for (name, form) in FORMS {
+        for (role, motions) in ROLES {
+            let text = hill(form, SHORT) + STOOD + motions + "\nFINI\n";
+            count += proven(&format!("{name}, {role}"), &text);
+        }
+    }
+    assert_eq!(count, 2 * FORMS.len() * ROLES.len());
 }
 
 #[test]
