@@ -27,6 +27,8 @@ const DAMPING: f64 = 1e-6;
 pub(crate) enum Condition<'a> {
     /// The clearance of a gauge has this value.
     Clearance(&'a Gauge, f64),
+    /// The clearance of a gauge has a value between these two.
+    Between(&'a Gauge, [f64; 2]),
     /// The tool end lies on the plane with this unit normal and distance.
     Plane(Vec3, f64),
 }
@@ -175,6 +177,12 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Ro
                 let contact = posture.contact(gauge, tip);
                 rows.contacts[k] = Some(contact);
                 (contact.clearance - target, contact.gradient)
+            }
+            Condition::Between(gauge, [least, greatest]) => {
+                let contact = posture.contact(gauge, tip);
+                rows.contacts[k] = Some(contact);
+                // What lies between counts as it is.
+                (contact.clearance - contact.clearance.max(*least).min(*greatest), contact.gradient)
             }
             Condition::Plane(normal, distance) => (normal.dot(tip) - distance, *normal),
         };

@@ -288,16 +288,34 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3, place: Option<Vec3>) ->
 fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Result<Vec3, MotionFailure> {
     let free: Vec<Condition<'_>> =
         work.roles.iter().map(|r| Condition::Clearance(&r.gauge, r.rest())).collect();
-    let Some(guide) = guide else { return converge(work, &free, start) };
+    let Some(guide) = guide else {
+        return converge(work, &free, start).or_else(|f| in_bands(work, start, f));
+    };
     let mut guided = free.clone();
     guided.push(Condition::Plane(guide.0, guide.1));
     match converge(work, &guided, start) {
-        Err(MotionFailure::StartUpDiverges { .. }) => match work.state.start_up {
-            StartUpRule::Apt3 => converge(work, &free, start),
-            StartUpRule::Apt4 => converge(work, &free, &directed::searched(work, guide, start)),
-        },
+        Err(MotionFailure::StartUpDiverges { .. }) => {
+            let start = match work.state.start_up {
+                StartUpRule::Apt3 => *start,
+                StartUpRule::Apt4 => directed::searched(work, guide, start),
+            };
+            converge(work, &free, &start).or_else(|f| in_bands(work, &start, f))
+        }
         found => found,
     }
+}
+
+/// Where no position has every clearance in the place that ends of motions have in their bands: one in all of the bands, near
+/// where the search for the former came to its end, or from the start. A tool that just fits between walls has no other.
+fn in_bands(work: &StartUp<'_>, start: &Vec3, failure: MotionFailure) -> Result<Vec3, MotionFailure> {
+    let MotionFailure::StartUpDiverges { tip: nearest, .. } = failure else { return Err(failure) };
+    let bands: Vec<Condition<'_>> =
+        work.roles.iter().map(|role| Condition::Between(&role.gauge, role.room())).collect();
+    [nearest, *start]
+        .iter()
+        .find_map(|from| position::solve(&work.attitude, &bands, from).ok())
+        .map(|solution| solution.tip)
+        .ok_or(failure)
 }
 
 /// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side; if that
@@ -314,7 +332,9 @@ pub(crate) fn converge(
     let mut begin = Vec::with_capacity(conditions.len());
     for condition in conditions {
         begin.push(match condition {
-            Condition::Clearance(gauge, _) => work.attitude.posture(start)?.contact(gauge, start).clearance,
+            Condition::Clearance(gauge, _) | Condition::Between(gauge, _) => {
+                work.attitude.posture(start)?.contact(gauge, start).clearance
+            }
             Condition::Plane(normal, _) => normal.dot(start),
         });
     }
@@ -352,6 +372,7 @@ fn staged(
             .map(|(condition, from)| match condition {
                 Condition::Clearance(gauge, to) => Condition::Clearance(gauge, from + (to - from) * share),
                 Condition::Plane(normal, to) => Condition::Plane(*normal, from + (to - from) * share),
+                Condition::Between(..) => *condition,
             })
             .collect();
         tip = match position::solve(&work.attitude, &stage, &tip) {

@@ -9,8 +9,9 @@ use crate::{
     position::{self, Condition},
 };
 
-/// Radii of the shells, relative to the greatest distance from the start to what is wanted.
-const SHELLS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+/// Radii of the shells, relative to the greatest distance from the start to what is wanted: surfaces that meet at an acute angle
+/// meet several times as far away.
+const SHELLS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 /// Steps of the lattice whose outer points are the directions.
 const LATTICE: i8 = 1;
 /// Corrections from one place.
@@ -28,10 +29,11 @@ pub(super) fn solve(
 ) -> Result<Option<Vec3>, MotionFailure> {
     let mut reach = attitude.tool().radius();
     for condition in conditions {
+        let clearance =
+            |gauge| attitude.posture(start).map(|posture| posture.contact(gauge, start).clearance);
         reach = reach.max(match condition {
-            Condition::Clearance(gauge, wanted) => {
-                (attitude.posture(start)?.contact(gauge, start).clearance - wanted).abs()
-            }
+            Condition::Clearance(gauge, wanted) => (clearance(gauge)? - wanted).abs(),
+            Condition::Between(gauge, [least, _]) => (clearance(gauge)? - least).abs(),
             Condition::Plane(normal, distance) => (normal.dot(start) - distance).abs(),
         });
     }

@@ -9,7 +9,7 @@ use apt_geometry::{
 use crate::{
     MotionFailure,
     section2::StartUpRule,
-    tests::{Program, circle, line, plane, sphere, start, v},
+    tests::{Program, circle, line, plane, quadric, sphere, start, v},
 };
 
 /// The peers print seven digits.
@@ -129,4 +129,63 @@ fn two_sides_of_the_nearest_position_are_one_answer() {
     });
     p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: part }));
     p.go(&[(To, &drive)]).verified();
+}
+
+/// A needle that is longer than the hole is wide by less than the band: at its best it lies deeper in the wall than motions
+/// end elsewhere.
+#[test]
+fn a_position_anywhere_in_the_bands_will_do_where_none_is_in_its_usual_place() {
+    let hole = circle(0.0, 0.0, 1.0);
+    let attempt = |length: f64| {
+        let mut p = Program::new();
+        p.tolerance(0.004, 0.004).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length]);
+        p.run(&MotionCommand::From {
+            position: v(-0.8, 0.3, 0.5),
+            axis: Some(v(1.0, 0.0, 0.0)),
+            name: String::new(),
+        });
+        let command =
+            start(&[(On, &plane(0.0, 1.0, 0.0, 0.01)), (To, &hole), (On, &plane(0.0, 0.0, 1.0, 0.2))]);
+        p.attempt(&command).map(|_| p.verified().tip())
+    };
+    // Its ends are 1.0025 from the middle, where the tool would lie .002 deep.
+    let tip = attempt(2.005).expect("a position");
+    assert!((tip - v(-1.0025, 0.01, 0.2)).norm() < 2e-3, "{tip:?}");
+    let failure = attempt(2.009).expect_err("no position in the bands");
+    assert!(matches!(failure, MotionFailure::StartUpDiverges { .. }), "{failure:?}");
+}
+
+/// Two quadrics whose clearances are .5 and .74 have their only position with a plane 3.6 away.
+#[test]
+fn a_position_several_times_as_far_as_the_surfaces_is_found() {
+    let drive = quadric([
+        -0.012435601476738445,
+        -0.7396921836064178,
+        0.15715515534635274,
+        0.6390054922632246,
+        -0.10300244498026476,
+        0.02880658359959453,
+        0.4045841277223315,
+        -0.30298795881320356,
+        0.4118451022552385,
+        -0.3077807518715024,
+    ]);
+    let part = quadric([
+        0.1008883126078387,
+        -0.08944580499338531,
+        -0.21527082728714908,
+        -1.9179159633565794,
+        0.20865514558114634,
+        -0.29786094380863704,
+        0.1971468895500809,
+        0.2364996084049605,
+        -0.3752082855878351,
+        0.6639724353416032,
+    ]);
+    let first = plane(-0.5010998371837274, -0.5150622342785687, -0.6954206266673506, 0.6018092949030475);
+    let taper =
+        [0.5753910758072707, 0.0, 0.28769553790363533, 0.0, 0.0, 4.007270550142197, 3.7646554896274247];
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&taper).from(-0.8141593126300082, -1.6291925265470364, 1.5846595283796383);
+    p.go(&[(On, &drive), (To, &part), (On, &first)]).verified();
 }
