@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// A motion within this angle of a right angle to the direction asked for has no sense (2°).
-const UNDETERMINED: f64 = 0.0349;
+pub(super) const UNDETERMINED: f64 = 0.0349;
 /// Sine between part and drive normal below which there is no line of motion.
 const TANGENT_SINE: f64 = 1e-6;
 /// |cos| to the tool axis above which the last move says nothing about the forward direction.

@@ -431,3 +431,47 @@ fn a_position_just_ahead_is_met_where_the_band_is_wider_inside() {
         assert!(moved > 0.0 && moved < ahead + 0.01, "{moved} for {ahead}");
     }
 }
+
+/// A drill that goes down along a parabolic cylinder comes to touch its other wall, where the path turns by 86° and goes on: by
+/// more than a right angle from the vector that leads there, which is not as steep as the path is at its end.
+#[test]
+fn a_path_goes_on_that_turns_by_nearly_a_right_angle_at_the_end_of_a_bend() {
+    let part = quadric([
+        1.326591241302483,
+        0.0004414523102535849,
+        0.0990530340318532,
+        0.5410965913710717,
+        -0.0066126538326899105,
+        0.3624953618614909,
+        -0.024199726614884558,
+        0.6586013538655042,
+        -0.052567415575559766,
+        -0.336450712355607,
+    ]);
+    let drive = quadric([
+        0.40955792984015815,
+        0.431372499487939,
+        0.170499713412052,
+        1.3549621168475037,
+        -0.14144099044441974,
+        -0.09881716593955288,
+        0.09948110556694889,
+        0.10800973964864452,
+        0.9320181528578912,
+        -0.4747809090592097,
+    ]);
+    let forward = v(-0.04936218541625304, -0.9946182353592369, 0.09109303234501137);
+    let first = plane(-forward.x, -forward.y, -forward.z, -1.6814509696265385);
+    let point = v(0.23297865418987218, -9.387405563123291, 3.4706458855985374);
+    let axis = v(0.7107927172797054, 0.09216649425064725, 0.6973371138837214);
+    let stop = cylinder(point, axis, 7.107058496570897);
+    let drill =
+        [1.0300866667559876, 0.0, 0.5150433333779938, 0.30946925611951953, 31.0, 0.0, 3.155120027592868];
+    let mut program = Program::new();
+    program.tolerance(0.001, 0.001).cutter(&drill).part_side(PartSide::Offset);
+    program.from(-0.010939363967459061, -1.4766597570378783, 1.4214766310676594);
+    program.run(&MotionCommand::MaximumStep(10.0));
+    program.go(&[(Relation::On, &drive), (Relation::To, &part), (Relation::On, &first)]);
+    program.side(DriveSide::On).indirv(forward.x, forward.y, forward.z);
+    proven(&mut program, &[motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)])]);
+}

@@ -14,7 +14,10 @@ use super::{Prepared, Vertex, tangent};
 use crate::{
     bound::Record,
     clearance::{Contact, Shape},
-    directed::proof::{self, Extremes, Ledger},
+    directed::{
+        prepare::UNDETERMINED,
+        proof::{self, Extremes, Ledger},
+    },
     error::{Iteration, MotionFailure},
     position::{self, Condition, Solution},
     role::{Bend, GUARD, Working},
@@ -50,6 +53,9 @@ const NEARLY: f64 = 1.01;
 const CORNER_BANDS: f64 = 20.0;
 /// How many times the width of the bands a path goes on before what it does there is not turning on the spot any more.
 const KINK_BANDS: f64 = 0.1;
+/// How many times the square of the angle between path and vector at its start that at its end may be on a bend that goes on as it
+/// begins: on one that grows tighter it is twice the angle at most.
+const MOST_TURNED: f64 = 4.0;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Share of a vector's length by which its end may be expected aside of its tangent.
@@ -173,7 +179,7 @@ impl<'a> Stepper<'a> {
         if let Ok(next) = &found {
             self.last = next.tip - here.tip;
             if !self.is_where_it_arrived(&next.tip) {
-                self.arrived = Some((next.tip, self.last));
+                self.arrived = Some((next.tip, arrival(here, next)));
             }
         }
         found
@@ -188,10 +194,13 @@ impl<'a> Stepper<'a> {
         self.arrived.is_some_and(|(at, _)| (tip - at).norm() <= KINK_BANDS * self.bands())
     }
 
-    /// True if the path, bit by bit, has turned so far on the spot that it goes back from where it came.
+    /// True if the path, bit by bit, has turned so far on the spot that it does not plainly go on in the direction in which it
+    /// came.
     fn kinks_back(&self, here: &Vertex, direction: &Vec3) -> bool {
         self.is_where_it_arrived(&here.tip)
-            && self.arrived.is_some_and(|(_, before)| direction.dot(&before) < 0.0)
+            && self.arrived.is_some_and(|(_, before)| {
+                direction.dot(&before) < UNDETERMINED * direction.norm() * before.norm()
+            })
     }
 
     /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
@@ -478,6 +487,15 @@ impl<'a> Stepper<'a> {
         }
         Some(trial)
     }
+}
+
+/// The direction in which the path arrives at the end of a vector: its tangent there, which on a bent path is not that of the
+/// vector; but the latter where the tangent is likely to be that of the path beyond a place where it turns.
+fn arrival(from: &Vertex, to: &Vertex) -> Vec3 {
+    let vector = to.tip - from.tip;
+    // The square of an angle, but for a half.
+    let turned = |tangent: &Vec3| vector.norm() - tangent.dot(&vector);
+    if turned(&to.tangent) <= MOST_TURNED * turned(&from.tangent) { to.tangent } else { vector }
 }
 
 /// About where the path is at a distance along its tangent, as far as clearances bend as is known. Where that leads far aside
