@@ -17,6 +17,7 @@ mod properties;
 mod refused;
 mod sculptured;
 mod sheets;
+mod tangencies;
 mod turning;
 mod worked;
 

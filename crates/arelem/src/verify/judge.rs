@@ -268,8 +268,8 @@ impl Judge<'_> {
         let check_extent = check.map(|b| self.band(b, Rule::CheckBand, true)).transpose()?;
         if let (Some(check), Some(stop)) = (check, &self.sequence.stop) {
             match stop.role.relation {
-                Relation::TangentToDrive => self.tangency(check, drive, part),
-                Relation::TangentToPart => self.tangency(check, part, drive),
+                Relation::TangentToDrive => self.tangency(check, drive),
+                Relation::TangentToPart => self.tangency(check, part),
                 _ if start_up => {}
                 _ => self.stop_event(check, stop.occurrence)?,
             }
@@ -351,10 +351,11 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// At a tangency the two normals agree up to the angle that the band leaves: √(2τκ) for the sum κ of the curvatures.
-    fn tangency(&mut self, check: &Bound<'_>, mate: Option<&Bound<'_>>, other: Option<&Bound<'_>>) {
+    /// At a tangency the two normals agree up to the angle that the bands leave: √(2τκ) for the sum κ of the curvatures in the
+    /// direction in which they differ, which is along the path as well as across it.
+    fn tangency(&mut self, check: &Bound<'_>, mate: Option<&Bound<'_>>) {
         let vector = self.last_vector();
-        let (before, end) = (self.positions[vector], self.positions[vector + 1]);
+        let end = self.positions[vector + 1];
         let Some(mate) = mate else {
             self.findings.add(Rule::Tangency, vector, 1.0, 1.0);
             return;
@@ -363,19 +364,16 @@ impl Judge<'_> {
             self.findings.add(Rule::Tangency, vector, 1.0, 1.0);
             return;
         };
-        let angle = n.cross(&m).norm();
-        let across = other.and_then(|o| o.normal(&end)).map(|o| m.cross(&o));
-        let travel = match across {
-            Some(t) if t.norm() > PARALLEL => t / t.norm(),
-            _ => {
-                let d = end.tip - before.tip;
-                if d.norm() > 0.0 { d / d.norm() } else { self.sequence.forward }
-            }
-        };
-        let step = CURVATURE_STEP * self.size;
+        // Where they differ, by how much of a turn.
+        let lean = n * n.dot(&m).signum() - m * n.dot(&m).abs();
+        let angle = lean.norm();
+        if angle <= TANGENT {
+            return;
+        }
+        let (step, way) = (CURVATURE_STEP * self.size, lean / angle);
         let curvature = |b: &Bound<'_>| {
-            let ahead = b.normal(&ToolPosition { tip: end.tip + travel * step, ..end });
-            let behind = b.normal(&ToolPosition { tip: end.tip - travel * step, ..end });
+            let ahead = b.normal(&ToolPosition { tip: end.tip + way * step, ..end });
+            let behind = b.normal(&ToolPosition { tip: end.tip - way * step, ..end });
             match (ahead, behind) {
                 (Some(x), Some(y)) => (x - y).norm() / (2.0 * step),
                 _ => 0.0,

@@ -7,7 +7,7 @@ use apt_geometry::{
 
 use super::Vertex;
 use crate::{
-    clearance::Contact,
+    clearance::{Contact, Gauge},
     directed::{Prepared, is_tangent, stop::Event},
     error::{Iteration, MotionFailure},
     position::{self, Condition},
@@ -23,6 +23,11 @@ const PIECES: f64 = 24.0;
 const LEAST_PIECE: f64 = 2e-3;
 /// How exactly, relative to the size of the coordinates, a place where both surfaces are parallel is found.
 const POSITION: f64 = 1e-10;
+
+/// Sine of the angle between two normals that is rounding.
+const AGREEING: f64 = 1e-7;
+/// Step of the estimate of how fast normals turn, relative to the size of the coordinates.
+const TURNING_STEP: f64 = 1e-4;
 
 /// Whether tool and check surface touch where the path is parallel to it.
 enum Gap {
@@ -190,15 +195,19 @@ impl<'a> Watch<'a> {
         let check = &self.prepared.checks[stretch.index];
         let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
-        if check.holds(contact.clearance, *size) {
-            return Ok(Gap::Closed(Box::new(parallel), side));
-        }
         let to_part = self.checks[stretch.index].relation == Relation::TangentToPart;
         let (partner, its_base, against) = if to_part {
             (part, base[0], parallel.part.gradient)
         } else {
             (drive, base[1], parallel.drive.gradient)
         };
+        if check.holds(contact.clearance, *size) {
+            let apart = self.apart(stretch.index, partner, &parallel)?;
+            return Ok(match apart <= (1.0 - GUARD) * (check.band() + partner.band()) {
+                true => Gap::Closed(Box::new(parallel), side),
+                false => Gap::Open(apart),
+            });
+        }
         let sense = contact.gradient.dot(&against).signum();
         let gap = contact.clearance;
         // A little inside the check surface's band, or at its limit where the partner's band begins.
@@ -211,12 +220,37 @@ impl<'a> Watch<'a> {
                 self.parallel(stretch, if to_part { [shift, base[1]] } else { [base[0], shift] })?;
             let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
             let outside_by = (low - contact.clearance).max(contact.clearance - high);
+            let apart = self.apart(stretch.index, partner, &shifted)?;
+            if apart > (1.0 - GUARD) * (check.band() + partner.band()) {
+                return Ok(Gap::Open(apart));
+            }
             if outside_by <= POSITION * size {
                 return Ok(Gap::Closed(Box::new(shifted), side));
             }
             return Ok(Gap::Open(contact.clearance));
         }
         Ok(Gap::Open(gap))
+    }
+
+    /// How far the check surface and the one that it is to be tangent to miss each other where their normals agree, as far as
+    /// their bends at a position tell: none if the normals agree there. Where the path is parallel to the check surface they may
+    /// differ across the path, and two surfaces that touch the tool there are not tangent by that.
+    fn apart(&self, index: usize, partner: &Working, place: &Vertex) -> Result<f64, MotionFailure> {
+        let tool = self.prepared.attitude.tool_at(&place.tip)?;
+        let (touched, side) = nearer(self.prepared, &self.prepared.checks[index], &place.tip)?;
+        let mut check = self.prepared.checks[index].gauge.clone();
+        check.side = side;
+        let normal = partner.gauge.contact(&tool, &place.tip).gradient;
+        let sense = touched.gradient.dot(&normal).signum();
+        let lean = touched.gradient * sense - normal * touched.gradient.dot(&normal).abs();
+        let Some(across) = lean.try_normalize(AGREEING) else { return Ok(0.0) };
+        let step = TURNING_STEP * self.prepared.size;
+        let turning = |gauge: &Gauge| {
+            let at = |way: f64| gauge.contact(&tool, &(place.tip + across * way)).gradient;
+            (at(step) - at(-step)).norm() / (2.0 * step)
+        };
+        // The parabola whose slope is the sine of the angle there.
+        Ok(lean.norm_squared() / (2.0 * (turning(&check) + turning(&partner.gauge))))
     }
 
     /// The position on both surfaces where the path is parallel to the check surface; the shifts are added to the clearances
