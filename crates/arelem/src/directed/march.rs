@@ -407,8 +407,11 @@ impl<'a> March<'a> {
                 None => Ok(*start),
             };
             let from = vertex(between.checked_sub(1))?;
-            let long = (end.tip - from.tip).norm() > self.state.maximum_step * (1.0 + 1e-9);
-            if !long && self.stepper.proven(&from, &end) {
+            let (way, until_now) = (end.tip - from.tip, self.points[between] - from.tip);
+            let long = way.norm() > self.state.maximum_step * (1.0 + 1e-9);
+            // In a tight bend the way to the end leads back from where the path goes.
+            let is_forward = tangent(&from.part, &from.drive, &until_now).dot(&way) > 0.0;
+            if !long && is_forward && self.stepper.proven(&from, &end) {
                 self.points.remove(between);
                 continue;
             }

@@ -347,3 +347,105 @@ fn a_flat_cutter_goes_along_a_ruling_of_a_cone() {
     };
     is_delivered(&motion);
 }
+
+/// Beside the vertex of a hollow cone the path turns smoothly by 106° within a few widths of the bands: no vector that leads past the
+/// bend from before it, however well it keeps the bands.
+#[test]
+fn a_tight_bend_is_not_left_out_before_the_end() {
+    let motion = Found {
+        cutter: &[
+            0.37701668373671865,
+            0.0,
+            0.18850834186835932,
+            0.0,
+            0.0,
+            5.558446825561225,
+            4.0148644956192765,
+        ],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-0.2824675831546037, 2.547259492061339, 2.22998330062625),
+        band: [0.01, 0.005],
+        thickness: 0.08475043104265333,
+        drive_side: DriveSide::Right,
+        forward: v(-0.7071736411662053, 0.0015787576757876742, -0.7070381522689793),
+        part: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-1.1930424796563566, 1.0394691334774415, 0.8727549121253729),
+                axis: v(0.0502332189908144, 0.70040104938901, 0.7119796301331902),
+                cosine: 0.5910037954416876,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Line(Plane {
+                normal: v(0.002232483861994045, 0.999997508004798, 0.0),
+                distance: 0.5970273534942839,
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.7071736411662054, 0.0015787576757877967, -0.7070381522689791),
+                distance: -0.09303545659658985,
+            }),
+        ),
+        stop: (Relation::On, circle(-6.5726727866282175, 1.7253217334457278, 5.134832072283215)),
+    };
+    is_delivered(&motion);
+}
+
+/// A tapered tool comes to touch a second wall, along which the path would go back, by 108°: a vector may set out onward and
+/// come to that path all the same.
+#[test]
+fn no_vector_round_a_corner_comes_to_a_path_that_leads_back() {
+    let motion = Found {
+        cutter: &[
+            0.8555870912639161,
+            0.0,
+            0.42779354563195804,
+            0.0,
+            0.0,
+            11.804692004856864,
+            3.2805463009647333,
+        ],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-0.9428548685789957, 1.0079600124577526, 1.1882847556047145),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::On,
+        forward: v(-0.7600240391526114, -0.12412229226066236, 0.6379319058285989),
+        part: (
+            Relation::To,
+            quadric([
+                0.10179588747911555,
+                0.20403845213968966,
+                0.45340562281635716,
+                1.1372929822936715,
+                0.4567288950739785,
+                -0.04137516840226272,
+                -0.1413486988172346,
+                0.5350819477678618,
+                -0.34308642387774796,
+                -0.8089007563312961,
+            ]),
+        ),
+        drive: (
+            Relation::On,
+            Geometry::Cylinder(Cylinder {
+                point: v(-1.3403260751406623, -4.257678143063907, 0.021696042204175647),
+                axis: v(0.4241741401807861, -0.23089147522581666, 0.8756514292056726),
+                radius: 5.911956098255567,
+            }),
+        ),
+        first: (
+            Relation::On,
+            plane(0.7600240391526116, 0.12412229226066222, -0.6379319058285987, -1.5609934057874328),
+        ),
+        stop: (Relation::On, level(-7.0)),
+    };
+    match motion.run(AMPLE) {
+        Err(MotionFailure::NoAdmissibleVector { role: RoleName::Part, .. }) => {}
+        other => panic!("{other:?}"),
+    }
+}

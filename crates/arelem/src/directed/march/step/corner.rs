@@ -86,6 +86,10 @@ impl Stepper<'_> {
             let turned = Vertex { tangent: *tangent, ..*here };
             self.trend.forget();
             let next = self.onward(&turned, cap, Places::Limits).ok()?;
+            // A vector may set out onward, and yet come to a path that does not.
+            if next.tangent.dot(&here.tangent) < 0.0 {
+                return None;
+            }
             self.turn(here, turned);
             Some(next)
         })
