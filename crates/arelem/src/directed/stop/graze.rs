@@ -79,6 +79,11 @@ impl Watcher<'_> {
         if x <= sweep.length * END && !was_falling {
             return None;
         }
+        // Where the path itself changes sides the vectors do so near by, and that is the position.
+        let side = |x: f64| self.on_path(index, sweep, x).map(|found| found.2);
+        if relation == Relation::On && side(0.0)? != side(sweep.length)? {
+            return None;
+        }
         watch.status = Status::Touching;
         watch.count += 1;
         let (vertex, _, side) = self.on_path(index, sweep, x)?;

@@ -2,12 +2,12 @@
 
 use apt_geometry::{
     canonical::Geometry,
-    motion::{Relation, Turn},
+    motion::{DriveSide, MotionCommand, PartSide, Relation, Turn},
 };
 use proptest::prelude::*;
 
 use crate::{
-    tests::{Program, cylinder, motion, plane, sphere, v},
+    tests::{Program, cylinder, motion, plane, quadric, sphere, v},
     verify::verify,
 };
 
@@ -92,4 +92,52 @@ fn a_touch_counts_like_any_position() {
     let mut p = over(&top);
     p.run(&motion(Turn::Forward, &plane(0.0, 1.0, 0.0, 0.0), &[(Relation::To, 2, &check)]));
     assert!((p.tip().x - 0.4).abs() < 0.05 && p.last().points.len() > 60, "{:?}", p.tip());
+}
+
+/// Vectors lie elsewhere in their bands than the path at rest, which comes to a kink here: they cross the check surface .01 before
+/// that path does. It is one position and no touch besides.
+#[test]
+fn a_crossing_is_not_counted_as_a_touch_again() {
+    let part = quadric([
+        0.2732029069050007,
+        0.09879660793492376,
+        -0.09374798503344749,
+        0.1019472654063256,
+        -0.01175681794648914,
+        -0.056491455556991636,
+        -0.03856956655932688,
+        -0.5636841839083837,
+        -0.1475478959169045,
+        -0.3706537770380258,
+    ]);
+    let axis = v(-0.6205487544921438, -0.20939966304762936, -0.7556924138919144);
+    let drive =
+        cylinder(v(2.1712143818051066, -1.5034569092829262, -1.5602616229139143), axis, 2.8516286405890128);
+    let axis = v(-0.5017572993808361, 0.8347298197764669, -0.22686061909021887);
+    let check =
+        cylinder(v(4.819902244680961, 2.5119449734973696, -4.046804601192701), axis, 3.4235244981093955);
+    let drill =
+        [0.4044985105585313, 0.0, 0.20224925527926566, 0.12152361272496265, 31.0, 0.0, 2.7959763426763846];
+    let start = [
+        MotionCommand::MaximumStep(10.0),
+        MotionCommand::MaximumPoints(1500),
+        MotionCommand::From {
+            position: v(1.5663848161065832, 1.4733756398789906, -1.040372478962763),
+            axis: Some(v(0.05288733130916908, 0.05832561045577427, 0.996895708362693)),
+            name: String::new(),
+        },
+    ];
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005).cutter(&drill);
+    start.iter().for_each(|command| {
+        p.run(command);
+    });
+    p.part_side(PartSide::Offset).go(&[(Relation::On, &drive), (Relation::To, &part)]);
+    p.side(DriveSide::On).indirv(0.854631922115876, 0.2418849648028124, -0.45945178365402534);
+    let before = p.sequences.len();
+    let outcome = p.attempt(&motion(Turn::Forward, &drive, &[(Relation::On, 2, &check)]));
+    for sequence in &p.sequences[before..] {
+        let evidence = verify(sequence, &|| false).expect("a judgement");
+        assert!(evidence.verified, "{:?} after {outcome:?}", evidence.violations);
+    }
 }
