@@ -88,12 +88,22 @@ pub(super) struct Stepper<'a> {
     turned: Option<(Vec3, Vec3)>,
     /// The last vector; zero before the first.
     last: Vec3,
-    /// Where the path came from farther off than it may turn on the spot, and its direction then.
-    arrived: Option<(Vec3, Vec3)>,
+    /// Where the path came from farther off than it may turn on the spot.
+    arrived: Option<Arrival>,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
     /// How the path bends so far, for the least number of vectors.
     pub(super) record: Record,
+}
+
+/// How the path came to a place.
+#[derive(Clone, Copy)]
+struct Arrival {
+    at: Vec3,
+    /// The vector that led there.
+    vector: Vec3,
+    /// The direction of the path at its end.
+    tangent: Vec3,
 }
 
 #[derive(Clone)]
@@ -179,7 +189,8 @@ impl<'a> Stepper<'a> {
         if let Ok(next) = &found {
             self.last = next.tip - here.tip;
             if !self.is_where_it_arrived(&next.tip) {
-                self.arrived = Some((next.tip, arrival(here, next)));
+                let (vector, tangent) = (self.last, arrival(here, next));
+                self.arrived = Some(Arrival { at: next.tip, vector, tangent });
             }
         }
         found
@@ -191,15 +202,16 @@ impl<'a> Stepper<'a> {
 
     /// True if all that the path has done since it arrived is to turn on the spot.
     fn is_where_it_arrived(&self, tip: &Vec3) -> bool {
-        self.arrived.is_some_and(|(at, _)| (tip - at).norm() <= KINK_BANDS * self.bands())
+        self.arrived.is_some_and(|arrival| (tip - arrival.at).norm() <= KINK_BANDS * self.bands())
     }
 
-    /// True if the path, bit by bit, has turned so far on the spot that it does not plainly go on in the direction in which it
-    /// came.
+    /// True if the path, bit by bit, has turned so far on the spot that it goes back from where it came: against the vector that
+    /// led there, and not plainly onward from how the path ended, from which a vector along a bend differs.
     fn kinks_back(&self, here: &Vertex, direction: &Vec3) -> bool {
         self.is_where_it_arrived(&here.tip)
-            && self.arrived.is_some_and(|(_, before)| {
-                direction.dot(&before) < UNDETERMINED * direction.norm() * before.norm()
+            && self.arrived.is_some_and(|Arrival { vector, tangent, .. }| {
+                let plainly = UNDETERMINED * direction.norm() * tangent.norm();
+                direction.dot(&vector) < 0.0 && direction.dot(&tangent) < plainly
             })
     }
 

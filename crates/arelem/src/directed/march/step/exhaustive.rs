@@ -71,7 +71,7 @@ impl Stepper<'_> {
     /// True if a direction goes on in about that of the path, of the vector before, and of the one by which the path came
     /// to a place where it turns on the spot.
     fn leads_onward(&self, vector: &Vec3, tangent: &Vec3) -> bool {
-        let arrived = self.arrived.map_or_else(Vec3::zeros, |(_, before)| before);
+        let arrived = self.arrived.map_or_else(Vec3::zeros, |arrival| arrival.vector);
         let least = |before: &Vec3| LEAST_ONWARD * vector.norm() * before.norm();
         [*tangent, self.last, arrived].iter().all(|before| vector.dot(before) >= least(before))
     }
