@@ -4,7 +4,7 @@
 use super::{
     Surface,
     bend::parallel_bend,
-    part::{Form, Survey},
+    part::{Form, Survey, leading},
     sheet::Jet,
 };
 use crate::Vec3;
@@ -226,13 +226,14 @@ impl Surface {
     /// surface, and where it ends or has an edge or no tangent plane there.
     pub fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
         let asked = || Survey::of_forms(center, reach, side);
-        match self {
+        let forms = match self {
             Self::Tabulated(curve) => curve.forms(side, center, reach),
             Self::Ruled(sheet) => sheet.survey(asked()).forms(),
             Self::PolyConic(sheet) => sheet.forms(asked()),
             Self::Sculptured(sheet) => sheet.survey(asked()).forms(),
             _ => None,
-        }
+        };
+        forms.map(leading)
     }
 
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.

@@ -127,6 +127,61 @@ proptest! {
     }
 }
 
+/// How far a point is from all that is within a radius of a straight stretch, and the way there.
+fn away_from_stretch(p: &Vec3, [from, to]: &[Vec3; 2], radius: f64) -> (f64, Vec3) {
+    let along = to - from;
+    let share = ((p - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    let way = p - (from + along * share);
+    let distance = way.norm() - radius;
+    if distance > 0.0 { (distance, way.normalize()) } else { (0.0, Vec3::zeros()) }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+    /// No place of a surface is nearer to a convex body than is said to be kept.
+    #[test]
+    fn nothing_is_nearer_to_a_body_than_what_is_kept(
+        which in 0usize..COUNT, near in prop::array::uniform3(-1.0..6.0f64), off in 0.05..2.0f64,
+        way in prop::array::uniform3(-2.0..2.0f64), radius in 0.01..0.5f64, wanted in 0.001..0.5f64,
+        asides in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 60),
+    ) {
+        let surface = made(which);
+        let foot = surface.foot(&Vec3::from(near));
+        let from = foot.point + foot.normal * (off + radius);
+        let ends = [from, from + Vec3::from(way)];
+        let away = |p: &Vec3| away_from_stretch(p, &ends, radius);
+        let Some(kept) = surface.keeps_apart(&away, wanted) else { return Ok(()) };
+        prop_assert!(kept >= wanted);
+        for (k, aside) in asides.iter().enumerate() {
+            let share = k as f64 / asides.len() as f64;
+            let place = surface.foot(&(ends[0] + (ends[1] - ends[0]) * share + Vec3::from(*aside) * 0.5)).point;
+            prop_assert!(away(&place).0 >= kept - 1e-9, "{which}: {} within {kept}", away(&place).0);
+        }
+    }
+}
+
+#[test]
+fn bodies_off_a_surface_are_known_to_keep_most_of_their_distance() {
+    let mut kept = 0;
+    let mut asked = 0;
+    for which in (0..COUNT).filter(|which| !matches!(made(*which), Surface::Tabulated(_))) {
+        let surface = made(which);
+        for near in places(60) {
+            let foot = surface.foot(&near);
+            let from = foot.point + foot.normal * 0.5;
+            let ends = [from, from + foot.normal * 0.2];
+            let distance =
+                surface.foot(&ends[0]).distance.abs().min(surface.foot(&ends[1]).distance.abs()) - 0.1;
+            if distance > 0.2 {
+                asked += 1;
+                let away = |p: &Vec3| away_from_stretch(p, &ends, 0.1);
+                kept += usize::from(surface.keeps_apart(&away, 0.8 * distance).is_some());
+            }
+        }
+    }
+    assert!(asked >= 100 && kept * 10 >= asked * 8, "{kept} of {asked}");
+}
+
 #[test]
 fn steady_balls_are_found_and_far_points_keep_off() {
     for which in 0..COUNT {

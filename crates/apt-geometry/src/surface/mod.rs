@@ -1,6 +1,7 @@
 //! Surfaces as the arithmetic element sees them: signed distance with foot, natural normal and curvature, and
 //! directed distances. Made from canonical forms.
 
+mod apart;
 mod bend;
 mod chart;
 mod cone;
@@ -22,6 +23,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 pub use self::{
+    apart::Away,
     bend::{Bend, Region},
     chart::{Chart, Place, Steady},
     cone::ConeForm,

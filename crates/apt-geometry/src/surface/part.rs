@@ -9,7 +9,9 @@ use std::sync::{
 };
 
 pub use self::form::Form;
+pub(super) use self::form::leading;
 use super::{
+    apart::Apart,
     bend::{Bend, parallel_bend},
     chart::Facing,
     interval::{Box3, Interval},
@@ -138,6 +140,8 @@ pub(super) struct Part {
     /// The side to halve, if that is not a matter of trial.
     halved: Option<usize>,
     halves: Later<Box<[Part; 2]>>,
+    /// The forms of all its places, where it is smooth and does not end.
+    form: Later<Option<Box<Form>>>,
 }
 
 /// Something made when it is first asked for. It tells no surfaces apart.
@@ -503,6 +507,7 @@ impl Part {
             ends: *ends,
             halved: (!tried).then_some(usize::from(sizes[1] > sizes[0])),
             halves: Later::new(),
+            form: Later::new(),
         }
     }
 
@@ -548,6 +553,27 @@ impl Part {
         }
         let (beside, above) = (beside.max(0.0), (height.abs() - self.sag).max(0.0));
         away.max((beside * beside + above * above).sqrt())
+    }
+
+    /// No place of the part is farther from its middle along a unit direction.
+    pub(super) fn reach_along(&self, way: &Vec3) -> f64 {
+        let Some(normal) = self.normal else { return self.radius };
+        let [(a, u), (b, v)] = &self.strips;
+        let [x, y, lean] = [a.dot(way), b.dot(way), a.dot(b)];
+        let upright = 1.0 - lean * lean;
+        let beside = ((x - lean * y).abs() * u + (y - lean * x).abs() * v) / upright;
+        let above = normal.dot(way).abs() * self.sag;
+        // Strips without width or direction tell nothing.
+        if beside.is_finite() { (beside + above).min(self.radius) } else { self.radius }
+    }
+
+    /// Whether this part, cut as fine as need be, keeps off a body.
+    pub(super) fn keeps_apart(&self, sheet: &impl Enclose, asked: &mut Apart<'_>, depth: u32) -> bool {
+        asked.takes_part(self, &mut |asked| {
+            let mut keeps = depth < MAX_DEPTH;
+            self.for_halves(sheet, |half| keeps = keeps && half.keeps_apart(sheet, asked, depth + 1));
+            keeps
+        })
     }
 
     /// Adds what this part means for a question.

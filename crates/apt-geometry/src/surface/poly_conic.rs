@@ -13,6 +13,7 @@ use nalgebra::Matrix3;
 use self::tree::{halved, joined};
 use super::{
     Chart, Foot, Place,
+    apart::{Apart, Away},
     descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
     part::{Count, Part, Rectangle, Summary},
@@ -394,6 +395,37 @@ impl PolyConicSheet {
             open.extend([2 * node + 2, 2 * node + 1]);
         }
         true
+    }
+
+    /// A distance from a body, not below the one wanted, that all cells keep: the nearest first, after which others add nothing.
+    pub(super) fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
+        let own = |p: &Vec3| {
+            let (distance, outward) = away(&self.linear.tr_mul(&(p - self.origin)));
+            (distance, self.linear * outward)
+        };
+        let stock = self.form.thickness.abs();
+        let mut asked = Apart::new(&own, wanted + stock);
+        let look = |asked: &mut Apart<'_>, node: usize| {
+            let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;
+            Some((asked.ball(&cell.center, cell.radius), node))
+        };
+        let mut open: Vec<_> = look(&mut asked, 0).into_iter().collect();
+        while let Some((least, node)) = open.pop() {
+            if asked.is_settled(least) {
+                continue;
+            }
+            match [2 * node + 1, 2 * node + 2].map(|child| look(&mut asked, child)) {
+                [Some(a), Some(b)] if a.0 < b.0 => open.extend([b, a]),
+                [None, None] => {
+                    let part = self.cells.get(node).and_then(|cell| cell.part.as_ref());
+                    if !part.is_some_and(|part| part.keeps_apart(self, &mut asked, 0)) {
+                        return None;
+                    }
+                }
+                children => open.extend(children.into_iter().flatten()),
+            }
+        }
+        Some(asked.kept()? - stock)
     }
 
     pub(super) fn chart(&self, place: &Place) -> Option<Chart> {

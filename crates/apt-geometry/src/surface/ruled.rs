@@ -10,6 +10,7 @@ mod rays;
 use self::bounds::ranges;
 use super::{
     Chart, Place,
+    apart::Apart,
     interval::Interval,
     part::{Count, Later, Part, Summary},
     perpendicular,
@@ -481,6 +482,33 @@ impl RuledSheet {
             }
             true
         })
+    }
+
+    /// Whether all strips keep off a body: the nearest first, after which others add nothing.
+    pub(super) fn keeps_apart(&self, asked: &mut Apart<'_>) -> bool {
+        let look = |asked: &mut Apart<'_>, band: usize, node: usize| {
+            let strip = self.bands.get(band)?.get(node).filter(|strip| strip.piece != usize::MAX)?;
+            Some((asked.stretch(&strip.middle, strip.radius), band, node))
+        };
+        let mut open: Vec<_> = (0..self.bands.len()).filter_map(|band| look(asked, band, 0)).collect();
+        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        while let Some((least, band, node)) = open.pop() {
+            if asked.is_settled(least) {
+                continue;
+            }
+            match [2 * node + 1, 2 * node + 2].map(|child| look(asked, band, child)) {
+                [Some(a), Some(b)] if a.0 < b.0 => open.extend([b, a]),
+                [None, None] => {
+                    let strip = self.bands.get(band).and_then(|nodes| nodes.get(node));
+                    if !asked.takes(least) && !strip.is_some_and(|strip| self.strip_keeps_apart(strip, asked))
+                    {
+                        return false;
+                    }
+                }
+                children => open.extend(children.into_iter().flatten()),
+            }
+        }
+        true
     }
 
     pub(super) fn chart(&self, place: &Place) -> Option<Chart> {

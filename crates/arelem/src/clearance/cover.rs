@@ -48,7 +48,7 @@ pub(crate) fn steady_bend(
     range: [f64; 2],
 ) -> Option<f64> {
     let (tool, tip) = &gauge.body(tool, tip);
-    if gauge.on { None } else { near::Around::new(gauge, tool, tip).upward_bend(spread, range) }
+    if gauge.on { None } else { near::Around::new(gauge, tool, tip, spread).upward_bend(spread, range) }
 }
 
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
@@ -77,7 +77,7 @@ pub(crate) fn upward_bend(
     }
     let (radius, height) = (tool.radius(), tool.profile.top.height);
     // Of a flank that is known to be far away nothing comes within range.
-    let near = near::Around::new(gauge, tool, tip);
+    let near = near::Around::new(gauge, tool, tip, spread);
     let height = near.top(range[1] + spread).unwrap_or(height);
     let corner = corner(tool);
     let mut cells = boxes(tool, corner.as_ref(), height);

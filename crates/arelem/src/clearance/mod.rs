@@ -183,7 +183,7 @@ impl Gauge {
         if !self.surface.has_charts() {
             return false;
         }
-        let around = Around::new(self, tool, middle);
+        let around = Around::new(self, tool, middle, 0.0);
         contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level))
     }
 

@@ -20,7 +20,7 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::Around;
-use self::trough::{Across, Bends, Grounds};
+use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
     certify::{Certificate, Face, Proof, certify},
@@ -30,6 +30,8 @@ use super::{
 
 /// Places that are remembered: the ends of a vector, and some between them.
 const MOST_PLACES: usize = 6;
+/// Flanks that are remembered: above one height and another, here and there.
+const MOST_FAR: usize = 4;
 /// Pieces of the tool that are tried for a contact.
 const MAX_PIECES: u32 = 4;
 /// Shares of the size of the tool and of the coordinates that are rounding of a distance.
@@ -49,6 +51,10 @@ const PATIENCE: f64 = 0.1;
 const SLENDER: f64 = 0.05;
 /// Shares of the radius by which the flank is first shown to be farther away than contact, and then less.
 const FAR: [f64; 4] = [0.5, 0.25, 0.1, 0.02];
+/// The same where the sizes of the surface's parts show it, which gives as much more as they do.
+const APART: [f64; 2] = [0.1, 0.02];
+/// Share of the radius that is to be left of that above the level of the contact, or the tool may have moved since.
+const RESERVE: f64 = 0.04;
 /// How much deeper than at first the tool may come to lie in a steady ball.
 const DEEPER: f64 = 1.2;
 /// Bound of the stretches of the corner's arc that are looked at, and half the widest one (radians): the tangents at its ends meet
@@ -62,7 +68,11 @@ const SHORTEST: f64 = 0.1;
 /// The last contacts here and there, the one that was asked for last first: a path is looked at from both ends of a vector in
 /// turn.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct Contacts(Vec<Near>);
+pub(crate) struct Contacts {
+    places: Vec<Near>,
+    /// What is known of the flank, the last first: it holds wherever the tool has not moved far.
+    far: Vec<Far>,
+}
 
 /// A contact near by with what is known about it.
 #[derive(Debug, Clone)]
@@ -74,15 +84,15 @@ pub(crate) struct Near {
     /// The surface's point at the last contact.
     surface: Vec3,
     zone: Result<Zone, Vec3>,
-    far: Option<Far>,
-    /// How that was shown.
+    /// How the flank was last shown to be far.
     flank: Option<Flank>,
-    /// Where it was not.
+    /// Where it was not, and where no more than is needed there.
     doubtful: Option<Vec3>,
+    without_reserve: Option<Vec3>,
     /// How the surface bends about the bottom of the tool, or where that was not found.
     bends: Result<Arc<Bends>, Vec3>,
     /// How much along the bottom's straight piece.
-    across: Option<Across>,
+    across: Acrosses,
 }
 
 /// Where Newton's method begins.
@@ -113,6 +123,8 @@ struct Zone {
 /// The flank above a height keeps a distance.
 #[derive(Debug, Clone, Copy)]
 struct Far {
+    side: f64,
+    /// The position in which that was shown.
     tip: Vec3,
     axis: Vec3,
     from: f64,
@@ -168,10 +180,10 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3, mem
         return Followed::Lost;
     }
     let pose = Pose { tool, surface, side, tip };
-    let Some(known) = memory.about(&pose, || pose.first()) else { return Followed::Lost };
+    let Some((known, far)) = memory.about(&pose, || pose.first()) else { return Followed::Lost };
     let Some(found) = known.touch(&pose) else { return Followed::Lost };
     let slack = pose.slack();
-    if known.proves(&pose, &found, slack) {
+    if known.proves(&pose, &found, slack, far) {
         (known.start, known.surface) = (found.start, found.contact.surface);
         return Followed::Proven(found.contact, slack);
     }
@@ -191,7 +203,7 @@ pub(super) fn remember(
     let pose = Pose { tool, surface, side, tip };
     let Some(start) = pose.start_at(contact) else { return };
     let first = || Some(Near::new(&pose, start, contact.surface));
-    if let Some(known) = memory.about(&pose, first) {
+    if let Some((known, _)) = memory.about(&pose, first) {
         (known.start, known.surface) = (start, contact.surface);
     }
 }
@@ -209,7 +221,7 @@ pub(super) fn foot(
     }
     let mut memory = memory.near.try_borrow_mut().ok()?;
     let pose = Pose { tool, surface, side, tip };
-    let known = memory.about(&pose, || {
+    let (known, _) = memory.about(&pose, || {
         let start = Start { piece: None, direction: [1.0, 0.0], rise: 0.0, place: surface.place(tip)? };
         Some(Near::new(&pose, start, *tip))
     })?;
@@ -227,27 +239,49 @@ pub(super) fn foot(
 
 impl Contacts {
     /// What is known about the place of a tool, or else what is to begin with there: that of the nearest place.
-    fn about(&mut self, pose: &Pose<'_>, first: impl FnOnce() -> Option<Near>) -> Option<&mut Near> {
-        self.0.retain(|known| known.side == pose.side);
-        if let Some(known) = self.0.iter().position(|known| known.holds(pose)) {
-            self.0[..=known].rotate_right(1);
+    fn about(
+        &mut self,
+        pose: &Pose<'_>,
+        first: impl FnOnce() -> Option<Near>,
+    ) -> Option<(&mut Near, &mut Vec<Far>)> {
+        let Self { places, far } = self;
+        places.retain(|known| known.side == pose.side);
+        far.retain(|known| known.side == pose.side);
+        if let Some(known) = places.iter().position(|known| known.holds(pose)) {
+            places[..=known].rotate_right(1);
         } else {
             let away = |known: &&Near| (known.tip - pose.tip).norm_squared();
-            let nearest = self.0.iter().min_by(|a, b| away(a).total_cmp(&away(b))).cloned();
+            let nearest = places.iter().min_by(|a, b| away(a).total_cmp(&away(b))).cloned();
             let known = nearest.or_else(first)?;
-            self.0.truncate(MOST_PLACES - 1);
-            self.0.insert(0, known);
+            places.truncate(MOST_PLACES - 1);
+            places.insert(0, known);
         }
-        let known = self.0.first_mut()?;
+        let known = places.first_mut()?;
         known.tip = *pose.tip;
-        Some(known)
+        Some((known, far))
     }
 
-    /// What was known last about the place of a tool, or else about the last place.
-    fn at(&self, pose: &Pose<'_>) -> Option<&Near> {
-        let mut here = self.0.iter().filter(|known| known.side == pose.side);
-        let last = here.clone().next();
-        here.find(|known| known.holds(pose)).or(last)
+    /// What was known last about the place of a tool, best where the tool may stray from there, or else about the last place.
+    fn at(&self, pose: &Pose<'_>, spread: f64) -> Option<&Near> {
+        let here = || self.places.iter().filter(|known| known.side == pose.side);
+        let wide =
+            |known: &&Near| known.zone.as_ref().is_ok_and(|zone| pose.stays_in(zone, &known.surface, spread));
+        let found = if spread > 0.0 { here().find(wide) } else { None };
+        found.or_else(|| here().find(|known| known.holds(pose))).or_else(|| here().next())
+    }
+
+    /// Keeps curvatures across directions where the bends that they were found by are kept.
+    fn learn(&mut self, bends: &Arc<Bends>, across: Acrosses) {
+        let same = |known: &&mut Near| known.bends.as_ref().is_ok_and(|own| Arc::ptr_eq(own, bends));
+        if let Some(known) = self.places.iter_mut().find(same) {
+            known.across = across;
+        }
+    }
+
+    /// What is known of the flank above a height, as far as it serves a place of the tool best.
+    fn far(&self, pose: &Pose<'_>, from: f64) -> Option<Far> {
+        let here = self.far.iter().filter(|known| known.side == pose.side && known.from <= from);
+        here.max_by(|a, b| a.left(pose).total_cmp(&b.left(pose))).copied()
     }
 }
 
@@ -261,11 +295,11 @@ impl Near {
             start,
             surface,
             zone: Err(nowhere),
-            far: None,
             flank: None,
             doubtful: None,
+            without_reserve: None,
             bends: Err(nowhere),
-            across: None,
+            across: Acrosses::default(),
         }
     }
 
@@ -301,7 +335,7 @@ impl Near {
     }
 
     /// Whether no point of the tool is nearer than the contact by more than a slack.
-    fn proves(&mut self, pose: &Pose<'_>, found: &Touch, slack: f64) -> bool {
+    fn proves(&mut self, pose: &Pose<'_>, found: &Touch, slack: f64, far: &mut Vec<Far>) -> bool {
         if !self.is_steady(pose, found) {
             return false;
         }
@@ -310,7 +344,8 @@ impl Near {
         pose.flank_keeps(contact, &zone, level)
             && (pose.bottom_keeps(contact, ball, &zone, level)
                 || self.lies_in_trough(pose, contact, &zone, level))
-            && (zone.top >= pose.tool.profile.top.height || self.is_alone(pose, found, zone.top, slack))
+            && (zone.top >= pose.tool.profile.top.height
+                || self.is_alone(pose, found, [zone.top, slack], far))
     }
 
     /// Whether the tool about a contact, and the contact, are within a steady ball.
@@ -339,7 +374,7 @@ impl Near {
         let patient = |tried: &Vec3| (pose.tip - tried).norm() <= PATIENCE * pose.scale();
         if !kept && !self.bends.as_ref().is_err_and(patient) {
             self.bends = Bends::about(pose, contact, &grounds).map(Arc::new).ok_or(*pose.tip);
-            self.across = None;
+            self.across = Acrosses::default();
         }
         let Ok(bends) = &self.bends else { return false };
         let trough = bends.trough(pose, contact, &grounds, &mut self.across);
@@ -347,14 +382,41 @@ impl Near {
     }
 
     /// Whether the flank above a height is no nearer than the contact.
-    fn is_alone(&mut self, pose: &Pose<'_>, found: &Touch, from: f64, slack: f64) -> bool {
+    fn is_alone(
+        &mut self,
+        pose: &Pose<'_>,
+        found: &Touch,
+        [from, slack]: [f64; 2],
+        far: &mut Vec<Far>,
+    ) -> bool {
         let level = found.contact.clearance - slack;
-        if self.far.is_some_and(|far| far.from == from && far.keeps(pose, level)) {
+        let keeps = |far: &Far| far.from <= from && far.left(pose) >= level;
+        let serves = |far: &Far| keeps(far) && far.has_reserve(pose, level);
+        if let Some(known) = far.iter().position(serves) {
+            far[..=known].rotate_right(1);
             return true;
         }
-        if self.doubtful.is_some_and(|tried| (pose.tip - tried).norm() <= PATIENCE * pose.scale()) {
-            return false;
+        let kept = far.iter().any(keeps);
+        let patient = |tried: &Option<Vec3>| {
+            tried.is_some_and(|tried| (pose.tip - tried).norm() <= PATIENCE * pose.scale())
+        };
+        if patient(if kept { &self.without_reserve } else { &self.doubtful }) {
+            return kept;
         }
+        let shown = APART.iter().find_map(|share| pose.apart_above(from, level.abs() + share * pose.scale()));
+        let shown = if shown.is_some() || kept { shown } else { self.shown_far(pose, from, level) };
+        let Some(level) = shown else {
+            *(if kept { &mut self.without_reserve } else { &mut self.doubtful }) = Some(*pose.tip);
+            return kept;
+        };
+        (self.doubtful, self.without_reserve) = (None, None);
+        far.truncate(MOST_FAR - 1);
+        far.insert(0, Far { side: pose.side, tip: *pose.tip, axis: pose.tool.axis, from, level });
+        true
+    }
+
+    /// What the flank above a height is shown to keep patch by patch, farther away than a level.
+    fn shown_far(&mut self, pose: &Pose<'_>, from: f64, level: f64) -> Option<f64> {
         let face = Face { surface: pose.surface, side: pose.side };
         let mut flank = self.flank.take().filter(|flank| flank.from == from);
         let first = flank.as_ref().map_or(0, |flank| flank.size);
@@ -371,25 +433,28 @@ impl Near {
                 || certify(face, pose.tool, pose.tip, level, &mut known.proof, None) == Certificate::Holds;
             flank = Some(known);
             if is_far {
-                self.far = Some(Far { tip: *pose.tip, axis: pose.tool.axis, from, level });
                 self.flank = flank;
-                self.doubtful = None;
-                return true;
+                return Some(level);
             }
         }
-        self.doubtful = Some(*pose.tip);
-        false
+        None
     }
 }
 
 impl Far {
-    /// Whether the flank keeps a level also in another position: its points move no farther than the end does and the turn
-    /// of the axis takes the farthest of them.
-    fn keeps(&self, pose: &Pose<'_>, level: f64) -> bool {
+    /// What the flank keeps in another position: its points move no farther than the end does and the turn of the axis takes the
+    /// farthest of them.
+    fn left(&self, pose: &Pose<'_>) -> f64 {
         let profile = &pose.tool.profile;
         let reach = profile.top.height.hypot(pose.tool.radius());
         let moved = (pose.tip - self.tip).norm() + reach * (pose.tool.axis - self.axis).norm();
-        self.level - moved >= level
+        self.level - moved
+    }
+
+    /// Whether more than a level is left, unless the tool has hardly moved since: moves are bounded by what is left.
+    fn has_reserve(&self, pose: &Pose<'_>, level: f64) -> bool {
+        let (left, reserve) = (self.left(pose), RESERVE * pose.scale());
+        left >= level + reserve || self.level - left <= reserve
     }
 }
 

@@ -52,6 +52,15 @@ impl Form {
         Self { middle: map.transpose() * self.middle * map, ..*self }
     }
 
+    /// The error with which this form would hold another one too, as far as it bends to the side asked about.
+    fn excess(&self, other: &Self) -> f64 {
+        let apart = other.middle - self.middle;
+        let mean = apart.trace() / 3.0;
+        // No eigenvalue is farther from their mean.
+        let most = mean + ((apart.norm_squared() - 3.0 * mean * mean).max(0.0) * (2.0 / 3.0)).sqrt();
+        most + other.error
+    }
+
     /// Which curvature a cylinder along a unit direction needs at least to bend at all these places towards the side as much as
     /// the surface in each direction, and more by a margin; `None` if the surface may bend to that side along the direction itself.
     ///
@@ -78,6 +87,28 @@ impl Form {
     }
 }
 
+/// Share of the greatest curvature by which one form may stand in for others.
+const ALIKE: f64 = 0.01;
+
+/// Few forms that bend in each direction as much as all of some, and hardly more.
+pub(in super::super) fn leading(mut forms: Vec<Form>) -> Vec<Form> {
+    let size = |form: &Form| form.middle.norm() + form.error;
+    forms.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let slack = ALIKE * forms.first().map_or(0.0, size);
+    let mut kept: Vec<(Form, f64)> = Vec::new();
+    for form in forms {
+        let stands_in = kept.iter_mut().find_map(|(known, most)| {
+            let needed = known.excess(&form);
+            (needed <= *most).then_some((known, needed))
+        });
+        match stands_in {
+            Some((known, needed)) => known.error = known.error.max(needed),
+            None => kept.push((form, form.error + slack)),
+        }
+    }
+    kept.into_iter().map(|(form, _)| form).collect()
+}
+
 impl Survey {
     /// Asks for the forms of all parts within reach of a point, as bent towards a side.
     pub(in super::super) fn of_forms(center: &Vec3, reach: f64, side: f64) -> Self {
@@ -97,21 +128,26 @@ impl Part {
             return;
         }
         survey.seen += 1;
-        let enclosure = sheet.enclose(&self.rectangle);
-        let form = Bounds::of(&enclosure, self.rectangle.half).form;
-        let is_smooth = !enclosure.ends && enclosure.sharp == [false; 2];
+        let form = self.form.get(|| self.form_of(sheet).map(Box::new));
         let close = |form: &Form| form.error <= CLOSE * form.middle.norm();
         let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-        if !(fine || is_smooth && form.as_ref().is_some_and(close)) {
+        if !(fine || form.as_deref().is_some_and(close)) {
             self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
             return;
         }
-        match form.filter(|_| is_smooth) {
+        match form {
             Some(form) => {
                 let form = form.seen_from(survey.side);
                 survey.forms.iter_mut().for_each(|forms| forms.push(form));
             }
             None => survey.jumps = true,
         }
+    }
+
+    /// The forms of all places, if the part is smooth and does not end.
+    fn form_of(&self, sheet: &impl Enclose) -> Option<Form> {
+        let enclosure = sheet.enclose(&self.rectangle);
+        let is_smooth = !enclosure.ends && enclosure.sharp == [false; 2];
+        Bounds::of(&enclosure, self.rectangle.half).form.filter(|_| is_smooth)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     super::{
+        apart::Apart,
         interval::{Box3, Interval, shifted, taylor_ranges},
         part::{Count, Enclose, Enclosure, Part, Rectangle, Summary, Survey},
     },
@@ -73,6 +74,11 @@ impl Enclose for Stretch<'_> {
 }
 
 impl Stretch<'_> {
+    /// The bounds over a strip.
+    fn part<'a>(&self, strip: &'a Strip) -> &'a Part {
+        strip.part.get(|| Box::new(Part::new(self, Rectangle::between(strip.range, strip.shares))))
+    }
+
     /// Whether the surface ends at a side of a rectangle.
     fn ends(&self, piece: &Piece, rectangle: &Rectangle) -> bool {
         let ([first, last], [low, high]) = (rectangle.range(0), rectangle.range(1));
@@ -150,13 +156,16 @@ impl RuledSheet {
                     continue;
                 }
                 let stretch = Stretch { sheet: self, piece: strip.piece };
-                let part = strip
-                    .part
-                    .get(|| Box::new(Part::new(&stretch, Rectangle::between(strip.range, strip.shares))));
-                part.survey(&stretch, &mut survey);
+                stretch.part(strip).survey(&stretch, &mut survey);
             }
         }
         survey
+    }
+
+    /// Whether a strip keeps off a body.
+    pub(super) fn strip_keeps_apart(&self, strip: &Strip, asked: &mut Apart<'_>) -> bool {
+        let stretch = Stretch { sheet: self, piece: strip.piece };
+        stretch.part(strip).keeps_apart(&stretch, asked, 0)
     }
 }
 

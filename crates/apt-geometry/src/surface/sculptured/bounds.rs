@@ -4,11 +4,13 @@
 use super::{
     super::{
         Foot,
+        apart::Apart,
         interval::{Box3, Interval},
         part::{Cap, Count, Enclose, Enclosure, Rectangle, Survey},
         sheet::{Jet, Rest},
     },
     SculpturedSheet,
+    tree::Node,
 };
 use crate::{
     Vec3,
@@ -230,6 +232,39 @@ impl Enclose for Stretch<'_> {
 }
 
 impl SculpturedSheet {
+    /// Whether all leaves keep off a body: the nearest first, after which others add nothing.
+    pub(in super::super) fn keeps_apart(&self, asked: &mut Apart<'_>) -> bool {
+        let look = |asked: &mut Apart<'_>, node: usize| {
+            let (center, radius) = self.nodes.get(node)?.ball();
+            Some((asked.ball(&center, radius), node))
+        };
+        let mut open: Vec<_> = look(asked, 0).into_iter().collect();
+        while let Some((least, node)) = open.pop() {
+            if asked.is_settled(least) {
+                continue;
+            }
+            match self.nodes.get(node) {
+                Some(Node::Fork { children, .. }) => {
+                    let mut below = children.map(|child| look(asked, child));
+                    if let [Some(a), Some(b)] = &below
+                        && a.0 < b.0
+                    {
+                        below.reverse();
+                    }
+                    open.extend(below.into_iter().flatten());
+                }
+                Some(Node::Leaf(leaf)) => {
+                    let stretch = Stretch { sheet: self, piece: leaf.piece };
+                    if !leaf.part.keeps_apart(&stretch, asked, 0) {
+                        return false;
+                    }
+                }
+                None => return false,
+            }
+        }
+        true
+    }
+
     /// Answers a question about the curvature near a place.
     pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
         let (center, reach) = (*survey.center(), survey.reach());

@@ -6,9 +6,9 @@ use apt_geometry::{Vec3, surface::Foot};
 
 use super::{
     Far, Pose, Start, Zone,
-    trough::{Across, Bends, Grounds},
+    trough::{Acrosses, Bends, Grounds},
 };
-use crate::clearance::{Contact, Gauge, Tool};
+use crate::clearance::{Contact, Gauge, Tool, memory::Memory};
 
 /// What is known about a contact in a steady ball.
 #[derive(Clone)]
@@ -18,33 +18,34 @@ struct Known {
     zone: Zone,
     far: Option<Far>,
     bends: Option<Arc<Bends>>,
-    across: Option<Across>,
+    across: Acrosses,
 }
 
 /// What is known about a tool and a surface, for questions about points near by.
 pub(in crate::clearance) struct Around<'a> {
     pose: Pose<'a>,
+    memory: &'a Memory,
     known: Option<Known>,
 }
 
 impl<'a> Around<'a> {
-    pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3) -> Self {
+    pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3, spread: f64) -> Self {
         let Gauge { surface, side, memory, .. } = gauge;
         let pose = Pose { tool, surface, side: *side, tip };
         let known = memory.near.try_borrow().ok().and_then(|near| {
-            let near = near.at(&pose)?;
+            let (contacts, near) = (&near, near.at(&pose, spread)?);
             let zone = *near.zone.as_ref().ok()?;
             let bends = near.bends.as_ref().ok().cloned();
             Some(Known {
                 start: near.start,
                 surface: near.surface,
                 zone,
-                far: near.far,
+                far: contacts.far(&pose, zone.top),
                 bends,
                 across: near.across,
             })
         });
-        Self { pose, known }
+        Self { pose, memory, known }
     }
 
     /// The foot of a point, if that is known to be the only one.
@@ -83,8 +84,7 @@ impl<'a> Around<'a> {
         let ball = if on_corner { profile.arc } else { 0.0 };
         let kept = |tip: &Vec3| {
             let pose = Pose { tip, ..self.pose };
-            let flank = zone.top >= profile.top.height
-                || far.is_some_and(|far| far.from == zone.top && far.keeps(&pose, level));
+            let flank = zone.top >= profile.top.height || far.is_some_and(|far| far.left(&pose) >= level);
             flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.flank_keeps(contact, zone, level)
         };
         let by_ball = |tip: &Vec3| Pose { tip, ..self.pose }.bottom_keeps(contact, ball, zone, level);
@@ -92,7 +92,7 @@ impl<'a> Around<'a> {
             let bends = bends.as_ref().filter(|_| profile.lower.height > 0.0);
             let grounds = Grounds { steady: zone.steady, level, stray: (way[1] - way[0]).norm() };
             let mut across = *across;
-            bends.is_some_and(|bends| {
+            let kept = bends.is_some_and(|bends| {
                 way.into_iter().all(|tip| {
                     let pose = Pose { tip, ..self.pose };
                     let trough = bends
@@ -100,7 +100,11 @@ impl<'a> Around<'a> {
                         .filter(|_| bends.hold(&pose, contact, &grounds));
                     trough.is_some_and(|trough| pose.bottom_lies_in(&trough, contact, level))
                 })
-            })
+            });
+            if let (Some(bends), Ok(mut near)) = (bends, self.memory.near.try_borrow_mut()) {
+                near.learn(bends, across);
+            }
+            kept
         };
         contact.clearance + ball >= -zone.steady.beyond
             && way.into_iter().all(kept)
@@ -109,7 +113,7 @@ impl<'a> Around<'a> {
 
     /// A height above which the flank is known to be farther from the surface than a level.
     pub(in crate::clearance) fn top(&self, level: f64) -> Option<f64> {
-        let Known { zone, far, .. } = self.known.as_ref()?;
-        far.filter(|far| far.from == zone.top && far.keeps(&self.pose, level)).map(|far| far.from)
+        let far = self.known.as_ref()?.far?;
+        (far.left(&self.pose) >= level).then_some(far.from)
     }
 }

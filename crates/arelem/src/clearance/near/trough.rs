@@ -17,9 +17,11 @@ use crate::clearance::{Contact, Tool, waves::length};
 /// How far the tool may move in a ball of forms, in radii of the tool.
 const EASE: f64 = 0.5;
 
-/// Length of the difference of directions that a curvature is found for at once, and which share of it that is let to cost.
-const TURN: f64 = 0.05;
+/// Lengths of the difference of directions that a curvature is found for at once, and which share of it that is let to cost.
+const TURNS: [f64; 3] = [0.05, 0.01, 0.002];
 const MARGIN: f64 = 0.1;
+/// How many of them are kept.
+const MOST_ACROSS: usize = 6;
 
 /// How the surface bends about the bottom of the tool.
 #[derive(Debug, Clone)]
@@ -38,6 +40,25 @@ pub(super) struct Across {
     curvature: f64,
     /// No longer difference of directions.
     turn: f64,
+}
+
+/// The last curvatures, the one that was asked for last first: contacts along a vector are asked about in turn.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Acrosses([Option<Across>; MOST_ACROSS]);
+
+impl Acrosses {
+    /// That for a direction, made if it is not known.
+    fn about(&mut self, along: &Vec3, make: impl FnOnce() -> Option<Across>) -> Option<f64> {
+        let serves =
+            |known: &Option<Across>| known.is_some_and(|known| (known.along - along).norm() <= known.turn);
+        if let Some(known) = self.0.iter().position(serves) {
+            self.0[..=known].rotate_right(1);
+        } else {
+            self.0.rotate_right(1);
+            self.0[0] = make();
+        }
+        self.0[0].map(|known| known.curvature)
+    }
 }
 
 /// A bound of how the distance falls below its tangent: as from a cylinder.
@@ -84,8 +105,10 @@ impl Bends {
         };
         let exact = curvature(0.0)?;
         let wide = exact * (1.0 + MARGIN);
-        let serves = curvature(wide * TURN).is_some_and(|curvature| curvature <= wide);
-        let (curvature, turn) = if serves { (wide, TURN) } else { (exact, 0.0) };
+        let serves = |turn: &f64| curvature(wide * turn).is_some_and(|curvature| curvature <= wide);
+        let turn = TURNS.into_iter().find(serves);
+
+        let (curvature, turn) = turn.map_or((exact, 0.0), |turn| (wide, turn));
         Some(Across { along: *along, curvature, turn })
     }
 
@@ -95,7 +118,7 @@ impl Bends {
         pose: &Pose<'_>,
         contact: &Contact,
         grounds: &Grounds,
-        known: &mut Option<Across>,
+        known: &mut Acrosses,
     ) -> Option<Trough> {
         let Tool { axis, profile, across, .. } = pose.tool;
         let gradient = &contact.gradient;
@@ -103,10 +126,7 @@ impl Bends {
         let radial = across[0] * c + across[1] * s;
         let way = radial * profile.lower.radius + axis * profile.lower.height;
         let along = (way - gradient * gradient.dot(&way)).try_normalize(0.0)?;
-        if known.is_none_or(|known| (known.along - along).norm() > known.turn) {
-            *known = self.across(&along);
-        }
-        let curvature = known.as_ref()?.curvature;
+        let curvature = known.about(&along, || self.across(&along))?;
         let deepest = pose.deepest(contact, grounds)? + pose.stock();
         let left = 1.0 - deepest * curvature;
         (left > 0.0).then(|| Trough { along, bend: curvature / left })
@@ -202,11 +222,13 @@ mod tests {
         let memory = Memory::default();
         near::contact(tool, surface, side, tip, &memory);
         let known = memory.near.borrow();
-        let Some(known) = known.at(&pose) else { return Vec::new() };
+        let Some(known) = known.at(&pose, 0.0) else { return Vec::new() };
         let Some(contact) = known.touch(&pose).map(|touch| touch.contact) else { return Vec::new() };
         let (Ok(zone), Ok(bends)) = (&known.zone, &known.bends) else { return Vec::new() };
         let grounds = Grounds { steady: zone.steady, level: contact.clearance, stray: 0.0 };
-        let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut None) else { return Vec::new() };
+        let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut Acrosses::default()) else {
+            return Vec::new();
+        };
         if !bends.hold(&pose, &contact, &grounds) {
             return Vec::new();
         }

@@ -78,6 +78,27 @@ impl Pose<'_> {
         high
     }
 
+    /// A distance of all of the surface from the tool above a height on its flank, if it is known not to be below a given one.
+    pub(super) fn apart_above(&self, from: f64, distance: f64) -> Option<f64> {
+        let Tool { axis, profile, .. } = self.tool;
+        let (upper, top) = (profile.upper, profile.top);
+        let share = (from - upper.height) / (top.height - upper.height);
+        let start = [upper.radius + share * (top.radius - upper.radius), from];
+        let end = [top.radius, top.height];
+        let sides = [[[0.0, from], start], [start, end], [end, [0.0, top.height]]];
+        let away = |p: &Vec3| {
+            let (along, across, radial) = self.tool.split(&(p - self.tip));
+            let outside = sides.map(|side| beyond(side, [across, along]));
+            let nearest = outside.into_iter().flatten().min_by(|a, b| length(*a).total_cmp(&length(*b)));
+            let [wide, high] = nearest.unwrap_or([0.0; 2]);
+            let distance = length([wide, high]);
+            let outward =
+                if distance > 0.0 { (radial * wide + axis * high) / distance } else { Vec3::zeros() };
+            (distance, outward)
+        };
+        self.surface.keeps_apart(&away, distance)
+    }
+
     /// Whether balls that cover the flank above a height keep off the surface by a level.
     pub(super) fn is_off(&self, from: f64, level: f64) -> bool {
         self.off_above(from, level) <= from
@@ -179,6 +200,19 @@ impl Pose<'_> {
         let across = length(self.tool.across.map(|across| slope.dot(&across)));
         middle - circle.radius * across - circle.ball
     }
+}
+
+/// The way to a place (radius, height) from the nearest one of a side of a convex outline that is followed upwards, if the place is
+/// beyond that side.
+fn beyond([from, to]: [[f64; 2]; 2], place: [f64; 2]) -> Option<[f64; 2]> {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let w = [place[0] - from[0], place[1] - from[1]];
+    let square = way[0] * way[0] + way[1] * way[1];
+    if way[1] * w[0] - way[0] * w[1] <= 0.0 {
+        return None;
+    }
+    let share = if square > 0.0 { ((w[0] * way[0] + w[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    Some([w[0] - share * way[0], w[1] - share * way[1]])
 }
 
 /// Whether balls of the corner stand out from the tool: its arc is not tangent to both straight pieces.

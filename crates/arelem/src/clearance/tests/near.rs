@@ -111,6 +111,27 @@ fn what_is_remembered_changes_no_clearance() {
     }
 }
 
+/// The flank above the corner is far away: the sizes of the surface's parts tell that, without patches of the tool.
+#[test]
+fn the_flank_above_the_corner_takes_hardly_any_patches() {
+    let numbers = [0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
+    let tool = Tool::new(Cutter::from_numbers(&numbers, 1.0).expect("cutter"), Vec3::z());
+    for geometry in [lofts::roof(), lofts::vault()] {
+        let side = upper(&Surface::from_geometry(&geometry).expect("surface"));
+        let known = gauge(&geometry, side);
+        let mut tip = v(-1.1, 0.3, 4.0);
+        for _ in 0..10 {
+            tip.z -= known.contact(&tool, &tip).clearance * 0.99;
+        }
+        let before = JUDGED.get();
+        for _ in 0..200 {
+            tip += v(0.011, 0.002, 0.0);
+            tip.z -= known.contact(&tool, &tip).clearance * 0.99;
+        }
+        assert!(JUDGED.get() - before <= 100, "{} patches", JUDGED.get() - before);
+    }
+}
+
 /// Where no ball about the whole tool proves contact, the patches that did so in the last position do so again: at most three
 /// fifths as many are looked at as where every position is the first. Positions in which contact jumps stay open, few of them.
 #[test]

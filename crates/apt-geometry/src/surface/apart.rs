@@ -1,0 +1,116 @@
+//! How far all of a surface keeps off a convex body, from the sizes of its parts.
+//!
+//! The distance from a convex body is a convex function: nowhere is it below its tangent at a place. So what is known of how far
+//! a part of a surface reaches, in which directions, from a place tells how near to the body it comes at most.
+
+use super::{Surface, part::Part};
+use crate::Vec3;
+
+/// Bound of the nodes and parts that one question looks at: what takes more is too close.
+const MOST_LOOKS: u32 = 600;
+/// Places of a straight stretch that are tried for the one nearest to a body.
+const PLACES: u32 = 3;
+
+/// How far a point is from a convex body, and the unit direction from the body to it; no direction within.
+pub type Away<'a> = dyn Fn(&Vec3) -> (f64, Vec3) + 'a;
+
+/// The question how far a surface keeps off a body.
+pub(super) struct Apart<'a> {
+    away: &'a Away<'a>,
+    /// Less is none.
+    wanted: f64,
+    /// What the parts looked at so far keep.
+    least: f64,
+    looks: u32,
+    /// The place of the body nearest to what was looked at last.
+    nearest: Vec3,
+}
+
+impl<'a> Apart<'a> {
+    pub(super) fn new(away: &'a Away<'a>, wanted: f64) -> Self {
+        Self { away, wanted, least: f64::INFINITY, looks: 0, nearest: Vec3::zeros() }
+    }
+
+    /// The distance that all parts keep, unless they were too many to look at.
+    pub(super) fn kept(&self) -> Option<f64> {
+        (self.looks <= MOST_LOOKS).then_some(self.least)
+    }
+
+    /// Whether a part that keeps a distance adds nothing to what is known.
+    pub(super) fn is_settled(&self, distance: f64) -> bool {
+        distance >= self.least
+    }
+
+    /// Takes what a part keeps, if that is not less than wanted.
+    pub(super) fn takes(&mut self, distance: f64) -> bool {
+        let takes = distance >= self.wanted;
+        if takes {
+            self.least = self.least.min(distance);
+        }
+        takes
+    }
+
+    /// What all within a ball keeps.
+    pub(super) fn ball(&mut self, center: &Vec3, radius: f64) -> f64 {
+        self.looks += 1;
+        (self.away)(center).0 - radius
+    }
+
+    /// What all within a radius of a straight stretch keeps, from its beginning and the way along it.
+    pub(super) fn stretch(&mut self, [start, along]: &[Vec3; 2], radius: f64) -> f64 {
+        let square = along.norm_squared();
+        let shares = |place: &Vec3| {
+            let share = (place - start).dot(along) / square;
+            if square > 0.0 { share.clamp(0.0, 1.0) } else { 0.0 }
+        };
+        let (mut share, mut most) = (shares(&self.nearest), f64::NEG_INFINITY);
+        for _ in 0..PLACES {
+            self.looks += 1;
+            let place = start + along * share;
+            let (distance, outward) = (self.away)(&place);
+            let slope = outward.dot(along);
+            let least = distance - (slope * share).max(-slope * (1.0 - share));
+            most = most.max(least - radius);
+            self.nearest = place - outward * distance;
+            if self.is_settled(most) || distance <= 0.0 {
+                break;
+            }
+            let next = shares(&self.nearest);
+            if next == share {
+                break;
+            }
+            share = next;
+        }
+        most
+    }
+
+    /// What a part of a surface keeps, and how far its middle is.
+    fn part(&mut self, part: &Part) -> [f64; 2] {
+        self.looks += 1;
+        let (distance, outward) = (self.away)(part.center());
+        [distance - part.reach_along(&outward), distance]
+    }
+
+    /// Whether a part keeps what is wanted; its halves where need be.
+    pub(super) fn takes_part(&mut self, part: &Part, halves: &mut dyn FnMut(&mut Self) -> bool) -> bool {
+        let [least, middle] = self.part(part);
+        self.is_settled(least)
+            || self.takes(least)
+            || middle >= self.wanted && self.looks <= MOST_LOOKS && halves(self)
+    }
+}
+
+impl Surface {
+    /// A distance from a convex body, not below the one wanted, that all of the surface is known to keep; `None` for surfaces
+    /// of which that is not known, and where some place may be nearer.
+    pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
+        let mut asked = Apart::new(away, wanted);
+        let keeps = match self {
+            Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
+            Self::PolyConic(sheet) => return sheet.keeps_apart(away, wanted),
+            Self::Sculptured(sheet) => sheet.keeps_apart(&mut asked),
+            _ => false,
+        };
+        if keeps { asked.kept() } else { None }
+    }
+}
