@@ -48,6 +48,13 @@ struct Sample {
     contact: Contact,
 }
 
+impl Sample {
+    /// The same of the clearance taken negative.
+    fn turned(&self) -> Self {
+        Self { value: -self.value, slope: -self.slope, ..*self }
+    }
+}
+
 /// A clearance along a straight line.
 struct Line<'a> {
     sweep: &'a Sweep<'a>,

@@ -92,6 +92,8 @@ pub(super) struct Stepper<'a> {
     arrived: Option<Arrival>,
     /// What proofs leave for the next ones: part, drive.
     ledgers: [Ledger; 2],
+    /// Length of the longest vector so far.
+    longest: f64,
     /// How the path bends so far, for the least number of vectors.
     pub(super) record: Record,
 }
@@ -128,6 +130,24 @@ struct Trial {
     worst: f64,
 }
 
+/// A vector that was too long.
+#[derive(Clone, Copy)]
+struct Bad {
+    culprit: usize,
+    length: f64,
+    /// How far the clearance was out of its band.
+    beyond: f64,
+}
+
+impl Bad {
+    /// The share of the length at which the clearance comes back into its band if that goes on as from a longer vector.
+    fn meets_band(&self, longer: &Self) -> Option<f64> {
+        let fall = longer.beyond - self.beyond;
+        let falls = longer.culprit == self.culprit && fall > 0.0 && self.beyond > 0.0;
+        falls.then(|| 1.0 - self.beyond / fall * (longer.length / self.length - 1.0))
+    }
+}
+
 /// What the search for the longest vector begins with.
 struct Guess {
     bends: [Bend; 2],
@@ -149,6 +169,7 @@ impl<'a> Stepper<'a> {
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
+            longest: 0.0,
             record: Record::new(&prepared.tip),
         }
     }
@@ -250,6 +271,7 @@ impl<'a> Stepper<'a> {
     /// Goes on with a vector.
     fn follow(&mut self, from: &Vec3, found: &Trial) {
         self.trend.follow(found);
+        self.longest = self.longest.max(found.length);
         self.record.add(from, &found.vertex.tip, [&self.prepared.part, &self.prepared.drive], found.turning);
     }
 
@@ -267,6 +289,7 @@ impl<'a> Stepper<'a> {
         let mut best: Option<(Trial, f64)> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
+        let mut last_bad: Option<Bad> = None;
         let least = match places {
             Places::Limits => guess.settled.unwrap_or(0.0).max(LEAST_VECTOR * self.prepared.size),
             Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
@@ -300,7 +323,8 @@ impl<'a> Stepper<'a> {
                 if next_is_bad && shortest_bad <= length * NEARLY {
                     break;
                 }
-                lengthenings += 1;
+                // What nothing bends yet is far from its length.
+                lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
                 length = if next_is_bad { 0.5 * (length + shortest_bad) } else { next };
             } else {
                 shortest_bad = shortest_bad.min(length);
@@ -323,7 +347,10 @@ impl<'a> Stepper<'a> {
                     Some(_) => (SETTLED_SHRINKING, 1.0),
                     None => (GREATEST_SHRINKING, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9))),
                 };
-                length *= (trial.growth * AIM).clamp(least, most);
+                let bad = Bad { culprit: trial.culprit, length, beyond: self.beyond(&trial) };
+                let line = last_bad.and_then(|last| bad.meets_band(&last)).unwrap_or(1.0);
+                last_bad = Some(bad);
+                length *= (trial.growth.min(line) * AIM).clamp(least, most);
             }
         }
         best.map(|(trial, _)| trial).ok_or(if shortest_bad.is_finite() && culprit.1 != 0.0 {
@@ -335,6 +362,12 @@ impl<'a> Stepper<'a> {
                 tip: here.tip,
             }
         })
+    }
+
+    /// How far the clearance that a trial was refused for is out of its band.
+    fn beyond(&self, trial: &Trial) -> f64 {
+        let role = self.roles()[trial.culprit];
+        (-role.inside - trial.worst).max(trial.worst - role.outside)
     }
 
     /// True if the straight move between two positions keeps both bands.
@@ -382,7 +415,9 @@ impl<'a> Stepper<'a> {
 
     /// Length at which a parabola of the known curvature fills the bands.
     fn predict(&self, here: &Vertex, curvature: &[f64; 2], bends: &[Bend; 2]) -> f64 {
-        let mut length = self.maximum;
+        // A clearance that hardly bends along one vector may do so soon.
+        let mut length =
+            if self.longest > 0.0 { self.maximum.min(GREATEST_GROWTH * self.longest) } else { self.maximum };
         let clearances = [here.part.clearance, here.drive.clearance];
         for (((role, k), bend), clearance) in self.roles().iter().zip(curvature).zip(bends).zip(clearances) {
             let (at_start, at_end) = match bend {

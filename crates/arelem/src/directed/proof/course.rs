@@ -7,16 +7,23 @@ use std::borrow::Cow;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use super::{ENOUGH, Extremes, Line, MAX_ITERATIONS, Sample, tangents_meet};
+use super::{ENOUGH, Extremes, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, tangents_meet};
 use crate::{
     bound,
     clearance::{Contact, Tool},
 };
 
-/// Pieces into which a vector is cut at first.
-const PIECES: usize = 3;
+/// Share of a vector at its ends in which it is not cut first.
+const END: f64 = 0.05;
+/// How far out of the band, in widths of it, a vector is refused without a second look.
+const FAR_OUT: f64 = 1.0;
+/// Share of a stretch at which it is cut from an end where the clearance has an extreme, and ratio of the slopes that tells.
+const BESIDE_EXTREME: f64 = 1.0 / 6.0;
+const LEVEL: f64 = 0.25;
 /// Misfit between values and slopes, as a share of the band, above which contact may jump in between.
 const JUMP: f64 = 2e-3;
+/// Share of how far a clearance is out of its band that says nothing new of how much shorter the vector must be.
+const ROUGHLY: f64 = 0.01;
 /// Bound of the halvings where it does.
 const MAX_DEPTH: u32 = 10;
 /// Bound of the samples on one vector.
@@ -32,6 +39,8 @@ const OPEN: f64 = 0.1;
 const LEAST_OPEN: f64 = 1e-5;
 /// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
 const MOST_PIECES: f64 = 8.0;
+/// Share of a stretch for which a bound is known without a search where none is searched for all of it.
+const SHORTER: f64 = 0.25;
 /// Sine between the move and the generators of the surface with which regions are laid out at least.
 const LEAST_ACROSS: f64 = 0.01;
 
@@ -39,18 +48,18 @@ const LEAST_ACROSS: f64 = 0.01;
 pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) -> Extremes {
     let (least, greatest) = (ends.least, ends.greatest);
     let mut course = Course { line, samples: vec![a], least, greatest, is_exhausted: false };
-    let mut from = a;
-    // The slope in the middle, from places on both sides of it.
-    let mut middle = 0.0;
-    for k in 1..=PIECES {
-        let to = if k == PIECES { b } else { line.sample(b.x * k as f64 / PIECES as f64) };
-        middle += if k == PIECES { 0.0 } else { to.slope / (PIECES - 1) as f64 };
-        course.between(from, to, 0);
-        course.samples.push(to);
-        from = to;
+    let middle = line.sample(middle(&a, &b));
+    course.note(middle.value);
+    let turning = bound::turning(middle.x - a.x, [a.slope, middle.slope])
+        + bound::turning(b.x - middle.x, [middle.slope, b.slope]);
+    if course.beyond() > FAR_OUT * line.role.band() {
+        return Extremes { least: course.least, greatest: course.greatest, proven: false, turning };
     }
-    let half = 0.5 * (b.x - a.x);
-    let turning = bound::turning(half, [a.slope, middle]) + bound::turning(half, [middle, b.slope]);
+    course.between(a, middle, 0);
+    course.samples.push(middle);
+    course.between(middle, b, 0);
+    course.samples.push(b);
+
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
     Extremes { least: course.least, greatest: course.greatest, proven, turning }
 }
@@ -103,6 +112,18 @@ impl Course<'_, '_> {
         self.greatest = self.greatest.max(value);
     }
 
+    /// A length that tells something of extremes: a share of the band, but once they are out of it a share of how far, because the
+    /// vector is refused and they only tell how much shorter it must be.
+    fn telling(&self, share: f64) -> f64 {
+        (share * self.line.role.band()).max(ROUGHLY * self.beyond())
+    }
+
+    /// How far out of the band the clearance is.
+    fn beyond(&self) -> f64 {
+        let [low, high] = self.line.limits;
+        (low - self.least).max(self.greatest - high)
+    }
+
     fn holds(&self) -> bool {
         self.line.allows(self.least) && self.line.allows(self.greatest)
     }
@@ -112,9 +133,8 @@ impl Course<'_, '_> {
     fn between(&mut self, a: Sample, b: Sample, depth: u32) {
         self.note(a.value);
         self.note(b.value);
-        let band = self.line.role.band();
         let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
-        if misfit.abs() > JUMP * band && depth < MAX_DEPTH {
+        if misfit.abs() > self.telling(JUMP) && depth < MAX_DEPTH {
             let limit = if self.holds() { MAX_SAMPLES } else { MAX_SAMPLES_REFUSED };
             if self.samples.len() >= limit || (self.line.cancel)() {
                 self.is_exhausted = true;
@@ -122,7 +142,7 @@ impl Course<'_, '_> {
             }
             let x = match kink(a, b) {
                 // Between two parts of the tool there is nothing higher.
-                Some((_, value)) if value - a.value.max(b.value) <= ENOUGH * band => return,
+                Some((_, value)) if value - a.value.max(b.value) <= self.telling(ENOUGH) => return,
                 Some((x, _)) => x,
                 None => 0.5 * (a.x + b.x),
             };
@@ -131,12 +151,15 @@ impl Course<'_, '_> {
             self.samples.push(middle);
             self.between(middle, b, depth + 1);
         } else if (a.slope < 0.0) != (b.slope < 0.0) {
-            self.turn(a, b, ENOUGH * band);
+            self.turn(a, b, self.telling(ENOUGH));
         }
     }
 
     /// The extreme between two samples whose slopes differ in sign.
     fn turn(&mut self, mut a: Sample, mut b: Sample, enough: f64) {
+        if a.slope.abs().min(b.slope.abs()) * (b.x - a.x) <= enough {
+            return;
+        }
         let mut last = a;
         for _ in 0..MAX_ITERATIONS {
             let x = (a.x * b.slope - b.x * a.slope) / (b.slope - a.slope);
@@ -170,7 +193,7 @@ impl Course<'_, '_> {
                 Stretch::Held => continue,
                 Stretch::Open(bend) => unbounded += usize::from(bend == Some(Bend::Unbounded)),
             }
-            let x = 0.5 * (a.x + b.x);
+            let x = cut(&a, &b);
             count += 1;
             if count > MAX_SAMPLES
                 || unbounded > MAX_UNBOUNDED
@@ -219,7 +242,8 @@ impl Course<'_, '_> {
         };
         let serves = |bend: Option<Bend>| matches!(bend, Some(Bend::AtMost(bend)) if is_of_use(bend));
         let mut bend = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
-        let mut is_asked = bend.is_some();
+        let mut is_asked =
+            bend.is_some() || Ledger::knows_shorter(&role.gauge, &asked.tool, about, asked.range, SHORTER);
         if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
             (bend, is_asked) = (found(&is_of_use), true);
             ledger.note_use(&asked.tip, serves(bend));
@@ -227,7 +251,8 @@ impl Course<'_, '_> {
         // Where pieces will do, that takes less than the contacts on a quadric.
         let by_contacts = !serves(bend) || role.gauge.surface.has_charts();
         let (held, kept) = bend.map_or((false, false), bounded);
-        let high = held || self.is_held_from_both(a, b, by_contacts);
+        // Where shorter stretches will do, two more feet on the surface cost more than a contact.
+        let high = held || self.is_held_from_both(a, b, !serves(bend));
         let low = kept || high && by_contacts && self.is_kept_from_both(a, b);
         if high && low {
             return Stretch::Held;
@@ -262,7 +287,7 @@ impl Course<'_, '_> {
             tool,
             spread: 0.5 * way,
             // A point that is in contact on the way is nowhere farther from contact than the way is long.
-            range: [low - way + thickness, high + 2.0 * way + thickness],
+            range: [low - way + thickness, high + 1.5 * way + thickness],
             speed: stretch * across,
             swing: if role.gauge.on { 0.0 } else { sweep.swing(reach) },
         }
@@ -313,6 +338,33 @@ impl Course<'_, '_> {
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
         role.gauge.keeps_between(&sweep.at(a.x).1, contacts, &meeting, limits[0])
     }
+}
+
+/// Where a vector is looked at first: at the extreme of the cubic through both ends with their slopes, if it has just one.
+fn middle(a: &Sample, b: &Sample) -> f64 {
+    let length = b.x - a.x;
+    let x = if a.slope < 0.0 && b.slope > 0.0 {
+        cubic_minimum(*a, *b)
+    } else if a.slope > 0.0 && b.slope < 0.0 {
+        cubic_minimum(a.turned(), b.turned())
+    } else {
+        0.5 * (a.x + b.x)
+    };
+    x.clamp(a.x + END * length, b.x - END * length)
+}
+
+/// Where a stretch is cut that is not proven. Next to an extreme at the limit of the band only short ones are, while slopes
+/// carry far elsewhere.
+fn cut(a: &Sample, b: &Sample) -> f64 {
+    let (here, there) = (a.slope.abs(), b.slope.abs());
+    let share = if here <= LEVEL * there {
+        BESIDE_EXTREME
+    } else if there <= LEVEL * here {
+        1.0 - BESIDE_EXTREME
+    } else {
+        0.5
+    };
+    a.x + share * (b.x - a.x)
 }
 
 /// Where the tangents of two samples meet and what they say there, if the second one rises less: the lesser of two clearances

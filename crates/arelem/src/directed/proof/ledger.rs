@@ -72,6 +72,19 @@ impl Ledger {
         self.useless.set((!is_of_use).then_some(*tip));
     }
 
+    /// Whether a bound is known without a search for stretches that are shorter by a ratio.
+    pub(super) fn knows_shorter(
+        gauge: &Gauge,
+        tool: &Tool,
+        (tip, spread): (&Vec3, f64),
+        range: [f64; 2],
+        ratio: f64,
+    ) -> bool {
+        let middle = 0.5 * (range[0] + range[1]);
+        let range = range.map(|distance| middle + ratio * (distance - middle));
+        steady_bend(gauge, tool, tip, ratio * spread, range).is_some()
+    }
+
     /// The bound of [`Ledger::bend`], if one is known that holds there.
     pub(super) fn known_bend(
         &self,
