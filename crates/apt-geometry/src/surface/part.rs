@@ -1,6 +1,7 @@
 //! Parts of parametric surfaces with bounds that hold over all of them: of their extent, their curvature and the turn of
 //! their normal. Parts are halved where a question needs closer bounds; what was found stays with them.
 
+mod body;
 mod form;
 
 use std::sync::{
@@ -11,7 +12,6 @@ use std::sync::{
 pub use self::form::Form;
 pub(super) use self::form::leading;
 use super::{
-    apart::Apart,
     bend::{Bend, parallel_bend},
     chart::Facing,
     interval::{Box3, Interval},
@@ -553,27 +553,6 @@ impl Part {
         }
         let (beside, above) = (beside.max(0.0), (height.abs() - self.sag).max(0.0));
         away.max((beside * beside + above * above).sqrt())
-    }
-
-    /// No place of the part is farther from its middle along a unit direction.
-    pub(super) fn reach_along(&self, way: &Vec3) -> f64 {
-        let Some(normal) = self.normal else { return self.radius };
-        let [(a, u), (b, v)] = &self.strips;
-        let [x, y, lean] = [a.dot(way), b.dot(way), a.dot(b)];
-        let upright = 1.0 - lean * lean;
-        let beside = ((x - lean * y).abs() * u + (y - lean * x).abs() * v) / upright;
-        let above = normal.dot(way).abs() * self.sag;
-        // Strips without width or direction tell nothing.
-        if beside.is_finite() { (beside + above).min(self.radius) } else { self.radius }
-    }
-
-    /// Whether this part, cut as fine as need be, keeps off a body.
-    pub(super) fn keeps_apart(&self, sheet: &impl Enclose, asked: &mut Apart<'_>, depth: u32) -> bool {
-        asked.takes_part(self, &mut |asked| {
-            let mut keeps = depth < MAX_DEPTH;
-            self.for_halves(sheet, |half| keeps = keeps && half.keeps_apart(sheet, asked, depth + 1));
-            keeps
-        })
     }
 
     /// Adds what this part means for a question.
