@@ -484,14 +484,18 @@ impl RuledSheet {
         })
     }
 
-    /// Whether all strips keep off a body: the nearest first, after which others add nothing.
+    /// Whether all strips keep off a body: those between the curves and the nearest first, after which others add nothing.
     pub(super) fn keeps_apart(&self, asked: &mut Apart<'_>) -> bool {
         let look = |asked: &mut Apart<'_>, band: usize, node: usize| {
             let strip = self.bands.get(band)?.get(node).filter(|strip| strip.piece != usize::MAX)?;
             Some((asked.stretch(&strip.middle, strip.radius), band, node))
         };
         let mut open: Vec<_> = (0..self.bands.len()).filter_map(|band| look(asked, band, 0)).collect();
-        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let is_between = |band: usize| {
+            let root = self.bands.get(band).and_then(|nodes| nodes.first());
+            root.is_some_and(|root| root.shares[0] >= 0.0 && root.shares[1] <= 1.0)
+        };
+        open.sort_by_key(|(_, band, _)| is_between(*band));
         while let Some((least, band, node)) = open.pop() {
             if asked.is_settled(least) {
                 continue;
