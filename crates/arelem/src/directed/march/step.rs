@@ -4,12 +4,13 @@
 
 mod corner;
 mod exhaustive;
+mod overlong;
 mod trend;
 mod window;
 
 use apt_geometry::{Vec3, surface::Surface};
 
-use self::trend::Trend;
+use self::{overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex, tangent};
 use crate::{
     bound::Record,
@@ -128,24 +129,6 @@ struct Trial {
     turning: [f64; 2],
     culprit: usize,
     worst: f64,
-}
-
-/// A vector that was too long.
-#[derive(Clone, Copy)]
-struct Bad {
-    culprit: usize,
-    length: f64,
-    /// How far the clearance was out of its band.
-    beyond: f64,
-}
-
-impl Bad {
-    /// The share of the length at which the clearance comes back into its band if that goes on as from a longer vector.
-    fn meets_band(&self, longer: &Self) -> Option<f64> {
-        let fall = longer.beyond - self.beyond;
-        let falls = longer.culprit == self.culprit && fall > 0.0 && self.beyond > 0.0;
-        falls.then(|| 1.0 - self.beyond / fall * (longer.length / self.length - 1.0))
-    }
 }
 
 /// What the search for the longest vector begins with.
@@ -289,7 +272,7 @@ impl<'a> Stepper<'a> {
         let mut best: Option<(Trial, f64)> = None;
         let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
         let mut culprit = (self.prepared.part.name, 0.0);
-        let mut last_bad: Option<Bad> = None;
+        let mut last_bad: Option<Overlong> = None;
         let least = match places {
             Places::Limits => guess.settled.unwrap_or(0.0).max(LEAST_VECTOR * self.prepared.size),
             Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
@@ -347,7 +330,7 @@ impl<'a> Stepper<'a> {
                     Some(_) => (SETTLED_SHRINKING, 1.0),
                     None => (GREATEST_SHRINKING, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9))),
                 };
-                let bad = Bad { culprit: trial.culprit, length, beyond: self.beyond(&trial) };
+                let bad = Overlong { culprit: trial.culprit, length, beyond: self.beyond(&trial) };
                 let line = last_bad.and_then(|last| bad.meets_band(&last)).unwrap_or(1.0);
                 last_bad = Some(bad);
                 length *= (trial.growth.min(line) * AIM).clamp(least, most);
