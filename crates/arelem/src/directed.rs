@@ -34,6 +34,18 @@ pub(crate) struct Path {
     pub(crate) bent: Bent,
 }
 
+/// Why a path was not found, and what GOUGCK/ON tells about the place.
+pub(crate) struct Stuck {
+    pub(crate) failure: MotionFailure,
+    pub(crate) gouges: Vec<MotionWarning>,
+}
+
+impl From<MotionFailure> for Stuck {
+    fn from(failure: MotionFailure) -> Self {
+        Self { failure, gouges: Vec::new() }
+    }
+}
+
 /// Computes one directed motion.
 pub(crate) fn run(
     state: &State,
@@ -47,12 +59,15 @@ pub(crate) fn run(
         return Err(MotionFailure::SurfaceCount { found: 1 });
     }
     let prepared = prepare::prepare(state, turn, drive, checks, warnings)?;
-    let (prepared, path) = match state.axis_mode {
-        ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => {
-            fan::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?
-        }
-        _ => run_in::follow(prepared, &mut |prepared| follow(state, prepared, checks, warnings, cancel))?,
+    let path = |prepared: &Prepared| follow(state, prepared, checks, cancel);
+    let found = match state.axis_mode {
+        ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => fan::follow(prepared, &path),
+        _ => run_in::follow(prepared, &path),
     };
+    let (prepared, path) = found.map_err(|Stuck { failure, gouges }| {
+        warnings.extend(gouges);
+        failure
+    })?;
     let sequence = sequence(state, &prepared, checks, path)?;
     if state.gouge_check {
         warnings.extend(gouge::along(&prepared, &sequence));
@@ -65,14 +80,12 @@ fn follow(
     state: &State,
     prepared: &Prepared,
     checks: &[CheckSurface],
-    warnings: &mut Vec<MotionWarning>,
     cancel: &dyn Fn() -> bool,
-) -> Result<Path, MotionFailure> {
+) -> Result<Path, Stuck> {
     let path = plane_route::run(state, prepared, checks, cancel).transpose();
-    path.unwrap_or_else(|| march::run(state, prepared, checks, cancel)).inspect_err(|failure| {
-        if state.gouge_check {
-            warnings.extend(gouge::where_stuck(prepared, failure));
-        }
+    path.unwrap_or_else(|| march::run(state, prepared, checks, cancel)).map_err(|failure| {
+        let gouges = if state.gouge_check { gouge::where_stuck(prepared, &failure) } else { Vec::new() };
+        Stuck { failure, gouges }
     })
 }
 

@@ -1,7 +1,7 @@
 //! FAN: the axis turns evenly from where the motion begins to the axis that TANDS gives where it ends. Where that is, passes
 //! tell: the first with the present axis, each of the others with the fan to the end of the one before.
 
-use super::{Path, Prepared};
+use super::{Path, Prepared, Stuck};
 use crate::{
     attitude::Attitude,
     error::{AxisFailure, MotionFailure},
@@ -15,8 +15,8 @@ const SETTLED: f64 = 1e-9;
 /// The path with the axis turning evenly, and what it was computed with. `prepared` holds the axis of TANDS.
 pub(super) fn follow(
     prepared: Prepared,
-    path: &mut dyn FnMut(&Prepared) -> Result<Path, MotionFailure>,
-) -> Result<(Prepared, Path), MotionFailure> {
+    path: &dyn Fn(&Prepared) -> Result<Path, Stuck>,
+) -> Result<(Prepared, Path), Stuck> {
     if !prepared.attitude.turns() {
         let only = path(&prepared)?;
         return Ok((prepared, only));
@@ -40,5 +40,5 @@ pub(super) fn follow(
         }
         end = last;
     }
-    Err(undetermined(AxisFailure::NotSettled { change: moved / prepared.size }, end))
+    Err(undetermined(AxisFailure::NotSettled { change: moved / prepared.size }, end).into())
 }

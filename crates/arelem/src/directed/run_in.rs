@@ -1,7 +1,7 @@
 //! A motion whose first vector cannot turn the tool to the axis that the law wants: several vectors turn it, over a way that is
 //! as short as the turn allows.
 
-use super::{Path, Prepared};
+use super::{Path, Prepared, Stuck};
 use crate::error::{Iteration, MotionFailure};
 
 /// The first way that is tried, as a multiple of what the turn moves the rim of the tool by, and how many, each twice as long as
@@ -14,27 +14,36 @@ const NO_TURN: f64 = 1e-9;
 /// The path, and what it was computed with.
 pub(super) fn follow(
     prepared: Prepared,
-    path: &mut dyn FnMut(&Prepared) -> Result<Path, MotionFailure>,
-) -> Result<(Prepared, Path), MotionFailure> {
-    let failure = match path(&prepared) {
+    path: &dyn Fn(&Prepared) -> Result<Path, Stuck>,
+) -> Result<(Prepared, Path), Stuck> {
+    let stuck = match path(&prepared) {
         Ok(found) => return Ok((prepared, found)),
-        Err(failure) => failure,
+        Err(stuck) => stuck,
     };
-    let angle = turn_at_start(&prepared)?;
-    if angle <= NO_TURN || !is_stuck_within(&failure, &prepared, 0.0) {
-        return Err(failure);
+    if !is_stuck_within(&stuck.failure, &prepared, 0.0) {
+        return Err(stuck);
     }
-    let shortest = FIRST * angle * prepared.tool.radius();
+    let angle = turn_at_start(&prepared)?;
+    let shortest = FIRST * angle * extent(&prepared);
+    if angle <= NO_TURN || shortest <= 0.0 {
+        return Err(stuck);
+    }
     for k in 0..WAYS {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, &(prepared.tangent * length));
         let running = Prepared { attitude, ..prepared.clone() };
         match path(&running) {
-            Err(again) if is_stuck_within(&again, &prepared, length) => {}
+            Err(again) if is_stuck_within(&again.failure, &prepared, length) => {}
             found => return found.map(|found| (running, found)),
         }
     }
-    Err(failure)
+    Err(stuck)
+}
+
+/// What a turn moves: the rim of the tool, the length of one without a rim, of a point nothing.
+fn extent(prepared: &Prepared) -> f64 {
+    let radius = prepared.tool.radius();
+    if radius > 0.0 { radius } else { prepared.tool.cutter.height }
 }
 
 /// Angle between the axis that the tool has and the one that it is to have.

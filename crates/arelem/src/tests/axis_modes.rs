@@ -251,11 +251,14 @@ proptest! {
         let x = |d: f64| plane(1.0, 0.0, 0.0, d);
         let mut p = Program::new();
         p.tolerance(0.001, 0.001).cutter(&[2.0 * BALL, corner]).from(-3.0, 0.0, 9.0);
-        p.run(&MotionCommand::ToolAxis(mode));
+        p.run(&MotionCommand::ToolAxis(mode)).run(&MotionCommand::GougeCheck(true));
         p.go(&[(relation, &drive), (Relation::To, &part), (Relation::On, &x(-0.5))]);
         let side = if on { DriveSide::On } else { DriveSide::Left };
         p.side(side).indirv(-1.0, 0.0, 0.0).drive(Turn::Forward, &drive, Relation::On, &x(-2.0));
         proven(&p)?;
+        // What a vector tried in vain would have cut is nothing to the path that was found.
+        let in_vain = |told: &MotionWarning| matches!(told, MotionWarning::Gouge { ahead: true, .. });
+        prop_assert!(!p.warnings.iter().any(in_vain), "{:?}", p.warnings);
         let CutSequence { start, points, .. } = p.last();
         let (last, before) = points.split_last().expect("a path");
         if corner >= BALL {
@@ -263,5 +266,21 @@ proptest! {
             let off = misfit(&mode, &surface(&part), &surface(&drive), &last.tip, &last.axis, &ahead);
             prop_assert!(off <= EXACT, "{off:e}");
         }
+    }
+}
+
+/// A line has no rim that a turn would move, and a point has nothing.
+#[test]
+fn tools_without_a_rim_follow_a_lead_angle_whose_sense_changes() {
+    let (part, drive) = (hill(0, 0.5, 0.2), wall(0, 0.1, Relation::On));
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    for height in [0.0, 3.0] {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height]).from(-3.0, 0.0, 9.0);
+        p.run(&MotionCommand::ToolAxis(axis_mode(true, 3, 10.0, 0.8, Vec3::zeros())));
+        p.go(&[(Relation::On, &drive), (Relation::To, &part), (Relation::On, &x(-0.5))]);
+        p.side(DriveSide::On).indirv(-1.0, 0.0, 0.0);
+        p.drive(Turn::Forward, &drive, Relation::On, &x(-2.0));
+        proven(&p).expect("its bands");
     }
 }

@@ -107,7 +107,6 @@ impl Bends {
         let wide = exact * (1.0 + MARGIN);
         let serves = |turn: &f64| curvature(wide * turn).is_some_and(|curvature| curvature <= wide);
         let turn = TURNS.into_iter().find(serves);
-
         let (curvature, turn) = turn.map_or((exact, 0.0), |turn| (wide, turn));
         Some(Across { along: *along, curvature, turn })
     }

@@ -59,7 +59,6 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     course.samples.push(middle);
     course.between(middle, b, 0);
     course.samples.push(b);
-
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
     Extremes { least: course.least, greatest: course.greatest, proven, turning }
 }
