@@ -36,13 +36,13 @@ pub(crate) struct Path {
 
 /// Why a path was not found, and what GOUGCK/ON tells about the place.
 pub(crate) struct Stuck {
-    pub(crate) failure: MotionFailure,
+    pub(crate) failure: Box<MotionFailure>,
     pub(crate) gouges: Vec<MotionWarning>,
 }
 
 impl From<MotionFailure> for Stuck {
     fn from(failure: MotionFailure) -> Self {
-        Self { failure, gouges: Vec::new() }
+        Self { failure: Box::new(failure), gouges: Vec::new() }
     }
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn run(
     };
     let (prepared, path) = found.map_err(|Stuck { failure, gouges }| {
         warnings.extend(gouges);
-        failure
+        *failure
     })?;
     let sequence = sequence(state, &prepared, checks, path)?;
     if state.gouge_check {
@@ -85,7 +85,7 @@ fn follow(
     let path = plane_route::run(state, prepared, checks, cancel).transpose();
     path.unwrap_or_else(|| march::run(state, prepared, checks, cancel)).map_err(|failure| {
         let gouges = if state.gouge_check { gouge::where_stuck(prepared, &failure) } else { Vec::new() };
-        Stuck { failure, gouges }
+        Stuck { failure: Box::new(failure), gouges }
     })
 }
 
