@@ -270,7 +270,7 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3, place: Option<Vec3>) ->
     }
     let (state, tip) = (work.state, work.tip);
     let mut modal = Working::new(state, RoleName::Part, &state.part, Relation::To, false)?;
-    let observed = modal.gauge.surface.signed_distance(&work.tool.observer(&tip));
+    let observed = work.tool.observed(&modal.gauge.surface, &tip);
     modal.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
     let find = |name: RoleName| work.roles.iter().find(|r| r.name == name);
     let part = find(RoleName::Part).unwrap_or(&modal);

@@ -2,6 +2,9 @@
 
 use super::Cutter;
 
+/// Distance from the profile, relative to its size, up to which a point is on it.
+const NEARLY_ON: f64 = 1e-7;
+
 /// A point of the profile: distance from the axis and height above the tool end, program units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfilePoint {
@@ -165,6 +168,36 @@ impl Profile {
         }
         let distance = best.0.sqrt();
         (if inside { -distance } else { distance }, best.1)
+    }
+
+    /// Signed distance of the point (ρ, z), ρ ≥ 0, from the solid tool (positive outside), and a unit direction in which it grows
+    /// by no less than along any straight line: the convex function of the distance is nowhere below its tangent there.
+    pub fn outward(&self, radius: f64, height: f64) -> (f64, [f64; 2]) {
+        let (distance, nearest) = self.distance(radius, height);
+        let away = [radius - nearest.radius, height - nearest.height];
+        let length = away[0].hypot(away[1]);
+        if length > NEARLY_ON * (self.greatest_radius() + self.top.height) {
+            let sense = distance.signum() / length;
+            return (distance, away.map(|x| x * sense));
+        }
+        // On the boundary the piece that the point is farthest out from tells the direction.
+        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
+        let axis_top = ProfilePoint { radius: 0.0, height: self.top.height };
+        let mut best = (f64::NEG_INFINITY, [0.0, -1.0]);
+        for (a, b) in [(tip, self.lower), (self.upper, self.top), (self.top, axis_top)] {
+            let (dx, dz) = (b.radius - a.radius, b.height - a.height);
+            let size = dx.hypot(dz);
+            let out = ((radius - a.radius) * dz - (height - a.height) * dx) / size;
+            if size > 0.0 && out > best.0 {
+                best = (out, [dz / size, -dx / size]);
+            }
+        }
+        let (x, z) = (radius - self.center.radius, height - self.center.height);
+        let rho = x.hypot(z);
+        if self.arc > 0.0 && rho - self.arc > best.0 && self.is_in_fan(x, z) {
+            best = (rho - self.arc, [x / rho, z / rho]);
+        }
+        (distance, best.1)
     }
 
     /// Greatest distance of the point (ρ, z), ρ ≥ 0, from the solid tool and the farthest profile point; that point

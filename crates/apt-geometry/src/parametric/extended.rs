@@ -76,7 +76,7 @@ struct Reach {
     share: f64,
 }
 
-/// What goes on beyond an edge.
+/// An edge that is to go on.
 #[derive(Debug, Clone, Copy)]
 struct Outer {
     patch: usize,
@@ -221,7 +221,7 @@ fn winding(edge: Edge) -> f64 {
     }
 }
 
-fn opposite(edge: Edge) -> Edge {
+pub(super) fn opposite(edge: Edge) -> Edge {
     match edge {
         Edge::LowU => Edge::HighU,
         Edge::HighU => Edge::LowU,
@@ -231,7 +231,7 @@ fn opposite(edge: Edge) -> Edge {
 }
 
 /// The control points of an edge, and those next to it.
-fn two_rows(patch: &Patch, edge: Edge) -> [[Homogeneous; 4]; 2] {
+pub(super) fn two_rows(patch: &Patch, edge: Edge) -> [[Homogeneous; 4]; 2] {
     let c = &patch.control;
     match edge {
         Edge::LowU => [c[0], c[1]],
@@ -252,17 +252,21 @@ fn beyond(patch: &Patch, edge: Edge, reach: &Reach) -> Option<Patch> {
     if rows.iter().flatten().any(|point| point.w <= 0.0 || !point.w.is_finite()) {
         return None;
     }
-    let [a, b, c, d] = rows;
+    Some(outward(rows, edge))
+}
+
+/// The patch of rows of control points from an edge outward, with the parameters of the patch that it joins.
+pub(super) fn outward([a, b, c, d]: [[Homogeneous; 4]; 4], edge: Edge) -> Patch {
     let along_u = match edge {
         Edge::LowU | Edge::LowV => [d, c, b, a],
         Edge::HighU | Edge::HighV => [a, b, c, d],
     };
-    let straight = Patch { control: along_u };
-    Some(if matches!(edge, Edge::LowV | Edge::HighV) { straight.swapped() } else { straight })
+    let patch = Patch { control: along_u };
+    if matches!(edge, Edge::LowV | Edge::HighV) { patch.swapped() } else { patch }
 }
 
 /// Where a straight patch beyond an edge joins: the parameter across it, by its side.
-fn joint(edge: Edge) -> [Option<f64>; 2] {
+pub(super) fn joint(edge: Edge) -> [Option<f64>; 2] {
     match edge {
         Edge::LowU => [Some(1.0), None],
         Edge::HighU => [Some(0.0), None],
@@ -272,7 +276,7 @@ fn joint(edge: Edge) -> [Option<f64>; 2] {
 }
 
 /// Whether a straight patch keeps facing the way it does at its joint, and its rulings do not meet.
-fn spreads(straight: &Patch, joint: [Option<f64>; 2]) -> bool {
+pub(super) fn spreads(straight: &Patch, joint: [Option<f64>; 2]) -> bool {
     let size = straight.size();
     let places = [0.0, 0.5, 1.0].into_iter().flat_map(|u| [0.0, 0.5, 1.0].map(|v| [u, v]));
     places.into_iter().all(|[u, v]| {
@@ -354,7 +358,7 @@ fn chained(outer: &mut [Outer], around: &[[Option<Neighbour>; 4]]) -> usize {
 }
 
 /// The patches with what is around them.
-fn joined(patches: &[Patch], size: f64) -> Vec<ExtendedPatch> {
+pub(super) fn joined(patches: &[Patch], size: f64) -> Vec<ExtendedPatch> {
     let around = topology::neighbours(patches);
     let side = |index: usize, edge: Edge| {
         let Some(patch) = patches.get(index) else { return Side::End };

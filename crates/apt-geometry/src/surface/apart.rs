@@ -22,18 +22,19 @@ pub(super) struct Apart<'a> {
     /// What the parts looked at so far keep.
     least: f64,
     looks: u32,
+    most_looks: u32,
     /// The place of the body nearest to what was looked at last.
     nearest: Vec3,
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(away: &'a Away<'a>, wanted: f64) -> Self {
-        Self { away, wanted, least: f64::INFINITY, looks: 0, nearest: Vec3::zeros() }
+    pub(super) fn new(away: &'a Away<'a>, wanted: f64, most_looks: u32) -> Self {
+        Self { away, wanted, least: f64::INFINITY, looks: 0, most_looks, nearest: Vec3::zeros() }
     }
 
     /// The distance that all parts keep, unless they were too many to look at.
     pub(super) fn kept(&self) -> Option<f64> {
-        (self.looks <= MOST_LOOKS).then_some(self.least)
+        (self.looks <= self.most_looks).then_some(self.least)
     }
 
     /// Whether a part that keeps a distance adds nothing to what is known.
@@ -96,7 +97,7 @@ impl<'a> Apart<'a> {
         let [least, middle] = self.part(part);
         self.is_settled(least)
             || self.takes(least)
-            || middle >= self.wanted && self.looks <= MOST_LOOKS && halves(self)
+            || middle >= self.wanted && self.looks <= self.most_looks && halves(self)
     }
 }
 
@@ -104,10 +105,15 @@ impl Surface {
     /// A distance from a convex body, not below the one wanted, that all of the surface is known to keep; `None` for surfaces
     /// of which that is not known, and where some place may be nearer.
     pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
-        let mut asked = Apart::new(away, wanted);
+        self.keeps_apart_within(away, wanted, MOST_LOOKS)
+    }
+
+    /// The same by looking at no more than so many of its parts.
+    pub fn keeps_apart_within(&self, away: &Away<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
+        let mut asked = Apart::new(away, wanted, most_looks);
         let keeps = match self {
             Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
-            Self::PolyConic(sheet) => return sheet.keeps_apart(away, wanted),
+            Self::PolyConic(sheet) => return sheet.keeps_apart(away, wanted, most_looks),
             Self::Sculptured(sheet) => sheet.keeps_apart(&mut asked),
             _ => false,
         };

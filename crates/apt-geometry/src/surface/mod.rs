@@ -5,6 +5,7 @@ mod apart;
 mod bend;
 mod chart;
 mod cone;
+mod crease;
 mod descent;
 mod directed;
 mod interval;
@@ -27,6 +28,7 @@ pub use self::{
     bend::{Bend, Region},
     chart::{Chart, Place, Steady},
     cone::ConeForm,
+    crease::{Crease, SurfaceEdge},
     directed::{NoDistance, RootSelection, solve_quadratic},
     part::Form,
     poly_conic::PolyConicSheet,
@@ -39,7 +41,7 @@ pub use self::{
 use crate::{
     Vec3,
     canonical::{Cylinder, Geometry, GeometryKind, Plane, Sphere},
-    parametric::Extended,
+    parametric::{Extended, Flanged},
 };
 
 /// A surface ready for distance questions.
@@ -158,7 +160,8 @@ impl Surface {
             }
             Geometry::Sculptured(surface) => {
                 let extended = Extended::of(surface).ok_or(degenerate)?;
-                let sheet = surface.made(|own| SculpturedSheet::new(own, extended.patches()));
+                let flanged = Flanged::of(surface).ok_or(degenerate)?;
+                let sheet = surface.made(|own| SculpturedSheet::new(own, extended.patches(), flanged));
                 sheet.map(Self::Sculptured).ok_or(degenerate)
             }
             Geometry::Point(_)
@@ -185,6 +188,16 @@ impl Surface {
             Self::PolyConic(sheet) => sheet.ends_at(p),
             Self::Sculptured(sheet) => sheet.ends_at(p),
             _ => false,
+        }
+    }
+
+    /// The surface as a body of a tool on one side of it meets it, positive for that of the natural normal: where a surface ends it
+    /// is taken for the face of a body, which leads away from there on the other side. Most surfaces are that themselves, and so is one
+    /// of straight lines along the axis of the tool, which is beside all of such a line or beside none of it.
+    pub fn met_from(&self, side: f64, axis: &Vec3) -> &Self {
+        match self {
+            Self::Sculptured(sheet) => sheet.met_from(side, axis).unwrap_or(self),
+            _ => self,
         }
     }
 

@@ -82,13 +82,25 @@ pub(super) struct Enclosure {
     pub(super) sharp: [bool; 2],
     /// Whether the surface ends in the rectangle, or its natural normal turns over.
     pub(super) ends: bool,
+    /// Whether an edge or a crease may lie anywhere in it, not at its sides alone, so that the derivatives do not tell how far its
+    /// places are from those of the middle.
+    pub(super) split: bool,
 }
 
 impl Enclosure {
     /// Where nothing is known but the middle.
     pub(super) fn unknown(jet: Jet) -> Self {
         let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);
-        Self { jet, duu: all, duv: all, dvv: all, reach: f64::INFINITY, sharp: [true; 2], ends: true }
+        Self {
+            jet,
+            duu: all,
+            duv: all,
+            dvv: all,
+            reach: f64::INFINITY,
+            sharp: [true; 2],
+            ends: true,
+            split: true,
+        }
     }
 }
 
@@ -468,7 +480,7 @@ impl Part {
     pub(super) fn new(sheet: &impl Enclose, rectangle: Rectangle) -> Self {
         let enclosure = sheet.enclose(&rectangle);
         let [hu, hv] = rectangle.half;
-        let Enclosure { jet, duu, duv, dvv, reach, sharp, ends } = &enclosure;
+        let Enclosure { jet, duu, duv, dvv, reach, sharp, ends, split } = &enclosure;
         let (u, v) = (jet.du * hu, jet.dv * hv);
         let bent = 0.5 * (duu.length() * hu * hu + dvv.length() * hv * hv) + duv.length() * hu * hv;
         let radius = (u + v).norm().max((u - v).norm()) + bent;
@@ -480,10 +492,9 @@ impl Part {
         let sag = bounds.normal.map_or(radius, |normal| {
             let off = |bend: &Box3| bend.dot(&normal).magnitude();
             let sag = 0.5 * (off(duu) * hu * hu + off(dvv) * hv * hv) + off(duv) * hu * hv;
-            // Over an edge or a crease derivatives tell nothing of that.
-            if sag.is_nan() || sharp.contains(&true) { radius } else { sag.min(radius) }
+            if sag.is_nan() || *split { radius } else { sag.min(radius) }
         });
-        let strips = strips(bounds.normal.filter(|_| !sharp.contains(&true)), [&u, &v], bent);
+        let strips = strips(bounds.normal.filter(|_| !split), [&u, &v], bent);
         for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
             if *sharp || curvature.is_nan() {
                 *curvature = f64::INFINITY;

@@ -398,13 +398,13 @@ impl PolyConicSheet {
     }
 
     /// A distance from a body, not below the one wanted, that all cells keep: the nearest first, after which others add nothing.
-    pub(super) fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
+    pub(super) fn keeps_apart(&self, away: &Away<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
         let own = |p: &Vec3| {
             let (distance, outward) = away(&self.linear.tr_mul(&(p - self.origin)));
             (distance, self.linear * outward)
         };
         let stock = self.form.thickness.abs();
-        let mut asked = Apart::new(&own, wanted + stock);
+        let mut asked = Apart::new(&own, wanted + stock, most_looks);
         let look = |asked: &mut Apart<'_>, node: usize| {
             let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;
             Some((asked.ball(&cell.center, cell.radius), node))

@@ -5,9 +5,11 @@ mod bounds;
 mod rays;
 mod tree;
 
+use std::sync::{Arc, OnceLock};
+
 use self::tree::Node;
 use super::{
-    Chart, Place,
+    Chart, Crease, Place, Surface, SurfaceEdge,
     descent::{Descent, MAX_STEPS, Slopes},
     part::Count,
     perpendicular,
@@ -16,7 +18,7 @@ use super::{
 use crate::{
     Vec3,
     canonical::Made,
-    parametric::{Edge, ExtendedPatch, Patch, PatchPoint, SculpturedSurface, Side},
+    parametric::{Edge, ExtendedPatch, Flanged, Patch, PatchPoint, SculpturedSurface, Side},
 };
 
 /// Share of an offset along a joint's own surface above which the nearest place stays on the joint.
@@ -40,6 +42,11 @@ pub struct SculpturedSheet {
     curvature: f64,
     /// Parts with bounds.
     parts: Count,
+    /// How many of the pieces are the surface and what goes on beyond it: not those that it is taken for behind its ends.
+    own: usize,
+    /// What a tool meets on either side of it, if that is more: first that of the natural normal. Made where it is asked for.
+    flanged: Option<Arc<Flanged>>,
+    met: [OnceLock<Option<Box<Surface>>>; 2],
 }
 
 /// The nearest place so far.
@@ -52,7 +59,11 @@ struct Nearest {
 
 impl Made for SculpturedSheet {
     fn parts(&self) -> usize {
-        self.parts.get()
+        let met = self.met.iter().filter_map(|met| match met.get()?.as_deref()? {
+            Surface::Sculptured(sheet) => Some(sheet.parts.get()),
+            _ => None,
+        });
+        self.parts.get() + met.sum::<usize>()
     }
 }
 
@@ -79,18 +90,50 @@ fn edges_at([u, v]: [f64; 2]) -> [Option<Edge>; 2] {
 
 impl SculpturedSheet {
     /// `None` if there are no patches, or all of it is one point.
-    pub(super) fn new(surface: &SculpturedSurface, extended: &[ExtendedPatch]) -> Option<Self> {
+    pub(super) fn new(
+        surface: &SculpturedSurface,
+        extended: &[ExtendedPatch],
+        flanged: Arc<Flanged>,
+    ) -> Option<Self> {
         let size = surface.size();
         if !(surface.is_finite() && size.is_finite() && size > 0.0) {
             return None;
         }
-        let pieces = extended.to_vec();
-        let mut sheet =
-            Self { pieces, nodes: Vec::new(), ruling: None, size, curvature: 0.0, parts: Count::default() };
-        sheet.nodes = tree::grown(&sheet);
+        let mut sheet = Self::of(extended, size)?;
         sheet.ruling = sheet.found_ruling();
         sheet.curvature = sheet.sampled_curvature(surface.patches.len());
+        sheet.flanged = Some(flanged);
+        Some(sheet)
+    }
+
+    fn of(pieces: &[ExtendedPatch], size: f64) -> Option<Self> {
+        let mut sheet = Self {
+            pieces: pieces.to_vec(),
+            nodes: Vec::new(),
+            ruling: None,
+            size,
+            curvature: 0.0,
+            parts: Count::default(),
+            own: pieces.len(),
+            flanged: None,
+            met: Default::default(),
+        };
+        sheet.nodes = tree::grown(&sheet);
         (!sheet.nodes.is_empty()).then_some(sheet)
+    }
+
+    /// The surface with what it is taken for behind its ends by a tool on a side; none if that is itself.
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> Option<&Surface> {
+        let flanged = self.flanged.as_ref()?;
+        if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ON_SURFACE) {
+            return None;
+        }
+        let made = self.met[usize::from(side < 0.0)].get_or_init(|| {
+            let mut sheet = Self::of(flanged.patches(side), self.size)?;
+            (sheet.curvature, sheet.own) = (self.curvature, self.own);
+            Some(Box::new(Surface::Sculptured(Arc::new(sheet))))
+        });
+        made.as_deref()
     }
 
     /// Greatest principal curvature at places of the definition's own patches.
@@ -238,11 +281,45 @@ impl SculpturedSheet {
         Some(self.natural(*patch, there, &self.jet(*patch, there)))
     }
 
-    /// Whether the nearest place lies on an edge beyond which there is no patch.
+    /// Whether the nearest place lies on an edge beyond which there is no patch, or beyond the end of the surface.
     pub(super) fn ends_at(&self, p: &Vec3) -> bool {
         let Nearest { piece, at, .. } = self.nearest(p);
         let at_edges = Edge::ALL.into_iter().zip(at_limits(at, [[0.0, 1.0]; 2]));
-        at_edges.into_iter().any(|(edge, is_at)| is_at && self.side(piece, edge) == Side::End)
+        let mut sides = at_edges.filter(|(_, is_at)| *is_at).map(|(edge, _)| self.side(piece, edge));
+        let is_own = |side: &Side| matches!(side, Side::Joint { patch, .. } if *patch < self.own);
+        if piece < self.own { sides.any(|side| side == Side::End) } else { !sides.any(|side| is_own(&side)) }
+    }
+
+    pub(super) fn edge_at(&self, p: &Vec3) -> Option<SurfaceEdge> {
+        let Nearest { piece, at, .. } = self.nearest(p);
+        let is_end = |edge: &Edge| self.side(piece, *edge) == Side::End;
+        let edge = edges_at(at).into_iter().flatten().find(is_end)?;
+        let jet = self.jet(piece, at);
+        let normal = self.natural(piece, at, &jet);
+        let (along, across) = match edge {
+            Edge::LowU => (jet.dv, -jet.du),
+            Edge::HighU => (jet.dv, jet.du),
+            Edge::LowV => (jet.du, -jet.dv),
+            Edge::HighV => (jet.du, jet.dv),
+        };
+        let along = along.try_normalize(0.0)?;
+        let outward = (across - along * along.dot(&across)).try_normalize(0.0)?;
+        Some(SurfaceEdge { normal, outward, along })
+    }
+
+    pub(super) fn crease_at(&self, place: &Place, side: f64) -> Option<(Crease, f64)> {
+        let at = edges_at(place.at);
+        let beside = self.creases_beside(place, side).into_iter().flatten();
+        beside.into_iter().find(|(crease, _)| at.contains(&Some(crease.edge)))
+    }
+
+    pub(super) fn creases_beside(&self, place: &Place, side: f64) -> [Option<(Crease, f64)>; 4] {
+        let Place { piece, at } = *place;
+        let seen = usize::from(side < 0.0);
+        Edge::ALL.map(|edge| {
+            let Side::Joint { stands_out, .. } = self.side(piece, edge) else { return None };
+            stands_out[seen].then(|| (Crease { piece, edge }, along(edge, at, false)))
+        })
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {

@@ -68,12 +68,13 @@ pub(crate) fn upward_bend(
     if gauge.on {
         return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread)));
     }
+    let surface = gauge.met(tool);
     let touch = || gauge.contact(tool, tip).tool;
     let (tool, tip) = &gauge.body(tool, tip);
-    if let Some(reach) = closed_form::disc(tool, &gauge.surface, gauge.side, tip) {
+    if let Some(reach) = closed_form::disc(tool, surface, gauge.side, tip) {
         // All of the tool is as near as its end, less its radius.
         let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };
-        return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region));
+        return Some(surface.bend(gauge.side, &surface.foot(tip), &region));
     }
     let (radius, height) = (tool.radius(), tool.profile.top.height);
     // Of a flank that is known to be far away nothing comes within range.
@@ -81,7 +82,7 @@ pub(crate) fn upward_bend(
     let height = near.top(range[1] + spread).unwrap_or(height);
     let corner = corner(tool);
     let mut cells = boxes(tool, corner.as_ref(), height);
-    let close = if gauge.surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
+    let close = if surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
     let mut is_probed = false;
@@ -102,14 +103,14 @@ pub(crate) fn upward_bend(
         let reach = Vec3::from(cell.half).norm() + spread;
         let foot = match near.foot(&center) {
             Some(foot) => foot,
-            None if gauge.surface.keeps_off(&center, reach + range[1].max(-range[0])) => continue,
-            None => gauge.surface.foot(&center),
+            None if surface.keeps_off(&center, reach + range[1].max(-range[0])) => continue,
+            None => surface.foot(&center),
         };
         let distance = gauge.side * foot.distance;
         if distance - reach > range[1] || distance + reach < range[0] {
             continue;
         }
-        let found = gauge.surface.bend(gauge.side, &foot, &region(center, reach));
+        let found = surface.bend(gauge.side, &foot, &region(center, reach));
         let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
         if let Bend::AtMost(bound) = found
             && (small || bound <= greatest.max(close * needed))
@@ -117,7 +118,7 @@ pub(crate) fn upward_bend(
             greatest = greatest.max(bound);
             continue;
         }
-        let at_best = gauge.surface.bend(gauge.side, &foot, &region(center, spread));
+        let at_best = surface.bend(gauge.side, &foot, &region(center, spread));
         // Every box about a place in contact has it within its reach, and no better bound.
         let is_met = distance - spread <= range[1] && distance + spread >= range[0];
         match at_best {
@@ -131,12 +132,12 @@ pub(crate) fn upward_bend(
             is_probed = true;
             let place = touch();
             let is_round = corner.is_some() && is_at_corner(tool, &(place - tip));
-            let foot = gauge.surface.foot(&place);
+            let foot = surface.foot(&place);
             let distance = gauge.side * foot.distance;
             let is_met = distance - spread <= range[1] && distance + spread >= range[0];
             if is_met
                 && !is_round
-                && gauge.surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded
+                && surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded
             {
                 return Some(Bend::Unbounded);
             }
@@ -145,7 +146,7 @@ pub(crate) fn upward_bend(
             (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),
             _ => false,
         };
-        let limit = match (found, &gauge.surface) {
+        let limit = match (found, surface) {
             (Bend::Unbounded, Surface::Sculptured(_)) => MAX_BOXES_UNBOUNDED_BY_PATCH,
             (Bend::Unbounded, _) => MAX_BOXES_UNBOUNDED,
             _ => MAX_BOXES,

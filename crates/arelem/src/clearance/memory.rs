@@ -4,11 +4,11 @@
 //! A point of the tool comes nearer to a surface by no more than it moves, and what bounds the bend of the distance in a ball
 //! holds for all positions in it. Most patches of the tool need no second look.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use apt_geometry::Vec3;
 
-use super::{Contact, Tool, certify::Proof, near::Contacts, quadric::Start, tool::Piece};
+use super::{Contact, Tool, certify::Proof, crease::Spot, near::Contacts, quadric::Start, tool::Piece};
 
 /// How many times the last steps the tool may move before the bends are looked at again.
 const FORESIGHT: f64 = 3.0;
@@ -59,6 +59,10 @@ pub struct Memory {
     known: RefCell<Option<Known>>,
     /// The same for surfaces with charts.
     pub(super) near: RefCell<Contacts>,
+    /// The place of an edge of the surface that contact was at last, if it was at one, and the side.
+    crease: Cell<Option<(f64, Spot)>>,
+    /// Whether parts of the surface showed the last contact where patches of the tool did not.
+    by_parts: Cell<bool>,
 }
 
 /// Memories do not tell gauges apart.
@@ -124,6 +128,26 @@ impl Memory {
                 });
             }
         }
+    }
+
+    /// The place of an edge of the surface that contact was at last on a side, if it was at one.
+    pub(super) fn crease(&self, side: f64) -> Option<Spot> {
+        self.crease.get().filter(|(seen, _)| *seen == side).map(|(_, spot)| spot)
+    }
+
+    /// Keeps whether contact is at an edge of the surface, and where.
+    pub(super) fn remember_crease(&self, side: f64, spot: Option<Spot>) {
+        self.crease.set(spot.map(|spot| (side, spot)));
+    }
+
+    /// Whether parts of the surface showed the last contact where patches of the tool did not.
+    pub(super) fn is_shown_by_parts(&self) -> bool {
+        self.by_parts.get()
+    }
+
+    /// Keeps whether they did.
+    pub(super) fn show_by_parts(&self, by_parts: bool) {
+        self.by_parts.set(by_parts);
     }
 
     /// Keeps a contact at the tool's corner.

@@ -4,6 +4,7 @@
 mod certify;
 mod closed_form;
 mod cover;
+mod crease;
 mod dual;
 mod floor;
 mod matched;
@@ -30,6 +31,7 @@ pub(crate) use self::{
     cover::{steady_bend, upward_bend},
 };
 use self::{
+    crease::Beside,
     floor::Bases,
     near::{Around, Followed},
 };
@@ -79,6 +81,11 @@ pub struct Gauge {
 }
 
 impl Gauge {
+    /// What is measured from: the surface as the tool meets it on its side, for ON the surface alone.
+    pub(crate) fn met(&self, tool: &Tool) -> &Surface {
+        if self.on { &self.surface } else { self.surface.met_from(self.side, &tool.axis) }
+    }
+
     /// Clearance with contact points for a tool whose end is at `tip`.
     pub fn contact(&self, tool: &Tool, tip: &Vec3) -> Contact {
         if self.on {
@@ -121,9 +128,9 @@ impl Gauge {
     }
 
     fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
-        let Self { surface, side, thickness, memory, .. } = self;
+        let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
-        let (mut contact, missed) = offset_contact(&tool, surface, *side, &tip, Some(memory));
+        let (mut contact, missed) = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
         contact.clearance -= thickness;
         (contact, missed)
     }
@@ -131,23 +138,30 @@ impl Gauge {
     /// Whether the clearance is nowhere on the tool below a level.
     pub(crate) fn certify(&self, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
         let (tool, tip) = &self.body(tool, tip);
-        let (face, level) = (Face { surface: &self.surface, side: self.side }, level + self.thickness);
-        if let Some(posed) = quadric::Posed::new(tool, &self.surface, self.side, tip) {
-            let contact = offset_contact(tool, &self.surface, self.side, tip, Some(&self.memory)).0;
+        let surface = self.met(tool);
+        let (face, level) = (Face { surface, side: self.side }, level + self.thickness);
+        if let Some(posed) = quadric::Posed::new(tool, surface, self.side, tip) {
+            let contact = offset_contact(tool, surface, self.side, tip, Some(&self.memory)).0;
             if contact.clearance >= level && posed.clears(level, &contact) {
                 return Certificate::Holds;
             }
         }
-        if let Followed::Proven(contact, missed) =
-            near::contact(tool, &self.surface, self.side, tip, &self.memory)
+        if let Followed::Proven(contact, missed) = near::contact(tool, surface, self.side, tip, &self.memory)
             && contact.clearance - missed >= level
+        {
+            return Certificate::Holds;
+        }
+        if let Some(spot) = self.memory.crease(self.side)
+            && let beside = (Beside { tool, surface, side: self.side, tip })
+            && let Some((_, contact)) = beside.touch(&spot)
+            && beside.clears(&contact, level)
         {
             return Certificate::Holds;
         }
         let bases = self
             .memory
             .place(tool, self.side)
-            .map(|place| Bases::about(tool, tip, (&self.surface, self.side), &(tip + place.point)));
+            .map(|place| Bases::about(tool, tip, (surface, self.side), &(tip + place.point)));
         let mut proof = self.memory.proof(tool, self.side, tip);
         let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref());
         self.memory.keep_proof(self.side, proof);
@@ -184,7 +198,14 @@ impl Gauge {
             return false;
         }
         let around = Around::new(self, tool, middle, 0.0);
-        contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level))
+        if contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level)) {
+            return true;
+        }
+        // Beside an edge no distance of a point is steady.
+        let [(from, first), (to, last)] = &contacts;
+        let away = (first.gradient + last.gradient).try_normalize(0.0);
+        self.memory.crease(self.side).is_some()
+            && away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does
@@ -213,12 +234,13 @@ impl Gauge {
     }
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.
-    pub(crate) fn bend_at(&self, point: &Vec3, way: &Vec3) -> Option<f64> {
+    pub(crate) fn bend_at(&self, tool: &Tool, point: &Vec3, way: &Vec3) -> Option<f64> {
         let (center, radius) = (point + way * 0.5, 0.5 * way.norm());
-        let foot = self.surface.foot(&center);
+        let surface = self.met(tool);
+        let foot = surface.foot(&center);
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };
-        match self.surface.bend(self.side, &foot, &region) {
+        match surface.bend(self.side, &foot, &region) {
             Bend::AtMost(bend) => Some(bend),
             Bend::Unbounded => None,
         }
@@ -327,6 +349,10 @@ fn offset_contact(
     if let Some(contact) = dual::contact(tool, surface, side, tip) {
         return (contact, 0.0);
     }
+    let beside = Beside { tool, surface, side, tip };
+    if let Some(found) = memory.and_then(|memory| beside.followed(memory)) {
+        return found;
+    }
     let likely = match memory.map(|memory| near::contact(tool, surface, side, tip, memory)) {
         Some(Followed::Proven(contact, missed)) => return (contact, missed),
         Some(Followed::Likely(piece, contact)) => Some((piece, contact)),
@@ -335,6 +361,7 @@ fn offset_contact(
     let found = search::contact(tool, Face { surface, side }, tip, memory, likely);
     if let Some(memory) = memory {
         near::remember(tool, surface, side, tip, memory, &found.0);
+        memory.remember_crease(side, beside.spot(&found.0.surface));
     }
     found
 }
@@ -344,11 +371,11 @@ fn offset_contact(
 /// that is clear on one side is from the other is dear and of no account.
 pub(crate) fn separation(tool: &Tool, surface: &Surface, tip: &Vec3) -> (Contact, f64) {
     let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
-    let here = offset_contact(tool, surface, side, tip, None).0;
+    let here = offset_contact(tool, surface.met_from(side, &tool.axis), side, tip, None).0;
     if here.clearance >= 0.0 {
         return (here, side);
     }
-    let beyond = offset_contact(tool, surface, -side, tip, None).0;
+    let beyond = offset_contact(tool, surface.met_from(-side, &tool.axis), -side, tip, None).0;
     let is_here = here.clearance > beyond.clearance || here.clearance == beyond.clearance && side > 0.0;
     if is_here { (here, side) } else { (beyond, -side) }
 }

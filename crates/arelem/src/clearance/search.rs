@@ -11,6 +11,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use super::{
     Contact, Shape, Tool,
     certify::{Certificate, Face, Proof, certify},
+    crease::Beside,
     floor::Bases,
     memory::{Memory, Place},
     open_top::is_entered,
@@ -145,14 +146,17 @@ impl Search<'_> {
     fn complete(&mut self, memory: Option<&Memory>) -> Shown {
         let proof = memory.map(|memory| memory.proof(self.tool, self.side, self.tip));
         let mut proof = proof.unwrap_or_else(|| Proof::of_tool(self.tool));
-        let shown = self.complete_with(&mut proof);
+        let by_parts = memory.is_some_and(Memory::is_shown_by_parts);
+        let (shown, by_parts) = self.complete_with(&mut proof, by_parts);
         if let Some(memory) = memory {
             memory.keep_proof(self.side, proof);
+            memory.show_by_parts(by_parts);
         }
         shown
     }
 
-    fn complete_with(&mut self, proof: &mut Proof) -> Shown {
+    /// Also whether it was shown by parts of the surface, which is tried first or after patches of the tool.
+    fn complete_with(&mut self, proof: &mut Proof, by_parts: bool) -> (Shown, bool) {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
@@ -161,7 +165,10 @@ impl Search<'_> {
                 && let Some(contact) = &self.best.contact
                 && posed.clears(level, contact)
             {
-                return Shown::Within(slack);
+                return (Shown::Within(slack), by_parts);
+            }
+            if self.is_on_crease(slack) || by_parts && self.is_clear(level) {
+                return (Shown::Within(slack), by_parts);
             }
             let face = Face { surface: self.surface, side: self.side };
             let bases = self
@@ -173,11 +180,42 @@ impl Search<'_> {
                     self.best.take(self.best.piece, point.clearance, || point);
                     self.descend(&(point.tool - self.tip), None);
                 }
-                Certificate::Holds => return Shown::Within(slack),
-                Certificate::Undecided => return Shown::Nothing,
+                Certificate::Holds => return (Shown::Within(slack), false),
+                Certificate::Undecided if self.is_clear(level) => return (Shown::Within(slack), true),
+                Certificate::Undecided => break,
             }
         }
-        Shown::Nothing
+        (Shown::Nothing, false)
+    }
+
+    /// Whether parts of the surface show that none is nearer to the tool than a level.
+    fn is_clear(&self, level: f64) -> bool {
+        let Self { tool, surface, side, tip, .. } = *self;
+        let has_parts = surface.has_charts();
+        has_parts
+            && self
+                .best
+                .contact
+                .is_some_and(|contact| Beside { tool, surface, side, tip }.clears(&contact, level))
+    }
+
+    /// Whether the contact is at an edge of the surface, no place of which is nearer to the tool by more than a slack; the contact is
+    /// then exactly there.
+    fn is_on_crease(&mut self, slack: f64) -> bool {
+        let Some(contact) = self.best.contact else { return false };
+        let Self { tool, surface, side, tip, .. } = *self;
+        let beside = Beside { tool, surface, side, tip };
+        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface.
+        let touch = if self.best.value < 0.0 {
+            beside.nearest_beside(&contact.surface)
+        } else {
+            beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
+        };
+        let Some(touch) = touch.filter(|touch| touch.clearance <= self.best.value + slack) else {
+            return false;
+        };
+        self.best.take(self.best.piece, touch.clearance, || touch);
+        beside.clears(&touch, self.best.value - slack)
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.

@@ -3,8 +3,12 @@
 use apt_geometry::{
     Vec3,
     cutter::{Cutter, Profile},
-    surface::perpendicular,
+    surface::{Surface, perpendicular},
 };
+
+/// How often the observer of a side looks from another place, and how far apart, relative to the tool, places are one.
+const MOST_GLANCES: u32 = 32;
+const SAME_GLANCE: f64 = 1e-6;
 
 /// A piece of the tool's boundary, for surfaces without closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +75,25 @@ impl Tool {
     /// The point half way up the tool, from which sides are judged.
     pub fn observer(&self, tip: &Vec3) -> Vec3 {
         tip + self.axis * (0.5 * self.cutter.height)
+    }
+
+    /// Signed distance of the observer from a surface. One who sees nothing but the end of it, beyond which there are no sides, goes
+    /// along the tool to the place nearest to what is seen.
+    pub(crate) fn observed(&self, surface: &Surface, tip: &Vec3) -> f64 {
+        let mut observer = self.observer(tip);
+        for _ in 0..MOST_GLANCES {
+            if !surface.ends_at(&observer) {
+                break;
+            }
+            let seen = surface.foot(&observer).point;
+            let height = (seen - tip).dot(&self.axis).clamp(0.0, self.cutter.height);
+            let next = tip + self.axis * height;
+            if (next - observer).norm() <= SAME_GLANCE * self.cutter.height {
+                break;
+            }
+            observer = next;
+        }
+        surface.signed_distance(&observer)
     }
 
     /// Component of a vector along the axis, length of the rest and its unit direction.

@@ -138,7 +138,7 @@ fn roles(state: &State, drive: &NamedSurface) -> Option<(Tool, Vec3, Working, Wo
     let make = |name: RoleName, surface: &NamedSurface, on: bool| {
         let relation = if on { Relation::On } else { Relation::To };
         let mut working = Working::new(state, name, surface, relation, on).ok()?;
-        let observed = working.gauge.surface.signed_distance(&tool.observer(&tip));
+        let observed = tool.observed(&working.gauge.surface, &tip);
         working.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
         working.look_from(&tip);
         Some(working)

@@ -160,6 +160,7 @@ pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<Moti
 /// The places around the tool where it is deepest below the surface.
 fn cuts(tool: &Tool, role: &Working, tip: &Vec3) -> Vec<Cut> {
     let (tool, tip) = &role.gauge.body(tool, tip);
+    let surface = role.gauge.met(tool);
     let profile = profile(tool);
     let around: Vec<Cut> = (0..AROUND)
         .map(|index| {
@@ -168,7 +169,7 @@ fn cuts(tool: &Tool, role: &Working, tip: &Vec3) -> Vec<Cut> {
             let mut deepest = Cut { depth: f64::NEG_INFINITY, tool: *tip };
             for (radius, height) in &profile {
                 let point = tip + radial * *radius + tool.axis * *height;
-                let above = role.gauge.side * role.gauge.surface.signed_distance(&point);
+                let above = role.gauge.side * surface.signed_distance(&point);
                 let depth = role.gauge.thickness - above;
                 if depth > deepest.depth {
                     deepest = Cut { depth, tool: point };

@@ -131,7 +131,7 @@ fn tangent_on(check: &CheckSurface, state: &State) -> bool {
 /// Operation 1: the tool must be within the band of the surface, on one side or the other; the side is the one where it
 /// is, that of the observer when both would do.
 fn start_check(tool: &Tool, role: &mut Working, tip: &Vec3, size: f64) -> Result<Contact, MotionFailure> {
-    let observed = role.gauge.surface.signed_distance(&tool.observer(tip));
+    let observed = tool.observed(&role.gauge.surface, tip);
     let preferred = if observed < 0.0 { -1.0 } else { 1.0 };
     let mut nearest: Option<(f64, Contact)> = None;
     for side in [preferred, -preferred] {

@@ -112,7 +112,7 @@ fn greatest_distance(work: &StartUp<'_>, missed: &Working, tip: &Vec3) -> f64 {
         work.roles.iter().filter(|role| role.name == missed.name || given(work, role.name).is_none());
     let distance = |role: &Working| {
         let mut role = role.clone();
-        let observed = role.gauge.surface.signed_distance(&work.tool.observer(tip));
+        let observed = work.tool.observed(&role.gauge.surface, tip);
         role.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
         (role.gauge.contact(&work.tool, tip).clearance - aim(&role)).abs()
     };

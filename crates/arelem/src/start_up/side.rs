@@ -15,7 +15,6 @@ const UNDECIDED: f64 = 1e-9;
 /// Sets the side of every role, seen from `tip` (the start itself if none).
 pub(super) fn assign(work: &mut StartUp<'_>, tip: Option<Vec3>) -> Result<(), MotionFailure> {
     let tip = tip.unwrap_or(work.tip);
-    let observer = work.tool.observer(&tip);
     let size = position::size(&work.tool, &tip);
     let vectors = work.state.surface_vectors;
     for role in &mut work.roles {
@@ -30,7 +29,7 @@ pub(super) fn assign(work: &mut StartUp<'_>, tip: Option<Vec3>) -> Result<(), Mo
             // The vector points from the TO side to the PAST side.
             Some(cosine) if cosine.abs() > UNDECIDED => -cosine.signum() * past,
             _ => {
-                let distance = role.gauge.surface.signed_distance(&observer);
+                let distance = work.tool.observed(&role.gauge.surface, &tip);
                 if distance.abs() > UNDECIDED * size {
                     distance.signum() * past
                 } else if role.relation == Relation::On {

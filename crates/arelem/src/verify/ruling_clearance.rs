@@ -60,6 +60,15 @@ pub(super) enum Ruled {
 }
 
 impl Ruled {
+    /// The surface as a tool on a side of it meets it: where a sculptured surface ends it is taken for the face of a body, but by a
+    /// tool that stands along all its straight lines.
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> &Self {
+        match self {
+            Self::Sculptured(surface) => surface.met_from(side, axis).unwrap_or(self),
+            _ => self,
+        }
+    }
+
     /// Greatest distance of its curves from the origin.
     pub(super) fn size(&self) -> f64 {
         match self {

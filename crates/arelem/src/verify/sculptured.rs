@@ -3,12 +3,15 @@
 
 mod misfit;
 
-use std::sync::Arc;
+use std::{
+    cell::OnceCell,
+    sync::{Arc, OnceLock},
+};
 
 use apt_geometry::{
     Vec3,
     canonical::{Made, Remembering},
-    parametric::{self, Extended, ExtendedPatch, SculpturedSurface, Side},
+    parametric::{self, Extended, ExtendedPatch, Flanged, SculpturedSurface, Side},
 };
 
 use self::misfit::Misfit;
@@ -16,6 +19,7 @@ use super::{
     models::Models,
     patch::{Net, Patch, jet, turned},
     ruled::through,
+    ruling_clearance::Ruled,
     strip::Touch,
     survey::Sheet,
 };
@@ -48,15 +52,27 @@ pub(super) struct SculpturedStrips {
     pub(super) error: f64,
     /// Direction along which all of it is the same curve, if there is one.
     pub(super) ruling: Option<Vec3>,
+    /// The definition and the model that it is one of, while it is not what is met from a side, and what that is.
+    whole: Option<(Remembering<SculpturedSurface>, Arc<Model>)>,
+    met: [OnceCell<Option<Box<Ruled>>>; 2],
 }
 
 /// What is the same for all motions.
 #[derive(Debug)]
 struct Model {
-    patches: Arc<[Patch]>,
+    cover: Cover,
     size: f64,
-    error: f64,
     ruling: Option<Vec3>,
+    /// How far patches may be off, and those of the surface as it is met from either side, first that of the natural normal.
+    accuracy: f64,
+    met: [OnceLock<Cover>; 2],
+}
+
+/// Patches in place of a surface, and how far a place of one may be off it.
+#[derive(Debug, Clone)]
+struct Cover {
+    patches: Arc<[Patch]>,
+    error: f64,
 }
 
 /// A net in place of a part of the surface, how far it is off, how much more the part may bend, and which of its sides are
@@ -70,7 +86,8 @@ struct Part {
 
 impl Made for Models<Model> {
     fn parts(&self) -> usize {
-        self.sum(|model| model.patches.len())
+        let of = |cover: &Cover| cover.patches.len();
+        self.sum(|model| of(&model.cover) + model.met.iter().filter_map(OnceLock::get).map(of).sum::<usize>())
     }
 }
 
@@ -83,15 +100,36 @@ impl Model {
         }
         let [low, high] = surface.bounds();
         let size = low.abs().sup(&high.abs()).norm();
-        let mut parts = Vec::new();
-        for patch in Extended::of(surface)?.patches() {
-            cover(patch, accuracy * extent, &mut parts);
-        }
-        let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
+        let accuracy = accuracy * extent;
+        let parts = covering(Extended::of(surface)?.patches(), accuracy);
         let ruling = ruling(&parts, SHIFTED * extent);
-        let whole = !parts.is_empty() && error.is_finite() && size.is_finite();
-        whole.then(|| Self { patches: parts.iter().map(patch).collect(), size, error, ruling })
+        let cover = Cover::of(&parts);
+        let whole = !parts.is_empty() && cover.error.is_finite() && size.is_finite();
+        whole.then(|| Self { cover, size, ruling, accuracy, met: Default::default() })
     }
+
+    /// The surface with what it is taken for behind its ends by a tool on a side.
+    fn met_from(&self, surface: &Remembering<SculpturedSurface>, side: f64) -> Option<Cover> {
+        let flanged = Flanged::of(surface)?;
+        let made = || Cover::of(&covering(flanged.patches(side), self.accuracy));
+        Some(self.met[usize::from(side < 0.0)].get_or_init(made).clone())
+    }
+}
+
+impl Cover {
+    fn of(parts: &[Part]) -> Self {
+        let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
+        Self { patches: parts.iter().map(patch).collect(), error }
+    }
+}
+
+/// The parts in place of patches.
+fn covering(patches: &[ExtendedPatch], accuracy: f64) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for patch in patches {
+        cover(patch, accuracy, &mut parts);
+    }
+    parts
 }
 
 impl SculpturedStrips {
@@ -103,8 +141,25 @@ impl SculpturedStrips {
         let models = surface.made(|_| Some(Models::default()))?;
         let relative = FINEST * COARSER.powi(number as i32);
         let model = models.within(relative, |relative| Model::of(surface, relative))?;
-        let sheet = Sheet::new(Arc::clone(&model.patches), false);
-        Some(Self { sheet, size: model.size, error: model.error, ruling: model.ruling })
+        let sheet = Sheet::new(Arc::clone(&model.cover.patches), false);
+        let (size, error, ruling) = (model.size, model.cover.error, model.ruling);
+        let whole = Some((surface.clone(), model));
+        Some(Self { sheet, size, error, ruling, whole, met: Default::default() })
+    }
+
+    /// The surface as a tool on a side meets it; none if that is itself.
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> Option<&Ruled> {
+        let (surface, model) = self.whole.as_ref()?;
+        if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ONE_DIRECTION) {
+            return None;
+        }
+        let made = || {
+            let Cover { patches, error } = model.met_from(surface, side)?;
+            let (sheet, size) = (Sheet::new(patches, false), self.size);
+            let met = Self { sheet, size, error, ruling: None, whole: None, met: Default::default() };
+            Some(Box::new(Ruled::Sculptured(Box::new(met))))
+        };
+        self.met[usize::from(side < 0.0)].get_or_init(made).as_deref()
     }
 
     /// The natural normal at a place of a patch.

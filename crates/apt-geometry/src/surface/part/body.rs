@@ -1,7 +1,10 @@
 //! How far parts of a surface keep off a convex body.
 
-use super::{super::apart::Apart, Enclose, MAX_DEPTH, Part};
+use super::{super::apart::Apart, Enclose, Part};
 use crate::Vec3;
+
+/// Bound of the halvings of a part beside a body: at a contact all about it they go on until rounding.
+const DEEPEST: u32 = 48;
 
 impl Part {
     /// No place of the part is farther from its middle along a unit direction.
@@ -24,7 +27,7 @@ impl Part {
         depth: u32,
     ) -> bool {
         asked.takes_part(self, &mut |asked| {
-            let mut keeps = depth < MAX_DEPTH;
+            let mut keeps = depth < DEEPEST;
             self.for_halves(sheet, |half| keeps = keeps && half.keeps_apart(sheet, asked, depth + 1));
             keeps
         })

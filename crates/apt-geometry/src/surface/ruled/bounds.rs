@@ -69,7 +69,8 @@ impl Enclose for Stretch<'_> {
         let reach = ends[0].max(ends[1]);
         let ends = self.ends(piece, rectangle);
         let sharp = if ends { [true; 2] } else { self.sharp(piece, rectangle) };
-        Enclosure { jet, duu, duv, dvv: Box3::zero(), reach, sharp, ends }
+        let split = sharp.contains(&true);
+        Enclosure { jet, duu, duv, dvv: Box3::zero(), reach, sharp, ends, split }
     }
 }
 

@@ -227,7 +227,7 @@ impl Enclose for Stretch<'_> {
                 Side::Point => {}
             }
         }
-        Enclosure { jet, duu, duv, dvv, reach, sharp, ends }
+        Enclosure { jet, duu, duv, dvv, reach, sharp, ends, split: false }
     }
 }
 

@@ -30,8 +30,8 @@ pub(in crate::clearance) struct Around<'a> {
 
 impl<'a> Around<'a> {
     pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3, spread: f64) -> Self {
-        let Gauge { surface, side, memory, .. } = gauge;
-        let pose = Pose { tool, surface, side: *side, tip };
+        let Gauge { side, memory, .. } = gauge;
+        let pose = Pose { tool, surface: gauge.met(tool), side: *side, tip };
         let known = memory.near.try_borrow().ok().and_then(|near| {
             let (contacts, near) = (&near, near.at(&pose, spread)?);
             let zone = *near.zone.as_ref().ok()?;

@@ -80,7 +80,7 @@ proptest! {
             }
         }
         let way = to - from;
-        if let Some(bend) = gauge.bend_at(&contact.tool, &way) {
+        if let Some(bend) = gauge.bend_at(&tool, &contact.tool, &way) {
             for place in places {
                 let gone = place - from;
                 let distance = side * gauge.surface.signed_distance(&(contact.tool + gone));

@@ -161,11 +161,14 @@ impl Scout<'_> {
     fn leg(&self, here: &Vertex, step: &mut f64) -> Option<Leg> {
         while *step > LEAST * self.prepared.size {
             if let Some(to) = self.settled(&(here.tip + here.tangent * *step), &here.tangent) {
-                if let Some(end) = SurfaceEnd::at(self.prepared, &to) {
-                    return Some(Leg::Over((to, end)));
-                }
                 let chord = to.tip - here.tip;
                 let length = chord.norm();
+                // Not one where the tool has fallen off the end.
+                if length <= 2.0 * *step
+                    && let Some(end) = SurfaceEnd::at(self.prepared, &to)
+                {
+                    return Some(Leg::Over((to, end)));
+                }
                 let turn = here.tangent.cross(&to.tangent).norm().atan2(here.tangent.dot(&to.tangent));
                 let ahead = chord.dot(&here.tangent) > (1.0 - TURN[1]) * length;
                 if length > 0.0 && ahead && turn <= TURN[1] && length <= 2.0 * *step {

@@ -1,18 +1,22 @@
 //! Paths that come to the end of a surface that does not go on. Vectors are proven from what lies within reach of the tool,
 //! so that they become shorter and shorter there; it is told before.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, surface::SurfaceEdge};
 
 use super::{March, Vertex};
 use crate::{
+    clearance::Contact,
     directed::Prepared,
     error::{MotionFailure, RoleName},
+    role::Working,
 };
 
 /// How many times the bands ahead of a place without a way on, or with a very short one, it is looked whether a surface ends.
 const AHEAD: f64 = 16.0;
 /// Length of such a vector, times the bands.
 const CREEPING: f64 = 0.1;
+/// Halvings of a vector that find where it leads over the end of a surface.
+const HALVINGS: u32 = 24;
 /// Ratio of a vector to the one before below which the way on may be the way to the end of a surface.
 const SHRINKING: f64 = 0.5;
 
@@ -28,11 +32,23 @@ pub(super) struct SurfaceEnd {
 impl SurfaceEnd {
     /// The surface whose end the tool touches at a position, if one does.
     pub(super) fn at(prepared: &Prepared, vertex: &Vertex) -> Option<Self> {
-        let Vertex { tip, axis, .. } = *vertex;
+        let Vertex { tip, axis, ref tangent, .. } = *vertex;
         let touches = [(&prepared.part, &vertex.part), (&prepared.drive, &vertex.drive)];
-        let (role, contact) = touches.into_iter().find(|(r, c)| r.gauge.surface.ends_at(&c.tool))?;
+        let (role, contact) = touches.into_iter().find(|(role, contact)| is_over(role, contact, tangent))?;
         Some(Self { role: role.name, tip, axis, place: role.gauge.surface.foot(&contact.tool).point })
     }
+}
+
+/// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
+/// end of it; but it goes along that, not out over it or down behind it.
+fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
+    let surface = &role.gauge.surface;
+    if !surface.ends_at(&contact.tool) {
+        return false;
+    }
+    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&contact.tool) else { return true };
+    let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
+    role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
 }
 
 impl March<'_> {
@@ -46,6 +62,9 @@ impl March<'_> {
     ) -> Result<(), MotionFailure> {
         if !self.has_ends() {
             return Ok(());
+        }
+        if let Some(end) = self.end_between(here, next) {
+            return Err(self.surface_ends(&end));
         }
         let Prepared { part, drive, .. } = self.prepared;
         let length = (next.tip - here.tip).norm();
@@ -65,6 +84,22 @@ impl March<'_> {
         }
         self.look_for_end = 2 * self.points.len();
         self.judge_outlook(next, cancel)
+    }
+
+    /// Where on a vector the tool comes to go over the end of a surface, if it does at its last vertex.
+    fn end_between(&self, here: &Vertex, next: &Vertex) -> Option<SurfaceEnd> {
+        let mut end = SurfaceEnd::at(self.prepared, next)?;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let tip = here.tip + (next.tip - here.tip) * middle;
+            let there = Vertex::at(self.prepared, tip, &here.tangent).ok()?;
+            match SurfaceEnd::at(self.prepared, &there) {
+                Some(found) => (high, end) = (middle, found),
+                None => low = middle,
+            }
+        }
+        Some(end)
     }
 
     /// Where no vector goes on because a surface ends within reach of the tool: that.

@@ -322,7 +322,8 @@ impl Course<'_, '_> {
     fn bend_of_contacts(&self, a: &Sample, b: &Sample) -> Option<f64> {
         let Line { sweep, role, .. } = self.line;
         let way = sweep.direction * (b.x - a.x);
-        let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&contact.tool, &(way * sense));
+        let (_, tool) = sweep.at(a.x);
+        let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&tool, &contact.tool, &(way * sense));
         Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
     }
 

@@ -1,0 +1,192 @@
+//! Contact with a line on which a surface has an edge, as where it ends beside a tool: Newton's method along the line, and a proof that
+//! no other place of the surface is nearer to the tool.
+//!
+//! The distance from the tool is a convex function of the place, and so is that from all that the tool goes through on a straight
+//! way. Nowhere is it below its tangent, so that few parts of the surface need be looked at.
+
+use apt_geometry::{
+    Vec3,
+    surface::{Crease, Surface},
+};
+
+use super::{Contact, Memory, Tool, search::MISSED};
+
+/// Bound of the steps along a line.
+const MAX_STEPS: u32 = 40;
+/// The first of them, in parameters.
+const FIRST: f64 = 1e-3;
+/// Bound of the lines that follow each other, and how far over the end of one, in its own length, another is looked for.
+const MOST_LINES: u32 = 4;
+const BEYOND: f64 = 1e-6;
+/// A step below this, in parameters, ends them.
+const SAME: f64 = 1e-13;
+/// Bound of the positions of the tool on its way from which one that is nearest to a place is closed in.
+const MOST_POSITIONS: u32 = 24;
+/// How much farther, relative to the size of the tool, the way may be than the tangents at its ends tell.
+const CLOSE: f64 = 1e-12;
+/// Bound of the parts of a surface that one proof looks at.
+const MOST_LOOKS: u32 = 4_000;
+
+/// A place of a line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    crease: Crease,
+    at: f64,
+}
+
+/// A tool in a place beside a surface, on a side of it.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub(super) tool: &'a Tool,
+    pub(super) surface: &'a Surface,
+    pub(super) side: f64,
+    pub(super) tip: &'a Vec3,
+}
+
+/// Signed distance of a point from a tool, and a unit direction in which it grows at least as fast as straight on.
+fn outward(tool: &Tool, from_tip: &Vec3) -> (f64, Vec3) {
+    let (along, across, radial) = tool.split(from_tip);
+    let (distance, [wide, high]) = tool.profile.outward(across, along);
+    (distance, radial * wide + tool.axis * high)
+}
+
+impl Beside<'_> {
+    /// The line that a place of the surface lies on, if it is one.
+    pub(super) fn spot(&self, surface: &Vec3) -> Option<Spot> {
+        let (crease, at) = self.surface.crease_at(&self.surface.place(surface)?, self.side)?;
+        Some(Spot { crease, at })
+    }
+
+    /// The contact at an edge beside a place of the surface that is nearest to the tool, if there are edges.
+    pub(super) fn nearest_beside(&self, surface: &Vec3) -> Option<Contact> {
+        let place = self.surface.place(surface)?;
+        let spots = self.surface.creases_beside(&place, self.side).into_iter().flatten();
+        let touches = spots.filter_map(|(crease, at)| Some(self.touch(&Spot { crease, at })?.1));
+        touches.min_by(|a, b| a.clearance.total_cmp(&b.clearance))
+    }
+
+    /// The place of a line and of those that it goes on with, found from one near by, that is nearest to the tool: the contact there.
+    pub(super) fn touch(&self, spot: &Spot) -> Option<(Spot, Contact)> {
+        let mut spot = *spot;
+        for _ in 0..MOST_LINES {
+            let (found, slope, chart_along) = self.lowest(&spot)?;
+            let leaves = found.at <= 0.0 && slope > 0.0 || found.at >= 1.0 && slope < 0.0;
+            let point = self.surface.chart(&self.surface.on_crease(&found.crease, found.at))?.point;
+            // Over the end of the line the nearest place on the surface tells what goes on.
+            let beyond = point + chart_along * (BEYOND * (found.at - 0.5).signum());
+            match self.spot(&beyond).filter(|next| leaves && next.crease != found.crease) {
+                Some(next) => spot = next,
+                None => {
+                    let (clearance, out) = outward(self.tool, &(point - self.tip));
+                    let tool = point - out * clearance;
+                    return Some((found, Contact { clearance, gradient: -out, tool, surface: point }));
+                }
+            }
+        }
+        None
+    }
+
+    /// The place of one line that is nearest to the tool, the slope of the distance there, and the derivative along the line.
+    fn lowest(&self, spot: &Spot) -> Option<(Spot, f64, Vec3)> {
+        let along = self.surface.along_crease(&spot.crease);
+        let look = |at: f64| {
+            let chart = self.surface.chart(&self.surface.on_crease(&spot.crease, at))?;
+            let way = chart.first[along];
+            Some((outward(self.tool, &(chart.point - self.tip)).1.dot(&way), way))
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut at = spot.at.clamp(0.0, 1.0);
+        let (mut slope, mut way) = look(at)?;
+        let mut before: Option<(f64, f64)> = None;
+        for _ in 0..MAX_STEPS {
+            if slope > 0.0 {
+                high = at;
+            } else {
+                low = at;
+            }
+            let secant = before.map(|(t, s)| at - slope * (at - t) / (slope - s));
+            let next = match secant.filter(|next| *next >= low && *next <= high) {
+                Some(next) => next,
+                // The line is followed from near by.
+                None if before.is_none() => (at - FIRST * slope.signum()).clamp(low, high),
+                None => 0.5 * (low + high),
+            };
+            before = Some((at, slope));
+            if (next - at).abs() <= SAME || slope == 0.0 {
+                break;
+            }
+            at = next;
+            (slope, way) = look(at)?;
+        }
+        Some((Spot { at, ..*spot }, slope, way))
+    }
+
+    /// The contact at an edge where the last one was, if that is shown, and how much nearer to the surface another point of the tool may
+    /// be.
+    pub(super) fn followed(&self, memory: &Memory) -> Option<(Contact, f64)> {
+        let (spot, contact) = self.touch(&memory.crease(self.side)?)?;
+        let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
+        let shown = self.clears(&contact, contact.clearance - slack);
+        memory.remember_crease(self.side, shown.then_some(spot));
+        shown.then_some((contact, slack))
+    }
+
+    /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.
+    pub(super) fn clears(&self, contact: &Contact, level: f64) -> bool {
+        clears(self.surface, self.tool, [self.tip, self.tip], &contact.gradient, level)
+    }
+}
+
+/// Whether no place of a surface is nearer to a tool than a level, wherever that is on a straight way of its end; `away` leads it off
+/// the surface. One that may be deeper in is moved out by as much, and must then be clear.
+pub(super) fn clears(
+    surface: &Surface,
+    tool: &Tool,
+    [from, to]: [&Vec3; 2],
+    away: &Vec3,
+    level: f64,
+) -> bool {
+    let start = from + away * (-level).max(0.0);
+    let way = to - from;
+    let close = CLOSE * (tool.reach() + way.norm());
+    let distance = |place: &Vec3| nearest_on_way(tool, &(place - start), &way, close);
+    surface.keeps_apart_within(&distance, level.max(0.0), MOST_LOOKS).is_some()
+}
+
+/// A bound from below of the distance of a place from the tool on its way, given from the tool's end at the beginning, and the
+/// direction in which it grows: with any position of the tool the tangent plane there bounds the distances from all others.
+fn nearest_on_way(tool: &Tool, place: &Vec3, way: &Vec3, close: f64) -> (f64, Vec3) {
+    let square = way.norm_squared();
+    let bound = |share: f64| {
+        let (distance, out) = outward(tool, &(place - way * share));
+        let slope = out.dot(way);
+        // Along the way the distance falls by no more than this.
+        let lost = ((1.0 - share) * slope).max(-share * slope);
+        (distance - lost, out, slope, lost)
+    };
+    if square <= 0.0 {
+        let (distance, out, ..) = bound(0.0);
+        return (distance, out);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut share = (place.dot(way) / square).clamp(0.0, 1.0);
+    let mut best = bound(share);
+    let mut last = best;
+    for _ in 0..MOST_POSITIONS {
+        if last.3 <= close {
+            break;
+        }
+        // The distance falls along the way where the place lies ahead.
+        if last.2 > 0.0 {
+            low = share;
+        } else {
+            high = share;
+        }
+        share = 0.5 * (low + high);
+        last = bound(share);
+        if last.0 > best.0 {
+            best = last;
+        }
+    }
+    (best.0, best.1)
+}
