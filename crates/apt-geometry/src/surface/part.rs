@@ -152,6 +152,8 @@ pub(super) struct Part {
     /// The side to halve, if that is not a matter of trial.
     halved: Option<usize>,
     halves: Later<Box<[Part; 2]>>,
+    /// Those of the longer side, where that counts and not how the surface bends.
+    shorter: Later<Box<[Part; 2]>>,
     /// The forms of all its places, where it is smooth and does not end.
     form: Later<Option<Box<Form>>>,
 }
@@ -518,6 +520,7 @@ impl Part {
             ends: *ends,
             halved: (!tried).then_some(usize::from(sizes[1] > sizes[0])),
             halves: Later::new(),
+            shorter: Later::new(),
             form: Later::new(),
         }
     }

@@ -292,8 +292,9 @@ impl SculpturedSheet {
 
     pub(super) fn edge_at(&self, p: &Vec3) -> Option<SurfaceEdge> {
         let Nearest { piece, at, .. } = self.nearest(p);
-        let is_end = |edge: &Edge| self.side(piece, *edge) == Side::End;
-        let edge = edges_at(at).into_iter().flatten().find(is_end)?;
+        let at_edges = Edge::ALL.into_iter().zip(at_limits(at, [[0.0, 1.0]; 2]));
+        let is_end = |(edge, is_at): &(Edge, bool)| *is_at && self.side(piece, *edge) == Side::End;
+        let (edge, _) = at_edges.into_iter().find(is_end)?;
         let jet = self.jet(piece, at);
         let normal = self.natural(piece, at, &jet);
         let (along, across) = match edge {

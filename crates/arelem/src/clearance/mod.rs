@@ -209,7 +209,7 @@ impl Gauge {
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does
-    /// not cut in. The tool is no farther from the surface than from each of its two points of contact, and its distance from a
+    /// not cut in or is at an edge of the surface. The tool is no farther from the surface than from each of its two points of contact, and its distance from a
     /// point is a convex function of its place.
     pub(crate) fn at_most_between(&self, tool: &Tool, contacts: [(&Vec3, &Contact); 2]) -> Option<f64> {
         if self.on {
@@ -225,7 +225,9 @@ impl Gauge {
         let (start, end) = (first.clearance, last.clearance);
         let outside =
             [start, end, ahead, behind].into_iter().all(|clearance| clearance + self.thickness >= 0.0);
-        outside.then(|| {
+        // By as much as any place of an edge is deep in the tool it must be moved at least to be clear.
+        let by_edge = self.memory.crease(self.side).is_some();
+        (outside || by_edge).then(|| {
             // Where the two chords meet.
             let (falls, rises) = ((behind - start).max(0.0), (ahead - end).max(0.0));
             let share = if falls + rises > 0.0 { falls / (falls + rises) } else { 0.0 };

@@ -32,6 +32,8 @@ const MAX_RESTARTS: u32 = 12;
 pub(super) const MISSED: f64 = 1e-9;
 /// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
 const SAME: f64 = 1e-11;
+/// Clearance, in radii of the tool, below which an edge near the contact may be nearer than that.
+const ABOUT: f64 = 0.05;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
@@ -205,8 +207,9 @@ impl Search<'_> {
         let Some(contact) = self.best.contact else { return false };
         let Self { tool, surface, side, tip, .. } = *self;
         let beside = Beside { tool, surface, side, tip };
-        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface.
-        let touch = if self.best.value < 0.0 {
+        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
+        // points have valleys on both sides of it.
+        let touch = if self.best.value < ABOUT * tool.radius() {
             beside.nearest_beside(&contact.surface)
         } else {
             beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
