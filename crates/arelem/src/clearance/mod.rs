@@ -201,10 +201,10 @@ impl Gauge {
         if contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level)) {
             return true;
         }
-        // Beside an edge no distance of a point is steady.
+        // Beside an edge, and where several patches are near, no distance of a point is steady.
         let [(from, first), (to, last)] = &contacts;
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        self.memory.crease(self.side).is_some()
+        matches!(self.surface, Surface::Sculptured(_))
             && away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
     }
 
