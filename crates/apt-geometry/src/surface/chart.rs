@@ -169,7 +169,8 @@ impl Surface {
     /// `c` to the middle one. The sheet about each of them goes on over both, as seen along the middle normal; were one
     /// of two sheets above the other, the way from the lower place to p would cross it. So both are on one sheet,
     /// and the path between them that is straight as seen along the middle normal leads through a place where distance
-    /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`.
+    /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`. As no part of the path is steeper than the normals let
+    /// it be, it is nowhere farther from the straight line between its ends than half its length times that slope.
     pub fn steady(&self, side: f64, center: &Vec3, [radius, depth]: [f64; 2]) -> Option<Steady> {
         if !self.has_charts() {
             return None;
@@ -182,9 +183,8 @@ impl Surface {
         let far = (depth + stock).max(0.0);
         let reach = radius + far;
         let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
-        let wide = |near: &Facing, path: &Facing| {
-            reach + 2.0 * far * sine(near.cosine) * sine(path.cosine) / path.cosine
-        };
+        let wide =
+            |near: &Facing, path: &Facing| reach + far * sine(near.cosine) * sine(path.cosine) / path.cosine;
         let all = |asked: f64| self.facing(side, center, asked, &foot.normal);
         let (near, path) = if matches!(self, Self::Tabulated(_)) {
             // The stretch of the curve between the places is among those looked at.

@@ -29,6 +29,10 @@ pub(super) const FLAT: f64 = 1e-5;
 pub(super) const FINE: f64 = 0.125;
 /// Curvature times reach that is of no account for a sheet that is asked about as a whole.
 const FAINT: f64 = 0.1;
+/// Cosine of the angle of normals that a sheet that is asked about as a whole needs no closer bound of, and size of a part, as a
+/// share of the reach, from which on it is not halved for one: what a part turns counts for all of it.
+const UPRIGHT: f64 = 0.9;
+const SMALL: f64 = 0.25;
 /// Cosine of the angle between normals up to which a sheet counts as one that faces one way.
 pub(super) const LEAST_COSINE: f64 = 0.5;
 /// Bound of the halvings of a part.
@@ -594,7 +598,12 @@ impl Part {
             return;
         }
         let jumps = all.ends || cosine < survey.least_cosine;
-        let close = bound <= (self.least[seen] + self.close).max(survey.enough) && !jumps;
+        let is_close = |side: usize, known: f64| {
+            self.curvature[side] <= (self.least[side] + self.close).max(survey.enough).max(known)
+        };
+        let upright = cosine >= survey.cosine.min(UPRIGHT) || self.radius <= SMALL * survey.reach;
+        let whole = !survey.strict || upright && is_close(behind, survey.behind);
+        let close = is_close(seen, f64::NEG_INFINITY) && !jumps && whole;
         let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         if close || fine {
             survey.curvature = survey.curvature.max(bound);

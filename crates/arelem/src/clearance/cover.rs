@@ -76,12 +76,11 @@ pub(crate) fn upward_bend(
         let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };
         return Some(surface.bend(gauge.side, &surface.foot(tip), &region));
     }
-    let (radius, height) = (tool.radius(), tool.profile.top.height);
-    // Of a flank that is known to be far away nothing comes within range.
+    let radius = tool.radius();
+    // Of what is known to be far away nothing comes within range.
     let near = near::Around::new(gauge, tool, tip, spread);
-    let height = near.top(range[1] + spread).unwrap_or(height);
     let corner = corner(tool);
-    let mut cells = boxes(tool, corner.as_ref(), height);
+    let mut cells = boxes(tool, corner.as_ref(), near.within(range[1] + spread));
     let close = if surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
@@ -189,14 +188,17 @@ fn is_at_corner(tool: &Tool, place: &Vec3) -> bool {
     across >= lower.radius * (1.0 - ROUNDING) && along <= upper.height * (1.0 + ROUNDING)
 }
 
-/// Boxes that hold the tool up to a height, with the centres of its corner in place of what its balls hold.
-fn boxes(tool: &Tool, corner: Option<&Circle>, height: f64) -> Vec<Cell> {
+/// Boxes that hold the tool from its end or a height of its flank up to another height, with the centres of its corner in place
+/// of what its balls hold.
+fn boxes(tool: &Tool, corner: Option<&Circle>, [low, height]: [f64; 2]) -> Vec<Cell> {
     let between = |radius: f64, [low, high]: [f64; 2], ball: f64| Cell {
         middle: [0.0, 0.0, 0.5 * (low + high)],
         half: [radius, radius, 0.5 * (high - low)],
         ball,
     };
-    let Some(corner) = corner else { return vec![between(tool.radius(), [0.0, height], 0.0)] };
+    let Some(corner) = corner.filter(|_| low <= 0.0) else {
+        return vec![between(tool.radius(), [low, height], 0.0)];
+    };
     let (lower, upper) = (tool.profile.lower, tool.profile.upper);
     let mut cells = vec![between(corner.radius, [corner.height; 2], corner.ball)];
     if lower.radius > 0.0 {

@@ -7,6 +7,7 @@
 //! shown once for many positions.
 
 mod around;
+mod held;
 mod pieces;
 mod touch;
 mod trough;
@@ -20,6 +21,7 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::Around;
+use self::held::Held;
 use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
@@ -30,8 +32,8 @@ use super::{
 
 /// Places that are remembered: the ends of a vector, and some between them.
 const MOST_PLACES: usize = 6;
-/// Flanks that are remembered: above one height and another, here and there.
-const MOST_FAR: usize = 4;
+/// Ends of the tool that are remembered: above one height and another, below it or behind, here and there.
+const MOST_FAR: usize = 9;
 /// Pieces of the tool that are tried for a contact.
 const MAX_PIECES: u32 = 4;
 /// Shares of the size of the tool and of the coordinates that are rounding of a distance.
@@ -41,6 +43,24 @@ const COORDINATES: f64 = 1e-14;
 /// corner; in radii of the tool.
 const BALLS: [[f64; 2]; 6] =
     [[0.8, f64::INFINITY], [0.8, 1.0], [0.8, 0.3], [0.3, 0.3], [0.1, 0.1], [0.03, 0.05]];
+/// The same about a contact on the flank: how much of the tool it holds to either side of that, and whether all around or in front
+/// alone.
+const FLANK_BALLS: [([f64; 2], bool); 6] = [
+    ([0.8, f64::INFINITY], false),
+    ([0.8, 2.0], false),
+    ([0.8, 1.0], false),
+    ([0.3, 1.0], true),
+    ([0.1, 0.7], true),
+    ([0.1, 0.4], true),
+];
+/// Cosine and sine of the angle up to which azimuths of the flank are in front.
+const FRONT: [f64; 2] = [std::f64::consts::FRAC_1_SQRT_2; 2];
+/// Cosine and sine of the angle (30°) beyond which what is behind is shown to be far.
+const BACK: [f64; 2] = [0.866_025_403_784_438_6, 0.5];
+/// Cosine of the angles (15°) by which the contact and one front may turn from another.
+const SAME_FRONT: f64 = 0.965_925_826_289_068_3;
+/// Share of what a ball holds to either side of a contact on the flank that is to be left there.
+const BESIDE: f64 = 0.25;
 /// Share of the distance that the tool may move in a ball by which it lies ahead.
 const AHEAD: f64 = 0.75;
 /// Sizes of balls for a single point.
@@ -52,7 +72,7 @@ const SLENDER: f64 = 0.05;
 /// Shares of the radius by which the flank is first shown to be farther away than contact, and then less.
 const FAR: [f64; 4] = [0.5, 0.25, 0.1, 0.02];
 /// The same where the sizes of the surface's parts show it, which gives as much more as they do.
-const APART: [f64; 2] = [0.1, 0.02];
+const APART: [f64; 3] = [0.1, 0.02, 0.005];
 /// Share of the radius that is to be left of that above the level of the contact, or the tool may have moved since.
 const RESERVE: f64 = 0.04;
 /// How much deeper than at first the tool may come to lie in a steady ball.
@@ -70,7 +90,7 @@ const SHORTEST: f64 = 0.1;
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Contacts {
     places: Vec<Near>,
-    /// What is known of the flank, the last first: it holds wherever the tool has not moved far.
+    /// What is known of the ends of the tool, the last first: it holds wherever the tool has not moved far.
     far: Vec<Far>,
 }
 
@@ -86,9 +106,8 @@ pub(crate) struct Near {
     zone: Result<Zone, Vec3>,
     /// How the flank was last shown to be far.
     flank: Option<Flank>,
-    /// Where it was not, and where no more than is needed there.
-    doubtful: Option<Vec3>,
-    without_reserve: Option<Vec3>,
+    /// Where an end of the tool was not far: what lies above contact, below, and behind.
+    doubts: [Doubts; 3],
     /// How the surface bends about the bottom of the tool, or where that was not found.
     bends: Result<Arc<Bends>, Vec3>,
     /// How much along the bottom's straight piece.
@@ -107,27 +126,67 @@ struct Start {
     place: Place,
 }
 
-/// A steady ball, and the height up to which the tool is to lie in it.
+/// Where an end of the tool was not shown to be far, and where no farther than is needed.
+#[derive(Debug, Default, Clone, Copy)]
+struct Doubts {
+    doubtful: Option<Vec3>,
+    without_reserve: Option<Vec3>,
+}
+
+/// A steady ball, and what of the tool is to lie in it.
 #[derive(Debug, Clone, Copy)]
 struct Zone {
     center: Vec3,
     radius: f64,
     /// Greatest distance from the surface for which it is steady.
     depth: f64,
-    top: f64,
+    held: Held,
     /// Which of the sizes it has.
     size: usize,
     steady: Steady,
 }
 
-/// The flank above a height keeps a distance.
+/// An end of the tool, beyond what a ball holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    /// The flank above a height.
+    Above(f64),
+    /// All below a height of the flank.
+    Below(f64),
+    /// What of the flank between two heights does not look to a direction.
+    Behind([f64; 2], Vec3),
+}
+
+impl End {
+    /// Whether another one is part of it.
+    fn has(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Above(own), Self::Above(from)) => own <= from,
+            (Self::Below(own), Self::Below(to)) => own >= to,
+            (Self::Behind(own, front), Self::Behind(other, direction)) => {
+                own[0] <= other[0] && own[1] >= other[1] && front.dot(&direction) >= SAME_FRONT
+            }
+            _ => false,
+        }
+    }
+
+    fn number(self) -> usize {
+        match self {
+            Self::Above(_) => 0,
+            Self::Below(_) => 1,
+            Self::Behind(..) => 2,
+        }
+    }
+}
+
+/// An end of the tool keeps a distance.
 #[derive(Debug, Clone, Copy)]
 struct Far {
     side: f64,
     /// The position in which that was shown.
     tip: Vec3,
     axis: Vec3,
-    from: f64,
+    end: End,
     level: f64,
 }
 
@@ -278,9 +337,9 @@ impl Contacts {
         }
     }
 
-    /// What is known of the flank above a height, as far as it serves a place of the tool best.
-    fn far(&self, pose: &Pose<'_>, from: f64) -> Option<Far> {
-        let here = self.far.iter().filter(|known| known.side == pose.side && known.from <= from);
+    /// What is known of an end of the tool, as far as it serves a place of the tool best.
+    fn far(&self, pose: &Pose<'_>, end: End) -> Option<Far> {
+        let here = self.far.iter().filter(|known| known.side == pose.side && known.end.has(end));
         here.max_by(|a, b| a.left(pose).total_cmp(&b.left(pose))).copied()
     }
 }
@@ -296,8 +355,7 @@ impl Near {
             surface,
             zone: Err(nowhere),
             flank: None,
-            doubtful: None,
-            without_reserve: None,
+            doubts: [Doubts::default(); 3],
             bends: Err(nowhere),
             across: Acrosses::default(),
         }
@@ -341,11 +399,18 @@ impl Near {
         }
         let Ok(zone) = self.zone else { return false };
         let (contact, ball, level) = (&found.contact, found.circle.ball, found.contact.clearance - slack);
-        pose.flank_keeps(contact, &zone, level)
-            && (pose.bottom_keeps(contact, ball, &zone, level)
-                || self.lies_in_trough(pose, contact, &zone, level))
-            && (zone.top >= pose.tool.profile.top.height
-                || self.is_alone(pose, found, [zone.top, slack], far))
+        let held = pose.on_flank(contact).map(|_| zone.held);
+        let flank = pose.flank_keeps(contact, &zone, level);
+        let keeps = flank && pose.bottom_keeps(contact, ball, &zone, level)
+            || (flank || held.is_some()) && self.lies_in_trough(pose, contact, held, level);
+        if !keeps && held.is_none() {
+            return false;
+        }
+        // On a flank the ends of the tool are looked at all the same: a lower level, as between two contacts, may be kept with them.
+        zone.ends(pose).into_iter().flatten().fold(keeps, |keeps, end| {
+            let is_alone = self.is_alone(pose, end, level, far);
+            keeps && is_alone
+        })
     }
 
     /// Whether the tool about a contact, and the contact, are within a steady ball.
@@ -364,12 +429,14 @@ impl Near {
         pose.is_in(zone, found) && found.contact.clearance + found.circle.ball >= -zone.steady.beyond
     }
 
-    /// Whether a slanted bottom and the corner keep a level as they would from a cylinder.
-    fn lies_in_trough(&mut self, pose: &Pose<'_>, contact: &Contact, zone: &Zone, level: f64) -> bool {
-        if pose.tool.profile.lower.height <= 0.0 {
+    /// Whether a slanted bottom and the corner, or what of the tool is held about a contact on its flank, keep a level as they would from
+    /// a cylinder.
+    fn lies_in_trough(&mut self, pose: &Pose<'_>, contact: &Contact, held: Option<Held>, level: f64) -> bool {
+        let Ok(Zone { steady, .. }) = self.zone else { return false };
+        if held.is_none() && pose.tool.profile.lower.height <= 0.0 {
             return false;
         }
-        let grounds = Grounds { steady: zone.steady, level, stray: 0.0 };
+        let grounds = Grounds { steady, level, stray: 0.0, held };
         let kept = self.bends.as_ref().is_ok_and(|bends| bends.hold(pose, contact, &grounds));
         let patient = |tried: &Vec3| (pose.tip - tried).norm() <= PATIENCE * pose.scale();
         if !kept && !self.bends.as_ref().is_err_and(patient) {
@@ -378,19 +445,12 @@ impl Near {
         }
         let Ok(bends) = &self.bends else { return false };
         let trough = bends.trough(pose, contact, &grounds, &mut self.across);
-        trough.is_some_and(|trough| pose.bottom_lies_in(&trough, contact, level))
+        trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
     }
 
-    /// Whether the flank above a height is no nearer than the contact.
-    fn is_alone(
-        &mut self,
-        pose: &Pose<'_>,
-        found: &Touch,
-        [from, slack]: [f64; 2],
-        far: &mut Vec<Far>,
-    ) -> bool {
-        let level = found.contact.clearance - slack;
-        let keeps = |far: &Far| far.from <= from && far.left(pose) >= level;
+    /// Whether an end of the tool is not nearer than a level.
+    fn is_alone(&mut self, pose: &Pose<'_>, end: End, level: f64, far: &mut Vec<Far>) -> bool {
+        let keeps = |far: &Far| far.end.has(end) && far.left(pose) >= level;
         let serves = |far: &Far| keeps(far) && far.has_reserve(pose, level);
         if let Some(known) = far.iter().position(serves) {
             far[..=known].rotate_right(1);
@@ -400,18 +460,23 @@ impl Near {
         let patient = |tried: &Option<Vec3>| {
             tried.is_some_and(|tried| (pose.tip - tried).norm() <= PATIENCE * pose.scale())
         };
-        if patient(if kept { &self.without_reserve } else { &self.doubtful }) {
+        let doubts = &self.doubts[end.number()];
+        if patient(if kept { &doubts.without_reserve } else { &doubts.doubtful }) {
             return kept;
         }
-        let shown = APART.iter().find_map(|share| pose.apart_above(from, level.abs() + share * pose.scale()));
-        let shown = if shown.is_some() || kept { shown } else { self.shown_far(pose, from, level) };
+        let shown = APART.iter().find_map(|share| pose.apart_of(end, level.abs() + share * pose.scale()));
+        let shown = match end {
+            End::Above(from) if shown.is_none() && !kept => self.shown_far(pose, from, level),
+            _ => shown,
+        };
+        let doubts = &mut self.doubts[end.number()];
         let Some(level) = shown else {
-            *(if kept { &mut self.without_reserve } else { &mut self.doubtful }) = Some(*pose.tip);
+            *(if kept { &mut doubts.without_reserve } else { &mut doubts.doubtful }) = Some(*pose.tip);
             return kept;
         };
-        (self.doubtful, self.without_reserve) = (None, None);
+        *doubts = Doubts::default();
         far.truncate(MOST_FAR - 1);
-        far.insert(0, Far { side: pose.side, tip: *pose.tip, axis: pose.tool.axis, from, level });
+        far.insert(0, Far { side: pose.side, tip: *pose.tip, axis: pose.tool.axis, end, level });
         true
     }
 
@@ -441,8 +506,18 @@ impl Near {
     }
 }
 
+impl Zone {
+    /// The ends of the tool beyond it: above, below, and behind.
+    fn ends(&self, pose: &Pose<'_>) -> [Option<End>; 3] {
+        let Held { low, top, front, .. } = self.held;
+        let above = (top < pose.tool.profile.top.height).then_some(End::Above(top));
+        let below = (low > 0.0).then_some(End::Below(low));
+        [above, below, front.map(|front| End::Behind([low, top], front))]
+    }
+}
+
 impl Far {
-    /// What the flank keeps in another position: its points move no farther than the end does and the turn of the axis takes the
+    /// What the end of the tool keeps in another position: its points move no farther than the end does and the turn of the axis takes the
     /// farthest of them.
     fn left(&self, pose: &Pose<'_>) -> f64 {
         let profile = &pose.tool.profile;

@@ -5,10 +5,13 @@ use std::sync::Arc;
 use apt_geometry::{Vec3, surface::Foot};
 
 use super::{
-    Far, Pose, Start, Zone,
+    End, Far, Pose, Start, Zone,
     trough::{Acrosses, Bends, Grounds},
 };
 use crate::clearance::{Contact, Gauge, Tool, memory::Memory};
+
+/// Distances from a contact, in radii of the tool, from which on the ends of the tool are tried for being far.
+const ENDS: [f64; 3] = [1.0, 2.0, 4.0];
 
 /// What is known about a contact in a steady ball.
 #[derive(Clone)]
@@ -16,7 +19,9 @@ struct Known {
     start: Start,
     surface: Vec3,
     zone: Zone,
-    far: Option<Far>,
+    /// The ends of the tool beyond the ball, and what is known of them: above, below, and behind.
+    ends: [Option<End>; 3],
+    far: [Option<Far>; 3],
     bends: Option<Arc<Bends>>,
     across: Acrosses,
 }
@@ -25,6 +30,8 @@ struct Known {
 pub(in crate::clearance) struct Around<'a> {
     pose: Pose<'a>,
     memory: &'a Memory,
+    /// The surface's point at the last contact near by.
+    place: Option<Vec3>,
     known: Option<Known>,
 }
 
@@ -32,20 +39,24 @@ impl<'a> Around<'a> {
     pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3, spread: f64) -> Self {
         let Gauge { side, memory, .. } = gauge;
         let pose = Pose { tool, surface: gauge.met(tool), side: *side, tip };
-        let known = memory.near.try_borrow().ok().and_then(|near| {
-            let (contacts, near) = (&near, near.at(&pose, spread)?);
+        let contacts = memory.near.try_borrow().ok();
+        let last = contacts.as_ref().and_then(|contacts| Some((contacts, contacts.at(&pose, spread)?)));
+        let place = last.map(|(_, near)| near.surface);
+        let known = last.and_then(|(contacts, near)| {
             let zone = *near.zone.as_ref().ok()?;
+            let ends = zone.ends(&pose);
             let bends = near.bends.as_ref().ok().cloned();
             Some(Known {
                 start: near.start,
                 surface: near.surface,
                 zone,
-                far: contacts.far(&pose, zone.top),
+                ends,
+                far: ends.map(|end| contacts.far(&pose, end?)),
                 bends,
                 across: near.across,
             })
         });
-        Self { pose, memory, known }
+        Self { pose, memory, place, known }
     }
 
     /// The foot of a point, if that is known to be the only one.
@@ -63,18 +74,25 @@ impl<'a> Around<'a> {
     /// A bound of the second derivatives of the distances of all points of the tool that are not farther than `range[1]` while
     /// no point strays farther than `spread` from its place and none comes nearer than `range[0]`.
     pub(in crate::clearance) fn upward_bend(&self, spread: f64, range: [f64; 2]) -> Option<f64> {
-        let Known { start, surface, zone, .. } = self.known.as_ref()?;
+        let Known { start, surface, zone, ends, .. } = self.known.as_ref()?;
         start.piece?;
-        let (whole, level) = (zone.top >= self.pose.tool.profile.top.height, range[1] + spread);
-        let alone = self.pose.stays_in(zone, surface, spread)
-            && (whole || self.top(level).is_some() || self.pose.is_off(zone.top, level));
+        let level = range[1] + spread;
+        let is_far = |end: End| {
+            self.far(end.number(), level).is_some()
+                || match end {
+                    End::Above(from) if zone.held.low <= 0.0 => self.pose.is_off(from, level),
+                    _ => self.is_apart(end, level),
+                }
+        };
+        let alone = self.pose.stays_in(zone, surface, spread) && ends.iter().copied().flatten().all(is_far);
         alone.then(|| zone.steady.upward_bend(range[0])).flatten()
     }
 
     /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
     /// contact in one of them.
     pub(in crate::clearance) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
-        let Some(Known { start: Start { piece: Some(_), .. }, zone, far, bends, across, .. }) = &self.known
+        let Some(Known { start: Start { piece: Some(_), .. }, zone, ends, far, bends, across, .. }) =
+            &self.known
         else {
             return false;
         };
@@ -82,15 +100,22 @@ impl<'a> Around<'a> {
         let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
         let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
         let ball = if on_corner { profile.arc } else { 0.0 };
+        let place = contact.tool + contact.gradient * ball;
+        if (place - zone.center).norm() > zone.radius || contact.clearance + ball > zone.depth {
+            return false;
+        }
         let kept = |tip: &Vec3| {
             let pose = Pose { tip, ..self.pose };
-            let flank = zone.top >= profile.top.height || far.is_some_and(|far| far.left(&pose) >= level);
-            flank && pose.stays_in(zone, &contact.surface, 0.0) && pose.flank_keeps(contact, zone, level)
+            let mut ends = ends.iter().zip(far).filter(|(end, _)| end.is_some());
+            let apart = ends.all(|(_, far)| far.is_some_and(|far| far.left(&pose) >= level));
+            apart && pose.stays_in(zone, &contact.surface, 0.0)
         };
+        let flank = |tip: &Vec3| Pose { tip, ..self.pose }.flank_keeps(contact, zone, level);
         let by_ball = |tip: &Vec3| Pose { tip, ..self.pose }.bottom_keeps(contact, ball, zone, level);
+        let held = Pose { tip: way[0], ..self.pose }.on_flank(contact).map(|_| zone.held);
         let by_cylinder = || {
-            let bends = bends.as_ref().filter(|_| profile.lower.height > 0.0);
-            let grounds = Grounds { steady: zone.steady, level, stray: (way[1] - way[0]).norm() };
+            let bends = bends.as_ref().filter(|_| held.is_some() || profile.lower.height > 0.0);
+            let grounds = Grounds { steady: zone.steady, level, stray: (way[1] - way[0]).norm(), held };
             let mut across = *across;
             let kept = bends.is_some_and(|bends| {
                 way.into_iter().all(|tip| {
@@ -98,7 +123,7 @@ impl<'a> Around<'a> {
                     let trough = bends
                         .trough(&pose, contact, &grounds, &mut across)
                         .filter(|_| bends.hold(&pose, contact, &grounds));
-                    trough.is_some_and(|trough| pose.bottom_lies_in(&trough, contact, level))
+                    trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
                 })
             });
             if let (Some(bends), Ok(mut near)) = (bends, self.memory.near.try_borrow_mut()) {
@@ -106,14 +131,43 @@ impl<'a> Around<'a> {
             }
             kept
         };
+        let flank = way.into_iter().all(flank);
         contact.clearance + ball >= -zone.steady.beyond
             && way.into_iter().all(kept)
-            && (way.into_iter().all(by_ball) || by_cylinder())
+            && (flank && way.into_iter().all(by_ball) || (flank || held.is_some()) && by_cylinder())
     }
 
-    /// A height above which the flank is known to be farther from the surface than a level.
-    pub(in crate::clearance) fn top(&self, level: f64) -> Option<f64> {
-        let far = self.known.as_ref()?.far?;
-        (far.left(&self.pose) >= level).then_some(far.from)
+    /// Heights between which all of the tool is that is not known to be farther from the surface than a level; beside a contact on the
+    /// flank they are looked for.
+    pub(in crate::clearance) fn within(&self, level: f64) -> [f64; 2] {
+        let profile = &self.pose.tool.profile;
+        let (upper, top) = (profile.upper.height, profile.top.height);
+        let height = self.place.map(|place| self.pose.tool.axis.dot(&(place - self.pose.tip)));
+        let height = height.filter(|height| *height > upper);
+        let tried = |sense: f64| {
+            height
+                .into_iter()
+                .flat_map(move |height| ENDS.map(|share| height + sense * share * self.pose.scale()))
+        };
+        let above = match self.far(0, level) {
+            Some(End::Above(from)) => Some(from),
+            _ => tried(1.0).find(|from| *from < top && self.is_apart(End::Above(*from), level)),
+        };
+        let below = match self.far(1, level) {
+            Some(End::Below(to)) => Some(to),
+            _ => tried(-1.0).find(|to| *to > upper && self.is_apart(End::Below(*to), level)),
+        };
+        [below.unwrap_or(0.0), above.unwrap_or(top)]
+    }
+
+    /// Whether the sizes of the surface's parts show an end of the tool to be farther than a level.
+    fn is_apart(&self, end: End, level: f64) -> bool {
+        self.pose.apart_of(end, level.max(0.0)).is_some()
+    }
+
+    /// What is known to keep a level, of the ends of the tool above, below or behind.
+    fn far(&self, which: usize, level: f64) -> Option<End> {
+        let far = self.known.as_ref()?.far[which]?;
+        (far.left(&self.pose) >= level).then_some(far.end)
     }
 }

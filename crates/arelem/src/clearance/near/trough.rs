@@ -11,7 +11,7 @@ use apt_geometry::{
     surface::{Form, Steady},
 };
 
-use super::Pose;
+use super::{Circle, Held, Pose};
 use crate::clearance::{Contact, Tool, waves::length};
 
 /// How far the tool may move in a ball of forms, in radii of the tool.
@@ -23,13 +23,11 @@ const MARGIN: f64 = 0.1;
 /// How many of them are kept.
 const MOST_ACROSS: usize = 6;
 
-/// How the surface bends about the bottom of the tool.
+/// How the surface bends about a contact of the tool.
 #[derive(Debug, Clone)]
 pub(super) struct Bends {
     center: Vec3,
     radius: f64,
-    /// Greatest distance from the surface for which it is known.
-    depth: f64,
     forms: Vec<Form>,
 }
 
@@ -68,31 +66,29 @@ pub(super) struct Trough {
     bend: f64,
 }
 
-/// What is known of a contact: the steady ball that it and the tool are in, the level that is asked about, and how far the tool end
-/// strays.
+/// What is known of a contact: the steady ball that it and the tool are in, the level that is asked about, how far the tool end
+/// strays, and what of the tool is held in the ball about a contact on its flank.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grounds {
     pub(super) steady: Steady,
     pub(super) level: f64,
     pub(super) stray: f64,
+    pub(super) held: Option<Held>,
 }
 
 impl Bends {
-    /// About the bottom and the corner of a tool in a steady ball.
+    /// About the bottom and the corner of a tool in a steady ball, or its flank.
     pub(super) fn about(pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> Option<Self> {
-        let (middle, half) = pose.bottom();
-        let ease = EASE * pose.scale();
-        let (radius, depth) = (half + ease, pose.deepest(contact, grounds)? + ease);
-        let forms = pose.surface.forms(pose.side, &middle, radius + depth + pose.stock())?;
-        Some(Self { center: middle, radius, depth, forms })
+        let (center, reach) = pose.feet(contact, grounds)?;
+        let radius = reach + EASE * pose.scale();
+        let forms = pose.surface.forms(pose.side, &center, radius)?;
+        Some(Self { center, radius, forms })
     }
 
-    /// Whether the bottom of the tool, given a contact in a steady ball here or elsewhere, is where the forms are known.
+    /// Whether these parts of the tool, given a contact in a steady ball here or elsewhere, are where the forms are known.
     pub(super) fn hold(&self, pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> bool {
-        let (middle, half) = pose.bottom();
-        (middle - self.center).norm() + half <= self.radius
-            && (contact.tool - self.center).norm() <= self.radius
-            && pose.deepest(contact, grounds).is_some_and(|deepest| deepest <= self.depth)
+        let feet = pose.feet(contact, grounds);
+        feet.is_some_and(|(center, reach)| (center - self.center).norm() + reach <= self.radius)
     }
 
     /// What cylinders along a direction bend as much as the surface: with a margin for those near by, where it has one.
@@ -123,46 +119,75 @@ impl Bends {
         let gradient = &contact.gradient;
         let [c, s] = pose.facing(gradient);
         let radial = across[0] * c + across[1] * s;
-        let way = radial * profile.lower.radius + axis * profile.lower.height;
+        let [wider, higher] = match grounds.held {
+            Some(_) => [profile.top.radius - profile.upper.radius, profile.top.height - profile.upper.height],
+            None => [profile.lower.radius, profile.lower.height],
+        };
+        let way = radial * wider + axis * higher;
         let along = (way - gradient * gradient.dot(&way)).try_normalize(0.0)?;
         let curvature = known.about(&along, || self.across(&along))?;
-        let deepest = pose.deepest(contact, grounds)? + pose.stock();
+        let deepest = pose.deepest(contact, grounds)?[1] + pose.stock();
         let left = 1.0 - deepest * curvature;
         (left > 0.0).then(|| Trough { along, bend: curvature / left })
     }
 }
 
 impl Pose<'_> {
-    /// Centre and radius of a ball about the bottom of the tool and its corner.
-    fn bottom(&self) -> (Vec3, f64) {
-        let Tool { axis, profile, .. } = self.tool;
-        let top = profile.upper.height.max(profile.lower.height);
-        let wide = profile.lower.radius.max(profile.upper.radius);
-        let beside = if profile.arc > 0.0 { (profile.center.radius + profile.arc).max(wide) } else { wide };
-        (self.tip + axis * (0.5 * top), beside.hypot(0.5 * top))
+    /// The circles of balls that hold the bottom of the tool and its corner, or what of the tool is held about a contact on its flank.
+    fn rims(&self, held: Option<Held>) -> impl Iterator<Item = Circle> + use<> {
+        let profile = &self.tool.profile;
+        let circle = |radius: f64, height: f64| Circle { radius, height, ball: 0.0 };
+        let corner = match profile.arc > 0.0 {
+            true => Circle { ball: profile.arc, ..circle(profile.center.radius, profile.center.height) },
+            false => circle(profile.upper.radius, profile.upper.height),
+        };
+        let bottom = [circle(0.0, 0.0), circle(profile.lower.radius, profile.lower.height), corner];
+        let on_flank = |height: f64| circle(self.flank_radius(height), height);
+        let low = held.map(|held| held.low).filter(|low| *low > 0.0);
+        let bottom = if low.is_some() { [None; 3] } else { bottom.map(Some) };
+        let flank = [low.map(on_flank), held.map(|held| on_flank(held.top))];
+        bottom.into_iter().chain(flank).flatten()
     }
 
-    /// No place of the bottom and its corner is farther from the surface, as long as none is nearer than the level: the distance rises
-    /// above its tangent at the contact by no more than it may bend.
-    fn deepest(&self, contact: &Contact, grounds: &Grounds) -> Option<f64> {
-        let Tool { axis, profile, across, .. } = self.tool;
+    /// How far these parts of the tool are from a contact at most, and how far from the surface as long as none is nearer than the
+    /// level: the distance rises above its tangent at the contact by no more than it may bend.
+    fn deepest(&self, contact: &Contact, grounds: &Grounds) -> Option<[f64; 2]> {
         let Contact { clearance, tool: point, gradient, .. } = contact;
-        let aside = length(across.map(|across| gradient.dot(&across)));
-        let circle =
-            |radius: f64, height: f64| gradient.dot(&(self.tip + axis * height - point)) + radius * aside;
-        let corner = if profile.arc > 0.0 {
-            circle(profile.center.radius, profile.center.height) + profile.arc
-        } else {
-            circle(profile.upper.radius, profile.upper.height)
-        };
-        let highest = circle(0.0, 0.0).max(circle(profile.lower.radius, profile.lower.height)).max(corner);
-        let (middle, half) = self.bottom();
-        let farthest = (middle - point).norm() + half + grounds.stray;
+        let aside = length(self.tool.across.map(|across| gradient.dot(&across)));
+        let (along, beside, _) = self.tool.split(&(point - self.tip));
+        let rising = gradient.dot(&(self.tip - point));
+        let lift = gradient.dot(&self.tool.axis);
+        let (mut highest, mut farthest) = (f64::NEG_INFINITY, 0.0_f64);
+        for Circle { radius, height, ball } in self.rims(grounds.held) {
+            highest = highest.max(rising + lift * height + radius * aside + ball);
+            farthest = farthest.max((height - along).hypot(beside + radius) + ball);
+        }
+        if let Some(held) = grounds.held.filter(|held| held.front.is_some()) {
+            farthest = farthest.min(self.farthest_from(&held, point));
+        }
+        let farthest = farthest + grounds.stray;
         // Beside an edge that stands out there is no bound, but the distance rises by no more than the way.
         let bend = grounds.steady.upward_bend(grounds.level.min(*clearance)).unwrap_or(f64::INFINITY);
         let by_bend = highest + grounds.stray + 0.5 * bend * farthest * farthest;
         let deepest = clearance + by_bend.min(farthest);
-        deepest.is_finite().then_some(deepest.max(0.0))
+        deepest.is_finite().then_some([farthest, deepest.max(0.0)])
+    }
+
+    /// The place of the charts' surface at a contact, and how far from there the feet of these parts of the tool are at most, and those
+    /// of all places on the ways to them.
+    ///
+    /// A foot moves by `(1 − d S)⁻¹` of the way of its point at most, at a distance d where the surface has the form S.
+    fn feet(&self, contact: &Contact, grounds: &Grounds) -> Option<(Vec3, f64)> {
+        let [farthest, deepest] = self.deepest(contact, grounds)?;
+        let stock = self.surface.stock(self.side);
+        let ahead = 1.0 + (deepest + stock).max(0.0) * grounds.steady.bend(deepest);
+        let level = grounds.level.min(contact.clearance);
+        let behind = match -(level + stock) {
+            depth if depth > 0.0 => 1.0 + depth * grounds.steady.upward_bend(level)?,
+            _ => 1.0,
+        };
+        let reach = farthest * ahead.max(behind);
+        reach.is_finite().then(|| (contact.surface - contact.gradient * stock, reach))
     }
 
     /// What the surface of the charts is farther away.
@@ -170,17 +195,25 @@ impl Pose<'_> {
         self.surface.stock(self.side).max(0.0)
     }
 
-    /// Whether the bottom of the tool and its corner keep a level, in this position, by a contact on an edge or inside a straight
-    /// piece.
+    /// Whether the bottom of the tool and its corner, or what of the tool is held about a contact on its flank, keep a level, in this
+    /// position, by a contact on an edge or inside a straight piece.
     ///
     /// The bound is a concave function of the place, so that between circles on a straight line it is least at one of them, and so it is
     /// between two positions of the tool.
-    pub(super) fn bottom_lies_in(&self, trough: &Trough, contact: &Contact, level: f64) -> bool {
+    pub(super) fn lies_in(&self, trough: &Trough, contact: &Contact, held: Option<Held>, level: f64) -> bool {
         let profile = &self.tool.profile;
         let edge = |radius: f64, height: f64| self.trough_floor(contact, trough, [radius, height]) >= level;
-        edge(0.0, 0.0)
-            && edge(profile.lower.radius, profile.lower.height)
-            && (profile.arc <= 0.0 || self.arcs_keep(&edge))
+        let flank = |held: Held| {
+            let ends = [held.low.max(profile.upper.height), held.top];
+            ends.into_iter().all(|height| edge(self.flank_radius(height), height))
+        };
+        if !held.is_none_or(flank) {
+            return false;
+        }
+        held.is_some_and(|held| held.low > 0.0)
+            || edge(0.0, 0.0)
+                && edge(profile.lower.radius, profile.lower.height)
+                && (profile.arc <= 0.0 || self.arcs_keep(&edge))
     }
 
     /// Lower bound of the distance of an edge of the tool.
@@ -224,7 +257,7 @@ mod tests {
         let Some(known) = known.at(&pose, 0.0) else { return Vec::new() };
         let Some(contact) = known.touch(&pose).map(|touch| touch.contact) else { return Vec::new() };
         let (Ok(zone), Ok(bends)) = (&known.zone, &known.bends) else { return Vec::new() };
-        let grounds = Grounds { steady: zone.steady, level: contact.clearance, stray: 0.0 };
+        let grounds = Grounds { steady: zone.steady, level: contact.clearance, stray: 0.0, held: None };
         let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut Acrosses::default()) else {
             return Vec::new();
         };

@@ -4,9 +4,10 @@
 use apt_geometry::{Vec3, cutter::Profile};
 
 use super::{
-    AHEAD, BALLS, Circle, DEEPER, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose, SHORTEST, Touch, WIDEST_ARC, Zone,
+    AHEAD, BALLS, BESIDE, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose,
+    SAME_FRONT, SHORTEST, Touch, WIDEST_ARC, Zone,
 };
-use crate::clearance::{Contact, Tool, waves::length};
+use crate::clearance::{Contact, waves::length};
 
 /// Angle (radians) between an arc and a straight piece below which they are tangent.
 const TANGENT: f64 = 1e-9;
@@ -14,7 +15,6 @@ const TANGENT: f64 = 1e-9;
 impl Pose<'_> {
     /// A steady ball about the tool at a contact.
     pub(super) fn zone(&self, found: &Touch, last: Option<&Zone>) -> Option<Zone> {
-        let Tool { axis, profile, .. } = self.tool;
         let (scale, surface, side) = (self.scale(), self.surface, self.side);
         if found.start.piece.is_none() {
             let center = found.contact.surface + found.contact.gradient * found.contact.clearance.max(0.0);
@@ -22,37 +22,26 @@ impl Pose<'_> {
                 let radius = share * scale;
                 let depth = found.contact.clearance.max(0.0) + radius;
                 let steady = surface.steady(side, &center, [radius, depth])?;
-                Some(Zone { center, radius, depth, top: 0.0, size: 0, steady })
+                let held = Held::POINT;
+                Some(Zone { center, radius, depth, held, size: 0, steady })
             });
         }
         // What was too large near by is so again, but perhaps for the one size next to that.
         let first = last.as_ref().map_or(0, |last| last.size.saturating_sub(1));
-        BALLS.iter().enumerate().skip(first).find_map(|(size, [ease, above])| {
-            let top = profile.top.height.min(profile.upper.height + above * scale);
-            let middle = self.tip + axis * (0.5 * top);
-            let [width, height] = self.holder(top);
-            let half = width.hypot(height - 0.5 * top);
+        let on_flank = self.on_flank(&found.contact).is_some();
+        let sizes = if on_flank { FLANK_BALLS } else { BALLS.map(|size| (size, false)) };
+        sizes.iter().enumerate().skip(first).find_map(|(size, ([ease, beyond], front))| {
+            let held = self.held(&found.contact, beyond * scale, *front);
+            let (middle, half) = (self.middle(&held), held.half);
             let away = (middle - found.contact.surface).norm();
             let (radius, depth) = (half.max(away) + ease * scale, DEEPER * (away + half));
             // Ahead on the way from the last one, as far as the tool and the contact remain in it.
-            let way =
-                last.as_ref().map_or(Vec3::zeros(), |last| self.tip + axis * (0.5 * last.top) - last.center);
+            let way = last.as_ref().map_or(Vec3::zeros(), |last| self.middle(&last.held) - last.center);
             let ahead = way.try_normalize(0.0).map_or(Vec3::zeros(), |way| way * (AHEAD * ease * scale));
             let center = middle + ahead;
             let steady = surface.steady(side, &center, [radius, depth])?;
-            Some(Zone { center, radius, depth, top, size, steady })
+            Some(Zone { center, radius, depth, held, size, steady })
         })
-    }
-
-    /// Radius and height of a cylinder about the axis, from the tool end, that holds the tool up to a height on its flank, and the
-    /// centres of its corner.
-    fn holder(&self, top: f64) -> [f64; 2] {
-        let Profile { lower, upper, center, arc, top: end, .. } = &self.tool.profile;
-        let rise = (top - upper.height) / (end.height - upper.height);
-        let flank = if rise > 0.0 { upper.radius + rise.min(1.0) * (end.radius - upper.radius) } else { 0.0 };
-        let [beside, above] = if *arc > 0.0 { [center.radius + arc, center.height] } else { [0.0; 2] };
-        let width = lower.radius.max(upper.radius).max(flank).max(beside).min(self.tool.radius());
-        [width.max(center.radius), top.max(above)]
     }
 
     /// A height of the flank, not below another one, above which balls that cover it keep off the surface by a level. That part is
@@ -78,63 +67,66 @@ impl Pose<'_> {
         high
     }
 
-    /// A distance of all of the surface from the tool above a height on its flank, if it is known not to be below a given one.
-    pub(super) fn apart_above(&self, from: f64, distance: f64) -> Option<f64> {
-        let Tool { axis, profile, .. } = self.tool;
-        let (upper, top) = (profile.upper, profile.top);
-        let share = (from - upper.height) / (top.height - upper.height);
-        let start = [upper.radius + share * (top.radius - upper.radius), from];
-        let end = [top.radius, top.height];
-        let sides = [[[0.0, from], start], [start, end], [end, [0.0, top.height]]];
-        let away = |p: &Vec3| {
-            let (along, across, radial) = self.tool.split(&(p - self.tip));
-            let outside = sides.map(|side| beyond(side, [across, along]));
-            let nearest = outside.into_iter().flatten().min_by(|a, b| length(*a).total_cmp(&length(*b)));
-            let [wide, high] = nearest.unwrap_or([0.0; 2]);
-            let distance = length([wide, high]);
-            let outward =
-                if distance > 0.0 { (radial * wide + axis * high) / distance } else { Vec3::zeros() };
-            (distance, outward)
-        };
-        self.surface.keeps_apart(&away, distance)
-    }
-
     /// Whether balls that cover the flank above a height keep off the surface by a level.
     pub(super) fn is_off(&self, from: f64, level: f64) -> bool {
         self.off_above(from, level) <= from
     }
 
-    /// Whether the tool up to the top of a zone, and the contact, are in its ball.
+    /// Whether what of the tool a zone holds, and the contact, are in its ball.
     pub(super) fn is_in(&self, zone: &Zone, found: &Touch) -> bool {
         let Contact { clearance, surface, .. } = found.contact;
         (zone.center - surface).norm() <= zone.radius
+            && (zone.center - found.center).norm() <= zone.radius
             && match found.start.piece {
-                None => (zone.center - self.tip).norm() <= zone.radius && clearance <= zone.depth,
-                Some(_) => self.stays_in(zone, &surface, 0.0),
+                None => clearance <= zone.depth,
+                Some(_) => self.is_amid(zone, &found.contact) && self.stays_in(zone, &surface, 0.0),
             }
     }
 
-    /// Whether the tool up to the top of a zone is in its ball wherever it moves by no more than a distance, given some point
-    /// of the surface.
-    pub(super) fn stays_in(&self, zone: &Zone, surface: &Vec3, spread: f64) -> bool {
-        let (along, across, _) = self.tool.split(&(zone.center - self.tip));
-        let [width, height] = self.holder(zone.top);
-        let wide = across + width;
-        // No point is farther from the surface than from that point of it.
-        let middle = self.tip + self.tool.axis * (0.5 * zone.top);
-        let deepest = (middle - surface).norm() + width.hypot(height - 0.5 * zone.top);
-        deepest + spread <= zone.depth
-            && along.hypot(wide) + spread <= zone.radius
-            && (along - height).hypot(wide) + spread <= zone.radius
+    /// Whether a zone holds enough of the flank to either side of a contact there.
+    fn is_amid(&self, zone: &Zone, contact: &Contact) -> bool {
+        let Held { low, top, front, .. } = zone.held;
+        let left = BESIDE * FLANK_BALLS.get(zone.size).map_or(0.0, |([_, beyond], _)| *beyond) * self.scale();
+        let is_ahead = |front: Vec3| {
+            let [c, s] = self.facing(&contact.gradient);
+            front.dot(&(self.tool.across[0] * c + self.tool.across[1] * s)) >= SAME_FRONT
+        };
+        front.is_none_or(is_ahead)
+            && self.on_flank(contact).map_or(low <= 0.0, |height| {
+                (low <= 0.0 || height - left >= low)
+                    && (top >= self.tool.profile.top.height || height + left <= top)
+            })
     }
 
-    /// Whether the bottom of the tool and its corner keep a level, by a contact in this position or another one, on a ball or an
+    /// Whether what of the tool a zone holds is in its ball wherever it moves by no more than a distance, given some point of the
+    /// surface.
+    pub(super) fn stays_in(&self, zone: &Zone, surface: &Vec3, spread: f64) -> bool {
+        let Held { low, above, radius, aside, half, .. } = zone.held;
+        let axis = &self.tool.axis;
+        let w = zone.center - self.tip - aside;
+        let along = w.dot(axis);
+        let (wide, room) = ((w - axis * along).norm() + radius, zone.radius - spread);
+        let inside = |height: f64| {
+            let away = height - along;
+            away * away + wide * wide <= room * room
+        };
+        // No point is farther from the surface than from that point of it.
+        room >= wide
+            && inside(low)
+            && inside(above)
+            && (self.middle(&zone.held) - surface).norm() + half + spread <= zone.depth
+    }
+
+    /// Whether the bottom of the tool and its corner, if the zone holds them, keep a level, by a contact in this position or another one, on a ball or an
     /// edge: bounds that touch the distance at the contact are nowhere less on circles, and between circles on a straight line they
     /// are least at one of them.
     ///
     /// Over a straight way of the tool each of these bounds is a concave function, so that what holds at both its ends by the same
     /// contact holds all along it.
     pub(super) fn bottom_keeps(&self, contact: &Contact, ball: f64, zone: &Zone, level: f64) -> bool {
+        if zone.held.low > 0.0 {
+            return true;
+        }
         let profile = &self.tool.profile;
         let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
         let corner =
@@ -149,16 +141,15 @@ impl Pose<'_> {
             && (profile.lower.height <= 0.0 || edge(0.0, 0.0))
     }
 
-    /// The same of the flank up to the top of a zone.
+    /// The same of the flank between the heights of a zone.
     pub(super) fn flank_keeps(&self, contact: &Contact, zone: &Zone, level: f64) -> bool {
         let profile = &self.tool.profile;
         if profile.top.height <= profile.upper.height {
             return true;
         }
         let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
-        let rise = (zone.top - profile.upper.height) / (profile.top.height - profile.upper.height);
-        let radius = profile.upper.radius + rise * (profile.top.radius - profile.upper.radius);
-        edge(profile.upper.radius, profile.upper.height) && edge(radius, zone.top)
+        let ends = [zone.held.low.max(profile.upper.height), zone.held.top];
+        ends.into_iter().all(|height| edge(self.flank_radius(height), height))
     }
 
     /// Lower bound of the distance of an edge by a contact.
@@ -200,19 +191,6 @@ impl Pose<'_> {
         let across = length(self.tool.across.map(|across| slope.dot(&across)));
         middle - circle.radius * across - circle.ball
     }
-}
-
-/// The way to a place (radius, height) from the nearest one of a side of a convex outline that is followed upwards, if the place is
-/// beyond that side.
-fn beyond([from, to]: [[f64; 2]; 2], place: [f64; 2]) -> Option<[f64; 2]> {
-    let way = [to[0] - from[0], to[1] - from[1]];
-    let w = [place[0] - from[0], place[1] - from[1]];
-    let square = way[0] * way[0] + way[1] * way[1];
-    if way[1] * w[0] - way[0] * w[1] <= 0.0 {
-        return None;
-    }
-    let share = if square > 0.0 { ((w[0] * way[0] + w[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    Some([w[0] - share * way[0], w[1] - share * way[1]])
 }
 
 /// Whether balls of the corner stand out from the tool: its arc is not tangent to both straight pieces.

@@ -87,6 +87,33 @@ fn passes_over_sheets_find_what_a_complete_search_finds() {
     assert!(few.is_empty(), "{few:#?}");
 }
 
+/// A tool that lies beside a surface touches it with its flank, far from its ends: these are shown to be far by themselves, and a ball
+/// holds what is about the contact, or no more than the front of it.
+#[test]
+fn passes_of_flanks_find_what_a_complete_search_finds() {
+    // With the tenths of the positions that are to be proven without a search: a slender cone and a large tool may need it.
+    let cutters: [(&[f64], u32); 4] = [
+        (&[0.5, 0.1, 0.15, 0.1, 0.0, 0.0, 5.0], 5),
+        (&[0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0], 5),
+        (&[0.5, 0.1, 0.1661, 0.1, 0.0, 10.0, 4.0], 0),
+        (&[1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0], 0),
+    ];
+    let mut few = Vec::new();
+    for (which, geometry) in charted().iter().enumerate().skip(2) {
+        for (numbers, tenths) in cutters {
+            for axis in [v(1.0, 0.1, 0.0).normalize(), v(0.1, 1.0, 0.05).normalize()] {
+                let tool = Tool::new(Cutter::from_numbers(numbers, 1.0).expect("cutter"), axis);
+                let from = v(-0.4, 0.3, 4.0) - axis * 2.5;
+                let (proven, seen) = pass(geometry, false, &tool, &from, &v(0.007, 0.002, 0.0), 60);
+                if proven * 10 < seen * tenths {
+                    few.push(format!("{which} {numbers:?} {} {proven} of {seen}", axis.x));
+                }
+            }
+        }
+    }
+    assert!(few.is_empty(), "{few:#?}");
+}
+
 #[test]
 fn tool_ends_on_sheets_have_the_feet_that_a_complete_search_finds() {
     let tool = tool(&[0.5, 0.1]);
