@@ -13,7 +13,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{
     clearance::Reading,
-    patch::{held, jet},
+    leaning::keeps_apart,
+    patch::{held, jet, place_on},
     survey::{Accuracy, Part, Sheet, nearest_by},
     tool::{Profile, Tool},
     trough::{Rise, farthest_from_line, straight_direction},
@@ -35,8 +36,21 @@ const AT_SIDE: f64 = 1e-7;
 const AT_JOINT: f64 = 1e-3;
 /// Parts that the contact is followed through.
 const HOPS: usize = 24;
+/// Places that are looked at on each side of a contact, a radius of the tool far and again as far.
+const SEEN_EACH_WAY: u32 = 4;
+/// How far beside a contact, relative to the step from the one to the other of these, it is seen to be a saddle.
+const CLOSE: f64 = 0.125;
+/// Halvings of the steps about the nearest of these.
+const NEARINGS: u32 = 6;
+/// How far beyond the nearest of all a contact is followed from, in radii of the tool.
+const ONWARD: f64 = 0.125;
+/// Places nearer than a contact from which another is followed.
+const LEAPS: usize = 4;
+/// Parts and halves of parts that one reading may look at on their own: far more than it takes, but where the tool touches along a
+/// whole line.
+const LOOKS: u32 = 2000;
 /// Halvings of a part whose distance is not shown at once.
-const HALVINGS: u32 = 12;
+const HALVINGS: u32 = 18;
 /// Radii of the balls tried, in radii of the tool, before that of the surface itself.
 const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
 /// Share of the radius of the tool behind the deepest place that is meant at which it is met by Newton's method, and of the radius
@@ -125,8 +139,20 @@ pub(super) struct Following<'a> {
     pub(super) tool: &'a Tool<'a>,
     pub(super) size: f64,
     pub(super) tolerance: f64,
+    pub(super) kept: Kept<'a>,
+}
+
+/// What one attempt at a reading keeps, and how it is made.
+#[derive(Clone, Copy)]
+pub(super) struct Kept<'a> {
+    /// Whether half-spaces that lean are tried too, and contacts followed from places that are nearer.
+    pub(super) is_thorough: bool,
     /// The part and the place of a contact where the bounds of the part are too loose to show it.
     pub(super) loose: &'a Cell<Option<(usize, [f64; 2])>>,
+    /// A place that is nearer than the contact followed.
+    pub(super) nearer: &'a Cell<Option<Vec3>>,
+    /// Parts and halves of parts that were looked at on their own.
+    pub(super) looks: &'a Cell<u32>,
 }
 
 impl Following<'_> {
@@ -135,26 +161,40 @@ impl Following<'_> {
         if self.tool.profile.is_point() {
             return self.point(last);
         }
-        let found = self.settled(self.side, last).or_else(|| {
+        let mut found = self.settled(self.side, last).or_else(|| {
             // A contact that is far from where it was may not be found from there.
-            let is_anew = last.take().is_some() && self.loose.get().is_none();
+            let is_anew = last.take().is_some() && self.kept.loose.get().is_none() && self.nearer().is_none();
             if is_anew { self.settled(self.side, last) } else { None }
         });
-        let (value, normal) = found?;
-        Some(Reading { value, normal, error: self.tolerance })
+        for _ in 0..LEAPS {
+            if found.is_some() {
+                break;
+            }
+            let Some(nearer) = self.nearer() else { break };
+            self.kept.nearer.set(None);
+            self.kept.loose.set(None);
+            *last = Some(self.about(&nearer)?);
+            found = self.settled(self.side, last);
+        }
+        found
+    }
+
+    /// The place that is nearer than the contact, where that is followed.
+    fn nearer(&self) -> Option<Vec3> {
+        self.kept.nearer.get().filter(|_| self.kept.is_thorough)
     }
 
     /// A point is measured from the side that it is on.
     fn point(&self, last: &mut Option<(usize, [f64; 2])>) -> Option<Reading> {
         let (_, contact) = self.contact(1.0, last)?;
         let sense = if contact.value < 0.0 { -1.0 } else { 1.0 };
-        let (value, normal) = self.settled(sense, last)?;
+        let found = self.settled(sense, last)?;
         let turn = sense * self.side;
-        Some(Reading { value: turn * value, normal: normal * turn, error: self.tolerance })
+        Some(Reading { value: turn * found.value, normal: found.normal * turn, error: found.error })
     }
 
-    /// The clearance on a side and the direction that leads away, where it is shown.
-    fn settled(&self, side: f64, last: &mut Option<(usize, [f64; 2])>) -> Option<(f64, Vec3)> {
+    /// The clearance on a side, where it is shown.
+    fn settled(&self, side: f64, last: &mut Option<(usize, [f64; 2])>) -> Option<Reading> {
         let (index, contact) = self.contact(side, last)?;
         let widest = self.tool.profile.widest();
         if contact.value < -DEEPEST * widest - self.tool.depth - self.tolerance {
@@ -175,15 +215,20 @@ impl Following<'_> {
             value = value.min(under.value + under.error);
         }
         if (value - contact.value).abs() > 2.0 * self.tolerance {
+            self.kept.nearer.set(Some(own));
             return None;
         }
         // A tool that is too deep is looked at where it has been led out.
-        let least = value - self.tolerance;
+        let least = value.min(contact.value) - self.tolerance;
+        let error = value - least;
         let out = self.tip + contact.normal * (-least).max(0.0);
         let led = Following { tip: &out, ..*self };
         let least = least.max(0.0);
         let Some((guard, below)) = led.guard(part, side, &contact, least) else {
-            self.loose.set(Some((index, contact.at)));
+            self.kept.loose.set(Some((index, contact.at)));
+            if self.kept.is_thorough {
+                self.kept.nearer.set(self.downhill(part, &contact));
+            }
             return None;
         };
         let outward = -contact.normal;
@@ -198,10 +243,10 @@ impl Following<'_> {
                 other.far.set(far - led_by + self.way);
             } else {
                 let shown = Shown { guards: [&level, &guard], below, least, place: &contact.place };
-                led.show(other, side, &shown, HALVINGS)?;
+                led.show(other, k, side, &shown, HALVINGS)?;
             }
         }
-        Some((value, contact.normal))
+        Some(Reading { value, normal: contact.normal, error })
     }
 
     /// A bound of the distance of a part, where both have all outside as far as `least`; the second of them holds the tool up
@@ -220,20 +265,66 @@ impl Following<'_> {
         far.max((guard.outside(part) + least).min(above))
     }
 
-    /// Shows that a part is no nearer than is wanted, from its own contact; in halves if need be.
-    fn show(&self, part: &Part, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
-        let Shown { guards, below, least, place } = *shown;
-        if let Some(contact) = self.solve(part, side, part.nearest_parameters(place))
-            && self.guard(part, side, &contact, least).is_some()
-        {
-            return Some(());
+    /// Whether the place of a part about nearest to a place is nearer to the tool than `least`; if so it is kept.
+    fn is_nearer(&self, index: usize, place: &Vec3, least: f64) -> bool {
+        let Some(part) = self.parts.get(index) else { return false };
+        let at = part.nearest_parameters(place);
+        let own = jet(&part.net, at)[0];
+        let is_nearer = self.tool.signed_distance(&(own - self.tip)).0 < least;
+        if is_nearer {
+            self.kept.nearer.set(Some(own));
         }
-        if halvings == 0 {
+        is_nearer
+    }
+
+    /// Whether a part is above a plane by `least` that has the tool on its other side: along the tool where it is nearest to the
+    /// part's middle, or along the part there, with and without what of that leads round the tool axis.
+    fn is_above(&self, part: &Part, side: f64, least: f64) -> bool {
+        let [middle, along, across] = jet(&part.net, [0.5; 2]);
+        let from = middle - self.tip;
+        let (apart, nearest) = self.tool.signed_distance(&from);
+        let is_above = |outward: &Vec3| {
+            let base = outward.dot(self.tip) + self.tool.support(outward).0 + least;
+            part.net.iter().flatten().all(|p| outward.dot(p) >= base)
+        };
+        let own = (from - nearest).try_normalize(0.0).map(|away| away * apart.signum());
+        let level = along.cross(&across).try_normalize(0.0).map(|normal| normal * -part.sense(side));
+        own.is_some_and(|outward| is_above(&outward))
+            || level.is_some_and(|level| {
+                self.tool.without_azimuth(&from, &level).is_some_and(|outward| is_above(&outward))
+                    || is_above(&level)
+            })
+    }
+
+    /// Shows that a part is no nearer than is wanted, from its own contact; in halves if need be.
+    fn show(&self, part: &Part, index: usize, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
+        let Shown { guards, below, least, place } = *shown;
+        self.kept.looks.set(self.kept.looks.get() + 1);
+        let from = part.center - self.tip;
+        let (apart, _) = self.tool.signed_distance(&from);
+        if apart < least && self.is_nearer(index, &part.center, least) {
             return None;
         }
-        for half in part.halves().0 {
+        if self.is_above(part, side, least) {
+            return Some(());
+        }
+        if let Some(contact) = self.solve(part, side, part.nearest_parameters(place)) {
+            if self.guard(part, side, &contact, least).is_some() {
+                return Some(());
+            }
+            if contact.value < least && self.is_nearer(index, &contact.place, least) {
+                return None;
+            }
+        }
+        if halvings == 0 || self.kept.looks.get() >= LOOKS {
+            return None;
+        }
+        // The nearer first, where a place nearer than the contact would be.
+        let [first, last] = part.halves().0;
+        let apart = |half: &Part| self.tool.signed_distance(&(half.center - self.tip)).0;
+        for half in if apart(&last) < apart(&first) { [last, first] } else { [first, last] } {
             if self.far(&half, guards, below, least) < least {
-                self.show(&half, side, shown, halvings - 1)?;
+                self.show(&half, index, side, shown, halvings - 1)?;
             }
         }
         Some(())
@@ -269,18 +360,80 @@ impl Following<'_> {
                 return Some((Guard::Ball(center, radius), below));
             }
         }
-        let along = straight_direction(tool, &contact.opposite, &contact.normal)?;
-        let rise = Rise::of(&part.net, contact.at, &contact.normal, &contact.normal.cross(&along))?;
-        for radius in radii.into_iter().filter(|r| *r > 0.0 && rise.is_below(1.0 / r)) {
-            let center = contact.place + contact.normal * radius;
-            let from = center - self.tip;
-            let low = low.as_ref().map_or(*tool, |low| tool.with(low));
-            if radius - farthest_from_line(&low, &from, &along) >= least {
-                let below = if low.profile == tool.profile { f64::INFINITY } else { below };
-                return Some((Guard::Trough(center, along, radius), below));
+        let rise = Rise::of(&part.net, contact.at, &contact.normal)?;
+        if let Some(along) = straight_direction(tool, &contact.opposite, &contact.normal) {
+            let way = rise.way(&contact.normal.cross(&along));
+            for radius in radii.into_iter().filter(|r| *r > 0.0 && rise.is_below(&[(&way, 1.0 / r)])) {
+                let center = contact.place + contact.normal * radius;
+                let from = center - self.tip;
+                let low = low.as_ref().map_or(*tool, |low| tool.with(low));
+                if radius - farthest_from_line(&low, &from, &along) >= least {
+                    let below = if low.profile == tool.profile { f64::INFINITY } else { below };
+                    return Some((Guard::Trough(center, along, radius), below));
+                }
             }
         }
-        None
+        if !self.kept.is_thorough {
+            return None;
+        }
+        let around = (contact.at, &contact.place, &contact.normal);
+        keeps_apart(tool, self.tip, (&part.net, rise), around, least).then(|| {
+            // Of the tool this says no more than its tangent plane.
+            let tangent = outward.dot(self.tip) + tool.support(&outward).0 + least;
+            (Guard::Level(outward, tangent), f64::INFINITY)
+        })
+    }
+
+    /// A place nearer than a contact that is only stationary, a saddle of the distance: the nearest that is seen on the line in which
+    /// the surface bends towards the tool most.
+    fn downhill(&self, part: &Part, contact: &Contact) -> Option<Vec3> {
+        let [u, v] = Rise::of(&part.net, contact.at, &contact.normal)?.hollow_way()?;
+        let apart = |place: &Vec3| self.tool.signed_distance(&(place - self.tip)).0;
+        let least = contact.value - self.tolerance;
+        let step = self.tool.profile.widest() / f64::from(SEEN_EACH_WAY);
+        let beside = |way: f64| place_on(&part.net, [contact.at[0] + way * u, contact.at[1] + way * v]);
+        let close = CLOSE * step;
+        if apart(&beside(close)).min(apart(&beside(-close))) >= least {
+            return None;
+        }
+        let direction = (beside(close) - contact.place).try_normalize(0.0)?;
+        let both = [direction, -direction].into_iter();
+        let places = both.flat_map(|way| (1..=2 * SEEN_EACH_WAY).map(move |k| way * (step * f64::from(k))));
+        let seen = places.filter_map(|way| self.seen(&(contact.place + way)));
+        let (nearest, place) = seen.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (nearest < least).then_some(place)
+    }
+
+    /// From where a contact is followed that is near a place: somewhat beyond where the surface is nearest to the tool there, on the
+    /// side away from the tool axis, where no straight piece of the tool leads back to a saddle.
+    fn about(&self, place: &Vec3) -> Option<(usize, [f64; 2])> {
+        let mut best = self.seen(place)?;
+        let from = best.1 - self.tip;
+        let radial = (from - self.tool.axis * self.tool.axis.dot(&from)).try_normalize(0.0)?;
+        let around = self.tool.axis.cross(&radial);
+        let mut step = self.tool.profile.widest() / f64::from(SEEN_EACH_WAY);
+        for _ in 0..NEARINGS {
+            step *= 0.5;
+            for way in [radial, around, -radial, -around] {
+                if let Some(seen) = self.seen(&(best.1 + way * step)).filter(|seen| seen.0 < best.0) {
+                    best = seen;
+                }
+            }
+        }
+        self.seen_at(&(best.1 + radial * (self.tool.profile.widest() * ONWARD)))
+    }
+
+    /// How far the surface is from the tool at its place about nearest to a place, and that place of it.
+    fn seen(&self, place: &Vec3) -> Option<(f64, Vec3)> {
+        let (index, at) = self.seen_at(place)?;
+        let own = jet(&self.parts.get(index)?.net, at)[0];
+        Some((self.tool.signed_distance(&(own - self.tip)).0, own))
+    }
+
+    /// The part and its place nearest to a place.
+    fn seen_at(&self, place: &Vec3) -> Option<(usize, [f64; 2])> {
+        let index = self.nearest_to(place, self.tool.profile.widest())?;
+        Some((index, self.parts.get(index)?.nearest_parameters(place)))
     }
 
     /// Follows the contact from part to part.

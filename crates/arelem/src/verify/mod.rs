@@ -11,6 +11,7 @@ mod directrix;
 mod followed;
 mod halves;
 mod judge;
+mod leaning;
 mod models;
 mod patch;
 mod pencil;

@@ -9,7 +9,7 @@ use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
-    followed::Following,
+    followed::{Following, Kept},
     patch::{
         Bends, Edges, Net, Patch, ball, between_across, extent, halves, halves_across, halves_along, jet,
         sides,
@@ -170,17 +170,26 @@ impl Sheet {
         let mut near = self.take(slot, tip, tool, size)?;
         let off = near.stretch * accuracy.error;
         let tolerance = accuracy.rounding.max(WARM_RESOLUTION_OF_ERROR * off);
-        let mut found = None;
-        for _ in 0..DIVISIONS {
-            let (parts, way, loose) = (&near.parts, near.way, Cell::new(None));
-            let following =
-                Following { sheet: self, parts, way, side, tip, tool, size, tolerance, loose: &loose };
-            found = following.reading(&mut near.last);
-            let is_divided = found.is_none() && loose.get().is_some_and(|at| near.divide(at));
-            if !is_divided {
-                break;
+        // What takes long is tried where the rest does not show it.
+        let mut shown = |is_thorough: bool| {
+            let (loose, nearer, looks) = (&Cell::new(None), &Cell::new(None), &Cell::new(0));
+            for _ in 0..DIVISIONS {
+                let (parts, way) = (&near.parts, near.way);
+                let (sheet, kept) = (self, Kept { is_thorough, loose, nearer, looks });
+                let following = Following { sheet, parts, way, side, tip, tool, size, tolerance, kept };
+                let found = following.reading(&mut near.last);
+                if found.is_some() {
+                    return found;
+                }
+                let is_divided = loose.take().is_some_and(|at| near.divide(at));
+                if !is_divided {
+                    break;
+                }
+                nearer.set(None);
             }
-        }
+            None
+        };
+        let found = shown(false).or_else(|| shown(true));
         self.near.borrow_mut()[slot] = Some(near);
         found.map(|reading| (reading, off))
     }

@@ -15,14 +15,20 @@ use super::{
 /// Least value of a form, relative to its greatest, that is positive for certain.
 const POSITIVE: f64 = 1e-9;
 
-/// How a patch rises over its tangent plane at a place, relative to how far it goes across a direction.
+/// How a patch rises over its tangent plane at a place, relative to how far it goes across directions.
 ///
 /// From the place to another, a and b away in the parameters, it goes by `aU + bV` with U and V among the convex hulls of the
 /// differences of its control points, and rises by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv` with those of the second ones.
 pub(super) struct Rise {
     /// The greatest form of the second differences along the normal, the parameters measured by the lengths they stand for.
-    greatest: Matrix2<f64>,
-    /// What way across there is in both parameters, and how far that may be from everywhere the same.
+    pub(super) greatest: Matrix2<f64>,
+    /// The differences both ways, and those lengths.
+    differences: [[[Vec3; 3]; 4]; 2],
+    lengths: [f64; 2],
+}
+
+/// What way across a direction there is in both parameters, and how far that may be from everywhere the same.
+pub(super) struct Way {
     across: Vector2<f64>,
     spread: f64,
 }
@@ -34,17 +40,12 @@ fn interval(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 impl Rise {
-    /// Over the tangent plane at a place with its unit normal, and across a unit direction in that plane. None where the
-    /// parameters do not spread.
-    pub(super) fn of(net: &Net, at: [f64; 2], normal: &Vec3, across: &Vec3) -> Option<Self> {
+    /// Over the tangent plane at a place with its unit normal. None where the parameters do not spread.
+    pub(super) fn of(net: &Net, at: [f64; 2], normal: &Vec3) -> Option<Self> {
         let net = reached(net, at);
         let (along_all, across_all) = (differences(&net), differences(&turned(&net)));
         let length = |all: &[[Vec3; 3]; 4]| (all.iter().flatten().sum::<Vec3>() / 12.0).norm();
         let (u, v) = (length(&along_all), length(&across_all));
-        let way = |all: &[[Vec3; 3]; 4], size: f64| {
-            interval(all.iter().flatten().map(|d| across.dot(d))).map(|x| x / size)
-        };
-        let ([way_u, off_u], [way_v, off_v]) = (way(&along_all, u), way(&across_all, v));
         // The differences count thirds of the first derivatives, and so ninths of the mixed and two thirds of the others.
         let bend = |all: &[[Vec3; 3]; 4], size: f64| {
             let second = all.iter().flat_map(|d| [d[1] - d[0], d[2] - d[1]]);
@@ -56,24 +57,57 @@ impl Rise {
         let [uv, more] = interval(twists).map(|x| x / (u * v));
         // 2ab·x is not more than (a² + b²)·|x|.
         let greatest = Matrix2::new(uu + more_u + more, uv, uv, vv + more_v + more);
-        let spread = off_u.hypot(off_v);
-        let is_finite = greatest.iter().all(|x| x.is_finite()) && spread.is_finite();
-        is_finite.then(|| Self { greatest, across: Vector2::new(way_u, way_v), spread })
+        let is_finite = greatest.iter().all(|x| x.is_finite());
+        is_finite.then_some(Self { greatest, differences: [along_all, across_all], lengths: [u, v] })
     }
 
-    /// Whether it rises nowhere by more than half of `curvature` times the square of the way across: whether it stays outside
-    /// a cylinder of that curvature that touches it at the place.
-    pub(super) fn is_below(&self, curvature: f64) -> bool {
+    /// The way across a unit direction in the tangent plane.
+    pub(super) fn way(&self, across: &Vec3) -> Way {
+        let [(way_u, off_u), (way_v, off_v)] = [0, 1].map(|k| {
+            let all = self.differences[k].iter().flatten().map(|d| across.dot(d));
+            let [way, off] = interval(all).map(|x| x / self.lengths[k]);
+            (way, off)
+        });
+        Way { across: Vector2::new(way_u, way_v), spread: off_u.hypot(off_v) }
+    }
+
+    /// The greatest curvature with which it rises along its parameters.
+    pub(super) fn greatest(&self) -> f64 {
+        self.greatest.symmetric_eigenvalues().max()
+    }
+
+    /// The way in the parameters, about as long as one in space, in which it rises most, if it does.
+    pub(super) fn hollow_way(&self) -> Option<[f64; 2]> {
+        let form = self.greatest.symmetric_eigen();
+        let greatest = form.eigenvalues.imax();
+        let way = form.eigenvectors.column(greatest);
+        // The differences count thirds of the derivatives.
+        let [u, v] = self.lengths.map(|length| 3.0 * length);
+        (form.eigenvalues[greatest] > 0.0).then(|| [way[0] / u, way[1] / v])
+    }
+
+    /// Whether it rises nowhere by more than half of the sum of curvatures, not negative, times the squares of the ways across:
+    /// whether it stays below a surface of such curvatures that touches it at the place.
+    pub(super) fn is_below(&self, curvatures: &[(&Way, f64)]) -> bool {
+        let mut rest = self.greatest;
+        for (way, curvature) in curvatures {
+            rest -= way.least() * *curvature;
+        }
+        rest.trace() <= 0.0 && rest.determinant() >= 0.0
+    }
+}
+
+impl Way {
+    /// A form that the square of the way across is not less than.
+    fn least(&self) -> Matrix2<f64> {
         // (x·T)² with a T that is off by δ is not less than (1 − ε)(x·T)² − (1/ε − 1)δ²·|x|².
         let size = self.across.norm();
         let share = self.spread / size;
-        if share >= 1.0 || size <= 0.0 {
-            return false;
+        if share.is_nan() || share >= 1.0 {
+            return Matrix2::zeros();
         }
         let lost = (1.0 - share) * self.spread * size;
-        let least = self.across * self.across.transpose() * (1.0 - share) - Matrix2::identity() * lost;
-        let rest = self.greatest - least * curvature;
-        rest.trace() <= 0.0 && rest.determinant() >= 0.0
+        self.across * self.across.transpose() * (1.0 - share) - Matrix2::identity() * lost
     }
 }
 
@@ -130,7 +164,7 @@ pub(super) fn farthest_from_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3) -
 
 /// A place that makes with the ends of an arc a triangle beyond the arc: where its tangents there meet, or a little beyond where
 /// rounded numbers let an end stand off the circle.
-fn meeting(ends: [Meridian; 2], center: Meridian, radius: f64) -> Option<Meridian> {
+pub(super) fn meeting(ends: [Meridian; 2], center: Meridian, radius: f64) -> Option<Meridian> {
     let [first, last] = ends.map(|p| Vector2::new(p[0] - center[0], p[1] - center[1]));
     let beyond = first.norm().max(last.norm()).max(radius);
     let (first, last) = (first.try_normalize(0.0)?, last.try_normalize(0.0)?);
@@ -168,8 +202,8 @@ mod tests {
             let normal = along.cross(&across).normalize();
             let straight = (along + across * turn).normalize();
             let side = normal.cross(&straight);
-            let Some(rise) = Rise::of(&net, [u, v], &normal, &side) else { return Ok(()) };
-            prop_assume!(rise.is_below(curvature));
+            let Some(rise) = Rise::of(&net, [u, v], &normal) else { return Ok(()) };
+            prop_assume!(rise.is_below(&[(&rise.way(&side), curvature)]));
             let is_inside = [u, v].iter().all(|x| (0.0..=1.0).contains(x));
             for at in places {
                 let at = if is_inside { at.map(|x| x.clamp(0.0, 1.0)) } else { at };

@@ -1,6 +1,10 @@
 //! Contacts that are followed along ruled and polyconic surfaces, and bounds of how the slope of a clearance grows.
 
-use apt_geometry::{Vec3, canonical::Geometry};
+use apt_geometry::{
+    Vec3,
+    canonical::{Geometry, Remembering},
+    parametric::{Mesh, Patch, SculpturedSurface},
+};
 
 use super::{
     super::{
@@ -58,6 +62,51 @@ fn contacts_are_followed_and_are_those_of_the_search() {
             tip.z -= found.value;
         }
         assert!(followed >= 28, "{followed} of 30: {profile:?} {side}");
+    }
+}
+
+/// One patch with a hill and a saddle beside it.
+fn hill_and_saddle() -> Geometry {
+    let heights = [[0.0, 0.9, 0.6, 0.3], [1.5, 6.0, 2.0, 1.8], [2.4, 1.5, 6.5, 2.1], [0.6, 1.2, 1.5, 0.0]];
+    let patch = Patch::from_points(&std::array::from_fn(|i| {
+        std::array::from_fn(|j| Vec3::new(2.0 * i as f64, 1.5 * j as f64, heights[i][j]))
+    }));
+    let surface = SculpturedSurface::assembled(vec![patch], None, Vec::new(), 1.0, Mesh::default());
+    Geometry::Sculptured(Remembering::new(surface))
+}
+
+/// There the tool touches inside its bottom, with one side of its rim or the other, and with both at once.
+#[test]
+fn contacts_of_flat_cutters_that_stand_normal_to_a_patch_are_followed() {
+    let surface = Surface::of(&hill_and_saddle()).unwrap();
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    for numbers in [&FLAT[..], &BULL, &SEVEN] {
+        let profile = Profile::of(&cutter(numbers)).unwrap();
+        for k in 0..40 {
+            let end = Vec3::new(0.8 + 0.11 * f64::from(k), 1.2 + 0.05 * f64::from(k), 5.0);
+            let normal = surface.point_distance(&end).unwrap().1;
+            for lean in [0.0, 0.01, 0.1] {
+                let tool = Tool::new(&profile, (normal + Vec3::x() * lean).normalize());
+                let mut tip = end;
+                for _ in 0..12 {
+                    let found = ruled.followed(1.0, &tip, &tool);
+                    let found = found.unwrap_or_else(|| panic!("{numbers:?} {k} {lean} {tip}"));
+                    tip -= tool.axis * found.value;
+                }
+                // A little above, in the surface a little, and there.
+                for above in [1e-3, -1e-3, 0.0] {
+                    let tip = tip + tool.axis * above;
+                    let found = ruled.followed(1.0, &tip, &tool);
+                    let found = found.unwrap_or_else(|| panic!("{numbers:?} {k} {lean} {above} {tip}"));
+                    if k % 8 == 0 && above > 0.0 {
+                        let wanted = searched(ruled, 1.0, &tip, &tool).unwrap();
+                        let error = found.error + wanted.error;
+                        assert!((found.value - wanted.value).abs() <= error, "{found:?} {wanted:?}");
+                        assert!(error < 1e-8, "{found:?} {wanted:?}");
+                    }
+                }
+            }
+        }
     }
 }
 
