@@ -146,6 +146,25 @@ fn every_form_is_a_drive_and_a_check_surface() {
     assert_eq!(count, 2 * FORMS.len() * ROLES.len());
 }
 
+/// A tool that is higher than the hill stood on edge, and where the hill leans or bulges touches the end of it.
+const HIGH: &str = ".5,.25,0,.25,0,0,12";
+const HIGH_ROLES: [&str; 4] = ["right of it", "left of it", "to it", "past it"];
+/// Left of it the tool touches many parts of the model that stands for weights, which takes minutes (docs/arelem.md).
+const SLOW: (&str, &str) = ("B-spline with weights", "left of it");
+
+#[test]
+fn a_tool_may_be_higher_than_a_wall_of_any_form() {
+    let mut count = 0;
+    for (name, form) in FORMS {
+        let is_tried = |role: &str| HIGH_ROLES.contains(&role) && (name, role) != SLOW;
+        for (role, motions) in ROLES.into_iter().filter(|(role, _)| is_tried(role)) {
+            let text = hill(form, HIGH) + STOOD + motions + "\nFINI\n";
+            count += proven(&format!("{name}, {role}"), &text);
+        }
+    }
+    assert_eq!(count, 2 * (FORMS.len() * HIGH_ROLES.len() - 1));
+}
+
 #[test]
 fn the_axis_follows_the_normal_of_part_and_drive_surface() {
     for words in ["NORMPS", "NORMDS"] {

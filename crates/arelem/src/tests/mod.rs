@@ -2,7 +2,7 @@
 
 mod axis_modes;
 mod bends;
-mod beside_ends;
+pub(crate) mod beside_ends;
 mod closed_paths;
 mod corpus_plane;
 mod corpus_space;

@@ -19,6 +19,7 @@ mod pocket;
 mod poly_conic;
 mod quadric;
 mod quadric_clearance;
+mod roundness;
 mod ruled;
 mod ruling;
 mod ruling_clearance;

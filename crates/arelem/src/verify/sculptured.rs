@@ -155,7 +155,7 @@ impl SculpturedStrips {
         }
         let made = || {
             let Cover { patches, error } = model.met_from(surface, side)?;
-            let (sheet, size) = (Sheet::new(patches, false), self.size);
+            let (sheet, size) = (Sheet::of_body(patches), self.size);
             let met = Self { sheet, size, error, ruling: None, whole: None, met: Default::default() };
             Some(Box::new(Ruled::Sculptured(Box::new(met))))
         };

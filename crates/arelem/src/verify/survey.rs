@@ -53,6 +53,8 @@ pub(super) struct Sheet {
     pub(super) patches: Arc<[Patch]>,
     /// Whether it ends at both sides of all patches, across.
     ends_across: bool,
+    /// Whether it is all of what a tool on a side meets, so that the sign of the distance does not change beyond an end.
+    is_body: bool,
     /// For tools with a body, and for points.
     near: RefCell<[Option<Near>; 2]>,
 }
@@ -104,7 +106,12 @@ struct Near {
 impl Sheet {
     /// Of patches that other surveys are made of too; where it ends their sides tell, and perhaps all their sides across.
     pub(super) fn new(patches: Arc<[Patch]>, ends_across: bool) -> Self {
-        Self { patches, ends_across, near: RefCell::new([None, None]) }
+        Self { patches, ends_across, is_body: false, near: RefCell::new([None, None]) }
+    }
+
+    /// The same as all of what a tool on a side meets.
+    pub(super) fn of_body(patches: Arc<[Patch]>) -> Self {
+        Self { is_body: true, ..Self::new(patches, false) }
     }
 
     /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
@@ -288,9 +295,8 @@ impl Sheet {
             {
                 continue;
             }
-            if part.has_edge_within(reach, tip, tool) {
-                return None;
-            }
+            let at_edges = part.bend_at_edges(reach, tip, tool);
+            rate = rate.max(at_edges.filter(|found| self.is_body || *found <= 0.0)?);
             // Behind the surface.
             let behind = usize::from((side > 0.0) != part.against);
             rate = rate.max(part.bends()?.hollow[behind] + part.slack);
@@ -402,24 +408,31 @@ impl Part {
         ([half(first, edges[0]), half(last, edges[1])], usize::from(!is_along))
     }
 
-    /// Whether the surface ends or bends sharply on it at a place that may be nearer to a tool than `reach`.
-    fn has_edge_within(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> bool {
+    /// How the clearance may bend where the tool is nearer than `reach` to a place at which the surface ends or bends sharply: as the tool is
+    /// round there, zero without such a place; none where that is not known.
+    fn bend_at_edges(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
         let apart = |place: &Vec3| tool.signed_distance(&(place - tip)).0;
         let mut open: Vec<(Cubic, u32)> = Vec::new();
         let edges = sides(&self.net).into_iter().zip(self.edges.sides);
         open.extend(edges.filter(|(_, is_edge)| *is_edge).map(|(curve, _)| (curve, EDGE_HALVINGS)));
+        let mut rate: f64 = 0.0;
         while let Some((curve, halvings)) = open.pop() {
             let center = curve.iter().sum::<Vec3>() / 4.0;
             let radius = curve.iter().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
             if apart(&center) - radius > reach {
                 continue;
             }
-            if halvings == 0 || apart(&curve[0]) <= reach {
-                return true;
+            if let Some(round) = tool.roundness_at(&(center - tip), radius, reach) {
+                rate = rate.max(round);
+                continue;
+            }
+            let is_met = apart(&curve[0]) <= reach;
+            if halvings == 0 || is_met && tool.roundness_at(&(curve[0] - tip), 0.0, reach).is_none() {
+                return None;
             }
             open.extend(halves(&curve).map(|half| (half, halvings - 1)));
         }
-        self.edges.within
+        (!self.edges.within).then_some(rate)
     }
 
     /// About its place nearest to a point.
