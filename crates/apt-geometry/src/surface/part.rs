@@ -3,14 +3,13 @@
 
 mod body;
 mod form;
-
-use std::sync::{
-    OnceLock,
-    atomic::{AtomicUsize, Ordering},
-};
+mod kept;
 
 pub use self::form::Form;
-pub(super) use self::form::leading;
+pub(super) use self::{
+    form::leading,
+    kept::{Count, Later},
+};
 use super::{
     bend::{Bend, parallel_bend},
     chart::Facing,
@@ -160,57 +159,6 @@ pub(super) struct Part {
     shorter: Later<Box<[Part; 2]>>,
     /// The forms of all its places, where it is smooth and does not end.
     form: Later<Option<Box<Form>>>,
-}
-
-/// Something made when it is first asked for. It tells no surfaces apart.
-#[derive(Debug, Clone)]
-pub(super) struct Later<T>(OnceLock<T>);
-
-impl<T> Later<T> {
-    pub(super) fn new() -> Self {
-        Self(OnceLock::new())
-    }
-
-    pub(super) fn get(&self, make: impl FnOnce() -> T) -> &T {
-        self.0.get_or_init(make)
-    }
-
-    /// What has been made, if it has been asked for.
-    pub(super) fn made(&self) -> Option<&T> {
-        self.0.get()
-    }
-}
-
-impl<T> PartialEq for Later<T> {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-/// A number of parts. It tells no surfaces apart.
-#[derive(Debug, Default)]
-pub(super) struct Count(AtomicUsize);
-
-impl Count {
-    pub(super) fn add(&self, more: usize) {
-        self.0.fetch_add(more, Ordering::Relaxed);
-    }
-
-    pub(super) fn get(&self) -> usize {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-impl Clone for Count {
-    fn clone(&self) -> Self {
-        Self(AtomicUsize::new(self.get()))
-    }
-}
-
-impl PartialEq for Count {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 /// Bounds over one or several parts as wholes.

@@ -20,7 +20,7 @@ const TOOLS: [[f64; 7]; 3] = [
 ];
 
 /// A wall from z 0 to 4.5 over a curve; `off` tells how far its four rows of control points are from that along y.
-pub(crate) fn wall(off: [f64; 4]) -> Geometry {
+fn wall(off: [f64; 4]) -> Geometry {
     let along = [0.3, 1.4, 1.1, 0.4];
     made(vec![Patch::from_points(&std::array::from_fn(|i| {
         std::array::from_fn(|j| v(2.0 * i as f64, along[i] + off[j], 1.5 * j as f64))

@@ -2,7 +2,7 @@
 
 mod axis_modes;
 mod bends;
-pub(crate) mod beside_ends;
+mod beside_ends;
 mod closed_paths;
 mod corpus_plane;
 mod corpus_space;

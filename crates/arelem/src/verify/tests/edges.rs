@@ -1,14 +1,21 @@
 //! Tools that touch the end of a sculptured wall lower than they are.
 
+use apt_geometry::parametric::{Mesh, Patch, SculpturedSurface};
+
 use super::*;
-use crate::{
-    sequence::ToolPosition,
-    tests::beside_ends::wall,
-    verify::{
-        clearance::{Clearance, Surface},
-        tool::Profile,
-    },
-};
+use crate::sequence::ToolPosition;
+use crate::verify::clearance::{Clearance, Surface};
+use crate::verify::tool::Profile;
+
+/// A wall from z 0 to 4.5 over a curve, which leans towards y.
+fn leaning_wall() -> Geometry {
+    let along = [0.3, 1.4, 1.1, 0.4];
+    let patch = Patch::from_points(&std::array::from_fn(|i| {
+        std::array::from_fn(|j| Vec3::new(2.0 * i as f64, along[i] + 0.25 * j as f64, 1.5 * j as f64))
+    }));
+    let surface = SculpturedSurface::assembled(vec![patch], None, Vec::new(), 1.0, Mesh::default());
+    Geometry::Sculptured(Remembering::new(surface))
+}
 
 /// Positions on a move.
 const STEPS: u32 = 40;
@@ -18,7 +25,7 @@ const CLEARANCE: f64 = 5e-4;
 const NOISE: f64 = 1e-3;
 
 fn bends_as_the_tool_is_round([diameter, corner_radius, corner_offset, corner_height]: [f64; 4]) {
-    let leaning = Surface::of(&wall([0.0, 0.25, 0.5, 0.75])).expect("a surface");
+    let leaning = Surface::of(&leaning_wall()).expect("a surface");
     let (alpha, beta, height) = (0.0, 0.0, 12.0);
     let cutter = Cutter { diameter, corner_radius, corner_offset, corner_height, alpha, beta, height };
     let profile = Profile::of(&cutter).expect("a cutter");
