@@ -93,7 +93,8 @@ impl March<'_> {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let tip = here.tip + (next.tip - here.tip) * middle;
-            let there = Vertex::at(self.prepared, tip, &here.tangent).ok()?;
+            // Without an axis on the way, as in the vertex of a cone, the place found last stands.
+            let Ok(there) = Vertex::at(self.prepared, tip, &here.tangent) else { break };
             match SurfaceEnd::at(self.prepared, &there) {
                 Some(found) => (high, end) = (middle, found),
                 None => low = middle,
