@@ -5,6 +5,7 @@ mod around;
 mod directed;
 mod plane;
 mod side;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +18,7 @@ use apt_geometry::{
 use crate::{
     attitude::{Attitude, Law},
     clearance::{Shape, Tool},
+    directed::is_tangent,
     error::{MotionFailure, RoleName},
     position::{self, Condition, Unsolved},
     role::Working,
@@ -183,7 +185,12 @@ impl<'a> StartUp<'a> {
         let names = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
         let mut roles = Vec::with_capacity(3);
         for (start, name) in surfaces.iter().zip(names) {
-            let on = start.relation == Relation::On;
+            let stands_as = match start.relation {
+                Relation::TangentToDrive => surfaces.first(),
+                Relation::TangentToPart => surfaces.get(1),
+                _ => Some(start),
+            };
+            let on = stands_as.is_some_and(|surface| surface.relation == Relation::On);
             roles.push(Working::new(state, name, &start.surface, start.relation, on)?.at_start());
         }
         if roles.len() == 1 && !state.no_part {
@@ -226,13 +233,9 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
     let start = directed::interim(work)?;
     side::assign(work, Some(start))?;
     let guide = directed::guide(work, &original, &start);
-    let tangent = work
-        .roles
-        .iter()
-        .position(|r| matches!(r.relation, Relation::TangentToDrive | Relation::TangentToPart));
-    if tangent.is_some() {
+    if work.roles.iter().any(|role| is_tangent(role.relation)) {
         follow_surfaces(work, &(start - original), None)?;
-        return directed::tangent_start(work, &start);
+        return tangent::position(work, &start);
     }
     let mut tip = if is_following(work) {
         // The sense of the move, where the law needs it, is that of the move with the present axis.

@@ -1,10 +1,11 @@
 //! Which side of each surface the tool ends on: that of the observer half way up the tool for TO and ON, the other one
-//! for PAST; SRFVCT decides where it is given.
+//! for PAST; SRFVCT decides where it is given. For TANTO it is the side on which the tangency is found.
 
 use apt_geometry::{Vec3, motion::Relation};
 
 use super::StartUp;
 use crate::{
+    directed::is_tangent,
     error::{MotionFailure, RoleName},
     position,
 };
@@ -32,7 +33,7 @@ pub(super) fn assign(work: &mut StartUp<'_>, tip: Option<Vec3>) -> Result<(), Mo
                 let distance = work.tool.observed(&role.gauge.surface, &tip);
                 if distance.abs() > UNDECIDED * size {
                     distance.signum() * past
-                } else if role.relation == Relation::On {
+                } else if role.relation == Relation::On || is_tangent(role.relation) {
                     1.0
                 } else {
                     return Err(MotionFailure::SideUnknown { role: role.name, distance });

@@ -1,6 +1,6 @@
 //! Start-up motions: the rules of the dialects, and what a direction decides.
 
-use Relation::{On, Past, To};
+use Relation::{On, Past, TangentToDrive, TangentToPart, To};
 use apt_geometry::{
     canonical::{Cone, Geometry},
     motion::{Direction, MotionCommand, NamedSurface, Relation},
@@ -9,7 +9,7 @@ use apt_geometry::{
 use crate::{
     MotionFailure,
     section2::StartUpRule,
-    tests::{Program, circle, line, plane, quadric, sphere, start, v},
+    tests::{Program, circle, cylinder, line, plane, quadric, sphere, start, v},
 };
 
 /// The peers print seven digits.
@@ -188,4 +188,82 @@ fn a_position_several_times_as_far_as_the_surfaces_is_found() {
     let mut p = Program::new();
     p.tolerance(0.0, 0.001).cutter(&taper).from(-0.8141593126300082, -1.6291925265470364, 1.5846595283796383);
     p.go(&[(On, &drive), (To, &part), (On, &first)]).verified();
+}
+
+/// From far off, beside the tangency, past it and at it; on either side of the drive surface, and with the tool end on it.
+#[test]
+fn go_with_tanto_comes_to_the_tangency_of_drive_and_check_surface() {
+    let (wall, boss, floor) = (line(0.0, 0.0, 5.0, 0.0), circle(2.0, 1.0, 1.0), plane(0.0, 0.0, 1.0, 0.0));
+    for (relation, from, y) in [
+        (To, v(-7.0, -3.0, 1.0), -0.25),
+        (To, v(1.9, -1.0, 1.0), -0.25),
+        (To, v(2.0, -1.0, 1.0), -0.25),
+        (To, v(40.0, -1.0, 1.0), -0.25),
+        (Past, v(-1.0, 1.0, 1.0), -0.25),
+        (On, v(-1.0, -1.0, 1.0), 0.0),
+    ] {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(from.x, from.y, from.z);
+        p.go(&[(relation, &wall), (On, &floor), (TangentToDrive, &boss)]).ends(2.0, y, 0.0, 1e-6).verified();
+    }
+    // Around the boss to the wall, between walls that touch it from outside and inside, and PSTAN.
+    let (inner, hollow) = (circle(2.0, 3.0, 3.0), circle(2.0, 4.0, 2.0));
+    for (drive, check, from, y) in [
+        (&boss, &wall, v(-3.0, 1.5, 1.0), -0.25),
+        (&inner, &boss, v(2.4, 1.0, 1.0), 0.25),
+        (&boss, &hollow, v(-3.0, 1.5, 1.0), 2.25),
+    ] {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(from.x, from.y, from.z);
+        p.go(&[(To, drive), (On, &floor), (TangentToDrive, check)]).ends(2.0, y, 0.0, 1.1e-3).verified();
+    }
+    let (bar, side) = (cylinder(v(4.0, 0.0, -2.0), v(0.0, 1.0, 0.0), 2.0), plane(0.0, 1.0, 0.0, 1.0));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-1.0, -1.0, 3.0);
+    p.go(&[(To, &side), (To, &floor), (TangentToPart, &bar)]).ends(4.0, 0.75, 0.0, 1e-6).verified();
+}
+
+/// The two may miss each other by both bands, and not by more.
+#[test]
+fn go_with_tanto_tells_how_far_surfaces_are_from_being_tangent() {
+    let (wall, floor) = (line(0.0, 0.0, 5.0, 0.0), plane(0.0, 0.0, 1.0, 0.0));
+    let attempt = |check: &Geometry| {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(-1.0, -1.0, 1.0);
+        p.attempt(&start(&[(To, &wall), (On, &floor), (TangentToDrive, check)])).map(|_| p.verified().tip())
+    };
+    for off in [-0.0035, -0.0015, 0.0015, 0.0035] {
+        let found = attempt(&circle(3.0, 1.0 + off, 1.0));
+        if off.abs() < 0.002 {
+            let tip = found.expect("the bands reach from one to the other");
+            assert!((tip.x - 3.0).abs() < 1e-6 && (tip.y + 0.25).abs() < 0.001, "{tip:?}");
+        } else {
+            let failure = found.expect_err("too far apart");
+            assert!(
+                matches!(failure, MotionFailure::NotTangent { gap, .. } if (gap - off).abs() < 1e-9),
+                "{failure:?}"
+            );
+        }
+    }
+    let failure = attempt(&line(3.0, 0.0, 4.0, 1.0)).expect_err("lines that cross");
+    assert!(matches!(failure, MotionFailure::TangentLines { .. }), "{failure:?}");
+}
+
+/// An ellipse touches the circle about its shorter axis at both ends of it.
+#[test]
+fn of_two_tangencies_that_are_equally_near_a_direction_takes_one() {
+    let (boss, floor) = (circle(0.0, 0.0, 2.0), plane(0.0, 0.0, 1.0, 0.0));
+    let ellipse = quadric([4.0 / 36.0, 9.0 / 36.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5]).from(5.0, 0.0, 1.0);
+    let command = start(&[(To, &boss), (On, &floor), (TangentToDrive, &ellipse)]);
+    let failure = p.attempt(&command).expect_err("which of the two");
+    let MotionFailure::StartUpAmbiguous { places } = failure else { panic!("{failure:?}") };
+    let mut heights = places.map(|place| place.y);
+    heights.sort_by(f64::total_cmp);
+    assert!((heights[0] + 2.25).abs() < 2e-3 && (heights[1] - 2.25).abs() < 2e-3, "{places:?}");
+    for sense in [-1.0, 1.0] {
+        p.from(5.0, 0.0, 1.0).indirv(-1.0, 0.3 * sense, 0.0).run(&command).ends(0.0, 2.25 * sense, 0.0, 2e-3);
+    }
+    p.from(5.0, 0.5, 1.0).run(&command).ends(0.0, 2.25, 0.0, 2e-3).verified();
 }
