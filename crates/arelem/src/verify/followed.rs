@@ -142,11 +142,19 @@ pub(super) struct Following<'a> {
     pub(super) kept: Kept<'a>,
 }
 
-/// What one attempt at a reading keeps, and how it is made.
+/// How an attempt at a reading is made.
 #[derive(Clone, Copy)]
-pub(super) struct Kept<'a> {
+pub(super) struct Manner {
     /// Whether half-spaces that lean are tried too, and contacts followed from places that are nearer.
     pub(super) is_thorough: bool,
+    /// Where the tool is only a piece of that for which distances of parts are kept: no clearance greater than this need be shown.
+    pub(super) piece: Option<f64>,
+}
+
+/// What one attempt at a reading keeps.
+#[derive(Clone, Copy)]
+pub(super) struct Kept<'a> {
+    pub(super) manner: Manner,
     /// The part and the place of a contact where the bounds of the part are too loose to show it.
     pub(super) loose: &'a Cell<Option<(usize, [f64; 2])>>,
     /// A place that is nearer than the contact followed.
@@ -181,7 +189,7 @@ impl Following<'_> {
 
     /// The place that is nearer than the contact, where that is followed.
     fn nearer(&self) -> Option<Vec3> {
-        self.kept.nearer.get().filter(|_| self.kept.is_thorough)
+        self.kept.nearer.get().filter(|_| self.kept.manner.is_thorough)
     }
 
     /// A point is measured from the side that it is on.
@@ -219,14 +227,15 @@ impl Following<'_> {
             return None;
         }
         // A tool that is too deep is looked at where it has been led out.
-        let least = value.min(contact.value) - self.tolerance;
+        let enough = self.kept.manner.piece.unwrap_or(f64::INFINITY);
+        let least = value.min(contact.value).min(enough) - self.tolerance;
         let error = value - least;
         let out = self.tip + contact.normal * (-least).max(0.0);
         let led = Following { tip: &out, ..*self };
         let least = least.max(0.0);
         let Some((guard, below)) = led.guard(part, side, &contact, least) else {
             self.kept.loose.set(Some((index, contact.at)));
-            if self.kept.is_thorough {
+            if self.kept.manner.is_thorough {
                 self.kept.nearer.set(self.downhill(part, &contact));
             }
             return None;
@@ -239,11 +248,11 @@ impl Following<'_> {
                 continue;
             }
             let far = led.far(other, [&level, &guard], below, least);
-            if far >= least {
-                other.far.set(far - led_by + self.way);
-            } else {
+            if far < least {
                 let shown = Shown { guards: [&level, &guard], below, least, place: &contact.place };
                 led.show(other, k, side, &shown, HALVINGS)?;
+            } else if self.kept.manner.piece.is_none() {
+                other.far.set(far - led_by + self.way);
             }
         }
         Some(Reading { value, normal: contact.normal, error })
@@ -373,7 +382,7 @@ impl Following<'_> {
                 }
             }
         }
-        if !self.kept.is_thorough {
+        if !self.kept.manner.is_thorough {
             return None;
         }
         let around = (contact.at, &contact.place, &contact.normal);

@@ -15,7 +15,7 @@ use nalgebra::Matrix3;
 
 use super::{
     ruling::Ruling,
-    strip::{Cubic, place},
+    strip::{Cubic, place, tangent},
 };
 
 /// Size of the leading coefficient, relative to the others, below which the equation is linear.
@@ -24,8 +24,11 @@ const LINEAR: f64 = 1e-13;
 const ROUNDING: f64 = 1e-9;
 /// Steps in which a section is followed beyond each of its ends.
 const STEPS: u32 = 32;
-/// Share of the chord over which a slope is measured.
+/// Share of the chord over which the slope at an upright end is measured, and by which slopes are taken inside.
 const SLOPE_STEP: f64 = 1e-6;
+const INSIDE: f64 = 1e-12;
+/// Slope, in chords, above which an end is upright.
+const UPRIGHT: f64 = 100.0;
 /// Heights noted over the chord to tell the branches of a tabulated cylinder apart.
 const NOTES: usize = 64;
 
@@ -37,6 +40,15 @@ enum Cut {
     Second { matrix: Matrix3<f64>, linear: Vec3, constant: f64, branch: f64, nappe: Option<[Vec3; 2]> },
     /// A curve in a plane with straight rulings through it; heights noted over the chord.
     Ruled { curve: Vec<Cubic>, axis: Vec3, notes: Vec<f64> },
+}
+
+/// Where a line across the chord meets the section.
+#[derive(Debug, Clone, Copy)]
+struct Crossing {
+    /// Height over the chord.
+    height: f64,
+    /// How it changes with the share of the chord.
+    slope: f64,
 }
 
 /// A section curve over its chord, followed beyond its ends as long as it is not steep, and straight from there on.
@@ -117,7 +129,7 @@ impl Section {
         match self.cut.clone() {
             Cut::Second { .. } => {
                 let heights = [1.0, -1.0].map(|b| (b, self.root(0.5, b)));
-                let found = heights.into_iter().filter_map(|(b, h)| h.map(|h| (b, h)));
+                let found = heights.into_iter().filter_map(|(b, found)| Some((b, found?.height)));
                 // Ahead before behind, near before far.
                 let key = |h: f64| (h < 0.0, h.abs());
                 let best = found.min_by(|x, y| {
@@ -130,7 +142,8 @@ impl Section {
             }
             Cut::Ruled { .. } => {
                 let key = |h: f64| (h < 0.0, h.abs());
-                let first = self.crossings(0.5).into_iter().min_by(|x, y| {
+                let heights = self.crossings(0.5).into_iter().map(|crossing| crossing.height);
+                let first = heights.min_by(|x, y| {
                     let (x, y) = (key(*x), key(*y));
                     x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
                 })?;
@@ -138,12 +151,12 @@ impl Section {
                 let mut all = vec![first; NOTES + 1];
                 let mut near = first;
                 for k in (0..NOTES / 2).rev() {
-                    near = nearest(self.crossings(share(k)), near)?;
+                    near = nearest(self.crossings(share(k)), near)?.height;
                     all[k] = near;
                 }
                 near = first;
                 for (k, note) in all.iter_mut().enumerate().skip(NOTES / 2 + 1) {
-                    near = nearest(self.crossings(share(k)), near)?;
+                    near = nearest(self.crossings(share(k)), near)?.height;
                     *note = near;
                 }
                 if let Cut::Ruled { notes, .. } = &mut self.cut {
@@ -159,9 +172,8 @@ impl Section {
         let mut reached = end;
         for k in 1..=STEPS {
             let share = end + sense * SECTION_BEYOND * f64::from(k) / f64::from(STEPS);
-            let slope = self.height(share).zip(self.height(share - sense * SLOPE_STEP));
-            match slope {
-                Some((a, b)) if (a - b).abs() <= SECTION_STEEP_BEYOND * self.chord.norm() * SLOPE_STEP => {
+            match self.crossing(share) {
+                Some(found) if found.slope.abs() <= SECTION_STEEP_BEYOND * self.chord.norm() => {
                     reached = share;
                 }
                 _ => break,
@@ -170,7 +182,7 @@ impl Section {
         reached
     }
 
-    fn root(&self, share: f64, branch: f64) -> Option<f64> {
+    fn root(&self, share: f64, branch: f64) -> Option<Crossing> {
         let Cut::Second { matrix, linear, constant, nappe, .. } = &self.cut else { return None };
         let x = self.start + self.chord * share;
         let v = &self.across;
@@ -190,14 +202,17 @@ impl Section {
             if b * far <= 0.0 { (far - b) / a } else { -c / (b + far) }
         };
         let ahead = nappe.is_none_or(|[vertex, axis]| axis.dot(&(x + v * root - vertex)) >= 0.0);
-        (ahead && root.is_finite()).then_some(root)
+        let chord = &self.chord;
+        let slope = -(v.dot(&(matrix * chord)) * root + chord.dot(&(mx + linear))) / (a * root + b);
+        (ahead && root.is_finite()).then_some(Crossing { height: root, slope })
     }
 
-    /// Heights at which the line across the chord meets the curve of a tabulated cylinder.
-    fn crossings(&self, share: f64) -> Vec<f64> {
+    /// Where the line across the chord meets the curve of a tabulated cylinder.
+    fn crossings(&self, share: f64) -> Vec<Crossing> {
         let Cut::Ruled { curve, axis, .. } = &self.cut else { return Vec::new() };
         let flat = |x: Vec3| x - axis * axis.dot(&x);
         let (x, v) = (flat(self.start + self.chord * share), flat(self.across));
+        let chord = flat(self.chord);
         let square = v.norm_squared();
         let side = axis.cross(&v);
         let mut found = Vec::new();
@@ -211,17 +226,19 @@ impl Section {
                 let here = (t, off(t));
                 if (before.1 <= 0.0) != (here.1 <= 0.0) {
                     let t = bisect(&off, before, here);
-                    found.push(v.dot(&(place(piece, t) - x)) / square);
+                    let run = tangent(piece, t);
+                    let slope = v.dot(&(run * (side.dot(&chord) / side.dot(&run)) - chord)) / square;
+                    found.push(Crossing { height: v.dot(&(place(piece, t) - x)) / square, slope });
                 }
                 before = here;
             }
         }
-        found.retain(|h| h.is_finite());
+        found.retain(|crossing| crossing.height.is_finite());
         found
     }
 
-    /// Height over the chord; None where the section is not.
-    fn height(&self, share: f64) -> Option<f64> {
+    /// Where it is over a share of the chord; None where it is not.
+    fn crossing(&self, share: f64) -> Option<Crossing> {
         match &self.cut {
             Cut::Second { branch, .. } => self.root(share, *branch),
             Cut::Ruled { notes, .. } => {
@@ -233,6 +250,20 @@ impl Section {
         }
     }
 
+    fn height(&self, share: f64) -> Option<f64> {
+        self.crossing(share).map(|found| found.height)
+    }
+
+    /// How the height changes on the side of a share that is inside; at an upright end over a little way.
+    fn slope(&self, share: f64, inward: f64) -> Option<f64> {
+        let found = self.crossing(share + inward * INSIDE)?.slope;
+        if found.abs() <= UPRIGHT * self.chord.norm() {
+            return Some(found);
+        }
+        let step = inward * SLOPE_STEP;
+        Some((self.height(share + step)? - self.height(share)?) / step)
+    }
+
     /// The place at a share of the chord.
     pub(super) fn at(&self, share: f64) -> Option<Vec3> {
         let held = share.clamp(self.reach[0], self.reach[1]);
@@ -240,8 +271,7 @@ impl Section {
         if held == share {
             return Some(place);
         }
-        let inward = if share < held { SLOPE_STEP } else { -SLOPE_STEP };
-        let slope = (self.height(held + inward)? - self.height(held)?) / inward;
+        let slope = self.slope(held, if share < held { 1.0 } else { -1.0 })?;
         let run = self.chord + self.across * slope;
         let longest = (1.0 + SECTION_STEEP_BEYOND) * self.chord.norm();
         Some(place + run * (longest / run.norm()).min(1.0) * (share - held))
@@ -261,8 +291,8 @@ impl Section {
     }
 }
 
-fn nearest(heights: Vec<f64>, to: f64) -> Option<f64> {
-    heights.into_iter().min_by(|x, y| (x - to).abs().total_cmp(&(y - to).abs()))
+fn nearest(crossings: Vec<Crossing>, to: f64) -> Option<Crossing> {
+    crossings.into_iter().min_by(|x, y| (x.height - to).abs().total_cmp(&(y.height - to).abs()))
 }
 
 /// The zero between two places of opposite sign.
@@ -282,4 +312,42 @@ fn bisect(off: &dyn Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -
         }
     }
     0.5 * (low.0 + high.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verify::tests::{quadric, sphere, tabulated};
+
+    /// On both branches of a section and on a tabulated curve.
+    #[test]
+    fn slopes_are_those_of_the_heights() {
+        let ball = sphere([0.0, 0.3, -1.0], 4.0);
+        let saddle = quadric([0.2, -0.15, 0.1, 0.3, 0.05, -0.1, 0.02, 0.1, -0.2, 0.6]);
+        let wave = tabulated(
+            [Vec3::x(), Vec3::y(), Vec3::z()],
+            &[[-3.0, 0.4, 0.2], [-1.0, 0.1, -0.3], [1.0, 0.3, 0.4], [3.0, 0.2, 0.0]],
+        );
+        for (surface, across) in [
+            (&ball, Vec3::new(0.1, 0.2, 1.0)),
+            (&ball, Vec3::new(0.0, 0.0, -1.0)),
+            (&saddle, Vec3::new(0.0, 0.3, 1.0)),
+            (&wave, Vec3::new(0.0, 1.0, 0.2)),
+        ] {
+            let [start, end] = [Vec3::new(-1.6, 0.1, 0.2), Vec3::new(1.7, 0.2, 0.1)];
+            let section =
+                Section::of(&RuledCurve { surface, start, end, across }).expect("it joins the ends");
+            for k in 1..=9 {
+                let share = f64::from(k) / 10.0 + 0.013;
+                let found = section.crossing(share).expect("it goes from end to end");
+                let [before, after] =
+                    [-1e-5, 1e-5].map(|step| section.height(share + step).expect("and beside"));
+                let slope = (after - before) / 2e-5;
+                assert!(
+                    (found.slope - slope).abs() <= 1e-6 * (1.0 + slope.abs()),
+                    "{share}: {found:?} {slope}"
+                );
+            }
+        }
+    }
 }

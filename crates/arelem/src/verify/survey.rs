@@ -9,7 +9,7 @@ use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
-    followed::{Following, Kept},
+    followed::{Following, Kept, Manner},
     patch::{
         Bends, Edges, Net, Patch, ball, between_across, extent, halves, halves_across, halves_along, jet,
         sides,
@@ -42,6 +42,8 @@ const EDGE_HALVINGS: u32 = 6;
 /// Halvings for one reading of the part that the contact is on, and product of its size and curvature below which none helps.
 const DIVISIONS: usize = 12;
 const TIGHT: f64 = 0.01;
+/// Pieces of a tool that is a straight line, of all sizes, that one reading may look at.
+const PIECES: u32 = 63;
 /// Accuracy of a distance, relative to how far the patches may be off the surface.
 const WARM_RESOLUTION_OF_ERROR: f64 = 0.25;
 /// Steps between tool and surface to a place that is near.
@@ -177,26 +179,12 @@ impl Sheet {
         let mut near = self.take(slot, tip, tool, size)?;
         let off = near.stretch * accuracy.error;
         let tolerance = accuracy.rounding.max(WARM_RESOLUTION_OF_ERROR * off);
+        let asked = Asked { sheet: self, side, size, tolerance };
         // What takes long is tried where the rest does not show it.
-        let mut shown = |is_thorough: bool| {
-            let (loose, nearer, looks) = (&Cell::new(None), &Cell::new(None), &Cell::new(0));
-            for _ in 0..DIVISIONS {
-                let (parts, way) = (&near.parts, near.way);
-                let (sheet, kept) = (self, Kept { is_thorough, loose, nearer, looks });
-                let following = Following { sheet, parts, way, side, tip, tool, size, tolerance, kept };
-                let found = following.reading(&mut near.last);
-                if found.is_some() {
-                    return found;
-                }
-                let is_divided = loose.take().is_some_and(|at| near.divide(at));
-                if !is_divided {
-                    break;
-                }
-                nearer.set(None);
-            }
-            None
-        };
-        let found = shown(false).or_else(|| shown(true));
+        let found = [false, true]
+            .into_iter()
+            .find_map(|is_thorough| near.shown(&asked, tip, tool, Manner { is_thorough, piece: None }));
+        let found = found.or_else(|| near.shown_in_pieces(&asked, tip, tool));
         self.near.borrow_mut()[slot] = Some(near);
         found.map(|reading| (reading, off))
     }
@@ -305,7 +293,71 @@ impl Sheet {
     }
 }
 
+/// What is asked of a survey.
+struct Asked<'a> {
+    sheet: &'a Sheet,
+    side: f64,
+    size: f64,
+    tolerance: f64,
+}
+
 impl Near {
+    /// The clearance where balls show it.
+    fn shown(&mut self, asked: &Asked<'_>, tip: &Vec3, tool: &Tool<'_>, manner: Manner) -> Option<Reading> {
+        let Asked { sheet, side, size, tolerance } = *asked;
+        let (loose, nearer, looks) = (&Cell::new(None), &Cell::new(None), &Cell::new(0));
+        for _ in 0..DIVISIONS {
+            let (parts, way) = (&self.parts, self.way);
+            let kept = Kept { manner, loose, nearer, looks };
+            let following = Following { sheet, parts, way, side, tip, tool, size, tolerance, kept };
+            let found = following.reading(&mut self.last);
+            if found.is_some() {
+                return found;
+            }
+            let is_divided = loose.take().is_some_and(|at| self.divide(at));
+            if !is_divided {
+                break;
+            }
+            nearer.set(None);
+        }
+        None
+    }
+
+    /// The clearance of a tool that is a straight line by its pieces: no ball holds a long line beside a surface that is hollow along
+    /// it.
+    fn shown_in_pieces(&mut self, asked: &Asked<'_>, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+        let length = tool.profile.top_height();
+        if tool.profile.widest() > 0.0 || length <= 0.0 {
+            return None;
+        }
+        // Over a hollow one of the ends is nearest.
+        let end = Profile::tool_end();
+        let accuracy = Accuracy { rounding: asked.tolerance, error: 0.0 };
+        let at_end = |place: Vec3| asked.sheet.at(asked.side, &place, &tool.with(&end), asked.size, accuracy);
+        let ends = [at_end(*tip)?.0, at_end(tip + tool.axis * length)?.0];
+        let mut best = if ends[0].value <= ends[1].value { ends[0] } else { ends[1] };
+        let mut least = ends.map(|end| end.value - end.error).into_iter().fold(f64::INFINITY, f64::min);
+        let mut open = vec![[0.0, length]];
+        for _ in 0..PIECES {
+            let Some([low, high]) = open.pop() else {
+                return Some(Reading { error: best.value - least, ..best });
+            };
+            let profile = tool.profile.below(high - low);
+            let (piece, from) = (tool.with(&profile), tip + tool.axis * low);
+            let manner = Manner { is_thorough: true, piece: Some(best.value) };
+            match self.shown(asked, &from, &piece, manner) {
+                Some(reading) => {
+                    least = least.min(reading.value - reading.error);
+                    if reading.value < best.value {
+                        best = reading;
+                    }
+                }
+                None => open.extend([[0.5 * (low + high), high], [low, 0.5 * (low + high)]]),
+            }
+        }
+        None
+    }
+
     /// Halves a part about a place of it, so that the bounds of its bends are closer there; not where they are close anyway.
     fn divide(&mut self, (index, at): (usize, [f64; 2])) -> bool {
         let Some(part) = self.parts.get(index).filter(|_| self.parts.len() < PARTS) else { return false };

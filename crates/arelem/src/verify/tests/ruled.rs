@@ -8,7 +8,12 @@ use apt_geometry::{
 use proptest::prelude::*;
 
 use super::{
-    super::{Rule, VerifyError, clearance::Surface, verify},
+    super::{
+        Rule, VerifyError,
+        clearance::Surface,
+        tool::{Profile, Tool},
+        verify,
+    },
     clearances::{clearance, direction, samples, tools},
     cone, cutter, cylinder,
     paths::{self, BAND},
@@ -290,5 +295,32 @@ fn a_ruled_wall_as_drive_and_check_surface_is_judged() {
         assert_eq!(rules(&sequence), [], "{relation:?}");
         sequence.points[0].tip.x += 0.01;
         assert!(rules(&sequence).contains(&Rule::CheckBand), "{relation:?}");
+    }
+}
+
+/// A straight line under the vault, as near to it with one end as with the other: no ball that touches there holds all of it.
+#[test]
+fn a_line_along_a_hollow_is_measured_by_its_pieces() {
+    let surface = Surface::of(&bent()).unwrap();
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    for (places, below) in [
+        ([[0.2, 0.3], [0.8, 0.3]], [1e-3, 1.3e-3]),
+        ([[0.7, 0.6], [0.3, 0.5]], [2e-3, 1.8e-3]),
+        ([[0.25, 0.7], [0.75, 0.2]], [-1e-3, 5e-4]),
+    ] {
+        let ends: [Vec3; 2] =
+            std::array::from_fn(|k| bent_place(places[k][0], places[k][1]) - Vec3::z() * below[k]);
+        let way = ends[1] - ends[0];
+        let profile = Profile::of(&cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, way.norm()])).unwrap();
+        let mut tool = Tool::new(&profile, way.normalize());
+        tool.depth = 0.01;
+        let found = ruled.followed(-1.0, &ends[0], &tool).expect("it is shown");
+        let samples = (0..=400).map(|k| {
+            let place = ends[0] + way * (f64::from(k) / 400.0);
+            -surface.point_distance(&place).expect("a distance").0
+        });
+        let least = samples.fold(f64::INFINITY, f64::min);
+        let error = found.error + 2.0 * ruled.error() + 1e-9;
+        assert!((found.value - least).abs() <= error && error < 1e-5, "{found:?} {least}");
     }
 }
