@@ -161,7 +161,10 @@ impl<'a> Shadow<'a> {
             if gap <= tolerance {
                 let height = self.tip.dot(&normal) + value;
                 let level = Level { normal, height, support: center + normal * ball };
-                return Some(Distance { value: level.above(x), gap: gap.max(0.0), level });
+                let value = level.above(x);
+                // Inside, the point may be nearer to what cuts the ball.
+                let is_held = ball <= 0.0 || value >= 0.0 || self.tool.profile.holds_corner();
+                return is_held.then_some(Distance { value, gap: gap.max(0.0), level });
             }
             let turn = across.dot(&away) / (ahead + swing - ball);
             // Where the height of the point is no concave function of the direction: straight away from the ball.
@@ -219,28 +222,35 @@ mod tests {
     use super::{super::tool::Profile, *};
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(128))]
+        #![proptest_config(ProptestConfig::with_cases(512))]
         #[test]
         fn a_distance_is_that_of_the_best_of_many_half_planes(
             [diameter, share, height] in [0.1..2.0f64, 0.0..1.0f64, 1.0..3.0f64],
+            (cut, angles) in ([0.0..0.3f64, 0.0..0.3f64], [0.0..0.3f64, 0.0..0.3f64]),
             lean in [-1.0..1.0f64, -1.0..1.0f64],
-            at in [-3.0..3.0f64, -3.0..3.0f64],
+            (at, is_inside) in ([-3.0..3.0f64, -3.0..3.0f64], any::<bool>()),
         ) {
+            // Lines that touch the circle of the corner and lines that cut it.
             let radius = 0.5 * diameter * share;
+            let [low, side] = cut.map(|by| radius * (1.0 - by));
+            let [alpha, beta] = angles.map(|angle| if cut[0] < 0.1 { 0.0 } else { angle });
+            let offset = 0.5 * diameter - side;
             let cutter = Cutter {
                 diameter,
                 corner_radius: radius,
-                corner_offset: 0.5 * diameter - radius,
-                corner_height: radius,
-                alpha: 0.0,
-                beta: 0.0,
+                corner_offset: offset,
+                corner_height: offset * alpha.tan() + low / alpha.cos(),
+                alpha,
+                beta,
                 height,
             };
-            let profile = Profile::of(&cutter).unwrap();
+            let Ok(profile) = Profile::of(&cutter) else { return Ok(()) };
             let tool = Tool::new(&profile, Vec3::new(lean[0], lean[1], 1.0).normalize());
             let frame = [Vec3::x(), Vec3::z()];
             let shadow = Shadow::new(&tool, &frame, &Vec3::new(0.1, 0.2, 0.3));
-            let x = Flat::new(at[0], at[1]);
+            // Anywhere, and a little inside.
+            let inside = shadow.level(Flat::new(at[0], at[1]).normalize());
+            let x = if is_inside { inside.support - inside.normal * (0.02 * at[0].abs()) } else { Flat::new(at[0], at[1]) };
             let found = shadow.distance(&x, 1e-10);
             let count = 20_000;
             let turn = std::f64::consts::TAU / f64::from(count);

@@ -236,6 +236,12 @@ impl Profile {
         true
     }
 
+    /// Whether the body holds the whole ball of the corner: lines that cut its circle leave some of it outside.
+    pub(super) fn holds_corner(&self) -> bool {
+        let slack = TANGENCY_SLACK * self.radius;
+        self.signed_distance(self.center).0 <= slack - self.radius
+    }
+
     /// Greatest distance from a point at azimuth 0 (ρ ≥ 0) to a point of the body, and that body point with ρ counted
     /// towards azimuth 0 (so it is ≤ 0: the far side).
     pub(super) fn farthest(&self, p: Meridian) -> (f64, Meridian) {
