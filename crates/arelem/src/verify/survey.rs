@@ -189,6 +189,16 @@ impl Sheet {
         found.map(|reading| (reading, off))
     }
 
+    /// Notes a place to follow the next contact from, if it is among what was surveyed last.
+    pub(super) fn look_at(&self, place: &Vec3, tool: &Tool<'_>) -> bool {
+        let mut near = self.near.borrow_mut();
+        let Some(near) = near[usize::from(tool.profile.is_point())].as_mut() else { return false };
+        let apart = |part: &Part| (part.near(place) - place).norm();
+        let found = nearest_by(&near.parts, apart);
+        near.last = found.and_then(|k| Some((k, near.parts.get(k)?.nearest_parameters(place))));
+        near.last.is_some()
+    }
+
     /// A bound from above of the distance: that of a place about as near as any, where tool and surface lead in turns.
     fn upper(&self, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
         let mut from = tip + tool.axis * (0.5 * tool.profile.top_height());
