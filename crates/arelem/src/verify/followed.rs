@@ -194,7 +194,12 @@ impl Following<'_> {
 
     /// A point is measured from the side that it is on.
     fn point(&self, last: &mut Option<(usize, [f64; 2])>) -> Option<Reading> {
-        let (_, contact) = self.contact(1.0, last)?;
+        let met = self.contact(1.0, last).or_else(|| {
+            // It may be far from where it was.
+            last.take()?;
+            self.contact(1.0, last)
+        });
+        let (_, contact) = met?;
         let sense = if contact.value < 0.0 { -1.0 } else { 1.0 };
         let found = self.settled(sense, last)?;
         let turn = sense * self.side;

@@ -1,10 +1,13 @@
 //! Ruled surfaces as patches: straight rulings between points at equal shares of two chords (language reference 4.16).
 //!
-//! Between the ends of the chords the parameter is an angle, `(1 − cos πw)/2` the share: so a section that starts upright,
-//! like a half circle, is smooth in it. Cubics through four places of each piece replace the curves; how far they are off
+//! Between the ends of the chords the parameter is the share, and an angle towards an end where a section stands upright over
+//! its chord, like a half circle: so that is smooth in it. Where none does an angle would not spread. Cubics through four places of each piece replace the curves; how far they are off
 //! is measured between those places and counted as an error of every distance.
 
-use std::sync::Arc;
+use std::{
+    f64::consts::{FRAC_PI_2, PI},
+    sync::Arc,
+};
 
 use apt_geometry::{
     Vec3,
@@ -38,6 +41,33 @@ const EDGE: f64 = 1e-5;
 /// What the second derivative of a cubic's error is at most, times that error, where it is the error of a cubic through
 /// four places of a curve whose fourth derivative is steady.
 pub(super) const ERROR_BEND: f64 = 200.0;
+
+/// The parameter between the ends of the chords: at which of them it is an angle.
+#[derive(Debug, Clone, Copy)]
+struct Angular([bool; 2]);
+
+impl Angular {
+    /// The share of the chord at a parameter from 0 to 1.
+    fn share(self, w: f64) -> f64 {
+        match self.0 {
+            [false, false] => w,
+            [true, false] => 1.0 - (FRAC_PI_2 * w).cos(),
+            [false, true] => (FRAC_PI_2 * w).sin(),
+            [true, true] => 0.5 * (1.0 - (PI * w).cos()),
+        }
+    }
+
+    /// The parameter at a share.
+    fn parameter(self, share: f64) -> f64 {
+        let share = share.clamp(0.0, 1.0);
+        match self.0 {
+            [false, false] => share,
+            [true, false] => (1.0 - share).acos() / FRAC_PI_2,
+            [false, true] => share.asin() / FRAC_PI_2,
+            [true, true] => (1.0 - 2.0 * share).acos() / PI,
+        }
+    }
+}
 
 /// A ruled surface.
 #[derive(Debug, Clone)]
@@ -82,6 +112,14 @@ enum Edge {
 impl Edge {
     fn of(curve: &RuledCurve<'_>) -> Option<Self> {
         Section::of(curve).map(|s| Self::Curve(Box::new(s)))
+    }
+
+    /// Whether it stands upright over its chord at the end with a share.
+    fn is_upright(&self, end: f64) -> bool {
+        match self {
+            Self::Curve(section) => section.is_upright(end),
+            Self::Apex(_) => false,
+        }
     }
 
     fn at(&self, share: f64) -> Option<Vec3> {
@@ -205,6 +243,8 @@ fn mark_edges(patches: &mut [Patch]) {
 
 /// Both curves in pieces, from one end of the extensions to the other.
 fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
+    let is_upright = |end: f64| edges.iter().any(|edge| edge.is_upright(end));
+    let angular = Angular([is_upright(0.0), is_upright(1.0)]);
     let mut cuts = vec![-RULED_BEYOND, 0.0, 1.0, 1.0 + RULED_BEYOND];
     for edge in edges {
         if let Edge::Curve(section) = edge {
@@ -217,7 +257,7 @@ fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
     cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
     let mut found = Vec::new();
     for pair in cuts.windows(2) {
-        divide(edges, [pair[0], pair[1]], accuracy, &mut found)?;
+        divide((edges, angular), [pair[0], pair[1]], accuracy, &mut found)?;
     }
     Some(found)
 }
@@ -236,12 +276,16 @@ pub(super) fn parts_for(accuracy: f64, error: f64) -> u32 {
     (2..GREATEST_DIVISION).find(|parts| f64::from(*parts) >= wanted).unwrap_or(GREATEST_DIVISION)
 }
 
-fn divide(edges: &[Edge; 2], ends: [f64; 2], accuracy: f64, found: &mut Vec<Piece>) -> Option<()> {
+fn divide(
+    (edges, angular): (&[Edge; 2], Angular),
+    ends: [f64; 2],
+    accuracy: f64,
+    found: &mut Vec<Piece>,
+) -> Option<()> {
     let inner = ends[0] >= -1e-12 && ends[1] <= 1.0 + 1e-12;
-    // The parameter: an angle between the ends of the chord, the share itself beyond.
-    let share = |w: f64| if inner { 0.5 * (1.0 - (std::f64::consts::PI * w).cos()) } else { w };
-    let angle = |s: f64| (1.0 - 2.0 * s.clamp(0.0, 1.0)).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
-    let range = if inner { ends.map(angle) } else { ends };
+    // Beyond the ends of the chord the parameter is the share itself.
+    let share = |w: f64| if inner { angular.share(w) } else { w };
+    let range = if inner { ends.map(|share| angular.parameter(share)) } else { ends };
     // The last piece first, so that they come out in order.
     let mut open = vec![(range, 0)];
     while let Some(([low, high], depth)) = open.pop() {

@@ -27,8 +27,9 @@ const STEPS: u32 = 32;
 /// Share of the chord over which the slope at an upright end is measured, and by which slopes are taken inside.
 const SLOPE_STEP: f64 = 1e-6;
 const INSIDE: f64 = 1e-12;
-/// Slope, in chords, above which an end is upright.
+/// Slope, in chords, above which an end is upright, and above which shares tell little about where on the section one is.
 const UPRIGHT: f64 = 100.0;
+const STEEP: f64 = 10.0;
 /// Heights noted over the chord to tell the branches of a tabulated cylinder apart.
 const NOTES: usize = 64;
 
@@ -262,6 +263,12 @@ impl Section {
         }
         let step = inward * SLOPE_STEP;
         Some((self.height(share + step)? - self.height(share)?) / step)
+    }
+
+    /// Whether it stands upright over its chord at the end with a share, or nearly so.
+    pub(super) fn is_upright(&self, end: f64) -> bool {
+        let found = self.crossing(end).map_or(f64::INFINITY, |found| found.slope.abs());
+        !(found <= STEEP * self.chord.norm())
     }
 
     /// The place at a share of the chord.

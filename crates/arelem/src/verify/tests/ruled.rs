@@ -324,3 +324,20 @@ fn a_line_along_a_hollow_is_measured_by_its_pieces() {
         assert!((found.value - least).abs() <= error && error < 1e-5, "{found:?} {least}");
     }
 }
+
+/// Contacts near the ends of curves that do not stand upright there: the strips spread evenly up to them.
+#[test]
+fn contacts_beside_the_end_of_a_curve_are_followed() {
+    let surface = Surface::of(&twisted()).unwrap();
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    let drill = cutter(&[0.3, 0.0, 0.15, 0.09, 31.0, 0.0, 2.0]);
+    for profile in [&Profile::tool_end(), &Profile::of(&drill).unwrap()] {
+        let tool = Tool::new(profile, Vec3::z());
+        for x in [0.02, 0.002, 0.0, -0.002, 5.98, 5.998, 6.0, 6.002] {
+            let y = 1.7;
+            let tip = Vec3::new(x, y, 0.25 * y * (1.0 + x / 6.0) + 0.01);
+            let found = ruled.followed(1.0, &tip, &tool).expect("it is followed");
+            assert!(found.value < 0.01 + 1e-6 && found.error < 1e-6, "{x}: {found:?}");
+        }
+    }
+}
