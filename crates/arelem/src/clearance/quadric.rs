@@ -148,6 +148,9 @@ pub(super) fn contact_anywhere(
             found.extend(touch.map(|touch| (index, touch)));
         }
     }
+    if found.is_empty() {
+        found = scene.on_either_half();
+    }
     let (piece, touch) =
         found.iter().min_by(|(_, a), (_, b)| a.contact.clearance.total_cmp(&b.contact.clearance))?;
     if let Means::Round(round) = &scene.means
@@ -156,7 +159,11 @@ pub(super) fn contact_anywhere(
         // Far in, there may be a shorter way out elsewhere.
         return None;
     }
-    scene.proven(*piece, touch, memory)
+    if let Some(proven) = scene.proven(*piece, touch, memory) {
+        return Some(proven);
+    }
+    let (piece, touch) = scene.on_the_other_half(touch)?;
+    scene.proven(piece, &touch, memory)
 }
 
 /// Tool and surface, as contacts on circles are looked for.
@@ -412,11 +419,15 @@ impl<'a> Posed<'a> {
                 || self.flank(&sharp, [ends[1], floor(&profile.top)], &towards))
     }
 
+    /// Half the slope of F at a point of the surface.
+    fn steepness(&self, point: &Vec3) -> f64 {
+        self.form.stationary(&self.form.to_principal(point), 0.0).gradient.norm()
+    }
+
     /// The function for a distance by the steepness of F at a contact, that steepness, and the direction in which the contact is
     /// left.
     fn bound_from(&self, level: f64, contact: &Contact) -> Option<(Bound, f64, Vec3)> {
-        let foot = self.form.to_principal(&contact.surface);
-        let steepness = self.form.stationary(&foot, 0.0).gradient.norm();
+        let steepness = self.steepness(&contact.surface);
         let towards = self.form.direction_to_principal(&contact.gradient);
         if steepness <= 0.0 || steepness.is_nan() {
             return None;

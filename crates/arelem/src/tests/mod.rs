@@ -20,6 +20,7 @@ mod sculptured;
 mod sheets;
 mod tangencies;
 mod turning;
+mod vertices;
 mod worked;
 
 use apt_geometry::{

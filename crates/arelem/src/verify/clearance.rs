@@ -278,14 +278,16 @@ impl<'a> Clearance<'a> {
         }
     }
 
-    /// Whether the surface is two convex bodies and the tool beside one of them on a straight move with a fixed axis, by the
-    /// readings at both ends.
-    pub(super) fn is_beside_one_body(&self, tips: [&Vec3; 2], ends: [&Reading; 2], axis: &Vec3) -> bool {
-        let Surface::Quadric(quadric) = self.surface else { return false };
+    /// Where the surface is two convex bodies and the tool beside one of them on a straight move with a fixed axis, by the readings
+    /// at both ends: what these may be too great by.
+    pub(super) fn beside_one_body(&self, tips: [&Vec3; 2], ends: [&Reading; 2], axis: &Vec3) -> Option<f64> {
+        let Surface::Quadric(quadric) = self.surface else { return None };
+        if self.profile.is_point() {
+            return None;
+        }
         let [from, to] = tips.map(|tip| tip + axis * self.raise);
         let [first, last] = ends.map(|end| Reading { value: end.value + self.thickness, ..*end });
-        !self.profile.is_point()
-            && halves::is_beside_one(quadric, self.side, [(&from, &first), (&to, &last)], &self.tool(*axis))
+        halves::beside_one(quadric, self.side, [(&from, &first), (&to, &last)], &self.tool(*axis))
     }
 
     /// A distance from the tool end beyond which there is nothing of the tool.

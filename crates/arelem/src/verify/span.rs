@@ -156,17 +156,8 @@ impl Span<'_> {
         let (first, last) = (self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?);
         let error = first.error.max(last.error);
         let (low, high) = (first.value.min(last.value), first.value.max(last.value));
-        let shape = if self.turns() {
-            Shape::Free
-        } else {
-            let (tips, ends) = ([&self.from.tip, &self.to.tip], [&self.ends[0], &self.ends[1]]);
-            match self.clearance.shape_along(tips, &self.from.axis) {
-                Shape::Free if self.clearance.is_beside_one_body(tips, ends, &self.from.axis) => {
-                    Shape::Convex
-                }
-                shape => shape,
-            }
-        };
+        let (shape, missed) = self.shape();
+        let error = error + missed;
         match shape {
             Shape::Linear => Some(Extremes::within(error, low, high)),
             Shape::Convex => {
@@ -188,6 +179,21 @@ impl Span<'_> {
                 }
                 Some(found)
             }
+        }
+    }
+
+    /// How the clearance varies, and what that leaves open of the readings at the ends.
+    fn shape(&self) -> (Shape, f64) {
+        if self.turns() {
+            return (Shape::Free, 0.0);
+        }
+        let (tips, ends) = ([&self.from.tip, &self.to.tip], [&self.ends[0], &self.ends[1]]);
+        match self.clearance.shape_along(tips, &self.from.axis) {
+            Shape::Free => match self.clearance.beside_one_body(tips, ends, &self.from.axis) {
+                Some(missed) => (Shape::Convex, missed),
+                None => (Shape::Free, 0.0),
+            },
+            shape => (shape, 0.0),
         }
     }
 

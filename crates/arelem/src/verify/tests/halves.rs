@@ -15,9 +15,7 @@ use super::{
 fn worst(clearance: &Clearance<'_>, ends: [Vec3; 2], axis: &Vec3) -> Option<f64> {
     let [first, last] = ends.map(|tip| clearance.at(&tip, axis));
     let (first, last) = (first?, last?);
-    if !clearance.is_beside_one_body([&ends[0], &ends[1]], [&first, &last], axis) {
-        return None;
-    }
+    clearance.beside_one_body([&ends[0], &ends[1]], [&first, &last], axis)?;
     let way = ends[1] - ends[0];
     let mut worst: f64 = 0.0;
     for k in 1..8 {

@@ -1,0 +1,178 @@
+//! Motions beside the vertex of a double cone, whose two halves are both near: each is a convex body of its own.
+
+use apt_geometry::cutter::Cutter;
+
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
+use crate::{sequence::ToolPosition, verify::verify};
+
+fn is_delivered(motion: &Found) {
+    let sequences = motion.run(AMPLE).expect("a path");
+    assert_eq!(sequences.len(), 2);
+}
+
+/// Stock keeps the rim of a flat cutter .17 from the vertex. It goes along one half to where it touches the other.
+#[test]
+fn a_rim_comes_from_one_half_of_a_double_cone_to_the_other() {
+    let motion = Found {
+        cutter: &[0.97877571561787],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(0.6575331233787957, -0.26719083963716944, -1.2735441603726645),
+        band: [2e-5, 3e-5],
+        thickness: 0.16625729849249019,
+        drive_side: DriveSide::On,
+        forward: v(0.03590732184369054, 0.5221976231395327, -0.8520682523280844),
+        part: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.245414826579,
+                    0.04772340143786691,
+                    0.28644977251447895,
+                    2.6485131223127976,
+                    0.22730383904615914,
+                    0.0996981828677703,
+                    -0.005613546785801607,
+                    0.202565373851894,
+                    0.6852422339778307,
+                    0.8650631556868731,
+                ],
+            }),
+        ),
+        drive: (
+            Relation::On,
+            Geometry::Line(Plane {
+                normal: v(-0.997644248348417, 0.06859995435364433, 0.0),
+                distance: -0.1418806084591761,
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.03590732184369048, -0.5221976231395328, 0.8520682523280846),
+                distance: -1.4184304125111922,
+            }),
+        ),
+        stop: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(2.2534181874524384, 6.5841865342419394, -8.197038695789622),
+                axis: v(0.9179403911711949, -0.38771362435326345, -0.0840451292302563),
+                radius: 7.927693588174024,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// The same with the round corner of a lens cutter, which the verifier took half a minute for.
+#[test]
+fn a_lens_cutter_comes_from_one_half_of_a_double_cone_to_the_other() {
+    let motion = Found {
+        cutter: &[1.0, 0.1875, 0.33, 0.22, 7.011712254515407, 5.0, 4.882547144601999],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-1.2499277612468966, -0.22817244792398497, 1.4475848386941195),
+        band: [2e-5, 3e-5],
+        thickness: 0.08906982474295565,
+        drive_side: DriveSide::Left,
+        forward: v(0.7575232731284699, 0.6528081576303483, -0.0),
+        part: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.03125372959710779,
+                    0.28297337658613586,
+                    0.9472228725161376,
+                    0.7347044457530242,
+                    -0.0696996454103021,
+                    -0.2951878949608905,
+                    -0.09404240211204555,
+                    0.2621246171516074,
+                    0.13665539951088845,
+                    -0.829003740261199,
+                ],
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-1.4268103764479143, -2.30940767246088, 8.911158884276473),
+                axis: v(0.6903054662201998, -0.2835925957251609, -0.6656227181792838),
+                cosine: 0.7464290271534676,
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.7575232731284699, -0.6528081576303484, 5.885422613690406e-17),
+                distance: 1.0794461126862547,
+            }),
+        ),
+        stop: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(-4.036920909600535, -2.9134686759805346, 4.545463711033705),
+                axis: v(0.6408968342598765, -0.7166116101841951, -0.2751709432060072),
+                radius: 7.123154113109574,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// Where the flat cutter is about as near to one half as to the other, the contact is found and proven all the same, whatever was
+/// known before, and both measures tell the same.
+#[test]
+fn the_nearer_of_both_halves_is_found_by_both_measures() {
+    let halves = quadric([
+        0.245414826579,
+        0.04772340143786691,
+        0.28644977251447895,
+        2.6485131223127976,
+        0.22730383904615914,
+        0.0996981828677703,
+        -0.005613546785801607,
+        0.202565373851894,
+        0.6852422339778307,
+        0.8650631556868731,
+    ]);
+    let role = Role {
+        surface: named(&halves),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.16625729849249019,
+        disk: None,
+    };
+    let cutter = Cutter::from_numbers(&[0.97877571561787], 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let along = v(0.028318108918086067, 0.4118282403016168, -0.9108213794138658);
+    let from = v(0.16471189880282575, 0.32716158818868435, -2.799987407072549);
+    let known = gauge(&role);
+    for k in -20..24 {
+        let tip = from + along * (1e-4 * f64::from(k));
+        let at = ToolPosition { tip, axis: Vec3::z() };
+        let alone = CutSequence {
+            start: at,
+            points: vec![at],
+            cutter,
+            part: Some(role.clone()),
+            drive: None,
+            stop: None,
+            drive_side: DriveSide::On,
+            start_up: true,
+            forward: Vec3::zeros(),
+            maximum_step: 1.0,
+            minimum: None,
+        };
+        let verifier = verify(&alone, &|| false).expect("evidence").part.expect("an extent").min;
+        for gauge in [&gauge(&role), &known] {
+            let (contact, missed) = gauge.contact_within(&tool, &tip);
+            assert!((contact.clearance - verifier).abs() < 1e-9, "{k}: {}, {verifier}", contact.clearance);
+            assert!(missed < 1e-8, "{k}: {missed}");
+        }
+    }
+}
