@@ -45,6 +45,10 @@ impl Vertex {
     /// Where the motion begins, with the axis that the tool has there: the first vector turns it if need be.
     fn start(prepared: &Prepared) -> Result<Self, MotionFailure> {
         let mut vertex = Self::at(prepared, prepared.tip, &prepared.tangent)?;
+        // In a corner the path goes along another contact than the one that is measured.
+        if !prepared.attitude.turns() && vertex.tangent.dot(&prepared.tangent) < SAME_LINE {
+            vertex.tangent = prepared.tangent;
+        }
         if prepared.attitude.turns() {
             vertex.axis = prepared.tool.axis;
             vertex.part.clearance = prepared.part.gauge.contact(&prepared.tool, &prepared.tip).clearance;
@@ -70,6 +74,8 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
 
 /// Sine between part and drive normal below which the line of motion is kept.
 const TANGENT_SINE: f64 = 1e-7;
+/// Cosine of the angle between two lines of motion below which they are not the same but for rounding.
+const SAME_LINE: f64 = 1.0 - 1e-6;
 /// How often a vector that ends at the check surface is shortened before giving up.
 const MAX_FINALS: u32 = 60;
 /// After so many of them the end is looked for where in the bands the last vertex is.

@@ -7,7 +7,7 @@ use apt_geometry::{
 
 use crate::{
     attitude::{Attitude, Law},
-    clearance::{Contact, Tool},
+    clearance::{Contact, Shape, Tool},
     error::{ContactPoints, MotionFailure, MotionWarning, RoleName},
     position,
     role::Working,
@@ -22,6 +22,12 @@ const TANGENT_SINE: f64 = 1e-6;
 const ALONG_AXIS_COSINE: f64 = 0.997;
 /// Distance between unit axes below which they are the same.
 const SAME_AXIS: f64 = 1e-12;
+/// How many times the width of the bands ahead of the start it is looked for another contact.
+const CORNER_AHEAD: f64 = 0.25;
+/// Share of the band by which the clearances at two places may differ that the tool touches at once.
+const SAME_CLEARANCE: f64 = 0.01;
+/// Sine between the normals of two contacts above which they are not the same one.
+const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Sine below which the side of the drive surface is not judged.
 const SIDE_SINE: f64 = 0.05;
 
@@ -85,6 +91,10 @@ pub(super) fn prepare(
         && misplaced(state.drive_side, &tool, &contact, &along).is_none()
     {
         (drive, drive_contact, tangent) = (other, contact, along);
+    }
+    let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts: [part_contact, drive_contact] };
+    if let Some((along, contact)) = place.way_out(&tangent, &wanted) {
+        (tangent, drive_contact) = (along, contact);
     }
     let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
     let mut working = Vec::with_capacity(checks.len());
@@ -196,6 +206,51 @@ fn line_of_motion(part: &Contact, drive: &Contact, wanted: &Vec3, tip: &Vec3) ->
         return Err(MotionFailure::DirectionUndetermined { angle, tangent, wanted: *wanted });
     }
     Ok(if cosine > 0.0 { tangent } else { -tangent })
+}
+
+/// Where a motion begins.
+struct Corner<'a> {
+    tool: &'a Tool,
+    tip: Vec3,
+    roles: [&'a Working; 2],
+    contacts: [Contact; 2],
+}
+
+impl Corner<'_> {
+    /// Where the tool touches a surface at two places: the line of motion along the other one than that which is measured, if this
+    /// one leads it against the other, or less than the other in the direction asked for; and the contact with the drive surface
+    /// there. The line of motion must lead away from the one that is measured.
+    fn way_out(&self, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, Contact)> {
+        if self.roles.iter().all(|role| role.shape == Shape::Flat) {
+            return None;
+        }
+        [tangent, wanted].into_iter().find_map(|ahead| self.way_out_seen(ahead, tangent, wanted))
+    }
+
+    /// The same with the other contact that is measured a little ahead.
+    fn way_out_seen(&self, ahead: &Vec3, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, Contact)> {
+        let bands = self.roles[0].band() + self.roles[1].band();
+        let step = ahead * (CORNER_AHEAD * bands);
+        let others = self.roles.map(|role| role.gauge.contact(self.tool, &(self.tip + step)));
+        let is_other =
+            |k: usize| self.contacts[k].gradient.cross(&others[k].gradient).norm() > OTHER_CONTACT_SINE;
+        let is_blocked = |k: usize| others[k].gradient.dot(tangent) < 0.0;
+        let touches_both = |k: usize| {
+            let there = others[k].clearance - others[k].gradient.dot(&step);
+            (there - self.contacts[k].clearance).abs() <= SAME_CLEARANCE * self.roles[k].band()
+        };
+        [[true, false], [false, true], [true, true]].into_iter().find_map(|turns| {
+            let turning = || (0..2).filter(|k| turns[*k]);
+            if !turning().all(is_other) {
+                return None;
+            }
+            let [part, drive] = [0, 1].map(|k| if turns[k] { &others[k] } else { &self.contacts[k] });
+            let along = line_of_motion(part, drive, wanted, &self.tip).ok()?;
+            let is_better = || along.dot(wanted) > tangent.dot(wanted) && turning().all(touches_both);
+            let leaves = turning().all(|k| self.contacts[k].gradient.dot(&along) >= 0.0);
+            (leaves && (turning().all(is_blocked) || is_better())).then_some((along, *drive))
+        })
+    }
 }
 
 /// Warning 1601: the tool is not where TLLFT or TLRGT says. The motion keeps the side where it is.

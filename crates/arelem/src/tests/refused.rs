@@ -26,9 +26,20 @@ pub(super) struct Found {
 impl Found {
     /// Runs both, asking at most so often whether to give up; what they found is proven.
     pub(super) fn run(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+        let [part, drive, first] =
+            [&self.part, &self.drive, &self.first].map(|(relation, surface)| (*relation, surface));
+        self.run_after(&start(&[drive, part, first]), questions)
+    }
+
+    /// The same without a start-up, from where the tool is.
+    pub(super) fn run_from_there(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+        self.run_after(&MotionCommand::PartSurface(named(&self.part.1)), questions)
+    }
+
+    fn run_after(&self, begin: &MotionCommand, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
         let ahead = Some(Direction::Vector(self.forward));
-        let [part, drive, first, stop] = [&self.part, &self.drive, &self.first, &self.stop]
-            .map(|(relation, surface)| (*relation, surface));
+        let [part, drive, stop] =
+            [&self.part, &self.drive, &self.stop].map(|(relation, surface)| (*relation, surface));
         let commands = [
             MotionCommand::Cutter(self.cutter.to_vec()),
             MotionCommand::InsideTolerance(PerRole::all(self.band[0])),
@@ -38,7 +49,7 @@ impl Found {
             MotionCommand::MaximumStep(10.0),
             MotionCommand::MaximumPoints(1500),
             MotionCommand::From { position: self.from, axis: Some(self.axis), name: String::new() },
-            start(&[drive, part, first]),
+            begin.clone(),
             MotionCommand::DriveSide(self.drive_side),
             MotionCommand::Direction([ahead, None, None]),
             motion(Turn::Forward, drive.1, &[(stop.0, 1, stop.1)]),

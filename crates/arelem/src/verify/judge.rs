@@ -26,6 +26,8 @@ const MODEL_SHARE: f64 = 4e-4;
 const BAND_SHARES: [f64; 3] = [4e-4, 2e-5, 0.0];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
+/// Cosine of the angle between a vector and the path at its end below which that may go on either way.
+const NEARLY_SQUARE: f64 = 0.1;
 /// Sine below which a surface is neither left nor right of the motion (3°).
 const ACROSS: f64 = 0.05;
 /// Sine of the angle that two normals may differ by at an exact tangency.
@@ -402,15 +404,23 @@ impl Judge<'_> {
             if length <= self.guard() {
                 continue;
             }
-            let normal = drive.normal(&from).ok_or(VerifyError::NoDistance { vector })?;
-            // Along the path, from which a long vector may lead away in a curve's chord.
-            let travel = part.and_then(|p| p.normal(&from)).map_or(Vec3::zeros(), |n| n.cross(&normal));
-            let onward = if travel.norm() > PARALLEL {
-                travel * (travel.dot(&motion).signum() / travel.norm())
-            } else {
-                motion / length
+            let lost = VerifyError::NoDistance { vector };
+            let sine_at = |place: &ToolPosition, normal: &Vec3| {
+                // Along the path, from which a long vector may lead away in a curve's chord.
+                let travel = part.and_then(|p| p.normal(place)).map_or(Vec3::zeros(), |n| n.cross(normal));
+                let onward = if travel.norm() > PARALLEL {
+                    travel * (travel.dot(&motion).signum() / travel.norm())
+                } else {
+                    motion / length
+                };
+                wanted * normal.dot(&place.axis.cross(&onward))
             };
-            let sine = wanted * normal.dot(&from.axis.cross(&onward));
+            let normal = drive.normal(&from).ok_or(lost.clone())?;
+            let mut sine = sine_at(&from, &normal);
+            // In a corner the tool goes away from the one wall that is read there, along the other.
+            if sine < -ACROSS && normal.dot(&motion) > 0.0 {
+                sine = sine.max(sine_at(&to, &drive.normal(&to).ok_or(lost)?));
+            }
             if sine < -ACROSS {
                 self.findings.add(Rule::Side, vector, sine, -sine);
             }
@@ -422,6 +432,8 @@ impl Judge<'_> {
     /// Every vector goes forward along the intersection of the offset surfaces.
     fn progress(&mut self, part: Option<&Bound<'_>>, drive: Option<&Bound<'_>>) -> Result<(), VerifyError> {
         let mut heading = self.sequence.forward;
+        // The direction in which the path comes to the vertex, if it runs along an arc over the vector that leads there.
+        let mut arriving = heading;
         let single = self.positions.len() == 2;
         for vector in 0..self.positions.len() - 1 {
             let (from, to) = (self.positions[vector], self.positions[vector + 1]);
@@ -435,19 +447,29 @@ impl Judge<'_> {
             }
             let direction = motion / length;
             let mut sine = if heading.norm() > 0.0 { direction.dot(&heading) } else { 1.0 };
+            let mut begins = direction;
             if let (Some(part), Some(drive)) = (part, drive) {
-                let travel = part.reading(vector)?.normal.cross(&drive.reading(vector)?.normal);
+                let normals = [part.reading(vector)?.normal, drive.reading(vector)?.normal];
+                let travel = normals[0].cross(&normals[1]);
                 if travel.norm() > PARALLEL && heading.norm() > 0.0 {
-                    let along = travel / (travel.norm() * travel.dot(&heading).signum());
+                    let travel = travel / travel.norm();
+                    let turned = travel.dot(&heading);
+                    // A vector to where the path turns by about a right angle does not tell which way it goes on.
+                    let onward = if turned.abs() < NEARLY_SQUARE { travel.dot(&arriving) } else { turned };
+                    let along = travel * onward.signum();
+                    begins = along;
+                    // In a corner the tool goes away from the wall that is read there, along another.
+                    let leaves = normals.iter().any(|normal| normal.dot(&direction) > ACROSS);
                     // The path of a turning tool is no line across both normals: the axis leads it aside.
                     let turns = from.axis != to.axis;
-                    sine = direction.dot(&along).max(if turns { sine } else { f64::NEG_INFINITY });
+                    sine = direction.dot(&along).max(if turns || leaves { sine } else { f64::NEG_INFINITY });
                 }
             }
             if sine <= 0.0 {
                 self.findings.add(Rule::Progress, vector, sine, -sine);
             }
             heading = direction;
+            arriving = direction * (2.0 * direction.dot(&begins)) - begins;
         }
         Ok(())
     }

@@ -27,6 +27,9 @@ const FAR: f64 = 3.0;
 const LEAST_FORWARD: f64 = 0.0349;
 /// A path that has the opposite direction after so many steps has turned back.
 const TURNING_BACK: usize = 4;
+/// Steps after which a path from a corner shows whether it goes in the direction asked for, and cosine below which it was one.
+const FIRST_STEPS: usize = 2;
+const SAME_WAY: f64 = 0.9;
 /// A step is halved this often before the path counts as ended.
 const HALVINGS: u32 = 6;
 
@@ -248,6 +251,13 @@ impl<'a> Reader<'a> {
             // Where two walls close in, the other one leads back from where the tool came.
             if senses.last() != Some(&sense) {
                 senses.push(sense);
+            }
+            // Where the tool begins in a corner, the tangent there is of neither wall.
+            if senses.len() == TURNING_BACK + FIRST_STEPS
+                && sense.dot(&senses[0]) < SAME_WAY
+                && sense.dot(&wanted) <= LEAST_FORWARD
+            {
+                return Found::Ends(length);
             }
             if senses[senses.len() - TURNING_BACK].dot(&sense) < 0.0 {
                 return Found::Ends(length);

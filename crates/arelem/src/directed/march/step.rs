@@ -57,6 +57,8 @@ const KINK_BANDS: f64 = 0.1;
 /// How many times the square of the angle between path and vector at its start that at its end may be on a bend that goes on as it
 /// begins: on one that grows tighter it is twice the angle at most.
 const MOST_TURNED: f64 = 4.0;
+/// Cosine of the angle between a vector and the path at its end below which that may go on either way.
+const NEARLY_SQUARE: f64 = 0.1;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Share of a vector's length by which its end may be expected aside of its tangent.
@@ -485,7 +487,11 @@ impl<'a> Stepper<'a> {
         {
             return None;
         }
-        let vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
+        let mut vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
+        // Where the path turns by about a right angle at the end of a bend the vector does not tell which way it goes on.
+        if vertex.tangent.dot(&chord) < NEARLY_SQUARE * reached {
+            vertex.tangent = tangent(&vertex.part, &vertex.drive, &along_arc(here, &chord));
+        }
         let direction = chord / reached;
         let turn = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&direction) / reached;
         let curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
@@ -520,12 +526,21 @@ impl<'a> Stepper<'a> {
 }
 
 /// The direction in which the path arrives at the end of a vector: its tangent there, which on a bent path is not that of the
-/// vector; but the latter where the tangent is likely to be that of the path beyond a place where it turns.
+/// vector; but that of an arc where the tangent is likely to be that of the path beyond a place where it turns.
 fn arrival(from: &Vertex, to: &Vertex) -> Vec3 {
     let vector = to.tip - from.tip;
     // The square of an angle, but for a half.
     let turned = |tangent: &Vec3| vector.norm() - tangent.dot(&vector);
-    if turned(&to.tangent) <= MOST_TURNED * turned(&from.tangent) { to.tangent } else { vector }
+    if turned(&to.tangent) <= MOST_TURNED * turned(&from.tangent) {
+        to.tangent
+    } else {
+        along_arc(from, &vector)
+    }
+}
+
+/// The direction at the end of a vector of an arc over it that begins along the path.
+fn along_arc(from: &Vertex, vector: &Vec3) -> Vec3 {
+    vector * (2.0 * from.tangent.dot(vector) / vector.norm_squared()) - from.tangent
 }
 
 /// About where the path is at a distance along its tangent, as far as clearances bend as is known. Where that leads far aside

@@ -1,0 +1,279 @@
+//! Motions that begin in a corner, where the tool touches a surface at two places at once, or turn in one by nearly a right angle.
+
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
+
+fn is_delivered(motion: &Found) {
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    assert_eq!(sequences.len(), 1);
+}
+
+/// Two upright walls that cross, in one of the four corners between them: the motion takes the wall that leads more in the direction
+/// asked for and away from the other.
+#[test]
+fn a_motion_out_of_a_corner_goes_along_the_wall_that_leads_in_its_direction() {
+    // The planes x = 0 and y = 0, turned about z.
+    for turn in [0.0_f64, 0.4, 1.1, 2.3] {
+        let (sine, cosine) = turn.sin_cos();
+        let at = |x: f64, y: f64| v(cosine * x - sine * y, sine * x + cosine * y, 0.0);
+        let (a, c) = (-sine * cosine, 0.5 * (cosine * cosine - sine * sine));
+        let walls = quadric([a, -a, 0.0, 0.0, 0.0, 0.0, c, 0.0, 0.0, 0.0]);
+        for (ahead, goal) in [
+            ([1.0, 0.3], [2.0, 0.5]),
+            ([0.3, 1.0], [0.5, 2.0]),
+            ([1.0, -0.4], [2.0, 0.5]),
+            ([-0.4, 1.0], [0.5, 2.0]),
+        ] {
+            let [forward, goal] = [at(ahead[0], ahead[1]), at(goal[0], goal[1])];
+            let from = at(0.5, 0.5);
+            let along = (goal - from).normalize();
+            let check = plane(along.x, along.y, 0.0, along.dot(&goal));
+            let mut program = Program::new();
+            program.cutter(&[1.0]).tolerance(0.001, 0.001).from(from.x, from.y, 0.0);
+            program.run(&MotionCommand::PartSurface(named(&ground())));
+            // Left or right is as the motion goes.
+            let side =
+                if along.cross(&(at(1.0, 1.0) - along)).z > 0.0 { DriveSide::Left } else { DriveSide::Right };
+            program.side(side).indirv(forward.x, forward.y, 0.0);
+            program.drive(Turn::Forward, &walls, Relation::On, &check).verified();
+            program.ends(goal.x, goal.y, 0.0, 0.002);
+            let evidence = crate::verify::verify(program.last(), &|| false).expect("evidence");
+            assert!(evidence.verified, "{turn} {ahead:?}: {evidence:?}");
+        }
+    }
+}
+
+/// It stands in the hollow of its drive surface and touches it with its corner and its top.
+#[test]
+fn a_bull_nose_leaves_a_corner_of_a_hollow_cylinder_along_its_other_side() {
+    let motion = Found {
+        cutter: &[0.7800536784839662, 0.09391975733580687],
+        axis: v(-0.11927238064794078, -0.010606524274105737, 0.9928049158104504),
+        from: v(0.9984818405508801, 1.7884727915159324, -0.8701700145194773),
+        band: [0.0005, 0.0],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.7436386748858599, 0.07524653379220118, -0.6643338621252582),
+        part: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(4.785535299052525, -0.3753247844761387, -2.3258905429239745),
+                axis: v(0.8100623654377005, 0.2947491960317172, 0.5068746152059044),
+                radius: 4.00618397151849,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(1.3639680859392258, 2.1719804504801252, 5.69953225405755),
+                axis: v(-0.16627536942034493, 0.0014326411721152911, -0.9860783179156714),
+                radius: 1.1887764179152944,
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(0.7436386748858598, -0.07524653379220131, 0.6643338621252582),
+                distance: 1.7689389459649008,
+            }),
+        ),
+        stop: (
+            Relation::To,
+            Geometry::GeneralConic(Quadric {
+                coefficients: [
+                    0.0031420533074492172,
+                    0.061649972214367105,
+                    0.0,
+                    -0.07862704944936237,
+                    0.0,
+                    0.0,
+                    -0.013917884145957838,
+                    -0.4999935936826879,
+                    -0.055766153243905985,
+                    0.0,
+                ],
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// Its end touches one side of the cone and its top the other, against which the line of motion along the one would lead it.
+#[test]
+fn a_ball_cutter_leaves_the_bottom_of_a_hollow_cone() {
+    let motion = Found {
+        cutter: &[0.3526659099965966, 0.1763329549982983],
+        axis: v(-0.5660005284799845, 0.42423129179077135, -0.7068742553141342),
+        from: v(-0.1308792229655256, -0.29182038536809857, -0.8675093810335415),
+        band: [0.001, 0.001],
+        thickness: 0.07024320983080139,
+        drive_side: DriveSide::Left,
+        forward: v(0.8334201439517545, 0.47756727006350747, 0.2781013596146659),
+        part: (
+            Relation::To,
+            Geometry::Ellipse(Quadric {
+                coefficients: [
+                    0.13212890154235143,
+                    0.07580273547718222,
+                    0.0,
+                    -0.1167536180731591,
+                    0.0,
+                    0.0,
+                    -0.030518289627333727,
+                    0.3100512366691414,
+                    -0.17507378461585957,
+                    0.0,
+                ],
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-2.1408858010990133, -2.4306513136644137, 1.0037127528053091),
+                axis: v(0.26729563632455194, 0.5655644528047543, -0.7801858064112112),
+                cosine: 0.9113166304215633,
+            }),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(0.8334201439517545, 0.4775672700635075, 0.278101359614666),
+                distance: -2.3372774020631626,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Hyperbola(Quadric {
+                coefficients: [
+                    0.08188476301611969,
+                    -0.43354856113260004,
+                    0.0,
+                    0.5533427614608608,
+                    0.0,
+                    0.0,
+                    -0.07794339342566085,
+                    0.3608409503957899,
+                    -0.2068315698187335,
+                    0.0,
+                ],
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// Both walls that it touches lead away from each other, one of them by 56° from where it is to go.
+#[test]
+fn a_drill_takes_the_wall_that_leads_in_its_direction() {
+    let motion = Found {
+        cutter: &[
+            1.1238105787516637,
+            0.0,
+            0.5619052893758318,
+            0.33762676000922276,
+            31.0,
+            0.0,
+            3.649602713613346,
+        ],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(0.09160541250234411, 1.6420010122954827, 1.8616655915378895),
+        band: [0.001, 0.001],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.791717007063346, 0.5677129366770632, -0.22557970266884053),
+        part: (
+            Relation::To,
+            Geometry::Sphere(Sphere {
+                center: v(-1.0386637495457234, 2.5975250935135312, 8.161096671318722),
+                radius: 6.470463342298668,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    -0.23788586494771152,
+                    0.1820624225382661,
+                    0.047789835449899884,
+                    -1.8421844136597323,
+                    -0.21008422434542573,
+                    -0.21390090179092563,
+                    -0.1589826508183592,
+                    1.1454860622272927,
+                    0.9645554787155997,
+                    0.09265999581955886,
+                ],
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(0.7917170070633459, -0.5677129366770634, 0.22557970266884067),
+                distance: 0.9146997225966481,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Sphere(Sphere {
+                center: v(-5.517031788467824, 4.291853071423976, -1.00282410735033),
+                radius: 5.116851777380605,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
+
+/// By more than that from the vector, and by 85° from the path at the end of it.
+#[test]
+fn a_path_turns_by_nearly_a_right_angle_at_the_end_of_a_long_vector() {
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.211037175266056],
+        axis: v(-0.3252387767942736, 0.3204385048829988, 0.8896847209307986),
+        from: v(-0.682044066297497, -2.084713470718187, 1.9238272798079943),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(-0.3427178739488312, -0.9388922734279345, -0.03202745343167286),
+        part: (
+            Relation::To,
+            Geometry::Sphere(Sphere {
+                center: v(-4.571165826479774, -0.0907727140807757, 8.356851676927405),
+                radius: 7.770951984032344,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Ellipse(Quadric {
+                coefficients: [
+                    0.2209695748822944,
+                    0.11993207903569789,
+                    0.0,
+                    -0.7521471253576547,
+                    0.0,
+                    0.0,
+                    -0.112447810870458,
+                    0.18739052301771342,
+                    -0.17004112681930447,
+                    0.0,
+                ],
+            }),
+        ),
+        first: (
+            Relation::Past,
+            Geometry::Plane(Plane {
+                normal: v(-0.3427178739488312, -0.9388922734279345, -0.03202745343167289),
+                distance: 1.3050680819427884,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Sphere(Sphere {
+                center: v(0.49945732690363354, 0.7590001926363046, 5.165078687765392),
+                radius: 5.049536099640626,
+            }),
+        ),
+    };
+    is_delivered(&motion);
+}
