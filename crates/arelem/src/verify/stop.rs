@@ -68,6 +68,7 @@ pub(super) fn replay(
         Some(first.max(opposite.at(&p.tip, &p.axis)?.value))
     };
     let Walked { state, count, since } = walk(sequence, band, &measure, role.relation)?;
+    let end = measure(sequence.points.last()?)?;
     let before = match role.relation {
         Relation::To => State::Clear,
         Relation::Past => State::Violating,
@@ -76,7 +77,8 @@ pub(super) fn replay(
     // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
     let may_have_changed = match role.relation {
         Relation::To => since[1] > role.outside_tolerance,
-        Relation::Past => since[0] < -role.inside_tolerance,
+        // Or it went in and is out again, if by less than the band.
+        Relation::Past => since[0] < -role.inside_tolerance || since[0] < -guard && end > guard,
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;

@@ -7,6 +7,7 @@ use apt_geometry::{
 
 use super::{
     super::{Evidence, Rule, VerifyError, verify},
+    cylinder,
     paths::{self, BAND, Curved, Path},
 };
 use crate::sequence::CutSequence;
@@ -133,6 +134,23 @@ fn to_and_past_are_told_apart() {
             moved.stop = paths::to_circle(wrong, occurrence).sequence.stop;
             assert!(rules(&moved).contains(&Rule::CheckBand), "{relation:?} {occurrence}");
         }
+    }
+}
+
+/// Where the path goes through a check surface by less than its band and out again, that may be called a PAST position; where it
+/// stops before that, or comes near without going in, it may not.
+#[test]
+fn a_position_past_what_is_only_brushed_is_one() {
+    let (depth, left): (f64, f64) = (0.0004, 0.0003);
+    for (depth, sense, is_past) in [(depth, 1.0, true), (depth, -1.0, false), (-0.0002, 1.0, false)] {
+        let mut brushed = paths::to_circle(Relation::Past, 1).sequence;
+        let stop = &mut brushed.stop.as_mut().unwrap().role;
+        stop.surface.geometry = cylinder([2.0, 1.0 - depth, 0.0], [0.0, 0.0, 1.0], 1.0);
+        stop.side = 1.0;
+        let (near, at_end): (f64, f64) = (1.25 - depth, 1.25 + left);
+        brushed.points[0].tip.x = 2.0 + sense * (at_end * at_end - near * near).sqrt();
+        let wanted: &[Rule] = if is_past { &[] } else { &[Rule::StopEvent] };
+        assert_eq!(rules(&brushed), wanted, "{depth} {sense}");
     }
 }
 
