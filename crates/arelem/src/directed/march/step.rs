@@ -4,6 +4,7 @@
 
 mod corner;
 mod exhaustive;
+mod of_use;
 mod overlong;
 mod trend;
 mod window;
@@ -43,9 +44,8 @@ const SPARED: f64 = 0.25 * GUARD;
 const AIM: f64 = 0.9999;
 /// Greatest growth of the length from one trial to the next.
 const GREATEST_GROWTH: f64 = 4.0;
-/// Share of the length that the next trial has at least, and where the bend changes: there a vector may be too short as well.
+/// Share of the length that the next trial has at least.
 const GREATEST_SHRINKING: f64 = 0.3;
-const SETTLED_SHRINKING: f64 = 0.9;
 /// Cosine between the directions at both ends below which the vector is shortened (60°).
 const LEAST_TURN_COSINE: f64 = 0.5;
 /// Ratio of the shortest vector that is too long to the longest that is proven at which no better one is looked for.
@@ -138,8 +138,6 @@ struct Guess {
     bends: [Bend; 2],
     curvature: [f64; 2],
     length: f64,
-    /// The limits to end at are settled, and vectors shorter than this are of no use.
-    settled: Option<f64>,
 }
 
 impl<'a> Stepper<'a> {
@@ -240,8 +238,10 @@ impl<'a> Stepper<'a> {
             None => self.probe(here)?,
         };
         let bends = self.bends(&curvature);
-        let length = self.predict(here, &curvature, &bends);
-        let mut best = self.longest(here, cap, places, &Guess { bends, curvature, length, settled: None })?;
+        let foretold = self.predict(here, &curvature, &bends);
+        let length = foretold * self.trend.ratio();
+        let mut best = self.longest(here, cap, places, &Guess { bends, curvature, length })?;
+        self.trend.compare(foretold, best.length * best.growth * AIM);
         if places == Places::Limits
             && let Some(other) = self.at_the_other_limit(here, cap, &best)?
         {
@@ -276,7 +276,7 @@ impl<'a> Stepper<'a> {
         let mut culprit = (self.prepared.part.name, 0.0);
         let mut last_bad: Option<Overlong> = None;
         let least = match places {
-            Places::Limits => guess.settled.unwrap_or(0.0).max(LEAST_VECTOR * self.prepared.size),
+            Places::Limits => LEAST_VECTOR * self.prepared.size,
             Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
         };
         for _ in 0..MAX_TRIALS {
@@ -314,28 +314,24 @@ impl<'a> Stepper<'a> {
             } else {
                 shortest_bad = shortest_bad.min(length);
                 culprit = (self.roles()[trial.culprit].name, trial.worst);
+                let bad = self.overlong(length, &trial);
+                let line = last_bad.and_then(|last| bad.meets_band(&last));
+                last_bad = Some(bad);
                 if let Some((_, known)) = &best {
                     // Where the bend changes the sag says little about the length.
                     if shortest_bad <= known * NEARLY || lengthenings >= LENGTHENINGS {
                         break;
                     }
                     lengthenings += 1;
-                    length = 0.5 * (known + shortest_bad);
+                    length = overlong::between(*known, shortest_bad, line.map(|share| share * length));
                     continue;
                 }
-                if guess.settled.is_none() {
-                    bends = self.bends(&trial.curvature);
-                }
+                bends = self.bends(&trial.curvature);
                 // Where the sag is not quadratic (contact jumps) the prediction is not trusted for long.
-                failures += 1;
-                let (least, most) = match guess.settled {
-                    Some(_) => (SETTLED_SHRINKING, 1.0),
-                    None => (GREATEST_SHRINKING, 1.0 - 1e-3 * f64::from(1u32 << failures.min(9))),
-                };
-                let bad = Overlong { culprit: trial.culprit, length, beyond: self.beyond(&trial) };
-                let line = last_bad.and_then(|last| bad.meets_band(&last)).unwrap_or(1.0);
-                last_bad = Some(bad);
-                length *= (trial.growth.min(line) * AIM).clamp(least, most);
+                failures += u32::from(failures > 0 || trial.growth >= 1.0);
+                let most = 1.0 - 1e-3 * f64::from((1u32 << failures.min(9)) - 1);
+                failures = failures.max(1);
+                length *= (trial.growth.min(line.unwrap_or(1.0)) * AIM).clamp(GREATEST_SHRINKING, most);
             }
         }
         best.map(|(trial, _)| trial).ok_or(if shortest_bad.is_finite() && culprit.1 != 0.0 {
@@ -349,10 +345,11 @@ impl<'a> Stepper<'a> {
         })
     }
 
-    /// How far the clearance that a trial was refused for is out of its band.
-    fn beyond(&self, trial: &Trial) -> f64 {
+    /// A trial that was refused, and how far the clearance for which that is was out of its band.
+    fn overlong(&self, length: f64, trial: &Trial) -> Overlong {
         let role = self.roles()[trial.culprit];
-        (-role.inside - trial.worst).max(trial.worst - role.outside)
+        let (deep, high) = (-role.inside - trial.worst, trial.worst - role.outside);
+        Overlong { culprit: trial.culprit, is_deep: deep > high, length, beyond: deep.max(high) }
     }
 
     /// True if the straight move between two positions keeps both bands.

@@ -3,7 +3,7 @@
 //! vector that leads to them, the window. So both limits are tried for the end of a vector along which the bend changes,
 //! and its beginning may move back on the vector before.
 
-use super::{Guess, Places, Stepper, Trial};
+use super::{Guess, Stepper, Trial};
 use crate::{
     bound,
     clearance::{Contact, Shape},
@@ -26,6 +26,10 @@ const MISPLACED: f64 = 0.5;
 const SHARES: [f64; 6] = [0.035, 0.08, 0.15, 0.25, 0.4, 0.6];
 /// What it moves more or less at the end, as shares of the best of these.
 const FINER: [f64; 2] = [0.75, 1.3];
+/// Share by which a vector that begins elsewhere is to reach farther at least to be tried.
+const WORTH_TRYING: f64 = 0.25 * LEAST_GAIN;
+/// Share of a vector that another one is to reach to at least which spares the vertex before it.
+const WORTH_SPARING: f64 = 0.5;
 /// Share of the length wanted below which it is all the same how long a vector is.
 const WORTH_KNOWING: f64 = 0.7;
 
@@ -86,9 +90,8 @@ impl Stepper<'_> {
             return Ok(None);
         }
         let (curvature, length) = (best.next_curvature, BEYOND * best.length);
-        let guess = Guess { bends, curvature, length, settled: Some(best.length) };
-        let other = tried(self.longest(here, cap, Places::Limits, &guess))?;
-        Ok(other.filter(|other| other.length > best.length * (1.0 + LEAST_GAIN)))
+        let least = best.length * (1.0 + LEAST_GAIN);
+        self.longest_of_use(here, cap, &Guess { bends, curvature, length }, least)
     }
 
     /// The start of a vector moved back along the vector before it, and where the vector then leads, if that is farther.
@@ -115,7 +118,7 @@ impl Stepper<'_> {
         for bends in limits {
             let mut last = if bends == latest.bends { latest.length } else { 0.0 };
             for share in SHARES {
-                let Some(reached) = search.attempt(self, share, bends)? else { break };
+                let Some(reached) = search.attempt(self, (share, last), bends)? else { break };
                 if reached <= last {
                     break;
                 }
@@ -124,7 +127,8 @@ impl Stepper<'_> {
         }
         if let Some((share, bends)) = search.best {
             for finer in FINER {
-                search.attempt(self, share * finer, bends)?;
+                let beaten = search.reach;
+                search.attempt(self, (share * finer, beaten), bends)?;
             }
         }
         if search.reach < latest.length * (1.0 + LEAST_GAIN) {
@@ -157,14 +161,13 @@ impl Stepper<'_> {
         cap: f64,
         latest: &Trial,
     ) -> Result<Option<Trial>, MotionFailure> {
-        let least = (here.tip - before.tip).norm() * (1.0 + LEAST_GAIN);
+        let least = (here.tip + (latest.vertex.tip - here.tip) * WORTH_SPARING - before.tip).norm();
         let length = (latest.vertex.tip - before.tip).norm();
         for bends in [Some(latest.bends), self.other_limits(latest)].into_iter().flatten() {
-            let guess = Guess { bends, curvature: latest.curvature, length, settled: Some(least) };
-            if let Some(trial) = tried(self.longest(before, cap, Places::Limits, &guess))?
-                && trial.length > least
-            {
-                return Ok(Some(trial));
+            let guess = Guess { bends, curvature: latest.curvature, length };
+            let found = self.longest_of_use(before, cap, &guess, least)?;
+            if found.is_some() {
+                return Ok(found);
             }
         }
         Ok(None)
@@ -215,20 +218,22 @@ impl<'a> Search<'a> {
         Self { latest, back, here, cap, reach: latest.length, best: None, found: None }
     }
 
-    /// How far the longest vector leads that begins at a share of the way back.
+    /// How far the longest vector leads that begins at a share of the way back, if that is farther than one that is beaten.
     fn attempt(
         &mut self,
         stepper: &Stepper<'_>,
-        share: f64,
+        (share, beaten): (f64, f64),
         bends: [Bend; 2],
     ) -> Result<Option<f64>, MotionFailure> {
         let Self { latest, here, .. } = *self;
         let from = Vertex::at(stepper.prepared, here.tip + self.back * share, &-self.back)?;
         let onward = latest.vertex.tip - here.tip;
-        let length = (latest.vertex.tip - from.tip).norm() + self.reach - latest.length;
-        let guess =
-            Guess { bends, curvature: latest.curvature, length, settled: Some(WORTH_KNOWING * length) };
-        let Some(trial) = tried(stepper.longest(&from, self.cap, Places::Limits, &guess))? else {
+        let way = (latest.vertex.tip - from.tip).norm();
+        let gained = |reach: f64| way + reach + WORTH_TRYING * latest.length - latest.length;
+        let length = gained(self.reach);
+        let least = gained(beaten).max(WORTH_KNOWING * length);
+        let guess = Guess { bends, curvature: latest.curvature, length };
+        let Some(trial) = stepper.longest_of_use(&from, self.cap, &guess, least)? else {
             return Ok(None);
         };
         let reached = (trial.vertex.tip - here.tip).dot(&onward) / latest.length;
@@ -238,15 +243,6 @@ impl<'a> Search<'a> {
             self.found = Some((from, trial));
         }
         Ok(Some(reached))
-    }
-}
-
-/// A vector that was looked for in vain is none; a motion that is given up ends.
-fn tried(found: Result<Trial, MotionFailure>) -> Result<Option<Trial>, MotionFailure> {
-    match found {
-        Ok(trial) => Ok(Some(trial)),
-        Err(MotionFailure::Cancelled) => Err(MotionFailure::Cancelled),
-        Err(_) => Ok(None),
     }
 }
 
