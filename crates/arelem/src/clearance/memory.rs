@@ -53,6 +53,18 @@ struct Known {
     proof: Option<Proof>,
 }
 
+/// Positions of which it is remembered what was shown there: the ends of a vector and of some that are tried, and places between.
+const MOST_SHOWN: usize = 8;
+
+/// A level that no part of the tool is below in a position.
+#[derive(Debug, Clone, Copy)]
+struct Shown {
+    tip: Vec3,
+    axis: Vec3,
+    side: f64,
+    level: f64,
+}
+
 /// Remembers the contact of one tool with one surface. It changes what a search costs, never what it finds.
 #[derive(Debug, Default, Clone)]
 pub struct Memory {
@@ -63,6 +75,8 @@ pub struct Memory {
     crease: Cell<Option<(f64, Spot)>>,
     /// Whether parts of the surface showed the last contact where patches of the tool did not.
     by_parts: Cell<bool>,
+    /// What was shown last, in turn.
+    shown: RefCell<(usize, [Option<Shown>; MOST_SHOWN])>,
 }
 
 /// Memories do not tell gauges apart.
@@ -85,6 +99,20 @@ impl Memory {
         let known = known.as_ref().filter(|k| k.axis == tool.axis && k.side == side)?;
         let (place, at) = known.other?;
         ((tip - at).norm() <= BACK * tool.radius()).then_some(place)
+    }
+
+    /// Keeps what a contact was shown to be in a position.
+    pub(super) fn remember_level(&self, axis: &Vec3, side: f64, tip: &Vec3, level: f64) {
+        let Ok(mut shown) = self.shown.try_borrow_mut() else { return };
+        let (next, places) = &mut *shown;
+        places[*next] = Some(Shown { tip: *tip, axis: *axis, side, level });
+        *next = (*next + 1) % MOST_SHOWN;
+    }
+
+    /// Whether a contact in exactly this position was shown to be at least a level.
+    pub(super) fn has_shown(&self, axis: &Vec3, side: f64, tip: &Vec3, level: f64) -> bool {
+        let is_there = |s: &Shown| s.tip == *tip && s.axis == *axis && s.side == side && s.level >= level;
+        self.shown.try_borrow().is_ok_and(|shown| shown.1.iter().flatten().any(is_there))
     }
 
     /// What is proven of the tool about there; the proof is taken out.

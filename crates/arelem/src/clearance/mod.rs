@@ -131,6 +131,9 @@ impl Gauge {
         let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
         let (mut contact, missed) = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
+        if missed.is_finite() {
+            memory.remember_level(&tool.axis, *side, &tip, contact.clearance - missed);
+        }
         contact.clearance -= thickness;
         (contact, missed)
     }
@@ -140,6 +143,9 @@ impl Gauge {
         let (tool, tip) = &self.body(tool, tip);
         let surface = self.met(tool);
         let (face, level) = (Face { surface, side: self.side }, level + self.thickness);
+        if self.memory.has_shown(&tool.axis, self.side, tip, level) {
+            return Certificate::Holds;
+        }
         if let Some(posed) = quadric::Posed::new(tool, surface, self.side, tip) {
             let contact = offset_contact(tool, surface, self.side, tip, Some(&self.memory)).0;
             if contact.clearance >= level && posed.clears(level, &contact) {
@@ -246,6 +252,16 @@ impl Gauge {
             Bend::AtMost(bend) => Some(bend),
             Bend::Unbounded => None,
         }
+    }
+
+    /// The same for the tool's point at a contact on a surface with charts, by how the surface bends along the way; the tool end is there.
+    pub(crate) fn bend_along(&self, tool: &Tool, tip: &Vec3, contact: &Contact, way: &Vec3) -> Option<f64> {
+        if self.on || !self.surface.has_charts() {
+            return None;
+        }
+        let (tool, tip) = &self.body(tool, tip);
+        let contact = Contact { clearance: contact.clearance + self.thickness, ..*contact };
+        Around::new(self, tool, tip, 0.0).bend_along(&contact, way)
     }
 
     /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.

@@ -43,6 +43,9 @@ const TO_POLE: f64 = 0.9;
 const GAP: f64 = 1e-13;
 /// Depth of a cut, as a share of the radii of tool and solid, up to which it has one way out.
 const SLIGHT: f64 = 0.05;
+/// Shares of the size of the tool by which another point of it may be nearer: what rounding leaves, which is less than the depth of a
+/// place beside a limit of the band must be known to, and what a search leaves.
+const SLACKS: [f64; 2] = [1e-12, MISSED];
 /// Bound of the parts of the corner's arc that are looked at.
 const MAX_ARCS: u32 = 60;
 /// Bound of the parts into which a flank of the tool is cut.
@@ -255,8 +258,9 @@ impl<'a> Scene<'a> {
             Means::Round(_) => return None,
             Means::Convex(_) if !is_entered(tool, self.surface, side, [tip, tip]) => return None,
             Means::Convex(posed) | Means::General(posed) => {
-                let slack = MISSED * (tool.radius() + tool.profile.top.height);
-                posed.clears(contact.clearance - slack, &contact).then_some(slack)?
+                let size = tool.radius() + tool.profile.top.height;
+                let keeps = |slack: &f64| posed.clears(contact.clearance - slack, &contact);
+                SLACKS.map(|share| share * size).into_iter().find(keeps)?
             }
         };
         if let Some(memory) = memory {

@@ -61,6 +61,11 @@ impl Form {
         most + other.error
     }
 
+    /// How much the surface bends away from the side at most along a unit vector, at all these places.
+    pub fn bend_away(&self, along: &Vec3) -> f64 {
+        self.error - along.dot(&(self.middle * along))
+    }
+
     /// Which curvature a cylinder along a unit direction needs at least to bend at all these places towards the side as much as
     /// the surface in each direction, and more by a margin; `None` if the surface may bend to that side along the direction itself.
     ///

@@ -137,6 +137,34 @@ impl<'a> Around<'a> {
             && (flank && way.into_iter().all(by_ball) || (flank || held.is_some()) && by_cylinder())
     }
 
+    /// A bound of the second derivative, by the length of the way, of the distance of a point in contact that goes a straight way in the
+    /// steady ball: of how much the surface bends along the way where feet of the point are.
+    ///
+    /// At a distance d from a surface with the form S it is that of `−S (1 − d S)⁻¹`: beyond the surface that is more than `−S` by
+    /// `|d| S²` where S bends towards the point, and as much by the greater bend of the parallel surface there where it bends away.
+    pub(in crate::clearance) fn bend_along(&self, contact: &Contact, way: &Vec3) -> Option<f64> {
+        let Known { zone, .. } = self.known.as_ref()?;
+        let Contact { clearance, tool: point, gradient, surface } = contact;
+        let (length, stock) = (way.norm(), self.pose.surface.stock(self.pose.side));
+        let along = way.try_normalize(0.0)?;
+        let is_in = |p: &Vec3| (p - zone.center).norm() <= zone.radius;
+        let farthest = clearance + length;
+        if !(is_in(point) && is_in(&(point + way)) && is_in(surface)) || farthest > zone.depth {
+            return None;
+        }
+        let hollow = zone.steady.bend(farthest);
+        let nearest = clearance + gradient.dot(way).min(0.0) - 0.5 * hollow * length * length;
+        let round = zone.steady.upward_bend(nearest)?;
+        let behind = (-(nearest + stock)).max(0.0);
+        let ahead = (farthest + stock).max(0.0);
+        let reach = length * (1.0 + ahead * hollow).max(1.0 + behind * round);
+        let center = surface - gradient * stock;
+        let forms = self.pose.surface.forms(self.pose.side, &center, reach)?;
+        let away = forms.iter().map(|form| form.bend_away(&along)).fold(0.0, f64::max);
+        let bend = away + behind * hollow.max(round).powi(2);
+        bend.is_finite().then_some(bend)
+    }
+
     /// Heights between which all of the tool is that is not known to be farther from the surface than a level; beside a contact on the
     /// flank they are looked for.
     pub(in crate::clearance) fn within(&self, level: f64) -> [f64; 2] {

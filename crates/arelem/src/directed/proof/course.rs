@@ -313,8 +313,22 @@ impl Course<'_, '_> {
         let (from, to) = (at(a.x), at(b.x));
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
         role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
+            || self.is_held_by_witness(a, b)
             || by_contacts
                 && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
+    }
+
+    /// Whether the point of the tool that goes from one contact to the other along with the vector is nowhere above the band. It is one of
+    /// the tool, which is convex; where contact moves little on the surface, as while the tool moves along a straight piece of it, so
+    /// does that point.
+    fn is_held_by_witness(&self, a: &Sample, b: &Sample) -> bool {
+        let Line { sweep, role, .. } = self.line;
+        let (length, way) = (b.x - a.x, b.contact.tool - a.contact.tool);
+        let [first, last] =
+            [a, b].map(|end| Sample { slope: end.contact.gradient.dot(&way) / length, ..*end });
+        let held = |bend: f64| self.line.allows(highest(&first, &last, bend * (way.norm() / length).powi(2)));
+        let (from, tool) = sweep.at(a.x);
+        held(0.0) && role.gauge.bend_along(&tool, &from, &a.contact, &way).is_some_and(held)
     }
 
     /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the
