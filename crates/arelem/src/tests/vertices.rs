@@ -2,11 +2,12 @@
 
 use apt_geometry::cutter::Cutter;
 
-use super::{
-    refused::{AMPLE, Found},
-    *,
-};
+use super::{refused::Found, *};
 use crate::{sequence::ToolPosition, verify::verify};
+
+/// Questions whether to give up that are far more than such a motion takes, where the path turns from one half to the other in very
+/// short vectors.
+const AMPLE: u32 = 100_000;
 
 fn is_delivered(motion: &Found) {
     let sequences = motion.run(AMPLE).expect("a path");
