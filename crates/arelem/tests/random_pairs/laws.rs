@@ -4,7 +4,7 @@
 use apt_geometry::{
     Vec3,
     canonical::{Matrix, Plane},
-    motion::Relation,
+    motion::{MotionCommand, Relation, Turn},
 };
 use arelem::{MotionFailure, sequence::CutSequence};
 use nalgebra::{Rotation3, Unit};
@@ -24,6 +24,9 @@ const MIDDLE: f64 = 0.5;
 const VECTORS_IN: usize = 10;
 /// Cosine of the greatest angle between path and wall at which the end of the path counts as fixed by the wall.
 const SQUARE: f64 = 0.5;
+
+/// Cosine between a path and the tool axis above which a tool goes back by GOUP or GODOWN (8°): directions count across the axis.
+const ALONG_AXIS: f64 = 0.99;
 
 /// What is found of a motion.
 pub(crate) enum Laws {
@@ -154,6 +157,14 @@ fn wall(at: &Vec3, normal: &Vec3) -> Placed {
     Placed { geometry, relation: Relation::On, side: 1.0, occurrence: 1, thickness: 0.0 }
 }
 
+/// The command with another motion word.
+fn turned_to(command: MotionCommand, turn: Turn) -> MotionCommand {
+    match command {
+        MotionCommand::Drive { drive, checks, .. } => MotionCommand::Drive { turn, drive, checks },
+        other => other,
+    }
+}
+
 /// Back from the end to the plane of the start.
 fn reversed(case: &Case, path: &CutSequence) -> Result<(), Broken> {
     let count = path.points.len();
@@ -168,7 +179,12 @@ fn reversed(case: &Case, path: &CutSequence) -> Result<(), Broken> {
     let turned = Case { drive_side: other(case.drive_side), ..case.clone() };
     let mut runner = Runner::new(case);
     runner.run(&case.commands())?;
-    let onward = turned.onward(&back, &wall(&start, &path.forward));
+    let mut onward = turned.onward(&back, &wall(&start, &path.forward));
+    let along = back.dot(&case.axis);
+    if along.abs() > ALONG_AXIS {
+        let turn = if along > 0.0 { Turn::Up } else { Turn::Down };
+        onward = onward.into_iter().map(|command| turned_to(command, turn)).collect();
+    }
     runner.run(&onward)?;
     let found = runner.sequences.last().ok_or_else(|| "no motion".to_owned())?;
     proven(&runner, std::slice::from_ref(found))?;
