@@ -131,7 +131,8 @@ impl Gauge {
         let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
         let (mut contact, missed) = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
-        if missed.is_finite() {
+        // Without anything missed it is known otherwise, or the nearest of a family only.
+        if missed > 0.0 && missed.is_finite() {
             memory.remember_level(&tool.axis, *side, &tip, contact.clearance - missed);
         }
         contact.clearance -= thickness;

@@ -23,6 +23,8 @@ use super::{
 const PARTS: usize = 6_000;
 /// Product of size and curvature above which a part is halved.
 const BENT: f64 = 0.25;
+/// The same of a part that is nearly plane: it is bent little across its length, by which its size is measured.
+const PLAINLY_BENT: f64 = 1.0;
 /// How far the control points of a part may be from those of a parallelogram, relative to its shorter side, for its parameters to
 /// spread evenly.
 const PLAIN: f64 = 0.05;
@@ -454,7 +456,7 @@ impl Part {
             (0..4).flat_map(|j| (0..4).map(move |i| off(j, i).norm_squared())).fold(0.0, f64::max).sqrt();
         // The control points of a bend stand out by a ninth of its curvature times the square of its length.
         let (room, bend) = (PLAIN * shortest, 9.0 * most / (shortest * shortest));
-        most <= room && twist.norm() <= room && bend * self.radius <= BENT
+        most <= room && twist.norm() <= room && bend * self.radius <= PLAINLY_BENT
     }
 
     /// Its halves, and which of its parameters they share out.

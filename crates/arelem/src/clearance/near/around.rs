@@ -152,7 +152,7 @@ impl<'a> Around<'a> {
         if !(is_in(point) && is_in(&(point + way)) && is_in(surface)) || farthest > zone.depth {
             return None;
         }
-        let hollow = zone.steady.bend(farthest);
+        let hollow = zone.steady.bend(farthest.max(-stock));
         let nearest = clearance + gradient.dot(way).min(0.0) - 0.5 * hollow * length * length;
         let round = zone.steady.upward_bend(nearest)?;
         let behind = (-(nearest + stock)).max(0.0);
