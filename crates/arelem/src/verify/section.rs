@@ -267,8 +267,8 @@ impl Section {
 
     /// Whether it stands upright over its chord at the end with a share, or nearly so.
     pub(super) fn is_upright(&self, end: f64) -> bool {
-        let found = self.crossing(end).map_or(f64::INFINITY, |found| found.slope.abs());
-        !(found <= STEEP * self.chord.norm())
+        self.crossing(end)
+            .is_none_or(|found| found.slope.is_nan() || found.slope.abs() > STEEP * self.chord.norm())
     }
 
     /// The place at a share of the chord.
