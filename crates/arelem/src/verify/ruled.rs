@@ -1,13 +1,10 @@
 //! Ruled surfaces as patches: straight rulings between points at equal shares of two chords (language reference 4.16).
 //!
-//! Between the ends of the chords the parameter is the share, and an angle towards an end where a section stands upright over
-//! its chord, like a half circle: so that is smooth in it. Where none does an angle would not spread. Cubics through four places of each piece replace the curves; how far they are off
+//! Between the ends of the chords the parameter is the angle of an arc that is as steep over the chord there as the sections: so one
+//! that starts upright, like a half circle, is smooth in it, and it spreads evenly up to the ends of others. Cubics through four places of each piece replace the curves; how far they are off
 //! is measured between those places and counted as an error of every distance.
 
-use std::{
-    f64::consts::{FRAC_PI_2, PI},
-    sync::Arc,
-};
+use std::sync::Arc;
 
 use apt_geometry::{
     Vec3,
@@ -25,6 +22,8 @@ use super::{
     survey::Sheet,
 };
 
+/// Angle, radians, below which an arc is as good as its chord.
+const LEAST_ANGLE: f64 = 1e-3;
 /// How far a cubic may be off, relative to the size of the surface, if that must be little and if nothing is asked.
 const FINEST: f64 = 1e-10;
 const COARSEST: f64 = 1e-7;
@@ -41,31 +40,30 @@ const EDGE: f64 = 1e-5;
 /// What the second derivative of a cubic's error is at most, times that error, where it is the error of a cubic through
 /// four places of a curve whose fourth derivative is steady.
 pub(super) const ERROR_BEND: f64 = 200.0;
+/// What its first derivative at an end is at most, times that error.
+const ERROR_SLOPE: f64 = 10.0;
 
-/// The parameter between the ends of the chords: at which of them it is an angle.
+/// The parameter between the ends of the chords: an angle from the one of these, below the middle of an arc, to the other above it.
 #[derive(Debug, Clone, Copy)]
-struct Angular([bool; 2]);
+struct Angular([f64; 2]);
 
 impl Angular {
+    /// The angles of an arc over the chord that has the slopes, in chords, at its ends.
+    fn of(slopes: [f64; 2]) -> Self {
+        Self(slopes.map(|slope| slope.atan().max(LEAST_ANGLE)))
+    }
+
     /// The share of the chord at a parameter from 0 to 1.
     fn share(self, w: f64) -> f64 {
-        match self.0 {
-            [false, false] => w,
-            [true, false] => 1.0 - (FRAC_PI_2 * w).cos(),
-            [false, true] => (FRAC_PI_2 * w).sin(),
-            [true, true] => 0.5 * (1.0 - (PI * w).cos()),
-        }
+        let [before, after] = self.0;
+        ((w * (before + after) - before).sin() + before.sin()) / (before.sin() + after.sin())
     }
 
     /// The parameter at a share.
     fn parameter(self, share: f64) -> f64 {
-        let share = share.clamp(0.0, 1.0);
-        match self.0 {
-            [false, false] => share,
-            [true, false] => (1.0 - share).acos() / FRAC_PI_2,
-            [false, true] => share.asin() / FRAC_PI_2,
-            [true, true] => (1.0 - 2.0 * share).acos() / PI,
-        }
+        let [before, after] = self.0;
+        let sine = share.clamp(0.0, 1.0) * (before.sin() + after.sin()) - before.sin();
+        (sine.clamp(-1.0, 1.0).asin() + before) / (before + after)
     }
 }
 
@@ -114,11 +112,11 @@ impl Edge {
         Section::of(curve).map(|s| Self::Curve(Box::new(s)))
     }
 
-    /// Whether it stands upright over its chord at the end with a share.
-    fn is_upright(&self, end: f64) -> bool {
+    /// How steep it is over its chord at the end with a share, in chords.
+    fn steepness(&self, end: f64) -> f64 {
         match self {
-            Self::Curve(section) => section.is_upright(end),
-            Self::Apex(_) => false,
+            Self::Curve(section) => section.steepness(end),
+            Self::Apex(_) => 0.0,
         }
     }
 
@@ -167,6 +165,7 @@ impl Model {
         let mut size: f64 = 0.0;
         let error = pieces.iter().map(|piece| piece.error).fold(0.0, f64::max);
         let mut patches = Vec::with_capacity(pieces.len());
+        let mut off = Vec::with_capacity(pieces.len());
         for piece in &pieces {
             let [e, f] = &piece.curves;
             let edge = |v: f64| -> Cubic { std::array::from_fn(|i| lerp(&e[i], &f[i], v)) };
@@ -175,6 +174,8 @@ impl Model {
             patch.slack = ERROR_BEND * piece.error / (along * along);
             // Beyond the curves the rulings carry the error along.
             patch.shares = [low, high];
+            // As far as errors are stretched; how rough this piece is among all counts from here on.
+            off.push(ERROR_SLOPE * piece.error * patch.stretch([0.0, 1.0]));
             patch.roughness = if error > 0.0 { piece.error / error } else { 0.0 };
             patches.push(patch);
             if piece.inner {
@@ -182,7 +183,7 @@ impl Model {
             }
         }
         let stretch = patches.iter().map(|patch: &Patch| patch.stretch([0.0, 1.0])).fold(0.0, f64::max);
-        mark_edges(&mut patches);
+        mark_edges(&mut patches, &off);
         let whole = error.is_finite() && size.is_finite() && !patches.is_empty();
         whole.then(|| Self { patches: patches.into(), size, error, greatest_error: stretch * error })
     }
@@ -219,21 +220,24 @@ impl RuledStrips {
     }
 }
 
-/// Marks the patches at edges of the surface, and those at its ends.
-fn mark_edges(patches: &mut [Patch]) {
-    let is_edge = |pair: &[Patch]| {
+/// Marks the patches at edges of the surface, and those at its ends; by how much their derivatives at joints may be off is given.
+fn mark_edges(patches: &mut [Patch], off: &[f64]) {
+    let is_edge = |joint: usize| {
         [0.0, 0.5, 1.0].into_iter().any(|across| {
-            let normal = |patch: &Patch, along: f64| {
-                let [_, run, rise] = jet(&patch.net, [along, across]);
-                run.cross(&rise).try_normalize(0.0)
+            // The normal, and by how much of a turn it may be off.
+            let normal = |k: usize, along: f64| {
+                let [_, run, rise] = jet(&patches[k].net, [along, across]);
+                Some((run.cross(&rise).try_normalize(0.0)?, off[k] / run.norm()))
             };
-            match (normal(&pair[0], 1.0), normal(&pair[1], 0.0)) {
-                (Some(a), Some(b)) => a.cross(&b).norm() > EDGE || a.dot(&b) < 0.0,
+            match (normal(joint - 1, 1.0), normal(joint, 0.0)) {
+                (Some((a, one)), Some((b, other))) => {
+                    a.cross(&b).norm() > EDGE + one + other || a.dot(&b) < 0.0
+                }
                 _ => false,
             }
         })
     };
-    let edges: Vec<usize> = (1..patches.len()).filter(|k| is_edge(&patches[k - 1..=*k])).collect();
+    let edges: Vec<usize> = (1..patches.len()).filter(|k| is_edge(*k)).collect();
     let last = patches.len().saturating_sub(1);
     for (k, patch) in patches.iter_mut().enumerate() {
         patch.edges.sides[0] = k == 0 || edges.contains(&k);
@@ -243,8 +247,8 @@ fn mark_edges(patches: &mut [Patch]) {
 
 /// Both curves in pieces, from one end of the extensions to the other.
 fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
-    let is_upright = |end: f64| edges.iter().any(|edge| edge.is_upright(end));
-    let angular = Angular([is_upright(0.0), is_upright(1.0)]);
+    let steepest = |end: f64| edges.iter().map(|edge| edge.steepness(end)).fold(0.0, f64::max);
+    let angular = Angular::of([steepest(0.0), steepest(1.0)]);
     let mut cuts = vec![-RULED_BEYOND, 0.0, 1.0, 1.0 + RULED_BEYOND];
     for edge in edges {
         if let Edge::Curve(section) = edge {

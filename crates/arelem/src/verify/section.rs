@@ -27,9 +27,9 @@ const STEPS: u32 = 32;
 /// Share of the chord over which the slope at an upright end is measured, and by which slopes are taken inside.
 const SLOPE_STEP: f64 = 1e-6;
 const INSIDE: f64 = 1e-12;
-/// Slope, in chords, above which an end is upright, and above which shares tell little about where on the section one is.
+/// Slope, in chords, above which an end is upright.
 const UPRIGHT: f64 = 100.0;
-const STEEP: f64 = 10.0;
+
 /// Heights noted over the chord to tell the branches of a tabulated cylinder apart.
 const NOTES: usize = 64;
 
@@ -265,10 +265,10 @@ impl Section {
         Some((self.height(share + step)? - self.height(share)?) / step)
     }
 
-    /// Whether it stands upright over its chord at the end with a share, or nearly so.
-    pub(super) fn is_upright(&self, end: f64) -> bool {
-        self.crossing(end)
-            .is_none_or(|found| found.slope.is_nan() || found.slope.abs() > STEEP * self.chord.norm())
+    /// How steep it is at a share, in chords; without bound where it stands upright over its chord.
+    pub(super) fn steepness(&self, share: f64) -> f64 {
+        let slope = self.crossing(share).map_or(f64::INFINITY, |found| found.slope.abs());
+        if slope.is_nan() { f64::INFINITY } else { slope / self.chord.norm() }
     }
 
     /// The place at a share of the chord.

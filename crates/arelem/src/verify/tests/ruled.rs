@@ -11,11 +11,12 @@ use super::{
     super::{
         Rule, VerifyError,
         clearance::Surface,
+        ruled::RuledStrips,
         tool::{Profile, Tool},
         verify,
     },
     clearances::{clearance, direction, samples, tools},
-    cone, cutter, cylinder,
+    cone, cutter, cylinder, lofts,
     paths::{self, BAND},
     plane, quadric, role, ruled, section, sphere, tabulated,
 };
@@ -339,5 +340,19 @@ fn contacts_beside_the_end_of_a_curve_are_followed() {
             let found = ruled.followed(1.0, &tip, &tool).expect("it is followed");
             assert!(found.value < 0.01 + 1e-6 && found.error < 1e-6, "{x}: {found:?}");
         }
+    }
+}
+
+/// However rough the model is: that its patches are off the surface by a little makes no edges between the ends of the curves.
+#[test]
+fn a_surface_that_is_smooth_between_the_ends_of_its_curves_has_no_edges_there() {
+    let Geometry::RuledSurface(surface) = &lofts::roof() else { panic!("a ruled surface") };
+    for accuracy in [0.0, 1e-9, 1e-6, 1e-3] {
+        let strips = RuledStrips::of(surface, accuracy).expect("patches");
+        // Its chords go from x = −2 to x = 2.
+        let inside = |place: &Vec3| place.x.abs() < 2.0 + 1e-9;
+        let joints = strips.sheet.patches.iter().filter(|patch| inside(&patch.net[0][0]));
+        let edges: Vec<bool> = joints.map(|patch| patch.edges.sides[0]).collect();
+        assert!(edges.len() >= 4 && edges.iter().all(|is_edge| !is_edge), "{accuracy}: {edges:?}");
     }
 }
