@@ -30,21 +30,7 @@ fn outside(geometry: &Geometry, cutter: Cutter, place: ToolPosition) -> [f64; 2]
         disk: None,
     };
     let engine = gauge(&role).contact(&Tool::new(cutter, place.axis), &place.tip).clearance;
-    let sequence = CutSequence {
-        start: place,
-        points: vec![place],
-        cutter,
-        part: Some(role),
-        drive: None,
-        stop: None,
-        drive_side: DriveSide::On,
-        start_up: true,
-        forward: Vec3::zeros(),
-        maximum_step: 1.0,
-        minimum: None,
-    };
-    let verifier = verify(&sequence, &|| false).expect("evidence").part.expect("an extent").min;
-    [engine, verifier]
+    [engine, read_by_verifier(&role, cutter, place)]
 }
 
 proptest! {

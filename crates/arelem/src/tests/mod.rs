@@ -27,6 +27,7 @@ mod worked;
 use apt_geometry::{
     Vec3,
     canonical::{Cone, Cylinder, Geometry, Plane, Quadric, Sphere},
+    cutter::Cutter,
     motion::{
         CheckSurface, Direction, DriveSide, MotionCommand, NamedSurface, PartSide, PerRole, Relation,
         StartSurface, Turn,
@@ -37,7 +38,7 @@ use crate::{
     clearance::{Gauge, Memory, Tool},
     error::{MotionFailure, MotionWarning},
     section2::{Output, State, execute},
-    sequence::{CutSequence, Role},
+    sequence::{CutSequence, Role, ToolPosition},
 };
 
 pub(crate) fn v(x: f64, y: f64, z: f64) -> Vec3 {
@@ -222,6 +223,24 @@ fn gauge(role: &Role) -> Gauge {
         disk: role.disk,
         memory: Memory::default(),
     }
+}
+
+/// The clearance that the verifier reads of a tool in a position.
+fn read_by_verifier(role: &Role, cutter: Cutter, place: ToolPosition) -> f64 {
+    let alone = CutSequence {
+        start: place,
+        points: vec![place],
+        cutter,
+        part: Some(role.clone()),
+        drive: None,
+        stop: None,
+        drive_side: DriveSide::On,
+        start_up: true,
+        forward: Vec3::zeros(),
+        maximum_step: 1.0,
+        minimum: None,
+    };
+    crate::verify::verify(&alone, &|| false).expect("evidence").part.expect("an extent").min
 }
 
 /// Samples per cut vector of the check.

@@ -293,20 +293,7 @@ fn no_contact_with_the_bottom_lies_beyond_its_edge() {
     for k in 0..=40 {
         let tip = from + (to - from) * (f64::from(k) / 40.0);
         let place = crate::sequence::ToolPosition { tip, axis };
-        let sequence = CutSequence {
-            start: place,
-            points: vec![place],
-            cutter,
-            part: Some(role.clone()),
-            drive: None,
-            stop: None,
-            drive_side: DriveSide::On,
-            start_up: true,
-            forward: Vec3::zeros(),
-            maximum_step: 1.0,
-            minimum: None,
-        };
-        let read = verify(&sequence, &|| false).expect("evidence").part.expect("an extent").min;
+        let read = read_by_verifier(&role, cutter, place);
         let found = gauge(&role).contact(&tool, &tip).clearance;
         assert!((found - read).abs() < 1e-9, "{k}: {found} {read}");
     }

@@ -1,9 +1,6 @@
 //! Motions beside the vertex of a double cone, whose two halves are both near: each is a convex body of its own.
 
-use apt_geometry::cutter::Cutter;
-
 use super::{refused::Found, *};
-use crate::{sequence::ToolPosition, verify::verify};
 
 /// Questions whether to give up that are far more than such a motion takes, where the path turns from one half to the other in very
 /// short vectors.
@@ -13,6 +10,20 @@ fn is_delivered(motion: &Found) {
     let sequences = motion.run(AMPLE).expect("a path");
     assert_eq!(sequences.len(), 2);
 }
+
+/// A double cone that is not round.
+const DOUBLE_CONE: [f64; 10] = [
+    0.245414826579,
+    0.04772340143786691,
+    0.28644977251447895,
+    2.6485131223127976,
+    0.22730383904615914,
+    0.0996981828677703,
+    -0.005613546785801607,
+    0.202565373851894,
+    0.6852422339778307,
+    0.8650631556868731,
+];
 
 /// Stock keeps the rim of a flat cutter .17 from the vertex. It goes along one half to where it touches the other.
 #[test]
@@ -25,23 +36,7 @@ fn a_rim_comes_from_one_half_of_a_double_cone_to_the_other() {
         thickness: 0.16625729849249019,
         drive_side: DriveSide::On,
         forward: v(0.03590732184369054, 0.5221976231395327, -0.8520682523280844),
-        part: (
-            Relation::To,
-            Geometry::Quadric(Quadric {
-                coefficients: [
-                    0.245414826579,
-                    0.04772340143786691,
-                    0.28644977251447895,
-                    2.6485131223127976,
-                    0.22730383904615914,
-                    0.0996981828677703,
-                    -0.005613546785801607,
-                    0.202565373851894,
-                    0.6852422339778307,
-                    0.8650631556868731,
-                ],
-            }),
-        ),
+        part: (Relation::To, quadric(DOUBLE_CONE)),
         drive: (
             Relation::On,
             Geometry::Line(Plane {
@@ -127,18 +122,7 @@ fn a_lens_cutter_comes_from_one_half_of_a_double_cone_to_the_other() {
 /// known before, and both measures tell the same.
 #[test]
 fn the_nearer_of_both_halves_is_found_by_both_measures() {
-    let halves = quadric([
-        0.245414826579,
-        0.04772340143786691,
-        0.28644977251447895,
-        2.6485131223127976,
-        0.22730383904615914,
-        0.0996981828677703,
-        -0.005613546785801607,
-        0.202565373851894,
-        0.6852422339778307,
-        0.8650631556868731,
-    ]);
+    let halves = quadric(DOUBLE_CONE);
     let role = Role {
         surface: named(&halves),
         relation: Relation::To,
@@ -156,20 +140,7 @@ fn the_nearer_of_both_halves_is_found_by_both_measures() {
     for k in -20..24 {
         let tip = from + along * (1e-4 * f64::from(k));
         let at = ToolPosition { tip, axis: Vec3::z() };
-        let alone = CutSequence {
-            start: at,
-            points: vec![at],
-            cutter,
-            part: Some(role.clone()),
-            drive: None,
-            stop: None,
-            drive_side: DriveSide::On,
-            start_up: true,
-            forward: Vec3::zeros(),
-            maximum_step: 1.0,
-            minimum: None,
-        };
-        let verifier = verify(&alone, &|| false).expect("evidence").part.expect("an extent").min;
+        let verifier = read_by_verifier(&role, cutter, at);
         for gauge in [&gauge(&role), &known] {
             let (contact, missed) = gauge.contact_within(&tool, &tip);
             assert!((contact.clearance - verifier).abs() < 1e-9, "{k}: {}, {verifier}", contact.clearance);
