@@ -22,6 +22,8 @@ use super::{
     survey::Sheet,
 };
 
+/// Shares of a chord that are one.
+const SAME_SHARE: f64 = 1e-9;
 /// Angle, radians, below which an arc is as good as its chord.
 const LEAST_ANGLE: f64 = 1e-3;
 /// How far a cubic may be off, relative to the size of the surface, if that must be little and if nothing is asked.
@@ -134,6 +136,8 @@ struct Piece {
     error: f64,
     /// Whether it lies between the ends of the chords, away from them.
     inner: bool,
+    /// Whether a curve may bend sharply where it begins.
+    is_sharp: bool,
 }
 
 /// The cubic through the places at 0, ⅓, ⅔ and 1, by control points.
@@ -183,7 +187,7 @@ impl Model {
             }
         }
         let stretch = patches.iter().map(|patch: &Patch| patch.stretch([0.0, 1.0])).fold(0.0, f64::max);
-        mark_edges(&mut patches, &off);
+        mark_edges(&mut patches, &off, &pieces);
         let whole = error.is_finite() && size.is_finite() && !patches.is_empty();
         whole.then(|| Self { patches: patches.into(), size, error, greatest_error: stretch * error })
     }
@@ -220,9 +224,11 @@ impl RuledStrips {
     }
 }
 
-/// Marks the patches at edges of the surface, and those at its ends; by how much their derivatives at joints may be off is given.
-fn mark_edges(patches: &mut [Patch], off: &[f64]) {
+/// Marks the patches at edges of the surface, and those at its ends. By how much their derivatives at joints may be off is given: where
+/// no curve bends sharply, that makes no edge.
+fn mark_edges(patches: &mut [Patch], off: &[f64], pieces: &[Piece]) {
     let is_edge = |joint: usize| {
+        let slack = if pieces[joint].is_sharp { 0.0 } else { 1.0 };
         [0.0, 0.5, 1.0].into_iter().any(|across| {
             // The normal, and by how much of a turn it may be off.
             let normal = |k: usize, along: f64| {
@@ -231,7 +237,7 @@ fn mark_edges(patches: &mut [Patch], off: &[f64]) {
             };
             match (normal(joint - 1, 1.0), normal(joint, 0.0)) {
                 (Some((a, one)), Some((b, other))) => {
-                    a.cross(&b).norm() > EDGE + one + other || a.dot(&b) < 0.0
+                    a.cross(&b).norm() > EDGE + slack * (one + other) || a.dot(&b) < 0.0
                 }
                 _ => false,
             }
@@ -249,19 +255,25 @@ fn mark_edges(patches: &mut [Patch], off: &[f64]) {
 fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
     let steepest = |end: f64| edges.iter().map(|edge| edge.steepness(end)).fold(0.0, f64::max);
     let angular = Angular::of([steepest(0.0), steepest(1.0)]);
-    let mut cuts = vec![-RULED_BEYOND, 0.0, 1.0, 1.0 + RULED_BEYOND];
+    let mut sharp = Vec::new();
     for edge in edges {
         if let Edge::Curve(section) = edge {
-            cuts.extend(section.reach);
-            cuts.extend(section.joints());
+            sharp.extend(section.reach);
+            sharp.extend(section.joints());
         }
     }
+    let mut cuts = vec![-RULED_BEYOND, 0.0, 1.0, 1.0 + RULED_BEYOND];
+    cuts.extend(&sharp);
     cuts.retain(|s| (-RULED_BEYOND..=1.0 + RULED_BEYOND).contains(s));
     cuts.sort_by(f64::total_cmp);
-    cuts.dedup_by(|a, b| (*a - *b).abs() <= 1e-9);
+    cuts.dedup_by(|a, b| (*a - *b).abs() <= SAME_SHARE);
     let mut found = Vec::new();
     for pair in cuts.windows(2) {
+        let first = found.len();
         divide((edges, angular), [pair[0], pair[1]], accuracy, &mut found)?;
+        if let Some(piece) = found.get_mut(first) {
+            piece.is_sharp = sharp.iter().any(|share| (share - pair[0]).abs() <= 2.0 * SAME_SHARE);
+        }
     }
     Some(found)
 }
@@ -311,7 +323,8 @@ fn divide(
             open.extend(divided([low, high], parts).rev().map(|range| (range, depth + 1)));
         } else {
             let middle = share(0.5 * (low + high));
-            found.push(Piece { curves, error, inner: (RULED_STEADY..=1.0 - RULED_STEADY).contains(&middle) });
+            let inner = (RULED_STEADY..=1.0 - RULED_STEADY).contains(&middle);
+            found.push(Piece { curves, error, inner, is_sharp: false });
         }
     }
     Some(())
