@@ -20,6 +20,8 @@ const RUN_UP: f64 = 2e-3;
 /// Two tangencies are equally far away if their distances differ by no more than this, relative to the size of the
 /// coordinates, and are two if they are this far apart.
 const SAME: f64 = 1e-6;
+/// Sine between the normals of the first two surfaces below which there is no line of motion.
+const TANGENT_SINE: f64 = 1e-6;
 
 /// Where a motion stopped, and the side of the check surface on which it did.
 struct Tangency {
@@ -73,9 +75,6 @@ fn along(work: &StartUp<'_>, tip: &Vec3) -> Result<Vec3, MotionFailure> {
     };
     drive.cross(&part).try_normalize(TANGENT_SINE).ok_or(MotionFailure::TangentSurfaces { tip: *tip })
 }
-
-/// Sine between the normals of the first two surfaces below which there is no line of motion.
-const TANGENT_SINE: f64 = 1e-6;
 
 /// Where a motion one way along the first two surfaces stops. It begins a little behind, if there is room.
 fn ahead(work: &StartUp<'_>, begin: &Vec3, way: &Vec3, size: f64) -> Result<Tangency, MotionFailure> {
@@ -133,11 +132,9 @@ fn nearest(work: &StartUp<'_>, found: Vec<Tangency>, size: f64) -> Result<Option
     if apart <= near || (far(&first) - far(&second)).abs() > near {
         return Ok(Some(if far(&first) <= far(&second) { first } else { second }));
     }
-    let Some(direction) = work.state.directions.iter().flatten().next() else {
-        return Err(MotionFailure::StartUpAmbiguous { places: [first.tip, second.tip] });
-    };
-    let direction = directed::unit_direction(direction, &work.tip)?;
-    let ahead = (first.tip - second.tip).dot(&direction);
+    let direction = work.state.directions.iter().flatten().next();
+    let direction = direction.map(|given| directed::unit_direction(given, &work.tip)).transpose()?;
+    let ahead = direction.map_or(0.0, |direction| (first.tip - second.tip).dot(&direction));
     if ahead.abs() <= near {
         return Err(MotionFailure::StartUpAmbiguous { places: [first.tip, second.tip] });
     }
