@@ -236,11 +236,12 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
     if let Some(found) = surface.followed(side, tip, tool) {
         return Some(found);
     }
-    let touch = Bodies::of(surface, side, tool, tip).touch(tip)?;
+    let bodies = Bodies::of(surface, side, tool, tip);
+    let touch = bodies.touch(tip)?;
     // From the nearest place, now that it is known, the contact may be followed.
     let known = surface.sheet().is_some_and(|sheet| sheet.look_at(&touch.point, tool));
     let found = known.then(|| surface.followed(side, tip, tool)).flatten();
-    found.or_else(|| settled(surface, side, tip, tool, &touch))
+    found.or_else(|| bodies.settled(tip, &touch))
 }
 
 /// The clearance of a tool that stands along the straight lines of a sculptured surface: where both ends of the tool are beside
@@ -267,21 +268,8 @@ fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Rea
 /// The clearance without regard to what was found before.
 #[cfg(test)]
 pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
-    settled(surface, side, tip, tool, &Bodies::of(surface, side, tool, tip).touch(tip)?)
-}
-
-/// The clearance by the nearest place.
-fn settled(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>, touch: &Touch) -> Option<Reading> {
     let bodies = Bodies::of(surface, side, tool, tip);
-    let clear = bodies.is_on_side(touch)?;
-    // A tool without a body is nowhere deep in the surface: where it is not clear for certain, its places are looked at.
-    let mut reading = if touch.value > touch.gap && clear {
-        Reading { value: touch.value, normal: bodies.away(touch)?, error: touch.gap }
-    } else {
-        bodies.violation(tip, touch)?
-    };
-    reading.error += surface.error_near(tip, tool, reading.value + reading.error);
-    Some(reading)
+    bodies.settled(tip, &bodies.touch(tip)?)
 }
 
 impl<'a> Bodies<'a> {
@@ -289,6 +277,19 @@ impl<'a> Bodies<'a> {
         let reach = tool.profile.reach();
         let deep = PROVEN_DEPTH * tool.profile.widest() + tool.depth;
         Self { surface, side, tool, reach, resolution: resolution(surface, tip, reach), deep }
+    }
+
+    /// The clearance by the nearest place.
+    fn settled(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
+        let clear = self.is_on_side(touch)?;
+        // A tool without a body is nowhere deep in the surface: where it is not clear for certain, its places are looked at.
+        let mut reading = if touch.value > touch.gap && clear {
+            Reading { value: touch.value, normal: self.away(touch)?, error: touch.gap }
+        } else {
+            self.violation(tip, touch)?
+        };
+        reading.error += self.surface.error_near(tip, self.tool, reading.value + reading.error);
+        Some(reading)
     }
 
     fn touch(&self, tip: &Vec3) -> Option<Touch> {
