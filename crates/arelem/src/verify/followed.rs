@@ -140,6 +140,8 @@ pub(super) struct Following<'a> {
     pub(super) size: f64,
     pub(super) tolerance: f64,
     pub(super) kept: Kept<'a>,
+    /// Where the tool was and how far it has been led out from there, if it is too deep.
+    pub(super) led: Option<(&'a Vec3, f64)>,
 }
 
 /// How an attempt at a reading is made.
@@ -235,8 +237,9 @@ impl Following<'_> {
         let enough = self.kept.manner.piece.unwrap_or(f64::INFINITY);
         let least = value.min(contact.value).min(enough) - self.tolerance;
         let error = value - least;
-        let out = self.tip + contact.normal * (-least).max(0.0);
-        let led = Following { tip: &out, ..*self };
+        let depth = (-least).max(0.0);
+        let out = self.tip + contact.normal * depth;
+        let led = Following { tip: &out, led: (depth > 0.0).then_some((self.tip, depth)), ..*self };
         let least = least.max(0.0);
         let Some((guard, below)) = led.guard(part, side, &contact, least) else {
             self.kept.loose.set(Some((index, contact.at)));
@@ -314,13 +317,13 @@ impl Following<'_> {
     fn show(&self, part: &Part, index: usize, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
         let Shown { guards, below, least, place } = *shown;
         self.kept.looks.set(self.kept.looks.get() + 1);
+        if self.is_above(part, side, least) || self.is_left_behind(part, side, shown) {
+            return Some(());
+        }
         let from = part.center - self.tip;
         let (apart, _) = self.tool.signed_distance(&from);
         if apart < least && self.is_nearer(index, &part.center, least) {
             return None;
-        }
-        if self.is_above(part, side, least) {
-            return Some(());
         }
         if let Some(contact) = self.solve(part, side, part.nearest_parameters(place)) {
             if self.guard(part, side, &contact, least).is_some() {
@@ -342,6 +345,21 @@ impl Following<'_> {
             }
         }
         Some(())
+    }
+
+    /// Whether a tool that is too deep leaves a part as far behind as is wanted where it is led out across that instead, no farther than
+    /// at the deepest contact: what is deep at two places is not as deep as both together.
+    fn is_left_behind(&self, part: &Part, side: f64, shown: &Shown<'_>) -> bool {
+        let Some((tip, depth)) = self.led else { return false };
+        let own = Following { tip, led: None, ..*self };
+        let Some(contact) = own.solve(part, side, part.nearest_parameters(shown.place)) else { return false };
+        if contact.value >= shown.least {
+            return false;
+        }
+        let out = tip + contact.normal * depth;
+        let led = Following { tip: &out, ..own };
+        let contact = led.solve(part, side, contact.at);
+        contact.is_some_and(|contact| led.guard(part, side, &contact, shown.least).is_some())
     }
 
     /// A half-space or ball at a contact that has no place of its part inside and keeps the tool as far away as `least`, and

@@ -19,8 +19,9 @@ use super::{
 
 /// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
 const ROUND_OFF: f64 = 1e-9;
-/// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it.
-const MODEL_SHARE: f64 = 4e-4;
+/// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it, at first and
+/// where it would decide.
+const MODEL_SHARES: [f64; 3] = [4e-4, 1e-5, 0.0];
 /// Accuracy of the bounds of a clearance on a vector, relative to the band, at first and when it would decide: less than
 /// sequences leave of the band.
 const BAND_SHARES: [f64; 3] = [4e-4, 2e-5, 0.0];
@@ -183,12 +184,15 @@ pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Re
 
 /// No inaccuracy of a model decides that could be less.
 fn settled(sequence: &CutSequence, patience: Patience<'_>) -> Result<Evidence, VerifyError> {
-    let (evidence, is_rough) = judged(sequence, MODEL_SHARE, patience)?;
-    if evidence.verified || !is_rough {
-        Ok(evidence)
-    } else {
-        judged(sequence, 0.0, patience).map(|found| found.0)
+    let [first, finer @ ..] = MODEL_SHARES;
+    let (mut evidence, mut is_rough) = judged(sequence, first, patience)?;
+    for share in finer {
+        if evidence.verified || !is_rough {
+            break;
+        }
+        (evidence, is_rough) = judged(sequence, share, patience)?;
     }
+    Ok(evidence)
 }
 
 /// The judgement with models of surfaces that may be off by a share of the bands, and whether there are such models.

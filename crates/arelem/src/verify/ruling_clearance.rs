@@ -43,6 +43,8 @@ const LEVEL: f64 = 1e-10;
 const PROVEN_DEPTH: f64 = 0.1;
 /// Translations tried in the proof of a depth, each four times longer.
 const PROOF_STEPS: usize = 14;
+/// Directions in which a tool without a body is led out, each normal to the place that held it in the last.
+const DIRECTIONS: usize = 6;
 /// The same for a depth that need not be the greatest yet.
 const QUICK_PROOF_STEPS: usize = 2;
 
@@ -310,6 +312,11 @@ impl<'a> Bodies<'a> {
     }
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
+        if self.tool.profile.widest() <= 0.0
+            && let Some(found) = self.led_out(tip, touch)?
+        {
+            return Some(found);
+        }
         let mut deepest = (-touch.value, self.away(touch)?);
         let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
@@ -439,10 +446,49 @@ impl<'a> Bodies<'a> {
         Some(())
     }
 
+    /// The clearance of a tool without a body by the translation that just frees it: no place of the surface is deep in it, and what is
+    /// under the surface may be anywhere along it. None inside where none is found.
+    fn led_out(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
+        let (mut out, mut way) = (self.away(touch)?, self.deep);
+        for _ in 0..DIRECTIONS {
+            let Some((least, normal)) = self.freed(tip, &out, way)? else { return Some(None) };
+            // The place that holds it there holds it as long as it is not moved as far in its own direction.
+            let error = least * (1.0 - normal.dot(&out)) + 3.0 * self.close();
+            if error <= 4.0 * self.close() {
+                return Some(Some(Reading { value: -least, normal, error }));
+            }
+            (out, way) = (normal, least + self.close());
+        }
+        Some(None)
+    }
+
+    /// What a way need not be closer than.
+    fn close(&self) -> f64 {
+        4.0 * self.resolution
+    }
+
+    /// The least way in a direction, from one on that frees the tool, that is found to do so, and the normal where the tool is nearest then.
+    /// None inside where that way does not free it.
+    fn freed(&self, tip: &Vec3, out: &Vec3, mut way: f64) -> Option<Option<(f64, Vec3)>> {
+        for _ in 0..PROOF_STEPS {
+            let touch = self.touch(&(tip + out * way))?;
+            let room = touch.value - touch.gap;
+            if room < 0.0 || !self.is_on_side(&touch)? {
+                return Some(None);
+            }
+            if room <= 2.0 * self.close() {
+                return Some(Some((way, self.away(&touch)?)));
+            }
+            // Led back by what it is clear it is clear still.
+            way -= room - self.close();
+        }
+        Some(None)
+    }
+
     /// How much farther than the depth found the tool must be moved out until it is clear for certain; None where none of
     /// the translations tried frees it.
     fn unproven(&self, tip: &Vec3, deepest: &(f64, Vec3), steps: usize) -> Option<Option<f64>> {
-        let mut more = 4.0 * self.resolution;
+        let mut more = self.close();
         for _ in 0..steps {
             let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
             if touch.value >= touch.gap && self.is_on_side(&touch)? {

@@ -4,6 +4,8 @@
 //! tool bounds the distance of every other place: by the least height of the control points over it. That makes a
 //! branch and bound whose gap shrinks with the square of the cell.
 
+use std::{cmp::Ordering, collections::BinaryHeap};
+
 use apt_geometry::Vec3;
 
 use super::{
@@ -15,11 +17,9 @@ use super::{
 const CELL_BUDGET: usize = 20_000;
 /// After so many cells it is asked whether to go on.
 const CELLS_BETWEEN_QUESTIONS: usize = 200;
-/// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction.
-const SURE_DIRECTION: f64 = 1e-8;
-
-/// How far a place on the tool's boundary is moved off it to find the boundary's normal, relative to the tool.
-const NUDGE: f64 = 1e-3;
+/// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction: rounded, it
+/// would say less of what is as far away as the tool is long than a distance need be close.
+const SURE_DIRECTION: f64 = 1e-4;
 
 /// Control points of a cubic.
 pub(super) type Cubic = [Vec3; 4];
@@ -55,9 +55,28 @@ struct Cell {
     lower: f64,
     /// The direction to halve it in.
     halve_along: bool,
-    /// Distance of its middle.
-    value: f64,
 }
+
+/// That of which less is known is the greater: it is looked at first.
+impl Ord for Cell {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.lower.total_cmp(&self.lower)
+    }
+}
+
+impl PartialOrd for Cell {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Cell {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Cell {}
 
 pub(super) fn lerp(a: &Vec3, b: &Vec3, t: f64) -> Vec3 {
     a + (b - a) * t
@@ -92,18 +111,6 @@ impl Search<'_> {
         (distance, if size > 0.0 { away * (distance.signum() / size) } else { *surface_normal })
     }
 
-    /// Normals of half-spaces that hold the tool, for a place so near to its boundary that the difference of two points is
-    /// no direction: where a place a little off it is projected to, on both sides of the surface.
-    fn beside(&self, x: &Vec3, surface_normal: &Vec3) -> [Vec3; 2] {
-        let nudge = NUDGE * self.tool.profile.reach();
-        [nudge, -nudge].map(|sense| {
-            let off = x - self.tip + surface_normal * sense;
-            let (beyond, q) = self.tool.signed_distance(&off);
-            let size = (off - q).norm();
-            if beyond > 0.0 && size > 0.0 { (off - q) / size } else { *surface_normal * sense.signum() }
-        })
-    }
-
     /// The least height of a patch over the half-space with an outward normal that holds the tool, and how much the height
     /// varies along and across.
     fn bound(&self, net: &Net, outward: &Vec3) -> (f64, [f64; 2]) {
@@ -136,8 +143,9 @@ impl Search<'_> {
         let (mut lower, spread) = self.bound(&net, &outward);
         if self.best.is_none_or(|b| lower < b.value) {
             if value.abs() <= self.sure {
-                let height = |n: &Vec3| n.dot(&(x - self.tip)) - self.tool.support(n).0;
-                for level in self.beside(&x, &normal) {
+                let w = x - self.tip;
+                let height = |n: &Vec3| n.dot(&w) - self.tool.support(n).0;
+                for level in self.tool.outward_at(&w) {
                     lower = lower.max(self.bound(&net, &level).0);
                     if height(&level) >= height(&outward) {
                         outward = level;
@@ -147,6 +155,11 @@ impl Search<'_> {
             // At a sharp edge of the tool the nearest place says little about the places beside it, but the half-space
             // along the surface does.
             for level in [normal, -normal] {
+                lower = lower.max(self.bound(&net, &level).0);
+            }
+            // Along a straight flank, or a tool that is a line, the surface says which of its normals is across it.
+            let towards = if normal.dot(&outward) < 0.0 { -normal } else { normal };
+            if let Some(level) = self.tool.turned_to(&outward, &towards) {
                 lower = lower.max(self.bound(&net, &level).0);
             }
             // Beside the contact on an edge the surface turns along the edge: of its normals the part that the tool, a body
@@ -161,44 +174,36 @@ impl Search<'_> {
             let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
             self.best = Some(Touch { value, gap: 0.0, outward, point: x, piece, along, across });
         }
-        Cell { net, piece, along, across, lower, halve_along: spread[0] >= spread[1], value }
+        Cell { net, piece, along, across, lower, halve_along: spread[0] >= spread[1] }
     }
 
     fn whole(&mut self, patch: &Patch, index: usize) -> Cell {
         self.cell(patch.net, index, [0.0, 1.0], [0.0, 1.0])
     }
 
-    /// Halves cells until none could hold a place nearer than the best by more than `resolution`, or one deeper than `deep`
-    /// is found; `lowest` tells what the budget left unseen. None when it is given up.
+    /// Halves cells, always the one that may hold the nearest place, until none could hold a place nearer than the best by more than
+    /// `resolution`, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
     fn close_in(
         &mut self,
-        open: &mut Vec<Cell>,
+        open: &mut BinaryHeap<Cell>,
         [resolution, deep]: [f64; 2],
         budget: &mut usize,
-        lowest: &mut f64,
     ) -> Option<()> {
-        while let Some(cell) = open.pop() {
+        while let Some(cell) = open.peek() {
             let best = self.best.map_or(f64::INFINITY, |b| b.value);
-            if best < -deep {
+            if best < -deep || cell.lower >= best - resolution {
                 open.clear();
                 break;
             }
-            if cell.lower >= best - resolution {
-                continue;
-            }
             if *budget == 0 {
-                *lowest = lowest.min(cell.lower);
-            } else {
-                *budget -= 1;
-                if (*budget).is_multiple_of(CELLS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
-                    return None;
-                }
-                let [first, second] = self.split(&cell);
-                if first.value < second.value {
-                    open.extend([second, first]);
-                } else {
-                    open.extend([first, second]);
-                }
+                break;
+            }
+            *budget -= 1;
+            if (*budget).is_multiple_of(CELLS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
+                return None;
+            }
+            if let Some(cell) = open.pop() {
+                open.extend(self.split(&cell));
             }
         }
         Some(())
@@ -239,11 +244,10 @@ pub(super) fn nearest(
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map(|f| f.1)?;
     // The nearest patch first: what it gives leaves out most of the others at once.
-    let mut lowest = f64::INFINITY;
     let mut budget = CELL_BUDGET;
-    let mut open = Vec::with_capacity(32);
+    let mut open = BinaryHeap::with_capacity(32);
     open.push(search.whole(patches.get(first)?, first));
-    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest)?;
+    search.close_in(&mut open, [resolution, deep], &mut budget)?;
     let found = search.best?;
     let base = found.outward.dot(tip) + tool.support(&found.outward).0;
     for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
@@ -255,10 +259,9 @@ pub(super) fn nearest(
             open.push(cell);
         }
     }
-    // The nearest last, because it is taken first.
-    open.sort_by(|a, b| b.value.total_cmp(&a.value));
-    search.close_in(&mut open, [resolution, deep], &mut budget, &mut lowest)?;
+    search.close_in(&mut open, [resolution, deep], &mut budget)?;
     let mut touch = search.best?;
+    let lowest = open.peek().map_or(f64::INFINITY, |cell| cell.lower);
     touch.gap = resolution.max(touch.value - lowest);
     (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)
 }

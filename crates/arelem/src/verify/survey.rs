@@ -321,7 +321,8 @@ impl Near {
         for _ in 0..DIVISIONS {
             let (parts, way) = (&self.parts, self.way);
             let kept = Kept { manner, loose, nearer, looks };
-            let following = Following { sheet, parts, way, side, tip, tool, size, tolerance, kept };
+            let following =
+                Following { sheet, parts, way, side, tip, tool, size, tolerance, kept, led: None };
             let found = following.reading(&mut self.last);
             if found.is_some() {
                 return found;

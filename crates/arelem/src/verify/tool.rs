@@ -12,6 +12,10 @@ use super::VerifyError;
 /// How far, relative to the cutter's size, a corner circle may miss a line it should touch: APT III accepts
 /// corner centres written with five decimals (language reference 6.7).
 const TANGENCY_SLACK: f64 = 1e-5;
+/// How far from the tool axis a place is, relative to its distance from the tool end, where rounding leaves nothing of its direction from
+/// the axis, and where it leaves something of the axis in it.
+const ON_AXIS: f64 = 1e-14;
+const NEAR_AXIS: f64 = 1e-3;
 
 /// A point of the meridian half-plane: distance from the axis, height above the tool end.
 pub(super) type Meridian = [f64; 2];
@@ -361,7 +365,17 @@ impl<'a> Tool<'a> {
         let z = w.dot(&self.axis);
         let radial = w - self.axis * z;
         let rho = radial.norm();
-        let out = if rho > 1e-14 * w.norm() { radial / rho } else { perpendicular(&self.axis) };
+        let away = w.norm();
+        let out = if rho > NEAR_AXIS * away {
+            radial / rho
+        } else if rho > ON_AXIS * away {
+            // What rounding leaves of the axis is no longer little beside what leads away from it.
+            let out = radial / rho;
+            let out = out - self.axis * self.axis.dot(&out);
+            out / out.norm()
+        } else {
+            perpendicular(&self.axis)
+        };
         ([rho, z], out)
     }
 
@@ -399,6 +413,14 @@ impl<'a> Tool<'a> {
     pub(super) fn without_azimuth(&self, w: &Vec3, direction: &Vec3) -> Option<Vec3> {
         let round = self.axis.cross(w).try_normalize(0.0)?;
         (direction - round * round.dot(direction)).try_normalize(0.0)
+    }
+
+    /// An outward normal of the body turned round the axis to where a direction leads away from that: what it is beside another place
+    /// that is as high up. None where the direction is along the axis.
+    pub(super) fn turned_to(&self, outward: &Vec3, direction: &Vec3) -> Option<Vec3> {
+        let up = self.axis.dot(outward);
+        let radial = (direction - self.axis * self.axis.dot(direction)).try_normalize(0.0)?;
+        Some(radial * (1.0 - up * up).max(0.0).sqrt() + self.axis * up)
     }
 
     /// Greatest distance from a point to a point of the body, and that body point.

@@ -2,6 +2,7 @@
 
 mod branches;
 pub(crate) mod clearances;
+mod depths;
 mod edges;
 mod every_kind;
 mod followed;

@@ -1,0 +1,118 @@
+//! Tools that all but touch surfaces of patches, and tools that are a little too deep in them.
+
+use apt_geometry::Vec3;
+
+use super::{
+    super::{
+        clearance::{Reading, Surface},
+        ruling_clearance::searched,
+        tool::{Profile, Tool, WORK},
+    },
+    cutter, cylinder,
+    lofts::{roof, vault},
+    plane, ruled, section, tabulated,
+};
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+/// Parts of surfaces that one search may look at: it gives up after some ten times as many.
+const FEW: u64 = 4_000;
+/// How deep the tools of these tests may be.
+const ALLOWED: f64 = 1e-3;
+
+fn line(length: f64) -> Profile {
+    Profile::of(&cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length])).unwrap()
+}
+
+/// What is found without what was known, in few looks.
+fn searched_in_few(surface: &Surface, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Reading {
+    let Surface::Ruled(ruled) = surface else { panic!("{surface:?}") };
+    WORK.set(0);
+    let found = searched(ruled, side, tip, tool).expect("there is a distance");
+    assert!(WORK.get() < FEW, "{}: {found:?}", WORK.get());
+    found
+}
+
+/// No place of a hill is deep in a line that goes through it, and neither end of the line is under it.
+#[test]
+fn a_line_through_a_hill_is_as_deep_as_the_hill_is_high_over_it() {
+    let hill =
+        tabulated([Vec3::x(), Vec3::y(), Vec3::z()], &[[-2.0, 0.0, 0.0], [0.0, 0.3, 0.0], [2.0, 0.0, 0.0]]);
+    let surface = Surface::of(&hill).unwrap();
+    for (depth, rise) in [(1e-5, 0.0), (4e-4, 0.0), (1e-5, 0.3), (9e-4, -0.5)] {
+        let profile = line(2.0);
+        let mut tool = Tool::new(&profile, Vec3::new(1.0, 0.0, rise).normalize());
+        tool.depth = ALLOWED;
+        let tip = Vec3::new(0.0, 0.3 - depth, 0.0) - tool.axis;
+        let found = searched_in_few(&surface, 1.0, &tip, &tool);
+        assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
+        assert!((found.normal - Vec3::y()).norm() < 1e-3, "{found:?}");
+    }
+}
+
+/// A line nearly along a ruling is about as near to the surface all along.
+#[test]
+fn a_line_along_a_ruling_is_measured_in_few_looks() {
+    let floor = plane(UP, 0.0);
+    let slope = plane([-1.0, 0.0, 6.0], 6.0);
+    let twisted = ruled(
+        section(floor, [[0.0; 3], [6.0, 0.0, 0.0]], UP),
+        section(slope, [[0.0, 4.0, 1.0], [6.0, 4.0, 2.0]], [-1.0, 0.0, 6.0]),
+    );
+    let surface = Surface::of(&twisted).unwrap();
+    let [foot, along] = [Vec3::new(3.0, 0.5, 0.1875), Vec3::new(0.0, 4.0, 1.5).normalize()];
+    let profile = line(3.0);
+    for (above, turn) in [(2e-5, 1e-4), (1e-7, 1e-4), (3e-6, -2e-3)] {
+        let tool = Tool::new(&profile, (along + Vec3::x() * turn).normalize());
+        let tip = foot + Vec3::z() * above;
+        let found = searched_in_few(&surface, 1.0, &tip, &tool);
+        assert!(found.error < 1e-8 && found.value < above, "{above} {turn}: {found:?}");
+        let places = (0..=300).map(|k| {
+            let place = tip + tool.axis * (0.01 * f64::from(k));
+            surface.point_distance(&place).expect("a distance").0
+        });
+        let least = places.fold(f64::INFINITY, f64::min);
+        assert!((found.value - least).abs() < 1e-7, "{above} {turn}: {found:?} {least}");
+    }
+}
+
+/// Two places that are close say by their difference where the one leads from the other, rounded; over a long tool that is more than
+/// they are apart.
+#[test]
+fn a_tool_that_all_but_touches_is_measured_to_rounding() {
+    for (geometry, side, numbers) in [
+        (roof(), 1.0, &[0.5, 0.0][..]),
+        (roof(), 1.0, &[0.5, 0.1]),
+        (vault(), -1.0, &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]),
+        (vault(), -1.0, &[0.5, 0.0]),
+    ] {
+        let surface = Surface::of(&geometry).unwrap();
+        let profile = Profile::of(&cutter(numbers)).unwrap();
+        let tool = Tool::new(&profile, Vec3::new(0.02, 0.05, 1.0).normalize());
+        let mut tip = Vec3::new(-0.6, 0.4, 5.0);
+        let Surface::Ruled(ruled) = &surface else { panic!("{geometry:?}") };
+        for _ in 0..60 {
+            tip.z -= searched(ruled, side, &tip, &tool).unwrap().value - 2e-6;
+        }
+        let found = searched_in_few(&surface, side, &tip, &tool);
+        assert!((found.value - 2e-6).abs() < 1e-7 && found.error < 2e-8, "{numbers:?}: {found:?}");
+    }
+}
+
+/// Under a vault a flat tool is too deep on both sides: it would have to be led out farther than it is deep at either.
+#[test]
+fn a_tool_too_deep_at_two_places_is_as_deep_as_the_deeper() {
+    let wall = || cylinder([0.0; 3], UP, 2.0);
+    let curve = |z: f64| section(wall(), [[-2.0, 0.0, z], [2.0, 0.0, z]], [0.0, 1.0, 0.0]);
+    let surface = Surface::of(&ruled(curve(-1.0), curve(1.0))).unwrap();
+    let Surface::Ruled(vault) = &surface else { panic!("{surface:?}") };
+    let profile = Profile::of(&cutter(&[2.0, 0.0])).unwrap();
+    let mut tool = Tool::new(&profile, -Vec3::y());
+    tool.depth = ALLOWED;
+    for (depth, aside) in [(1e-4, 0.0), (4e-4, 1e-4), (9e-4, -2e-5)] {
+        let tip = Vec3::new(aside, ((2.0 + depth) * (2.0 + depth) - 1.0_f64).sqrt(), 0.1);
+        let deepest = (1.0 + aside.abs()).hypot(tip.y) - 2.0;
+        let found = vault.followed(1.0, &tip, &tool).expect("it is shown");
+        let error = found.error + 2.0 * vault.error() + 1e-9;
+        assert!((found.value + deepest).abs() <= error && error < 1e-7, "{found:?} {deepest}");
+    }
+}
