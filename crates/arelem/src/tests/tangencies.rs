@@ -1,8 +1,16 @@
 //! TANTO and PSTAN where the path runs parallel to a check surface that is not tangent there.
 
-use apt_geometry::motion::{DriveSide, Relation, Turn};
+use apt_geometry::{
+    Vec3,
+    canonical::{Cylinder, Geometry, Plane},
+    motion::{DriveSide, Relation, Turn},
+};
 
-use super::{Program, ground, line, motion, sphere};
+use super::{
+    Program, cylinder, ground, line, motion, quadric,
+    refused::{AMPLE, Found},
+    sphere, v,
+};
 use crate::{error::MotionFailure, sequence::Stop, verify::Rule, verify::verify};
 
 /// Along a wall to a ball in front of it whose middle is so far below the tool: the rim of the tool touches it.
@@ -54,4 +62,90 @@ fn a_path_to_such_a_place_is_not_accepted() {
         let leans = violations.iter().any(|violation| violation.rule == Rule::Tangency);
         assert_eq!(leans, !is_tangent, "{below}: {violations:?}");
     }
+}
+
+/// A flat bottom is tangent to a bar below it as long as it is above the line on which bar and part surface touch. From either
+/// side the motion ends in the middle of that way, where APT III stops with the tool end.
+#[test]
+fn a_flat_bottom_that_is_tangent_along_a_way_stops_in_the_middle_of_it() {
+    let (wall, bar) = (line(0.0, 0.0, 8.0, 0.0), cylinder(v(4.0, 0.0, -2.0), v(0.0, 1.0, 0.0), 2.0));
+    for (from, ahead) in [(-1.0, 1.0), (9.0, -1.0)] {
+        let mut program = Program::new();
+        program.cutter(&[0.5]).tolerance(0.001, 0.001).from(from, -2.0, 0.0).indirv(0.0, 1.0, 0.0);
+        program.go(&[(Relation::To, &wall), (Relation::To, &ground())]);
+        let side = if ahead > 0.0 { DriveSide::Right } else { DriveSide::Left };
+        program.side(side).indirv(ahead, 0.0, 0.0);
+        program
+            .run(&motion(Turn::Forward, &wall, &[(Relation::TangentToPart, 1, &bar)]))
+            .ends(4.0, -0.25, 0.0, 1e-9)
+            .verified();
+    }
+}
+
+/// The flank of a drill goes through one side of a double cone, beside its vertex, where the cone is tangent to the drive surface: the
+/// clearance falls to nothing, and grows on.
+#[test]
+fn a_path_that_goes_through_the_surface_to_which_it_is_tangent_stops_there() {
+    let double_cone = [
+        -0.9793149044995352,
+        -0.20337514965515952,
+        0.09499370686026659,
+        0.44472761246647496,
+        0.36341834964994446,
+        0.7002030042396395,
+        -0.8223082119835796,
+        0.09742164682714609,
+        -0.00912948323667126,
+        0.436245346220967,
+    ];
+    let hollow = [
+        0.5435652679807044,
+        0.2162131758766806,
+        0.001344775162413118,
+        0.5617482825063519,
+        0.017051630675845027,
+        -0.027036513671900853,
+        -0.34282061327517493,
+        0.1736123499168878,
+        -0.3357773146927068,
+        0.44861223353160856,
+    ];
+    let motion = Found {
+        cutter: &[
+            0.6997793114894189,
+            0.0,
+            0.3498896557447094,
+            0.2102349151421061,
+            31.0,
+            0.0,
+            3.071617613670131,
+        ],
+        axis: Vec3::z(),
+        from: v(-0.6246575369567703, 0.639849032749579, -0.5144338532961925),
+        band: [2e-5, 3e-5],
+        thickness: 0.030806573680048924,
+        drive_side: DriveSide::Right,
+        forward: v(0.6329635701834135, -0.7661423990452165, -0.11127867363473973),
+        part: (Relation::On, quadric(hollow)),
+        drive: (
+            Relation::Past,
+            Geometry::Circle(Cylinder {
+                point: v(-5.297381751341178, -3.7769826138527627, -0.209864685982917),
+                axis: Vec3::z(),
+                radius: 6.8105342930192245,
+            }),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.6329635701834135, 0.7661423990452167, 0.1112786736347398),
+                distance: 1.5486891041257935,
+            }),
+        ),
+        stop: (Relation::TangentToDrive, quadric(double_cone)),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a tangency");
+    let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
+    let place = v(-0.34042372330058956, 0.3183054874036313, -0.4200996011250231);
+    assert!((end - place).norm() < 1e-3, "{end:?}");
 }

@@ -8,7 +8,10 @@ use apt_geometry::{
 use super::Vertex;
 use crate::{
     clearance::{Contact, Gauge},
-    directed::{Prepared, is_tangent, stop::Event},
+    directed::{
+        Prepared, is_tangent,
+        stop::{Event, graze},
+    },
     error::{Iteration, MotionFailure},
     position::{self, Condition},
     role::{GUARD, Working},
@@ -24,6 +27,8 @@ const LEAST_PIECE: f64 = 2e-3;
 /// How exactly, relative to the size of the coordinates, a place where both surfaces are parallel is found.
 const POSITION: f64 = 1e-10;
 
+/// Sine of the angle between path and check surface below which they are parallel.
+const PARALLEL: f64 = 1e-9;
 /// Sine of the angle between two normals that is rounding.
 const AGREEING: f64 = 1e-7;
 /// Step of the estimate of how fast normals turn, relative to the size of the coordinates.
@@ -37,16 +42,25 @@ enum Gap {
     Open(f64),
 }
 
-/// A cut vector on which the slope of a check surface's clearance changes its sign.
+/// Part of a cut vector on which the path is parallel to a check surface.
 struct Stretch<'a> {
     index: usize,
     from: &'a Vertex,
     to: &'a Vertex,
-    /// The sign at the start.
-    is_positive: bool,
+    slope: Slope,
+}
+
+/// What the slope of a check surface's clearance does where the path is parallel to the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Slope {
+    /// It changes its sign, from this one.
+    Changes { is_positive: bool },
+    /// It comes to nothing and goes on with the same sign: the path goes through the surface there.
+    Touches,
 }
 
 /// A check surface seen from a place on a cut vector.
+#[derive(Clone)]
 struct Reading {
     /// Distance from the start of the vector.
     x: f64,
@@ -58,6 +72,11 @@ struct Reading {
 }
 
 impl Reading {
+    /// Whether the distance grows or falls; `None` where that is rounding.
+    fn grows(&self) -> Option<bool> {
+        (self.slope.abs() > PARALLEL).then_some(self.slope > 0.0)
+    }
+
     /// Whether the tool comes to touch the check surface elsewhere before another place: the gap then does not change as the
     /// slopes say, and a slope that changed its sign in between may have changed it back.
     fn jumps_before(&self, next: &Self, slack: f64) -> bool {
@@ -70,12 +89,51 @@ impl Reading {
     }
 }
 
+/// What the slope of a check surface's clearance does on the way to where the path is parallel to the surface.
+#[derive(Clone, Default)]
+struct Approach {
+    /// Whether the clearance grew where it last changed.
+    grew: Option<bool>,
+    /// Where the slope fell to what it is, or to nothing: the place before.
+    steeper: Option<Reading>,
+}
+
+impl Approach {
+    /// The same on the next cut vector.
+    fn onto(&self, first: &Reading) -> Self {
+        Self { grew: first.grows().or(self.grew), steeper: self.steeper.as_ref().map(|_| first.clone()) }
+    }
+
+    /// Whether the path is parallel to the surface before the next place, or may be: since where, and how.
+    fn parallel<'a>(&'a self, here: &'a Reading, next: &Reading) -> Option<(&'a Reading, Slope)> {
+        let (grew, grows) = (self.grew?, next.grows()?);
+        if grew != grows {
+            let start = if here.grows().is_some() { here } else { self.steeper.as_ref().unwrap_or(here) };
+            return Some((start, Slope::Changes { is_positive: grew }));
+        }
+        let start = self.steeper.as_ref()?;
+        (next.slope.abs() >= here.slope.abs()).then_some((start, Slope::Touches))
+    }
+
+    /// Goes on to the next place.
+    fn go_on(&mut self, here: Reading, next: &Reading) {
+        let falls =
+            next.slope.abs() < here.slope.abs() && self.grew.is_some_and(|grew| next.grows() != Some(!grew));
+        let is_parallel = here.grows().is_none() && next.grows().is_none();
+        if !is_parallel {
+            self.steeper = falls.then_some(here);
+        }
+        self.grew = next.grows().or(self.grew);
+    }
+}
+
 /// Watches the check surfaces that stop at a tangency.
 #[derive(Clone)]
 pub(super) struct Watch<'a> {
     prepared: &'a Prepared,
     checks: &'a [CheckSurface],
     counts: Vec<u32>,
+    approaches: Vec<Approach>,
     /// Tangencies met so far.
     pub(super) met: usize,
     /// Gap at the nearest parallel position that was not a tangency, and of which check surface.
@@ -85,12 +143,14 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
-        Self { prepared, checks, counts: vec![0; checks.len()], met: 0, nearest: f64::INFINITY, check: 0 }
+        let (counts, approaches) = (vec![0; checks.len()], vec![Approach::default(); checks.len()]);
+        Self { prepared, checks, counts, approaches, met: 0, nearest: f64::INFINITY, check: 0 }
     }
 
     /// The first tangency on a cut vector.
     pub(super) fn scan(&mut self, from: &Vertex, to: &Vertex) -> Result<Option<Event>, MotionFailure> {
         let mut first: Option<Event> = None;
+        let before = (self.counts.clone(), self.approaches.clone(), self.met);
         for index in 0..self.checks.len() {
             if !is_tangent(self.checks[index].relation) {
                 continue;
@@ -102,10 +162,9 @@ impl<'a> Watch<'a> {
                 }
             }
         }
-        if let Some(event) = first {
-            // The vector may be tried again shorter: the count starts afresh then.
-            self.counts[event.check] -= 1;
-            self.met -= 1;
+        if first.is_some() {
+            // The vector may be tried again shorter: what it showed does not count then.
+            (self.counts, self.approaches, self.met) = before;
         }
         Ok(first)
     }
@@ -123,6 +182,7 @@ impl<'a> Watch<'a> {
         let reach =
             self.prepared.checks[index].band() + self.prepared.part.band() + self.prepared.drive.band();
         let mut here = self.read(index, [from, to], 0.0)?;
+        let mut approach = self.approaches[index].onto(&here);
         while here.x < length {
             let mut step = (here.gap.abs() - reach).max(least);
             let mut next = self.read(index, [from, to], (here.x + step).min(length))?;
@@ -130,9 +190,10 @@ impl<'a> Watch<'a> {
                 step *= 0.5;
                 next = self.read(index, [from, to], (here.x + step).min(length))?;
             }
-            if here.slope != 0.0 && (here.slope > 0.0) != (next.slope > 0.0) {
-                let stretch =
-                    Stretch { index, from: &here.vertex, to: &next.vertex, is_positive: here.slope > 0.0 };
+            if let Some((start, slope)) = approach.parallel(&here, &next)
+                && (slope != Slope::Touches || here.gap.abs() <= reach + step)
+            {
+                let stretch = Stretch { index, from: &start.vertex, to: &next.vertex, slope };
                 match self.touching(&stretch)? {
                     Gap::Closed(vertex, side) => {
                         self.counts[index] += 1;
@@ -141,14 +202,16 @@ impl<'a> Watch<'a> {
                             return Ok(Some((*vertex, side)));
                         }
                     }
-                    Gap::Open(gap) if gap.abs() < self.nearest.abs() => {
+                    Gap::Open(gap) if slope != Slope::Touches && gap.abs() < self.nearest.abs() => {
                         (self.nearest, self.check) = (gap, index);
                     }
                     Gap::Open(_) => {}
                 }
             }
-            here = next;
+            let last = std::mem::replace(&mut here, next);
+            approach.go_on(last, &here);
         }
+        self.approaches[index] = approach;
         Ok(None)
     }
 
@@ -257,7 +320,7 @@ impl<'a> Watch<'a> {
     /// of part and drive surface at rest.
     fn parallel(
         &self,
-        &Stretch { index, from, to, is_positive }: &Stretch<'_>,
+        &Stretch { index, from, to, slope }: &Stretch<'_>,
         shift: [f64; 2],
     ) -> Result<Vertex, MotionFailure> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
@@ -276,20 +339,43 @@ impl<'a> Watch<'a> {
             })?;
             Vertex::at(self.prepared, solved.tip, &from.tangent)
         };
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..MAX_ITERATIONS {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
+        let slope_at = |share: f64| self.slope(index, &at(share)?);
+        let place = match slope {
+            Slope::Changes { is_positive } => {
+                bisected([0.0, 1.0], |x| Ok((slope_at(x)? > 0.0) == is_positive))?
             }
-            if (self.slope(index, &at(middle)?)? > 0.0) == is_positive {
-                low = middle;
-            } else {
-                high = middle;
+            Slope::Touches => {
+                graze::least([0.0, 1.0], &|x| Some(slope_at(x).ok()?.abs())).map_or(0.5, |(place, _)| place)
             }
+        };
+        // A flat bottom may be tangent to a surface all along a stretch of the path: then in the middle of it.
+        let is_parallel = |x: f64| Ok(slope_at(x)?.abs() <= PARALLEL);
+        if !is_parallel(place)? {
+            return at(place);
         }
-        at(0.5 * (low + high))
+        let begin = bisected([0.0, place], |x| Ok(!is_parallel(x)?))?;
+        let end = bisected([place, 1.0], is_parallel)?;
+        at(0.5 * (begin + end))
     }
+}
+
+/// Where a condition that holds at the begin of a stretch ceases to, once.
+fn bisected(
+    [mut low, mut high]: [f64; 2],
+    holds: impl Fn(f64) -> Result<bool, MotionFailure>,
+) -> Result<f64, MotionFailure> {
+    for _ in 0..MAX_ITERATIONS {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if holds(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(0.5 * (low + high))
 }
 
 /// Contact with the check surface on the side where the tool touches it more nearly.
