@@ -8,11 +8,13 @@
 mod bounds;
 mod tree;
 
+use std::sync::{Arc, OnceLock};
+
 use nalgebra::Matrix3;
 
 use self::tree::{halved, joined};
 use super::{
-    Chart, Foot, Place,
+    Chart, Foot, Place, Surface,
     apart::{Apart, Away},
     descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
@@ -75,11 +77,15 @@ pub struct PolyConicSheet {
     /// Ranges of the conic parameter and of the station parameter.
     limits: [[f64; 2]; 2],
     /// A complete binary tree: node `k` has children `2k+1` and `2k+2`; empty nodes have a radius below zero.
-    cells: Vec<Cell>,
+    cells: Arc<Vec<Cell>>,
     size: f64,
     curvature: f64,
     /// Parts with bounds.
     parts: Count,
+    /// The side that what is beyond the end counts for, as a tool on that side meets the surface; otherwise that of the tangent plane.
+    beyond: Option<f64>,
+    /// What a tool meets on either side: first that of the natural normal. Made where it is asked for.
+    met: [OnceLock<Box<Surface>>; 2],
 }
 
 /// Both coordinates in a section plane.
@@ -141,7 +147,7 @@ impl PolyConicSheet {
         let terms = form.polynomials.map(|p| p.iter().rposition(|k| *k != 0.0).map_or(0, |last| last + 1));
         let (linear, origin) = (form.map.linear(), form.map.apply_point(&Vec3::zeros()));
         let sense = linear.determinant().signum();
-        let cells = Vec::new();
+        let cells = Arc::default();
         let mut sheet = Self {
             form,
             linear,
@@ -153,6 +159,8 @@ impl PolyConicSheet {
             size: 0.0,
             curvature: 0.0,
             parts: Count::default(),
+            beyond: None,
+            met: Default::default(),
         };
         sheet.grow();
         let finite = sheet.cells.iter().all(|c| c.center.iter().all(|x| x.is_finite()) && !c.radius.is_nan());
@@ -266,7 +274,7 @@ impl PolyConicSheet {
                 }
             }
         }
-        self.cells = nodes;
+        self.cells = Arc::new(nodes);
     }
 
     /// The nearest place to a point in the surface's own coordinates: squared distance and parameters.
@@ -347,7 +355,7 @@ impl PolyConicSheet {
             .natural(self.size)
             .or_else(|| self.jet(inner[0], inner[1]).natural(1e-7 * self.size))
             .unwrap_or_else(|| jet.du.try_normalize(0.0).map_or_else(Vec3::x, |du| perpendicular(&du)));
-        Landing { foot: jet.foot(p, rest, &natural, self.size), jet, rest }
+        Landing { foot: jet.foot(p, rest, (&natural, self.beyond), self.size), jet, rest }
     }
 
     /// From the surface's own coordinates, with its thickness.
@@ -366,6 +374,14 @@ impl PolyConicSheet {
         let linear = self.form.map.linear();
         let hessian = linear.tr_mul(&(hessian * linear));
         (self.outside(p, &own), hessian)
+    }
+
+    /// The surface as a tool on a side meets it: what is beyond the end is not behind it.
+    pub(super) fn met_from(&self, side: f64) -> &Surface {
+        self.met[usize::from(side < 0.0)].get_or_init(|| {
+            let sheet = Self { beyond: Some(side), met: Default::default(), ..self.clone() };
+            Box::new(Surface::PolyConic(Arc::new(sheet)))
+        })
     }
 
     /// Whether the nearest place lies at an end of a conic or of the stations.

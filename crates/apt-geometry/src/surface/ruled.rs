@@ -428,7 +428,7 @@ impl RuledSheet {
             (true, true) => Rest::Corner,
         };
         let natural = self.natural(&nearest, v, &jet);
-        Landing { foot: jet.foot(p, rest, &natural, self.size), jet, rest }
+        Landing { foot: jet.foot(p, rest, (&natural, None), self.size), jet, rest }
     }
 
     /// On a sharp bend of the curves the nearest ruling stays the same, too.

@@ -262,7 +262,7 @@ impl SculpturedSheet {
         };
         // At an edge of the surface the side is that of both its patches.
         let sensed = if held == [false; 2] { natural } else { facing.try_normalize(0.0).unwrap_or(natural) };
-        Landing { foot: jet.foot(p, rest, &sensed, self.size), jet, rest }
+        Landing { foot: jet.foot(p, rest, (&sensed, None), self.size), jet, rest }
     }
 
     /// The natural normal at a place; where the patch has none that a little way inside.

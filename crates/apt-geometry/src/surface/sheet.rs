@@ -71,8 +71,15 @@ impl Jet {
         (sine > SINGULAR).then(|| normal / sine)
     }
 
-    /// The foot of `p` if this is its nearest place; `natural` is the natural normal here, `size` that of the surface.
-    pub(super) fn foot(&self, p: &Vec3, rest: Rest, natural: &Vec3, size: f64) -> Foot {
+    /// The foot of `p` if this is its nearest place; `natural` is the natural normal here, `size` that of the surface. Beyond an edge
+    /// the distance has the sign of `beyond`, else that of the tangent plane.
+    pub(super) fn foot(
+        &self,
+        p: &Vec3,
+        rest: Rest,
+        (natural, beyond): (&Vec3, Option<f64>),
+        size: f64,
+    ) -> Foot {
         let offset = p - self.point;
         let height = offset.dot(natural);
         let length = offset.norm();
@@ -80,7 +87,7 @@ impl Jet {
         if rest == Rest::Inside || length <= ON_SURFACE * size || height.abs() >= length * (1.0 - 1e-9) {
             return Foot { distance: height, point: p - natural * height, normal: *natural };
         }
-        let distance = length.copysign(height);
+        let distance = length.copysign(beyond.unwrap_or(height));
         Foot { distance, point: self.point, normal: offset / distance }
     }
 

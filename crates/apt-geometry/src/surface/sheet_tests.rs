@@ -287,6 +287,30 @@ fn a_surface_ends_where_it_is_left_and_nowhere_else() {
     assert!(![plane(Vec3::z(), 0.0), circle(0.0, 0.0, 2.0)].iter().any(|g| surface(g).has_ends()));
 }
 
+#[test]
+fn what_is_beyond_the_end_of_a_polyconic_surface_is_behind_it_for_no_tool() {
+    let tube = surface(&tube(0.0));
+    let middle = exact(3, 0.45, 0.4);
+    let normal = tube.foot(&middle).normal;
+    let across = perpendicular(&normal);
+    for side in [1.0, -1.0] {
+        let met = tube.met_from(side, &Vec3::z());
+        for height in [0.3, -0.3] {
+            let beside = middle + normal * height;
+            assert_eq!(met.foot(&beside), tube.foot(&beside));
+            for k in 0..12 {
+                let (sine, cosine) = (f64::from(k) * std::f64::consts::PI / 6.0).sin_cos();
+                let beyond = beside + (across * cosine + normal.cross(&across) * sine) * 300.0;
+                let (found, bare) = (met.foot(&beyond), tube.foot(&beyond));
+                assert!((found.distance - side * bare.distance.abs()).abs() < 1e-12 * bare.distance.abs());
+                assert_eq!(found.point, bare.point);
+                let gradient = (met.signed_distance(&(beyond + found.normal)) - found.distance - 1.0).abs();
+                assert!(gradient < 1e-9, "{k}: {gradient}");
+            }
+        }
+    }
+}
+
 fn moved(geometry: &Geometry, matrix: &Matrix) -> Surface {
     surface(&geometry.transform(matrix).expect("a rigid motion"))
 }

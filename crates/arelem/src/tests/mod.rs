@@ -3,6 +3,7 @@
 mod axis_modes;
 mod bends;
 mod beside_ends;
+mod beyond_ends;
 mod closed_paths;
 mod corners;
 mod corpus_plane;

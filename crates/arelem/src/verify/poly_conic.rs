@@ -36,6 +36,9 @@ const INWARD: f64 = 1e-5;
 /// Sine of the angle between both directions on the surface, and length relative to its size, that is rounding.
 const SINGULAR: f64 = 1e-11;
 
+/// Parameter of a patch next to its side at which a place is there.
+const AT_SIDE: f64 = 1e-7;
+
 /// Ranges of both parameters: along the conic, from conic to conic.
 type Rectangle = [[f64; 2]; 2];
 
@@ -399,5 +402,13 @@ impl ConicStrips {
         let conics = &self.form.conics;
         let normal = conics.sure_normal(t, s, self.size)?;
         Some(conics.form.map.linear().tr_mul(&normal))
+    }
+
+    /// Whether a place is where the surface ends.
+    pub(super) fn ends_at(&self, touch: &Touch) -> bool {
+        let Some(patch) = self.sheet.patches.get(touch.piece) else { return false };
+        let Touch { along, across, .. } = *touch;
+        let at = [along <= AT_SIDE, along >= 1.0 - AT_SIDE, across <= AT_SIDE, across >= 1.0 - AT_SIDE];
+        at.into_iter().zip(patch.edges.sides).any(|(is_there, is_end)| is_there && is_end)
     }
 }

@@ -155,6 +155,14 @@ impl Ruled {
         }
     }
 
+    /// Whether the surface ends at a place, so that what is beyond is on neither side of it.
+    fn ends_at(&self, touch: &Touch) -> bool {
+        match self {
+            Self::Conics(surface) => surface.ends_at(touch),
+            Self::Parallel(_) | Self::Joining(_) | Self::Sculptured(_) => false,
+        }
+    }
+
     /// How far the patches may be off the surface, also where they go on beyond its curves, as far as that matters to a tool that
     /// is as far away as `value`.
     fn error_near(&self, tip: &Vec3, tool: &Tool<'_>, value: f64) -> f64 {
@@ -192,11 +200,16 @@ fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(
 
 /// Signed distance of a point along the natural normal; None beyond the end of a curve.
 pub(super) fn point(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<Reading> {
+    Some(seen_from(surface, x, patience)?.0)
+}
+
+/// The same, and whether the point is beyond the end of the surface, where the sign says nothing.
+fn seen_from(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(Reading, bool)> {
     let profile = Profile::tool_end();
     let axis = surface.axis().unwrap_or_else(Vec3::z);
     let tool = Tool { profile: &profile, axis, patience, depth: 0.0 };
     if let Some(found) = surface.followed(1.0, x, &tool) {
-        return Some(found);
+        return Some((found, false));
     }
     let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
@@ -207,9 +220,9 @@ pub(super) fn point(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option
     let size = away.norm();
     if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) {
         let normal = away * (height.signum() / size);
-        return Some(Reading { value: size.copysign(height), normal, error });
+        return Some((Reading { value: size.copysign(height), normal, error }, surface.ends_at(&touch)));
     }
-    Some(Reading { value: height, normal: natural, error })
+    Some((Reading { value: height, normal: natural, error }, false))
 }
 
 struct Bodies<'a> {
@@ -308,7 +321,10 @@ impl<'a> Bodies<'a> {
 
     /// Whether the tool is on its side of the surface where it is nearest.
     fn is_on_side(&self, touch: &Touch) -> Option<bool> {
-        Some(self.side * touch.outward.dot(&self.surface.natural(touch)?) <= 0.0)
+        Some(
+            self.surface.ends_at(touch)
+                || self.side * touch.outward.dot(&self.surface.natural(touch)?) <= 0.0,
+        )
     }
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
@@ -369,10 +385,11 @@ impl<'a> Bodies<'a> {
         edges
     }
 
-    /// Depth of a place under the surface, and the direction out.
+    /// Depth of a place under the surface, and the direction out. What is beyond the end is not under it.
     fn depth(&self, x: &Vec3) -> Option<(f64, Vec3)> {
-        let (distance, normal) = point_distance(self.surface, x, self.tool.patience)?;
-        Some((-self.side * distance, normal * self.side))
+        let (Reading { value, normal, .. }, is_beyond) = seen_from(self.surface, x, self.tool.patience)?;
+        let side = if is_beyond { value.signum() } else { self.side };
+        Some((-side * value, normal * side))
     }
 
     /// Deepest place of an edge circle under the surface, if it is deeper than `deepest`.

@@ -1,0 +1,155 @@
+//! Tools that are beside the end of a polyconic surface: what of a tool is beyond the end is not behind the surface.
+
+use apt_geometry::canonical::Remembering;
+
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
+
+/// A polyconic surface by its rigid motion and length, and by the first two coefficients of its polynomials.
+fn poly_conic(head: &[f64; 16], polynomials: [[f64; 2]; 7]) -> Geometry {
+    let mut values = head.to_vec();
+    for polynomial in polynomials {
+        values.extend(polynomial);
+        values.extend([0.0; 6]);
+    }
+    values.extend([0.0; 7]);
+    Geometry::PolyConic(Remembering::new(values))
+}
+
+/// One that ends beside a high tool, and bends away from there.
+fn shell() -> Geometry {
+    let round = 3.7566821282280904;
+    poly_conic(
+        &[
+            1.0,
+            0.02921619329367398,
+            -0.24394551279046692,
+            -0.9693487508832015,
+            9.40006974169691,
+            -0.39930594928453156,
+            -0.8918719709010567,
+            0.2124126794403858,
+            0.46924527912735325,
+            -0.9163521009499601,
+            0.3808608332586341,
+            -0.12346599845355442,
+            4.161005051339264,
+            0.0,
+            0.0,
+            6.000000000000002,
+        ],
+        [
+            [round, 0.06527544631681893],
+            [round, 0.05877881076108642],
+            [round, -0.022059215187959145],
+            [-round, 0.021520112426968555],
+            [-round, 0.07768809582069268],
+            [round, -0.027445536843174627],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.010604308951770676],
+        ],
+    )
+}
+
+const BALL: [f64; 2] = [0.5929879662113318, 0.2964939831056659];
+
+fn leaning() -> Vec3 {
+    v(0.10245858125864422, 0.2714036991444637, 0.9569964844330241)
+}
+
+/// In front of the surface, into it, and out of it on the other side: in each place some of the tool is beyond the end, as much as 1.4
+/// behind the tangent plane there.
+#[test]
+fn what_of_a_tool_is_beyond_the_end_of_a_surface_is_not_behind_it() {
+    let cutter = Cutter::from_numbers(&BALL, 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, leaning());
+    for (side, tip, least) in [
+        (1.0, v(-1.2043, -0.3235, 0.5394), 0.0888),
+        (1.0, v(-1.2446, -0.2798, 0.5313), 0.0414),
+        (-1.0, v(-2.0505, 0.5949, 0.3723), 0.0158),
+        (-1.0, v(-2.2116, 0.7700, 0.3410), 0.2285),
+    ] {
+        let role = Role {
+            surface: named(&shell()),
+            relation: Relation::To,
+            side,
+            inside_tolerance: 1.0,
+            outside_tolerance: 1.0,
+            thickness: 0.0,
+            disk: None,
+        };
+        let engine = gauge(&role).contact(&tool, &tip).clearance;
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: leaning() });
+        assert!((engine - least).abs() < 1e-3, "{tip:?}: {engine}, not {least}");
+        assert!((engine - verifier).abs() < 1e-7, "{tip:?}: {engine}, {verifier}");
+    }
+}
+
+/// Along the bottom of the tool the surface ends; there the tool leaves it.
+#[test]
+fn a_tool_stops_past_the_end_of_a_surface() {
+    let shell = poly_conic(
+        &[
+            1.0,
+            0.1067837976965222,
+            0.9933257382086963,
+            -0.04360273341955679,
+            -3.566774551432878,
+            0.9688570008067338,
+            -0.09409930228474059,
+            0.2290446098411962,
+            -0.660100445639172,
+            0.22341291936074112,
+            -0.06670306680860841,
+            -0.97243887640357,
+            5.887452076245796,
+            0.0,
+            0.0,
+            6.0,
+        ],
+        [
+            [2.5109117315275205, 0.013756258257117376],
+            [2.5109117315275205, 0.19994449471771247],
+            [2.5109117315275205, 0.1277166586958392],
+            [-2.5109117315275205, 0.19121505942924644],
+            [-2.5109117315275205, 0.1459023899621198],
+            [2.5109117315275205, 0.1257150966789542],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.041825560037774365],
+        ],
+    );
+    let hyperbola = [
+        0.14294803237427778,
+        0.02951607723704615,
+        0.0,
+        -1.2930157370646356,
+        0.0,
+        0.0,
+        0.14722873629732014,
+        -0.6492494555830008,
+        -0.03948967521443064,
+        0.0,
+    ];
+    let motion = Found {
+        cutter: &[1.0805933554767073],
+        axis: v(-0.24258331945227707, 0.9685677973732086, -0.05504321043621701),
+        from: v(1.2822935592512699, 1.8201369572770538, 0.7486995480952237),
+        band: [2e-5, 3e-5],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: Vec3::z(),
+        part: (
+            Relation::To,
+            Geometry::Line(Plane {
+                normal: v(0.44573115311138706, 0.8951668778199925, 0.0),
+                distance: 1.849041234808372,
+            }),
+        ),
+        drive: (Relation::To, Geometry::Hyperbola(Quadric { coefficients: hyperbola })),
+        first: (Relation::On, level(0.7486995480952237)),
+        stop: (Relation::Past, shell),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
+    assert!((end.z - 3.513).abs() < 1e-3, "{end:?}");
+}
