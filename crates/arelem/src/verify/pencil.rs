@@ -233,8 +233,7 @@ impl Pencil {
     }
 
     /// Clearance of a tool inside: the least distance that a tangent plane leaves; what sticks out through the vertex of a
-    /// cone is measured from the vertex. Branch and bound: on an arc of planes
-    /// `f(φ) ≤ λ₁f(φ₁) + λ₂f(φ₂) + (λ₁+λ₂−1)·sin α·max T·(p−V)`, because E(φ) = λ₁E₁ + λ₂E₂.
+    /// cone is measured from the vertex. Branch and bound on arcs of planes ([`Family`]).
     pub(super) fn inside(&self, tip: &Vec3, tool: &Tool<'_>) -> Found {
         let w = tip - self.origin;
         if self.sine <= 0.0 && tool.axis.cross(&self.axis).norm() <= 1e-14 {
@@ -253,13 +252,9 @@ impl Pencil {
             (n.dot(&w) + reach, self.normal_rate(phi).dot(&(w + p)))
         };
         let mut best = self.search(&plane, &w, &[]);
-        let ahead = if self.sine > 0.0 {
-            self.sine * (self.axis.dot(&w) + tool.support(&self.axis).0).max(0.0)
-        } else {
-            0.0
-        };
         let scale = w.norm() + tool.profile.reach() + self.radius;
-        let error = self.prove_crest(&plane, &mut best, ahead, 1e-12 * scale);
+        let family = Family { pencil: self, w: &w, tool };
+        let error = self.prove_crest(&family, &plane, &mut best, 1e-12 * scale);
         self.raise_by_poking(&w, tool, &mut best);
         Found { value: self.radius - best.value, normal: -best.normal, error: best.error + error }
     }
@@ -267,9 +262,9 @@ impl Pencil {
     /// Raises `best` to the global crest; gives how much above it the planes between the sampled ones could still reach.
     fn prove_crest(
         &self,
+        family: &Family<'_>,
         plane: &dyn Fn(f64) -> (f64, f64),
         best: &mut Found,
-        ahead: f64,
         slack: f64,
     ) -> f64 {
         let step = std::f64::consts::TAU / SECTORS as f64;
@@ -278,10 +273,14 @@ impl Pencil {
             let phi = step * k as f64;
             arcs.push((phi, plane(phi).0, step, plane(phi + step).0));
         }
+        let ahead = family.ahead(family.tool.support(&self.axis).0);
         let mut highest = f64::NEG_INFINITY;
         let mut budget = ARC_BUDGET;
         while let Some((phi, f1, width, f2)) = arcs.pop() {
-            let bound = arc_bound(f1, f2, width, ahead);
+            let mut bound = arc_bound(f1, f2, width, ahead);
+            if bound - best.value > slack {
+                bound = bound.min(family.by_circles([phi, phi + width]));
+            }
             if bound - best.value <= slack {
                 continue;
             }
@@ -300,14 +299,53 @@ impl Pencil {
     }
 }
 
-/// Upper bound of the family between two planes `width` apart with the values `f1`, `f2`.
+/// How far a tool goes in the directions of the normals: `f(φ) = max n(φ)·(p − V)` over its points p. On an arc of planes
+/// `f(φ) ≤ λ₁f(φ₁) + λ₂f(φ₂) + (λ₁+λ₂−1)·sin α·max T·(p − V)`, because E(φ) = λ₁E₁ + λ₂E₂.
+struct Family<'a> {
+    pencil: &'a Pencil,
+    /// The tool end from the origin of the pencil.
+    w: &'a Vec3,
+    tool: &'a Tool<'a>,
+}
+
+impl Family<'_> {
+    /// `sin α·max T·(p − V)` for points that go so far along the axis from the tool end.
+    fn ahead(&self, reach: f64) -> f64 {
+        self.pencil.sine * (self.pencil.axis.dot(self.w) + reach)
+    }
+
+    /// An upper bound on an arc by the circles about the tool axis, and the balls on them, in whose hull the tool is. By a middle
+    /// alone it is exact, and what a circle or a ball adds to that hardly changes where the axes are about parallel.
+    fn by_circles(&self, ends: [f64; 2]) -> f64 {
+        let Self { pencil, w, tool } = *self;
+        let normals = ends.map(|phi| pencil.normal(phi));
+        let width = ends[1] - ends[0];
+        let leans = normals.map(|n| n.dot(&tool.axis));
+        // A sinusoid, which between two places is beyond them by no more than an eighth of its second derivative.
+        let swing = pencil.cosine * pencil.axis.cross(&tool.axis).norm();
+        let least = leans[0].abs().min(leans[1].abs()) - 0.125 * swing * width * width;
+        let least = if leans[0] * leans[1] > 0.0 { least.max(0.0) } else { 0.0 };
+        let widest = (1.0 - least * least).max(0.0).sqrt();
+        let along = pencil.axis.dot(&tool.axis);
+        let edges = tool.profile.edges().map(|edge| (edge, 0.0));
+        let circles = edges.into_iter().chain([([0.0; 2], 0.0)]).chain(tool.profile.corner());
+        let bound = |([radius, height], ball): ([f64; 2], f64)| {
+            let middles = normals.map(|n| n.dot(w) + height * n.dot(&tool.axis));
+            arc_bound(middles[0], middles[1], width, self.ahead(along * height)) + radius * widest + ball
+        };
+        circles.map(bound).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Upper bound of the family between two planes `width` apart with the values `f1`, `f2`, by `ahead`.
 fn arc_bound(f1: f64, f2: f64, width: f64, ahead: f64) -> f64 {
-    // λ₁ = sin(width−x)/sin width, λ₂ = sin x/sin width: the greatest value of λ₁f1 + λ₂f2 over 0 ≤ x ≤ width.
+    // λ₁ = sin(width−x)/sin width, λ₂ = sin x/sin width: the greatest value of λ₁(f1 + a) + λ₂(f2 + a) − a over 0 ≤ x ≤ width.
+    let (f1, f2) = (f1 + ahead, f2 + ahead);
     let (s, c) = width.sin_cos();
     let quarter = (f2 - f1 * c) / s;
     let x = quarter.atan2(f1);
     let top = if (0.0..=width).contains(&x) { f1.hypot(quarter) } else { f1.max(f2) };
-    top + ahead * (1.0 / (0.5 * width).cos() - 1.0)
+    top - ahead
 }
 
 /// The zero of the derivative in a sector over which it changes from + to −: angle, value, width left.

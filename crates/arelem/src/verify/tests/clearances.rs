@@ -348,3 +348,21 @@ fn the_bend_beside_a_long_tool_is_that_of_the_places_beside_it() {
         assert!(all > 1e3 * bound, "{all}");
     }
 }
+
+/// Beside the axis of a hollow cone nearly the same is left all round: a ball that leans, and a round corner and a rim that do not.
+#[test]
+fn a_tool_that_touches_a_hollow_cone_all_round_is_measured_to_rounding() {
+    let hollow = cone([0.0; 3], UP, 60.0);
+    let (sine, cosine) = 60f64.to_radians().sin_cos();
+    for ([diameter, corner], lean) in [([0.6, 0.3], [-0.5, 0.6, 0.9]), ([0.8, 0.3], UP), ([0.8, 0.0], UP)] {
+        let tool = cutter(&[diameter, corner]);
+        let axis = Vec3::from(lean).normalize();
+        for aside in [0.0, 1e-9, 1e-6, 1e-3] {
+            let tip = Vec3::new(aside, 0.0, 2.0) - axis * corner;
+            let (value, _, error) = clearance(&tool, &hollow, -1.0, tip.into(), axis.into());
+            let exact = 2.0 * sine - (aside + 0.5 * diameter - corner) * cosine - corner;
+            assert!((value - exact).abs() < 1e-9, "{aside}: {value}, not {exact}");
+            assert!(error < 1e-9, "{aside}: {error}");
+        }
+    }
+}
