@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Crease, Surface},
+    surface::{Away, Crease, Surface},
 };
 
 use super::{Contact, Memory, Tool, search::MISSED};
@@ -149,16 +149,17 @@ pub(super) fn clears(
     let start = from + away * (-level).max(0.0);
     let way = to - from;
     let close = CLOSE * (tool.reach() + way.norm());
-    let distance = |place: &Vec3| nearest_on_way(tool, &(place - start), &way, close);
+    let body = |place: &Vec3| outward(tool, place);
+    let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     surface.keeps_apart_within(&distance, level.max(0.0), MOST_LOOKS).is_some()
 }
 
-/// A bound from below of the distance of a place from the tool on its way, given from the tool's end at the beginning, and the
-/// direction in which it grows: with any position of the tool the tangent plane there bounds the distances from all others.
-fn nearest_on_way(tool: &Tool, place: &Vec3, way: &Vec3, close: f64) -> (f64, Vec3) {
+/// A bound from below of the distance of a place from a convex body on its way, given from the body's place at the beginning, and the
+/// direction in which it grows: with any position of the body the tangent plane there bounds the distances from all others.
+pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: f64) -> (f64, Vec3) {
     let square = way.norm_squared();
     let bound = |share: f64| {
-        let (distance, out) = outward(tool, &(place - way * share));
+        let (distance, out) = body(&(place - way * share));
         let slope = out.dot(way);
         // Along the way the distance falls by no more than this.
         let lost = ((1.0 - share) * slope).max(-share * slope);

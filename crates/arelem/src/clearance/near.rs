@@ -21,7 +21,7 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::Around;
-use self::held::Held;
+use self::held::{Held, Rest};
 use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
@@ -39,26 +39,35 @@ const MAX_PIECES: u32 = 4;
 /// Shares of the size of the tool and of the coordinates that are rounding of a distance.
 const ROUNDING: f64 = 1e-12;
 const COORDINATES: f64 = 1e-14;
-/// Sizes of a steady ball that are tried: how far the tool may move in it, and how much of the flank it holds above the
-/// corner; in radii of the tool.
-const BALLS: [[f64; 2]; 6] =
-    [[0.8, f64::INFINITY], [0.8, 1.0], [0.8, 0.3], [0.3, 0.3], [0.1, 0.1], [0.03, 0.05]];
-/// The same about a contact on the flank: how much of the tool it holds to either side of that, and whether all around or in front
-/// alone.
-const FLANK_BALLS: [([f64; 2], bool); 6] = [
-    ([0.8, f64::INFINITY], false),
-    ([0.8, 2.0], false),
-    ([0.8, 1.0], false),
-    ([0.3, 1.0], true),
-    ([0.1, 0.7], true),
-    ([0.1, 0.4], true),
+/// Sizes of a steady ball that are tried about a contact on the bottom or the corner. Where a surface ends beside the tool, or turns
+/// away, only small balls are steady, which hold what of the tool is near the contact.
+const BALLS: [Size; 9] = [
+    Size::all(0.8, f64::INFINITY),
+    Size::all(0.8, 1.0),
+    Size::all(0.8, 0.3),
+    Size::all(0.3, 0.3),
+    Size::all(0.1, 0.1),
+    Size::all(0.03, 0.05),
+    Size { ease: 0.1, beyond: 0.3, depth: 0.3 },
+    Size { ease: 0.05, beyond: 0.1, depth: 0.1 },
+    Size { ease: 0.03, beyond: 0.05, depth: 0.03 },
 ];
-/// Cosine and sine of the angle up to which azimuths of the flank are in front.
-const FRONT: [f64; 2] = [std::f64::consts::FRAC_1_SQRT_2; 2];
-/// Cosine and sine of the angle (30°) beyond which what is behind is shown to be far.
-const BACK: [f64; 2] = [0.866_025_403_784_438_6, 0.5];
-/// Cosine of the angles (15°) by which the contact and one front may turn from another.
-const SAME_FRONT: f64 = 0.965_925_826_289_068_3;
+/// The same about a contact on the flank.
+const FLANK_BALLS: [Size; 9] = [
+    Size::all(0.8, f64::INFINITY),
+    Size::all(0.8, 2.0),
+    Size::all(0.8, 1.0),
+    Size { ease: 0.3, beyond: 1.0, depth: 0.3 },
+    Size { ease: 0.1, beyond: 0.7, depth: 0.3 },
+    Size { ease: 0.1, beyond: 0.4, depth: 0.3 },
+    Size { ease: 0.1, beyond: 0.3, depth: 0.1 },
+    Size { ease: 0.05, beyond: 0.2, depth: 0.05 },
+    Size { ease: 0.03, beyond: 0.1, depth: 0.03 },
+];
+/// How far from the surface what is held about a contact is expected to be, in depths of it behind the contact.
+const SUNK: f64 = 1.5;
+/// Share of how far a contact was before what is held no more that another one is to be there.
+const AMID: f64 = 0.75;
 /// Share of what a ball holds to either side of a contact on the flank that is to be left there.
 const BESIDE: f64 = 0.25;
 /// Share of the distance that the tool may move in a ball by which it lies ahead.
@@ -72,7 +81,7 @@ const SLENDER: f64 = 0.05;
 /// Shares of the radius by which the flank is first shown to be farther away than contact, and then less.
 const FAR: [f64; 4] = [0.5, 0.25, 0.1, 0.02];
 /// The same where the sizes of the surface's parts show it, which gives as much more as they do.
-const APART: [f64; 3] = [0.1, 0.02, 0.005];
+const APART: [f64; 4] = [0.1, 0.02, 0.005, 0.001];
 /// Share of the radius that is to be left of that above the level of the contact, or the tool may have moved since.
 const RESERVE: f64 = 0.04;
 /// How much deeper than at first the tool may come to lie in a steady ball.
@@ -133,6 +142,24 @@ struct Doubts {
     without_reserve: Option<Vec3>,
 }
 
+/// Size of a steady ball, in radii of the tool.
+#[derive(Debug, Clone, Copy)]
+struct Size {
+    /// How far the tool may move in it.
+    ease: f64,
+    /// How much of the flank it holds: above the corner, or to either side of a contact there.
+    beyond: f64,
+    /// How much of that behind the contact.
+    depth: f64,
+}
+
+impl Size {
+    /// That holds all the way through the tool.
+    const fn all(ease: f64, beyond: f64) -> Self {
+        Self { ease, beyond, depth: f64::INFINITY }
+    }
+}
+
 /// A steady ball, and what of the tool is to lie in it.
 #[derive(Debug, Clone, Copy)]
 struct Zone {
@@ -144,6 +171,9 @@ struct Zone {
     /// Which of the sizes it has.
     size: usize,
     steady: Steady,
+    /// The tool end where it was made, and what was held was no farther from the surface.
+    tip: Vec3,
+    deepest: f64,
 }
 
 /// An end of the tool, beyond what a ball holds.
@@ -153,19 +183,17 @@ enum End {
     Above(f64),
     /// All below a height of the flank.
     Below(f64),
-    /// What of the flank between two heights does not look to a direction.
-    Behind([f64; 2], Vec3),
+    /// What is not held about a contact on the other side of a part.
+    Behind(Rest),
 }
 
 impl End {
-    /// Whether another one is part of it.
-    fn has(self, other: Self) -> bool {
+    /// Whether another one is part of it, in a position of the tool.
+    fn has(self, other: Self, pose: &Pose<'_>) -> bool {
         match (self, other) {
             (Self::Above(own), Self::Above(from)) => own <= from,
             (Self::Below(own), Self::Below(to)) => own >= to,
-            (Self::Behind(own, front), Self::Behind(other, direction)) => {
-                own[0] <= other[0] && own[1] >= other[1] && front.dot(&direction) >= SAME_FRONT
-            }
+            (Self::Behind(own), Self::Behind(other)) => pose.is_behind(&other, &own),
             _ => false,
         }
     }
@@ -174,7 +202,7 @@ impl End {
         match self {
             Self::Above(_) => 0,
             Self::Below(_) => 1,
-            Self::Behind(..) => 2,
+            Self::Behind(_) => 2,
         }
     }
 }
@@ -339,7 +367,7 @@ impl Contacts {
 
     /// What is known of an end of the tool, as far as it serves a place of the tool best.
     fn far(&self, pose: &Pose<'_>, end: End) -> Option<Far> {
-        let here = self.far.iter().filter(|known| known.side == pose.side && known.end.has(end));
+        let here = self.far.iter().filter(|known| known.side == pose.side && known.end.has(end, pose));
         here.max_by(|a, b| a.left(pose).total_cmp(&b.left(pose))).copied()
     }
 }
@@ -426,17 +454,18 @@ impl Near {
             }
         }
         let Ok(zone) = &self.zone else { return false };
-        pose.is_in(zone, found) && found.contact.clearance + found.circle.ball >= -zone.steady.beyond
+        pose.is_in(zone, found)
+            && found.contact.clearance + zone.held.ball(found.circle.ball) >= -zone.steady.beyond
     }
 
     /// Whether a slanted bottom and the corner, or what of the tool is held about a contact on its flank, keep a level as they would from
     /// a cylinder.
     fn lies_in_trough(&mut self, pose: &Pose<'_>, contact: &Contact, held: Option<Held>, level: f64) -> bool {
-        let Ok(Zone { steady, .. }) = self.zone else { return false };
+        let Ok(Zone { steady, held: all, .. }) = self.zone else { return false };
         if held.is_none() && pose.tool.profile.lower.height <= 0.0 {
             return false;
         }
-        let grounds = Grounds { steady, level, stray: 0.0, held };
+        let grounds = Grounds { steady, level, stray: 0.0, held: all, is_flank: held.is_some() };
         let kept = self.bends.as_ref().is_ok_and(|bends| bends.hold(pose, contact, &grounds));
         let patient = |tried: &Vec3| (pose.tip - tried).norm() <= PATIENCE * pose.scale();
         if !kept && !self.bends.as_ref().is_err_and(patient) {
@@ -450,7 +479,7 @@ impl Near {
 
     /// Whether an end of the tool is not nearer than a level.
     fn is_alone(&mut self, pose: &Pose<'_>, end: End, level: f64, far: &mut Vec<Far>) -> bool {
-        let keeps = |far: &Far| far.end.has(end) && far.left(pose) >= level;
+        let keeps = |far: &Far| far.end.has(end, pose) && far.left(pose) >= level;
         let serves = |far: &Far| keeps(far) && far.has_reserve(pose, level);
         if let Some(known) = far.iter().position(serves) {
             far[..=known].rotate_right(1);
@@ -464,6 +493,10 @@ impl Near {
         if patient(if kept { &doubts.without_reserve } else { &doubts.doubtful }) {
             return kept;
         }
+        let end = match end {
+            End::Behind(rest) => End::Behind(rest.wider()),
+            _ => end,
+        };
         let shown = APART.iter().find_map(|share| pose.apart_of(end, level.abs() + share * pose.scale()));
         let shown = match end {
             End::Above(from) if shown.is_none() && !kept => self.shown_far(pose, from, level),
@@ -509,10 +542,10 @@ impl Near {
 impl Zone {
     /// The ends of the tool beyond it: above, below, and behind.
     fn ends(&self, pose: &Pose<'_>) -> [Option<End>; 3] {
-        let Held { low, top, front, .. } = self.held;
+        let Held { low, top, cap, .. } = self.held;
         let above = (top < pose.tool.profile.top.height).then_some(End::Above(top));
         let below = (low > 0.0).then_some(End::Below(low));
-        [above, below, front.map(|front| End::Behind([low, top], front))]
+        [above, below, cap.map(|cap| End::Behind(cap.rest))]
     }
 }
 

@@ -158,6 +158,7 @@ impl<'a> March<'a> {
             if cancel() {
                 return Err(MotionFailure::Cancelled);
             }
+            self.look_for_end_beside(&here, cancel)?;
             let advanced = self.stepper.advance(&mut here, cap);
             let mut next = advanced.map_err(|failure| self.explained(&here, failure))?;
             let mut before = self.snapshot(&here);

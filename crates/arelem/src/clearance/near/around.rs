@@ -13,6 +13,9 @@ use crate::clearance::{Contact, Gauge, Tool, memory::Memory};
 /// Distances from a contact, in radii of the tool, from which on the ends of the tool are tried for being far.
 const ENDS: [f64; 3] = [1.0, 2.0, 4.0];
 
+/// Distance from the ends of the tool, in radii of it, beyond which a level is told to be kept.
+const BARELY: f64 = 1e-6;
+
 /// What is known about a contact in a steady ball.
 #[derive(Clone)]
 struct Known {
@@ -100,22 +103,28 @@ impl<'a> Around<'a> {
         let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
         let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
         let ball = if on_corner { profile.arc } else { 0.0 };
-        let place = contact.tool + contact.gradient * ball;
-        if (place - zone.center).norm() > zone.radius || contact.clearance + ball > zone.depth {
+        let held_ball = zone.held.ball(ball);
+        let place = contact.tool + contact.gradient * held_ball;
+        if (place - zone.center).norm() > zone.radius || contact.clearance + held_ball > zone.depth {
             return false;
         }
-        let kept = |tip: &Vec3| {
-            let pose = Pose { tip, ..self.pose };
-            let mut ends = ends.iter().zip(far).filter(|(end, _)| end.is_some());
-            let apart = ends.all(|(_, far)| far.is_some_and(|far| far.left(&pose) >= level));
-            apart && pose.stays_in(zone, &contact.surface, 0.0)
+        let kept = |tip: &Vec3| Pose { tip, ..self.pose }.stays_in(zone, &contact.surface, 0.0);
+        let [from, to] = way;
+        let start = Pose { tip: from, ..self.pose };
+        let is_far =
+            |far: &Far| [from, to].into_iter().all(|tip| far.left(&Pose { tip, ..self.pose }) >= level);
+        let is_apart = |(end, far): (&Option<End>, &Option<Far>)| {
+            far.as_ref().is_some_and(is_far)
+                || end
+                    .is_none_or(|end| start.is_apart_on_way(end, to, level.max(0.0) + BARELY * start.scale()))
         };
         let flank = |tip: &Vec3| Pose { tip, ..self.pose }.flank_keeps(contact, zone, level);
         let by_ball = |tip: &Vec3| Pose { tip, ..self.pose }.bottom_keeps(contact, ball, zone, level);
         let held = Pose { tip: way[0], ..self.pose }.on_flank(contact).map(|_| zone.held);
         let by_cylinder = || {
             let bends = bends.as_ref().filter(|_| held.is_some() || profile.lower.height > 0.0);
-            let grounds = Grounds { steady: zone.steady, level, stray: (way[1] - way[0]).norm(), held };
+            let (stray, is_flank) = ((way[1] - way[0]).norm(), held.is_some());
+            let grounds = Grounds { steady: zone.steady, level, stray, held: zone.held, is_flank };
             let mut across = *across;
             let kept = bends.is_some_and(|bends| {
                 way.into_iter().all(|tip| {
@@ -132,9 +141,10 @@ impl<'a> Around<'a> {
             kept
         };
         let flank = way.into_iter().all(flank);
-        contact.clearance + ball >= -zone.steady.beyond
+        contact.clearance + held_ball >= -zone.steady.beyond
             && way.into_iter().all(kept)
             && (flank && way.into_iter().all(by_ball) || (flank || held.is_some()) && by_cylinder())
+            && ends.iter().zip(far).all(is_apart)
     }
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point in contact that goes a straight way in the

@@ -67,13 +67,21 @@ pub(super) struct Trough {
 }
 
 /// What is known of a contact: the steady ball that it and the tool are in, the level that is asked about, how far the tool end
-/// strays, and what of the tool is held in the ball about a contact on its flank.
+/// strays, what of the tool is held in the ball, and whether the contact is on its flank.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grounds {
     pub(super) steady: Steady,
     pub(super) level: f64,
     pub(super) stray: f64,
-    pub(super) held: Option<Held>,
+    pub(super) held: Held,
+    pub(super) is_flank: bool,
+}
+
+impl Grounds {
+    /// What of the tool is held about a contact on its flank.
+    fn flank(&self) -> Option<Held> {
+        self.is_flank.then_some(self.held)
+    }
 }
 
 impl Bends {
@@ -119,9 +127,9 @@ impl Bends {
         let gradient = &contact.gradient;
         let [c, s] = pose.facing(gradient);
         let radial = across[0] * c + across[1] * s;
-        let [wider, higher] = match grounds.held {
-            Some(_) => [profile.top.radius - profile.upper.radius, profile.top.height - profile.upper.height],
-            None => [profile.lower.radius, profile.lower.height],
+        let [wider, higher] = match grounds.is_flank {
+            true => [profile.top.radius - profile.upper.radius, profile.top.height - profile.upper.height],
+            false => [profile.lower.radius, profile.lower.height],
         };
         let way = radial * wider + axis * higher;
         let along = (way - gradient * gradient.dot(&way)).try_normalize(0.0)?;
@@ -134,7 +142,7 @@ impl Bends {
 
 impl Pose<'_> {
     /// The circles of balls that hold the bottom of the tool and its corner, or what of the tool is held about a contact on its flank.
-    fn rims(&self, held: Option<Held>) -> impl Iterator<Item = Circle> + use<> {
+    pub(super) fn rims(&self, held: Option<Held>) -> impl Iterator<Item = Circle> + use<> {
         let profile = &self.tool.profile;
         let circle = |radius: f64, height: f64| Circle { radius, height, ball: 0.0 };
         let corner = match profile.arc > 0.0 {
@@ -143,9 +151,10 @@ impl Pose<'_> {
         };
         let bottom = [circle(0.0, 0.0), circle(profile.lower.radius, profile.lower.height), corner];
         let on_flank = |height: f64| circle(self.flank_radius(height), height);
-        let low = held.map(|held| held.low).filter(|low| *low > 0.0);
+        let low = held.map(|held| held.heights()[0]).filter(|low| *low > profile.upper.height);
         let bottom = if low.is_some() { [None; 3] } else { bottom.map(Some) };
-        let flank = [low.map(on_flank), held.map(|held| on_flank(held.top))];
+        let flank =
+            [low.map(on_flank), held.map(|held| on_flank(held.heights()[1].max(profile.upper.height)))];
         bottom.into_iter().chain(flank).flatten()
     }
 
@@ -158,12 +167,12 @@ impl Pose<'_> {
         let rising = gradient.dot(&(self.tip - point));
         let lift = gradient.dot(&self.tool.axis);
         let (mut highest, mut farthest) = (f64::NEG_INFINITY, 0.0_f64);
-        for Circle { radius, height, ball } in self.rims(grounds.held) {
+        for Circle { radius, height, ball } in self.rims(grounds.flank()) {
             highest = highest.max(rising + lift * height + radius * aside + ball);
             farthest = farthest.max((height - along).hypot(beside + radius) + ball);
         }
-        if let Some(held) = grounds.held.filter(|held| held.front.is_some()) {
-            farthest = farthest.min(self.farthest_from(&held, point));
+        if grounds.held.cap.is_some() {
+            farthest = farthest.min(self.farthest_from(&grounds.held, point));
         }
         let farthest = farthest + grounds.stray;
         // Beside an edge that stands out there is no bound, but the distance rises by no more than the way.
@@ -204,13 +213,13 @@ impl Pose<'_> {
         let profile = &self.tool.profile;
         let edge = |radius: f64, height: f64| self.trough_floor(contact, trough, [radius, height]) >= level;
         let flank = |held: Held| {
-            let ends = [held.low.max(profile.upper.height), held.top];
+            let ends = held.heights().map(|height| height.max(profile.upper.height));
             ends.into_iter().all(|height| edge(self.flank_radius(height), height))
         };
         if !held.is_none_or(flank) {
             return false;
         }
-        held.is_some_and(|held| held.low > 0.0)
+        held.is_some_and(|held| held.heights()[0] > profile.upper.height)
             || edge(0.0, 0.0)
                 && edge(profile.lower.radius, profile.lower.height)
                 && (profile.arc <= 0.0 || self.arcs_keep(&edge))
@@ -257,7 +266,13 @@ mod tests {
         let Some(known) = known.at(&pose, 0.0) else { return Vec::new() };
         let Some(contact) = known.touch(&pose).map(|touch| touch.contact) else { return Vec::new() };
         let (Ok(zone), Ok(bends)) = (&known.zone, &known.bends) else { return Vec::new() };
-        let grounds = Grounds { steady: zone.steady, level: contact.clearance, stray: 0.0, held: None };
+        let grounds = Grounds {
+            steady: zone.steady,
+            level: contact.clearance,
+            stray: 0.0,
+            held: zone.held,
+            is_flank: false,
+        };
         let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut Acrosses::default()) else {
             return Vec::new();
         };

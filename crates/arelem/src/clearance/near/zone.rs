@@ -1,11 +1,11 @@
 //! What proves a contact: balls about the tool in which the distance is bounded by its tangent, and balls along the flank
 //! that keep off the surface.
 
-use apt_geometry::{Vec3, cutter::Profile};
+use apt_geometry::{Vec3, cutter::Profile, surface::Steady};
 
 use super::{
-    AHEAD, BALLS, BESIDE, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose,
-    SAME_FRONT, SHORTEST, Touch, WIDEST_ARC, Zone,
+    AHEAD, AMID, BALLS, BESIDE, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose,
+    SHORTEST, SUNK, Size, Touch, WIDEST_ARC, Zone,
 };
 use crate::clearance::{Contact, waves::length};
 
@@ -23,25 +23,43 @@ impl Pose<'_> {
                 let depth = found.contact.clearance.max(0.0) + radius;
                 let steady = surface.steady(side, &center, [radius, depth])?;
                 let held = Held::POINT;
-                Some(Zone { center, radius, depth, held, size: 0, steady })
+                Some(Zone { center, radius, depth, held, size: 0, steady, tip: *self.tip, deepest: depth })
             });
         }
         // What was too large near by is so again, but perhaps for the one size next to that.
         let first = last.as_ref().map_or(0, |last| last.size.saturating_sub(1));
         let on_flank = self.on_flank(&found.contact).is_some();
-        let sizes = if on_flank { FLANK_BALLS } else { BALLS.map(|size| (size, false)) };
-        sizes.iter().enumerate().skip(first).find_map(|(size, ([ease, beyond], front))| {
-            let held = self.held(&found.contact, beyond * scale, *front);
-            let (middle, half) = (self.middle(&held), held.half);
+        let sizes = if on_flank { FLANK_BALLS } else { BALLS };
+        sizes.iter().enumerate().skip(first).find_map(|(size, Size { ease, beyond, depth })| {
+            let held = self.held(&found.contact, beyond * scale, depth * scale);
+            let (middle, half) = (self.middle(&held), self.half(&held));
             let away = (middle - found.contact.surface).norm();
-            let (radius, depth) = (half.max(away) + ease * scale, DEEPER * (away + half));
+            let (radius, depth) = match held.cap {
+                Some(_) => (
+                    half + ease * scale,
+                    found.contact.clearance.max(0.0) + SUNK * depth * scale + 2.0 * ease * scale,
+                ),
+                None => (half.max(away) + ease * scale, DEEPER * (away + half)),
+            };
             // Ahead on the way from the last one, as far as the tool and the contact remain in it.
             let way = last.as_ref().map_or(Vec3::zeros(), |last| self.middle(&last.held) - last.center);
             let ahead = way.try_normalize(0.0).map_or(Vec3::zeros(), |way| way * (AHEAD * ease * scale));
             let center = middle + ahead;
-            let steady = surface.steady(side, &center, [radius, depth])?;
-            Some(Zone { center, radius, depth, held, size, steady })
+            let steady = surface.steady(side, &center, [radius, depth]);
+            let steady = steady?;
+            let deepest = self.deepest_in(&held, &found.contact, &steady)?;
+            Some(Zone { center, radius, depth, held, size, steady, tip: *self.tip, deepest })
         })
+    }
+
+    /// No place that is held is farther from the surface, by how the distance rises from a contact in a steady ball.
+    fn deepest_in(&self, held: &Held, contact: &Contact, steady: &Steady) -> Option<f64> {
+        let farthest = self.farthest_from(held, &contact.tool);
+        let Some(cap) = &held.cap else { return Some(contact.clearance + farthest) };
+        let (clearance, sag) = (contact.clearance, 0.5 * farthest * farthest);
+        let nearest = clearance - self.ahead(held, contact) - steady.bend(clearance) * sag;
+        let behind = self.in_front_of(&cap.rest, &contact.tool);
+        Some(clearance + behind + steady.upward_bend(nearest)? * sag)
     }
 
     /// A height of the flank, not below another one, above which balls that cover it keep off the surface by a level. That part is
@@ -74,24 +92,21 @@ impl Pose<'_> {
 
     /// Whether what of the tool a zone holds, and the contact, are in its ball.
     pub(super) fn is_in(&self, zone: &Zone, found: &Touch) -> bool {
-        let Contact { clearance, surface, .. } = found.contact;
+        let Contact { clearance, surface, tool, gradient } = found.contact;
+        let base = tool + gradient * zone.held.ball(found.circle.ball);
         (zone.center - surface).norm() <= zone.radius
-            && (zone.center - found.center).norm() <= zone.radius
+            && (zone.center - base).norm() <= zone.radius
             && match found.start.piece {
                 None => clearance <= zone.depth,
                 Some(_) => self.is_amid(zone, &found.contact) && self.stays_in(zone, &surface, 0.0),
             }
     }
 
-    /// Whether a zone holds enough of the flank to either side of a contact there.
+    /// Whether a zone holds enough of the tool about a contact.
     fn is_amid(&self, zone: &Zone, contact: &Contact) -> bool {
-        let Held { low, top, front, .. } = zone.held;
-        let left = BESIDE * FLANK_BALLS.get(zone.size).map_or(0.0, |([_, beyond], _)| *beyond) * self.scale();
-        let is_ahead = |front: Vec3| {
-            let [c, s] = self.facing(&contact.gradient);
-            front.dot(&(self.tool.across[0] * c + self.tool.across[1] * s)) >= SAME_FRONT
-        };
-        front.is_none_or(is_ahead)
+        let Held { low, top, cap, .. } = zone.held;
+        let left = BESIDE * FLANK_BALLS.get(zone.size).map_or(0.0, |size| size.beyond) * self.scale();
+        cap.is_none_or(|cap| self.in_front_of(&cap.rest, &contact.tool) >= AMID * cap.rest.depth)
             && self.on_flank(contact).map_or(low <= 0.0, |height| {
                 (low <= 0.0 || height - left >= low)
                     && (top >= self.tool.profile.top.height || height + left <= top)
@@ -101,20 +116,26 @@ impl Pose<'_> {
     /// Whether what of the tool a zone holds is in its ball wherever it moves by no more than a distance, given some point of the
     /// surface.
     pub(super) fn stays_in(&self, zone: &Zone, surface: &Vec3, spread: f64) -> bool {
-        let Held { low, above, radius, aside, half, .. } = zone.held;
+        let Held { low, above, radius, cap, .. } = zone.held;
+        let (middle, half) = (self.middle(&zone.held), self.half(&zone.held));
+        if let Some(cap) = &cap {
+            let moved = (self.tip - zone.tip).norm() + self.turned(cap);
+            return zone.deepest + moved + spread <= zone.depth
+                && (middle - zone.center).norm() + half + spread <= zone.radius;
+        }
+        // No point is farther from the surface than from that point of it.
+        if (middle - surface).norm() + half + spread > zone.depth {
+            return false;
+        }
         let axis = &self.tool.axis;
-        let w = zone.center - self.tip - aside;
+        let w = zone.center - self.tip;
         let along = w.dot(axis);
         let (wide, room) = ((w - axis * along).norm() + radius, zone.radius - spread);
         let inside = |height: f64| {
             let away = height - along;
             away * away + wide * wide <= room * room
         };
-        // No point is farther from the surface than from that point of it.
-        room >= wide
-            && inside(low)
-            && inside(above)
-            && (self.middle(&zone.held) - surface).norm() + half + spread <= zone.depth
+        room >= wide && inside(low) && inside(above)
     }
 
     /// Whether the bottom of the tool and its corner, if the zone holds them, keep a level, by a contact in this position or another one, on a ball or an
@@ -124,16 +145,15 @@ impl Pose<'_> {
     /// Over a straight way of the tool each of these bounds is a concave function, so that what holds at both its ends by the same
     /// contact holds all along it.
     pub(super) fn bottom_keeps(&self, contact: &Contact, ball: f64, zone: &Zone, level: f64) -> bool {
-        if zone.held.low > 0.0 {
+        if zone.held.heights()[0] > self.tool.profile.upper.height {
             return true;
         }
         let profile = &self.tool.profile;
         let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
-        let from_corner = (contact.tool + contact.gradient * ball, contact.clearance + ball);
         let corner = || {
-            self.floor(from_corner, &contact.gradient, zone, corner) >= level
+            self.corner_floor(contact, ball, zone, corner) >= level
                 || corner_stands_out(profile) && self.arcs_keep(&edge)
         };
         (profile.arc <= 0.0 || corner())
@@ -148,14 +168,30 @@ impl Pose<'_> {
             return true;
         }
         let edge = |radius: f64, height: f64| self.edge_floor(contact, zone, [radius, height]) >= level;
-        let ends = [zone.held.low.max(profile.upper.height), zone.held.top];
+        let ends = zone.held.heights().map(|height| height.max(profile.upper.height));
         ends.into_iter().all(|height| edge(self.flank_radius(height), height))
     }
 
     /// Lower bound of the distance of an edge by a contact.
     fn edge_floor(&self, contact: &Contact, zone: &Zone, [radius, height]: [f64; 2]) -> f64 {
         let base = (contact.tool, contact.clearance);
-        self.floor(base, &contact.gradient, zone, Circle { radius, height, ball: 0.0 })
+        contact.clearance + self.rise(base, &contact.gradient, zone, Circle { radius, height, ball: 0.0 })
+    }
+
+    /// The same of the balls of the corner, from the centre of that in contact if it is held.
+    ///
+    /// From a contact itself the bound of the distance at `W + a u`, with a centre at W and a unit vector u, is least against
+    /// `n − bW`, which is `√(1 − 2bQ)` long if `Q = n·W − bW²/2` is the bound at W: it grows with Q, so that the least Q counts.
+    fn corner_floor(&self, contact: &Contact, ball: f64, zone: &Zone, corner: Circle) -> f64 {
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        if zone.held.cap.is_none() {
+            let base = (point + gradient * ball, clearance + ball);
+            return base.1 + self.rise(base, gradient, zone, corner) - corner.ball;
+        }
+        let bend = zone.steady.bend(*clearance);
+        let rise = self.rise((*point, *clearance), gradient, zone, corner);
+        let slope = (1.0 - 2.0 * bend * rise).max(0.0).sqrt();
+        clearance + rise - corner.ball * (slope + 0.5 * bend * corner.ball)
     }
 
     /// Whether the corner keeps what its circles keep, also where its whole balls stand out from the tool: stretches of its arc lie in the
@@ -181,15 +217,14 @@ impl Pose<'_> {
         open.is_empty()
     }
 
-    /// Lower bound of the distance of a circle of balls, from a place on the normal of a contact with its distance.
-    fn floor(&self, (place, distance): (Vec3, f64), normal: &Vec3, zone: &Zone, circle: Circle) -> f64 {
+    /// Lower bound of how much farther the places of a circle are than a place on the normal of a contact with its distance.
+    fn rise(&self, (place, distance): (Vec3, f64), normal: &Vec3, zone: &Zone, circle: Circle) -> f64 {
         let bend = zone.steady.bend(distance);
         let w = self.tip + self.tool.axis * circle.height - place;
-        let middle =
-            distance + normal.dot(&w) - 0.5 * bend * (w.norm_squared() + circle.radius * circle.radius);
+        let middle = normal.dot(&w) - 0.5 * bend * (w.norm_squared() + circle.radius * circle.radius);
         let slope = normal - w * bend;
         let across = length(self.tool.across.map(|across| slope.dot(&across)));
-        middle - circle.radius * across - circle.ball
+        middle - circle.radius * across
     }
 }
 

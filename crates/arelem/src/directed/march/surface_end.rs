@@ -86,6 +86,27 @@ impl March<'_> {
         self.judge_outlook(next, cancel)
     }
 
+    /// Where a surface ends within a radius of the tool ahead of a contact, so that proofs become dear: the same.
+    pub(super) fn look_for_end_beside(
+        &mut self,
+        here: &Vertex,
+        cancel: &dyn Fn() -> bool,
+    ) -> Result<(), MotionFailure> {
+        let Prepared { tool, part, drive, .. } = self.prepared;
+        let ends = |(role, contact): (&Working, &Contact)| {
+            let surface = &role.gauge.surface;
+            surface.has_ends() && surface.ends_at(&(contact.tool + here.tangent * tool.radius()))
+        };
+        if self.ahead > 0.0
+            || self.points.len() + 1 < self.look_for_end
+            || ![(part, &here.part), (drive, &here.drive)].into_iter().any(ends)
+        {
+            return Ok(());
+        }
+        self.look_for_end = 2 * (self.points.len() + 1);
+        self.judge_outlook(here, cancel)
+    }
+
     /// Where on a vector the tool comes to go over the end of a surface, if it does at its last vertex.
     fn end_between(&self, here: &Vertex, next: &Vertex) -> Option<SurfaceEnd> {
         let mut end = SurfaceEnd::at(self.prepared, next)?;
