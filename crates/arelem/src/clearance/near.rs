@@ -21,7 +21,7 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::Around;
-use self::held::{Held, Rest};
+use self::held::{Cap, Held, Rest};
 use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
@@ -171,7 +171,7 @@ struct Zone {
     /// Which of the sizes it has.
     size: usize,
     steady: Steady,
-    /// The tool end where it was made, and what was held was no farther from the surface.
+    /// The tool end where it was made, and no place of a cap was farther from the surface.
     tip: Vec3,
     deepest: f64,
 }

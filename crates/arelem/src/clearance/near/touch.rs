@@ -178,6 +178,8 @@ impl Pose<'_> {
         let (widening, climb) = (wider / length_of_slant, higher / length_of_slant);
         let radial = |[c, s]: [f64; 2]| across[0] * c + across[1] * s;
         let Start { mut direction, mut place, mut rise, .. } = *start;
+        // A tool without width has no sides to go around.
+        let is_line = radius == [0.0; 2];
         let resolution = NEARLY * self.scale();
         for _ in 0..MAX_ITERATIONS {
             let (outward, onward) = (radial(direction), radial([-direction[1], direction[0]]));
@@ -194,21 +196,29 @@ impl Pose<'_> {
             let drift = ways.map(|way| follow.step(&way));
             let along = |way: &Vec3, by: [f64; 2]| change[0].dot(way) * by[0] + change[1].dot(way) * by[1];
             let slope = ways.map(|way| normal.dot(&way) + along(&way, rest));
-            let turning = normal.dot(&onward) * widening / wide;
-            let mixed = 0.5 * (along(&upward, drift[1]) + along(&onward, drift[0])) + turning;
-            let bends =
-                [along(&upward, drift[0]), mixed, along(&onward, drift[1]) - normal.dot(&outward) / wide];
-            let step = valley(bends, slope, normal.norm() / length_of_slant)?;
+            let scale = normal.norm() / length_of_slant;
+            let rising = along(&upward, drift[0]);
+            let step = if is_line {
+                valley([rising, 0.0, scale], [slope[0], 0.0], scale)?
+            } else {
+                let turning = normal.dot(&onward) * widening / wide;
+                let mixed = 0.5 * (along(&upward, drift[1]) + along(&onward, drift[0])) + turning;
+                let around = along(&onward, drift[1]) - normal.dot(&outward) / wide;
+                valley([rising, mixed, around], slope, scale)?
+            };
             let share = (length_of_slant / step[0].abs()).min(LARGEST_STEP * wide / step[1].abs()).min(1.0);
             let step = if share.is_nan() { step } else { step.map(|s| s * share) };
             rise += step[0] / length_of_slant;
-            direction = turned(direction, step[1] / wide);
+            if !is_line {
+                direction = turned(direction, step[1] / wide);
+            }
             let by: [f64; 2] =
                 std::array::from_fn(|k| rest[k] + drift[0][k] * step[0] + drift[1][k] * step[1]);
             let last = place;
             place = self.surface.shifted(&last, by)?;
             let moved = (chart.first[0] * by[0] + chart.first[1] * by[1]).norm() + length(step);
-            let beyond = !(-BEYOND..=1.0 + BEYOND).contains(&rise) || radius[0] + rise * wider <= 0.0;
+            let beyond =
+                !(-BEYOND..=1.0 + BEYOND).contains(&rise) || !is_line && radius[0] + rise * wider <= 0.0;
             if moved <= resolution || beyond {
                 let start = Start { piece: start.piece, direction, rise, place };
                 let chart = self.surface.chart_beside(&place, (&last, &chart), by)?;

@@ -4,8 +4,8 @@
 use apt_geometry::{Vec3, cutter::Profile, surface::Steady};
 
 use super::{
-    AHEAD, AMID, BALLS, BESIDE, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose,
-    SHORTEST, SUNK, Size, Touch, WIDEST_ARC, Zone,
+    AHEAD, AMID, BALLS, BESIDE, Cap, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS,
+    Pose, SHORTEST, SUNK, Size, Touch, WIDEST_ARC, Zone,
 };
 use crate::clearance::{Contact, waves::length};
 
@@ -23,7 +23,7 @@ impl Pose<'_> {
                 let depth = found.contact.clearance.max(0.0) + radius;
                 let steady = surface.steady(side, &center, [radius, depth])?;
                 let held = Held::POINT;
-                Some(Zone { center, radius, depth, held, size: 0, steady, tip: *self.tip, deepest: depth })
+                Some(Zone { center, radius, depth, held, size: 0, steady, tip: *self.tip, deepest: 0.0 })
             });
         }
         // What was too large near by is so again, but perhaps for the one size next to that.
@@ -45,17 +45,27 @@ impl Pose<'_> {
             let way = last.as_ref().map_or(Vec3::zeros(), |last| self.middle(&last.held) - last.center);
             let ahead = way.try_normalize(0.0).map_or(Vec3::zeros(), |way| way * (AHEAD * ease * scale));
             let center = middle + ahead;
-            let steady = surface.steady(side, &center, [radius, depth]);
-            let steady = steady?;
-            let deepest = self.deepest_in(&held, &found.contact, &steady)?;
-            Some(Zone { center, radius, depth, held, size, steady, tip: *self.tip, deepest })
+            let steady = surface.steady(side, &center, [radius, depth])?;
+            let deepest = match held.cap {
+                Some(cap) => self.deepest_in(&held, &cap, &found.contact, &steady)?,
+                None => 0.0,
+            };
+            (deepest <= depth).then_some(Zone {
+                center,
+                radius,
+                depth,
+                held,
+                size,
+                steady,
+                tip: *self.tip,
+                deepest,
+            })
         })
     }
 
-    /// No place that is held is farther from the surface, by how the distance rises from a contact in a steady ball.
-    fn deepest_in(&self, held: &Held, contact: &Contact, steady: &Steady) -> Option<f64> {
+    /// No place of a cap is farther from the surface, by how the distance falls and rises from a contact in a steady ball.
+    fn deepest_in(&self, held: &Held, cap: &Cap, contact: &Contact, steady: &Steady) -> Option<f64> {
         let farthest = self.farthest_from(held, &contact.tool);
-        let Some(cap) = &held.cap else { return Some(contact.clearance + farthest) };
         let (clearance, sag) = (contact.clearance, 0.5 * farthest * farthest);
         let nearest = clearance - self.ahead(held, contact) - steady.bend(clearance) * sag;
         let behind = self.in_front_of(&cap.rest, &contact.tool);

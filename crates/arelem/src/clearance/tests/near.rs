@@ -192,3 +192,33 @@ fn a_proof_serves_many_positions() {
     assert!(open * 100 <= positions, "{open} of {positions} not proven");
     assert!(remembering * 5 < anew * 3, "{remembering} patches looked at, {anew} anew");
 }
+
+/// Where a surface ends beside the tool, no ball that holds all of that is steady; one that holds what is near the contact is, and the
+/// rest of the tool is shown to be far.
+#[test]
+fn contact_with_a_surface_as_wide_as_the_tool_is_followed() {
+    let axis = v(0.2, -0.1, 1.0).normalize();
+    let mut few = Vec::new();
+    for (which, geometry) in charted().iter().enumerate().skip(2) {
+        for numbers in [[2.4, 1.2], [3.6, 1.8]] {
+            let tool = Tool::new(Cutter::from_numbers(&numbers, 1.0).expect("cutter"), axis);
+            let (proven, seen) = pass(geometry, false, &tool, &v(-0.8, 0.3, 4.0), &v(0.007, 0.002, 0.0), 60);
+            if proven * 10 < seen * 8 {
+                few.push(format!("{which} {numbers:?} {proven} of {seen}"));
+            }
+        }
+    }
+    assert!(few.is_empty(), "{few:#?}");
+}
+
+#[test]
+fn contact_inside_a_tool_that_is_a_line_is_followed() {
+    let axis = v(1.0, 0.1, 0.0).normalize();
+    let tool =
+        Tool::new(Cutter::from_numbers(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0], 1.0).expect("cutter"), axis);
+    for geometry in [lofts::roof(), lofts::vault()] {
+        let from = v(-0.4, 0.3, 4.0) - axis * 2.5;
+        let (proven, seen) = pass(&geometry, false, &tool, &from, &v(0.007, 0.002, 0.0), 60);
+        assert!(proven * 10 >= seen * 5, "{proven} of {seen}");
+    }
+}

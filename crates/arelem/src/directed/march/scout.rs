@@ -97,7 +97,8 @@ pub(super) fn ahead(
             return Err(MotionFailure::Cancelled);
         }
         let (to, turn, end) = match scout.leg(&here, &mut step) {
-            None => return Ok(untold),
+            // Where the tool is in its surface a little there is no place beside the end of that.
+            None => return Ok(SurfaceEnd::just_ahead(prepared, &here).map_or(untold, Outlook::Ends)),
             Some(Leg::Along(to, turn)) => (to, turn, None),
             Some(Leg::Over(beyond)) => {
                 let (to, end) = scout.end_between(&here, beyond);

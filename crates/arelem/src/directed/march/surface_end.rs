@@ -37,6 +37,16 @@ impl SurfaceEnd {
         let (role, contact) = touches.into_iter().find(|(role, contact)| is_over(role, contact, tangent))?;
         Some(Self { role: role.name, tip, axis, place: role.gauge.surface.foot(&contact.tool).point })
     }
+
+    /// The same a little ahead of a position.
+    pub(super) fn just_ahead(prepared: &Prepared, vertex: &Vertex) -> Option<Self> {
+        Self::ahead(prepared, vertex, AHEAD * (prepared.part.band() + prepared.drive.band()))
+    }
+
+    fn ahead(prepared: &Prepared, vertex: &Vertex, reach: f64) -> Option<Self> {
+        let ahead = Vertex::at(prepared, vertex.tip + vertex.tangent * reach, &vertex.tangent).ok()?;
+        Self::at(prepared, &ahead)
+    }
 }
 
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
@@ -129,11 +139,10 @@ impl March<'_> {
         if !self.has_ends() {
             return None;
         }
-        let Prepared { tool, part, drive, .. } = self.prepared;
-        [AHEAD * (part.band() + drive.band()), tool.radius()].into_iter().find_map(|reach| {
-            let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent).ok()?;
-            SurfaceEnd::at(self.prepared, &ahead).map(|end| self.surface_ends(&end))
-        })
+        let Prepared { tool, .. } = self.prepared;
+        let end = SurfaceEnd::just_ahead(self.prepared, here)
+            .or_else(|| SurfaceEnd::ahead(self.prepared, here, tool.radius()));
+        end.map(|end| self.surface_ends(&end))
     }
 
     fn has_ends(&self) -> bool {
