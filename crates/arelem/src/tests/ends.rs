@@ -12,7 +12,12 @@ use super::{
     sheets::round_wall,
     *,
 };
-use crate::{clearance::EVALUATIONS, error::RoleName, verify::tests::lofts};
+use crate::{
+    clearance::EVALUATIONS,
+    error::RoleName,
+    section2::Execution,
+    verify::{tests::lofts, verify},
+};
 
 /// Clearances until it is known that the path comes to the end. Most of them are spent where the extension begins.
 const SOON: u64 = 10_000;
@@ -74,28 +79,28 @@ fn a_drive_surface_that_ends_is_told() {
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Drive, .. }), "{failure:?}");
 }
 
-/// A quarter of a tube along z of the frame, which is bent a little, as random motions drew it.
-fn bent_tube() -> Geometry {
+/// A quarter of a tube in a frame, which becomes wider or narrower by some slopes, as random motions drew it.
+fn bent_tube(frame: [[f64; 4]; 3], root: f64, slopes: [f64; 7]) -> Geometry {
     let mut values = vec![1.0];
-    values.extend([-0.7203098736145479, 0.31826242407683, 0.6163300377185381, 3.2769407274546487]);
-    values.extend([0.6649305279844482, 0.5698429247456475, 0.48285239366875826, 1.5632895124873518]);
-    values.extend([-0.19753753202180826, 0.7576200040508871, -0.6220858867826983, 2.4879464171815577]);
+    values.extend(frame.concat());
     values.extend([0.0, 0.0, 6.0]);
-    let root = 1.882338027343659;
-    for [constant, slope] in [
-        [root, 0.22766491999288646],
-        [root, -0.13346673001331158],
-        [root, -0.1601852499202981],
-        [-root, -0.05606693729027007],
-        [-root, 0.11917647553657851],
-        [root, -0.1686325335037907],
-        [std::f64::consts::FRAC_1_SQRT_2, 0.005467286334565918],
-    ] {
+    let constants = [root, root, root, -root, -root, root, std::f64::consts::FRAC_1_SQRT_2];
+    for (constant, slope) in constants.into_iter().zip(slopes) {
         values.extend([constant, slope]);
         values.extend([0.0; 6]);
     }
     values.extend([0.0; 7]);
     Geometry::PolyConic(Remembering::new(values))
+}
+
+/// The outcome of a motion and how often it asks whether to give up, which it does after so many times.
+fn asked(p: &Program, motion: &MotionCommand, most: u32) -> (Execution, u32) {
+    let asks = Cell::new(0);
+    let execution = execute(&p.state, motion, &|| {
+        asks.set(asks.get() + 1);
+        asks.get() > most
+    });
+    (execution, asks.get())
 }
 
 /// Questions whether to give up until it is known that the path comes to the end: proofs beside the end take ten times as many.
@@ -105,7 +110,23 @@ const FEW: u32 = 6_000;
 /// where it is within sight of the tool, and known from what is just ahead.
 #[test]
 fn the_end_is_told_where_a_path_turns_away_beside_it() {
-    let part = bent_tube();
+    let part = bent_tube(
+        [
+            [-0.7203098736145479, 0.31826242407683, 0.6163300377185381, 3.2769407274546487],
+            [0.6649305279844482, 0.5698429247456475, 0.48285239366875826, 1.5632895124873518],
+            [-0.19753753202180826, 0.7576200040508871, -0.6220858867826983, 2.4879464171815577],
+        ],
+        1.882338027343659,
+        [
+            0.22766491999288646,
+            -0.13346673001331158,
+            -0.1601852499202981,
+            -0.05606693729027007,
+            0.11917647553657851,
+            -0.1686325335037907,
+            0.005467286334565918,
+        ],
+    );
     let drive = plane(-0.9678283625021933, -0.02744948661376305, -0.2501095488400315, 0.1826977983457426);
     let first = plane(0.2332050278409635, -0.4710612262623264, -0.8507154260397121, 2.0420985820674877);
     let check = quadric([
@@ -127,13 +148,49 @@ fn the_end_is_told_where_a_path_turns_away_beside_it() {
     p.run(&MotionCommand::From { position, axis, name: String::new() });
     p.go(&[(To, &drive), (To, &part), (To, &first)]).side(DriveSide::Left);
     p.indirv(0.2332050278409635, -0.47106122626232655, -0.8507154260397121);
-    let asks = Cell::new(0);
-    let onward = motion(Forward, &drive, &[(Past, 1, &check)]);
-    let execution = execute(&p.state, &onward, &|| {
-        asks.set(asks.get() + 1);
-        false
-    });
+    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(Past, 1, &check)]), FEW);
     let failure = execution.failure.expect("no way there");
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Part, .. }), "{failure:?}");
-    assert!(asks.get() <= FEW, "{} questions", asks.get());
+    assert!(asks <= FEW, "{asks} questions");
+}
+
+/// The path of a bull nose in a hollow cylinder turns by more than a right angle where its flank comes to touch the cylinder. From the
+/// vertex before that place a vector is found that leads there again, as long as one that would lead past it.
+#[test]
+fn a_vector_that_leads_to_a_vertex_again_does_not_spare_it() {
+    let part = cylinder(
+        v(-2.058840957235211, 2.7779792801222922, 1.2970464638532913),
+        v(-0.2672455156396869, -0.9013104175424039, 0.34090961500083194),
+        4.753828630690314,
+    );
+    let drive = bent_tube(
+        [
+            [-0.834816230924717, 0.16909682301197387, -0.5239161431297062, 5.544740764604678],
+            [0.38569322992639965, -0.49943098478005177, -0.77576376805737, -2.226667760832782],
+            [-0.3928391438917348, -0.8496910943918881, 0.3517135924833214, 6.1288225238283385],
+        ],
+        3.1787119852786665,
+        [
+            -0.02587088487042502,
+            0.06638216425775362,
+            0.14841800026993235,
+            -0.18782704613055676,
+            -0.19202864738287634,
+            0.20020831195414102,
+            -0.015374425082568699,
+        ],
+    );
+    let first = plane(-0.5014350604196356, -0.3461225627517319, -0.7929451757442817, -0.8783495880284138);
+    let axis = Some(v(-0.11190010355835574, 0.7004013759419494, 0.7049228889759882));
+    let position = v(0.9089051103650092, 1.0855200263320435, 0.1405218317763555);
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005).cutter(&[0.24955940158870277, 0.03304866052981005]);
+    p.run(&MotionCommand::From { position, axis, name: String::new() });
+    p.go(&[(To, &drive), (To, &part), (On, &first)]).side(DriveSide::Right);
+    p.indirv(0.5014350604196357, 0.3461225627517318, 0.7929451757442817);
+    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(On, 1, &y(4.5))]), FEW);
+    let Some(Output::Sequence(sequence)) = execution.output else {
+        panic!("{:?} after {asks} questions", execution.failure);
+    };
+    assert!(verify(&sequence, &|| false).expect("evidence").verified);
 }

@@ -161,11 +161,15 @@ impl Stepper<'_> {
         cap: f64,
         latest: &Trial,
     ) -> Result<Option<Trial>, MotionFailure> {
-        let least = (here.tip + (latest.vertex.tip - here.tip) * WORTH_SPARING - before.tip).norm();
+        let onward = latest.vertex.tip - here.tip;
+        let least = (here.tip + onward * WORTH_SPARING - before.tip).norm();
+        // Where the path doubles back a vector of that length may lead to the vertex again.
+        let is_past =
+            |trial: &Trial| (trial.vertex.tip - here.tip).dot(&onward) >= LEAST_GAIN * onward.norm_squared();
         let length = (latest.vertex.tip - before.tip).norm();
         for bends in [Some(latest.bends), self.other_limits(latest)].into_iter().flatten() {
             let guess = Guess { bends, curvature: latest.curvature, length };
-            let found = self.longest_of_use(before, cap, &guess, least)?;
+            let found = self.longest_of_use(before, cap, &guess, least)?.filter(is_past);
             if found.is_some() {
                 return Ok(found);
             }
