@@ -64,10 +64,6 @@ const FLANK_BALLS: [Size; 9] = [
     Size { ease: 0.05, beyond: 0.2, depth: 0.05 },
     Size { ease: 0.03, beyond: 0.1, depth: 0.03 },
 ];
-/// How far from the surface what is held about a contact is expected to be, in depths of it behind the contact.
-const SUNK: f64 = 1.5;
-/// Share of how far a contact was before what is held no more that another one is to be there.
-const AMID: f64 = 0.75;
 /// Share of what a ball holds to either side of a contact on the flank that is to be left there.
 const BESIDE: f64 = 0.25;
 /// Share of the distance that the tool may move in a ball by which it lies ahead.

@@ -4,11 +4,15 @@
 use apt_geometry::{Vec3, cutter::Profile, surface::Steady};
 
 use super::{
-    AHEAD, AMID, BALLS, BESIDE, Cap, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS,
-    Pose, SHORTEST, SUNK, Size, Touch, WIDEST_ARC, Zone,
+    AHEAD, BALLS, BESIDE, Cap, Circle, DEEPER, FLANK_BALLS, Held, MAX_ARCS, MAX_COVER, POINT_BALLS, Pose,
+    SHORTEST, Size, Touch, WIDEST_ARC, Zone,
 };
 use crate::clearance::{Contact, waves::length};
 
+/// How far from the surface what is held about a contact is expected to be, in depths of it behind the contact.
+const SUNK: f64 = 1.5;
+/// Share of how far a contact was before what is held no more that another one is to be there.
+const AMID: f64 = 0.75;
 /// Angle (radians) between an arc and a straight piece below which they are tangent.
 const TANGENT: f64 = 1e-9;
 
