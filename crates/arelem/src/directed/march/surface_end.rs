@@ -35,7 +35,7 @@ impl SurfaceEnd {
         let Vertex { tip, axis, ref tangent, .. } = *vertex;
         let touches = [(&prepared.part, &vertex.part), (&prepared.drive, &vertex.drive)];
         let (role, contact) = touches.into_iter().find(|(role, contact)| is_over(role, contact, tangent))?;
-        Some(Self { role: role.name, tip, axis, place: role.gauge.surface.foot(&contact.tool).point })
+        Some(Self { role: role.name, tip, axis, place: contact.surface })
     }
 
     /// The same a little ahead of a position.
@@ -53,10 +53,12 @@ impl SurfaceEnd {
 /// end of it; but it goes along that, not out over it or down behind it.
 fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
     let surface = &role.gauge.surface;
-    if !surface.ends_at(&contact.tool) {
+    // The place of a tool that is a little inside would be beside the end.
+    let above = contact.surface + contact.gradient * contact.clearance.max(role.band());
+    if !surface.ends_at(&above) {
         return false;
     }
-    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&contact.tool) else { return true };
+    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&above) else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
 }
