@@ -49,16 +49,24 @@ impl SurfaceEnd {
     }
 }
 
+/// A place on the tool's side of a contact; that of a tool that is a little inside would be beside the end of a surface that ends there.
+fn above(role: &Working, contact: &Contact) -> Vec3 {
+    contact.surface + contact.gradient * contact.clearance.max(role.band())
+}
+
+/// Whether the tool touches the end of a role's surface.
+pub(super) fn is_at_end(role: &Working, contact: &Contact) -> bool {
+    role.gauge.surface.ends_at(&above(role, contact))
+}
+
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
 /// end of it; but it goes along that, not out over it or down behind it.
 fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
-    let surface = &role.gauge.surface;
-    // The place of a tool that is a little inside would be beside the end.
-    let above = contact.surface + contact.gradient * contact.clearance.max(role.band());
-    if !surface.ends_at(&above) {
+    if !is_at_end(role, contact) {
         return false;
     }
-    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&above) else { return true };
+    let edge = role.gauge.surface.edge_at(&above(role, contact));
+    let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
 }

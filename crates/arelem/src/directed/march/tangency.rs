@@ -5,7 +5,7 @@ use apt_geometry::{
     motion::{CheckSurface, Relation},
 };
 
-use super::Vertex;
+use super::{Vertex, surface_end::is_at_end};
 use crate::{
     clearance::{Contact, Gauge},
     directed::{
@@ -258,7 +258,11 @@ impl<'a> Watch<'a> {
         let check = &self.prepared.checks[stretch.index];
         let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
-        let to_part = self.checks[stretch.index].relation == Relation::TangentToPart;
+        // Nothing is tangent to the end of a surface.
+        if is_at_end(check, &contact) {
+            return Ok(Gap::Open(contact.clearance));
+        }
+        let to_part = check.relation == Relation::TangentToPart;
         let (partner, its_base, against) = if to_part {
             (part, base[0], parallel.part.gradient)
         } else {
