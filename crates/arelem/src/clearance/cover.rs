@@ -81,6 +81,7 @@ pub(crate) fn upward_bend(
     let near = near::Around::new(gauge, tool, tip, spread);
     let corner = corner(tool);
     let mut cells = boxes(tool, corner.as_ref(), near.within(range[1] + spread));
+    let feet = near.feet();
     let close = if surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
@@ -100,7 +101,7 @@ pub(crate) fn upward_bend(
             + tool.across[1] * cell.middle[1]
             + tool.axis * cell.middle[2];
         let reach = Vec3::from(cell.half).norm() + spread;
-        let foot = match near.foot(&center) {
+        let foot = match feet.foot(&center) {
             Some(foot) => foot,
             None if surface.keeps_off(&center, reach + range[1].max(-range[0])) => continue,
             None => surface.foot(&center),

@@ -13,7 +13,7 @@ mod touch;
 mod trough;
 mod zone;
 
-use std::sync::Arc;
+use std::{cell::Cell, sync::Arc};
 
 use apt_geometry::{
     Vec3,
@@ -116,7 +116,7 @@ pub(crate) struct Near {
     /// How the surface bends about the bottom of the tool, or where that was not found.
     bends: Result<Arc<Bends>, Vec3>,
     /// How much along the bottom's straight piece.
-    across: Acrosses,
+    across: Cell<Acrosses>,
 }
 
 /// Where Newton's method begins.
@@ -344,27 +344,22 @@ impl Contacts {
         Some((known, far))
     }
 
-    /// What was known last about the place of a tool, best where the tool may stray from there, or else about the last place.
-    fn at(&self, pose: &Pose<'_>, spread: f64) -> Option<&Near> {
-        let here = || self.places.iter().filter(|known| known.side == pose.side);
+    /// Which place it is that was known last about that of a tool, best where the tool may stray from there, or else the last one.
+    fn at(&self, pose: &Pose<'_>, spread: f64) -> Option<usize> {
+        let find = |serves: &dyn Fn(&Near) -> bool| {
+            self.places.iter().position(|known| known.side == pose.side && serves(known))
+        };
         let wide =
-            |known: &&Near| known.zone.as_ref().is_ok_and(|zone| pose.stays_in(zone, &known.surface, spread));
-        let found = if spread > 0.0 { here().find(wide) } else { None };
-        found.or_else(|| here().find(|known| known.holds(pose))).or_else(|| here().next())
-    }
-
-    /// Keeps curvatures across directions where the bends that they were found by are kept.
-    fn learn(&mut self, bends: &Arc<Bends>, across: Acrosses) {
-        let same = |known: &&mut Near| known.bends.as_ref().is_ok_and(|own| Arc::ptr_eq(own, bends));
-        if let Some(known) = self.places.iter_mut().find(same) {
-            known.across = across;
-        }
+            |known: &Near| known.zone.as_ref().is_ok_and(|zone| pose.stays_in(zone, &known.surface, spread));
+        let found = if spread > 0.0 { find(&wide) } else { None };
+        found.or_else(|| find(&|known| known.holds(pose))).or_else(|| find(&|_| true))
     }
 
     /// What is known of an end of the tool, as far as it serves a place of the tool best.
-    fn far(&self, pose: &Pose<'_>, end: End) -> Option<Far> {
+    fn far(&self, pose: &Pose<'_>, end: End) -> Option<&Far> {
         let here = self.far.iter().filter(|known| known.side == pose.side && known.end.has(end, pose));
-        here.max_by(|a, b| a.left(pose).total_cmp(&b.left(pose))).copied()
+        let left = here.map(|known| (known.left(pose), known));
+        left.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, known)| known)
     }
 }
 
@@ -381,7 +376,7 @@ impl Near {
             flank: None,
             doubts: [Doubts::default(); 3],
             bends: Err(nowhere),
-            across: Acrosses::default(),
+            across: Cell::default(),
         }
     }
 
@@ -462,14 +457,15 @@ impl Near {
             return false;
         }
         let grounds = Grounds { steady, level, stray: 0.0, held: all, is_flank: held.is_some() };
-        let kept = self.bends.as_ref().is_ok_and(|bends| bends.hold(pose, contact, &grounds));
+        let Some(extent) = pose.extent(contact, &grounds) else { return false };
+        let kept = self.bends.as_ref().is_ok_and(|bends| bends.hold(pose, contact, &grounds, extent));
         let patient = |tried: &Vec3| (pose.tip - tried).norm() <= PATIENCE * pose.scale();
         if !kept && !self.bends.as_ref().is_err_and(patient) {
-            self.bends = Bends::about(pose, contact, &grounds).map(Arc::new).ok_or(*pose.tip);
-            self.across = Acrosses::default();
+            self.bends = Bends::about(pose, contact, &grounds, extent).map(Arc::new).ok_or(*pose.tip);
+            self.across = Cell::default();
         }
         let Ok(bends) = &self.bends else { return false };
-        let trough = bends.trough(pose, contact, &grounds, &mut self.across);
+        let trough = bends.trough(pose, contact, &grounds, extent, self.across.get_mut());
         trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
     }
 
@@ -549,10 +545,12 @@ impl Far {
     /// What the end of the tool keeps in another position: its points move no farther than the end does and the turn of the axis takes the
     /// farthest of them.
     fn left(&self, pose: &Pose<'_>) -> f64 {
-        let profile = &pose.tool.profile;
-        let reach = profile.top.height.hypot(pose.tool.radius());
-        let moved = (pose.tip - self.tip).norm() + reach * (pose.tool.axis - self.axis).norm();
-        self.level - moved
+        let moved = (pose.tip - self.tip).norm();
+        if pose.tool.axis == self.axis {
+            return self.level - moved;
+        }
+        let reach = pose.tool.profile.top.height.hypot(pose.tool.radius());
+        self.level - moved - reach * (pose.tool.axis - self.axis).norm()
     }
 
     /// Whether more than a level is left, unless the tool has hardly moved since: moves are bounded by what is left.

@@ -1,14 +1,11 @@
 //! What the contact near by tells about other points and about moves of the tool.
 
-use std::sync::Arc;
+use std::cell::Ref;
 
 use apt_geometry::{Vec3, surface::Foot};
 
-use super::{
-    End, Far, Pose, Start, Zone,
-    trough::{Acrosses, Bends, Grounds},
-};
-use crate::clearance::{Contact, Gauge, Tool, memory::Memory};
+use super::{Contacts, End, Far, Near, Pose, Start, Zone, trough::Grounds};
+use crate::clearance::{Contact, Gauge, Tool};
 
 /// Distances from a contact, in radii of the tool, from which on the ends of the tool are tried for being far.
 const ENDS: [f64; 3] = [1.0, 2.0, 4.0];
@@ -16,26 +13,19 @@ const ENDS: [f64; 3] = [1.0, 2.0, 4.0];
 /// Distance from the ends of the tool, in radii of it, beyond which a level is told to be kept.
 const BARELY: f64 = 1e-6;
 
-/// What is known about a contact in a steady ball.
-#[derive(Clone)]
-struct Known {
-    start: Start,
-    surface: Vec3,
-    zone: Zone,
-    /// The ends of the tool beyond the ball, and what is known of them: above, below, and behind.
-    ends: [Option<End>; 3],
-    far: [Option<Far>; 3],
-    bends: Option<Arc<Bends>>,
-    across: Acrosses,
-}
-
 /// What is known about a tool and a surface, for questions about points near by.
 pub(in crate::clearance) struct Around<'a> {
     pose: Pose<'a>,
-    memory: &'a Memory,
-    /// The surface's point at the last contact near by.
-    place: Option<Vec3>,
-    known: Option<Known>,
+    contacts: Option<Ref<'a, Contacts>>,
+    /// Which of the places serves.
+    place: Option<usize>,
+}
+
+/// The steady ball about a contact, for feet of points near by.
+#[derive(Clone, Copy)]
+pub(in crate::clearance) struct Feet<'a> {
+    pose: Pose<'a>,
+    known: Option<(Start, Zone)>,
 }
 
 impl<'a> Around<'a> {
@@ -43,60 +33,48 @@ impl<'a> Around<'a> {
         let Gauge { side, memory, .. } = gauge;
         let pose = Pose { tool, surface: gauge.met(tool), side: *side, tip };
         let contacts = memory.near.try_borrow().ok();
-        let last = contacts.as_ref().and_then(|contacts| Some((contacts, contacts.at(&pose, spread)?)));
-        let place = last.map(|(_, near)| near.surface);
-        let known = last.and_then(|(contacts, near)| {
-            let zone = *near.zone.as_ref().ok()?;
-            let ends = zone.ends(&pose);
-            let bends = near.bends.as_ref().ok().cloned();
-            Some(Known {
-                start: near.start,
-                surface: near.surface,
-                zone,
-                ends,
-                far: ends.map(|end| contacts.far(&pose, end?)),
-                bends,
-                across: near.across,
-            })
-        });
-        Self { pose, memory, place, known }
+        let place = contacts.as_ref().and_then(|contacts| contacts.at(&pose, spread));
+        Self { pose, contacts, place }
     }
 
-    /// The foot of a point, if that is known to be the only one.
-    pub(in crate::clearance) fn foot(&self, p: &Vec3) -> Option<Foot> {
-        let Known { start, zone, .. } = *self.known.as_ref()?;
-        let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..start })?;
-        let Contact { clearance, gradient, surface, .. } = found.contact;
-        let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
-        let steady = clearance <= zone.depth && clearance >= -zone.steady.beyond;
-        let known = inside(p) && inside(&surface) && steady;
-        let side = self.pose.side;
-        known.then_some(Foot { distance: side * clearance, point: surface, normal: gradient * side })
+    /// The last contact near by.
+    fn near(&self) -> Option<&Near> {
+        self.contacts.as_ref()?.places.get(self.place?)
+    }
+
+    /// The same with its steady ball.
+    fn known(&self) -> Option<(&Near, &Zone)> {
+        let near = self.near()?;
+        Some((near, near.zone.as_ref().ok()?))
+    }
+
+    /// What tells the feet of points near by; contacts can be looked for meanwhile.
+    pub(in crate::clearance) fn feet(self) -> Feet<'a> {
+        Feet { pose: self.pose, known: self.known().map(|(near, zone)| (near.start, *zone)) }
     }
 
     /// A bound of the second derivatives of the distances of all points of the tool that are not farther than `range[1]` while
     /// no point strays farther than `spread` from its place and none comes nearer than `range[0]`.
     pub(in crate::clearance) fn upward_bend(&self, spread: f64, range: [f64; 2]) -> Option<f64> {
-        let Known { start, surface, zone, ends, .. } = self.known.as_ref()?;
+        let (Near { start, surface, .. }, zone) = self.known()?;
         start.piece?;
         let level = range[1] + spread;
         let is_far = |end: End| {
-            self.far(end.number(), level).is_some()
+            self.far(end, level).is_some()
                 || match end {
                     End::Above(from) if zone.held.low <= 0.0 => self.pose.is_off(from, level),
                     _ => self.is_apart(end, level),
                 }
         };
-        let alone = self.pose.stays_in(zone, surface, spread) && ends.iter().copied().flatten().all(is_far);
+        let alone = self.pose.stays_in(zone, surface, spread)
+            && zone.ends(&self.pose).into_iter().flatten().all(is_far);
         alone.then(|| zone.steady.upward_bend(range[0])).flatten()
     }
 
     /// Whether the clearance is nowhere below a level while the tool end moves straight from one position to another, by the
     /// contact in one of them.
     pub(in crate::clearance) fn keeps(&self, contact: &Contact, way: [&Vec3; 2], level: f64) -> bool {
-        let Some(Known { start: Start { piece: Some(_), .. }, zone, ends, far, bends, across, .. }) =
-            &self.known
-        else {
+        let Some((near, zone)) = self.known().filter(|(near, _)| near.start.piece.is_some()) else {
             return false;
         };
         let Tool { axis, profile, .. } = self.pose.tool;
@@ -113,38 +91,37 @@ impl<'a> Around<'a> {
         let start = Pose { tip: from, ..self.pose };
         let is_far =
             |far: &Far| [from, to].into_iter().all(|tip| far.left(&Pose { tip, ..self.pose }) >= level);
-        let is_apart = |(end, far): (&Option<End>, &Option<Far>)| {
-            far.as_ref().is_some_and(is_far)
-                || end
-                    .is_none_or(|end| start.is_apart_on_way(end, to, level.max(0.0) + BARELY * start.scale()))
+        let is_apart = |end: End| {
+            self.farthest(end).is_some_and(is_far)
+                || start.is_apart_on_way(end, to, level.max(0.0) + BARELY * start.scale())
         };
         let flank = |tip: &Vec3| Pose { tip, ..self.pose }.flank_keeps(contact, zone, level);
         let by_ball = |tip: &Vec3| Pose { tip, ..self.pose }.bottom_keeps(contact, ball, zone, level);
         let held = Pose { tip: way[0], ..self.pose }.on_flank(contact).map(|_| zone.held);
         let by_cylinder = || {
-            let bends = bends.as_ref().filter(|_| held.is_some() || profile.lower.height > 0.0);
             let (stray, is_flank) = ((way[1] - way[0]).norm(), held.is_some());
-            let grounds = Grounds { steady: zone.steady, level, stray, held: zone.held, is_flank };
-            let mut across = *across;
-            let kept = bends.is_some_and(|bends| {
-                way.into_iter().all(|tip| {
-                    let pose = Pose { tip, ..self.pose };
-                    let trough = bends
-                        .trough(&pose, contact, &grounds, &mut across)
-                        .filter(|_| bends.hold(&pose, contact, &grounds));
-                    trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
-                })
-            });
-            if let (Some(bends), Ok(mut near)) = (bends, self.memory.near.try_borrow_mut()) {
-                near.learn(bends, across);
+            if !is_flank && profile.lower.height <= 0.0 {
+                return false;
             }
+            let Ok(bends) = &near.bends else { return false };
+            let grounds = Grounds { steady: zone.steady, level, stray, held: zone.held, is_flank };
+            let mut across = near.across.take();
+            let kept = way.into_iter().all(|tip| {
+                let pose = Pose { tip, ..self.pose };
+                let extent = pose.extent(contact, &grounds);
+                let trough = extent
+                    .filter(|extent| bends.hold(&pose, contact, &grounds, *extent))
+                    .and_then(|extent| bends.trough(&pose, contact, &grounds, extent, &mut across));
+                trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
+            });
+            near.across.set(across);
             kept
         };
         let flank = way.into_iter().all(flank);
         contact.clearance + held_ball >= -zone.steady.beyond
             && way.into_iter().all(kept)
             && (flank && way.into_iter().all(by_ball) || (flank || held.is_some()) && by_cylinder())
-            && ends.iter().zip(far).all(is_apart)
+            && zone.ends(&self.pose).into_iter().flatten().all(is_apart)
     }
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point in contact that goes a straight way in the
@@ -153,7 +130,7 @@ impl<'a> Around<'a> {
     /// At a distance d from a surface with the form S it is that of `−S (1 − d S)⁻¹`: beyond the surface that is more than `−S` by
     /// `|d| S²` where S bends towards the point, and as much by the greater bend of the parallel surface there where it bends away.
     pub(in crate::clearance) fn bend_along(&self, contact: &Contact, way: &Vec3) -> Option<f64> {
-        let Known { zone, .. } = self.known.as_ref()?;
+        let (_, zone) = self.known()?;
         let Contact { clearance, tool: point, gradient, surface } = contact;
         let (length, stock) = (way.norm(), self.pose.surface.stock(self.pose.side));
         let along = way.try_normalize(0.0)?;
@@ -180,18 +157,20 @@ impl<'a> Around<'a> {
     pub(in crate::clearance) fn within(&self, level: f64) -> [f64; 2] {
         let profile = &self.pose.tool.profile;
         let (upper, top) = (profile.upper.height, profile.top.height);
-        let height = self.place.map(|place| self.pose.tool.axis.dot(&(place - self.pose.tip)));
+        let height = self.near().map(|near| self.pose.tool.axis.dot(&(near.surface - self.pose.tip)));
         let height = height.filter(|height| *height > upper);
         let tried = |sense: f64| {
             height
                 .into_iter()
                 .flat_map(move |height| ENDS.map(|share| height + sense * share * self.pose.scale()))
         };
-        let above = match self.far(0, level) {
+        let ends = self.known().map_or([None; 3], |(_, zone)| zone.ends(&self.pose));
+        let far = |which: usize| self.far(ends[which]?, level);
+        let above = match far(0) {
             Some(End::Above(from)) => Some(from),
             _ => tried(1.0).find(|from| *from < top && self.is_apart(End::Above(*from), level)),
         };
-        let below = match self.far(1, level) {
+        let below = match far(1) {
             Some(End::Below(to)) => Some(to),
             _ => tried(-1.0).find(|to| *to > upper && self.is_apart(End::Below(*to), level)),
         };
@@ -203,9 +182,28 @@ impl<'a> Around<'a> {
         self.pose.apart_of(end, level.max(0.0)).is_some()
     }
 
-    /// What is known to keep a level, of the ends of the tool above, below or behind.
-    fn far(&self, which: usize, level: f64) -> Option<End> {
-        let far = self.known.as_ref()?.far[which]?;
+    /// What is known of an end of the tool, as far as it serves here best.
+    fn farthest(&self, end: End) -> Option<&Far> {
+        self.contacts.as_ref()?.far(&self.pose, end)
+    }
+
+    /// What is known to keep a level and has an end of the tool.
+    fn far(&self, end: End, level: f64) -> Option<End> {
+        let far = self.farthest(end)?;
         (far.left(&self.pose) >= level).then_some(far.end)
+    }
+}
+
+impl Feet<'_> {
+    /// The foot of a point, if that is known to be the only one.
+    pub(in crate::clearance) fn foot(&self, p: &Vec3) -> Option<Foot> {
+        let (start, zone) = self.known.as_ref()?;
+        let found = Pose { tip: p, ..self.pose }.touch(&Start { piece: None, ..*start })?;
+        let Contact { clearance, gradient, surface, .. } = found.contact;
+        let inside = |q: &Vec3| (q - zone.center).norm() <= zone.radius;
+        let steady = clearance <= zone.depth && clearance >= -zone.steady.beyond;
+        let known = inside(p) && inside(&surface) && steady;
+        let side = self.pose.side;
+        known.then_some(Foot { distance: side * clearance, point: surface, normal: gradient * side })
     }
 }

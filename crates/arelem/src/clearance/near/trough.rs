@@ -77,6 +77,13 @@ pub(super) struct Grounds {
     pub(super) is_flank: bool,
 }
 
+/// How far the bottom of a tool and its corner, or what is held of its flank, are from a contact at most, and how far from the surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    farthest: f64,
+    deepest: f64,
+}
+
 impl Grounds {
     /// What of the tool is held about a contact on its flank.
     fn flank(&self) -> Option<Held> {
@@ -86,16 +93,21 @@ impl Grounds {
 
 impl Bends {
     /// About the bottom and the corner of a tool in a steady ball, or its flank.
-    pub(super) fn about(pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> Option<Self> {
-        let (center, reach) = pose.feet(contact, grounds)?;
+    pub(super) fn about(
+        pose: &Pose<'_>,
+        contact: &Contact,
+        grounds: &Grounds,
+        extent: Extent,
+    ) -> Option<Self> {
+        let (center, reach) = pose.feet(contact, grounds, extent)?;
         let radius = reach + EASE * pose.scale();
         let forms = pose.surface.forms(pose.side, &center, radius)?;
         Some(Self { center, radius, forms })
     }
 
     /// Whether these parts of the tool, given a contact in a steady ball here or elsewhere, are where the forms are known.
-    pub(super) fn hold(&self, pose: &Pose<'_>, contact: &Contact, grounds: &Grounds) -> bool {
-        let feet = pose.feet(contact, grounds);
+    pub(super) fn hold(&self, pose: &Pose<'_>, contact: &Contact, grounds: &Grounds, extent: Extent) -> bool {
+        let feet = pose.feet(contact, grounds, extent);
         feet.is_some_and(|(center, reach)| (center - self.center).norm() + reach <= self.radius)
     }
 
@@ -121,6 +133,7 @@ impl Bends {
         pose: &Pose<'_>,
         contact: &Contact,
         grounds: &Grounds,
+        extent: Extent,
         known: &mut Acrosses,
     ) -> Option<Trough> {
         let Tool { axis, profile, across, .. } = pose.tool;
@@ -134,8 +147,7 @@ impl Bends {
         let way = radial * wider + axis * higher;
         let along = (way - gradient * gradient.dot(&way)).try_normalize(0.0)?;
         let curvature = known.about(&along, || self.across(&along))?;
-        let deepest = pose.deepest(contact, grounds)?[1] + pose.stock();
-        let left = 1.0 - deepest * curvature;
+        let left = 1.0 - (extent.deepest + pose.stock()) * curvature;
         (left > 0.0).then(|| Trough { along, bend: curvature / left })
     }
 }
@@ -158,9 +170,9 @@ impl Pose<'_> {
         bottom.into_iter().chain(flank).flatten()
     }
 
-    /// How far these parts of the tool are from a contact at most, and how far from the surface as long as none is nearer than the
-    /// level: the distance rises above its tangent at the contact by no more than it may bend.
-    fn deepest(&self, contact: &Contact, grounds: &Grounds) -> Option<[f64; 2]> {
+    /// How far these parts of the tool are, as long as none is nearer than the level: the distance rises above its tangent at the
+    /// contact by no more than it may bend.
+    pub(super) fn extent(&self, contact: &Contact, grounds: &Grounds) -> Option<Extent> {
         let Contact { clearance, tool: point, gradient, .. } = contact;
         let aside = length(self.tool.across.map(|across| gradient.dot(&across)));
         let (along, beside, _) = self.tool.split(&(point - self.tip));
@@ -169,7 +181,7 @@ impl Pose<'_> {
         let (mut highest, mut farthest) = (f64::NEG_INFINITY, 0.0_f64);
         for Circle { radius, height, ball } in self.rims(grounds.flank()) {
             highest = highest.max(rising + lift * height + radius * aside + ball);
-            farthest = farthest.max((height - along).hypot(beside + radius) + ball);
+            farthest = farthest.max(length([height - along, beside + radius]) + ball);
         }
         if grounds.held.cap.is_some() {
             farthest = farthest.min(self.farthest_from(&grounds.held, point));
@@ -179,15 +191,19 @@ impl Pose<'_> {
         let bend = grounds.steady.upward_bend(grounds.level.min(*clearance)).unwrap_or(f64::INFINITY);
         let by_bend = highest + grounds.stray + 0.5 * bend * farthest * farthest;
         let deepest = clearance + by_bend.min(farthest);
-        deepest.is_finite().then_some([farthest, deepest.max(0.0)])
+        deepest.is_finite().then_some(Extent { farthest, deepest: deepest.max(0.0) })
     }
 
     /// The place of the charts' surface at a contact, and how far from there the feet of these parts of the tool are at most, and those
     /// of all places on the ways to them.
     ///
     /// A foot moves by `(1 − d S)⁻¹` of the way of its point at most, at a distance d where the surface has the form S.
-    fn feet(&self, contact: &Contact, grounds: &Grounds) -> Option<(Vec3, f64)> {
-        let [farthest, deepest] = self.deepest(contact, grounds)?;
+    fn feet(
+        &self,
+        contact: &Contact,
+        grounds: &Grounds,
+        Extent { farthest, deepest }: Extent,
+    ) -> Option<(Vec3, f64)> {
         let stock = self.surface.stock(self.side);
         let ahead = 1.0 + (deepest + stock).max(0.0) * grounds.steady.bend(deepest);
         let level = grounds.level.min(contact.clearance);
@@ -263,7 +279,9 @@ mod tests {
         let memory = Memory::default();
         near::contact(tool, surface, side, tip, &memory);
         let known = memory.near.borrow();
-        let Some(known) = known.at(&pose, 0.0) else { return Vec::new() };
+        let Some(known) = known.at(&pose, 0.0).and_then(|place| known.places.get(place)) else {
+            return Vec::new();
+        };
         let Some(contact) = known.touch(&pose).map(|touch| touch.contact) else { return Vec::new() };
         let (Ok(zone), Ok(bends)) = (&known.zone, &known.bends) else { return Vec::new() };
         let grounds = Grounds {
@@ -273,10 +291,11 @@ mod tests {
             held: zone.held,
             is_flank: false,
         };
-        let Some(trough) = bends.trough(&pose, &contact, &grounds, &mut Acrosses::default()) else {
+        let Some(extent) = pose.extent(&contact, &grounds) else { return Vec::new() };
+        let Some(trough) = bends.trough(&pose, &contact, &grounds, extent, &mut Acrosses::default()) else {
             return Vec::new();
         };
-        if !bends.hold(&pose, &contact, &grounds) {
+        if !bends.hold(&pose, &contact, &grounds, extent) {
             return Vec::new();
         }
         let profile = &tool.profile;
