@@ -40,6 +40,8 @@ const SHOWN: usize = 12;
 /// Shapes that touch a surface under them at the corner: there the angles hold.
 const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
 
+/// Sine between the other surface and the plane across a vector up to which an angle leads or lags.
+const LEAST_ASIDE: f64 = 1e-3;
 /// The way over which the axis comes to follow its law, as a multiple of what the turn moves the tool by at most.
 const RUN_IN: f64 = 2.0;
 
@@ -192,31 +194,45 @@ fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
     let (base, other) = if part_guides { (part, drive) } else { (drive, part) };
     let (base, other) = (Guide::base(base, &sequence.start), Guide::other(other));
     let cutter = sequence.cutter;
-    let off = |at: &ToolPosition, ahead: &Vec3| {
-        off(&turning.mode, (&base, &other), &cutter, (&at.tip, &at.axis), ahead)
-    };
-    let ToolPosition { tip: mut from, .. } = sequence.start;
+    let sense = sense(&turning.mode, (&base, &other), &sequence.start.tip, &sequence.forward);
+    let off = |at: &ToolPosition| off(&turning.mode, (&base, &other), &cutter, (&at.tip, &at.axis), sense);
     // A tool that stands otherwise at the start may turn over a way.
     let widest = 0.5 * cutter.diameter + cutter.height;
-    let run_in = RUN_IN * widest * off(&sequence.start, &sequence.forward);
+    let run_in = RUN_IN * widest * off(&sequence.start);
     let mut runs_in = true;
     for point in &sequence.points {
-        let off = off(point, &(point.tip - from));
+        let off = off(point);
         runs_in &= (point.tip - sequence.start.tip).norm() <= run_in && off > turning.exact;
         if off > turning.exact && !runs_in {
             return Some(format!("axis off by {off:e} at {point:?}"));
         }
-        from = point.tip;
     }
     None
 }
 
+/// The sense that the angles have all along a motion: of the lead against the product of both normals, and of the turn about a vector,
+/// towards the side of the other surface, or ahead where that lies across.
+fn sense(mode: &ToolAxis, (base, other): (&Guide, &Guide), tip: &Vec3, forward: &Vec3) -> f64 {
+    let (normal, aside) = (base.normal(tip), other.normal(tip));
+    match mode {
+        ToolAxis::AtAngle { mode: AxisAngle::Lead(_), .. } => normal.cross(&aside).dot(forward).signum(),
+        ToolAxis::AtAngle { mode: AxisAngle::PerpendicularTo(vector), .. } => {
+            let vector = vector.normalize();
+            let turning = vector.cross(&(normal - vector * normal.dot(&vector)).normalize());
+            let towards = aside.dot(&turning);
+            if towards.abs() > LEAST_ASIDE { towards.signum() } else { forward.dot(&turning).signum() }
+        }
+        _ => 1.0,
+    }
+}
+
+/// How far the axis is from what its law asks for.
 fn off(
     mode: &ToolAxis,
     (base, other): (&Guide, &Guide),
     cutter: &Cutter,
     (tip, axis): (&Vec3, &Vec3),
-    ahead: &Vec3,
+    sense: f64,
 ) -> f64 {
     let ToolAxis::AtAngle { angle, mode, .. } = mode else { return (axis - base.normal(tip)).norm() };
     let aside = other.normal(tip);
@@ -224,13 +240,13 @@ fn off(
     // than the corner does there may be several contacts.
     let settled = |first: Vec3| {
         let mut normal = base.normal(&first);
-        let mut asked = asked((*angle, mode), &normal, &aside, axis, ahead);
+        let mut asked = asked((*angle, mode), &normal, &aside, sense);
         for _ in 0..ROUNDS {
             let radial =
                 (normal - asked * normal.dot(&asked)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
             let corner = asked * cutter.corner_height - radial * cutter.corner_offset.max(0.0);
             normal = base.normal(&(tip + corner));
-            asked = self::asked((*angle, mode), &normal, &aside, axis, ahead);
+            asked = self::asked((*angle, mode), &normal, &aside, sense);
         }
         (asked - axis).norm()
     };
@@ -243,9 +259,8 @@ fn off(
     std::iter::once(*tip).chain(around).map(settled).fold(f64::INFINITY, f64::min)
 }
 
-/// The axis that the angles ask for with a normal of the guiding surface; of the two that lie across a vector the one that
-/// is nearer to the axis of the tool.
-fn asked((angle, mode): (f64, &AxisAngle), normal: &Vec3, aside: &Vec3, axis: &Vec3, ahead: &Vec3) -> Vec3 {
+/// The axis that the angles ask for with a normal of the guiding surface.
+fn asked((angle, mode): (f64, &AxisAngle), normal: &Vec3, aside: &Vec3, sense: f64) -> Vec3 {
     let tangent = normal.cross(aside).normalize();
     let across = tangent.cross(normal);
     let (sine, cosine) = angle.sin_cos();
@@ -253,14 +268,12 @@ fn asked((angle, mode): (f64, &AxisAngle), normal: &Vec3, aside: &Vec3, axis: &V
         AxisAngle::Plain => normal * cosine + across * sine,
         AxisAngle::Lead(lead) => {
             let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(angle);
-            let onward = if tangent.dot(ahead) < 0.0 { -tangent } else { tangent };
-            normal * cosine + onward * lead.sin() + across * rest
+            normal * cosine + tangent * (sense * lead.sin()) + across * rest
         }
         AxisAngle::PerpendicularTo(vector) => {
             let vector = vector.normalize();
             let flat = (normal - vector * normal.dot(&vector)).normalize();
-            let turned = vector.cross(&flat) * sine;
-            if turned.dot(axis) < 0.0 { flat * cosine - turned } else { flat * cosine + turned }
+            flat * cosine + vector.cross(&flat) * (sense * sine)
         }
     }
 }
