@@ -57,9 +57,9 @@ impl Attitude {
         Ok(Self { tool: self.tool.clone(), law, run_in: None })
     }
 
-    /// The same law, to which the axis turns over a way from the place where the tool begins.
-    pub(crate) fn running_in(&self, origin: &Vec3, way: &Vec3) -> Self {
-        Self { run_in: Some(RunIn::new(&self.tool.axis, origin, way)), ..self.clone() }
+    /// The same law, to which the axis turns up to a distance from the place where the tool begins.
+    pub(crate) fn running_in(&self, origin: &Vec3, length: f64) -> Self {
+        Self { run_in: Some(RunIn::new(&self.tool.axis, origin, length)), ..self.clone() }
     }
 
     /// The cutter, whatever its axis.

@@ -11,27 +11,28 @@ use crate::error::AxisFailure;
 /// Sine between opposite axes below which there is no telling about which vector to turn.
 const OPPOSITE: f64 = 1e-6;
 
-/// A way over which the axis turns evenly but for its ends, where it sets out and arrives level.
+/// A place about which the axis turns evenly with the distance, but for its ends, where it sets out and arrives level.
 #[derive(Debug, Clone)]
 pub(super) struct RunIn {
     from: Vec3,
     origin: Vec3,
-    /// Direction of the way divided by its length.
-    line: Vec3,
+    /// Distance from there at which the axis follows its law.
+    length: f64,
 }
 
 impl RunIn {
-    /// From an axis at a place, over a way from there.
-    pub(super) fn new(from: &Vec3, origin: &Vec3, way: &Vec3) -> Self {
-        Self { from: *from, origin: *origin, line: way / way.norm_squared() }
+    /// From an axis at a place, over a distance from there.
+    pub(super) fn new(from: &Vec3, origin: &Vec3, length: f64) -> Self {
+        Self { from: *from, origin: *origin, length }
     }
 
     /// The axis at a place where the law has one.
     pub(super) fn axis(&self, to: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
-        let share = self.line.dot(&(tip - self.origin)).clamp(0.0, 1.0);
-        if share >= 1.0 {
+        let away = (tip - self.origin).norm();
+        if away >= self.length {
             return Ok(*to);
         }
+        let share = away / self.length;
         let across = self.from.cross(to);
         let (sine, cosine) = (across.norm(), self.from.dot(to));
         if cosine < 0.0 && sine <= OPPOSITE {
@@ -51,22 +52,22 @@ mod tests {
     use crate::tests::v;
 
     #[test]
-    fn the_axis_is_the_tools_own_before_and_that_of_the_law_behind() {
+    fn the_axis_is_the_tools_own_at_first_and_that_of_the_law_from_a_distance_on() {
         let (from, to) = (Vec3::z(), v(0.6, 0.0, 0.8));
-        let run_in = RunIn::new(&from, &v(1.0, 2.0, 3.0), &v(0.0, 0.5, 0.0));
-        let at = |y: f64| run_in.axis(&to, &v(7.0, y, 0.0)).unwrap();
-        assert!((at(1.0) - from).norm() < 1e-15 && (at(2.0) - from).norm() < 1e-15);
-        assert!((at(2.5) - to).norm() < 1e-15 && (at(9.0) - to).norm() < 1e-15);
+        let run_in = RunIn::new(&from, &v(1.0, 2.0, 3.0), 0.5);
+        let at = |away: f64| run_in.axis(&to, &v(1.0 + 0.6 * away, 2.0 + 0.8 * away, 3.0)).unwrap();
+        assert!((at(0.0) - from).norm() < 1e-15);
+        assert!((at(0.5) - to).norm() < 1e-15 && (at(7.0) - to).norm() < 1e-15);
         let middle = (from + to).normalize();
-        assert!((at(2.25) - middle).norm() < 1e-15);
-        let (first, last) = (at(2.01), at(2.49));
+        assert!((at(0.25) - middle).norm() < 1e-15);
+        let (first, last) = (at(0.01), at(0.49));
         assert!(first.dot(&from) > middle.dot(&from) && last.dot(&to) > middle.dot(&to));
         assert!((first.norm() - 1.0).abs() < 1e-15);
     }
 
     #[test]
     fn between_opposite_axes_there_is_no_way() {
-        let run_in = RunIn::new(&Vec3::z(), &Vec3::zeros(), &Vec3::x());
+        let run_in = RunIn::new(&Vec3::z(), &Vec3::zeros(), 1.0);
         assert_eq!(run_in.axis(&-Vec3::z(), &v(0.5, 0.0, 0.0)), Err(AxisFailure::SignUnresolved));
         assert_eq!(run_in.axis(&Vec3::z(), &v(0.5, 0.0, 0.0)), Ok(Vec3::z()));
     }

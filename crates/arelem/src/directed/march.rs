@@ -72,6 +72,11 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
     }
 }
 
+/// No last vector leads from a place to the stop.
+fn without_last(tip: Vec3, limit: u32) -> MotionFailure {
+    MotionFailure::IterationLimit { iteration: Iteration::FinalVector, limit, tip }
+}
+
 /// Sine between part and drive normal below which the line of motion is kept.
 const TANGENT_SINE: f64 = 1e-7;
 /// Cosine of the angle between two lines of motion below which they are not the same but for rounding.
@@ -183,6 +188,9 @@ impl<'a> March<'a> {
             let towards = finish::Towards { event: &event, tangent: &next.tangent, held };
             let sweep = here.sweep(self.prepared, &next);
             let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
+            if self.is_passed_by(&here, &end)? {
+                return Err(without_last(here.tip, finals));
+            }
             if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
                 self.straighten_end(&start)?;
@@ -195,11 +203,7 @@ impl<'a> March<'a> {
             }
             finals += 1;
             if finals > MAX_FINALS {
-                return Err(MotionFailure::IterationLimit {
-                    iteration: Iteration::FinalVector,
-                    limit: MAX_FINALS,
-                    tip: here.tip,
-                });
+                return Err(without_last(here.tip, MAX_FINALS));
             }
             if let Some(longer) = self.step_back(&mut here, &end.tip) {
                 cap = SHARE_BEFORE_STOP * longer;
@@ -336,6 +340,18 @@ impl<'a> March<'a> {
         let points = std::mem::take(&mut self.points);
         let bent = self.stepper.record.along(&self.prepared.tip, &points);
         Path { points, check: end.check, check_side: end.side, bent }
+    }
+
+    /// Whether a tool that turns on the way to the end, more than on the vector that leads beyond it, is past the check surface
+    /// before it comes there.
+    fn is_passed_by(&self, here: &Vertex, end: &finish::End) -> Result<bool, MotionFailure> {
+        if !self.prepared.attitude.turns() {
+            return Ok(false);
+        }
+        let to = Vertex::at(self.prepared, end.tip, &here.tangent)?;
+        let sweep = here.sweep(self.prepared, &to);
+        let event = self.watcher.clone().scan(&sweep);
+        Ok(event.is_some_and(|event| self.watcher.leaves_band(&event, &sweep)))
     }
 
     /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.

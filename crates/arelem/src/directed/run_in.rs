@@ -1,6 +1,8 @@
 //! A motion whose first vector cannot turn the tool to the axis that the law wants: several vectors turn it, over a way that is
 //! as short as the turn allows.
 
+use apt_geometry::Vec3;
+
 use super::{Path, Prepared, Stuck};
 use crate::error::{Iteration, MotionFailure};
 
@@ -30,14 +32,22 @@ pub(super) fn follow(
     }
     for k in 0..WAYS {
         let length = shortest * f64::from(1u32 << k);
-        let attitude = prepared.attitude.running_in(&prepared.tip, &(prepared.tangent * length));
+        let attitude = prepared.attitude.running_in(&prepared.tip, length);
         let running = Prepared { attitude, ..prepared.clone() };
         match path(&running) {
             Err(again) if is_stuck_within(&again.failure, &prepared, length) => {}
+            // Where it comes back the axis would leave its law again.
+            Ok(found) if comes_back(&found.points, &prepared.tip, length) => break,
             found => return found.map(|found| (running, found)),
         }
     }
     Err(stuck)
+}
+
+/// Whether a path leaves a place by a distance and is nearer to it later.
+fn comes_back(points: &[Vec3], place: &Vec3, distance: f64) -> bool {
+    let is_near = |point: &&Vec3| (*point - place).norm() < distance;
+    points.iter().skip_while(is_near).any(|point| is_near(&point))
 }
 
 /// What a turn moves: the rim of the tool, the length of one without a rim, of a point nothing.
@@ -52,13 +62,15 @@ fn turn_at_start(prepared: &Prepared) -> Result<f64, MotionFailure> {
     Ok(has.cross(&wants).norm().atan2(has.dot(&wants)))
 }
 
-/// Whether no vector was found that leads on, not farther from where the motion begins.
+/// Whether no vector was found that leads on, or to the stop, not farther from where the motion begins.
 fn is_stuck_within(failure: &MotionFailure, prepared: &Prepared, distance: f64) -> bool {
     match failure {
         MotionFailure::NoAdmissibleVector { tip, .. }
-        | MotionFailure::IterationLimit { iteration: Iteration::StepLength, tip, .. } => {
-            (tip - prepared.tip).norm() <= distance
-        }
+        | MotionFailure::IterationLimit {
+            iteration: Iteration::StepLength | Iteration::FinalVector,
+            tip,
+            ..
+        } => (tip - prepared.tip).norm() <= distance,
         _ => false,
     }
 }

@@ -145,6 +145,12 @@ impl<'a> Watcher<'a> {
         self.value(index, &tool, &tip)
     }
 
+    /// Whether the tool is out of the band of a check surface half way from a position to the end of a vector.
+    pub(super) fn leaves_band(&self, event: &Event, sweep: &Sweep<'_>) -> bool {
+        let value = self.value_at(event.check, sweep, 0.5 * (event.x + sweep.length)).0;
+        value.abs() > self.working(event.check).band()
+    }
+
     /// How far the function is above what it is where the tool just touches the check surface.
     fn apart(&self, index: usize, value: f64) -> f64 {
         let working = self.working(index);

@@ -8,7 +8,7 @@ use apt_geometry::{
 use proptest::prelude::*;
 
 use super::*;
-use crate::{error::AxisFailure, verify::verify};
+use crate::{error::AxisFailure, sequence::ToolPosition, verify::verify};
 
 fn program(cutter: &[f64], mode: ToolAxis) -> Program {
     let mut p = Program::new();
@@ -261,4 +261,55 @@ fn the_axis_turns_over_the_vertex_of_a_cone_in_its_band() {
         assert!((from.axis.dot(&to.axis) - 0.5).abs() < 1e-3, "{from:?} {to:?}");
         proven(&p);
     }
+}
+
+/// A motion whose lead angle changes its sense turns the tool over a way; where the path comes round again, farther away from its
+/// beginning than that, the axis keeps its law.
+#[test]
+fn an_axis_that_is_turned_at_the_beginning_keeps_its_law_where_the_path_comes_round() {
+    let (ground, round) = (ground(), circle(0.0, 4.0, 4.0));
+    let (angle, lead) = (12f64.to_radians(), 9f64.to_radians());
+    let mode = ToolAxis::AtAngle { part: true, angle, mode: AxisAngle::Lead(lead) };
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[1.0, 0.05]).from(-3.0, 0.0, 7.0).run(&MotionCommand::ToolAxis(mode));
+    p.go(&[(Relation::On, &round), (Relation::To, &ground), (Relation::On, &x(-0.5))]);
+    p.side(DriveSide::On).indirv(-1.0, 0.0, 0.0).drive(Turn::Forward, &round, Relation::On, &x(3.0));
+    let way = &p.last().points;
+    assert!(way.iter().any(|point| point.tip.x < -3.9) && p.tip().y > 6.0);
+    let off = |at: &ToolPosition| {
+        let outward = v(at.tip.x, at.tip.y - 4.0, 0.0).normalize();
+        let ahead = outward.cross(&Vec3::z());
+        (at.axis.z - angle.cos()).abs().max((ahead.dot(&at.axis) - lead.sin()).abs())
+    };
+    let turned = way.iter().position(|at| off(at) < 1e-9).expect("it comes to its law");
+    assert!(turned > 0 && (way[turned].tip - p.last().start.tip).norm() < 2.0);
+    assert!(way[turned..].iter().all(|at| off(at) < 1e-9));
+    proven(&p);
+}
+
+/// A tool that its first vector turns may come past the check surface by the turn alone, before it is where the motion ends: then it
+/// turns over a way, and the motion ends where it is past first.
+#[test]
+fn a_tool_that_turns_ends_where_it_is_past_the_check_surface_first() {
+    let ball = sphere(-0.5858991493893734, 0.8535416991194105, 2.8729941612545753, 3.627872927977972);
+    let drive = cylinder(
+        v(-1.4952873023039848, 3.8657913373650246, -3.3450402214150268),
+        v(0.9964806210222339, 0.06942782116212992, -0.04696966655004395),
+        5.781173321117146,
+    );
+    let first = plane(-0.9902589533122751, -0.012739640138831344, 0.13865391070579455, 0.9676699402234666);
+    let check = plane(-0.9907533105068378, -0.09366801862508925, 0.09815385884717687, 0.62960100787479);
+    let mode = AxisAngle::Lead(-0.1342937257640657);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.2569590644137996, 0.08861393863057561]);
+    p.run(&MotionCommand::From {
+        position: v(-0.6476925739791911, -1.4238664167906536, -0.6089063539537972),
+        axis: Some(v(0.08373586247729502, -0.8500949540322091, 0.519929682230357)),
+        name: String::new(),
+    });
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: false, angle: -0.1760417264894469, mode }));
+    p.go(&[(Relation::On, &drive), (Relation::To, &ball), (Relation::On, &first)]);
+    p.side(DriveSide::On).indirv(0.9902589533122752, 0.012739640138831304, -0.13865391070579464);
+    p.drive(Turn::Forward, &drive, Relation::Past, &check);
+    proven(&p);
 }
