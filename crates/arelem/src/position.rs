@@ -164,10 +164,12 @@ fn improve(
     None
 }
 
-/// Residuals and their gradients. Where the axis is not determined the residuals are not numbers, and no step goes there.
+/// Residuals and their gradients. Where the axis is not determined, and where dependent normals lead nowhere, the residuals are not
+/// numbers, and no step goes there.
 fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
     let mut rows = Rows { count: conditions.len().min(3), ..Rows::NONE };
-    let Ok(posture) = attitude.posture(tip) else {
+    let is_place = tip.iter().all(|x| x.is_finite());
+    let Some(posture) = is_place.then(|| attitude.posture(tip).ok()).flatten() else {
         rows.residual = [f64::NAN; 3];
         return rows;
     };

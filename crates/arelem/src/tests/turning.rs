@@ -8,7 +8,12 @@ use apt_geometry::{
 use proptest::prelude::*;
 
 use super::*;
-use crate::{error::AxisFailure, sequence::ToolPosition, verify::verify};
+use crate::{
+    attitude::Attitude,
+    error::AxisFailure,
+    position::{self, Condition},
+    verify::verify,
+};
 
 fn program(cutter: &[f64], mode: ToolAxis) -> Program {
     let mut p = Program::new();
@@ -312,4 +317,17 @@ fn a_tool_that_turns_ends_where_it_is_past_the_check_surface_first() {
     p.side(DriveSide::On).indirv(0.9902589533122752, 0.012739640138831304, -0.13865391070579464);
     p.drive(Turn::Forward, &drive, Relation::Past, &check);
     proven(&p);
+}
+
+/// Where the axis has no direction a correction has none either, and there are no coordinates to look at.
+#[test]
+fn no_position_is_looked_for_where_there_are_no_coordinates() {
+    let surface = Surface::from_geometry(&waves_across()).expect("a surface");
+    let gauge =
+        Gauge { surface, on: false, side: 1.0, thickness: 0.0, disk: None, memory: Memory::default() };
+    let attitude = Attitude::fixed(Tool::new(Cutter::from_numbers(&[0.5], 1.0).expect("cutter"), Vec3::z()));
+    let conditions = [Condition::Clearance(&gauge, 0.0), Condition::Plane(Vec3::y(), 0.0)];
+    for start in [Vec3::repeat(f64::NAN), v(f64::INFINITY, 0.0, 0.0)] {
+        assert!(position::solve(&attitude, &conditions, &start).is_err());
+    }
 }
