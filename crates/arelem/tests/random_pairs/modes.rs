@@ -125,6 +125,9 @@ fn turned_round(case: Case) -> Case {
 pub(crate) fn judge(turning: &Turning) -> Verdict {
     let mut runner = Runner::new(&turning.case);
     let outcome = runner.run(&turning.commands());
+    if outcome == Err(MotionFailure::Cancelled) {
+        return Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()));
+    }
     for sequence in &runner.sequences {
         match runner.fault(sequence) {
             Some(Fault::Slow(vectors)) => return Verdict::Slow(format!("verifier, {vectors} vectors")),
@@ -142,9 +145,6 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
     }
     match outcome {
         Ok(()) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
-        Err(MotionFailure::Cancelled) => {
-            Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()))
-        }
         Err(failure) => Verdict::Refused(format!("{failure:?}")),
     }
 }
