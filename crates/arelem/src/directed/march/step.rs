@@ -368,6 +368,12 @@ impl<'a> Stepper<'a> {
         ]
     }
 
+    /// Whether the clearance of a role changes with the axis, too. Its gradient then follows the law of that, from which a vector, on
+    /// which the tool turns evenly, is as far as from the path.
+    fn is_turned(&self, role: usize) -> bool {
+        self.prepared.attitude.turns() && !self.roles()[role].gauge.on
+    }
+
     /// Curvature from the change of the slopes over a short way.
     fn probe(&self, here: &Vertex) -> Result<[f64; 2], MotionFailure> {
         let reach = PROBE * self.prepared.size;
@@ -491,9 +497,16 @@ impl<'a> Stepper<'a> {
         }
         let direction = chord / reached;
         let turn = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&direction) / reached;
-        let curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
-        let course = self.course(here, &vertex, &direction, &curvature);
+        let mut curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
         let extremes = self.extremes(here, &vertex);
+        let ends =
+            [(here.part.clearance, vertex.part.clearance), (here.drive.clearance, vertex.drive.clearance)];
+        for k in 0..2 {
+            if self.is_turned(k) {
+                curvature[k] = sagging(&extremes[k], ends[k], reached).unwrap_or(curvature[k]);
+            }
+        }
+        let course = self.course(here, &vertex, &direction, &curvature);
         let mut trial = Trial {
             vertex,
             length: reached,
@@ -508,8 +521,6 @@ impl<'a> Stepper<'a> {
             culprit: 0,
             worst: 0.0,
         };
-        let ends =
-            [(here.part.clearance, vertex.part.clearance), (here.drive.clearance, vertex.drive.clearance)];
         for (k, role) in self.roles().iter().enumerate() {
             let growth = growth(role, &extremes[k], ends[k]);
             if growth < trial.growth {
@@ -558,6 +569,17 @@ fn ahead(here: &Vertex, length: f64, targets: [f64; 2], curvature: &[f64; 2]) ->
     // No longer than asked for: an arc sags a little more than the parabola that the length is predicted for.
     let way = along + aside;
     here.tip + way * (length * length / way.norm_squared())
+}
+
+/// Second derivative of the parabola through the clearances of both ends of a vector that sags as much as the clearance; `None` where
+/// that has no extreme between them.
+fn sagging(extremes: &Extremes, (start, end): (f64, f64), length: f64) -> Option<f64> {
+    let sag = (start.min(end) - extremes.least) - (extremes.greatest - start.max(end));
+    (sag != 0.0).then(|| {
+        // Between ends of different clearances the extreme is nearer to one of them.
+        let depths = [start, end].map(|value| (value - if sag > 0.0 { extremes.least } else { extremes.greatest }).abs());
+        2.0 * sag.signum() * (depths[0].sqrt() + depths[1].sqrt()).powi(2) / (length * length)
+    })
 }
 
 /// Factor by which the length may grow until the sag fills the band, taking the sag as quadratic in the length.

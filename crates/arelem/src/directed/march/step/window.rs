@@ -62,7 +62,7 @@ impl Stepper<'_> {
         let ends = [(&from.part, &to.part), (&from.drive, &to.drive)];
         let mut course = Course { at_start: [None; 2], at_end: [None; 2], next_curvature: *mean };
         for (k, role) in self.roles().into_iter().enumerate() {
-            if role.shape != Shape::General {
+            if role.shape != Shape::General || self.is_turned(k) {
                 continue;
             }
             let [start, end] = bends_of_cubic(ends[k], direction, length);
