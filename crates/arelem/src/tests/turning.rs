@@ -331,3 +331,21 @@ fn no_position_is_looked_for_where_there_are_no_coordinates() {
         assert!(position::solve(&attitude, &conditions, &start).is_err());
     }
 }
+
+/// The clearance of a plane beside the tool bends because that turns, not by itself: vertices lie at the limit away from which the
+/// vectors sag, so that all of the band serves them.
+#[test]
+fn a_tool_that_turns_beside_a_plane_takes_few_vectors() {
+    let under = cone(v(2.14, 2.17, 1.91), v(-0.355, -0.322, -0.878), 61.4);
+    let beside = plane(0.035, 1.0, 0.0, -0.607);
+    let first = plane(-1.0, 0.035, 0.0, 0.147);
+    let check = cylinder(v(2.71, 1.13, 3.46), v(-0.29, 0.952, 0.095), 4.2);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[1.0, 0.1875, 0.33, 0.22, 9.5, 5.0, 2.4]).from(-0.185, 0.88, 2.29);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true }));
+    p.go(&[(Relation::To, &beside), (Relation::On, &under), (Relation::On, &first)]);
+    p.side(DriveSide::Right).part_side(PartSide::On).indirv(-1.0, 0.035, 0.0);
+    p.drive(Turn::Forward, &beside, Relation::On, &check);
+    assert!(p.last().points.len() <= 5, "{} vectors", p.last().points.len());
+    proven(&p);
+}
