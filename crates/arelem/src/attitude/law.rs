@@ -6,16 +6,24 @@ use apt_geometry::{
     surface::{Surface, perpendicular},
 };
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use crate::{clearance::Tool, error::AxisFailure, role::Working};
 
 /// Bound of the iteration for the normal at the contact.
-const MAX_ITERATIONS: u32 = 80;
-/// A change of the axis below this ends it.
+const MAX_ITERATIONS: u32 = 40;
+/// A change of the normal below this ends it.
 const RESOLUTION: f64 = 1e-15;
 /// The change that may be left: nearest points of ruled and polyconic surfaces are known to about a tenth of it.
 const ACCEPTABLE: f64 = 1e-8;
+/// Ratio of a change to the one before above which the iteration is slow.
+const SLOW: f64 = 0.2;
+/// Difference of unit vectors by which Newton's method tells how they are led on: the root of the error of the normals.
+const DIFFERENCE: f64 = 1e-6;
+/// The longest step of Newton's method (radians): what bends more than that is not foretold.
+const LONGEST_STEP: f64 = 0.3;
+/// How often one that does not lead nearer is halved.
+const HALVINGS: u32 = 6;
 /// |cos| between axis and normal above which an axis ON a surface keeps to its side of it.
 const LEAST_COSINE: f64 = 0.05;
 /// Sine between two directions below which they span no plane.
@@ -260,31 +268,52 @@ impl Law {
             Mode::Fan { .. } => return self.towards(&Vec3::zeros(), tip),
             _ => {}
         }
-        let mut normal = self.base.normal(tip);
-        let mut axis = self.towards(&normal, tip)?;
+        let normal = self.base.normal(tip);
         if matches!(self.mode, Mode::Normal) {
+            let axis = self.towards(&normal, tip)?;
             return if self.base.at_vertex(tip) { Err(AxisFailure::Vertex) } else { Ok(axis) };
         }
-        let mut place = *tip;
-        // The angles hold at the contact, which moves with the axis.
-        let mut change = f64::INFINITY;
+        let normal = self.settled(tool, tip, normal)?;
+        let axis = self.towards(&normal, tip)?;
+        let is_vertex = self.base.at_vertex(&self.place(tool, tip, &axis, &normal));
+        if is_vertex { Err(AxisFailure::Vertex) } else { Ok(axis) }
+    }
+
+    /// The normal at the contact, which moves with the axis that stands on it: each is taken where the last one leads as long as that
+    /// comes nearer fast, and then where Newton's method does.
+    fn settled(&self, tool: &Tool, tip: &Vec3, first: Vec3) -> Result<Vec3, AxisFailure> {
+        let led = |from: Vec3| -> Result<Led, AxisFailure> {
+            let axis = self.towards(&from, tip)?;
+            let to = self.base.normal(&self.place(tool, tip, &axis, &from));
+            Ok(Led { from, to, change: (to - from).norm() })
+        };
+        let mut here = led(first)?;
+        let mut is_slow = false;
         for _ in 0..MAX_ITERATIONS {
-            place = match self.mode {
-                Mode::Tangent { height, .. } => tip + axis * height,
-                _ => corner(tool, tip, &axis, &normal),
-            };
-            normal = self.base.normal(&place);
-            let next = self.towards(&normal, tip)?;
-            change = (next - axis).norm();
-            axis = next;
-            if change <= RESOLUTION {
-                break;
+            if here.change <= RESOLUTION {
+                return Ok(here.to);
             }
+            let nearer = if is_slow { here.nearer(&led)? } else { None };
+            if nearer.is_none() && is_slow && here.change <= ACCEPTABLE {
+                return Ok(here.to);
+            }
+            let next = nearer.map_or_else(|| led(here.to), Ok)?;
+            is_slow |= next.change > SLOW * here.change;
+            here = next;
         }
-        if self.base.at_vertex(&place) {
-            return Err(AxisFailure::Vertex);
+        if here.change <= ACCEPTABLE {
+            Ok(here.to)
+        } else {
+            Err(AxisFailure::NotSettled { change: here.change })
         }
-        if change <= ACCEPTABLE { Ok(axis) } else { Err(AxisFailure::NotSettled { change }) }
+    }
+
+    /// Where the normal is taken that a tool with an axis stands on.
+    fn place(&self, tool: &Tool, tip: &Vec3, axis: &Vec3, normal: &Vec3) -> Vec3 {
+        match self.mode {
+            Mode::Tangent { height, .. } => tip + axis * height,
+            _ => corner(tool, tip, axis, normal),
+        }
     }
 
     fn towards(&self, normal: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
@@ -322,6 +351,44 @@ impl Law {
         let tangent =
             normal.cross(&other).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::SignUnresolved)?;
         Ok((tangent, tangent.cross(normal)))
+    }
+}
+
+/// A unit vector, and where a map of unit vectors leads it.
+#[derive(Debug, Clone, Copy)]
+struct Led {
+    from: Vec3,
+    to: Vec3,
+    change: f64,
+}
+
+impl Led {
+    /// One that is changed less, the first on the way of a step of Newton's method and shares of it, if there is one.
+    fn nearer(&self, map: &dyn Fn(Vec3) -> Result<Self, AxisFailure>) -> Result<Option<Self>, AxisFailure> {
+        let first = perpendicular(&self.from);
+        let frame = [first, self.from.cross(&first)];
+        let flat = |led: &Self| {
+            let change = led.to - led.from;
+            Vector2::new(change.dot(&frame[0]), change.dot(&frame[1]))
+        };
+        let change = flat(self);
+        let mut columns = [Vector2::zeros(); 2];
+        for (column, direction) in columns.iter_mut().zip(&frame) {
+            let beside = map((self.from + direction * DIFFERENCE).normalize())?;
+            *column = (flat(&beside) - change) / DIFFERENCE;
+        }
+        let Some(inverse) = Matrix2::from_columns(&columns).try_inverse() else { return Ok(None) };
+        let step = -(inverse * change);
+        let mut share = (LONGEST_STEP / step.norm()).min(1.0);
+        for _ in 0..=HALVINGS {
+            let at = self.from + (frame[0] * step.x + frame[1] * step.y) * share;
+            let found = map(at.normalize())?;
+            if found.change < self.change {
+                return Ok(Some(found));
+            }
+            share *= 0.5;
+        }
+        Ok(None)
     }
 }
 

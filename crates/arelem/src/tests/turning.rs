@@ -349,3 +349,21 @@ fn a_tool_that_turns_beside_a_plane_takes_few_vectors() {
     assert!(p.last().points.len() <= 5, "{} vectors", p.last().points.len());
     proven(&p);
 }
+
+/// A flat cutter leans by little across a direction: where on its rim contact is turns far with a small turn of the normal, so that each
+/// normal leads farther from the axis that is looked for.
+#[test]
+fn a_flat_tool_that_leans_by_little_across_a_direction_finds_its_axis() {
+    let beside = plane(0.1, 1.0, 0.0, 0.0);
+    for (kind, diameter) in [(1, 1.0), (1, 3.0), (2, 1.0), (2, 3.0)] {
+        for degrees in [-3.0, 3.0, 6.0] {
+            let mode = AxisAngle::PerpendicularTo(v(0.2, 1.0, 0.1));
+            let mode = ToolAxis::AtAngle { part: true, angle: f64::to_radians(degrees), mode };
+            let under = part_surface(kind, 0.3, 0.9);
+            let mut p = program(&[diameter], mode);
+            p.go(&[(Relation::On, &beside), (Relation::To, &under), (Relation::On, &x(-1.0))]);
+            p.drive(Turn::Forward, &beside, Relation::On, &x(1.0));
+            proven(&p);
+        }
+    }
+}

@@ -577,7 +577,8 @@ fn sagging(extremes: &Extremes, (start, end): (f64, f64), length: f64) -> Option
     let sag = (start.min(end) - extremes.least) - (extremes.greatest - start.max(end));
     (sag != 0.0).then(|| {
         // Between ends of different clearances the extreme is nearer to one of them.
-        let depths = [start, end].map(|value| (value - if sag > 0.0 { extremes.least } else { extremes.greatest }).abs());
+        let depths = [start, end]
+            .map(|value| (value - if sag > 0.0 { extremes.least } else { extremes.greatest }).abs());
         2.0 * sag.signum() * (depths[0].sqrt() + depths[1].sqrt()).powi(2) / (length * length)
     })
 }
