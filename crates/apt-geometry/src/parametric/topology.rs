@@ -52,6 +52,11 @@ impl Edge {
         }
     }
 
+    /// The number of the parameter that varies along the edge.
+    pub fn course(self) -> usize {
+        usize::from(matches!(self, Edge::LowU | Edge::HighU))
+    }
+
     /// The parameters at `t` along the edge, which runs with the parameter that varies.
     pub fn parameters(self, t: f64) -> [f64; 2] {
         match self {

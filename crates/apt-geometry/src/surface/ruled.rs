@@ -451,6 +451,11 @@ impl RuledSheet {
             .unwrap_or_else(|| jet.dv.try_normalize(0.0).map_or_else(Vec3::z, |dv| perpendicular(&dv)))
     }
 
+    /// Ranges of the parameters of a place.
+    pub(super) fn limits(&self) -> [[f64; 2]; 2] {
+        self.limits
+    }
+
     /// Whether the nearest place lies at an end of the curves or of the rulings.
     pub(super) fn ends_at(&self, p: &Vec3) -> bool {
         let nearest = self.nearest(p);

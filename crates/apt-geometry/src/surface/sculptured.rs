@@ -297,15 +297,7 @@ impl SculpturedSheet {
         let (edge, _) = at_edges.into_iter().find(is_end)?;
         let jet = self.jet(piece, at);
         let normal = self.natural(piece, at, &jet);
-        let (along, across) = match edge {
-            Edge::LowU => (jet.dv, -jet.du),
-            Edge::HighU => (jet.dv, jet.du),
-            Edge::LowV => (jet.du, -jet.dv),
-            Edge::HighV => (jet.du, jet.dv),
-        };
-        let along = along.try_normalize(0.0)?;
-        let outward = (across - along * along.dot(&across)).try_normalize(0.0)?;
-        Some(SurfaceEdge { normal, outward, along })
+        SurfaceEdge::at(edge, [jet.du, jet.dv], normal)
     }
 
     pub(super) fn crease_at(&self, place: &Place, side: f64) -> Option<(Crease, f64)> {

@@ -71,7 +71,7 @@ impl Beside<'_> {
         for _ in 0..MOST_LINES {
             let (found, slope, chart_along) = self.lowest(&spot)?;
             let leaves = found.at <= 0.0 && slope > 0.0 || found.at >= 1.0 && slope < 0.0;
-            let point = self.surface.chart(&self.surface.on_crease(&found.crease, found.at))?.point;
+            let [point, _] = self.surface.on_crease(&found.crease, found.at)?;
             // Over the end of the line the nearest place on the surface tells what goes on.
             let beyond = point + chart_along * (BEYOND * (found.at - 0.5).signum());
             match self.spot(&beyond).filter(|next| leaves && next.crease != found.crease) {
@@ -88,11 +88,9 @@ impl Beside<'_> {
 
     /// The place of one line that is nearest to the tool, the slope of the distance there, and the derivative along the line.
     fn lowest(&self, spot: &Spot) -> Option<(Spot, f64, Vec3)> {
-        let along = self.surface.along_crease(&spot.crease);
         let look = |at: f64| {
-            let chart = self.surface.chart(&self.surface.on_crease(&spot.crease, at))?;
-            let way = chart.first[along];
-            Some((outward(self.tool, &(chart.point - self.tip)).1.dot(&way), way))
+            let [point, way] = self.surface.on_crease(&spot.crease, at)?;
+            Some((outward(self.tool, &(point - self.tip)).1.dot(&way), way))
         };
         let (mut low, mut high) = (0.0, 1.0);
         let mut at = spot.at.clamp(0.0, 1.0);
@@ -129,6 +127,15 @@ impl Beside<'_> {
         let shown = self.clears(&contact, contact.clearance - slack);
         memory.remember_crease(self.side, shown.then_some(spot));
         shown.then_some((contact, slack))
+    }
+
+    /// Whether a tool that is moved away from an edge that is deep in it comes off the surface on its own side of it.
+    pub(super) fn leads_out(&self, contact: &Contact) -> bool {
+        contact.clearance < 0.0
+            && self
+                .surface
+                .edge_at(&contact.surface)
+                .is_some_and(|end| self.side * end.normal.dot(&contact.gradient) >= 0.0)
     }
 
     /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.

@@ -211,7 +211,7 @@ impl Gauge {
         // Beside an edge, and where several patches are near, no distance of a point is steady.
         let [(from, first), (to, last)] = &contacts;
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        matches!(self.surface, Surface::Sculptured(_))
+        matches!(self.surface, Surface::Sculptured(_) | Surface::PolyConic(_))
             && away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
     }
 

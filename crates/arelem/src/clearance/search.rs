@@ -214,11 +214,17 @@ impl Search<'_> {
         } else {
             beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
         };
-        let Some(touch) = touch.filter(|touch| touch.clearance <= self.best.value + slack) else {
-            return false;
-        };
-        self.best.take(self.best.piece, touch.clearance, || touch);
-        beside.clears(&touch, self.best.value - slack)
+        let Some(touch) = touch else { return false };
+        if touch.clearance <= self.best.value + slack {
+            self.best.take(self.best.piece, touch.clearance, || touch);
+            return beside.clears(&touch, self.best.value - slack);
+        }
+        // What of the tool is behind the surface by more comes out past the end by less.
+        let is_freed = beside.leads_out(&touch) && beside.clears(&touch, touch.clearance - slack);
+        if is_freed {
+            self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
+        }
+        is_freed
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.

@@ -150,7 +150,7 @@ impl Ruled {
     fn may_have_edge(&self, touch: &Touch) -> bool {
         match self {
             Self::Parallel(_) | Self::Joining(_) => touch.along <= JOINT || touch.along >= 1.0 - JOINT,
-            Self::Conics(_) => false,
+            Self::Conics(surface) => surface.ends_at(touch),
             Self::Sculptured(surface) => surface.is_sharp(touch, JOINT),
         }
     }

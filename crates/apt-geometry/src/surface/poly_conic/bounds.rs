@@ -89,7 +89,7 @@ impl Enclose for PolyConicSheet {
             dvv: lift(self.form.length * station_bend, dss),
             reach: reach.hypot(length),
             sharp: [outer || nose || bent; 2],
-            split: outer || nose || bent,
+            split: bent,
             ends: outer || nose,
         }
     }
