@@ -129,6 +129,14 @@ impl Beside<'_> {
         shown.then_some((contact, slack))
     }
 
+    /// Whether the surface has an edge within a radius of the tool of one of its places.
+    pub(super) fn has_edge_by(&self, surface: &Vec3) -> bool {
+        let Some(place) = self.surface.place(surface) else { return false };
+        let beside = self.surface.creases_beside(&place, self.side).into_iter().flatten();
+        let mut edges = beside.filter_map(|(crease, at)| self.surface.on_crease(&crease, at));
+        edges.any(|[point, _]| (point - surface).norm() <= self.tool.radius())
+    }
+
     /// Whether a tool that is moved away from an edge that is deep in it comes off the surface on its own side of it.
     pub(super) fn leads_out(&self, contact: &Contact) -> bool {
         contact.clearance < 0.0

@@ -209,10 +209,14 @@ impl Gauge {
             return true;
         }
         // Beside an edge, and where several patches are near, no distance of a point is steady.
+        let surface = self.met(tool);
+        let is_by_edge = |(tip, contact): &(Vec3, Contact)| {
+            Beside { tool, surface, side: self.side, tip }.has_edge_by(&contact.surface)
+        };
         let [(from, first), (to, last)] = &contacts;
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        matches!(self.surface, Surface::Sculptured(_) | Surface::PolyConic(_))
-            && away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
+        (matches!(surface, Surface::Sculptured(_)) || contacts.iter().any(is_by_edge))
+            && away.is_some_and(|away| crease::clears(surface, tool, [from, to], &away, level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does
