@@ -18,6 +18,7 @@ use arelem::{
 use crate::{
     case::Case,
     dense,
+    ends::ToldEnd,
     laws::Laws,
     search::{Found, Reader},
 };
@@ -317,7 +318,7 @@ fn refused(case: &Case, runner: &Runner, failure: &MotionFailure) -> Verdict {
     let words = format!("{failure:?}");
     let reader = Reader::new(case);
     let start = if runner.sequences.is_empty() { None } else { runner.state.tip };
-    match reader.search(start) {
+    match reader.search(start, ToldEnd::of(failure)) {
         _ if reader.is_spent() => Verdict::NotJudged(words),
         Found::Path(length) => Verdict::WronglyRefused(format!("a path of {length:.3}: {words}")),
         // The start-up alone was refused, and there is a start.

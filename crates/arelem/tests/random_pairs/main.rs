@@ -12,6 +12,7 @@
 mod case;
 mod combinations;
 mod dense;
+mod ends;
 mod judge;
 mod kinds;
 mod laws;

@@ -9,11 +9,15 @@ use apt_geometry::{
     motion::{DriveSide, Relation},
 };
 use arelem::{
+    error::RoleName,
     sequence::{CutSequence, Role, Stop, ToolPosition},
     verify::verify,
 };
 
-use crate::case::{self, Case, Placed};
+use crate::{
+    case::{self, Case, Placed},
+    ends::{self, ToldEnd},
+};
 
 /// Step of the differences, relative to the band.
 const DIFFERENCE: f64 = 0.05;
@@ -30,6 +34,10 @@ const TURNING_BACK: usize = 4;
 /// Steps after which a path from a corner shows whether it goes in the direction asked for, and cosine below which it was one.
 const FIRST_STEPS: usize = 2;
 const SAME_WAY: f64 = 0.9;
+/// How near to where a motion is told to come to the end of a surface that end is looked for, in steps.
+const BY_END: f64 = 2.0;
+/// How much farther from the tool than the surface its end may be, relative to the band, where the tool touches it.
+const AT_END: f64 = 0.1;
 /// A step is halved this often before the path counts as ended.
 const HALVINGS: u32 = 6;
 
@@ -224,8 +232,19 @@ impl<'a> Reader<'a> {
         Some(above.max(self.read(tip, Wanted::Stop(-1.0))?[2]))
     }
 
-    /// Whether the motion from a start (or from where the search finds one) has a solution.
-    pub(crate) fn search(&self, start: Option<Vec3>) -> Found {
+    /// Whether the path comes to the end of a surface where a motion is told so.
+    fn is_over(&self, told: &ToldEnd, tip: &Vec3, sense: &Vec3) -> bool {
+        let Case { part, drive, axis, inside, outside, .. } = self.case;
+        let placed = if told.role == RoleName::Part { part } else { drive };
+        let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
+        let clearance = if told.role == RoleName::Part { on_part } else { on_drive };
+        let near = clearance + placed.thickness + AT_END * (inside + outside);
+        placed.relation != Relation::On && ends::is_over(placed, (&self.cutter, axis), tip, near, sense)
+    }
+
+    /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of
+    /// a surface, as the motion was told.
+    pub(crate) fn search(&self, start: Option<Vec3>, told: Option<ToldEnd>) -> Found {
         let Some(mut tip) = start.or_else(|| self.start()) else { return Found::NoStart };
         // Directions count across the tool axis.
         let Case { forward, axis, .. } = self.case;
@@ -299,6 +318,10 @@ impl<'a> Reader<'a> {
                     status = Some(now);
                 }
                 Some(_) => {}
+            }
+            let by_end = told.filter(|told| (told.tip - tip).norm() <= BY_END * long);
+            if by_end.is_some_and(|told| self.is_over(&told, &tip, &sense)) {
+                return Found::Ends(length);
             }
             let Some((next, next_sense)) = self.step(&tip, &sense, long) else { return Found::Ends(length) };
             length += (next - tip).norm();

@@ -1,0 +1,82 @@
+//! Whether a path comes to the end of a surface where a motion is told that it does: by how near the end itself is to the tool.
+
+use apt_geometry::{
+    Vec3,
+    cutter::Cutter,
+    surface::{Crease, Surface, SurfaceEdge},
+};
+use arelem::{MotionFailure, error::RoleName};
+
+use crate::case::{self, Placed};
+
+/// Places of a line at which a surface ends, evenly spread, between two of which the nearest one is closed in.
+const PLACES: u32 = 128;
+/// Steps of that, each to two thirds of the range.
+const THIRDS: u32 = 60;
+
+/// What a motion is told of the end of one of its surfaces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ToldEnd {
+    pub(crate) role: RoleName,
+    pub(crate) tip: Vec3,
+}
+
+impl ToldEnd {
+    pub(crate) fn of(failure: &MotionFailure) -> Option<Self> {
+        match failure {
+            MotionFailure::SurfaceEnds { role, tip, .. } => Some(Self { role: *role, tip: *tip }),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a tool touches the end of a surface, which is no farther than a distance from it, and a path leads out over that end or down
+/// behind it, and not along it. Surfaces of which the end is not known have none.
+pub(crate) fn is_over(
+    placed: &Placed,
+    (cutter, axis): (&Cutter, &Vec3),
+    tip: &Vec3,
+    near: f64,
+    path: &Vec3,
+) -> bool {
+    let Ok(surface) = Surface::from_geometry(&case::surface(placed).geometry) else { return false };
+    let met = surface.met_from(placed.side, axis);
+    let Some(start) = met.place(tip) else { return false };
+    let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
+    let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
+    let Some((distance, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&place) else { return false };
+    let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
+    distance <= near && out.hypot(behind) >= along.dot(path).abs()
+}
+
+/// The place of a line nearest to a tool, and how far that is.
+fn nearest_on(
+    surface: &Surface,
+    line: &Crease,
+    (cutter, axis): (&Cutter, &Vec3),
+    tip: &Vec3,
+) -> Option<(f64, Vec3)> {
+    let profile = cutter.profile();
+    let look = |at: f64| {
+        let [place, _] = surface.on_crease(line, at)?;
+        let from_tip = place - tip;
+        let height = axis.dot(&from_tip);
+        let radius = (from_tip - axis * height).norm();
+        Some((profile.outward(radius, height).0, place))
+    };
+    let share = |k: u32| f64::from(k) / f64::from(PLACES);
+    let distances: Option<Vec<f64>> = (0..=PLACES).map(|k| Some(look(share(k))?.0)).collect();
+    let (rank, _) = distances?.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let rank = u32::try_from(rank).ok()?;
+    let (mut low, mut high) = (share(rank.saturating_sub(1)), share((rank + 1).min(PLACES)));
+    for _ in 0..THIRDS {
+        let [first, second] = [1.0, 2.0].map(|third| low + (high - low) * third / 3.0);
+        if look(first)?.0 <= look(second)?.0 {
+            high = second;
+        } else {
+            low = first;
+        }
+    }
+    look(0.5 * (low + high))
+}
