@@ -153,3 +153,95 @@ fn a_tool_stops_past_the_end_of_a_surface() {
     let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
     assert!((end.z - 3.513).abs() < 1e-3, "{end:?}");
 }
+
+/// One that a ball cutter on the side of its natural normal touches with its shank at the end.
+fn leaning_wall() -> Geometry {
+    let round = 3.63070224545673;
+    poly_conic(
+        &[
+            1.0,
+            0.3567432677634518,
+            -0.37075211386877877,
+            0.8574830091420388,
+            4.343594585195163,
+            -0.5153508954152167,
+            0.6874784914484833,
+            0.5116510318473438,
+            0.15396380541528118,
+            -0.7791968271882198,
+            -0.624432697620448,
+            0.05418588969706064,
+            2.7555242961285704,
+            0.0,
+            0.0,
+            5.999999999999999,
+        ],
+        [
+            [round, 0.02885595822079567],
+            [round, 0.01662820664897074],
+            [round, 0.13769813185976754],
+            [-round, -0.12972126135004988],
+            [-round, -0.07267447430726173],
+            [round, -0.015300871969653683],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.01553791939147553],
+        ],
+    )
+}
+
+const SLENDER_BALL: [f64; 2] = [0.3376421318773318, 0.1688210659386659];
+
+/// Where that cutter touches the end.
+fn beside_the_wall() -> Vec3 {
+    v(-1.1260934396603965, -1.5680898274479713, -0.539050953153846)
+}
+
+/// As deep as the end is in it the tool comes out past the end, though some of it is under the surface by more.
+#[test]
+fn a_tool_is_as_deep_in_a_surface_as_the_end_of_that_is_in_the_tool() {
+    let cutter = Cutter::from_numbers(&SLENDER_BALL, 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let role = Role {
+        surface: named(&leaning_wall()),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.0,
+        disk: None,
+    };
+    let touch = gauge(&role).contact(&tool, &beside_the_wall());
+    for depth in [1e-4, 3e-4, 1e-3] {
+        let tip = beside_the_wall() - touch.gradient * (depth + touch.clearance);
+        let engine = gauge(&role).contact(&tool, &tip).clearance;
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        // The shank is round, and so is the end.
+        let bent = depth * depth / SLENDER_BALL[1];
+        assert!((engine + depth).abs() < bent, "{engine}, not {depth} deep");
+        assert!((engine - verifier).abs() < 1e-7, "{engine}, {verifier}");
+    }
+}
+
+/// The shank goes along the end, not over it.
+#[test]
+fn a_tool_goes_along_the_end_of_a_surface() {
+    let (across, ahead) = (v(0.201, -0.6908, 0.695).normalize(), v(0.1943, -0.6677, -0.719));
+    let motion = Found {
+        cutter: &SLENDER_BALL,
+        axis: Vec3::z(),
+        from: beside_the_wall(),
+        band: [5e-4, 0.0],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: ahead,
+        part: (
+            Relation::On,
+            Geometry::Plane(Plane { normal: across, distance: across.dot(&beside_the_wall()) }),
+        ),
+        drive: (Relation::To, leaning_wall()),
+        first: (Relation::On, level(0.0)),
+        stop: (Relation::On, Geometry::Plane(Plane { normal: Vec3::y(), distance: -1.7 })),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
+    assert!((end.y + 1.7).abs() < 1e-9, "{end:?}");
+}
