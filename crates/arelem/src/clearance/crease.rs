@@ -34,6 +34,13 @@ pub(super) struct Spot {
     at: f64,
 }
 
+/// How the distance from the tool changes along a line at one of its places, by its parameter, and the direction out of the tool there.
+#[derive(Debug, Clone, Copy)]
+struct Slope {
+    slope: f64,
+    out: Vec3,
+}
+
 /// A tool in a place beside a surface, on a side of it.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
@@ -69,15 +76,16 @@ impl Beside<'_> {
     pub(super) fn touch(&self, spot: &Spot) -> Option<(Spot, Contact)> {
         let mut spot = *spot;
         for _ in 0..MOST_LINES {
-            let (found, slope, chart_along) = self.lowest(&spot)?;
+            let (found, sides) = self.lowest(&spot)?;
+            let slope = sides[1].slope;
             let leaves = found.at <= 0.0 && slope > 0.0 || found.at >= 1.0 && slope < 0.0;
-            let [point, _] = self.surface.on_crease(&found.crease, found.at)?;
+            let [point, way] = self.surface.on_crease(&found.crease, found.at)?;
             // Over the end of the line the nearest place on the surface tells what goes on.
-            let beyond = point + chart_along * (BEYOND * (found.at - 0.5).signum());
+            let beyond = point + way * (BEYOND * (found.at - 0.5).signum());
             match self.spot(&beyond).filter(|next| leaves && next.crease != found.crease) {
                 Some(next) => spot = next,
                 None => {
-                    let (clearance, out) = outward(self.tool, &(point - self.tip));
+                    let (clearance, out) = self.apart(&point, &sides);
                     let tool = point - out * clearance;
                     return Some((found, Contact { clearance, gradient: -out, tool, surface: point }));
                 }
@@ -86,22 +94,39 @@ impl Beside<'_> {
         None
     }
 
-    /// The place of one line that is nearest to the tool, the slope of the distance there, and the derivative along the line.
-    fn lowest(&self, spot: &Spot) -> Option<(Spot, f64, Vec3)> {
+    /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the line is deep below an edge of the
+    /// tool, so that it comes out on one side of it before and on another behind, it comes out over that edge, square to both.
+    fn apart(&self, point: &Vec3, [before, behind]: &[Slope; 2]) -> (f64, Vec3) {
+        let (clearance, out) = outward(self.tool, &(point - self.tip));
+        let turn = behind.slope - before.slope;
+        let crosses = clearance < 0.0 && before.slope < 0.0 && behind.slope > 0.0;
+        let over = (before.out * behind.slope - behind.out * before.slope) / turn;
+        match over.try_normalize(0.0).filter(|_| crosses) {
+            Some(over_edge) => (clearance / over.norm(), over_edge),
+            None => (clearance, out),
+        }
+    }
+
+    /// The place of one line that is nearest to the tool, and how the distance changes just before it and just behind; the last one is that
+    /// there.
+    fn lowest(&self, spot: &Spot) -> Option<(Spot, [Slope; 2])> {
         let look = |at: f64| {
             let [point, way] = self.surface.on_crease(&spot.crease, at)?;
-            Some((outward(self.tool, &(point - self.tip)).1.dot(&way), way))
+            let out = outward(self.tool, &(point - self.tip)).1;
+            Some(Slope { slope: out.dot(&way), out })
         };
         let (mut low, mut high) = (0.0, 1.0);
         let mut at = spot.at.clamp(0.0, 1.0);
-        let (mut slope, mut way) = look(at)?;
+        let mut here = look(at)?;
+        let mut sides = [here; 2];
         let mut before: Option<(f64, f64)> = None;
         for _ in 0..MAX_STEPS {
-            if slope > 0.0 {
-                high = at;
+            if here.slope > 0.0 {
+                (high, sides[1]) = (at, here);
             } else {
-                low = at;
+                (low, sides[0]) = (at, here);
             }
+            let Slope { slope, .. } = here;
             let secant = before.map(|(t, s)| at - slope * (at - t) / (slope - s));
             let next = match secant.filter(|next| *next >= low && *next <= high) {
                 Some(next) => next,
@@ -114,9 +139,9 @@ impl Beside<'_> {
                 break;
             }
             at = next;
-            (slope, way) = look(at)?;
+            here = look(at)?;
         }
-        Some((Spot { at, ..*spot }, slope, way))
+        Some((Spot { at, ..*spot }, sides))
     }
 
     /// The contact at an edge where the last one was, if that is shown, and how much nearer to the surface another point of the tool may
@@ -124,7 +149,7 @@ impl Beside<'_> {
     pub(super) fn followed(&self, memory: &Memory) -> Option<(Contact, f64)> {
         let (spot, contact) = self.touch(&memory.crease(self.side)?)?;
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
-        let shown = self.clears(&contact, contact.clearance - slack);
+        let shown = self.is_off_own_side(&contact) && self.clears(&contact, contact.clearance - slack);
         memory.remember_crease(self.side, shown.then_some(spot));
         shown.then_some((contact, slack))
     }
@@ -137,13 +162,11 @@ impl Beside<'_> {
         edges.any(|[point, _]| (point - surface).norm() <= self.tool.radius())
     }
 
-    /// Whether a tool that is moved away from an edge that is deep in it comes off the surface on its own side of it.
-    pub(super) fn leads_out(&self, contact: &Contact) -> bool {
-        contact.clearance < 0.0
-            && self
-                .surface
-                .edge_at(&contact.surface)
-                .is_some_and(|end| self.side * end.normal.dot(&contact.gradient) >= 0.0)
+    /// Whether a tool that is moved away from a contact comes off the surface on its own side of it. How far places of the surface are from
+    /// the tool does not tell.
+    pub(super) fn is_off_own_side(&self, contact: &Contact) -> bool {
+        let end = self.surface.edge_at(&contact.surface);
+        end.is_none_or(|end| self.side * end.normal.dot(&contact.gradient) >= 0.0)
     }
 
     /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.

@@ -161,6 +161,7 @@ impl Gauge {
         if let Some(spot) = self.memory.crease(self.side)
             && let beside = (Beside { tool, surface, side: self.side, tip })
             && let Some((_, contact)) = beside.touch(&spot)
+            && beside.is_off_own_side(&contact)
             && beside.clears(&contact, level)
         {
             return Certificate::Holds;

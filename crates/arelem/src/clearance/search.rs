@@ -220,7 +220,10 @@ impl Search<'_> {
             return beside.clears(&touch, self.best.value - slack);
         }
         // What of the tool is behind the surface by more comes out past the end by less.
-        let is_freed = beside.leads_out(&touch) && beside.clears(&touch, touch.clearance - slack);
+        let is_freed = touch.clearance < 0.0
+            && surface.edge_at(&touch.surface).is_some()
+            && beside.is_off_own_side(&touch)
+            && beside.clears(&touch, touch.clearance - slack);
         if is_freed {
             self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
         }

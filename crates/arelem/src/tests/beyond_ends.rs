@@ -221,6 +221,32 @@ fn a_tool_is_as_deep_in_a_surface_as_the_end_of_that_is_in_the_tool() {
     }
 }
 
+/// On the other side of the end no place of the surface is in the tool either, but the tool is behind the surface there: also where it is
+/// asked after a contact at the end.
+#[test]
+fn a_tool_that_touches_the_end_from_behind_is_not_clear() {
+    let tool = Tool::new(Cutter::from_numbers(&SLENDER_BALL, 1.0).expect("a cutter"), Vec3::z());
+    let role = Role {
+        surface: named(&leaning_wall()),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.0,
+        disk: None,
+    };
+    let known = gauge(&role);
+    let touch = known.contact(&tool, &beside_the_wall());
+    for way in [1.9, 2.0, 2.1] {
+        let behind = beside_the_wall() - touch.gradient * (way * tool.radius());
+        let (after, afresh) = (known.contact(&tool, &behind), gauge(&role).contact(&tool, &behind));
+        for found in [after, afresh] {
+            assert!(found.clearance < -tool.radius(), "{found:?}");
+        }
+        known.contact(&tool, &beside_the_wall());
+    }
+}
+
 /// The shank goes along the end, not over it.
 #[test]
 fn a_tool_goes_along_the_end_of_a_surface() {
