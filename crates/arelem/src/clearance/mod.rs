@@ -209,15 +209,23 @@ impl Gauge {
         if contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level)) {
             return true;
         }
-        // Beside an edge, and where several patches are near, no distance of a point is steady.
+        // Beside an edge, and where several patches are near, no distance of a point is steady; a ball that is may be known from before the
+        // tool came to the edge.
         let surface = self.met(tool);
         let is_by_edge = |(tip, contact): &(Vec3, Contact)| {
             Beside { tool, surface, side: self.side, tip }.has_edge_by(&contact.surface)
         };
+        let is_unsteady = match surface {
+            Surface::Sculptured(_) => true,
+            Surface::PolyConic(_) => {
+                let may_be = self.memory.crease(self.side).is_some() || !around.is_steady();
+                may_be && contacts.iter().any(is_by_edge)
+            }
+            _ => false,
+        };
         let [(from, first), (to, last)] = &contacts;
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        (matches!(surface, Surface::Sculptured(_)) || contacts.iter().any(is_by_edge))
-            && away.is_some_and(|away| crease::clears(surface, tool, [from, to], &away, level))
+        is_unsteady && away.is_some_and(|away| crease::clears(surface, tool, [from, to], &away, level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does

@@ -48,6 +48,11 @@ impl<'a> Around<'a> {
         Some((near, near.zone.as_ref().ok()?))
     }
 
+    /// Whether a steady ball is known about the contact.
+    pub(in crate::clearance) fn is_steady(&self) -> bool {
+        self.known().is_some()
+    }
+
     /// What tells the feet of points near by; contacts can be looked for meanwhile.
     pub(in crate::clearance) fn feet(self) -> Feet<'a> {
         Feet { pose: self.pose, known: self.known().map(|(near, zone)| (near.start, *zone)) }
