@@ -224,8 +224,39 @@ impl Gauge {
             _ => false,
         };
         let [(from, first), (to, last)] = &contacts;
+        is_unsteady && self.parts_clear(tool, [(from, first), (to, last)], level)
+    }
+
+    /// Whether patches of the tool did not decide about the last contact that was searched for.
+    pub(crate) fn is_hard(&self) -> bool {
+        self.memory.is_shown_by_parts()
+    }
+
+    /// Whether the parts of a surface show the same, whatever is steady there: they are beside ends of it, and where long and thin gaps
+    /// are left beside the contact. Those of a sculptured one have been asked then.
+    pub(crate) fn is_clear_between(
+        &self,
+        tool: &Tool,
+        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
+        level: f64,
+    ) -> bool {
+        if self.on || !self.surface.has_charts() || matches!(self.surface, Surface::Sculptured(_)) {
+            return false;
+        }
+        let (tool, start) = &self.body(tool, from);
+        let end = to + (start - from);
+        self.parts_clear(tool, [(start, first), (&end, last)], level + self.thickness)
+    }
+
+    /// Whether no part of the surface is nearer than a level to what is measured while its end goes straight from one contact to another.
+    fn parts_clear(
+        &self,
+        tool: &Tool,
+        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
+        level: f64,
+    ) -> bool {
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        is_unsteady && away.is_some_and(|away| crease::clears(surface, tool, [from, to], &away, level))
+        away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does

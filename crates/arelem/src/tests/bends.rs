@@ -1,11 +1,14 @@
 //! Random motions around tight bends, past surfaces that the tool touches with another part than before, and from where two
 //! sides of the drive surface would do.
 
+use apt_geometry::canonical::{Cone, Cylinder, Remembering, RuledSurface};
+
 use super::{
+    ends::asked,
     refused::{AMPLE, Found},
     *,
 };
-use crate::error::RoleName;
+use crate::{error::RoleName, verify::verify};
 
 fn is_delivered(motion: &Found) {
     let sequences = motion.run(AMPLE).expect("a path");
@@ -448,4 +451,45 @@ fn no_vector_round_a_corner_comes_to_a_path_that_leads_back() {
         Err(MotionFailure::NoAdmissibleVector { role: RoleName::Part, .. }) => {}
         other => panic!("{other:?}"),
     }
+}
+
+/// Questions whether to give up: more than a path asks that goes on, where two vertices that take turns ask for ever.
+const MOST_ASKED: u32 = 6_000;
+
+/// The path of a bull nose along a cone over a ruled surface turns by more than a right angle. Two vertices there take turns in sparing each
+/// other, where vectors that end nearer than is of use count.
+#[test]
+fn a_vector_that_ends_nearer_than_is_of_use_spares_no_vertex() {
+    let arc = Cylinder {
+        point: v(-5.231147834218437, -3.4474985765119084, 0.5887712394955513),
+        axis: v(-0.22367706901417267, 0.6202981883160509, 0.7517969981112284),
+        radius: 7.541308585198577,
+    };
+    let parts = vec![
+        Geometry::Circle(arc),
+        Geometry::Point(v(1.5918751748671105, -1.2266498880946277, -3.204054000063243)),
+        Geometry::Point(v(1.7475865762526066, -7.373398741250831, 1.9138784433851332)),
+        Geometry::Vector(v(0.9744689448176795, 0.15772843656204794, 0.15978740840757874)),
+        Geometry::Point(v(-1.0817486452104588, 0.819386675980093, 6.283638693941539)),
+    ];
+    let part = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let drive = Geometry::Cone(Cone {
+        vertex: v(-1.0366337649854276, -2.2104312163748125, -2.015946193288439),
+        axis: v(0.12565204483084674, 0.6967139611341875, 0.7062586070204999),
+        cosine: 0.5629295162951071,
+    });
+    let first = plane(0.16840509491356653, -0.37268170510602866, 0.9125503113179108, 0.4491931435694896);
+    let axis = Some(v(-0.46574889394095675, -0.2613070139674189, 0.8454564520093312));
+    let position = v(0.07267956947794077, -1.8105935248511564, -0.15609830511681583);
+    let mut p = Program::new();
+    p.tolerance(2e-5, 3e-5).cutter(&[0.9434443952440172, 0.1133681143422038]);
+    p.run(&MotionCommand::From { position, axis, name: String::new() });
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &first)]).side(DriveSide::Left);
+    p.indirv(0.1684050949135663, -0.37268170510602866, 0.9125503113179109);
+    let onward = motion(Turn::Forward, &drive, &[(Relation::On, 1, &x(0.6))]);
+    let (execution, asks) = asked(&p, &onward, MOST_ASKED);
+    let Some(Output::Sequence(sequence)) = execution.output else {
+        panic!("{:?} after {asks} questions", execution.failure);
+    };
+    assert!(verify(&sequence, &|| false).expect("evidence").verified);
 }

@@ -94,7 +94,7 @@ fn bent_tube(frame: [[f64; 4]; 3], root: f64, slopes: [f64; 7]) -> Geometry {
 }
 
 /// The outcome of a motion and how often it asks whether to give up, which it does after so many times.
-fn asked(p: &Program, motion: &MotionCommand, most: u32) -> (Execution, u32) {
+pub(super) fn asked(p: &Program, motion: &MotionCommand, most: u32) -> (Execution, u32) {
     let asks = Cell::new(0);
     let execution = execute(&p.state, motion, &|| {
         asks.set(asks.get() + 1);
@@ -193,4 +193,54 @@ fn a_vector_that_leads_to_a_vertex_again_does_not_spare_it() {
         panic!("{:?} after {asks} questions", execution.failure);
     };
     assert!(verify(&sequence, &|| false).expect("evidence").verified);
+}
+
+/// Questions of a motion beside an end: searches for a bound of how the clearance bends take seven times as many.
+const FEWER: u32 = 15_000;
+
+/// A flat cutter beside the end of a polyconic surface, within sight of which nothing is steady: parts of the surface show that vectors keep
+/// the band, and not boxes of the tool.
+#[test]
+fn vectors_beside_the_end_are_proven_by_parts_of_the_surface() {
+    let part = bent_tube(
+        [
+            [0.11445380397654385, -0.7851836295316635, 0.6085942775534302, 4.798563334730471],
+            [-0.6398109404940856, -0.5269089292765575, -0.5594720195619307, 0.9793943721885351],
+            [0.7599620300905647, -0.32535157624347655, -0.5626758077761229, 4.655280633970737],
+        ],
+        2.0742487532358806,
+        [
+            -0.02036718176571903,
+            0.018359398615602526,
+            0.04755213265210719,
+            -0.01649244768957768,
+            -0.02007079539469409,
+            -0.03657078776688745,
+            0.012324192808660013,
+        ],
+    );
+    let drive = quadric([
+        -0.5014949066457334,
+        0.9330832296501397,
+        -0.022288515765792806,
+        9.204488618683262,
+        0.08223900463676395,
+        -0.11980765486853856,
+        0.022280444747880688,
+        0.17354510309725013,
+        -3.1041332584068595,
+        -0.21351462389926787,
+    ]);
+    let check = sphere(2.5861781436047018, 2.7813476061772957, 3.5922114884102267, 3.1692271377837224);
+    let forward = v(0.6752997040828881, 0.3736562177465167, 0.635886263890746);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[0.9940641117502527]);
+    let stock = 0.04566266908037695;
+    p.run(&MotionCommand::Thickness(PerRole { part: stock, drive: stock, check: [stock; 2] }));
+    p.from(-1.4131429690392063, 1.6195763568089125, 1.3861194276529698).side(DriveSide::On);
+    p.go(&[(On, &drive), (To, &part)]).indirv(forward.x, forward.y, forward.z);
+    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(On, 2, &check)]), FEWER);
+    let failure = execution.failure.expect("no way there");
+    assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Part, .. }), "{failure:?}");
+    assert!(asks <= FEWER, "{asks} questions");
 }

@@ -39,6 +39,9 @@ const OPEN: f64 = 0.1;
 const LEAST_OPEN: f64 = 1e-5;
 /// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
 const MOST_PIECES: f64 = 8.0;
+/// Cuts of stretches on one vector after which the parts of the surface are looked at: a vector where nothing is steady takes some
+/// dozens, others few.
+const MOST_CUTS: usize = 3;
 /// Share of a stretch for which a bound is known without a search where none is searched for all of it.
 const SHORTER: f64 = 0.25;
 /// Sine between the move and the generators of the surface with which regions are laid out at least.
@@ -188,7 +191,7 @@ impl Course<'_, '_> {
         let (mut count, mut unbounded) = (samples.len(), 0);
         let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
         while let Some((a, b)) = open.pop() {
-            match self.stretch(&a, &b) {
+            match self.stretch(&a, &b, count - samples.len()) {
                 Stretch::Held => continue,
                 Stretch::Open(bend) => unbounded += usize::from(bend == Some(Bend::Unbounded)),
             }
@@ -225,8 +228,8 @@ impl Course<'_, '_> {
     }
 
     /// Whether the clearance is in the band between two samples: by a bound for all of the tool, if one is known or likely to be of
-    /// use, by the contacts at both ends, or by a bound after all.
-    fn stretch(&self, a: &Sample, b: &Sample) -> Stretch {
+    /// use, by the contacts at both ends, or by a bound after all; and by parts of the surface where cuts have not done.
+    fn stretch(&self, a: &Sample, b: &Sample, cuts: usize) -> Stretch {
         let asked = self.ask(a, b);
         let Line { role, ledger, cancel, .. } = self.line;
         let about = (&asked.tip, asked.spread);
@@ -241,8 +244,9 @@ impl Course<'_, '_> {
         };
         let serves = |bend: Option<Bend>| matches!(bend, Some(Bend::AtMost(bend)) if is_of_use(bend));
         let mut bend = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
-        let mut is_asked =
-            bend.is_some() || Ledger::knows_shorter(&role.gauge, &asked.tool, about, asked.range, SHORTER);
+        let shorter = || Ledger::bend_of_shorter(&role.gauge, &asked.tool, about, asked.range, SHORTER);
+        let known = bend.or_else(|| shorter().map(Bend::AtMost));
+        let mut is_asked = known.is_some();
         if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
             (bend, is_asked) = (found(&is_of_use), true);
             ledger.note_use(&asked.tip, serves(bend));
@@ -263,8 +267,14 @@ impl Course<'_, '_> {
             });
         }
         let (held, kept) = bend.map_or((false, false), bounded);
-        let is_low = low || kept || !high && by_contacts && self.is_kept_from_both(a, b);
-        if (high || held) && is_low { Stretch::Held } else { Stretch::Open(bend) }
+        let is_high = high || held;
+        // Parts of the surface take more than shorter stretches where those will do, unless contacts take as much.
+        let by_parts = is_high && (cuts >= MOST_CUTS && !serves(bend.or(known)) || role.gauge.is_hard());
+        let is_low = low
+            || kept
+            || !high && by_contacts && self.is_kept_from_both(a, b)
+            || by_parts && self.is_clear_between(a, b);
+        if is_high && is_low { Stretch::Held } else { Stretch::Open(bend) }
     }
 
     /// For which places a bound of the bend is needed on the stretch between two samples.
@@ -351,6 +361,17 @@ impl Course<'_, '_> {
         let (from, to, meeting) = (at(a.x), at(b.x), at(tangents_meet(*a, *b).0));
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
         role.gauge.keeps_between(&sweep.at(a.x).1, contacts, &meeting, limits[0])
+    }
+
+    /// Whether the parts of the surface show the same.
+    fn is_clear_between(&self, a: &Sample, b: &Sample) -> bool {
+        let Line { sweep, role, limits, .. } = self.line;
+        if sweep.turns() {
+            return false;
+        }
+        let (from, tool) = sweep.at(a.x);
+        let (to, _) = sweep.at(b.x);
+        role.gauge.is_clear_between(&tool, [(&from, &a.contact), (&to, &b.contact)], limits[0])
     }
 }
 

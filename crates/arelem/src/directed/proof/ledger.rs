@@ -72,17 +72,17 @@ impl Ledger {
         self.useless.set((!is_of_use).then_some(*tip));
     }
 
-    /// Whether a bound is known without a search for stretches that are shorter by a ratio.
-    pub(super) fn knows_shorter(
+    /// The bound for stretches that are shorter by a ratio, if one is known without a search.
+    pub(super) fn bend_of_shorter(
         gauge: &Gauge,
         tool: &Tool,
         (tip, spread): (&Vec3, f64),
         range: [f64; 2],
         ratio: f64,
-    ) -> bool {
+    ) -> Option<f64> {
         let middle = 0.5 * (range[0] + range[1]);
         let range = range.map(|distance| middle + ratio * (distance - middle));
-        steady_bend(gauge, tool, tip, ratio * spread, range).is_some()
+        steady_bend(gauge, tool, tip, ratio * spread, range)
     }
 
     /// The bound of [`Ledger::bend`], if one is known that holds there.

@@ -163,9 +163,12 @@ impl Stepper<'_> {
     ) -> Result<Option<Trial>, MotionFailure> {
         let onward = latest.vertex.tip - here.tip;
         let least = (here.tip + onward * WORTH_SPARING - before.tip).norm();
-        // Where the path doubles back a vector of that length may lead to the vertex again.
-        let is_past =
-            |trial: &Trial| (trial.vertex.tip - here.tip).dot(&onward) >= LEAST_GAIN * onward.norm_squared();
+        // Where the path doubles back a vector may lead to the vertex again, or end nearer than was asked for: two vertices would be spared
+        // for each other in turn.
+        let is_past = |trial: &Trial| {
+            trial.length >= least
+                && (trial.vertex.tip - here.tip).dot(&onward) >= LEAST_GAIN * onward.norm_squared()
+        };
         let length = (latest.vertex.tip - before.tip).norm();
         for bends in [Some(latest.bends), self.other_limits(latest)].into_iter().flatten() {
             let guess = Guess { bends, curvature: latest.curvature, length };
