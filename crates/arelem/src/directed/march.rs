@@ -189,7 +189,7 @@ impl<'a> March<'a> {
             let sweep = here.sweep(self.prepared, &next);
             let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
             if self.is_passed_by(&here, &end)? {
-                return Err(without_last(here.tip, finals));
+                return Err(without_last(here.tip, finals + 1));
             }
             if self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
