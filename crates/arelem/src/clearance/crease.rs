@@ -94,12 +94,14 @@ impl Beside<'_> {
         None
     }
 
-    /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the line is deep below an edge of the
-    /// tool, so that it comes out on one side of it before and on another behind, it comes out over that edge, square to both.
+    /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the end of a polyconic surface is deep
+    /// below an edge of the tool, so that it comes out on one side of it before and on another behind, it comes out over that edge, square
+    /// to both. Behind the end of a sculptured surface there is a face, which decides there.
     fn apart(&self, point: &Vec3, [before, behind]: &[Slope; 2]) -> (f64, Vec3) {
         let (clearance, out) = outward(self.tool, &(point - self.tip));
         let turn = behind.slope - before.slope;
-        let crosses = clearance < 0.0 && before.slope < 0.0 && behind.slope > 0.0;
+        let may_cross = clearance < 0.0 && matches!(self.surface, Surface::PolyConic(_));
+        let crosses = may_cross && before.slope < 0.0 && behind.slope > 0.0;
         let over = (before.out * behind.slope - behind.out * before.slope) / turn;
         match over.try_normalize(0.0).filter(|_| crosses) {
             Some(over_edge) => (clearance / over.norm(), over_edge),
