@@ -96,7 +96,7 @@ impl Beside<'_> {
 
     /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the end of a polyconic surface is deep
     /// below an edge of the tool, so that it comes out on one side of it before and on another behind, it comes out over that edge, square
-    /// to both. Behind the end of a sculptured surface there is a face, which decides there.
+    /// to both. Sculptured surfaces, which end in faces, are not looked at so: a motion onto what is tangent to them would end before.
     fn apart(&self, point: &Vec3, [before, behind]: &[Slope; 2]) -> (f64, Vec3) {
         let (clearance, out) = outward(self.tool, &(point - self.tip));
         let turn = behind.slope - before.slope;

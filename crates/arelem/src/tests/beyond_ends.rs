@@ -188,18 +188,6 @@ fn leaning_wall() -> Geometry {
     )
 }
 
-fn beside_leaning_wall() -> Role {
-    Role {
-        surface: named(&leaning_wall()),
-        relation: Relation::To,
-        side: 1.0,
-        inside_tolerance: 1.0,
-        outside_tolerance: 1.0,
-        thickness: 0.0,
-        disk: None,
-    }
-}
-
 const SLENDER_BALL: [f64; 2] = [0.3376421318773318, 0.1688210659386659];
 
 /// Where that cutter touches the end.
@@ -212,7 +200,7 @@ fn beside_the_wall() -> Vec3 {
 fn a_tool_is_as_deep_in_a_surface_as_the_end_of_that_is_in_the_tool() {
     let cutter = Cutter::from_numbers(&SLENDER_BALL, 1.0).expect("a cutter");
     let tool = Tool::new(cutter, Vec3::z());
-    let role = beside_leaning_wall();
+    let role = touched(&leaning_wall());
     let touch = gauge(&role).contact(&tool, &beside_the_wall());
     for depth in [1e-4, 3e-4, 1e-3] {
         let tip = beside_the_wall() - touch.gradient * (depth + touch.clearance);
@@ -230,7 +218,7 @@ fn a_tool_is_as_deep_in_a_surface_as_the_end_of_that_is_in_the_tool() {
 #[test]
 fn a_tool_that_touches_the_end_from_behind_is_not_clear() {
     let tool = Tool::new(Cutter::from_numbers(&SLENDER_BALL, 1.0).expect("a cutter"), Vec3::z());
-    let role = beside_leaning_wall();
+    let role = touched(&leaning_wall());
     let known = gauge(&role);
     let touch = known.contact(&tool, &beside_the_wall());
     for way in [1.9, 2.0, 2.1] {

@@ -20,15 +20,7 @@ fn proven(program: &mut Program, commands: &[MotionCommand]) {
 
 /// Clearances of a tool outside a surface, from the engine and from the verifier.
 fn outside(geometry: &Geometry, cutter: Cutter, place: ToolPosition) -> [f64; 2] {
-    let role = Role {
-        surface: named(geometry),
-        relation: Relation::To,
-        side: 1.0,
-        inside_tolerance: 1.0,
-        outside_tolerance: 1.0,
-        thickness: 0.0,
-        disk: None,
-    };
+    let role = touched(geometry);
     let engine = gauge(&role).contact(&Tool::new(cutter, place.axis), &place.tip).clearance;
     [engine, read_by_verifier(&role, cutter, place)]
 }

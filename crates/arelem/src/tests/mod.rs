@@ -215,6 +215,19 @@ pub(crate) fn motion(turn: Turn, drive: &Geometry, checks: &[(Relation, u32, &Ge
     MotionCommand::Drive { turn, drive: named(drive), checks }
 }
 
+/// A surface that a tool is TO on the side of its natural normal, with ample tolerances.
+fn touched(geometry: &Geometry) -> Role {
+    Role {
+        surface: named(geometry),
+        relation: Relation::To,
+        side: 1.0,
+        inside_tolerance: 1.0,
+        outside_tolerance: 1.0,
+        thickness: 0.0,
+        disk: None,
+    }
+}
+
 fn gauge(role: &Role) -> Gauge {
     Gauge {
         surface: apt_geometry::surface::Surface::from_geometry(&role.surface.geometry).expect("surface"),

@@ -279,15 +279,7 @@ fn no_contact_with_the_bottom_lies_beyond_its_edge() {
         -0.024167699863006507,
         0.43379528896509223,
     ]);
-    let role = Role {
-        surface: named(&geometry),
-        relation: Relation::To,
-        side: 1.0,
-        inside_tolerance: 1.0,
-        outside_tolerance: 1.0,
-        thickness: 0.0,
-        disk: None,
-    };
+    let role = touched(&geometry);
     let tool = Tool::new(cutter, axis);
     let (from, to) = (v(-0.601614, -2.097499, -6.646959), v(-0.450553, -2.722510, -5.295171));
     for k in 0..=40 {
