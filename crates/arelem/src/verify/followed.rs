@@ -220,8 +220,9 @@ impl Following<'_> {
         // The surface's place in the tool, or the tool's under the surface, is as deep as that.
         let own = jet(&part.net, contact.at.map(|x| x.clamp(0.0, 1.0)))[0];
         let mut value = self.tool.signed_distance(&(own - self.tip)).0;
-        if value > contact.value + self.tolerance && contact.value < 0.0 && -contact.value * behind <= BEHIND
-        {
+        // A point is its own place under the surface: what is nearer beyond the end of a part says nothing of it.
+        let is_under = contact.value < 0.0 && !self.tool.profile.is_point();
+        if value > contact.value + self.tolerance && is_under && -contact.value * behind <= BEHIND {
             let profile = Profile::tool_end();
             let point = self.tool.with(&profile);
             let place = self.tip + contact.opposite;
