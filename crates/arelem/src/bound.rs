@@ -1,5 +1,5 @@
 //! Lower bounds for the number of cut vectors (arelem reference 5.6): chords of a ring, where the configuration confines
-//! the tool end to one; elsewhere the integral of √(κ/8τ) along the path, κ being how the clearance bends.
+//! the tool end to one; elsewhere what the integral of √(κ/8τ) along the path fills, κ being how the clearance bends.
 
 use apt_geometry::{Vec3, surface::Surface};
 
@@ -65,19 +65,53 @@ impl Ring {
     }
 }
 
+/// How many vectors the bend along a path fills, each as long as both bands allow: none can be longer, whatever was before it,
+/// so that no sequence has fewer.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Filled {
+    /// Vectors that are full.
+    vectors: f64,
+    /// Integral of √(κ/8τ) since, for part and drive surface; either fills a vector where it is one.
+    since: [f64; 2],
+}
+
+impl Filled {
+    /// What a stretch adds to both integrals, evenly along it.
+    fn add(&mut self, shares: [f64; 2]) {
+        let mut ahead = 1.0;
+        loop {
+            let room = [0, 1].map(|k: usize| (1.0 - self.since[k]) / shares[k]);
+            // No bend leaves room for ever; 0/0 is no room that a minimum takes.
+            let room = f64::INFINITY.min(room[0]).min(room[1]);
+            if room >= ahead {
+                self.since = [0, 1].map(|k: usize| self.since[k] + shares[k] * ahead);
+                return;
+            }
+            self.vectors += 1.0;
+            self.since = [0.0; 2];
+            ahead -= room;
+        }
+    }
+
+    /// All vectors, the last of which need not be full.
+    fn count(&self) -> f64 {
+        self.vectors + self.since[0].max(self.since[1])
+    }
+}
+
 /// What is known of the bend along the beginning of a path from how its vectors were proven.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bent {
     /// The position that the path has come to.
     pub(crate) to: Vec3,
-    /// Integral of √(κ/8τ) until there, for part and drive surface.
-    pub(crate) integral: [f64; 2],
+    /// What is filled until there.
+    filled: Filled,
 }
 
 impl Bent {
     /// The beginning of a path.
     pub(crate) fn none(from: &Vec3) -> Self {
-        Self { to: *from, integral: [0.0; 2] }
+        Self { to: *from, filled: Filled::default() }
     }
 }
 
@@ -103,12 +137,12 @@ impl Record {
             // What led on from there has been taken back.
             self.last.truncate(known + 1);
         }
-        let before = self.last.last().map_or([0.0; 2], |bent| bent.integral);
-        let integral = [0, 1].map(|k: usize| before[k] + share(roles[k], turning[k]));
+        let mut filled = self.last.last().map_or(Filled::default(), |bent| bent.filled);
+        filled.add([0, 1].map(|k: usize| share(roles[k], turning[k])));
         if self.last.len() >= KEPT {
             self.last.remove(0);
         }
-        self.last.push(Bent { to: *to, integral });
+        self.last.push(Bent { to: *to, filled });
     }
 
     /// What is known of a path with these positions.
@@ -138,32 +172,27 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     let mut path = Vec::with_capacity(sequence.points.len() + 1);
     path.push(sequence.start.tip);
     path.extend(sequence.points.iter().map(|p| p.tip));
-    let part = least(prepared, [&prepared.part, &prepared.drive], &path, (&bent.to, bent.integral[0]));
-    let drive = least(prepared, [&prepared.drive, &prepared.part], &path, (&bent.to, bent.integral[1]));
+    let (part, drive) = (&prepared.part, &prepared.drive);
+    let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
+    let on_rings = rings.iter().flatten().map(|ring| ring.of_path(&path)).max().unwrap_or(1);
     // The straight way from start to end at MAXDP a vector.
     let straight = match (path.first(), path.last()) {
         (Some(first), Some(last)) => (last - first).norm(),
         _ => 0.0,
     };
-    part.max(drive).max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
+    on_rings.max(bends(prepared, &path, bent)).max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
 }
 
-/// The least number of vectors that one role asks for, the integral being known to a position.
-fn least(prepared: &Prepared, [role, other]: [&Working; 2], path: &[Vec3], (to, known): (&Vec3, f64)) -> u32 {
-    if role.shape == Shape::Flat {
-        return 1;
+/// The least number of vectors that the bends along a path ask for; what they fill is known to a position.
+fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent) -> u32 {
+    let mut filled = bent.filled;
+    // The end of a motion may leave out that position, or come before it.
+    let met = path.iter().rposition(|tip| *tip == bent.to).unwrap_or(path.len().saturating_sub(2));
+    let rest = std::iter::once(&bent.to).chain(&path[met + 1..]);
+    for (from, to) in rest.clone().zip(rest.skip(1)) {
+        filled.add([&prepared.part, &prepared.drive].map(|role| share(role, turn(prepared, role, from, to))));
     }
-    match ring(prepared, role, other) {
-        Some(ring) => ring.of_path(path),
-        None => {
-            // The end of a motion may leave out that position, or come before it.
-            let met = path.iter().rposition(|tip| tip == to).unwrap_or(path.len().saturating_sub(2));
-            let rest = std::iter::once(to).chain(&path[met + 1..]);
-            let rest: f64 =
-                rest.clone().zip(rest.skip(1)).map(|(a, b)| share(role, turn(prepared, role, a, b))).sum();
-            whole((known + rest) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
-        }
-    }
+    whole(filled.count() * (1.0 - SAMPLED)).saturating_sub(1).max(1)
 }
 
 /// Part of the integral that sampling the bend at the ends and in the middle of each vector may add.
@@ -172,7 +201,7 @@ const SAMPLED: f64 = 0.01;
 /// The turning of the slope along a vector.
 fn turn(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
     let length = (to - from).norm();
-    if length <= 0.0 {
+    if length <= 0.0 || role.shape == Shape::Flat {
         return 0.0;
     }
     let direction = (to - from) / length;
@@ -274,6 +303,43 @@ mod tests {
         let band = ring(2.5, 2.501);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.501, 2.501), 28);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.5009, 2.5009), 28);
+    }
+
+    fn filled(shares: &[[f64; 2]]) -> Filled {
+        let mut filled = Filled::default();
+        shares.iter().for_each(|share| filled.add(*share));
+        filled
+    }
+
+    /// What one role alone fills is the integral, in pieces of whatever size.
+    #[test]
+    fn one_bend_fills_its_integral() {
+        for pieces in [1, 3, 7, 64] {
+            let share = 0.7 / f64::from(pieces);
+            let along: Vec<_> = (0..10 * pieces).map(|_| [0.0, share]).collect();
+            assert!((filled(&along).count() - 7.0).abs() < 1e-9, "{pieces}: {}", filled(&along).count());
+        }
+        assert_eq!(filled(&[[0.0; 2]; 5]).count(), 0.0);
+    }
+
+    /// Where the surfaces bend in turn a vector is full before the greater of both integrals is.
+    #[test]
+    fn bends_in_turn_fill_more_vectors_than_either_alone() {
+        let along: Vec<_> = (0..40).flat_map(|_| [[0.6, 0.0], [0.0, 0.6]]).collect();
+        let count = filled(&along).count();
+        assert!(count > 1.1 * 24.0 && count < 48.0, "{count}");
+        let alike: Vec<_> = (0..40).map(|_| [0.5, 0.75]).collect();
+        assert!((filled(&alike).count() - 30.0).abs() < 1e-9);
+    }
+
+    /// Each piece keeps both bands, so that there cannot be a need for more than the pieces are.
+    #[test]
+    fn no_more_vectors_are_filled_than_there_are() {
+        let along: Vec<_> =
+            (0..200).map(|k| [f64::from(k * 37 % 100), f64::from(k * 61 % 100)].map(|x| x / 99.0)).collect();
+        for pieces in 1..along.len() {
+            assert!(filled(&along[..pieces]).count() <= pieces as f64 + 1e-9);
+        }
     }
 
     #[test]

@@ -60,6 +60,8 @@ pub(crate) enum Verdict {
     WronglyRefused(String),
     /// Delivered, and the verifier does not accept it.
     Wrong(String),
+    /// Proven with more cut vectors than are needed.
+    Lavish(String),
     /// Neither delivered nor refused within the budget.
     Slow(String),
     /// Refused, and the search for a path did not end within its own budget.
@@ -97,6 +99,7 @@ pub(crate) struct Tally {
     refused: usize,
     wrongly_refused: usize,
     wrong: usize,
+    lavish: usize,
     slow: usize,
     not_judged: usize,
     /// What it took; it decides nothing.
@@ -139,6 +142,10 @@ impl Tally {
                 self.wrong += 1;
                 self.faults.push(fault(&format!("wrong: {words}")));
             }
+            Verdict::Lavish(words) => {
+                self.lavish += 1;
+                self.faults.push(fault(&format!("lavish: {words}")));
+            }
             Verdict::Slow(words) => {
                 self.slow += 1;
                 self.faults.push(fault(&format!("too slow: {words}")));
@@ -179,6 +186,7 @@ impl Tally {
         self.refused += other.refused;
         self.wrongly_refused += other.wrongly_refused;
         self.wrong += other.wrong;
+        self.lavish += other.lavish;
         self.slow += other.slow;
         self.not_judged += other.not_judged;
         self.times.add(&other.times);
@@ -188,11 +196,11 @@ impl Tally {
     }
 
     /// Names of the columns of [`Tally::row`].
-    pub(crate) const COLUMNS: &'static str = "run, proven, vectors, rightly refused, wrongly refused, wrong, slow, not judged, not drawn, left out, ms each";
+    pub(crate) const COLUMNS: &'static str = "run, proven, vectors, rightly refused, wrongly refused, wrong, lavish, slow, not judged, not drawn, left out, ms each";
 
     pub(crate) fn row(&self) -> String {
         let refused = self.refused + self.wrongly_refused + self.not_judged;
-        let run = self.proven + refused + self.wrong + self.slow;
+        let run = self.proven + refused + self.wrong + self.lavish + self.slow;
         let each = self.times.all().as_secs_f64() * 1e3 / run.max(1) as f64;
         let counts = [
             run,
@@ -201,6 +209,7 @@ impl Tally {
             self.refused,
             self.wrongly_refused,
             self.wrong,
+            self.lavish,
             self.slow,
             self.not_judged,
             self.undrawn,
@@ -215,6 +224,20 @@ impl Tally {
     pub(crate) fn refusals(&self) -> String {
         self.refusals.iter().map(|(words, count)| format!("{words} {count}")).collect::<Vec<_>>().join(", ")
     }
+}
+
+/// Cut vectors that a motion may have for each that it needs at least, and besides (arelem reference 5.6).
+const SHARE: f64 = 1.02;
+const MORE: f64 = 2.0;
+/// What the bound leaves out for being sure to be one: a hundredth, and a vector.
+const SURE: [f64; 2] = [0.99, 1.0];
+
+/// Why a sequence has more cut vectors than are needed, if it has.
+fn lavish(sequence: &CutSequence) -> Option<String> {
+    let least = f64::from(sequence.minimum?);
+    let needed = (least + SURE[1]) / SURE[0];
+    let count = sequence.points.len();
+    (count as f64 > SHARE * needed + MORE).then(|| format!("{count} vectors, {least} at least"))
 }
 
 /// Executes commands one after the other within the budget.
@@ -300,7 +323,10 @@ pub(crate) fn judge(case: &Case) -> (Verdict, Times) {
         }
         (Some(Fault::Slow(vectors)), _) => Verdict::Slow(format!("verifier, {vectors} vectors")),
         (Some(Fault::Wrong(words)), _) => Verdict::Wrong(words),
-        (None, Ok(())) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
+        (None, Ok(())) => match runner.sequences.iter().find_map(lavish) {
+            Some(words) => Verdict::Lavish(words),
+            None => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
+        },
         (None, Err(failure)) => timed(&mut times.search, || refused(case, &runner, &failure)),
     };
     (verdict, times)
