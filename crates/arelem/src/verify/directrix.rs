@@ -43,6 +43,16 @@ impl Piece {
         least_above(level, &self.control)
     }
 
+    /// Unit, to the left of it at a parameter.
+    pub(super) fn left_at(&self, t: f64) -> Option<Flat> {
+        left(&at(&self.control, t)[1]).try_normalize(0.0)
+    }
+
+    /// Both halves, known by the same number.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        halves(&self.control).map(|control| Self::new(control, self.index))
+    }
+
     /// A place in its middle.
     pub(super) fn middle(&self) -> &Flat {
         &self.center

@@ -13,6 +13,8 @@ use super::{
 
 /// Cosine that two axes of a frame may have to each other: canonical forms are written with a few decimals.
 const SKEW: f64 = 1e-5;
+/// Halvings of a piece that a tool is deep in, until it is left behind.
+const HALVINGS: u32 = 8;
 /// Parameter next to the end of a piece that counts as the joint with its neighbour.
 const JOINT: f64 = 1e-7;
 
@@ -93,6 +95,41 @@ impl Ruling {
             along: found.along,
             across: 0.0,
         })
+    }
+
+    /// Whether a tool that is too deep leaves every place of the surface behind where it is led out by `depth` across the surface
+    /// there: what is deep at two places is not as deep as both together.
+    pub(super) fn is_left_behind(
+        &self,
+        side: f64,
+        tip: &Vec3,
+        tool: &Tool<'_>,
+        [depth, resolution]: [f64; 2],
+    ) -> Option<bool> {
+        let shadow = Shadow::new(tool, &self.frame, tip);
+        let rays = if self.closed { Vec::new() } else { self.rays(&shadow)?.to_vec() };
+        let mut open: Vec<_> = self.flat.iter().chain(&rays).map(|piece| (piece.clone(), HALVINGS)).collect();
+        while let Some((piece, halvings)) = open.pop() {
+            let pieces = [std::slice::from_ref(&piece), &[]];
+            let seen = |shadow: &Shadow<'_>| {
+                let found = directrix::nearest(pieces, shadow, resolution, f64::INFINITY)?;
+                Some((found.value >= found.gap, found.level.normal, piece.left_at(found.along)? * side))
+            };
+            let (is_clear, _, normal) = seen(&shadow)?;
+            if is_clear {
+                continue;
+            }
+            let (is_clear, outward, natural) =
+                seen(&Shadow::new(tool, &self.frame, &(tip + self.lifted(&normal) * depth)))?;
+            if is_clear && outward.dot(&natural) <= 0.0 {
+                continue;
+            }
+            if halvings == 0 {
+                return Some(false);
+            }
+            open.extend(piece.halves().map(|half| (half, halvings - 1)));
+        }
+        Some(true)
     }
 
     /// How the slope of the clearance can grow from a position of the tool on, where the surface's normal towards the tool is

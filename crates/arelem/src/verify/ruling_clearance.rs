@@ -370,6 +370,12 @@ impl<'a> Bodies<'a> {
         if deepest.0 > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
+        if shallow && let Ruled::Parallel(ruling) = self.surface {
+            let ways = [deepest.0 + self.close(), self.resolution];
+            if ruling.is_left_behind(self.side, tip, self.tool, ways)? {
+                return Some(depth_of(&deepest, self.close()));
+            }
+        }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
         Some(depth_of(&deepest, error))
     }

@@ -116,3 +116,26 @@ fn a_tool_too_deep_at_two_places_is_as_deep_as_the_deeper() {
         assert!((found.value + deepest).abs() <= error && error < 1e-7, "{found:?} {deepest}");
     }
 }
+
+/// In a groove a ball touches both walls: what is deep in it at both is as deep as at the deeper.
+#[test]
+fn a_ball_too_deep_in_both_walls_of_a_groove_is_as_deep_as_in_the_deeper() {
+    let groove =
+        tabulated([Vec3::x(), Vec3::y(), Vec3::z()], &[[-2.0, 2.0, -2.0], [0.0, 0.0, 0.0], [2.0, 2.0, 2.0]]);
+    let surface = Surface::of(&groove).unwrap();
+    let Surface::Ruled(ruling) = &surface else { panic!("{surface:?}") };
+    for (radius, depth, aside) in [(2.2, 1e-4, 0.0), (2.2, 4e-4, 1e-4), (3.0, 4e-4, 0.0), (3.0, 9e-4, -2e-5)]
+    {
+        let profile = Profile::of(&cutter(&[2.0 * radius, radius])).unwrap();
+        let mut tool = Tool::new(&profile, Vec3::new(0.3, 1.0, 0.2).normalize());
+        tool.depth = ALLOWED;
+        let mut center = Vec3::new(aside, 4.0, 0.1);
+        let apart = |center: &Vec3| surface.point_distance(center).expect("a distance").0;
+        for _ in 0..100 {
+            center.y -= apart(&center) - radius + depth;
+        }
+        assert!((apart(&center) - radius + depth).abs() < 1e-12);
+        let found = searched(ruling, 1.0, &(center - tool.axis * radius), &tool).expect("a clearance");
+        assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
+    }
+}
