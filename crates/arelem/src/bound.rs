@@ -65,37 +65,41 @@ impl Ring {
     }
 }
 
-/// How many vectors the bend along a path fills, each as long as both bands allow: none can be longer, whatever was before it,
-/// so that no sequence has fewer.
+/// How many vectors a path fills, each as long as both bands and MAXDP allow: none can be longer, whatever was before it, so that no
+/// sequence has fewer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Filled {
     /// Vectors that are full.
     vectors: f64,
-    /// Integral of √(κ/8τ) since, for part and drive surface; either fills a vector where it is one.
-    since: [f64; 2],
+    /// Since then the integrals of √(κ/8τ) for part and drive surface, and the length in that of the longest vector; where one of
+    /// these is one, a vector is full.
+    since: Shares,
 }
 
+/// What a stretch of a path fills of a vector, as [`Filled`] has it.
+type Shares = [f64; 3];
+
 impl Filled {
-    /// What a stretch adds to both integrals, evenly along it.
-    fn add(&mut self, shares: [f64; 2]) {
+    /// Adds a stretch, which fills evenly along it, and no more than a vector.
+    fn add(&mut self, shares: Shares) {
         let mut ahead = 1.0;
         loop {
-            let room = [0, 1].map(|k: usize| (1.0 - self.since[k]) / shares[k]);
-            // No bend leaves room for ever; 0/0 is no room that a minimum takes.
-            let room = f64::INFINITY.min(room[0]).min(room[1]);
+            let all = self.since.iter().zip(shares);
+            // What does not fill leaves room for ever; 0/0 is no number that a minimum takes.
+            let room = all.map(|(since, share)| (1.0 - since) / share).fold(f64::INFINITY, f64::min);
             if room >= ahead {
-                self.since = [0, 1].map(|k: usize| self.since[k] + shares[k] * ahead);
+                self.since.iter_mut().zip(shares).for_each(|(since, share)| *since += share * ahead);
                 return;
             }
             self.vectors += 1.0;
-            self.since = [0.0; 2];
+            self.since = Shares::default();
             ahead -= room;
         }
     }
 
     /// All vectors, the last of which need not be full.
     fn count(&self) -> f64 {
-        self.vectors + self.since[0].max(self.since[1])
+        self.vectors + self.since.into_iter().fold(0.0, f64::max)
     }
 }
 
@@ -120,15 +124,17 @@ impl Bent {
 pub(crate) struct Record {
     /// The last positions, the latest at the end.
     last: Vec<Bent>,
+    /// MAXDP.
+    maximum_step: f64,
 }
 
 /// How many of the last positions are kept.
 const KEPT: usize = 4;
 
 impl Record {
-    /// A path that begins at a position.
-    pub(crate) fn new(from: &Vec3) -> Self {
-        Self { last: vec![Bent::none(from)] }
+    /// A path that begins at a position, and MAXDP.
+    pub(crate) fn new(from: &Vec3, maximum_step: f64) -> Self {
+        Self { last: vec![Bent::none(from)], maximum_step }
     }
 
     /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`].
@@ -138,7 +144,7 @@ impl Record {
             self.last.truncate(known + 1);
         }
         let mut filled = self.last.last().map_or(Filled::default(), |bent| bent.filled);
-        filled.add([0, 1].map(|k: usize| share(roles[k], turning[k])));
+        filled.add(shares(roles, turning, (to - from).norm(), self.maximum_step));
         if self.last.len() >= KEPT {
             self.last.remove(0);
         }
@@ -158,17 +164,18 @@ pub(crate) fn turning(length: f64, slopes: [f64; 2]) -> f64 {
     ((slopes[1] - slopes[0]).abs() * length).sqrt()
 }
 
-/// What a vector adds to the integral of √(κ/8τ). It keeps the band, so that it counts for one at most: where contact jumps
-/// the slope turns without need of another vector.
-fn share(role: &Working, turning: f64) -> f64 {
-    (turning / (8.0 * role.band()).sqrt()).min(1.0)
+/// What a vector of a length fills. It keeps the bands, so that it counts for one at most: where contact jumps the slope turns
+/// without need of another vector.
+fn shares(roles: [&Working; 2], turning: [f64; 2], length: f64, maximum_step: f64) -> Shares {
+    let bands = roles.map(Working::band);
+    let [part, drive] = [0, 1].map(|k: usize| (turning[k] / (8.0 * bands[k]).sqrt()).min(1.0));
+    // The way beside one vector, from its one end to the other within the bands, may be longer by that.
+    let longest = maximum_step + 2.0 * (bands[0] + bands[1]);
+    [part, drive, (length / longest).min(1.0)]
 }
 
 /// The number of cut vectors that no sequence within tolerance can beat.
 pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) -> u32 {
-    if prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat {
-        return 1;
-    }
     let mut path = Vec::with_capacity(sequence.points.len() + 1);
     path.push(sequence.start.tip);
     path.extend(sequence.points.iter().map(|p| p.tip));
@@ -180,17 +187,21 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
         (Some(first), Some(last)) => (last - first).norm(),
         _ => 0.0,
     };
-    on_rings.max(bends(prepared, &path, bent)).max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
+    on_rings
+        .max(bends(prepared, &path, bent, sequence.maximum_step))
+        .max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
 }
 
-/// The least number of vectors that the bends along a path ask for; what they fill is known to a position.
-fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent) -> u32 {
+/// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position.
+fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent, maximum_step: f64) -> u32 {
     let mut filled = bent.filled;
     // The end of a motion may leave out that position, or come before it.
     let met = path.iter().rposition(|tip| *tip == bent.to).unwrap_or(path.len().saturating_sub(2));
     let rest = std::iter::once(&bent.to).chain(&path[met + 1..]);
     for (from, to) in rest.clone().zip(rest.skip(1)) {
-        filled.add([&prepared.part, &prepared.drive].map(|role| share(role, turn(prepared, role, from, to))));
+        let roles = [&prepared.part, &prepared.drive];
+        let turning = roles.map(|role| turn(prepared, role, from, to));
+        filled.add(shares(roles, turning, (to - from).norm(), maximum_step));
     }
     whole(filled.count() * (1.0 - SAMPLED)).saturating_sub(1).max(1)
 }
@@ -305,7 +316,7 @@ mod tests {
         assert_eq!(band.least_chords(FRAC_PI_2, 2.5009, 2.5009), 28);
     }
 
-    fn filled(shares: &[[f64; 2]]) -> Filled {
+    fn filled(shares: &[Shares]) -> Filled {
         let mut filled = Filled::default();
         shares.iter().for_each(|share| filled.add(*share));
         filled
@@ -316,27 +327,26 @@ mod tests {
     fn one_bend_fills_its_integral() {
         for pieces in [1, 3, 7, 64] {
             let share = 0.7 / f64::from(pieces);
-            let along: Vec<_> = (0..10 * pieces).map(|_| [0.0, share]).collect();
+            let along: Vec<_> = (0..10 * pieces).map(|_| [0.0, share, 0.0]).collect();
             assert!((filled(&along).count() - 7.0).abs() < 1e-9, "{pieces}: {}", filled(&along).count());
         }
-        assert_eq!(filled(&[[0.0; 2]; 5]).count(), 0.0);
+        assert_eq!(filled(&[Shares::default(); 5]).count(), 0.0);
     }
 
     /// Where the surfaces bend in turn a vector is full before the greater of both integrals is.
     #[test]
     fn bends_in_turn_fill_more_vectors_than_either_alone() {
-        let along: Vec<_> = (0..40).flat_map(|_| [[0.6, 0.0], [0.0, 0.6]]).collect();
+        let along: Vec<_> = (0..40).flat_map(|_| [[0.6, 0.0, 0.0], [0.0, 0.0, 0.6]]).collect();
         let count = filled(&along).count();
         assert!(count > 1.1 * 24.0 && count < 48.0, "{count}");
-        let alike: Vec<_> = (0..40).map(|_| [0.5, 0.75]).collect();
+        let alike: Vec<_> = (0..40).map(|_| [0.5, 0.75, 0.2]).collect();
         assert!((filled(&alike).count() - 30.0).abs() < 1e-9);
     }
 
     /// Each piece keeps both bands, so that there cannot be a need for more than the pieces are.
     #[test]
     fn no_more_vectors_are_filled_than_there_are() {
-        let along: Vec<_> =
-            (0..200).map(|k| [f64::from(k * 37 % 100), f64::from(k * 61 % 100)].map(|x| x / 99.0)).collect();
+        let along: Vec<_> = (0..200).map(|k| [37, 61, 83].map(|x| f64::from(k * x % 100) / 99.0)).collect();
         for pieces in 1..along.len() {
             assert!(filled(&along[..pieces]).count() <= pieces as f64 + 1e-9);
         }

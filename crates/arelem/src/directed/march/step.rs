@@ -158,7 +158,7 @@ impl<'a> Stepper<'a> {
             arrived: None,
             ledgers: Default::default(),
             longest: 0.0,
-            record: Record::new(&prepared.tip),
+            record: Record::new(&prepared.tip, maximum),
         }
     }
 
