@@ -118,7 +118,15 @@ impl Attitude {
 impl Posture<'_> {
     /// The contact with a surface; the gradient takes the turning of the axis into account and is then no unit vector.
     pub(crate) fn contact(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
-        let mut contact = gauge.contact(&self.tool, tip);
+        self.with_turning(gauge, tip, gauge.contact(&self.tool, tip))
+    }
+
+    /// The same as it is found without proof, for a place that is only passed through.
+    pub(crate) fn contact_passing(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
+        self.with_turning(gauge, tip, gauge.contact_passing(&self.tool, tip))
+    }
+
+    fn with_turning(&self, gauge: &Gauge, tip: &Vec3, mut contact: Contact) -> Contact {
         if let Some(rate) = &self.rate
             && !gauge.on
         {

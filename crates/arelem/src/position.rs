@@ -27,10 +27,22 @@ const DAMPING: f64 = 1e-6;
 pub(crate) enum Condition<'a> {
     /// The clearance of a gauge has this value.
     Clearance(&'a Gauge, f64),
+    /// The same, of a clearance that is found without proof, as [`Gauge::contact_passing`].
+    Passing(&'a Gauge, f64),
     /// The clearance of a gauge has a value between these two.
     Between(&'a Gauge, [f64; 2]),
     /// The tool end lies on the plane with this unit normal and distance.
     Plane(Vec3, f64),
+}
+
+impl Condition<'_> {
+    /// The same of what is found without proof.
+    pub(crate) fn passing(&self) -> Self {
+        match *self {
+            Self::Clearance(gauge, wanted) => Self::Passing(gauge, wanted),
+            other => other,
+        }
+    }
 }
 
 /// A position that satisfies all conditions.
@@ -99,6 +111,26 @@ pub(crate) fn solve_within(
     start: &Vec3,
     corrections: u32,
 ) -> Result<Solution, Unsolved> {
+    let effort = Effort { corrections, halvings: MAX_HALVINGS };
+    solve_unless(attitude, conditions, start, effort, &|_| false)
+}
+
+/// What a search for a position may take.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    pub(crate) corrections: u32,
+    /// How often one that makes things worse is halved.
+    pub(crate) halvings: u32,
+}
+
+/// As [`solve`] with so much effort; it is given up where it comes to a place that is in vain.
+pub(crate) fn solve_unless(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    Effort { corrections, halvings }: Effort,
+    is_in_vain: &dyn Fn(&Vec3) -> bool,
+) -> Result<Solution, Unsolved> {
     let mut tip = *start;
     let mut rows = evaluate(attitude, conditions, &tip);
     for iteration in 0..corrections {
@@ -107,8 +139,11 @@ pub(crate) fn solve_within(
         if worst <= RESOLUTION * scale {
             return Ok(Solution { tip, corrections: iteration, contacts: rows.contacts });
         }
+        if is_in_vain(&tip) {
+            return Err(Unsolved { residual: worst, row, tip, iterations: iteration });
+        }
         let step = correction(&rows);
-        let Some((next, next_rows)) = improve(attitude, conditions, &tip, &rows, &step) else {
+        let Some((next, next_rows)) = improve(attitude, conditions, (&tip, &rows), &step, halvings) else {
             return if worst <= ACCEPTABLE * scale {
                 Ok(Solution { tip, corrections: iteration, contacts: rows.contacts })
             } else {
@@ -147,13 +182,13 @@ pub(crate) fn corrected(
 fn improve(
     attitude: &Attitude,
     conditions: &[Condition<'_>],
-    tip: &Vec3,
-    rows: &Rows,
+    (tip, rows): (&Vec3, &Rows),
     step: &Vec3,
+    halvings: u32,
 ) -> Option<(Vec3, Rows)> {
     let (worst, _) = rows.greatest();
     let mut share = 1.0;
-    for _ in 0..=MAX_HALVINGS {
+    for _ in 0..=halvings {
         let next = tip + step * share;
         let next_rows = evaluate(attitude, conditions, &next);
         if next_rows.greatest().0 < worst {
@@ -178,6 +213,10 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Ro
             Condition::Clearance(gauge, target) => {
                 let contact = posture.contact(gauge, tip);
                 rows.contacts[k] = Some(contact);
+                (contact.clearance - target, contact.gradient)
+            }
+            Condition::Passing(gauge, target) => {
+                let contact = posture.contact_passing(gauge, tip);
                 (contact.clearance - target, contact.gradient)
             }
             Condition::Between(gauge, [least, greatest]) => {

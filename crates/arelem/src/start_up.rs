@@ -335,7 +335,7 @@ pub(crate) fn converge(
     let mut begin = Vec::with_capacity(conditions.len());
     for condition in conditions {
         begin.push(match condition {
-            Condition::Clearance(gauge, _) | Condition::Between(gauge, _) => {
+            Condition::Clearance(gauge, _) | Condition::Passing(gauge, _) | Condition::Between(gauge, _) => {
                 work.attitude.posture(start)?.contact(gauge, start).clearance
             }
             Condition::Plane(normal, _) => normal.dot(start),
@@ -359,7 +359,8 @@ pub(crate) fn converge(
     })
 }
 
-/// The homotopy: the values that the conditions have at the start go over to those wanted by stages.
+/// The homotopy: the values that the conditions have at the start go over to those wanted by stages. Nothing is proven
+/// on the way.
 fn staged(
     work: &StartUp<'_>,
     conditions: &[Condition<'_>],
@@ -373,7 +374,9 @@ fn staged(
             .iter()
             .zip(begin)
             .map(|(condition, from)| match condition {
-                Condition::Clearance(gauge, to) => Condition::Clearance(gauge, from + (to - from) * share),
+                Condition::Clearance(gauge, to) | Condition::Passing(gauge, to) => {
+                    Condition::Passing(gauge, from + (to - from) * share)
+                }
                 Condition::Plane(normal, to) => Condition::Plane(*normal, from + (to - from) * share),
                 Condition::Between(..) => *condition,
             })

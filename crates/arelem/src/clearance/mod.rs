@@ -103,6 +103,20 @@ impl Gauge {
         self.offset_contact(tool, tip).0
     }
 
+    /// The contact as it is found where nothing need be proven: another point of the tool may be nearer. For places that are only
+    /// passed through; nothing is remembered of them.
+    pub(crate) fn contact_passing(&self, tool: &Tool, tip: &Vec3) -> Contact {
+        if self.on || !self.surface.has_charts() {
+            return self.contact(tool, tip);
+        }
+        let Self { side, thickness, .. } = self;
+        let (tool, tip) = self.body(tool, tip);
+        let surface = self.met(&tool);
+        let found = closed_form::contact(&tool, surface, *side, &tip)
+            .unwrap_or_else(|| search::found(&tool, Face { surface, side: *side }, &tip));
+        Contact { clearance: found.clearance - thickness, ..found }
+    }
+
     /// The contact, and how much nearer to the surface another point of the tool may be for all that the search knows:
     /// infinitely much where it proves nothing.
     pub(crate) fn contact_within(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {

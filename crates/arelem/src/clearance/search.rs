@@ -95,9 +95,7 @@ pub(super) fn contact(
         search.scan();
     }
     let Some(contact) = search.best.contact else {
-        let foot = surface.foot(tip);
-        let (clearance, gradient) = (side * foot.distance, foot.normal * side);
-        return (Contact { clearance, gradient, tool: *tip, surface: foot.point }, f64::INFINITY);
+        return (at_end(face, tip), f64::INFINITY);
     };
     if let (Some(memory), Shown::Within(_)) = (memory, &shown) {
         let place = Place { piece: search.best.piece, point: contact.tool - tip, start: None };
@@ -109,6 +107,21 @@ pub(super) fn contact(
         Shown::Nothing => f64::INFINITY,
     };
     (contact, missed)
+}
+
+/// The contact that the search finds everywhere; nothing is proven of it.
+pub(super) fn found(tool: &Tool, face: Face<'_>, tip: &Vec3) -> Contact {
+    let Face { surface, side } = face;
+    let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
+    let mut search = Search { tool, surface, side, tip, best, piece: 0 };
+    search.scan();
+    search.best.contact.unwrap_or_else(|| at_end(face, tip))
+}
+
+/// The contact of the tool end.
+fn at_end(Face { surface, side }: Face<'_>, tip: &Vec3) -> Contact {
+    let foot = surface.foot(tip);
+    Contact { clearance: side * foot.distance, gradient: foot.normal * side, tool: *tip, surface: foot.point }
 }
 
 /// What is proven of a contact.
