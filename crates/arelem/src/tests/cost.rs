@@ -214,3 +214,20 @@ fn the_verifier_looks_at_little_where_contact_jumps_on_a_twisted_strip() {
     let evidence = verify(p.last(), &|| WORK.get() - before > STRIP_WORK).expect("evidence");
     assert!(evidence.verified, "{evidence:?}");
 }
+
+/// Proven clearances that a start-up without a position may ask for.
+const VAIN_START: u64 = 500;
+
+/// The tool end cannot be on a small ball while the tool touches a strip far below it.
+#[test]
+fn a_start_up_without_a_position_proves_few_clearances() {
+    let (strip, ball) = (twisted_to(0.0), sphere(3.0, 2.0, 8.0, 0.5));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[1.0, 0.25]).from(2.5, 2.2, 6.0);
+    let before = EVALUATIONS.get();
+    let failure =
+        p.attempt(&start(&[(Relation::On, &ball), (Relation::To, &strip), (Relation::On, &x(3.1))]));
+    let clearances = EVALUATIONS.get() - before;
+    assert!(matches!(failure, Err(MotionFailure::StartUpDiverges { .. })), "{failure:?}");
+    assert!(clearances <= VAIN_START, "{clearances}");
+}
