@@ -141,6 +141,16 @@ impl Gauge {
         }
     }
 
+    /// A distance from the tool end beyond which there is nothing that is measured and not farther from the surface than a level.
+    pub(crate) fn reach_within(&self, tool: &Tool, tip: &Vec3, level: f64) -> f64 {
+        let reach = self.reach(tool);
+        if self.disk.is_some() {
+            return reach;
+        }
+        let height = Around::new(self, tool, tip, 0.0).height_within(level);
+        reach.min(height.hypot(tool.radius()))
+    }
+
     fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
         let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
@@ -302,8 +312,13 @@ impl Gauge {
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.
     pub(crate) fn bend_at(&self, tool: &Tool, point: &Vec3, way: &Vec3) -> Option<f64> {
-        let (center, radius) = (point + way * 0.5, 0.5 * way.norm());
+        self.bend_about(tool, &(point + way * 0.5), 0.5 * way.norm())
+    }
+
+    /// The same for a point that goes anywhere in a ball.
+    pub(crate) fn bend_about(&self, tool: &Tool, center: &Vec3, radius: f64) -> Option<f64> {
         let surface = self.met(tool);
+        let center = *center;
         let foot = surface.foot(&center);
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };

@@ -182,6 +182,18 @@ impl<'a> Around<'a> {
         [below.unwrap_or(0.0), above.unwrap_or(top)]
     }
 
+    /// The upper one of these heights; beside a contact below the flank one is looked for, too.
+    pub(in crate::clearance) fn height_within(&self, level: f64) -> f64 {
+        let profile = &self.pose.tool.profile;
+        let (upper, top) = (profile.upper.height, self.within(level)[1]);
+        if top < profile.top.height {
+            return top;
+        }
+        let is_far = |from: &f64| self.pose.is_off(*from, level) || self.is_apart(End::Above(*from), level);
+        let heights = ENDS.map(|share| upper + share * self.pose.scale());
+        heights.into_iter().filter(|from| *from < top).find(is_far).unwrap_or(top)
+    }
+
     /// Whether the sizes of the surface's parts show an end of the tool to be farther than a level.
     fn is_apart(&self, end: End, level: f64) -> bool {
         self.pose.apart_of(end, level.max(0.0)).is_some()

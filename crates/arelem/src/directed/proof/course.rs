@@ -7,7 +7,9 @@ use std::borrow::Cow;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use super::{ENOUGH, Extremes, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, tangents_meet};
+use super::{
+    ENOUGH, Extremes, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About, tangents_meet,
+};
 use crate::{
     bound,
     clearance::{Contact, Tool},
@@ -79,8 +81,10 @@ struct Asked<'a> {
     /// The tool in the middle of the stretch.
     tip: Vec3,
     tool: Cow<'a, Tool>,
-    /// No point of the tool strays farther from its place there.
+    /// No point of the tool that may be in contact strays farther from its place there.
     spread: f64,
+    /// No such point is farther from the tool end.
+    reach: f64,
     /// Least and greatest distance from the surface of what may be in contact.
     range: [f64; 2],
     /// Of a point of the tool across the generators of the surface, by the way of the tool end.
@@ -90,6 +94,10 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
+    fn about(&self) -> About<'_> {
+        About { tool: &self.tool, tip: &self.tip, spread: self.spread, reach: self.reach }
+    }
+
     /// The bound along the way of the tool end.
     fn scaled(&self, bend: Bend) -> Bend {
         match bend {
@@ -232,10 +240,10 @@ impl Course<'_, '_> {
     fn stretch(&self, a: &Sample, b: &Sample, cuts: usize) -> Stretch {
         let asked = self.ask(a, b);
         let Line { role, ledger, cancel, .. } = self.line;
-        let about = (&asked.tip, asked.spread);
+        let about = asked.about();
         let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
         let found = |is_of_use: &dyn Fn(f64) -> bool| {
-            ledger.bend(&role.gauge, &asked.tool, about, asked.range, is_of_use, cancel)
+            ledger.bend(&role.gauge, &about, asked.range, is_of_use, cancel)
         };
         let piece = (b.x - a.x) / MOST_PIECES;
         let is_of_use = |bend| match asked.scaled(Bend::AtMost(bend)) {
@@ -243,8 +251,8 @@ impl Course<'_, '_> {
             Bend::Unbounded => false,
         };
         let serves = |bend: Option<Bend>| matches!(bend, Some(Bend::AtMost(bend)) if is_of_use(bend));
-        let mut bend = ledger.known_bend(&role.gauge, &asked.tool, about, asked.range).map(Bend::AtMost);
-        let shorter = || Ledger::bend_of_shorter(&role.gauge, &asked.tool, about, asked.range, SHORTER);
+        let mut bend = ledger.known_bend(&role.gauge, &about, asked.range).map(Bend::AtMost);
+        let shorter = || Ledger::bend_of_shorter(&role.gauge, &about, asked.range, SHORTER);
         let known = bend.or_else(|| shorter().map(Bend::AtMost));
         let mut is_asked = known.is_some();
         if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
@@ -280,24 +288,34 @@ impl Course<'_, '_> {
     /// For which places a bound of the bend is needed on the stretch between two samples.
     fn ask(&self, a: &Sample, b: &Sample) -> Asked<'_> {
         let Line { sweep, role, .. } = self.line;
-        let reach = role.gauge.reach(sweep.tool());
-        let stretch = if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
         // Along its generators a surface does not change, so that only the way across them counts.
         let across = match role.gauge.surface.generator() {
             Some(generator) if role.gauge.on || !sweep.turns() => sweep.direction.cross(&generator).norm(),
             _ => 1.0,
         };
-        let way = (b.x - a.x) * stretch * across.max(LEAST_ACROSS);
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
         let thickness = role.gauge.thickness;
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
+        let stretch_of = |reach: f64| if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
+        let way_of = |reach: f64| (b.x - a.x) * stretch_of(reach) * across.max(LEAST_ACROSS);
+        // A point that is in contact on the way is nowhere farther from contact than the way is long.
+        let farthest = |way: f64| high + 1.5 * way + thickness;
+        let whole = role.gauge.reach(sweep.tool());
+        let reach = if role.gauge.on || !sweep.turns() {
+            whole
+        } else {
+            // What is too far to come into contact with the way of the farthest point counts no more.
+            let way = way_of(whole);
+            role.gauge.reach_within(&tool, &tip, farthest(way) + 0.5 * way)
+        };
+        let way = way_of(reach);
         Asked {
             tip,
             tool,
             spread: 0.5 * way,
-            // A point that is in contact on the way is nowhere farther from contact than the way is long.
-            range: [low - way + thickness, high + 1.5 * way + thickness],
-            speed: stretch * across,
+            reach,
+            range: [low - way + thickness, farthest(way)],
+            speed: stretch_of(reach) * across,
             swing: if role.gauge.on { 0.0 } else { sweep.swing(reach) },
         }
     }
@@ -317,7 +335,7 @@ impl Course<'_, '_> {
     fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
         if sweep.turns() {
-            return false;
+            return self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
         }
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
@@ -349,6 +367,22 @@ impl Course<'_, '_> {
         let (_, tool) = sweep.at(a.x);
         let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&tool, &contact.tool, &(way * sense));
         Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
+    }
+
+    /// The same where the tool turns and takes these points along: none of them moves faster than the tool end and the turn of its arm
+    /// together, and its way bends no more than the arm swings.
+    fn bend_of_carried(&self, a: &Sample, b: &Sample) -> Option<f64> {
+        let Line { sweep, role, .. } = self.line;
+        let middle = 0.5 * (a.x + b.x);
+        let (_, tool) = sweep.at(middle);
+        let bend = |end: &Sample| {
+            let arm = (end.contact.tool - sweep.at(end.x).0).norm();
+            let stretch = sweep.stretch(arm);
+            let center = sweep.carried(&end.contact.tool, end.x, middle);
+            let bend = role.gauge.bend_about(&tool, &center, 0.5 * (b.x - a.x) * stretch)?;
+            Some(bend * stretch * stretch + sweep.swing(arm))
+        };
+        if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
     }
 
     /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.

@@ -13,6 +13,25 @@ const FORESIGHT: f64 = 3.0;
 const FORESIGHT_BY_QUADRIC: f64 = 8.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
 
+/// Positions of the tool about one of them.
+#[derive(Clone, Copy)]
+pub(super) struct About<'a> {
+    pub(super) tool: &'a Tool,
+    pub(super) tip: &'a Vec3,
+    /// No point of the tool within `reach` of its end strays farther than this from its place there.
+    pub(super) spread: f64,
+    /// No point of the tool that may be in contact there is farther from its end.
+    pub(super) reach: f64,
+}
+
+impl About<'_> {
+    /// No point within reach is farther than this from where it was with another tool end and axis: the shortest turn from axis to
+    /// axis takes it along by no more than their distance for each unit of its own from the tool end.
+    fn moved(&self, tip: &Vec3, axis: &Vec3) -> f64 {
+        (self.tip - tip).norm() + self.reach * (self.tool.axis - axis).norm()
+    }
+}
+
 /// A bound of the second derivatives of a clearance about a place.
 #[derive(Debug, Clone, Copy)]
 struct Bound {
@@ -32,10 +51,18 @@ struct Gap {
     range: [f64; 2],
 }
 
+impl Bound {
+    /// Whether the bound holds about another place: no point of the tool strays farther from where it was when the bound was made.
+    fn has(&self, place: &About<'_>, range: [f64; 2]) -> bool {
+        place.moved(&self.tip, &self.axis) + place.spread <= self.spread
+            && range[0] >= self.range[0]
+            && range[1] <= self.range[1]
+    }
+}
+
 impl Gap {
-    fn lies_in(&self, tip: &Vec3, axis: &Vec3, spread: f64, range: [f64; 2]) -> bool {
-        (tip - self.tip).norm() + self.spread <= spread
-            && *axis == self.axis
+    fn lies_in(&self, place: &About<'_>, range: [f64; 2]) -> bool {
+        place.moved(&self.tip, &self.axis) + self.spread <= place.spread
             && range[0] <= self.range[0]
             && range[1] >= self.range[1]
     }
@@ -75,33 +102,23 @@ impl Ledger {
     /// The bound for stretches that are shorter by a ratio, if one is known without a search.
     pub(super) fn bend_of_shorter(
         gauge: &Gauge,
-        tool: &Tool,
-        (tip, spread): (&Vec3, f64),
+        place: &About<'_>,
         range: [f64; 2],
         ratio: f64,
     ) -> Option<f64> {
         let middle = 0.5 * (range[0] + range[1]);
         let range = range.map(|distance| middle + ratio * (distance - middle));
-        steady_bend(gauge, tool, tip, ratio * spread, range)
+        steady_bend(gauge, place.tool, place.tip, ratio * place.spread, range)
     }
 
     /// The bound of [`Ledger::bend`], if one is known that holds there.
-    pub(super) fn known_bend(
-        &self,
-        gauge: &Gauge,
-        tool: &Tool,
-        (tip, spread): (&Vec3, f64),
-        range: [f64; 2],
-    ) -> Option<f64> {
+    pub(super) fn known_bend(&self, gauge: &Gauge, place: &About<'_>, range: [f64; 2]) -> Option<f64> {
         if let Some(bound) = self.bound.get()
-            && (tip - bound.tip).norm() + spread <= bound.spread
-            && tool.axis == bound.axis
-            && range[0] >= bound.range[0]
-            && range[1] <= bound.range[1]
+            && bound.has(place, range)
         {
             return Some(bound.bend);
         }
-        steady_bend(gauge, tool, tip, spread, range)
+        steady_bend(gauge, place.tool, place.tip, place.spread, range)
     }
 
     /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
@@ -110,19 +127,19 @@ impl Ledger {
     pub(super) fn bend(
         &self,
         gauge: &Gauge,
-        tool: &Tool,
-        (tip, spread): (&Vec3, f64),
+        place: &About<'_>,
         range: [f64; 2],
         is_of_use: &dyn Fn(f64) -> bool,
         cancel: &dyn Fn() -> bool,
     ) -> Option<Bend> {
+        let About { tool, tip, spread, .. } = *place;
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
         let mut found = Some(Bend::Unbounded);
         for (spread, more) in [(ample, ample), (spread, 0.0)] {
             let range = [range[0] - more, range[1] + more];
             let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
-            if self.gap.get().is_some_and(|known| known.lies_in(tip, &tool.axis, spread, range)) {
+            if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
                 continue;
             }
             found = upward_bend(gauge, tool, tip, spread, range, is_of_use, cancel);
