@@ -312,13 +312,8 @@ impl Gauge {
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.
     pub(crate) fn bend_at(&self, tool: &Tool, point: &Vec3, way: &Vec3) -> Option<f64> {
-        self.bend_about(tool, &(point + way * 0.5), 0.5 * way.norm())
-    }
-
-    /// The same for a point that goes anywhere in a ball.
-    pub(crate) fn bend_about(&self, tool: &Tool, center: &Vec3, radius: f64) -> Option<f64> {
+        let (center, radius) = (point + way * 0.5, 0.5 * way.norm());
         let surface = self.met(tool);
-        let center = *center;
         let foot = surface.foot(&center);
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };

@@ -46,6 +46,8 @@ const MOST_PIECES: f64 = 8.0;
 const MOST_CUTS: usize = 3;
 /// Share of a stretch for which a bound is known without a search where none is searched for all of it.
 const SHORTER: f64 = 0.25;
+/// How often what of a turning tool may come into contact is looked for: the less of it, the shorter its way.
+const MOST_NEARS: u32 = 3;
 /// Sine between the move and the generators of the surface with which regions are laid out at least.
 const LEAST_ACROSS: f64 = 0.01;
 
@@ -300,14 +302,17 @@ impl Course<'_, '_> {
         let way_of = |reach: f64| (b.x - a.x) * stretch_of(reach) * across.max(LEAST_ACROSS);
         // A point that is in contact on the way is nowhere farther from contact than the way is long.
         let farthest = |way: f64| high + 1.5 * way + thickness;
-        let whole = role.gauge.reach(sweep.tool());
-        let reach = if role.gauge.on || !sweep.turns() {
-            whole
-        } else {
-            // What is too far to come into contact with the way of the farthest point counts no more.
-            let way = way_of(whole);
-            role.gauge.reach_within(&tool, &tip, farthest(way) + 0.5 * way)
-        };
+        let mut reach = role.gauge.reach(sweep.tool());
+        let nears = if role.gauge.on || !sweep.turns() { 0 } else { MOST_NEARS };
+        for _ in 0..nears {
+            // What is too far to come into contact with the way of the farthest point that counts does not count.
+            let way = way_of(reach);
+            let near = role.gauge.reach_within(&tool, &tip, farthest(way) + 0.5 * way);
+            if near >= reach {
+                break;
+            }
+            reach = near;
+        }
         let way = way_of(reach);
         Asked {
             tip,
@@ -335,7 +340,7 @@ impl Course<'_, '_> {
     fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
         if sweep.turns() {
-            return self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
+            return false;
         }
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
@@ -367,22 +372,6 @@ impl Course<'_, '_> {
         let (_, tool) = sweep.at(a.x);
         let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&tool, &contact.tool, &(way * sense));
         Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
-    }
-
-    /// The same where the tool turns and takes these points along: none of them moves faster than the tool end and the turn of its arm
-    /// together, and its way bends no more than the arm swings.
-    fn bend_of_carried(&self, a: &Sample, b: &Sample) -> Option<f64> {
-        let Line { sweep, role, .. } = self.line;
-        let middle = 0.5 * (a.x + b.x);
-        let (_, tool) = sweep.at(middle);
-        let bend = |end: &Sample| {
-            let arm = (end.contact.tool - sweep.at(end.x).0).norm();
-            let stretch = sweep.stretch(arm);
-            let center = sweep.carried(&end.contact.tool, end.x, middle);
-            let bend = role.gauge.bend_about(&tool, &center, 0.5 * (b.x - a.x) * stretch)?;
-            Some(bend * stretch * stretch + sweep.swing(arm))
-        };
-        if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
     }
 
     /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.
