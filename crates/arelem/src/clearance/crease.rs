@@ -24,6 +24,8 @@ const SAME: f64 = 1e-13;
 const MOST_POSITIONS: u32 = 24;
 /// How much farther, relative to the size of the tool, the way may be than the tangents at its ends tell.
 const CLOSE: f64 = 1e-12;
+/// Share of a distance by which a bound of it may be too low: what is far away need not be known well.
+const ROUGHLY: f64 = 1e-2;
 /// Bound of the parts of a surface that one proof looks at.
 const MOST_LOOKS: u32 = 4_000;
 
@@ -192,6 +194,92 @@ pub(super) fn clears(
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     surface.keeps_apart_within(&distance, level.max(0.0), MOST_LOOKS).is_some()
+}
+
+/// The same for a tool that turns evenly from one axis to another on its way. Every point of it goes on a chord from its first place to its
+/// last one, but for how far it swings out: at most an eighth of its acceleration, the square of the angle by its arm. All chords lie
+/// in the convex hull of the first and the last position.
+pub(super) fn clears_turning(
+    surface: &Surface,
+    [first, last]: [(&Tool, &Vec3); 2],
+    away: &Vec3,
+    level: f64,
+) -> bool {
+    let out = away * (-level).max(0.0);
+    let angle = first.0.axis.cross(&last.0.axis).norm().atan2(first.0.axis.dot(&last.0.axis));
+    let reach = first.0.reach();
+    let hull = Hull {
+        tool: first.0,
+        axes: [first.0.axis, last.0.axis],
+        tips: [first.1 + out, last.1 + out],
+        close: CLOSE * (reach + (last.1 - first.1).norm()),
+    };
+    let wanted = level.max(0.0) + angle * angle * reach / 8.0;
+    surface.keeps_apart_within(&|place: &Vec3| hull.away(place), wanted, MOST_LOOKS).is_some()
+}
+
+/// The convex hull of two positions of a tool.
+struct Hull<'a> {
+    tool: &'a Tool,
+    axes: [Vec3; 2],
+    tips: [Vec3; 2],
+    /// Differences of distances below this are none.
+    close: f64,
+}
+
+impl Hull<'_> {
+    /// A bound from below of the distance of a place, and the direction in which it grows: with any direction the farther of the tangent planes of
+    /// both positions bounds the distance of their hull. The direction is that out of a position between them, best of one for which the
+    /// planes are one.
+    fn away(&self, place: &Vec3) -> (f64, Vec3) {
+        let way = self.tips[1] - self.tips[0];
+        let square = way.norm_squared();
+        let mut share =
+            if square > 0.0 { ((place - self.tips[0]).dot(&way) / square).clamp(0.0, 1.0) } else { 0.5 };
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut best = (f64::NEG_INFINITY, Vec3::zeros());
+        for _ in 0..MOST_POSITIONS {
+            let out = self.out_of(share, place);
+            let [start, end] = [0, 1].map(|k| self.beyond(k, &out, place));
+            if start.min(end) > best.0 {
+                best = (start.min(end), out);
+            }
+            if (start - end).abs() <= self.close + ROUGHLY * best.0.max(0.0) {
+                break;
+            }
+            // The place lies ahead where the last position reaches farther.
+            if end < start {
+                low = share;
+            } else {
+                high = share;
+            }
+            if high <= low {
+                break;
+            }
+            share = 0.5 * (low + high);
+        }
+        best
+    }
+
+    /// How far a place is beyond the tangent plane of one of the positions across a unit direction.
+    fn beyond(&self, k: usize, out: &Vec3, place: &Vec3) -> f64 {
+        let along = out.dot(&self.axes[k]);
+        let across = (out - self.axes[k] * along).norm();
+        out.dot(&(place - self.tips[k])) - self.tool.profile.support(across, along).0
+    }
+
+    /// The unit direction out of a position between both to a place.
+    fn out_of(&self, share: f64, place: &Vec3) -> Vec3 {
+        let between = |ends: &[Vec3; 2]| ends[0] * (1.0 - share) + ends[1] * share;
+        let axis = between(&self.axes).try_normalize(0.0).unwrap_or(self.axes[0]);
+        let from_tip = place - between(&self.tips);
+        let along = from_tip.dot(&axis);
+        let radial = from_tip - axis * along;
+        let across = radial.norm();
+        let radial = if across > 0.0 { radial / across } else { self.tool.across[0] };
+        let (_, [wide, high]) = self.tool.profile.outward(across, along);
+        (radial * wide + axis * high).try_normalize(0.0).unwrap_or(axis)
+    }
 }
 
 /// A bound from below of the distance of a place from a convex body on its way, given from the body's place at the beginning, and the

@@ -272,6 +272,26 @@ impl Gauge {
         self.parts_clear(tool, [(start, first), (&end, last)], level + self.thickness)
     }
 
+    /// Whether the parts of a surface show that the clearance is nowhere below a level while the tool goes straight from one contact to another and
+    /// turns evenly.
+    pub(crate) fn is_clear_while_turning(
+        &self,
+        tools: [&Tool; 2],
+        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
+        level: f64,
+    ) -> bool {
+        // Both ends of a stretch meet the surface as one and the same.
+        let is_same = std::ptr::eq(self.met(tools[0]), self.met(tools[1]));
+        if self.on || self.disk.is_some() || !is_same || !self.surface.has_charts() {
+            return false;
+        }
+        let poses = [(tools[0], from), (tools[1], to)];
+        let away = (first.gradient + last.gradient).try_normalize(0.0);
+        away.is_some_and(|away| {
+            crease::clears_turning(self.met(tools[0]), poses, &away, level + self.thickness)
+        })
+    }
+
     /// Whether no part of the surface is nearer than a level to what is measured while its end goes straight from one contact to another.
     fn parts_clear(
         &self,
@@ -312,8 +332,13 @@ impl Gauge {
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.
     pub(crate) fn bend_at(&self, tool: &Tool, point: &Vec3, way: &Vec3) -> Option<f64> {
-        let (center, radius) = (point + way * 0.5, 0.5 * way.norm());
+        self.bend_about(tool, &(point + way * 0.5), 0.5 * way.norm())
+    }
+
+    /// The same for a point that goes anywhere in a ball.
+    pub(crate) fn bend_about(&self, tool: &Tool, center: &Vec3, radius: f64) -> Option<f64> {
         let surface = self.met(tool);
+        let center = *center;
         let foot = surface.foot(&center);
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };

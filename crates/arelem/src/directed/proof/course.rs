@@ -279,7 +279,9 @@ impl Course<'_, '_> {
         let (held, kept) = bend.map_or((false, false), bounded);
         let is_high = high || held;
         // Parts of the surface take more than shorter stretches where those will do, unless contacts take as much.
-        let by_parts = is_high && (cuts >= MOST_CUTS && !serves(bend.or(known)) || role.gauge.is_hard());
+        let by_parts = is_high
+            && ((cuts >= MOST_CUTS || self.line.sweep.turns()) && !serves(bend.or(known))
+                || role.gauge.is_hard());
         let is_low = low
             || kept
             || !high && by_contacts && self.is_kept_from_both(a, b)
@@ -340,7 +342,8 @@ impl Course<'_, '_> {
     fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
         if sweep.turns() {
-            return false;
+            return by_contacts
+                && self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
         }
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
@@ -374,6 +377,22 @@ impl Course<'_, '_> {
         Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
     }
 
+    /// The same where the tool turns and takes these points along: none of them moves faster than the tool end and the turn of its arm
+    /// together, and its way bends no more than the arm swings.
+    fn bend_of_carried(&self, a: &Sample, b: &Sample) -> Option<f64> {
+        let Line { sweep, role, .. } = self.line;
+        let middle = 0.5 * (a.x + b.x);
+        let (_, tool) = sweep.at(middle);
+        let bend = |end: &Sample| {
+            let arm = (end.contact.tool - sweep.at(end.x).0).norm();
+            let stretch = sweep.stretch(arm);
+            let center = sweep.carried(&end.contact.tool, end.x, middle);
+            let bend = role.gauge.bend_about(&tool, &center, 0.5 * (b.x - a.x) * stretch)?;
+            Some(bend * stretch * stretch + sweep.swing(arm))
+        };
+        if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
+    }
+
     /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.
     fn is_kept_from_both(&self, a: &Sample, b: &Sample) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
@@ -389,11 +408,12 @@ impl Course<'_, '_> {
     /// Whether the parts of the surface show the same.
     fn is_clear_between(&self, a: &Sample, b: &Sample) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
-        if sweep.turns() {
-            return false;
-        }
         let (from, tool) = sweep.at(a.x);
-        let (to, _) = sweep.at(b.x);
+        let (to, turned) = sweep.at(b.x);
+        if sweep.turns() {
+            let contacts = [(&from, &a.contact), (&to, &b.contact)];
+            return role.gauge.is_clear_while_turning([&tool, &turned], contacts, limits[0]);
+        }
         role.gauge.is_clear_between(&tool, [(&from, &a.contact), (&to, &b.contact)], limits[0])
     }
 }
