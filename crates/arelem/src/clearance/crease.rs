@@ -319,3 +319,44 @@ pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: f
     }
     (best.0, best.1)
 }
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::cutter::Cutter;
+
+    use super::*;
+    use crate::{attitude::Sweep, tests::v};
+
+    /// A tool that turns is nowhere nearer to a place than the hull of its ends, less how far it swings out; and no distance from the hull is below
+    /// its tangent.
+    #[test]
+    fn a_tool_that_turns_stays_in_the_hull_of_its_ends() {
+        let cutter = Cutter::from_numbers(&[0.5, 0.1, 0.1661, 0.1, 0.0, 10.0, 1.0], 1.0).expect("cutter");
+        let first = Tool::new(cutter, v(0.1, -0.1, 1.0).normalize());
+        let last = first.turned(v(-0.2, 0.1, 1.0).normalize());
+        let tips = [v(0.0, 0.1, -0.2), v(0.4, 0.0, -0.1)];
+        let hull = Hull { tool: &first, axes: [first.axis, last.axis], tips, close: CLOSE };
+        let sweep = Sweep::new(&first, (&tips[0], &first.axis), (&tips[1], &last.axis));
+        let angle = first.axis.dot(&last.axis).acos();
+        let swing = angle * angle * first.reach() / 8.0;
+        let mut share = 0.3;
+        let mut next = || {
+            share = (share * 7.13_f64 + 0.29).fract();
+            2.0 * share - 1.0
+        };
+        for _ in 0..300 {
+            let place = v(next(), next(), next());
+            let (distance, out) = hull.away(&place);
+            let nearest = |place: &Vec3| {
+                let at = |k: u32| {
+                    let (tip, tool) = sweep.at(sweep.length * f64::from(k) / 40.0);
+                    outward(&tool, &(place - tip)).0
+                };
+                (0..=40).map(at).fold(f64::INFINITY, f64::min).max(0.0)
+            };
+            assert!(distance <= nearest(&place) + swing + 1e-12, "{distance} at {place}");
+            let other = place + v(next(), next(), next());
+            assert!(distance + out.dot(&(other - place)) <= nearest(&other) + swing + 1e-12);
+        }
+    }
+}
