@@ -217,6 +217,7 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Ro
             }
             Condition::Passing(gauge, target) => {
                 let contact = posture.contact_passing(gauge, tip);
+                rows.contacts[k] = Some(contact);
                 (contact.clearance - target, contact.gradient)
             }
             Condition::Between(gauge, [least, greatest]) => {

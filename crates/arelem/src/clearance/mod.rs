@@ -103,8 +103,8 @@ impl Gauge {
         self.offset_contact(tool, tip).0
     }
 
-    /// The contact as it is found where nothing need be proven: another point of the tool may be nearer. For places that are only
-    /// passed through; nothing is remembered of them.
+    /// The contact near the last one where that is proven, else as it is found where nothing need be proven: another point of the
+    /// tool may be nearer. For places that are only passed through.
     pub(crate) fn contact_passing(&self, tool: &Tool, tip: &Vec3) -> Contact {
         if self.on || !self.surface.has_charts() {
             return self.contact(tool, tip);
@@ -112,8 +112,13 @@ impl Gauge {
         let Self { side, thickness, .. } = self;
         let (tool, tip) = self.body(tool, tip);
         let surface = self.met(&tool);
-        let found = closed_form::contact(&tool, surface, *side, &tip)
-            .unwrap_or_else(|| search::found(&tool, Face { surface, side: *side }, &tip));
+        let found = || search::found(&tool, Face { surface, side: *side }, &tip);
+        let found = match near::contact(&tool, surface, *side, &tip, &self.memory) {
+            Followed::Proven(contact, _) => contact,
+            Followed::Likely(..) | Followed::Lost => {
+                closed_form::contact(&tool, surface, *side, &tip).unwrap_or_else(found)
+            }
+        };
         Contact { clearance: found.clearance - thickness, ..found }
     }
 

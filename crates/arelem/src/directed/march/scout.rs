@@ -1,6 +1,6 @@
 //! Progress towards the check surfaces: whether one can be met at all on the way ahead. The path is followed far ahead in
 //! long steps without regard to tolerances, until it meets a check surface, closes on itself, comes to the end of a surface,
-//! or leaves everything behind.
+//! or leaves everything behind. Clearances far away are not proven.
 //!
 //! A step and the path between its ends are apart by no more than the sag of the step; a check surface that stays farther
 //! away than that is not met.
@@ -148,10 +148,8 @@ impl Scout<'_> {
     /// The position on both surfaces next to a place, with the path in a given sense.
     fn settled(&self, place: &Vec3, sense: &Vec3) -> Option<Vertex> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
-        let conditions = [
-            Condition::Clearance(&part.gauge, part.rest()),
-            Condition::Clearance(&drive.gauge, drive.rest()),
-        ];
+        let conditions =
+            [Condition::Passing(&part.gauge, part.rest()), Condition::Passing(&drive.gauge, drive.rest())];
         let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, place).ok()?;
         let [Some(part), Some(drive), _] = contacts else { return None };
         let axis = attitude.tool_at(&tip).ok()?.axis;
@@ -235,8 +233,8 @@ impl Scout<'_> {
         }
         let Prepared { attitude, part, drive, size, .. } = self.prepared;
         let conditions = [
-            Condition::Clearance(&part.gauge, part.rest()),
-            Condition::Clearance(&drive.gauge, drive.rest()),
+            Condition::Passing(&part.gauge, part.rest()),
+            Condition::Passing(&drive.gauge, drive.rest()),
             Condition::Plane(start.tangent, start.tangent.dot(&start.tip)),
         ];
         let there = position::solve(attitude, &conditions, &(from.tip + direction * along));

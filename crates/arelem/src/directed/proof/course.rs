@@ -388,7 +388,8 @@ impl Course<'_, '_> {
             let stretch = sweep.stretch(arm);
             let center = sweep.carried(&end.contact.tool, end.x, middle);
             let bend = role.gauge.bend_about(&tool, &center, 0.5 * (b.x - a.x) * stretch)?;
-            Some(bend * stretch * stretch + sweep.swing(arm))
+            // Along a slower way it bends by less.
+            Some(bend.max(0.0) * stretch * stretch + sweep.swing(arm))
         };
         if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
     }
