@@ -225,15 +225,22 @@ impl Surface {
     /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of
     /// surface, and where it ends or has an edge or no tangent plane there.
     pub fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
-        let asked = || Survey::of_forms(center, reach, side);
-        let forms = match self {
+        self.forms_asked(side, center, reach, Survey::of_forms(center, reach, side)).map(leading)
+    }
+
+    /// The same with small errors, all of them.
+    pub fn fine_forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
+        self.forms_asked(side, center, reach, Survey::of_fine_forms(center, reach, side))
+    }
+
+    fn forms_asked(&self, side: f64, center: &Vec3, reach: f64, asked: Survey) -> Option<Vec<Form>> {
+        match self {
             Self::Tabulated(curve) => curve.forms(side, center, reach),
-            Self::Ruled(sheet) => sheet.survey(asked()).forms(),
-            Self::PolyConic(sheet) => sheet.forms(asked()),
-            Self::Sculptured(sheet) => sheet.survey(asked()).forms(),
+            Self::Ruled(sheet) => sheet.survey(asked).forms(),
+            Self::PolyConic(sheet) => sheet.forms(asked),
+            Self::Sculptured(sheet) => sheet.survey(asked).forms(),
             _ => None,
-        };
-        forms.map(leading)
+        }
     }
 
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.

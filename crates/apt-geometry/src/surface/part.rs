@@ -228,6 +228,8 @@ pub(super) struct Survey {
     enough: f64,
     /// The forms of all parts within reach, if these are asked for and nothing else.
     forms: Option<Vec<Form>>,
+    /// Error of a form, as a share of it, that is close enough.
+    form_error: f64,
 }
 
 impl Survey {
@@ -249,6 +251,7 @@ impl Survey {
             strict: false,
             enough: f64::NEG_INFINITY,
             forms: None,
+            form_error: CLOSE,
         }
     }
 

@@ -6,6 +6,7 @@
 //! the tool's own curvature counts in full. Patches that this does not clear are halved.
 
 use std::{
+    cell::Cell,
     cmp::Ordering,
     collections::BinaryHeap,
     f64::consts::{FRAC_PI_2, FRAC_PI_3, PI},
@@ -19,6 +20,7 @@ use apt_geometry::{
 use super::{
     Contact, Tool,
     floor::{Base, Bases, Course},
+    nearly_straight,
     patch::{Middle, Patch, Stretch, boundary},
 };
 
@@ -28,6 +30,8 @@ const MAX_PATCHES: u32 = 1500;
 /// not show.
 const FEW_PATCHES: u32 = 300;
 const HAIR: f64 = 1e-6;
+/// How many are looked at before straight pieces are asked about as such.
+const MANY_PATCHES: u32 = 100;
 /// Share of the coordinates that is rounding of a distance.
 const ROUNDING: f64 = 1e-15;
 /// Half a range of azimuth (radians) below which the ball of a corner is left for the corner itself.
@@ -114,13 +118,13 @@ impl Pose {
     }
 }
 
-/// A ball with the downward bend of the distance in it, and a place in the ball to expand the distance about.
+/// A ball with how the distance bends in it, and a place in the ball to expand the distance about.
 #[derive(Debug, Clone, Copy)]
 struct Ground {
     base: Base,
     center: Vec3,
     radius: f64,
-    bend: f64,
+    course: Course,
 }
 
 impl Leaf {
@@ -203,6 +207,8 @@ struct Question<'a> {
     generator: Option<Vec3>,
     /// How much farther than needed a bend is asked for, so that it serves the next positions.
     spread: f64,
+    /// Whether so many patches have been looked at that straight pieces are asked about as such.
+    is_thin: Cell<bool>,
 }
 
 /// Examines whether the distance from a surface is nowhere on the patches of a proof below a level. The patch that may be
@@ -220,7 +226,9 @@ pub(super) fn certify(
     let mut seen = 0;
     let cleared = level - ROUNDING * (tip.amax() + tool.radius() + tool.profile.top.height);
     let (generator, spread) = (face.surface.generator(), proof.spread);
-    let question = Question { face, tool, tip, level: cleared, bases, generator, spread };
+    let is_thin = Cell::new(false);
+    let question = Question { face, tool, tip, level: cleared, bases, generator, spread, is_thin };
+    let may_be_thin = nearly_straight::is_apt(face.surface);
     let pose = Pose::of(tool, tip);
     let mut leaves = std::mem::take(&mut proof.leaves);
     let mut done = Vec::with_capacity(leaves.len());
@@ -232,6 +240,7 @@ pub(super) fn certify(
                 continue;
             }
             seen += 1;
+            question.is_thin.set(may_be_thin && seen > MANY_PATCHES);
             let (judged, ground) = question.judge(&leaf);
             if judged.least >= cleared {
                 done.push(Leaf { patch: leaf.patch, pose, least: judged.least, ground });
@@ -274,7 +283,7 @@ impl Question<'_> {
         if leaf.least - leaf.pose.moved(self.tool, self.tip) >= self.level {
             return Some(*leaf);
         }
-        let Ground { base, center, radius, bend } = leaf.ground?;
+        let Ground { base, center, radius, course } = leaf.ground?;
         let Middle { place, ball, reach, .. } =
             leaf.patch.middle(self.tool, self.tip, self.generator.as_ref());
         let within = |p: &Vec3| self.away(p, &center) <= radius;
@@ -283,8 +292,8 @@ impl Question<'_> {
         }
         let now = self.base(ball).filter(|base| within(&base.place));
         now.into_iter().chain([base]).find_map(|base| {
-            let least = self.least(&leaf.patch, &base, bend) - ball;
-            let ground = Some(Ground { base, center, radius, bend });
+            let least = self.least(&leaf.patch, &base, course) - ball;
+            let ground = Some(Ground { base, center, radius, course });
             let pose = Pose::of(self.tool, self.tip);
             (least >= self.level).then_some(Leaf { patch: leaf.patch, pose, least, ground })
         })
@@ -301,8 +310,12 @@ impl Question<'_> {
         self.generator.map_or(w, |generator| w - generator * generator.dot(&w)).norm()
     }
 
-    fn least(&self, patch: &Patch, base: &Base, bend: f64) -> f64 {
-        patch.least(self.tool, self.tip, base, Course { bend, generator: self.generator })
+    fn least(&self, patch: &Patch, base: &Base, course: Course) -> f64 {
+        patch.least(self.tool, self.tip, base, course)
+    }
+
+    fn course(&self, bend: f64) -> Course {
+        Course::along_generator(bend, self.generator)
     }
 
     /// The distance over a patch from its middle, and from the base, as far as the level needs it; and on what ground.
@@ -322,7 +335,7 @@ impl Question<'_> {
         // What is known of the bend about there from before.
         let known = |radius: f64| {
             let ground = leaf.ground?;
-            (self.away(&place, &ground.center) + radius <= ground.radius).then_some(ground.bend)
+            (self.away(&place, &ground.center) + radius <= ground.radius).then_some(ground.course.bend)
         };
         let bend_within = |radius: f64| {
             known(radius).map_or_else(|| downward_bend(face, &foot, &place, radius), Bend::AtMost)
@@ -332,13 +345,13 @@ impl Question<'_> {
             Stretch::Arc { .. } if is_own => {
                 distance + least_from_middle(tool, patch, &own, bend, length > 0.0)
             }
-            _ => self.least(patch, base, bend) - ball,
+            _ => self.least(patch, base, self.course(bend)) - ball,
         };
         let mut ground = None;
         let bend = if round { Bend::Unbounded } else { bend_within(reach) };
         if let Bend::AtMost(bend) = bend {
             judged.least = judged.least.max(bound(&own, bend, true));
-            ground = Some(Ground { base: own, center: place, radius: reach, bend });
+            ground = Some(Ground { base: own, center: place, radius: reach, course: self.course(bend) });
         }
         let tried = round || ground.is_some();
         if judged.least < level
@@ -352,20 +365,47 @@ impl Question<'_> {
             };
             if let Bend::AtMost(bend) = bend {
                 judged.least = judged.least.max(bound(&base, bend, false));
-                ground = Some(Ground { base, center: place, radius: away.max(reach), bend });
+                ground =
+                    Some(Ground { base, center: place, radius: away.max(reach), course: self.course(bend) });
             }
+        }
+        if self.is_thin.get()
+            && judged.least < level
+            && let Bend::AtMost(bend) = bend
+            && let Some(straight) = self.judge_straight(patch, &own, [reach, bend], &mut judged)
+        {
+            return (judged, Some(straight));
         }
         let ground = ground.filter(|_| judged.least >= level && self.spread > 0.0).map(|ground| {
             // More ground for the next positions, if it bears as well.
             let radius = ground.radius + self.spread;
             match downward_bend(face, &foot, &place, radius) {
                 Bend::AtMost(bend) if bound(&ground.base, bend, false) >= level => {
-                    Ground { radius, bend, ..ground }
+                    Ground { radius, course: self.course(bend), ..ground }
                 }
                 _ => ground,
             }
         });
         (judged, ground)
+    }
+
+    /// The same by how the distance bends along a straight piece and across it; that counts for how it is halved, too.
+    fn judge_straight(
+        &self,
+        patch: &Patch,
+        own: &Base,
+        within: [f64; 2],
+        judged: &mut Judged,
+    ) -> Option<Ground> {
+        let course = Course::nearly_straight(self.face, self.tool, patch, own, within)?;
+        judged.length *= course.share_of_length();
+        let is_within = |base: &Base| self.away(&base.place, &own.place) <= within[0];
+        let bases = std::iter::once(*own).chain(self.base(0.0).filter(is_within));
+        bases.into_iter().find_map(|base| {
+            judged.least = judged.least.max(self.least(patch, &base, course));
+            let ground = Ground { base, center: own.place, radius: within[0], course };
+            (judged.least >= self.level).then_some(ground)
+        })
     }
 }
 

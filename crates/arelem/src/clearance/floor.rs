@@ -1,9 +1,9 @@
 //! Lower bounds of the distance from a surface over arcs about the tool axis, from one place where it is known.
 //!
 //! With `bend` a bound of the second derivatives downward, the distance at `place + y` is at least
-//! `distance + gradient·y − bend·|y|²/2`. On a circle about the axis `|y|²` is linear in the direction of the radius, so
-//! that the least of this over an arc has a closed form. Along straight lines it is concave: of a polygon that is turned
-//! about the axis its corners tell all. Where contact is that place, and the circle curves more than the surface, the bound
+//! `distance + gradient·y − bend·|y|²/2`, and more by what is spared along a direction in which it bends less. On a circle about
+//! the axis `|y|²` is linear in the direction of the radius, so that the least of this over an arc has a closed form. Along straight
+//! lines it is concave: of a polygon that is turned about the axis its corners tell all. Where contact is that place, and the circle curves more than the surface, the bound
 //! is as high as the contact itself over an arc of finite length.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -29,11 +29,25 @@ pub(super) struct Arc {
     pub(super) half: f64,
 }
 
-/// How the distance may bend about a base: a bound downward, and a direction in which it does not change.
+/// How the distance may bend about a base: a bound downward, and a direction in which it bends less.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Course {
     pub(super) bend: f64,
-    pub(super) generator: Option<Vec3>,
+    pub(super) straight: Option<Straight>,
+}
+
+/// A unit direction in which the distance bends less, and by how much: along the generator of a surface not at all.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Straight {
+    pub(super) along: Vec3,
+    pub(super) spared: f64,
+}
+
+impl Course {
+    /// Beside a surface with a generator, or with none.
+    pub(super) fn along_generator(bend: f64, generator: Option<Vec3>) -> Self {
+        Self { bend, straight: generator.map(|along| Straight { along, spared: bend }) }
+    }
 }
 
 impl Base {
@@ -45,27 +59,27 @@ impl Base {
 
     /// No point of an arc is nearer to the surface.
     pub(super) fn least(&self, tool: &Tool, tip: &Vec3, course: Course, arc: Arc) -> f64 {
-        let Course { bend, generator } = course;
+        let Course { bend, straight } = course;
         let Arc { radius, height, azimuth, half } = arc;
         let w = tip + tool.axis * height - self.place;
         let mut level =
             self.distance + self.gradient.dot(&w) - 0.5 * bend * (w.norm_squared() + radius * radius);
         let mut slope = (self.gradient - w * bend) * radius;
-        if let Some(generator) = generator {
-            let along = generator.dot(&w);
-            let (constant, turned) = self.along_generator(tool, tip, &generator, arc);
-            level += 0.5 * bend * (along * along + radius * radius * constant);
-            slope += (generator * along + turned * (0.5 * radius)) * (bend * radius);
+        if let Some(Straight { along, spared }) = straight {
+            let way = along.dot(&w);
+            let (constant, turned) = self.square_along(tool, tip, &along, arc);
+            level += 0.5 * spared * (way * way + radius * radius * constant);
+            slope += (along * way + turned * (0.5 * radius)) * (spared * radius);
         }
         let (sin, cos) = azimuth.sin_cos();
         let radial = tool.across[0] * cos + tool.across[1] * sin;
         level + least_cosine(slope.dot(&radial), slope.dot(&tool.axis.cross(&radial)), half)
     }
 
-    /// For a unit radius e the square of its part along a generator is at least the constant and the product of e and the vector,
+    /// For a unit radius e the square of its part along a direction is at least the constant and the product of e and the vector,
     /// equal to it at the azimuth of the base, or in the middle of the arc for a base on the axis, up to terms of third
     /// order: those are bounded over the arc.
-    fn along_generator(&self, tool: &Tool, tip: &Vec3, generator: &Vec3, arc: Arc) -> (f64, Vec3) {
+    fn square_along(&self, tool: &Tool, tip: &Vec3, direction: &Vec3, arc: Arc) -> (f64, Vec3) {
         let [x, y] = tool.across.map(|across| across.dot(&(self.place - tip)));
         let (sin, cos) = arc.azimuth.sin_cos();
         let away = x.hypot(y);
@@ -77,7 +91,7 @@ impl Base {
         let t = tool.axis.cross(&e);
         // (a cos ψ + b sin ψ)² = a² + 2ab sin ψ + (b² − a²) sin²ψ − 2ab sin ψ (1 − cos ψ), with sin²ψ between two multiples of
         // 1 − cos ψ.
-        let (a, b) = (generator.dot(&e), generator.dot(&t));
+        let (a, b) = (direction.dot(&e), direction.dot(&t));
         let square = b * b - a * a;
         let rise = square * if square > 0.0 { 1.0 + widest.cos() } else { 2.0 };
         let third = 2.0 * (a * b).abs() * widest.min(FRAC_PI_2).sin();
@@ -151,7 +165,7 @@ mod tests {
             let ways = points.iter().flat_map(|p| (0..=10).map(move |k| place + (p - place) * (0.1 * f64::from(k))));
             let nearest = ways.map(|p| depth(&p)).fold(f64::INFINITY, f64::min);
             prop_assume!(nearest > 0.05);
-            let course = Course { bend: 1.0 / (0.9 * nearest), generator: *generator };
+            let course = Course::along_generator(1.0 / (0.9 * nearest), *generator);
             let bound = base.least(&tool, &tip, course, Arc { radius, height, azimuth, half });
             for p in &points {
                 let distance = -surface.signed_distance(p);

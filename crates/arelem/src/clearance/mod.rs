@@ -10,6 +10,7 @@ mod floor;
 mod matched;
 mod memory;
 mod near;
+mod nearly_straight;
 mod open_top;
 mod patch;
 mod quadric;

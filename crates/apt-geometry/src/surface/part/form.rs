@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
+use super::{Bounds, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
 use crate::Vec3;
 
 /// Which multiple of the change of a frame its pseudo-inverse may change by, times the norms of both pseudo-inverses, if both frames
@@ -10,6 +10,8 @@ use crate::Vec3;
 const PSEUDO_INVERSE: f64 = std::f64::consts::SQRT_2;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
 const FINE: f64 = 1.0 / 32.0;
+/// Error of forms, as a share of them, that tells how a surface bends along a line that is nearly straight on it.
+const FINE_ERROR: f64 = 0.005;
 
 /// Second fundamental forms of all places of a part of a surface, as forms on vectors in space: that of a vector is that of its
 /// part in the tangent plane. Positive where the surface bends towards the side asked about.
@@ -120,6 +122,11 @@ impl Survey {
         Self { forms: Some(Vec::new()), ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
     }
 
+    /// The same, with errors that are small enough to tell how a surface bends along a line that is nearly straight on it.
+    pub(in super::super) fn of_fine_forms(center: &Vec3, reach: f64, side: f64) -> Self {
+        Self { form_error: FINE_ERROR, ..Self::of_forms(center, reach, side) }
+    }
+
     /// The forms asked for, unless some place within reach has none.
     pub(in super::super) fn forms(self) -> Option<Vec<Form>> {
         self.forms.filter(|_| !self.jumps)
@@ -134,7 +141,7 @@ impl Part {
         }
         survey.seen += 1;
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
-        let close = |form: &Form| form.error <= CLOSE * form.middle.norm();
+        let close = |form: &Form| form.error <= survey.form_error * form.middle.norm();
         let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         if !(fine || form.as_deref().is_some_and(close)) {
             self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));

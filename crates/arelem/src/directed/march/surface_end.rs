@@ -56,16 +56,23 @@ fn above(role: &Working, contact: &Contact) -> Vec3 {
 
 /// Whether the tool touches the end of a role's surface.
 pub(super) fn is_at_end(role: &Working, contact: &Contact) -> bool {
-    role.gauge.surface.ends_at(&above(role, contact))
+    role.gauge.surface.ends_at(&above(role, contact)) || is_pushed_back(role, contact)
+}
+
+/// Whether a tool that is a little inside a role's surface is so beyond the end of that, which pushes it back along the surface: the
+/// place above the contact is over the surface then, that of the tool is not.
+fn is_pushed_back(role: &Working, contact: &Contact) -> bool {
+    contact.clearance < 0.0 && role.gauge.surface.ends_at(&contact.tool)
 }
 
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
 /// end of it; but it goes along that, not out over it or down behind it.
 fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
-    if !is_at_end(role, contact) {
-        return false;
+    let above = above(role, contact);
+    if !role.gauge.surface.ends_at(&above) {
+        return is_pushed_back(role, contact);
     }
-    let edge = role.gauge.surface.edge_at(&above(role, contact));
+    let edge = role.gauge.surface.edge_at(&above);
     let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) >= along.dot(path).abs()

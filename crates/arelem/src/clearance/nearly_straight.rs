@@ -1,0 +1,72 @@
+//! How the distance bends beside a straight piece of the tool that lies nearly along the surface, as a flank does beside the rulings of
+//! a ruled surface: much less along the piece than across it.
+//!
+//! Where all forms S of the surface about are at most `μ I + b (I − t tᵀ)`, so are `S (1 − d S)⁻¹` at a distance d with
+//! `μ/(1 − d μ)` along t and `(μ + b)/(1 − d (μ + b))` across it, for that grows with S.
+
+use apt_geometry::{Vec3, surface::Surface};
+
+use super::{
+    Tool,
+    certify::Face,
+    floor::{Base, Course, Straight},
+    patch::{Patch, Stretch},
+};
+
+/// Shares of the bend that are tried for that along the piece.
+const SHARES: [f64; 6] = [0.0, 1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0];
+/// How many times the bend in all directions that across the piece may be: the less is let along it, the more is needed across.
+const MOST_ACROSS: f64 = 2.0;
+/// Least share of its length that a piece counts with.
+const LEAST_LENGTH: f64 = 1.0 / 64.0;
+
+impl Course {
+    /// About a patch of a straight piece with its middle at a base, within reach of which distances bend by no more than `bend`
+    /// in any direction.
+    pub(super) fn nearly_straight(
+        face: Face<'_>,
+        tool: &Tool,
+        patch: &Patch,
+        base: &Base,
+        [reach, bend]: [f64; 2],
+    ) -> Option<Self> {
+        let Face { surface, side } = face;
+        let along = direction(tool, patch, &base.gradient)?;
+        let stock = surface.stock(side);
+        let distance = base.distance + stock;
+        // No foot of a place within reach is farther away.
+        let forms = surface.fine_forms(side, &base.place, distance.abs() + 2.0 * reach)?;
+        let across = |least: f64| {
+            let mut all = forms.iter().map(|form| form.curvature_across(&along, -least));
+            all.try_fold(0.0, |most: f64, one| one.map(|one| most.max(one)))
+        };
+        let (least, across) = SHARES.into_iter().find_map(|share| {
+            let least = share * bend;
+            across(least).filter(|across| *across <= MOST_ACROSS * bend).map(|across| (least, across))
+        })?;
+        let deepest = (distance + reach).max(0.0);
+        let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
+        let is_bounded = deepest * (least + across) < 1.0;
+        is_bounded.then(|| Self { bend: most, straight: Some(Straight { along, spared: most - least }) })
+    }
+
+    /// How long a piece along the straight direction is beside one across, for how the distance bends.
+    pub(super) fn share_of_length(&self) -> f64 {
+        let spared = self.straight.map_or(0.0, |straight| straight.spared);
+        (1.0 - spared / self.bend).max(0.0).sqrt().max(LEAST_LENGTH)
+    }
+}
+
+/// The direction of a straight piece in the middle of a patch, in the tangent plane of a surface.
+fn direction(tool: &Tool, patch: &Patch, normal: &Vec3) -> Option<Vec3> {
+    let Stretch::Line([a, b]) = patch.stretch else { return None };
+    let (sin, cos) = patch.azimuth.sin_cos();
+    let radial = tool.across[0] * cos + tool.across[1] * sin;
+    let way = tool.axis * (b[1] - a[1]) + radial * (b[0] - a[0]);
+    (way - normal * normal.dot(&way)).try_normalize(0.0)
+}
+
+/// Whether surfaces of a kind may lie along a straight piece without a common direction of all their lines.
+pub(super) fn is_apt(surface: &Surface) -> bool {
+    surface.has_charts() && surface.generator().is_none()
+}
