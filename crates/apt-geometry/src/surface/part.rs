@@ -343,7 +343,7 @@ impl Survey {
     fn faced_by(&self, part: &Part) -> bool {
         let height =
             part.normal.map_or(f64::NEG_INFINITY, |n| self.side * n.dot(&(self.center - part.center)));
-        height > self.radius + part.radius + self.reach * part.spread
+        height > self.radius + part.sag + self.reach * part.spread
     }
 }
 
