@@ -14,9 +14,28 @@ const PLACES: u32 = 3;
 /// How far a point is from a convex body, and the unit direction from the body to it; no direction within.
 pub type Away<'a> = dyn Fn(&Vec3) -> (f64, Vec3) + 'a;
 
+/// A half-space, on the inner side of the plane at `level` along a unit normal outward.
+#[derive(Debug, Clone, Copy)]
+pub struct HalfSpace {
+    /// Unit normal, outward.
+    pub outward: Vec3,
+    /// How far the plane is along it.
+    pub level: f64,
+}
+
+/// A convex body.
+#[derive(Clone, Copy)]
+pub struct Body<'a> {
+    /// How far points are from it.
+    pub away: &'a Away<'a>,
+    /// One that holds it: where the body lies along a plane part of a surface, that tells more than the distances of points.
+    pub within: Option<HalfSpace>,
+}
+
 /// The question how far a surface keeps off a body.
 pub(super) struct Apart<'a> {
     away: &'a Away<'a>,
+    within: Option<HalfSpace>,
     /// Less is none.
     wanted: f64,
     /// What the parts looked at so far keep.
@@ -28,8 +47,8 @@ pub(super) struct Apart<'a> {
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(away: &'a Away<'a>, wanted: f64, most_looks: u32) -> Self {
-        Self { away, wanted, least: f64::INFINITY, looks: 0, most_looks, nearest: Vec3::zeros() }
+    pub(super) fn new(Body { away, within }: Body<'a>, wanted: f64, most_looks: u32) -> Self {
+        Self { away, within, wanted, least: f64::INFINITY, looks: 0, most_looks, nearest: Vec3::zeros() }
     }
 
     /// The distance that all parts keep, unless they were too many to look at.
@@ -89,7 +108,11 @@ impl<'a> Apart<'a> {
     fn part(&mut self, part: &Part) -> [f64; 2] {
         self.looks += 1;
         let (distance, outward) = (self.away)(part.center());
-        [distance - part.reach_along(&outward), distance]
+        let by_point = distance - part.reach_along(&outward);
+        let by_plane = self.within.filter(|_| by_point < self.wanted).map(|HalfSpace { outward, level }| {
+            outward.dot(part.center()) - level - part.reach_along(&outward)
+        });
+        [by_plane.map_or(by_point, |least| least.max(by_point)), distance]
     }
 
     /// Whether a part keeps what is wanted; its halves where need be.
@@ -105,15 +128,15 @@ impl Surface {
     /// A distance from a convex body, not below the one wanted, that all of the surface is known to keep; `None` for surfaces
     /// of which that is not known, and where some place may be nearer.
     pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
-        self.keeps_apart_within(away, wanted, MOST_LOOKS)
+        self.keeps_off_body(Body { away, within: None }, wanted, MOST_LOOKS)
     }
 
     /// The same by looking at no more than so many of its parts.
-    pub fn keeps_apart_within(&self, away: &Away<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
-        let mut asked = Apart::new(away, wanted, most_looks);
+    pub fn keeps_off_body(&self, body: Body<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
+        let mut asked = Apart::new(body, wanted, most_looks);
         let keeps = match self {
             Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
-            Self::PolyConic(sheet) => return sheet.keeps_apart(away, wanted, most_looks),
+            Self::PolyConic(sheet) => return sheet.keeps_apart(body, wanted, most_looks),
             Self::Sculptured(sheet) => sheet.keeps_apart(&mut asked),
             _ => false,
         };

@@ -59,6 +59,7 @@ impl Surface {
     /// The line that stands out to a side, positive for that of the natural normal, on which a place lies, and its parameter there.
     pub fn crease_at(&self, place: &Place, side: f64) -> Option<(Crease, f64)> {
         match self {
+            Self::Ruled(sheet) => sheet.crease_at(place),
             Self::PolyConic(sheet) => sheet.crease_at(place),
             Self::Sculptured(sheet) => sheet.crease_at(place, side),
             _ => None,
@@ -68,6 +69,7 @@ impl Surface {
     /// The lines about a place that stand out to a side, each with its parameter beside the place.
     pub fn creases_beside(&self, place: &Place, side: f64) -> [Option<(Crease, f64)>; 4] {
         match self {
+            Self::Ruled(sheet) => sheet.creases_beside(place),
             Self::PolyConic(sheet) => sheet.creases_beside(place),
             Self::Sculptured(sheet) => sheet.creases_beside(place, side),
             _ => [None; 4],
@@ -77,6 +79,7 @@ impl Surface {
     /// A place of such a line, and the derivative there by the parameter along it.
     pub fn on_crease(&self, crease: &Crease, parameter: f64) -> Option<[Vec3; 2]> {
         match self {
+            Self::Ruled(sheet) => Some(sheet.on_edge(crease.edge, parameter)),
             Self::PolyConic(sheet) => Some(sheet.on_edge(crease.edge, parameter)),
             _ => {
                 let at = crease.edge.parameters(parameter);

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 pub use self::{
-    apart::Away,
+    apart::{Away, Body, HalfSpace},
     bend::{Bend, Region},
     chart::{Chart, Place, Steady},
     cone::ConeForm,
@@ -196,6 +196,7 @@ impl Surface {
     /// of straight lines along the axis of the tool, which is beside all of such a line or beside none of it.
     pub fn met_from(&self, side: f64, axis: &Vec3) -> &Self {
         match self {
+            Self::Ruled(sheet) => sheet.met_from(side),
             Self::PolyConic(sheet) => sheet.met_from(side),
             Self::Sculptured(sheet) => sheet.met_from(side, axis).unwrap_or(self),
             _ => self,

@@ -4,12 +4,15 @@
 //! beyond the curves, and the curves straight beyond their ends, for [`RULED_BEYOND`] times their length, but not to where
 //! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by its middle ruling.
 
+use std::sync::{Arc, OnceLock};
+
 mod bounds;
+mod ends;
 mod rays;
 
 use self::bounds::ranges;
 use super::{
-    Chart, Place,
+    Chart, Place, Surface,
     apart::Apart,
     interval::Interval,
     part::{Count, Later, Part, Summary},
@@ -74,7 +77,7 @@ struct Strip {
 pub struct RuledSheet {
     pieces: Vec<Piece>,
     /// The strips of each band of shares in order, as a complete binary tree: node `k` has children `2k+1` and `2k+2`.
-    bands: Vec<Vec<Strip>>,
+    bands: Arc<Vec<Vec<Strip>>>,
     /// Range of the parameter and of the share along the rulings.
     limits: [[f64; 2]; 2],
     /// Unit direction of the ruling between the beginnings of the chords.
@@ -83,6 +86,10 @@ pub struct RuledSheet {
     curvature: f64,
     /// Parts with bounds.
     parts: Count,
+    /// The side that what is beyond the end counts for, as a tool on that side meets the surface; otherwise that of the tangent plane.
+    beyond: Option<f64>,
+    /// What a tool meets on either side: first that of the natural normal. Made where it is asked for.
+    met: [OnceLock<Box<Surface>>; 2],
 }
 
 /// The nearest place so far.
@@ -169,8 +176,17 @@ impl RuledSheet {
         let ruling = (other - first.start).try_normalize(0.0)?;
         let pieces = pieces(&edges, range, ACCURACY * size)?;
         let limits = [range, [0.0, 1.0]];
-        let mut sheet =
-            Self { pieces, bands: Vec::new(), limits, ruling, size, curvature: 0.0, parts: Count::default() };
+        let mut sheet = Self {
+            pieces,
+            bands: Arc::default(),
+            limits,
+            ruling,
+            size,
+            curvature: 0.0,
+            parts: Count::default(),
+            beyond: None,
+            met: Default::default(),
+        };
         sheet.limits[1] = sheet.shares();
         sheet.grow();
         Some(sheet)
@@ -228,7 +244,7 @@ impl RuledSheet {
             bands.push(self.tree(&ranges, [pair[0], pair[1]]));
         }
         self.curvature = self.sampled_curvature(&ranges);
-        self.bands = bands;
+        self.bands = Arc::new(bands);
     }
 
     /// Greatest principal curvature over the surface between its curves.
@@ -420,7 +436,8 @@ impl RuledSheet {
         let [low, high] = self.limits[0];
         // On the surface itself the offset is rounding and says nothing.
         let on_surface = (p - jet.point).norm() <= ON_SURFACE * self.size;
-        let rest = match (nearest.t <= low || nearest.t >= high, held) {
+        let is_last = nearest.t <= low || nearest.t >= high;
+        let rest = match (is_last, held) {
             _ if on_surface => Rest::Inside,
             (false, false) => self.crease(p, &jet),
             (true, false) => Rest::AlongV,
@@ -428,7 +445,8 @@ impl RuledSheet {
             (true, true) => Rest::Corner,
         };
         let natural = self.natural(&nearest, v, &jet);
-        Landing { foot: jet.foot(p, rest, (&natural, None), self.size), jet, rest }
+        let beyond = self.beyond.filter(|_| is_last || held);
+        Landing { foot: jet.foot(p, rest, (&natural, beyond), self.size), jet, rest }
     }
 
     /// On a sharp bend of the curves the nearest ruling stays the same, too.
@@ -451,9 +469,12 @@ impl RuledSheet {
             .unwrap_or_else(|| jet.dv.try_normalize(0.0).map_or_else(Vec3::z, |dv| perpendicular(&dv)))
     }
 
-    /// Ranges of the parameters of a place.
-    pub(super) fn limits(&self) -> [[f64; 2]; 2] {
-        self.limits
+    /// The surface as a tool on a side meets it: what is beyond the end is not behind it.
+    pub(super) fn met_from(&self, side: f64) -> &Surface {
+        self.met[usize::from(side < 0.0)].get_or_init(|| {
+            let sheet = Self { beyond: Some(side), met: Default::default(), ..self.clone() };
+            Box::new(Surface::Ruled(Arc::new(sheet)))
+        })
     }
 
     /// Whether the nearest place lies at an end of the curves or of the rulings.

@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Away, Crease, Surface},
+    surface::{Away, Body, Crease, HalfSpace, Surface},
 };
 
 use super::{Contact, Memory, Tool, search::MISSED};
@@ -96,13 +96,13 @@ impl Beside<'_> {
         None
     }
 
-    /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the end of a polyconic surface is deep
+    /// Distance of the place of a line that is nearest to the tool, and the direction out of it. Where the end of a ruled or polyconic surface is deep
     /// below an edge of the tool, so that it comes out on one side of it before and on another behind, it comes out over that edge, square
     /// to both. Sculptured surfaces, which end in faces, are not looked at so: a motion onto what is tangent to them would end before.
     fn apart(&self, point: &Vec3, [before, behind]: &[Slope; 2]) -> (f64, Vec3) {
         let (clearance, out) = outward(self.tool, &(point - self.tip));
         let turn = behind.slope - before.slope;
-        let may_cross = clearance < 0.0 && matches!(self.surface, Surface::PolyConic(_));
+        let may_cross = clearance < 0.0 && matches!(self.surface, Surface::Ruled(_) | Surface::PolyConic(_));
         let crosses = may_cross && before.slope < 0.0 && behind.slope > 0.0;
         let over = (before.out * behind.slope - behind.out * before.slope) / turn;
         match over.try_normalize(0.0).filter(|_| crosses) {
@@ -193,7 +193,17 @@ pub(super) fn clears(
     let close = CLOSE * (tool.reach() + way.norm());
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
-    surface.keeps_apart_within(&distance, level.max(0.0), MOST_LOOKS).is_some()
+    let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-away)) };
+    surface.keeps_off_body(body, level.max(0.0), MOST_LOOKS).is_some()
+}
+
+/// The half-space across a unit direction that holds a tool in some places of its end.
+fn facing(tool: &Tool, tips: [&Vec3; 2], outward: &Vec3) -> HalfSpace {
+    let along = outward.dot(&tool.axis);
+    let across = (outward - tool.axis * along).norm();
+    let reach = tool.profile.support(across, along).0;
+    let level = tips.into_iter().map(|tip| outward.dot(tip) + reach).fold(f64::NEG_INFINITY, f64::max);
+    HalfSpace { outward: *outward, level }
 }
 
 /// The same for a tool that turns evenly from one axis to another on its way. Every point of it goes on a chord from its first place to its
@@ -215,7 +225,8 @@ pub(super) fn clears_turning(
         close: CLOSE * (reach + (last.1 - first.1).norm()),
     };
     let wanted = level.max(0.0) + angle * angle * reach / 8.0;
-    surface.keeps_apart_within(&|place: &Vec3| hull.away(place), wanted, MOST_LOOKS).is_some()
+    let body = Body { away: &|place: &Vec3| hull.away(place), within: None };
+    surface.keeps_off_body(body, wanted, MOST_LOOKS).is_some()
 }
 
 /// The convex hull of two positions of a tool.

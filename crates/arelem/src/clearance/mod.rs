@@ -247,7 +247,7 @@ impl Gauge {
         };
         let is_unsteady = match surface {
             Surface::Sculptured(_) => true,
-            Surface::PolyConic(_) => {
+            Surface::Ruled(_) | Surface::PolyConic(_) => {
                 let may_be = self.memory.crease(self.side).is_some() || !around.is_steady();
                 may_be && contacts.iter().any(is_by_edge)
             }

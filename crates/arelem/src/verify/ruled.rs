@@ -209,6 +209,14 @@ impl RuledStrips {
         run.cross(&rise).try_normalize(0.0)
     }
 
+    /// Whether a place is where the surface ends: on the last rulings of its extension, or where all of them end.
+    pub(super) fn ends_at(&self, touch: &Touch) -> bool {
+        let last = self.sheet.patches.len().saturating_sub(1);
+        let is_first = touch.piece == 0 && touch.along <= JOINT;
+        let is_last = touch.piece == last && touch.along >= 1.0 - JOINT;
+        is_first || is_last || touch.across <= JOINT || touch.across >= 1.0 - JOINT
+    }
+
     /// The natural normal, along the first curve × along the ruling; at a joint the middle between both sides.
     pub(super) fn natural(&self, touch: &Touch) -> Option<Vec3> {
         let here = self.normal_at(touch.piece, touch.along, touch.across)?;

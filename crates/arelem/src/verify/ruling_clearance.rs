@@ -148,8 +148,10 @@ impl Ruled {
 
     /// Whether the surface may have an edge at a place.
     fn may_have_edge(&self, touch: &Touch) -> bool {
+        let is_at_joint = touch.along <= JOINT || touch.along >= 1.0 - JOINT;
         match self {
-            Self::Parallel(_) | Self::Joining(_) => touch.along <= JOINT || touch.along >= 1.0 - JOINT,
+            Self::Parallel(_) => is_at_joint,
+            Self::Joining(surface) => is_at_joint || surface.ends_at(touch),
             Self::Conics(surface) => surface.ends_at(touch),
             Self::Sculptured(surface) => surface.is_sharp(touch, JOINT),
         }
@@ -158,8 +160,9 @@ impl Ruled {
     /// Whether the surface ends at a place, so that what is beyond is on neither side of it.
     fn ends_at(&self, touch: &Touch) -> bool {
         match self {
+            Self::Joining(surface) => surface.ends_at(touch),
             Self::Conics(surface) => surface.ends_at(touch),
-            Self::Parallel(_) | Self::Joining(_) | Self::Sculptured(_) => false,
+            Self::Parallel(_) | Self::Sculptured(_) => false,
         }
     }
 

@@ -69,8 +69,8 @@ impl Enclose for Stretch<'_> {
         let reach = ends[0].max(ends[1]);
         let ends = self.ends(piece, rectangle);
         let sharp = if ends { [true; 2] } else { self.sharp(piece, rectangle) };
-        let split = sharp.contains(&true);
-        Enclosure { jet, duu, duv, dvv: Box3::zero(), reach, sharp, ends, split }
+        // Ends and joints lie at the sides of pieces alone.
+        Enclosure { jet, duu, duv, dvv: Box3::zero(), reach, sharp, ends, split: false }
     }
 }
 
@@ -138,7 +138,7 @@ impl RuledSheet {
     /// Answers a question about the curvature near a place.
     pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
         let mut open = Vec::with_capacity(DEEP);
-        for nodes in &self.bands {
+        for nodes in self.bands.iter() {
             open.push(0usize);
             while let Some(node) = open.pop() {
                 let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };

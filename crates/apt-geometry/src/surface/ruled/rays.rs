@@ -15,7 +15,7 @@ impl RuledSheet {
             return roots;
         }
         let unit = direction / length;
-        for nodes in &self.bands {
+        for nodes in self.bands.iter() {
             let mut open = vec![0usize];
             while let Some(node) = open.pop() {
                 let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };

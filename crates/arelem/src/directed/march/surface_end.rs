@@ -1,11 +1,13 @@
 //! Paths that come to the end of a surface that does not go on. Vectors are proven from what lies within reach of the tool,
 //! so that they become shorter and shorter there; it is told before.
 
+use std::f64::consts::TAU;
+
 use apt_geometry::{Vec3, surface::SurfaceEdge};
 
 use super::{March, Vertex};
 use crate::{
-    clearance::Contact,
+    clearance::{Contact, Tool},
     directed::Prepared,
     error::{MotionFailure, RoleName},
     role::Working,
@@ -17,6 +19,8 @@ const AHEAD: f64 = 16.0;
 const CREEPING: f64 = 0.1;
 /// Halvings of a vector that find where it leads over the end of a surface.
 const HALVINGS: u32 = 24;
+/// Stretches of the flank and of the bottom's edge between places at which it is looked whether the tool touches a surface before its end.
+const PLACES: u32 = 8;
 /// Ratio of a vector to the one before below which the way on may be the way to the end of a surface.
 const SHRINKING: f64 = 0.5;
 
@@ -34,7 +38,11 @@ impl SurfaceEnd {
     pub(super) fn at(prepared: &Prepared, vertex: &Vertex) -> Option<Self> {
         let Vertex { tip, axis, ref tangent, .. } = *vertex;
         let touches = [(&prepared.part, &vertex.part), (&prepared.drive, &vertex.drive)];
-        let (role, contact) = touches.into_iter().find(|(role, contact)| is_over(role, contact, tangent))?;
+        let goes_over = |(role, contact): &(&Working, &Contact)| {
+            is_over(role, contact, tangent)
+                && !is_touched_inside(role, &prepared.tool.turned(axis), &tip, contact)
+        };
+        let (role, contact) = touches.into_iter().find(goes_over)?;
         Some(Self { role: role.name, tip, axis, place: contact.surface })
     }
 
@@ -76,6 +84,32 @@ fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
     let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
+}
+
+/// Whether a tool that touches the end of a surface touches it before the end, too, as along a straight piece: that guides it on.
+fn is_touched_inside(role: &Working, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
+    if role.gauge.on || role.gauge.disk.is_some() {
+        return false;
+    }
+    let surface = role.gauge.met(tool);
+    let touches = |place: &Vec3| {
+        let clearance = role.gauge.side * surface.signed_distance(place) - role.gauge.thickness;
+        clearance <= contact.clearance + role.band() && !surface.ends_at(place)
+    };
+    let profile = &tool.profile;
+    let (_, _, radial) = tool.split(&(contact.tool - tip));
+    let flank = (0..=PLACES).map(|k| {
+        let share = f64::from(k) / f64::from(PLACES);
+        let between = |low: f64, high: f64| low + share * (high - low);
+        let radius = between(profile.upper.radius, profile.top.radius);
+        tip + radial * radius + tool.axis * between(profile.upper.height, profile.top.height)
+    });
+    let bottom = (0..=PLACES).map(|k| {
+        let (sin, cos) = (TAU * f64::from(k) / f64::from(PLACES)).sin_cos();
+        let aside = tool.across[0] * cos + tool.across[1] * sin;
+        tip + aside * profile.lower.radius + tool.axis * profile.lower.height
+    });
+    flank.chain(bottom).chain([*tip]).any(|place| touches(&place))
 }
 
 impl March<'_> {
