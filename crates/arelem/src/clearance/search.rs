@@ -115,7 +115,10 @@ pub(super) fn found(tool: &Tool, face: Face<'_>, tip: &Vec3) -> Contact {
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };
     search.scan();
-    search.best.contact.unwrap_or_else(|| at_end(face, tip))
+    let Some(contact) = search.best.contact else { return at_end(face, tip) };
+    // Next to an edge the contact is exactly there, or the tool would go by it.
+    let touch = search.touch_at_edge(&contact);
+    touch.filter(|touch| touch.clearance <= contact.clearance).unwrap_or(contact)
 }
 
 /// The contact of the tool end.
@@ -218,16 +221,9 @@ impl Search<'_> {
     /// then exactly there.
     fn is_on_crease(&mut self, slack: f64) -> bool {
         let Some(contact) = self.best.contact else { return false };
+        let Some(touch) = self.touch_at_edge(&contact) else { return false };
         let Self { tool, surface, side, tip, .. } = *self;
         let beside = Beside { tool, surface, side, tip };
-        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
-        // points have valleys on both sides of it.
-        let touch = if self.best.value < ABOUT * tool.radius() {
-            beside.nearest_beside(&contact.surface)
-        } else {
-            beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
-        };
-        let Some(touch) = touch else { return false };
         if touch.clearance <= self.best.value + slack {
             self.best.take(self.best.piece, touch.clearance, || touch);
             return beside.clears(&touch, self.best.value - slack);
@@ -241,6 +237,19 @@ impl Search<'_> {
             self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
         }
         is_freed
+    }
+
+    /// The contact with an edge of the surface by a contact.
+    fn touch_at_edge(&self, contact: &Contact) -> Option<Contact> {
+        let Self { tool, surface, side, tip, .. } = *self;
+        let beside = Beside { tool, surface, side, tip };
+        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
+        // points have valleys on both sides of it.
+        if contact.clearance < ABOUT * tool.radius() {
+            return beside.nearest_beside(&contact.surface);
+        }
+        let spot = beside.spot(&contact.surface)?;
+        Some(beside.touch(&spot)?.1)
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.

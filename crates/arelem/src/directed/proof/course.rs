@@ -44,6 +44,9 @@ const MOST_PIECES: f64 = 8.0;
 /// Cuts of stretches on one vector after which the parts of the surface are looked at: a vector where nothing is steady takes some
 /// dozens, others few.
 const MOST_CUTS: usize = 3;
+/// The same where shorter stretches should do: beside a straight piece of the tool that rubs along a surface at the limit of the band they
+/// do not.
+const MANY_CUTS: usize = 12;
 /// Share of a stretch for which a bound is known without a search where none is searched for all of it.
 const SHORTER: f64 = 0.25;
 /// How often what of a turning tool may come into contact is looked for: the less of it, the shorter its way.
@@ -281,6 +284,7 @@ impl Course<'_, '_> {
         // Parts of the surface take more than shorter stretches where those will do, unless contacts take as much.
         let by_parts = is_high
             && ((cuts >= MOST_CUTS || self.line.sweep.turns()) && !serves(bend.or(known))
+                || cuts >= MANY_CUTS
                 || role.gauge.is_hard());
         let is_low = low
             || kept
