@@ -77,8 +77,8 @@ pub(super) fn replay(
     // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
     let may_have_changed = match role.relation {
         Relation::To => since[1] > role.outside_tolerance,
-        // Or it went in and is out again, if by less than the band.
-        Relation::Past => since[0] < -role.inside_tolerance || since[0] < -guard && end > guard,
+        // Or it went in by less than the band and comes out again.
+        Relation::Past => since[0] < -role.inside_tolerance || since[0] < -guard && end > since[0] + guard,
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;

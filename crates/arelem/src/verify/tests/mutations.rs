@@ -137,12 +137,18 @@ fn to_and_past_are_told_apart() {
     }
 }
 
-/// Where the path goes through a check surface by less than its band and out again, that may be called a PAST position; where it
-/// stops before that, or comes near without going in, it may not.
+/// Where the path goes through a check surface by less than its band and out again, if only in the band, that may be called a PAST
+/// position; where it stops before that, or comes near without going in, it may not.
 #[test]
 fn a_position_past_what_is_only_brushed_is_one() {
-    let (depth, left): (f64, f64) = (0.0004, 0.0003);
-    for (depth, sense, is_past) in [(depth, 1.0, true), (depth, -1.0, false), (-0.0002, 1.0, false)] {
+    let cases: [([f64; 2], f64, bool); 5] = [
+        ([0.0004, 0.0003], 1.0, true),
+        ([0.0004, 0.0003], -1.0, false),
+        ([-0.0002, 0.0003], 1.0, false),
+        ([0.0004, -0.0001], 1.0, true),
+        ([0.0004, -0.0001], -1.0, false),
+    ];
+    for ([depth, left], sense, is_past) in cases {
         let mut brushed = paths::to_circle(Relation::Past, 1).sequence;
         let stop = &mut brushed.stop.as_mut().unwrap().role;
         stop.surface.geometry = cylinder([2.0, 1.0 - depth, 0.0], [0.0, 0.0, 1.0], 1.0);
@@ -150,7 +156,7 @@ fn a_position_past_what_is_only_brushed_is_one() {
         let (near, at_end): (f64, f64) = (1.25 - depth, 1.25 + left);
         brushed.points[0].tip.x = 2.0 + sense * (at_end * at_end - near * near).sqrt();
         let wanted: &[Rule] = if is_past { &[] } else { &[Rule::StopEvent] };
-        assert_eq!(rules(&brushed), wanted, "{depth} {sense}");
+        assert_eq!(rules(&brushed), wanted, "{depth} {left} {sense}");
     }
 }
 
