@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Away, Body, Crease, HalfSpace, Surface},
+    surface::{Away, Body, Chart, Crease, HalfSpace, Surface},
 };
 
 use super::{Contact, Memory, Tool, search::MISSED};
@@ -26,6 +26,8 @@ const MOST_POSITIONS: u32 = 24;
 const CLOSE: f64 = 1e-12;
 /// Share of a distance by which a bound of it may be too low: what is far away need not be known well.
 const ROUGHLY: f64 = 1e-2;
+/// Length of the difference of two unit directions that is rounding: that of Newton's method at an edge.
+const SQUARE: f64 = 1e-5;
 /// Bound of the parts of a surface that one proof looks at.
 const MOST_LOOKS: u32 = 4_000;
 
@@ -175,17 +177,30 @@ impl Beside<'_> {
 
     /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.
     pub(super) fn clears(&self, contact: &Contact, level: f64) -> bool {
-        clears(self.surface, self.tool, [self.tip, self.tip], &contact.gradient, level)
+        let normal = square_to(self.surface, self.side, contact);
+        clears(self.surface, self.tool, [self.tip, self.tip], [&contact.gradient, &normal], level)
     }
 }
 
+/// The direction from the surface that a contact leads off it in: square to its tangent plane there, if it is that but for rounding. Along
+/// a plane wall the rounding of the gradient at its end would tell of places far from there.
+pub(super) fn square_to(surface: &Surface, side: f64, contact: &Contact) -> Vec3 {
+    let chart = surface.place(&contact.surface).and_then(|place| surface.chart(&place));
+    let normal = chart.and_then(|Chart { first: [du, dv], sense, .. }| {
+        Some(du.cross(&dv).try_normalize(0.0)? * (sense * side))
+    });
+    let is_that = |normal: &Vec3| (normal - contact.gradient).norm() <= SQUARE;
+    normal.filter(is_that).unwrap_or(contact.gradient)
+}
+
 /// Whether no place of a surface is nearer to a tool than a level, wherever that is on a straight way of its end; `away` leads it off
-/// the surface. One that may be deeper in is moved out by as much, and must then be clear.
+/// the surface. One that may be deeper in is moved out by as much, and must then be clear. A second direction is that of a plane between
+/// both, where there is one.
 pub(super) fn clears(
     surface: &Surface,
     tool: &Tool,
     [from, to]: [&Vec3; 2],
-    away: &Vec3,
+    [away, normal]: [&Vec3; 2],
     level: f64,
 ) -> bool {
     let start = from + away * (-level).max(0.0);
@@ -193,7 +208,7 @@ pub(super) fn clears(
     let close = CLOSE * (tool.reach() + way.norm());
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
-    let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-away)) };
+    let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
     surface.keeps_off_body(body, level.max(0.0), MOST_LOOKS).is_some()
 }
 

@@ -203,6 +203,14 @@ impl Gauge {
         let mut proof = self.memory.proof(tool, self.side, tip);
         let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref());
         self.memory.keep_proof(self.side, proof);
+        if found == Certificate::Undecided && surface.has_charts() {
+            // Parts of the surface may tell, from the contact.
+            let (contact, _) = offset_contact(tool, surface, self.side, tip, Some(&self.memory));
+            let beside = Beside { tool, surface, side: self.side, tip };
+            if beside.is_off_own_side(&contact) && beside.clears(&contact, level) {
+                return Certificate::Holds;
+            }
+        }
         found
     }
 
@@ -306,7 +314,9 @@ impl Gauge {
         level: f64,
     ) -> bool {
         let away = (first.gradient + last.gradient).try_normalize(0.0);
-        away.is_some_and(|away| crease::clears(self.met(tool), tool, [from, to], &away, level))
+        let surface = self.met(tool);
+        let normal = crease::square_to(surface, self.side, first);
+        away.is_some_and(|away| crease::clears(surface, tool, [from, to], [&away, &normal], level))
     }
 
     /// A bound from above of the clearance on the straight way of the tool end from one contact to another, where the tool does

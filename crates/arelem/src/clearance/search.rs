@@ -224,6 +224,11 @@ impl Search<'_> {
         let Some(touch) = self.touch_at_edge(&contact) else { return false };
         let Self { tool, surface, side, tip, .. } = *self;
         let beside = Beside { tool, surface, side, tip };
+        // A straight piece that lies along the surface as far as the edge touches it before that as well: that is where it is guided.
+        let is_beside = (touch.surface - contact.surface).norm() > ABOUT * tool.radius();
+        if is_beside && touch.clearance > self.best.value - slack {
+            return beside.clears(&contact, self.best.value - slack);
+        }
         if touch.clearance <= self.best.value + slack {
             self.best.take(self.best.piece, touch.clearance, || touch);
             return beside.clears(&touch, self.best.value - slack);

@@ -23,6 +23,7 @@ mod sheets;
 mod tangencies;
 mod turning;
 mod vertices;
+mod walls;
 mod worked;
 
 use apt_geometry::{

@@ -1,0 +1,150 @@
+//! Ruled walls along which the flank of the tool lies: flat ones, fans that end beside the tool, and walls whose rulings are nearly along
+//! it.
+
+use apt_geometry::canonical::{Remembering, RuledSurface};
+
+use Relation::{On, To};
+use Turn::Forward;
+
+use super::{ends::asked, *};
+use crate::{error::RoleName, verify::verify};
+
+/// The straight curve of a ruled surface between two points, in the plane square to a direction across it.
+fn straight(ends: [Vec3; 2], across: Vec3) -> Vec<Geometry> {
+    let surface = Geometry::Plane(Plane { normal: across, distance: across.dot(&ends[0]) });
+    vec![surface, Geometry::Point(ends[0]), Geometry::Point(ends[1]), Geometry::Vector(across)]
+}
+
+fn ruled(parts: Vec<Geometry>) -> Geometry {
+    Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
+}
+
+/// A fan of rulings in the plane y = 0, from a base below to an apex at x 5, z 3.
+fn fan() -> Geometry {
+    let mut parts = straight([v(0.0, 0.0, -4.0), v(10.0, 0.0, -4.0)], v(0.0, 1.0, 0.0));
+    parts.push(Geometry::Point(v(5.0, 0.0, 3.0)));
+    ruled(parts)
+}
+
+/// The outcome of a motion that is proven, with no more than so many questions whether to give up.
+fn proven(p: &Program, motion: &MotionCommand, most: u32) -> CutSequence {
+    let (execution, asks) = asked(p, motion, most);
+    let Some(Output::Sequence(sequence)) = execution.output else {
+        panic!("{:?} after {asks} questions", execution.failure);
+    };
+    let evidence = verify(&sequence, &|| false).expect("evidence");
+    assert!(evidence.verified, "{:?}", evidence.violations);
+    sequence
+}
+
+/// The last rulings of the fan's extension slant down from its apex on both sides, and the tool is higher than that. It is beside the end
+/// of the wall, which it touches below, and goes along it.
+#[test]
+fn a_tool_goes_along_a_fan_that_ends_beside_it() {
+    let fan = fan();
+    for (axis, numbers) in [
+        (Vec3::z(), [0.5, 0.0, 0.25, 0.0, 0.0, 0.0, 5.0]),
+        (v(0.3, 0.0, 1.0).normalize(), [0.5, 0.25, 0.0, 0.25, 0.0, 0.0, 6.0]),
+    ] {
+        let mut p = Program::new();
+        p.tolerance(0.0005, 0.0).cutter(&numbers);
+        p.run(&MotionCommand::From { position: v(1.0, 3.0, 0.5), axis: Some(axis), name: String::new() });
+        p.go(&[(To, &fan), (To, &ground()), (On, &x(1.0))]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
+        let sequence = proven(&p, &motion(Forward, &fan, &[(On, 1, &x(4.0))]), 2_000);
+        assert!(sequence.points.len() <= 2, "{} cut vectors about {axis}", sequence.points.len());
+    }
+}
+
+/// The tool lies along its way and is a little inside the wall. Its top comes to the end of that first, where nothing holds it any more: it
+/// is told at once, and vectors do not creep there.
+#[test]
+fn the_end_of_a_wall_that_a_tool_lies_along_is_told_soon() {
+    let up = v(0.0, 0.0, 5.0);
+    let lines = [v(0.0, 0.0, 0.0), v(10.0, 0.0, 0.0)];
+    let mut parts = straight(lines, Vec3::y());
+    parts.extend(straight(lines.map(|end| end + up), Vec3::y()));
+    let wall = ruled(parts);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[0.5, 0.0, 0.25, 0.0, 0.0, 0.0, 5.0]);
+    p.run(&MotionCommand::From {
+        position: v(30.0, 3.0, 2.0),
+        axis: Some(v(1.0, 0.0, 0.00002).normalize()),
+        name: String::new(),
+    });
+    p.go(&[(To, &wall), (To, &ground()), (On, &x(30.0))]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
+    let (execution, asks) = asked(&p, &motion(Turn::Up, &wall, &[(On, 1, &x(900.0))]), 3_000);
+    let failure = execution.failure.expect("no way there");
+    assert!(
+        matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Drive, .. }),
+        "{failure:?} {asks}"
+    );
+}
+
+/// Contact goes along all of the flank within a vector, because the surface bends hardly along it: what is shown of it patch by patch is
+/// shown by how little that is.
+#[test]
+fn contact_that_sweeps_a_flank_along_nearly_straight_lines_is_proven() {
+    let arc = |point: Vec3, radius: f64, ends: [Vec3; 2]| {
+        let axis = v(-0.9239060297164301, -0.28801009575677516, -0.2518885328787243);
+        let across = v(-0.16702012913878134, -0.288715591076561, 0.9427341003335866);
+        vec![
+            Geometry::Circle(Cylinder { point, axis, radius }),
+            Geometry::Point(ends[0]),
+            Geometry::Point(ends[1]),
+            Geometry::Vector(across),
+        ]
+    };
+    let mut parts = arc(
+        v(7.152296817778105, 2.2133096877346192, -2.7315307090399905),
+        6.080062123023011,
+        [
+            v(10.536195637044345, -1.8969587185564871, 1.466335156972502),
+            v(7.782266955718407, 5.407586681503332, 3.2154758936301695),
+        ],
+    );
+    parts.extend(arc(
+        v(7.395776147614049, 2.63419475704323, -4.1058337235705595),
+        7.24172993298739,
+        [
+            v(4.992759458745764, -3.6250192930971377, -0.0449960402998435),
+            v(2.2388307774198264, 3.6795261069626815, 1.7041446963578242),
+        ],
+    ));
+    let wall = ruled(parts);
+    let part = plane(-0.9999532027566644, -0.009674311173886362, 0.0, -1.8526194453435183);
+    let first = plane(0.009638276591321769, -0.9962286072171889, -0.08623030665867595, -0.8748807644363729);
+    let mut p = Program::new();
+    p.tolerance(2e-5, 3e-5).cutter(&[0.7053850067844152, 0.3526925033922076]);
+    let axis = Some(v(0.9167257185372315, 0.27111840678619786, 0.29344295267412773));
+    let position = v(2.3346202728151764, 0.7297554635516785, 0.6942745124516664);
+    p.run(&MotionCommand::From { position, axis, name: String::new() });
+    p.go(&[(To, &wall), (To, &part), (On, &first)]).side(DriveSide::Right);
+    p.indirv(-0.009638276591321802, 0.9962286072171889, 0.0862303066586759);
+    let check = plane(0.009638276591321769, -0.9962286072171889, -0.08623030665867595, -0.98);
+    let sequence = proven(&p, &motion(Forward, &wall, &[(On, 1, &check)]), 6_000);
+    assert!(sequence.points.len() <= 12, "{} cut vectors", sequence.points.len());
+}
+
+/// A tool that goes along its axis rubs along a bulging wall at one place of that, at the limit of the band all the way: shorter and shorter
+/// stretches of the vector would show nothing.
+#[test]
+fn a_flank_that_rubs_along_a_wall_takes_few_clearances() {
+    let arc = |z: f64| {
+        let geometry = Geometry::Circle(Cylinder { point: v(0.0, -3.0, z), axis: Vec3::z(), radius: 3.0 });
+        vec![
+            geometry,
+            Geometry::Point(v(-2.0, -3.0 + 5f64.sqrt(), z)),
+            Geometry::Point(v(2.0, -3.0 + 5f64.sqrt(), z)),
+            Geometry::Vector(Vec3::y()),
+        ]
+    };
+    let mut parts = arc(-1.0);
+    parts.extend(arc(3.0));
+    let wall = ruled(parts);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[0.5, 0.0, 0.25, 0.0, 0.0, 0.0, 6.0]);
+    p.run(&MotionCommand::From { position: v(-5.0, 3.0, 2.0), axis: Some(Vec3::x()), name: String::new() });
+    p.go(&[(To, &wall), (To, &ground()), (On, &x(-5.0))]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
+    let sequence = proven(&p, &motion(Turn::Up, &wall, &[(On, 1, &x(-1.0))]), 2_000);
+    assert!(sequence.points.len() <= 2, "{} cut vectors", sequence.points.len());
+}
