@@ -34,6 +34,7 @@ mod survey;
 mod tool;
 mod trough;
 mod vertex;
+mod weighed;
 
 #[cfg(test)]
 pub(crate) mod tests;

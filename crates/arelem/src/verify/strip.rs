@@ -11,6 +11,7 @@ use apt_geometry::Vec3;
 use super::{
     patch::{Net, Patch, halves_across, halves_along, jet},
     tool::Tool,
+    weighed::lower_bound,
 };
 
 /// Cells that one search may look at; what is left then goes into the gap.
@@ -97,6 +98,7 @@ pub(super) fn tangent(c: &Cubic, t: f64) -> Vec3 {
 struct Search<'a> {
     tip: Vec3,
     tool: &'a Tool<'a>,
+    resolution: f64,
     sure: f64,
     best: Option<Touch>,
 }
@@ -114,23 +116,23 @@ impl Search<'_> {
     /// The least height of a patch over the half-space with an outward normal that holds the tool, and how much the height
     /// varies along and across.
     fn bound(&self, net: &Net, outward: &Vec3) -> (f64, [f64; 2]) {
-        let base = outward.dot(&self.tip) + self.tool.support(outward).0;
-        let heights = net.map(|row| row.map(|p| outward.dot(&p) - base));
         let mut lower = f64::INFINITY;
         let mut spread = [0.0f64; 2];
-        for row in &heights {
-            let (low, high) =
-                row.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        let (mut lowest, mut highest) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+        for row in net {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (i, place) in row.iter().enumerate() {
+                let height = outward.dot(place);
+                (low, high) = (low.min(height), high.max(height));
+                (lowest[i], highest[i]) = (lowest[i].min(height), highest[i].max(height));
+            }
             lower = lower.min(low);
             spread[0] = spread[0].max(high - low);
         }
-        for i in 0..4 {
-            let column = heights.map(|row| row[i]);
-            let (low, high) =
-                column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        for (low, high) in lowest.into_iter().zip(highest) {
             spread[1] = spread[1].max(high - low);
         }
-        (lower, spread)
+        (lower - outward.dot(&self.tip) - self.tool.support(outward).0, spread)
     }
 
     fn cell(&mut self, net: Net, piece: usize, along: [f64; 2], across: [f64; 2]) -> Cell {
@@ -169,6 +171,12 @@ impl Search<'_> {
                 let level = if level.dot(&outward) < 0.0 { -level } else { level };
                 lower = lower.max(self.bound(&net, &level).0);
             }
+            // Beside an edge of the tool, or in its middle, several of its faces are as near.
+            let enough = self.best.map_or(f64::INFINITY, |b| b.value.min(value) - self.resolution);
+            if lower < enough {
+                let about = (&self.tip, self.tool);
+                lower = lower.max(lower_bound(&net, [&x, &run, &rise], about, enough));
+            }
         }
         if self.best.is_none_or(|b| value < b.value) {
             let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
@@ -182,16 +190,16 @@ impl Search<'_> {
     }
 
     /// Halves cells, always the one that may hold the nearest place, until none could hold a place nearer than the best by more than
-    /// `resolution`, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
+    /// the resolution, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
     fn close_in(
         &mut self,
         open: &mut BinaryHeap<Cell>,
-        [resolution, deep]: [f64; 2],
+        deep: f64,
         budget: &mut usize,
     ) -> Option<()> {
         while let Some(cell) = open.peek() {
             let best = self.best.map_or(f64::INFINITY, |b| b.value);
-            if best < -deep || cell.lower >= best - resolution {
+            if best < -deep || cell.lower >= best - self.resolution {
                 open.clear();
                 break;
             }
@@ -234,8 +242,8 @@ pub(super) fn nearest(
     resolution: f64,
     deep: f64,
 ) -> Option<Touch> {
-    let mut search =
-        Search { tip: *tip, tool, sure: SURE_DIRECTION * tool.profile.reach() + resolution, best: None };
+    let sure = SURE_DIRECTION * tool.profile.reach() + resolution;
+    let mut search = Search { tip: *tip, tool, resolution, sure, best: None };
     let middle = tip + tool.axis * (0.5 * tool.profile.reach());
     let first = patches
         .iter()
@@ -247,7 +255,7 @@ pub(super) fn nearest(
     let mut budget = CELL_BUDGET;
     let mut open = BinaryHeap::with_capacity(32);
     open.push(search.whole(patches.get(first)?, first));
-    search.close_in(&mut open, [resolution, deep], &mut budget)?;
+    search.close_in(&mut open, deep, &mut budget)?;
     let found = search.best?;
     let base = found.outward.dot(tip) + tool.support(&found.outward).0;
     for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
@@ -259,7 +267,7 @@ pub(super) fn nearest(
             open.push(cell);
         }
     }
-    search.close_in(&mut open, [resolution, deep], &mut budget)?;
+    search.close_in(&mut open, deep, &mut budget)?;
     let mut touch = search.best?;
     let lowest = open.peek().map_or(f64::INFINITY, |cell| cell.lower);
     touch.gap = resolution.max(touch.value - lowest);

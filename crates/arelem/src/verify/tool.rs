@@ -240,6 +240,14 @@ impl Profile {
         true
     }
 
+    /// Directions, of any length, of the outward normals of the straight parts, and of the corner arc at a place across from it, which
+    /// may be beyond the axis.
+    fn faces_at(&self, p: Meridian) -> [Option<Meridian>; 3] {
+        let [lower, upper] = self.lines().map(|(a, b)| Some([b[1] - a[1], a[0] - b[0]]));
+        let from = sub(p, self.center);
+        [lower, upper, self.fan_holds(from).then_some(from)]
+    }
+
     /// Whether the body holds the whole ball of the corner: lines that cut its circle leave some of it outside.
     pub(super) fn holds_corner(&self) -> bool {
         let slack = TANGENCY_SLACK * self.radius;
@@ -438,6 +446,16 @@ impl<'a> Tool<'a> {
         let round = self.knots().map(|q| sub(p, q));
         let ends = [[0.0, 1.0], [0.0, -1.0]];
         self.directions(straight.into_iter().chain(round).chain(ends), out)
+    }
+
+    /// The outward normals of the body's faces before and behind a point (from the tool end), seen from the axis, and of its top: those
+    /// of straight parts, and of the corner arc where the point is across from it.
+    pub(super) fn faces_about(&self, w: &Vec3) -> impl Iterator<Item = Vec3> {
+        let ([rho, height], out) = self.split(w);
+        let before = self.profile.faces_at([rho, height]);
+        let behind = self.profile.faces_at([-rho, height]).map(|face| face.map(|m| [-m[0], m[1]]));
+        let all = before.into_iter().chain(behind).flatten();
+        self.directions(all.chain([[0.0, 1.0]]), out)
     }
 
     /// Unit directions from a point (from the tool end) among which is each to a place of the body that is farther than those
