@@ -191,12 +191,7 @@ impl Search<'_> {
 
     /// Halves cells, always the one that may hold the nearest place, until none could hold a place nearer than the best by more than
     /// the resolution, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
-    fn close_in(
-        &mut self,
-        open: &mut BinaryHeap<Cell>,
-        deep: f64,
-        budget: &mut usize,
-    ) -> Option<()> {
+    fn close_in(&mut self, open: &mut BinaryHeap<Cell>, deep: f64, budget: &mut usize) -> Option<()> {
         while let Some(cell) = open.peek() {
             let best = self.best.map_or(f64::INFINITY, |b| b.value);
             if best < -deep || cell.lower >= best - self.resolution {

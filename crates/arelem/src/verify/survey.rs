@@ -39,6 +39,10 @@ const PART_RADII: f64 = 2.0;
 /// Margin of a survey: in radii of the tool, and for a tool without body relative to the surface.
 const MARGIN_RADII: f64 = 1.0;
 const POINT_MARGIN: f64 = 0.05;
+/// Distance from which on no survey is made, in radii of the tool, and for a tool without body relative to the surface: so far away very
+/// much is about as near, and a search for the one place that is nearest looks at less.
+const FAR_RADII: f64 = 32.0;
+const POINT_FAR: f64 = 1.0;
 /// Halvings of an edge that tell whether it is near.
 const EDGE_HALVINGS: u32 = 6;
 /// Halvings for one reading of the part that the contact is on, and product of its size and curvature below which none helps.
@@ -216,7 +220,7 @@ impl Sheet {
         least.is_finite().then_some(least)
     }
 
-    /// What is near the tool, from before or seen now.
+    /// What is near the tool, from before or seen now; nothing where the tool is far from the surface.
     fn take(&self, slot: usize, tip: &Vec3, tool: &Tool<'_>, size: f64) -> Option<Near> {
         let known = self.near.borrow_mut()[slot].take().filter(|near| near.profile == *tool.profile);
         let moved = known.as_ref().map_or(f64::INFINITY, |near| near.moved(tip, tool));
@@ -229,7 +233,11 @@ impl Sheet {
             other => other,
         };
         let widest = tool.profile.widest();
-        let margin = if widest > 0.0 { MARGIN_RADII * widest } else { POINT_MARGIN * size };
+        let [margin, far] = if widest > 0.0 {
+            [MARGIN_RADII * widest, FAR_RADII * widest]
+        } else {
+            [POINT_MARGIN * size, POINT_FAR * size]
+        };
         // The contact of before is a bound for now, unless the tool went far.
         let before = known.filter(|near| moved <= 4.0 * near.margin).and_then(|near| {
             let (k, at) = near.last?;
@@ -239,6 +247,9 @@ impl Sheet {
             Some(place) => tool.signed_distance(&(place - tip)).0,
             None => self.upper(tip, tool)?,
         };
+        if upper > far {
+            return None;
+        }
         let bound = upper.max(0.0) + 2.0 * margin;
         let (parts, stretch) = self.survey(tip, tool, bound, size);
         let last = before.and_then(|place| {
