@@ -154,35 +154,52 @@ impl Search<'_> {
                     }
                 }
             }
-            // At a sharp edge of the tool the nearest place says little about the places beside it, but the half-space
-            // along the surface does.
-            for level in [normal, -normal] {
-                lower = lower.max(self.bound(&net, &level).0);
-            }
-            // Along a straight flank, or a tool that is a line, the surface says which of its normals is across it.
-            let towards = if normal.dot(&outward) < 0.0 { -normal } else { normal };
-            if let Some(level) = self.tool.turned_to(&outward, &towards) {
-                lower = lower.max(self.bound(&net, &level).0);
-            }
-            // Beside the contact on an edge the surface turns along the edge: of its normals the part that the tool, a body
-            // of revolution, can have where it is nearest.
-            let level = self.tool.without_azimuth(&(x - self.tip), &normal);
-            if let Some(level) = level {
-                let level = if level.dot(&outward) < 0.0 { -level } else { level };
-                lower = lower.max(self.bound(&net, &level).0);
-            }
-            // Beside an edge of the tool, or in its middle, several of its faces are as near.
-            let enough = self.best.map_or(f64::INFINITY, |b| b.value.min(value) - self.resolution);
-            if lower < enough {
-                let about = (&self.tip, self.tool);
-                lower = lower.max(lower_bound(&net, [&x, &run, &rise], about, enough));
-            }
+            let enough = self.best.map_or(value, |b| b.value.min(value)) - self.resolution;
+            lower = self.closer((&net, [&x, &run, &rise]), [&outward, &normal], lower, enough);
         }
         if self.best.is_none_or(|b| value < b.value) {
             let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
             self.best = Some(Touch { value, gap: 0.0, outward, point: x, piece, along, across });
         }
         Cell { net, piece, along, across, lower, halve_along: spread[0] >= spread[1] }
+    }
+
+    /// A closer bound of a cell's distance than that by the half-space with an outward normal where its middle is nearest; its
+    /// middle, the derivatives there and its normal are given. A bound of `enough` need not be made closer.
+    fn closer(
+        &self,
+        (net, jet): (&Net, [&Vec3; 3]),
+        [outward, normal]: [&Vec3; 2],
+        mut lower: f64,
+        enough: f64,
+    ) -> f64 {
+        // At a sharp edge of the tool the nearest place says little about the places beside it, but the half-space
+        // along the surface does.
+        let towards = if normal.dot(outward) < 0.0 { -normal } else { *normal };
+        for level in [towards, -towards] {
+            if lower < enough {
+                lower = lower.max(self.bound(net, &level).0);
+            }
+        }
+        // Along a straight flank, or a tool that is a line, the surface says which of its normals is across it.
+        if lower < enough
+            && let Some(level) = self.tool.turned_to(outward, &towards)
+        {
+            lower = lower.max(self.bound(net, &level).0);
+        }
+        // Beside the contact on an edge the surface turns along the edge: of its normals the part that the tool, a body
+        // of revolution, can have where it is nearest.
+        if lower < enough
+            && let Some(level) = self.tool.without_azimuth(&(jet[0] - self.tip), normal)
+        {
+            let level = if level.dot(outward) < 0.0 { -level } else { level };
+            lower = lower.max(self.bound(net, &level).0);
+        }
+        // Beside an edge of the tool, or in its middle, several of its faces are as near; of what is outside one says all.
+        if lower < enough.min(0.0) {
+            lower = lower.max(lower_bound(net, jet, (&self.tip, self.tool), enough));
+        }
+        lower
     }
 
     fn whole(&mut self, patch: &Patch, index: usize) -> Cell {
