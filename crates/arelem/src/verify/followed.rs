@@ -227,7 +227,7 @@ impl Following<'_> {
             let point = self.tool.with(&profile);
             let place = self.tip + contact.opposite;
             let accuracy = Accuracy { rounding: self.tolerance, error: 0.0 };
-            let (under, _) = self.sheet.at(side, &place, &point, self.size, accuracy)?;
+            let (under, _) = self.sheet.at(side, &place, &point, (self.size, true), accuracy)?;
             value = value.min(under.value + under.error);
         }
         if (value - contact.value).abs() > 2.0 * self.tolerance {

@@ -122,9 +122,14 @@ impl Ruled {
 
     /// The clearance by the contact of before, if it is shown.
     pub(super) fn followed(&self, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
+        self.shown(side, tip, tool, true)
+    }
+
+    /// The same, perhaps only by what shows it fast.
+    fn shown(&self, side: f64, tip: &Vec3, tool: &Tool<'_>, is_thorough: bool) -> Option<Reading> {
         let (size, error) = (self.size(), self.error());
         let rounding = rounding(self, tip, tool.profile.reach());
-        let (mut reading, off) = self.sheet()?.at(side, tip, tool, size, Accuracy { rounding, error })?;
+        let (mut reading, off) = self.sheet()?.at(side, tip, tool, (size, is_thorough), Accuracy { rounding, error })?;
         reading.error += off;
         Some(reading)
     }
@@ -251,7 +256,8 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
     if let Some(found) = beside(surface, side, tip, tool) {
         return Some(found);
     }
-    if let Some(found) = surface.followed(side, tip, tool) {
+    // The nearest place is found sooner than what takes long shows anything from a contact that was another.
+    if let Some(found) = surface.shown(side, tip, tool, false) {
         return Some(found);
     }
     let bodies = Bodies::of(surface, side, tool, tip);

@@ -172,13 +172,14 @@ impl Sheet {
         near.map(|(patch, range)| patch.stretch(range)).fold(0.0, f64::max)
     }
 
-    /// The clearance on a side where balls show it, and how far the parts near the tool may be off the surface.
+    /// The clearance on a side where balls show it, and how far the parts near the tool may be off the surface; by what takes long
+    /// only if it is asked for.
     pub(super) fn at(
         &self,
         side: f64,
         tip: &Vec3,
         tool: &Tool<'_>,
-        size: f64,
+        (size, is_thorough): (f64, bool),
         accuracy: Accuracy,
     ) -> Option<(Reading, f64)> {
         let slot = usize::from(tool.profile.is_point());
@@ -186,11 +187,12 @@ impl Sheet {
         let off = near.stretch * accuracy.error;
         let tolerance = accuracy.rounding.max(WARM_RESOLUTION_OF_ERROR * off);
         let asked = Asked { sheet: self, side, size, tolerance };
+        let mut found = near.shown(&asked, tip, tool, Manner { is_thorough: false, piece: None });
         // What takes long is tried where the rest does not show it.
-        let found = [false, true]
-            .into_iter()
-            .find_map(|is_thorough| near.shown(&asked, tip, tool, Manner { is_thorough, piece: None }));
-        let found = found.or_else(|| near.shown_in_pieces(&asked, tip, tool));
+        if is_thorough && found.is_none() {
+            found = near.shown(&asked, tip, tool, Manner { is_thorough, piece: None });
+            found = found.or_else(|| near.shown_in_pieces(&asked, tip, tool));
+        }
         self.near.borrow_mut()[slot] = Some(near);
         found.map(|reading| (reading, off))
     }
@@ -357,7 +359,7 @@ impl Near {
         // Over a hollow one of the ends is nearest.
         let end = Profile::tool_end();
         let accuracy = Accuracy { rounding: asked.tolerance, error: 0.0 };
-        let at_end = |place: Vec3| asked.sheet.at(asked.side, &place, &tool.with(&end), asked.size, accuracy);
+        let at_end = |place: Vec3| asked.sheet.at(asked.side, &place, &tool.with(&end), (asked.size, true), accuracy);
         let ends = [at_end(*tip)?.0, at_end(tip + tool.axis * length)?.0];
         let mut best = if ends[0].value <= ends[1].value { ends[0] } else { ends[1] };
         let mut least = ends.map(|end| end.value - end.error).into_iter().fold(f64::INFINITY, f64::min);
