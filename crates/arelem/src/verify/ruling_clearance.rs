@@ -41,8 +41,11 @@ const LEVEL: f64 = 1e-10;
 /// Depth, relative to the radius of the tool, up to which it is proven beyond what is meant; deeper is no question of
 /// tolerance.
 const PROVEN_DEPTH: f64 = 0.1;
-/// Translations tried in the proof of a depth, each four times longer.
+/// Translations tried in the proof of a depth, each so many times longer.
 const PROOF_STEPS: usize = 14;
+const FARTHER: f64 = 4.0;
+/// How far from an edge of the tool, in depths, the place is that is deepest there.
+const AT_EDGE: f64 = 8.0;
 /// Directions in which a tool without a body is led out, each normal to the place that held it in the last.
 const DIRECTIONS: usize = 6;
 /// The same for a depth that need not be the greatest yet.
@@ -129,7 +132,8 @@ impl Ruled {
     fn shown(&self, side: f64, tip: &Vec3, tool: &Tool<'_>, is_thorough: bool) -> Option<Reading> {
         let (size, error) = (self.size(), self.error());
         let rounding = rounding(self, tip, tool.profile.reach());
-        let (mut reading, off) = self.sheet()?.at(side, tip, tool, (size, is_thorough), Accuracy { rounding, error })?;
+        let (mut reading, off) =
+            self.sheet()?.at(side, tip, tool, (size, is_thorough), Accuracy { rounding, error })?;
         reading.error += off;
         Some(reading)
     }
@@ -347,6 +351,11 @@ impl<'a> Bodies<'a> {
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
         let shallow = touch.value <= 0.0 && deepest.0 <= self.deep;
+        // Under an edge the surface is less deep in the tool than the edge is under the surface.
+        let under_edge = shallow && self.is_at_edge(tip, touch);
+        if under_edge {
+            self.deepest_beside(tip, touch, &mut deepest)?;
+        }
         if shallow && let Some(error) = self.unproven(tip, &deepest, QUICK_PROOF_STEPS)? {
             return Some(depth_of(&deepest, error));
         }
@@ -361,13 +370,8 @@ impl<'a> Bodies<'a> {
         if deepest.0 > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
-        let contact = touch.point - tip;
-        let across = contact - self.tool.axis * self.tool.axis.dot(&contact);
-        if shallow && across.norm() > 0.0 {
-            let circle = Circle::of(tip, self.tool, across / across.norm());
-            for p in self.edges() {
-                self.deepest_near(&circle, p, [-0.5 * SECTOR, 0.5 * SECTOR], &mut deepest)?;
-            }
+        if shallow && !under_edge {
+            self.deepest_beside(tip, touch, &mut deepest)?;
             if let Some(error) = self.unproven(tip, &deepest, QUICK_PROOF_STEPS)? {
                 return Some(depth_of(&deepest, error));
             }
@@ -387,6 +391,30 @@ impl<'a> Bodies<'a> {
         }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
         Some(depth_of(&deepest, error))
+    }
+
+    /// Looks for deeper places of the tool's edges on the side of it where it is nearest.
+    fn deepest_beside(&self, tip: &Vec3, touch: &Touch, deepest: &mut (f64, Vec3)) -> Option<()> {
+        let Some(circle) = self.circle_beside(tip, touch) else { return Some(()) };
+        for p in self.edges() {
+            self.deepest_near(&circle, p, [-0.5 * SECTOR, 0.5 * SECTOR], deepest)?;
+        }
+        Some(())
+    }
+
+    /// Whether the place that is deepest in the tool is by an edge of it, as far as it is deep.
+    fn is_at_edge(&self, tip: &Vec3, touch: &Touch) -> bool {
+        let Some(circle) = self.circle_beside(tip, touch) else { return false };
+        let close = AT_EDGE * touch.value.abs();
+        self.tool.profile.edges().iter().any(|p| (circle.place(*p, 0.0) - touch.point).norm() <= close)
+    }
+
+    /// The edge circles, from the azimuth of the nearest place on; None where that is on the axis.
+    fn circle_beside(&self, tip: &Vec3, touch: &Touch) -> Option<Circle> {
+        let contact = touch.point - tip;
+        let across = contact - self.tool.axis * self.tool.axis.dot(&contact);
+        let size = across.norm();
+        (size > 0.0).then(|| Circle::of(tip, self.tool, across / size))
     }
 
     /// Places of the meridian that can be under the surface without the surface being as deep in the tool.
@@ -521,12 +549,17 @@ impl<'a> Bodies<'a> {
     /// the translations tried frees it.
     fn unproven(&self, tip: &Vec3, deepest: &(f64, Vec3), steps: usize) -> Option<Option<f64>> {
         let mut more = self.close();
+        let most = more * FARTHER.powi(steps.saturating_sub(1) as i32);
         for _ in 0..steps {
             let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
             if touch.value >= touch.gap && self.is_on_side(&touch)? {
                 return Some(Some(more));
             }
-            more *= 4.0;
+            // No place of the surface is left behind faster than the tool is moved.
+            more = (FARTHER * more).max(more + self.resolution - touch.value);
+            if more > most {
+                break;
+            }
         }
         Some(None)
     }

@@ -359,7 +359,8 @@ impl Near {
         // Over a hollow one of the ends is nearest.
         let end = Profile::tool_end();
         let accuracy = Accuracy { rounding: asked.tolerance, error: 0.0 };
-        let at_end = |place: Vec3| asked.sheet.at(asked.side, &place, &tool.with(&end), (asked.size, true), accuracy);
+        let at_end =
+            |place: Vec3| asked.sheet.at(asked.side, &place, &tool.with(&end), (asked.size, true), accuracy);
         let ends = [at_end(*tip)?.0, at_end(tip + tool.axis * length)?.0];
         let mut best = if ends[0].value <= ends[1].value { ends[0] } else { ends[1] };
         let mut least = ends.map(|end| end.value - end.error).into_iter().fold(f64::INFINITY, f64::min);
