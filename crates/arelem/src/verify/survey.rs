@@ -39,6 +39,8 @@ const PART_RADII: f64 = 2.0;
 /// Margin of a survey: in radii of the tool, and for a tool without body relative to the surface.
 const MARGIN_RADII: f64 = 1.0;
 const POINT_MARGIN: f64 = 0.05;
+/// Share of it where the tool was not seen near before: that may be for one reading alone.
+const FIRST_MARGIN: f64 = 0.125;
 /// Distance from which on no survey is made, in radii of the tool, and for a tool without body relative to the surface: so far away very
 /// much is about as near, and a search for the one place that is nearest looks at less.
 const FAR_RADII: f64 = 32.0;
@@ -235,13 +237,15 @@ impl Sheet {
             other => other,
         };
         let widest = tool.profile.widest();
-        let [margin, far] = if widest > 0.0 {
+        let [wide, far] = if widest > 0.0 {
             [MARGIN_RADII * widest, FAR_RADII * widest]
         } else {
             [POINT_MARGIN * size, POINT_FAR * size]
         };
+        let known = known.filter(|_| moved <= 4.0 * wide);
+        let margin = if known.is_some() { wide } else { FIRST_MARGIN * wide };
         // The contact of before is a bound for now, unless the tool went far.
-        let before = known.filter(|near| moved <= 4.0 * near.margin).and_then(|near| {
+        let before = known.and_then(|near| {
             let (k, at) = near.last?;
             Some(jet(&near.parts.get(k)?.net, at.map(|x| x.clamp(0.0, 1.0)))[0])
         });
