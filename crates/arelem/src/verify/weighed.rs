@@ -78,3 +78,93 @@ pub(super) fn lower_bound(
     }
     lower
 }
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::cutter::Cutter;
+    use proptest::prelude::*;
+
+    use super::{
+        super::{patch::jet, tool::Profile},
+        *,
+    };
+
+    /// Radius and height of the tool.
+    const RADIUS: f64 = 0.25;
+    const HEIGHT: f64 = 2.0;
+
+    fn tool_profile(corner_radius: f64, [alpha, beta]: [f64; 2]) -> Profile {
+        let cutter = Cutter {
+            diameter: 2.0 * RADIUS,
+            corner_radius,
+            corner_offset: RADIUS - corner_radius,
+            corner_height: corner_radius,
+            alpha,
+            beta,
+            height: HEIGHT,
+        };
+        Profile::of(&cutter).unwrap()
+    }
+
+    /// A patch about a place, with a direction along it and one across.
+    fn net_about(place: &Vec3, along: &Vec3, across: &Vec3, bumps: &[f64]) -> Net {
+        std::array::from_fn(|j| {
+            std::array::from_fn(|i| {
+                let [u, v] = [i, j].map(|k| k as f64 / 3.0 - 0.5);
+                place + along * u + across * v + along.cross(across) * bumps[4 * j + i]
+            })
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+
+        #[test]
+        fn no_place_of_the_patch_is_nearer(
+            kind in 0..4usize,
+            place in [-0.4..0.4f64, -0.4..0.4f64, -0.3..2.3f64],
+            along in [-0.5..0.5f64, -0.5..0.5f64, -0.5..0.5f64],
+            across in [-0.5..0.5f64, -0.5..0.5f64, -0.5..0.5f64],
+            bumps in proptest::collection::vec(-0.1..0.1f64, 16),
+            size in 0.001..1.0f64,
+        ) {
+            let profile = match kind {
+                0 => tool_profile(0.0, [0.0; 2]),
+                1 => tool_profile(0.0, [0.3, 0.2]),
+                2 => tool_profile(0.1, [0.0; 2]),
+                _ => tool_profile(0.25, [0.0; 2]),
+            };
+            let tool = Tool::new(&profile, Vec3::z());
+            let tip = Vec3::new(0.03, -0.02, 0.01);
+            let [place, along, across] = [place, along, across].map(Vec3::from);
+            let net = net_about(&place, &(along * size), &(across * size), &bumps);
+            let [middle, run, rise] = jet(&net, [0.5; 2]);
+            let lower = lower_bound(&net, [&middle, &run, &rise], (&tip, &tool), f64::INFINITY);
+            for j in 0..=8 {
+                for i in 0..=8 {
+                    let [u, v] = [i, j].map(|k| f64::from(k) / 8.0);
+                    let (distance, _) = tool.signed_distance(&(jet(&net, [u, v])[0] - tip));
+                    prop_assert!(distance >= lower - 1e-12, "{distance} under {lower} at {u} {v}");
+                }
+            }
+        }
+
+        /// Across an edge, with neither face along it, the bound is as close as the patch is flat.
+        #[test]
+        fn a_plane_patch_over_an_edge_is_bounded_closely(
+            depth in 1e-6..1e-2f64, lean in 0.2..1.3f64, azimuth in 0.0..6.2f64, size in 1e-4..0.1f64,
+        ) {
+            let profile = tool_profile(0.0, [0.0; 2]);
+            let tool = Tool::new(&profile, Vec3::z());
+            let (s, c) = azimuth.sin_cos();
+            let (out, round) = (Vec3::new(c, s, 0.0), Vec3::new(-s, c, 0.0));
+            let across = out * lean.cos() + Vec3::z() * lean.sin();
+            // As deep under the flank as over the bottom.
+            let place = out * (RADIUS - depth) + Vec3::z() * depth;
+            let net = net_about(&place, &(round * size), &(across * size), &[0.0; 16]);
+            let [middle, run, rise] = jet(&net, [0.5; 2]);
+            let lower = lower_bound(&net, [&middle, &run, &rise], (&Vec3::zeros(), &tool), f64::INFINITY);
+            prop_assert!((lower + depth).abs() < 1e-12, "{lower} of {depth}");
+        }
+    }
+}

@@ -139,3 +139,26 @@ fn a_ball_too_deep_in_both_walls_of_a_groove_is_as_deep_as_in_the_deeper() {
         assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
     }
 }
+
+/// Beside an edge of the tool that is a little under the surface, places are as near to one face as to the other.
+#[test]
+fn an_edge_under_a_surface_is_measured_in_few_looks() {
+    let surface = Surface::of(&roof()).unwrap();
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    for numbers in [&[0.5, 0.0][..], &[0.5, 0.0, 0.25, 0.0, 0.0, 7.0, 4.0]] {
+        let profile = Profile::of(&cutter(numbers)).unwrap();
+        for lean in [0.1, 0.3, 0.6] {
+            let mut tool = Tool::new(&profile, Vec3::new(0.3 * lean, lean, 1.0).normalize());
+            tool.depth = ALLOWED;
+            let mut tip = Vec3::new(-0.6, 0.4, 5.0);
+            for _ in 0..60 {
+                tip.z -= searched(ruled, 1.0, &tip, &tool).unwrap().value;
+            }
+            for depth in [8e-4, 1e-6] {
+                let found = searched_in_few(&surface, 1.0, &(tip - Vec3::z() * depth), &tool);
+                assert!(found.value < -0.5 * depth && found.value > -depth - 1e-7, "{depth}: {found:?}");
+                assert!(found.error < 1e-6, "{numbers:?} {lean} {depth}: {found:?}");
+            }
+        }
+    }
+}
