@@ -209,13 +209,14 @@ impl Sheet {
         near.last.is_some()
     }
 
-    /// A bound from above of the distance: that of a place about as near as any, where tool and surface lead in turns.
+    /// A bound from above of the distance: that of a place about as near as any, where tool and surface lead in turns, from patch to
+    /// patch.
     fn upper(&self, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
         let mut from = tip + tool.axis * (0.5 * tool.profile.top_height());
-        let apart = |patch: &Patch| patch.remoteness(&from);
-        let patch = self.patches.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
         let mut least = f64::INFINITY;
         for _ in 0..APPROACHES {
+            let remote = self.patches.iter().map(|patch| (patch.remoteness(&from), patch));
+            let (_, patch) = remote.min_by(|a, b| a.0.total_cmp(&b.0))?;
             let place = near(&patch.net, &from).1;
             let (distance, beside) = tool.signed_distance(&(place - tip));
             least = least.min(distance);
