@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use super::tool::{Patience, Tool, TurningSupport};
 
 /// Arcs of directions looked at for one distance; what is left then is the gap.
-const ARCS: usize = 48;
+const ARCS: usize = 96;
 /// Steps of Newton's method towards the best direction, and the greatest of them, radians.
 const STEPS: usize = 6;
 const LARGEST_TURN: f64 = 1.0;
