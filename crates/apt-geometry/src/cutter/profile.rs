@@ -197,6 +197,14 @@ impl Profile {
         if self.arc > 0.0 && rho - self.arc > best.0 && self.is_in_fan(x, z) {
             best = (rho - self.arc, [x / rho, z / rho]);
         }
+        // Off a corner it is farther out along the way from that than beyond either piece; a way that rounding turns leaves less.
+        if distance > 0.0 && length > 0.0 {
+            let way = away.map(|x| x / length);
+            let beyond = way[0] * radius + way[1] * height - self.support(way[0].abs(), way[1]).0;
+            if beyond > best.0 {
+                best = (beyond, way);
+            }
+        }
         (distance, best.1)
     }
 
@@ -272,6 +280,20 @@ mod tests {
             let norm = f64::hypot(1.0, slope);
             let height = profile.support(slope / norm, -1.0 / norm).0 * norm;
             near(height, expected);
+        }
+    }
+
+    /// A body that passes a place with its corner, as near as rounding hardly tells, would else seem to be as deep as it is beyond the
+    /// corner's pieces.
+    #[test]
+    fn just_off_a_corner_the_distance_grows_away_from_it() {
+        let profile = cutter(&[1.0, 0.125, 0.375, 0.125, 0.0, 0.0, 2.0]).profile();
+        let ProfilePoint { radius, height } = profile.top;
+        let (distance, [wide, high]) = profile.outward(radius + 3e-8, height + 4e-8);
+        assert!((distance - 5e-8).abs() < 1e-14, "{distance}");
+        assert!((wide - 0.6).abs() < 1e-6 && (high - 0.8).abs() < 1e-6, "{wide} {high}");
+        for (beside, square) in [([radius + 5e-8, 1.0], [1.0, 0.0]), ([0.2, height + 5e-8], [0.0, 1.0])] {
+            assert_eq!(profile.outward(beside[0], beside[1]).1, square);
         }
     }
 
