@@ -47,7 +47,8 @@ impl Course {
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
         let is_bounded = deepest * (least + across) < 1.0;
-        is_bounded.then(|| Self { bend: most, straight: Some(Straight { along, spared: most - least }) })
+        let straight = Some(Straight { along, spared: most - least });
+        is_bounded.then_some(Self { bend: most, straight })
     }
 
     /// How long a piece along the straight direction is beside one across, for how the distance bends.

@@ -109,22 +109,34 @@ pub(super) fn contact(
     (contact, missed)
 }
 
-/// The contact that the search finds everywhere; nothing is proven of it.
+/// The contact that the search finds everywhere; nothing is proven of it. At an edge of the surface it is exactly there.
 pub(super) fn found(tool: &Tool, face: Face<'_>, tip: &Vec3) -> Contact {
     let Face { surface, side } = face;
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };
     search.scan();
-    let Some(contact) = search.best.contact else { return at_end(face, tip) };
-    // Next to an edge the contact is exactly there, or the tool would go by it.
-    let touch = search.touch_at_edge(&contact);
-    touch.filter(|touch| touch.clearance <= contact.clearance).unwrap_or(contact)
+    if let Some(touch) = search.touch_of_crease() {
+        search.takes_crease(touch, MISSED * (tool.radius() + tool.profile.top.height));
+    }
+    search.best.contact.unwrap_or_else(|| at_end(face, tip))
 }
 
 /// The contact of the tool end.
 fn at_end(Face { surface, side }: Face<'_>, tip: &Vec3) -> Contact {
     let foot = surface.foot(tip);
     Contact { clearance: side * foot.distance, gradient: foot.normal * side, tool: *tip, surface: foot.point }
+}
+
+/// How an edge of the surface is the contact.
+enum Taken {
+    /// It is not.
+    Not,
+    /// The tool touches it, but the surface elsewhere as well.
+    AsOneOfTwo,
+    /// No other place that was found is nearer.
+    AsNearest,
+    /// The tool comes out past the end there, which is shown.
+    AsFreed,
 }
 
 /// What is proven of a contact.
@@ -220,41 +232,58 @@ impl Search<'_> {
     /// Whether the contact is at an edge of the surface, no place of which is nearer to the tool by more than a slack; the contact is
     /// then exactly there.
     fn is_on_crease(&mut self, slack: f64) -> bool {
-        let Some(contact) = self.best.contact else { return false };
-        let Some(touch) = self.touch_at_edge(&contact) else { return false };
+        let Some(touch) = self.touch_of_crease() else { return false };
+        match self.takes_crease(touch, slack) {
+            Taken::AsNearest => self.beside().clears(&touch, self.best.value - slack),
+            Taken::AsOneOfTwo => {
+                let level = self.best.value - slack;
+                self.best.contact.is_some_and(|contact| self.beside().clears(&contact, level))
+            }
+            Taken::AsFreed => true,
+            Taken::Not => false,
+        }
+    }
+
+    /// The tool beside the surface.
+    fn beside(&self) -> Beside<'_> {
         let Self { tool, surface, side, tip, .. } = *self;
-        let beside = Beside { tool, surface, side, tip };
+        Beside { tool, surface, side, tip }
+    }
+
+    /// Where an edge of the surface next to the contact touches the tool.
+    fn touch_of_crease(&self) -> Option<Contact> {
+        let (contact, beside) = (self.best.contact?, self.beside());
+        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
+        // points have valleys on both sides of it.
+        if self.best.value < ABOUT * self.tool.radius() {
+            beside.nearest_beside(&contact.surface)
+        } else {
+            beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
+        }
+    }
+
+    /// Takes where an edge touches the tool for the contact, if it is.
+    fn takes_crease(&mut self, touch: Contact, slack: f64) -> Taken {
         // A straight piece that lies along the surface as far as the edge touches it before that as well: that is where it is guided.
-        let is_beside = (touch.surface - contact.surface).norm() > ABOUT * tool.radius();
-        if is_beside && touch.clearance > self.best.value - slack {
-            return beside.clears(&contact, self.best.value - slack);
+        let away = self.best.contact.map_or(0.0, |contact| (touch.surface - contact.surface).norm());
+        if away > ABOUT * self.tool.radius() && (touch.clearance - self.best.value).abs() <= slack {
+            return Taken::AsOneOfTwo;
         }
         if touch.clearance <= self.best.value + slack {
             self.best.take(self.best.piece, touch.clearance, || touch);
-            return beside.clears(&touch, self.best.value - slack);
+            return Taken::AsNearest;
         }
+        let beside = self.beside();
         // What of the tool is behind the surface by more comes out past the end by less.
         let is_freed = touch.clearance < 0.0
-            && surface.edge_at(&touch.surface).is_some()
+            && self.surface.edge_at(&touch.surface).is_some()
             && beside.is_off_own_side(&touch)
             && beside.clears(&touch, touch.clearance - slack);
-        if is_freed {
-            self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
+        if !is_freed {
+            return Taken::Not;
         }
-        is_freed
-    }
-
-    /// The contact with an edge of the surface by a contact.
-    fn touch_at_edge(&self, contact: &Contact) -> Option<Contact> {
-        let Self { tool, surface, side, tip, .. } = *self;
-        let beside = Beside { tool, surface, side, tip };
-        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
-        // points have valleys on both sides of it.
-        if contact.clearance < ABOUT * tool.radius() {
-            return beside.nearest_beside(&contact.surface);
-        }
-        let spot = beside.spot(&contact.surface)?;
-        Some(beside.touch(&spot)?.1)
+        self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
+        Taken::AsFreed
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.

@@ -86,6 +86,34 @@ fn what_of_a_tool_is_beyond_the_end_of_a_surface_is_not_behind_it() {
     }
 }
 
+/// A look ahead goes by contacts without a proof. With a tool a little in the surface they were those of points of the tool with the
+/// surface, and no position was found past the end.
+#[test]
+fn contact_with_the_end_of_a_surface_is_found_without_a_proof() {
+    let tool = Tool::new(Cutter::from_numbers(&BALL, 1.0).expect("a cutter"), leaning());
+    for (side, tip) in [(1.0, v(-1.2446, -0.2798, 0.5313)), (-1.0, v(-2.0505, 0.5949, 0.3723))] {
+        let role = Role {
+            surface: named(&shell()),
+            relation: Relation::To,
+            side,
+            inside_tolerance: 1.0,
+            outside_tolerance: 1.0,
+            thickness: 0.0,
+            disk: None,
+        };
+        let at_first = gauge(&role).contact(&tool, &tip);
+        for clearance in [1e-3, 0.0, -5e-4, -5e-3] {
+            let tip = tip + at_first.gradient * (clearance - at_first.clearance);
+            let proven = gauge(&role).contact(&tool, &tip);
+            let passing = gauge(&role).contact_passing(&tool, &tip);
+            let [found, shown] = [&passing, &proven].map(|contact| contact.clearance);
+            assert!((found - shown).abs() < 1e-8, "{clearance}: {found}, {shown}");
+            let [found, shown] = [&passing, &proven].map(|contact| contact.gradient);
+            assert!((found - shown).norm() < 1e-6, "{clearance}: {found}, {shown}");
+        }
+    }
+}
+
 /// Along the bottom of the tool the surface ends; there the tool leaves it.
 #[test]
 fn a_tool_stops_past_the_end_of_a_surface() {
