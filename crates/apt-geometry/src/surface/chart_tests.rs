@@ -143,14 +143,19 @@ proptest! {
     fn nothing_is_nearer_to_a_body_than_what_is_kept(
         which in 0usize..COUNT, near in prop::array::uniform3(-1.0..6.0f64), off in 0.05..2.0f64,
         way in prop::array::uniform3(-2.0..2.0f64), radius in 0.01..0.5f64, wanted in 0.001..0.5f64,
-        asides in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 60),
+        asides in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 60), is_within in any::<bool>(),
     ) {
         let surface = made(which);
         let foot = surface.foot(&Vec3::from(near));
         let from = foot.point + foot.normal * (off + radius);
         let ends = [from, from + Vec3::from(way)];
         let away = |p: &Vec3| away_from_stretch(p, &ends, radius);
-        let Some(kept) = surface.keeps_apart(&away, wanted) else { return Ok(()) };
+        // The plane across the normal at the foot, on which the body stands.
+        let outward = -foot.normal;
+        let level = ends.iter().map(|end| outward.dot(end) + radius).fold(f64::NEG_INFINITY, f64::max);
+        let within = is_within.then_some(HalfSpace { outward, level });
+        let body = Body { away: &away, within };
+        let Some(kept) = surface.keeps_off_body(body, wanted, 600) else { return Ok(()) };
         prop_assert!(kept >= wanted);
         for (k, aside) in asides.iter().enumerate() {
             let share = k as f64 / asides.len() as f64;

@@ -71,3 +71,63 @@ fn direction(tool: &Tool, patch: &Patch, normal: &Vec3) -> Option<Vec3> {
 pub(super) fn is_apt(surface: &Surface) -> bool {
     surface.has_charts() && surface.generator().is_none()
 }
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::{
+        cutter::Cutter,
+        surface::{Bend, Region},
+    };
+
+    use super::{super::patch::flank_between, *};
+    use crate::{tests::v, verify::tests::lofts};
+
+    /// No place of a stretch of the flank beside surfaces of nearly straight lines is nearer than its bound, which is higher for a long
+    /// stretch than that by the bend in all directions.
+    #[test]
+    fn no_place_of_a_flank_is_nearer_than_its_bound() {
+        let cutter = Cutter::from_numbers(&[0.5], 1.0).expect("a cutter");
+        let (mut seen, mut closer) = (0, 0);
+        for geometry in [lofts::roof(), lofts::vault()] {
+            let surface = Surface::from_geometry(&geometry).expect("a surface");
+            let side = surface.foot(&v(0.0, 0.0, 9.0)).distance.signum();
+            for k in 0..40 {
+                let axis = v(0.2 - 0.01 * f64::from(k), 1.0, 0.05).normalize();
+                let tool = Tool::new(cutter, axis);
+                let foot = surface.foot(&v(-0.8 + 0.04 * f64::from(k), 0.0, 4.0));
+                let tip = foot.point + foot.normal * (side * 0.27) - axis * 1.0;
+                let radial = tool.split(&-(foot.normal * side)).2;
+                let azimuth = radial.dot(&tool.across[1]).atan2(radial.dot(&tool.across[0]));
+                let patch = Patch { azimuth, half: 0.02, ..flank_between(&tool, [0.9, 1.1]) };
+                let middle = patch.middle(&tool, &tip, None);
+                let base = Base::at(&surface, side, middle.place);
+                let (reach, distance) = (middle.reach, base.distance);
+                let region = Region {
+                    center: base.place,
+                    radius: reach,
+                    lowest: -distance - reach,
+                    highest: reach - distance,
+                };
+                let Bend::AtMost(bend) = surface.bend(-side, &surface.foot(&base.place), &region) else {
+                    continue;
+                };
+                let face = Face { surface: &surface, side };
+                let Some(course) = Course::nearly_straight(face, &tool, &patch, &base, [reach, bend]) else {
+                    continue;
+                };
+                let least = patch.least(&tool, &tip, &base, course);
+                let plain = patch.least(&tool, &tip, &base, Course::along_generator(bend, None));
+                seen += 1;
+                closer += u32::from(least > plain);
+                for (i, j) in (0..=8).flat_map(|i| (0..=8).map(move |j| (i, j))) {
+                    let (sin, cos) = (azimuth + 0.02 * (f64::from(i) / 4.0 - 1.0)).sin_cos();
+                    let aside = tool.across[0] * cos + tool.across[1] * sin;
+                    let place = tip + aside * tool.radius() + axis * (0.9 + 0.025 * f64::from(j));
+                    let distance = side * surface.signed_distance(&place);
+                    assert!(distance >= least - 1e-12, "{distance} under {least}");
+                }
+            }
+        }
+        assert!(seen >= 30 && closer >= 20, "{seen} stretches, {closer} closer");
+    }
+}
