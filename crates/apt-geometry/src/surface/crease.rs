@@ -36,6 +36,32 @@ impl SurfaceEdge {
     }
 }
 
+/// The four lines at which a surface with one range of parameters ends, each with its parameter beside a place. As a tool meets such a
+/// surface, nothing is behind what is beyond them, and they stand out to both sides.
+fn end_lines(place: &Place, limits: [[f64; 2]; 2]) -> [(Crease, f64); 4] {
+    Edge::ALL.map(|edge| {
+        let course = edge.course();
+        let [low, high] = limits[course];
+        // A line goes on over all pieces.
+        (Crease { piece: 0, edge }, (place.at[course] - low) / (high - low))
+    })
+}
+
+/// That of these lines on which a place lies.
+fn end_line_at(place: &Place, limits: [[f64; 2]; 2]) -> Option<(Crease, f64)> {
+    let is_at = at_limits(place.at, limits);
+    end_lines(place, limits).into_iter().find(|(crease, _)| is_at[crease.edge.number()])
+}
+
+/// The parameters of a surface at a parameter along such a line.
+pub(super) fn on_end_line(limits: [[f64; 2]; 2], edge: Edge, parameter: f64) -> [f64; 2] {
+    let shares = edge.parameters(parameter);
+    [0, 1].map(|k: usize| {
+        let [low, high] = limits[k];
+        low + (high - low) * shares[k]
+    })
+}
+
 impl Surface {
     /// The end that the place nearest to a point lies on, for surfaces that tell directions there.
     pub fn edge_at(&self, p: &Vec3) -> Option<SurfaceEdge> {
@@ -59,8 +85,8 @@ impl Surface {
     /// The line that stands out to a side, positive for that of the natural normal, on which a place lies, and its parameter there.
     pub fn crease_at(&self, place: &Place, side: f64) -> Option<(Crease, f64)> {
         match self {
-            Self::Ruled(sheet) => sheet.crease_at(place),
-            Self::PolyConic(sheet) => sheet.crease_at(place),
+            Self::Ruled(sheet) if sheet.is_met() => end_line_at(place, sheet.limits()),
+            Self::PolyConic(sheet) if sheet.is_met() => end_line_at(place, sheet.limits()),
             Self::Sculptured(sheet) => sheet.crease_at(place, side),
             _ => None,
         }
@@ -69,8 +95,8 @@ impl Surface {
     /// The lines about a place that stand out to a side, each with its parameter beside the place.
     pub fn creases_beside(&self, place: &Place, side: f64) -> [Option<(Crease, f64)>; 4] {
         match self {
-            Self::Ruled(sheet) => sheet.creases_beside(place),
-            Self::PolyConic(sheet) => sheet.creases_beside(place),
+            Self::Ruled(sheet) if sheet.is_met() => end_lines(place, sheet.limits()).map(Some),
+            Self::PolyConic(sheet) if sheet.is_met() => end_lines(place, sheet.limits()).map(Some),
             Self::Sculptured(sheet) => sheet.creases_beside(place, side),
             _ => [None; 4],
         }

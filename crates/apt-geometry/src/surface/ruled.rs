@@ -18,7 +18,7 @@ use super::{
     part::{Count, Later, Part, Summary},
     perpendicular,
     section_curve::{CurvePoint, SectionCurve},
-    sheet::{Jet, Landing, ON_SURFACE, Rest, at_limits},
+    sheet::{Jet, Landing, ON_SURFACE, Rest},
 };
 use crate::{
     Vec3,
@@ -467,22 +467,6 @@ impl RuledSheet {
                 self.jet(nearest.piece, t, v).natural(1e-6 * self.size)
             })
             .unwrap_or_else(|| jet.dv.try_normalize(0.0).map_or_else(Vec3::z, |dv| perpendicular(&dv)))
-    }
-
-    /// The surface as a tool on a side meets it: what is beyond the end is not behind it.
-    pub(super) fn met_from(&self, side: f64) -> &Surface {
-        self.met[usize::from(side < 0.0)].get_or_init(|| {
-            let sheet = Self { beyond: Some(side), met: Default::default(), ..self.clone() };
-            Box::new(Surface::Ruled(Arc::new(sheet)))
-        })
-    }
-
-    /// Whether the nearest place lies at an end of the curves or of the rulings.
-    pub(super) fn ends_at(&self, p: &Vec3) -> bool {
-        let nearest = self.nearest(p);
-        let start = self.jet(nearest.piece, nearest.t, 0.0);
-        let (v, _) = self.share(p, &start.point, &start.dv);
-        at_limits([nearest.t, v], self.limits).contains(&true)
     }
 
     pub(super) fn place_near(&self, p: &Vec3) -> Place {

@@ -1,11 +1,7 @@
 //! The four lines at which a polyconic surface ends.
 
 use super::{Jet, PolyConicSheet};
-use crate::{
-    Vec3,
-    parametric::Edge,
-    surface::{Crease, Place, sheet::at_limits},
-};
+use crate::{Vec3, parametric::Edge, surface::crease::on_end_line};
 
 impl PolyConicSheet {
     /// Ranges of the parameters of a place.
@@ -13,31 +9,15 @@ impl PolyConicSheet {
         self.limits
     }
 
-    /// The line on which a place lies, with the parameter there: as a tool meets the surface, nothing is behind what is beyond it, and it
-    /// stands out to both sides.
-    pub(in crate::surface) fn crease_at(&self, place: &Place) -> Option<(Crease, f64)> {
-        let is_at = at_limits(place.at, self.limits);
-        let beside = self.creases_beside(place).into_iter().flatten();
-        beside.into_iter().find(|(crease, _)| is_at[crease.edge.number()])
-    }
-
-    pub(in crate::surface) fn creases_beside(&self, place: &Place) -> [Option<(Crease, f64)>; 4] {
-        Edge::ALL.map(|edge| {
-            self.beyond?;
-            let course = edge.course();
-            let [low, high] = self.limits[course];
-            Some((Crease { piece: place.piece, edge }, (place.at[course] - low) / (high - low)))
-        })
+    /// Whether it is the surface as a tool on a side meets it.
+    pub(in crate::surface) fn is_met(&self) -> bool {
+        self.beyond.is_some()
     }
 
     /// A place of such a line, off the conics by the thickness, and the derivative there by the parameter along it.
     pub(in crate::surface) fn on_edge(&self, edge: Edge, parameter: f64) -> [Vec3; 2] {
         let course = edge.course();
-        let shares = edge.parameters(parameter);
-        let [t, s] = [0, 1].map(|k: usize| {
-            let [low, high] = self.limits[k];
-            low + (high - low) * shares[k]
-        });
+        let [t, s] = on_end_line(self.limits, edge, parameter);
         let Jet { point, du, dv, duu, duv, dvv } = self.jet(t, s);
         let (mut place, mut way) = (point, if course == 0 { du } else { dv });
         let across = du.cross(&dv);

@@ -1,10 +1,12 @@
 //! The four lines at which a ruled surface ends: the last rulings of its extension, and where all of them end.
 
+use std::sync::Arc;
+
 use super::RuledSheet;
 use crate::{
     Vec3,
     parametric::Edge,
-    surface::{Crease, Place, sheet::at_limits},
+    surface::{Surface, crease::on_end_line, sheet::at_limits},
 };
 
 impl RuledSheet {
@@ -13,32 +15,31 @@ impl RuledSheet {
         self.limits
     }
 
-    /// The line on which a place lies, with the parameter there: as a tool meets the surface, nothing is behind what is beyond it, and it
-    /// stands out to both sides.
-    pub(in crate::surface) fn crease_at(&self, place: &Place) -> Option<(Crease, f64)> {
-        let is_at = at_limits(place.at, self.limits);
-        let beside = self.creases_beside(place).into_iter().flatten();
-        beside.into_iter().find(|(crease, _)| is_at[crease.edge.number()])
+    /// Whether it is the surface as a tool on a side meets it.
+    pub(in crate::surface) fn is_met(&self) -> bool {
+        self.beyond.is_some()
     }
 
-    pub(in crate::surface) fn creases_beside(&self, place: &Place) -> [Option<(Crease, f64)>; 4] {
-        Edge::ALL.map(|edge| {
-            self.beyond?;
-            let course = edge.course();
-            let [low, high] = self.limits[course];
-            // A line goes on over the pieces of the curves.
-            Some((Crease { piece: 0, edge }, (place.at[course] - low) / (high - low)))
+    /// The surface as a tool on a side meets it: what is beyond the end is not behind it.
+    pub(in crate::surface) fn met_from(&self, side: f64) -> &Surface {
+        self.met[usize::from(side < 0.0)].get_or_init(|| {
+            let sheet = Self { beyond: Some(side), met: Default::default(), ..self.clone() };
+            Box::new(Surface::Ruled(Arc::new(sheet)))
         })
+    }
+
+    /// Whether the nearest place lies at an end of the curves or of the rulings.
+    pub(in crate::surface) fn ends_at(&self, p: &Vec3) -> bool {
+        let nearest = self.nearest(p);
+        let start = self.jet(nearest.piece, nearest.t, 0.0);
+        let (v, _) = self.share(p, &start.point, &start.dv);
+        at_limits([nearest.t, v], self.limits).contains(&true)
     }
 
     /// A place of such a line, and the derivative there by the parameter along it.
     pub(in crate::surface) fn on_edge(&self, edge: Edge, parameter: f64) -> [Vec3; 2] {
         let course = edge.course();
-        let shares = edge.parameters(parameter);
-        let [t, v] = [0, 1].map(|k: usize| {
-            let [low, high] = self.limits[k];
-            low + (high - low) * shares[k]
-        });
+        let [t, v] = on_end_line(self.limits, edge, parameter);
         let jet = self.jet(self.piece_at(t), t, v);
         let [low, high] = self.limits[course];
         let way = if course == 0 { jet.du } else { jet.dv };
