@@ -70,15 +70,7 @@ fn what_of_a_tool_is_beyond_the_end_of_a_surface_is_not_behind_it() {
         (-1.0, v(-2.0505, 0.5949, 0.3723), 0.0158),
         (-1.0, v(-2.2116, 0.7700, 0.3410), 0.2285),
     ] {
-        let role = Role {
-            surface: named(&shell()),
-            relation: Relation::To,
-            side,
-            inside_tolerance: 1.0,
-            outside_tolerance: 1.0,
-            thickness: 0.0,
-            disk: None,
-        };
+        let role = Role { side, ..touched(&shell()) };
         let engine = gauge(&role).contact(&tool, &tip).clearance;
         let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: leaning() });
         assert!((engine - least).abs() < 1e-3, "{tip:?}: {engine}, not {least}");
@@ -92,15 +84,7 @@ fn what_of_a_tool_is_beyond_the_end_of_a_surface_is_not_behind_it() {
 fn contact_with_the_end_of_a_surface_is_found_without_a_proof() {
     let tool = Tool::new(Cutter::from_numbers(&BALL, 1.0).expect("a cutter"), leaning());
     for (side, tip) in [(1.0, v(-1.2446, -0.2798, 0.5313)), (-1.0, v(-2.0505, 0.5949, 0.3723))] {
-        let role = Role {
-            surface: named(&shell()),
-            relation: Relation::To,
-            side,
-            inside_tolerance: 1.0,
-            outside_tolerance: 1.0,
-            thickness: 0.0,
-            disk: None,
-        };
+        let role = Role { side, ..touched(&shell()) };
         let at_first = gauge(&role).contact(&tool, &tip);
         for clearance in [1e-3, 0.0, -5e-4, -5e-3] {
             let tip = tip + at_first.gradient * (clearance - at_first.clearance);
