@@ -303,3 +303,30 @@ fn cylinders_across_a_direction_are_found_where_surfaces_bend_away_along_it() {
     }
     assert!(found.iter().filter(|found| **found > 10).count() >= 9, "{found:?}");
 }
+
+/// The chord between two places of a line at which a surface ends is off the line by no more than that sags.
+#[test]
+fn chords_of_end_lines_are_as_near_as_they_sag() {
+    let (mut seen, mut straight) = (0, 0);
+    for which in 0..COUNT {
+        let made = made(which);
+        let surface = made.met_from(1.0, &Vec3::z());
+        let Some(place) = surface.place(&Vec3::new(1.0, 1.0, 1.0)) else { continue };
+        for (line, _) in surface.creases_beside(&place, 1.0).into_iter().flatten() {
+            for (from, to) in [(0.1, 0.15), (0.42, 0.5), (0.55, 0.52), (0.3, 0.8)] {
+                let Some(sag) = surface.crease_sag(&line, [from, to]) else { continue };
+                let at =
+                    |share: f64| surface.on_crease(&line, from + (to - from) * share).expect("a place")[0];
+                let [first, last] = [at(0.0), at(1.0)];
+                seen += 1;
+                straight += u32::from(sag == 0.0);
+                for k in 0..=16 {
+                    let share = f64::from(k) / 16.0;
+                    let off = (at(share) - (first + (last - first) * share)).norm();
+                    assert!(off <= sag + 1e-12, "{which}: {off} beyond {sag} on {line:?} at {share}");
+                }
+            }
+        }
+    }
+    assert!(seen >= 20 && straight >= 4 && straight < seen, "{straight} of {seen}");
+}

@@ -102,6 +102,26 @@ impl Surface {
         }
     }
 
+    /// How far the places of the chord between two places of a line at which a surface ends are from the line at most; `None` where that
+    /// is not known, and for other surfaces.
+    pub fn crease_sag(&self, crease: &Crease, ends: [f64; 2]) -> Option<f64> {
+        let limits = match self {
+            Self::Ruled(sheet) => sheet.limits(),
+            Self::PolyConic(sheet) => sheet.limits(),
+            _ => return None,
+        };
+        let course = crease.edge.course();
+        let [a, b] = ends.map(|parameter| on_end_line(limits, crease.edge, parameter));
+        let (from, to) = (a[course].min(b[course]), a[course].max(b[course]));
+        let beside = a[1 - course];
+        let bend = match self {
+            Self::Ruled(sheet) => sheet.edge_bend(course, [from, to], beside),
+            Self::PolyConic(sheet) => sheet.edge_bend(course, [from, to], beside),
+            _ => None,
+        }?;
+        Some(0.125 * bend * (to - from).powi(2))
+    }
+
     /// A place of such a line, and the derivative there by the parameter along it.
     pub fn on_crease(&self, crease: &Crease, parameter: f64) -> Option<[Vec3; 2]> {
         match self {

@@ -160,6 +160,21 @@ impl Beside<'_> {
         shown.then_some((contact, slack))
     }
 
+    /// A bound from above of the clearance while the tool end goes straight from here to another place, by the contacts at both, if these
+    /// are on one line at which the surface ends. The distance of a place from the tool is a convex function of both, so that it is nowhere
+    /// greater than at the ends for a place that goes along the chord; and the line is no farther off that than it sags.
+    pub(super) fn at_most_along(&self, to: &Vec3, [first, last]: [&Contact; 2]) -> Option<f64> {
+        let [from_spot, to_spot] = [first, last].map(|contact| self.spot(&contact.surface));
+        let (Spot { crease, at }, Spot { crease: other, at: there }) = (from_spot?, to_spot?);
+        if crease != other {
+            return None;
+        }
+        let place = |at: f64| Some(self.surface.on_crease(&crease, at)?[0]);
+        let [start, end] =
+            [(at, self.tip), (there, to)].map(|(at, tip)| Some(outward(self.tool, &(place(at)? - tip)).0));
+        Some(start?.max(end?) + self.surface.crease_sag(&crease, [at, there])?)
+    }
+
     /// Whether the surface has an edge within a radius of the tool of one of its places.
     pub(super) fn has_edge_by(&self, surface: &Vec3) -> bool {
         let Some(place) = self.surface.place(surface) else { return false };

@@ -327,6 +327,9 @@ impl Gauge {
             return None;
         }
         let [(from, first), (to, last)] = contacts;
+        if let Some(most) = self.at_most_along_edge(tool, contacts) {
+            return Some(most);
+        }
         let distance = |point: &Vec3, tip: &Vec3| {
             let (tool, tip) = self.body(tool, tip);
             let (along, across, _) = tool.split(&(point - tip));
@@ -344,6 +347,17 @@ impl Gauge {
             let share = if falls + rises > 0.0 { falls / (falls + rises) } else { 0.0 };
             (start + share * (ahead - start)).max(behind + share * (end - behind)).max(start.max(end))
         })
+    }
+
+    /// The same by a line at which the surface ends, if both contacts are there.
+    fn at_most_along_edge(
+        &self,
+        tool: &Tool,
+        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
+    ) -> Option<f64> {
+        let (tool, start) = &self.body(tool, from);
+        let beside = Beside { tool, surface: self.met(tool), side: self.side, tip: start };
+        Some(beside.at_most_along(&(to + (start - from)), [first, last])? - self.thickness)
     }
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.

@@ -267,3 +267,23 @@ fn a_tool_goes_along_the_end_of_a_surface() {
     let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
     assert!((end.y + 1.7).abs() < 1e-9, "{end:?}");
 }
+
+/// Contact goes along the end with the tool: on the way between two places the clearance is no greater than at both, but for how the end
+/// bends.
+#[test]
+fn the_clearance_along_an_end_is_no_greater_than_at_both_places() {
+    let tool = Tool::new(Cutter::from_numbers(&SLENDER_BALL, 1.0).expect("a cutter"), Vec3::z());
+    let gauge = gauge(&touched(&leaning_wall()));
+    let way = v(0.1943, -0.6677, 0.0) * 0.3;
+    let tips = [beside_the_wall(), beside_the_wall() + way];
+    let contacts = tips.map(|tip| gauge.contact(&tool, &tip));
+    assert!(contacts.iter().all(|contact| gauge.surface.ends_at(&contact.surface)), "{contacts:?}");
+    let most =
+        gauge.at_most_between(&tool, [(&tips[0], &contacts[0]), (&tips[1], &contacts[1])]).expect("a bound");
+    let greatest = contacts[0].clearance.max(contacts[1].clearance);
+    assert!(most < greatest + 2e-3, "{most} beyond {greatest}");
+    for k in 0..=20 {
+        let clearance = gauge.contact(&tool, &(tips[0] + way * (f64::from(k) / 20.0))).clearance;
+        assert!(clearance <= most + 1e-9, "{clearance} beyond {most}");
+    }
+}

@@ -1,7 +1,14 @@
 //! The four lines at which a polyconic surface ends.
 
 use super::{Jet, PolyConicSheet};
-use crate::{Vec3, parametric::Edge, surface::crease::on_end_line};
+use crate::{
+    Vec3,
+    parametric::Edge,
+    surface::{
+        crease::on_end_line,
+        part::{Enclose, Rectangle},
+    },
+};
 
 impl PolyConicSheet {
     /// Ranges of the parameters of a place.
@@ -32,5 +39,38 @@ impl PolyConicSheet {
         // Before the nose the station falls as the parameter grows, and derivatives are by the station.
         let sense = if course == 1 { self.turned(s) } else { 1.0 };
         [self.linear.tr_mul(&(place - self.origin)), self.linear.tr_mul(&way) * (sense * (high - low))]
+    }
+
+    /// The greatest second derivative along an end line between two parameters, at the parameter across it; `None` where it has a corner
+    /// or is off the conics.
+    pub(in crate::surface) fn edge_bend(
+        &self,
+        course: usize,
+        [from, to]: [f64; 2],
+        across: f64,
+    ) -> Option<f64> {
+        if self.form.thickness != 0.0 {
+            return None;
+        }
+        // The conics go on straight before 0 and behind 1, with the same tangents.
+        let joints = if course == 0 { [0.0, 1.0] } else { [from; 2] };
+        let cuts = [from, joints[0].clamp(from, to), joints[1].clamp(from, to), to];
+        let mut greatest: f64 = 0.0;
+        for pair in cuts.windows(2).filter(|pair| pair[1] > pair[0]) {
+            let along = [pair[0], pair[1]];
+            let beside = [across; 2];
+            let rectangle = if course == 0 {
+                Rectangle::between(along, beside)
+            } else {
+                Rectangle::between(beside, along)
+            };
+            let enclosure = self.enclose(&rectangle);
+            if enclosure.split {
+                return None;
+            }
+            let bend = if course == 0 { &enclosure.duu } else { &enclosure.dvv };
+            greatest = greatest.max(bend.length());
+        }
+        greatest.is_finite().then_some(greatest)
     }
 }

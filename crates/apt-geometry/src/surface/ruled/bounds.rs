@@ -17,7 +17,7 @@ const SHIFTED: f64 = 1e-10;
 /// Nodes of a tree that wait to be looked at, usually.
 const DEEP: usize = 32;
 /// Length of the difference of two unit normals below which pieces join smoothly.
-const SMOOTH: f64 = 1e-7;
+pub(super) const SMOOTH: f64 = 1e-7;
 
 /// Places, first and second derivatives by the parameter of a combination of both curves, over all parameters within `half`
 /// of a middle.

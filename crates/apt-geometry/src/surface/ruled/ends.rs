@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::RuledSheet;
+use super::{
+    RuledSheet,
+    bounds::{SMOOTH, ranges},
+};
 use crate::{
     Vec3,
     parametric::Edge,
@@ -44,6 +47,34 @@ impl RuledSheet {
         let [low, high] = self.limits[course];
         let way = if course == 0 { jet.du } else { jet.dv };
         [jet.point, way * (high - low)]
+    }
+
+    /// The greatest second derivative along an end line between two parameters, at the parameter across it; `None` where it has a corner.
+    pub(in crate::surface) fn edge_bend(
+        &self,
+        course: usize,
+        [from, to]: [f64; 2],
+        across: f64,
+    ) -> Option<f64> {
+        if course == 1 {
+            return Some(0.0);
+        }
+        let (first, last) = (self.piece_at(from), self.piece_at(to));
+        let mut greatest: f64 = 0.0;
+        for k in first..=last {
+            let piece = self.pieces.get(k)?;
+            let (low, high) = (from.max(piece.from), to.min(piece.from + piece.width));
+            let [_, _, bent] =
+                ranges(piece, 0.5 * (low + high), 0.5 * (high - low), |e, f| e + (f - e) * across);
+            greatest = greatest.max(bent.length());
+            if k < last {
+                let [before, after] = [k, k + 1].map(|k| self.jet(k, high, across).du);
+                if (before - after).norm() > SMOOTH * before.norm() {
+                    return None;
+                }
+            }
+        }
+        Some(greatest)
     }
 
     /// The piece of the curves with a parameter.
