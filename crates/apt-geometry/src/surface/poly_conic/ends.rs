@@ -54,7 +54,8 @@ impl PolyConicSheet {
         }
         // The conics go on straight before 0 and behind 1, with the same tangents.
         let joints = if course == 0 { [0.0, 1.0] } else { [from; 2] };
-        let cuts = [from, joints[0].clamp(from, to), joints[1].clamp(from, to), to];
+        let [first, last] = joints.map(|joint| joint.max(from).min(to));
+        let cuts = [from, first, last, to];
         let mut greatest: f64 = 0.0;
         for pair in cuts.windows(2).filter(|pair| pair[1] > pair[0]) {
             let along = [pair[0], pair[1]];
