@@ -165,3 +165,26 @@ fn tabulated_cylinders() {
     }
     assert!(over * 100 <= CURVES, "{over} of {CURVES} take one vector more");
 }
+
+/// In a corner that the tool does not fit into two vectors meet, however much the path turns there.
+#[test]
+fn a_vector_ends_in_a_corner() {
+    for slope in [0.2, 0.3, 0.45] {
+        for band in [1e-2, 1e-3, 1e-5] {
+            let nodes = [
+                [0.0, slope, -slope],
+                [0.95, 0.05 * slope, -slope],
+                [1.05, 0.05 * slope, slope],
+                [2.0, slope, slope],
+            ];
+            let (table, last) = directrix(&nodes);
+            let mut p = begun(band, 0.5);
+            // Far greater than the bend between the flanks.
+            p.cutter(&[0.8]);
+            along(&mut p, &tabulated(&table, last), v(0.1, slope + 1.0, 0.0), Left, [0.1, 1.95]);
+            let tips: Vec<_> = p.last().points.iter().map(|point| point.tip.x).collect();
+            assert_eq!(tips.len(), 2, "slope {slope}, band {band}: {tips:?}");
+            assert!((tips[0] - 1.0).abs() <= band / slope, "slope {slope}, band {band}: {tips:?}");
+        }
+    }
+}

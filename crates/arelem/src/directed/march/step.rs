@@ -2,22 +2,21 @@
 //! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it. Where the
 //! path begins to bend the other way both limits are tried, and the vertex before may move back on its vector ([`window`]).
 
+mod at_corner;
+mod attempt;
 mod corner;
 mod exhaustive;
+mod longest;
 mod of_use;
 mod overlong;
 mod sag;
 mod trend;
 mod window;
 
-use apt_geometry::{Vec3, surface::Surface};
+use apt_geometry::Vec3;
 
-use self::{
-    overlong::Overlong,
-    sag::{growth, sagging},
-    trend::Trend,
-};
-use super::{Prepared, Vertex, tangent};
+use self::{overlong::Overlong, trend::Trend};
+use super::{Prepared, Vertex};
 use crate::{
     bound::Record,
     clearance::{Contact, Shape},
@@ -25,19 +24,10 @@ use crate::{
         prepare::UNDETERMINED,
         proof::{self, Extremes, Ledger},
     },
-    error::{Iteration, MotionFailure},
-    position::{self, Condition, Solution},
+    error::MotionFailure,
     role::{Bend, GUARD, Working},
 };
 
-/// Bound of the trials for one vector.
-const MAX_TRIALS: u32 = 60;
-/// Bound of the corrections for the end of a vector: far above what a vector that leads on needs.
-const CORRECTIONS: u32 = 20;
-/// Bound of the trials that shorten a vector which the way back into the bands makes longer than is allowed.
-const MOST_SHORTENINGS: u32 = 12;
-/// Trials that try to lengthen a vector already proven.
-const LENGTHENINGS: u32 = 4;
 /// Length, relative to the size of the coordinates, below which a vector leads nowhere: well above the size below which a
 /// reader of the path takes two positions for one.
 const LEAST_VECTOR: f64 = 1e-8;
@@ -49,10 +39,6 @@ const SPARED: f64 = 0.25 * GUARD;
 const AIM: f64 = 0.9999;
 /// Greatest growth of the length from one trial to the next.
 const GREATEST_GROWTH: f64 = 4.0;
-/// Share of the length that the next trial has at least.
-const GREATEST_SHRINKING: f64 = 0.3;
-/// Cosine between the directions at both ends below which the vector is shortened (60°).
-const LEAST_TURN_COSINE: f64 = 0.5;
 /// Ratio of the shortest vector that is too long to the longest that is proven at which no better one is looked for.
 const NEARLY: f64 = 1.01;
 /// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
@@ -62,17 +48,10 @@ const KINK_BANDS: f64 = 0.1;
 /// How many times the square of the angle between path and vector at its start that at its end may be on a bend that goes on as it
 /// begins: on one that grows tighter it is twice the angle at most.
 const MOST_TURNED: f64 = 4.0;
-/// Cosine of the angle between a vector and the path at its end below which that may go on either way.
-const NEARLY_SQUARE: f64 = 0.1;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
-/// Share of a vector's length by which its end may be expected aside of its tangent.
-const FAR_ASIDE: f64 = 0.25;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
 const PROBE: f64 = 1e-4;
-
-/// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
-const LEAST_LEVEL: f64 = 0.1;
 
 /// Where in the bands a vector ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,6 +110,8 @@ struct Trial {
     next_curvature: [f64; 2],
     /// Factor by which the length could grow, below one if it must shrink.
     growth: f64,
+    /// It ends where the path turns on the spot: what is to be expected of the next vector is not known.
+    is_at_corner: bool,
     proven: bool,
     /// How the slopes of both clearances turn along the vector.
     turning: [f64; 2],
@@ -261,93 +242,11 @@ impl<'a> Stepper<'a> {
     /// Goes on with a vector.
     fn follow(&mut self, from: &Vec3, found: &Trial) {
         self.trend.follow(found);
+        if found.is_at_corner {
+            self.trend.forget();
+        }
         self.longest = self.longest.max(found.length);
         self.record.add(from, &found.vertex.tip, [&self.prepared.part, &self.prepared.drive], found.turning);
-    }
-
-    /// The longest vector that is proven, from a first guess.
-    fn longest(
-        &self,
-        here: &Vertex,
-        cap: f64,
-        places: Places,
-        guess: &Guess,
-    ) -> Result<Trial, MotionFailure> {
-        let mut bends = guess.bends;
-        let mut bent = guess.curvature;
-        let mut length = guess.length.min(cap);
-        let mut best: Option<(Trial, f64)> = None;
-        let (mut shortest_bad, mut lengthenings, mut failures) = (f64::INFINITY, 0, 0u32);
-        let mut culprit = (self.prepared.part.name, 0.0);
-        let mut last_bad: Option<Overlong> = None;
-        let least = match places {
-            Places::Limits => LEAST_VECTOR * self.prepared.size,
-            Places::Level => LEAST_LEVEL * (self.prepared.part.band() + self.prepared.drive.band()),
-        };
-        for _ in 0..MAX_TRIALS {
-            if length <= least {
-                break;
-            }
-            if (self.cancel)() {
-                return Err(MotionFailure::Cancelled);
-            }
-            let targets = self.targets(here, &bends, places);
-            let Some(trial) = self.attempt(here, length, cap, (targets, &bent, &bends)) else {
-                shortest_bad = shortest_bad.min(length);
-                length *= 0.5;
-                continue;
-            };
-            bent = trial.curvature;
-            if trial.proven {
-                let at_cap = trial.length >= cap * (1.0 - 1e-6);
-                let enough = trial.growth <= 1.0 + LONG_ENOUGH || at_cap || lengthenings >= LENGTHENINGS;
-                let growth = trial.growth;
-                let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(cap);
-                if best.as_ref().is_none_or(|(b, _)| trial.length > b.length) {
-                    best = Some((trial, length));
-                }
-                if enough || next <= length * (1.0 + 1e-9) {
-                    break;
-                }
-                let next_is_bad = next >= shortest_bad * (1.0 - LONG_ENOUGH);
-                if next_is_bad && shortest_bad <= length * NEARLY {
-                    break;
-                }
-                // What nothing bends yet is far from its length.
-                lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
-                length = if next_is_bad { 0.5 * (length + shortest_bad) } else { next };
-            } else {
-                shortest_bad = shortest_bad.min(length);
-                culprit = (self.roles()[trial.culprit].name, trial.worst);
-                let bad = self.overlong(length, &trial);
-                let line = last_bad.and_then(|last| bad.meets_band(&last));
-                last_bad = Some(bad);
-                if let Some((_, known)) = &best {
-                    // Where the bend changes the sag says little about the length.
-                    if shortest_bad <= known * NEARLY || lengthenings >= LENGTHENINGS {
-                        break;
-                    }
-                    lengthenings += 1;
-                    length = overlong::between(*known, shortest_bad, line.map(|share| share * length));
-                    continue;
-                }
-                bends = self.bends(&trial.curvature);
-                // Where the sag is not quadratic (contact jumps) the prediction is not trusted for long.
-                failures += u32::from(failures > 0 || trial.growth >= 1.0);
-                let most = 1.0 - 1e-3 * f64::from((1u32 << failures.min(9)) - 1);
-                failures = failures.max(1);
-                length *= (trial.growth.min(line.unwrap_or(1.0)) * AIM).clamp(GREATEST_SHRINKING, most);
-            }
-        }
-        best.map(|(trial, _)| trial).ok_or(if shortest_bad.is_finite() && culprit.1 != 0.0 {
-            MotionFailure::NoAdmissibleVector { role: culprit.0, clearance: culprit.1, tip: here.tip }
-        } else {
-            MotionFailure::IterationLimit {
-                iteration: Iteration::StepLength,
-                limit: MAX_TRIALS,
-                tip: here.tip,
-            }
-        })
     }
 
     /// A trial that was refused, and how far the clearance for which that is was out of its band.
@@ -383,9 +282,8 @@ impl<'a> Stepper<'a> {
     fn probe(&self, here: &Vertex) -> Result<[f64; 2], MotionFailure> {
         let reach = PROBE * self.prepared.size;
         let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent)?;
-        let behind = Vertex::at(self.prepared, here.tip - here.tangent * reach, &here.tangent)?;
-        let rate = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&here.tangent) / (2.0 * reach);
-        Ok([rate(&behind.part, &ahead.part), rate(&behind.drive, &ahead.drive)])
+        let rate = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&here.tangent) / reach;
+        Ok([rate(&here.part, &ahead.part), rate(&here.drive, &ahead.drive)])
     }
 
     fn bends(&self, curvature: &[f64; 2]) -> [Bend; 2] {
@@ -432,110 +330,6 @@ impl<'a> Stepper<'a> {
             Places::Level => [here.part.clearance, here.drive.clearance],
         }
     }
-
-    /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
-    fn attempt(
-        &self,
-        here: &Vertex,
-        length: f64,
-        cap: f64,
-        how: ([f64; 2], &[f64; 2], &[Bend; 2]),
-    ) -> Option<Trial> {
-        let Prepared { attitude, part, drive, .. } = self.prepared;
-        let (targets, curvature, bends) = how;
-        let conditions =
-            [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
-        let mut attempted = length;
-        for _ in 0..MOST_SHORTENINGS {
-            let start = ahead(here, attempted, targets, curvature);
-            let Solution { tip, contacts, .. } =
-                position::solve_within(attitude, &conditions, &start, CORRECTIONS).ok()?;
-            let [Some(part), Some(drive), _] = contacts else { return None };
-            let chord = tip - here.tip;
-            let reached = chord.norm();
-            if reached <= cap * (1.0 + 1e-9) {
-                let axis = attitude.tool_at(&tip).ok()?.axis;
-                let vertex =
-                    Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) };
-                return self.judge(here, vertex, (chord, reached), bends);
-            }
-            // The correction made it longer than allowed: try again a little shorter.
-            attempted *= (cap / reached) * (1.0 - 1e-6);
-            if attempted < 0.5 * length {
-                return None;
-            }
-        }
-        None
-    }
-
-    /// How long a vector may be that rounds a corner. The path has one over the vertex of a cone, and, while the axis stands
-    /// still, wherever the tool comes to touch a surface at a second place.
-    fn corner(&self) -> f64 {
-        let turns = self.prepared.attitude.turns();
-        let may_turn = |role: &&Working| match role.gauge.surface {
-            Surface::Cone(_) => true,
-            _ => !turns && role.shape != Shape::Flat,
-        };
-        CORNER_BANDS * self.roles().into_iter().filter(may_turn).map(Working::band).sum::<f64>()
-    }
-
-    fn judge(
-        &self,
-        here: &Vertex,
-        vertex: Vertex,
-        (chord, reached): (Vec3, f64),
-        bends: &[Bend; 2],
-    ) -> Option<Trial> {
-        let forward = chord.dot(&here.tangent) > 0.5 * reached;
-        let least_cosine = if reached <= self.corner() { 0.0 } else { LEAST_TURN_COSINE };
-        if !forward
-            || self.kinks_back(here, &chord)
-            || reached <= LEAST_VECTOR * self.prepared.size
-            || vertex.tangent.dot(&here.tangent) < least_cosine
-        {
-            return None;
-        }
-        let mut vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
-        // Where the path turns by about a right angle at the end of a bend the vector does not tell which way it goes on.
-        if vertex.tangent.dot(&chord) < NEARLY_SQUARE * reached {
-            vertex.tangent = tangent(&vertex.part, &vertex.drive, &along_arc(here, &chord));
-        }
-        let direction = chord / reached;
-        let turn = |a: &Contact, b: &Contact| (b.gradient - a.gradient).dot(&direction) / reached;
-        let mut curvature = [turn(&here.part, &vertex.part), turn(&here.drive, &vertex.drive)];
-        let extremes = self.extremes(here, &vertex);
-        let ends =
-            [(here.part.clearance, vertex.part.clearance), (here.drive.clearance, vertex.drive.clearance)];
-        for k in 0..2 {
-            if self.is_turned(k) {
-                curvature[k] = sagging(&extremes[k], ends[k], reached).unwrap_or(curvature[k]);
-            }
-        }
-        let course = self.course(here, &vertex, &direction, &curvature);
-        let mut trial = Trial {
-            vertex,
-            length: reached,
-            curvature,
-            bends: *bends,
-            at_start: course.at_start,
-            at_end: course.at_end,
-            next_curvature: course.next_curvature,
-            growth: GREATEST_GROWTH,
-            proven: extremes.iter().all(|e| e.proven),
-            turning: [extremes[0].turning, extremes[1].turning],
-            culprit: 0,
-            worst: 0.0,
-        };
-        for (k, role) in self.roles().iter().enumerate() {
-            let growth = growth(role, &extremes[k], ends[k]);
-            if growth < trial.growth {
-                let deep = extremes[k].least < -role.inside;
-                trial.worst = if deep { extremes[k].least } else { extremes[k].greatest };
-                (trial.growth, trial.culprit) = (growth, k);
-            }
-        }
-        Some(trial)
-    }
 }
 
 /// The direction in which the path arrives at the end of a vector: its tangent there, which on a bent path is not that of the
@@ -554,24 +348,4 @@ fn arrival(from: &Vertex, to: &Vertex) -> Vec3 {
 /// The direction at the end of a vector of an arc over it that begins along the path.
 fn along_arc(from: &Vertex, vector: &Vec3) -> Vec3 {
     vector * (2.0 * from.tangent.dot(vector) / vector.norm_squared()) - from.tangent
-}
-
-/// About where the path is at a distance along its tangent, as far as clearances bend as is known. Where that leads far aside
-/// it is not trusted.
-fn ahead(here: &Vertex, length: f64, targets: [f64; 2], curvature: &[f64; 2]) -> Vec3 {
-    let along = here.tangent * length;
-    let contacts = [&here.part, &here.drive];
-    let mut residual = [0.0; 2];
-    for (k, contact) in contacts.iter().enumerate() {
-        let bent = contact.gradient.dot(&along) + 0.5 * curvature[k] * length * length;
-        residual[k] = contact.clearance + bent - targets[k];
-    }
-    let aside = position::correction_of_two(residual, contacts.map(|contact| contact.gradient));
-    let trusted = aside.norm() <= FAR_ASIDE * length;
-    if !trusted {
-        return here.tip + along;
-    }
-    // No longer than asked for: an arc sags a little more than the parabola that the length is predicted for.
-    let way = along + aside;
-    here.tip + way * (length * length / way.norm_squared())
 }

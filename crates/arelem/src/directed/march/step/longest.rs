@@ -1,0 +1,205 @@
+//! The longest vector to the limits of the bands that is proven, from a first guess.
+
+use super::{
+    AIM, GREATEST_GROWTH, Guess, LEAST_VECTOR, LONG_ENOUGH, NEARLY, Places, Stepper, Trial,
+    at_corner::Corners,
+    overlong::{self, Overlong},
+};
+use crate::{
+    directed::march::Vertex,
+    error::{Iteration, MotionFailure},
+    role::Bend,
+};
+
+/// Bound of the trials for one vector.
+const MAX_TRIALS: u32 = 60;
+/// Trials that try to lengthen a vector already proven.
+const LENGTHENINGS: u32 = 4;
+/// Share of the length that the next trial has at least.
+const GREATEST_SHRINKING: f64 = 0.3;
+/// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
+const LEAST_LEVEL: f64 = 0.1;
+
+/// What the search has come to.
+struct Search {
+    bends: [Bend; 2],
+    /// Second derivatives of the clearances along the last trial.
+    bent: [f64; 2],
+    /// The length to try next.
+    length: f64,
+    cap: f64,
+    /// The longest vector that is proven, with the length that was asked for.
+    best: Option<(Trial, f64)>,
+    shortest_bad: f64,
+    last_bad: Option<Overlong>,
+    lengthenings: u32,
+    /// Trials before the first one that is proven whose sag said nothing.
+    failures: u32,
+    corners: Corners,
+    /// Index of the role that refused the last trial, and its clearance.
+    culprit: Option<(usize, f64)>,
+}
+
+impl Search {
+    fn new(guess: &Guess, cap: f64) -> Self {
+        Self {
+            bends: guess.bends,
+            bent: guess.curvature,
+            length: guess.length.min(cap),
+            cap,
+            best: None,
+            shortest_bad: f64::INFINITY,
+            last_bad: None,
+            lengthenings: 0,
+            failures: 0,
+            corners: Corners::default(),
+            culprit: None,
+        }
+    }
+
+    /// Keeps a vector that is proven; whether another one may be longer.
+    fn keep(&mut self, trial: Trial) -> bool {
+        let (growth, length) = (trial.growth, self.length);
+        let is_enough = growth <= 1.0 + LONG_ENOUGH
+            || trial.length >= self.cap * (1.0 - 1e-6)
+            || self.corners.is_met
+            || self.lengthenings >= LENGTHENINGS;
+        let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(self.cap);
+        if self.best.as_ref().is_none_or(|(best, _)| trial.length > best.length) {
+            self.best = Some((trial, length));
+        }
+        let next_is_bad = next >= self.shortest_bad * (1.0 - LONG_ENOUGH);
+        let is_longest = next_is_bad && self.shortest_bad <= length * NEARLY;
+        if is_enough || next <= length * (1.0 + 1e-9) || is_longest {
+            return false;
+        }
+        // What nothing bends yet is far from its length.
+        self.lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
+        self.length = if next_is_bad { 0.5 * (length + self.shortest_bad) } else { next };
+        true
+    }
+
+    /// Goes on from a length with which no vector leads on.
+    fn halve(&mut self) {
+        self.shortest_bad = self.shortest_bad.min(self.length);
+        self.length *= 0.5;
+    }
+
+    /// Goes on from one that is too long; whether there is more to try.
+    fn refuse(&mut self, stepper: &Stepper<'_>, trial: &Trial) -> bool {
+        self.shortest_bad = self.shortest_bad.min(self.length);
+        self.culprit = Some((trial.culprit, trial.worst));
+        let bad = stepper.overlong(self.length, trial);
+        let line = self.last_bad.and_then(|last| bad.meets_band(&last));
+        self.last_bad = Some(bad);
+        if let Some((_, known)) = &self.best {
+            // Where the bend changes the sag says little about the length.
+            if self.shortest_bad <= known * NEARLY || self.lengthenings >= LENGTHENINGS {
+                return false;
+            }
+            self.lengthenings += 1;
+            self.length = overlong::between(*known, self.shortest_bad, line.map(|share| share * self.length));
+            return true;
+        }
+        self.bends = stepper.bends(&trial.curvature);
+        // Where the sag is not quadratic (contact jumps) the prediction is not trusted for long.
+        self.failures += u32::from(self.failures > 0 || trial.growth >= 1.0);
+        let most = 1.0 - 1e-3 * f64::from((1u32 << self.failures.min(9)) - 1);
+        self.failures = self.failures.max(1);
+        self.length *= (trial.growth.min(line.unwrap_or(1.0)) * AIM).clamp(GREATEST_SHRINKING, most);
+        true
+    }
+}
+
+impl Stepper<'_> {
+    /// The longest vector that is proven, from a first guess.
+    pub(super) fn longest(
+        &self,
+        here: &Vertex,
+        cap: f64,
+        places: Places,
+        guess: &Guess,
+    ) -> Result<Trial, MotionFailure> {
+        let least = match places {
+            Places::Limits => LEAST_VECTOR * self.prepared.size,
+            Places::Level => LEAST_LEVEL * self.bands(),
+        };
+        let mut search = Search::new(guess, cap);
+        for _ in 0..MAX_TRIALS {
+            if search.length <= least {
+                break;
+            }
+            if (self.cancel)() {
+                return Err(MotionFailure::Cancelled);
+            }
+            let Some(trial) = self.trial(here, places, &mut search) else {
+                search.halve();
+                continue;
+            };
+            search.bent = trial.curvature;
+            let goes_on = if trial.proven { search.keep(trial) } else { search.refuse(self, &trial) };
+            if !goes_on {
+                break;
+            }
+        }
+        self.end_at_corner(here, places, &mut search);
+        self.found(here, search)
+    }
+
+    /// Lets the longest vector that is proven end at a corner that is left beyond it.
+    fn end_at_corner(&self, here: &Vertex, places: Places, search: &mut Search) {
+        while !search.corners.is_met && search.best.is_some() {
+            let Some(trial) = self.trial_to_corner(here, places, search) else { return };
+            search.keep(trial);
+        }
+    }
+
+    /// The next trial: to a corner if there is one, or of the length that is to be tried.
+    fn trial(&self, here: &Vertex, places: Places, search: &mut Search) -> Option<Trial> {
+        if let Some(trial) = self.trial_to_corner(here, places, search) {
+            return Some(trial);
+        }
+        let Search { bends, bent, cap, .. } = *search;
+        let targets = self.targets(here, &bends, places);
+        let trial = self.attempt(here, search.length, cap, (targets, &bent, &bends));
+        match &trial {
+            Some(trial) if !trial.proven => search.corners.note(here, trial.vertex, false),
+            Some(_) => {}
+            None if search.corners.is_unknown() => {
+                if let Some(beyond) = self.beyond(here, search.length, targets, &bent) {
+                    search.corners.note(here, beyond, true);
+                }
+            }
+            None => {}
+        }
+        trial
+    }
+
+    /// A vector to a corner, if there is one.
+    fn trial_to_corner(&self, here: &Vertex, places: Places, search: &mut Search) -> Option<Trial> {
+        let Search { bends, bent, cap, .. } = *search;
+        let aim = (self.targets(here, &bends, places), &bent, &bends);
+        let known = search.best.as_ref().map(|(trial, _)| trial);
+        let trial = self.to_corner(here, known, cap, aim, &mut search.corners)?;
+        search.length = trial.length;
+        Some(trial)
+    }
+
+    /// The longest vector that has been found, or why there is none.
+    fn found(&self, here: &Vertex, search: Search) -> Result<Trial, MotionFailure> {
+        let Search { best, corners, culprit, .. } = search;
+        let tip = here.tip;
+        match (best, culprit) {
+            (Some((trial, _)), _) => Ok(Trial { is_at_corner: corners.is_met, ..trial }),
+            (None, Some((culprit, clearance))) if clearance != 0.0 => {
+                let role = self.roles()[culprit].name;
+                Err(MotionFailure::NoAdmissibleVector { role, clearance, tip })
+            }
+            _ => Err(MotionFailure::IterationLimit {
+                iteration: Iteration::StepLength,
+                limit: MAX_TRIALS,
+                tip,
+            }),
+        }
+    }
+}
