@@ -406,9 +406,13 @@ impl ConicStrips {
 
     /// Whether a place is where the surface ends.
     pub(super) fn ends_at(&self, touch: &Touch) -> bool {
-        let Some(patch) = self.sheet.patches.get(touch.piece) else { return false };
         let Touch { along, across, .. } = *touch;
         let at = [along <= AT_SIDE, along >= 1.0 - AT_SIDE, across <= AT_SIDE, across >= 1.0 - AT_SIDE];
-        at.into_iter().zip(patch.edges.sides).any(|(is_there, is_end)| is_there && is_end)
+        at.into_iter().zip(self.ends(touch.piece)).any(|(is_there, is_end)| is_there && is_end)
+    }
+
+    /// At which of its sides the surface ends on a patch.
+    pub(super) fn ends(&self, piece: usize) -> [bool; 4] {
+        self.sheet.patches.get(piece).map_or([false; 4], |patch| patch.edges.sides)
     }
 }

@@ -211,10 +211,14 @@ impl RuledStrips {
 
     /// Whether a place is where the surface ends: on the last rulings of its extension, or where all of them end.
     pub(super) fn ends_at(&self, touch: &Touch) -> bool {
-        let last = self.sheet.patches.len().saturating_sub(1);
-        let is_first = touch.piece == 0 && touch.along <= JOINT;
-        let is_last = touch.piece == last && touch.along >= 1.0 - JOINT;
-        is_first || is_last || touch.across <= JOINT || touch.across >= 1.0 - JOINT
+        let Touch { along, across, .. } = *touch;
+        let at = [along <= JOINT, along >= 1.0 - JOINT, across <= JOINT, across >= 1.0 - JOINT];
+        at.into_iter().zip(self.ends(touch.piece)).any(|(is_there, is_end)| is_there && is_end)
+    }
+
+    /// At which of its sides the surface ends on a patch.
+    pub(super) fn ends(&self, piece: usize) -> [bool; 4] {
+        [piece == 0, piece + 1 == self.sheet.patches.len(), true, true]
     }
 
     /// The natural normal, along the first curve × along the ruling; at a joint the middle between both sides.

@@ -8,6 +8,7 @@ use apt_geometry::Vec3;
 
 use super::{
     clearance::Reading,
+    patch::{Patch, sides},
     poly_conic::ConicStrips,
     ruled::RuledStrips,
     ruling::Ruling,
@@ -172,6 +173,29 @@ impl Ruled {
             Self::Joining(surface) => surface.ends_at(touch),
             Self::Conics(surface) => surface.ends_at(touch),
             Self::Parallel(_) | Self::Sculptured(_) => false,
+        }
+    }
+
+    /// Where it ends, as patches without width, and of which patch they are which side: what may be as near to a tool as a distance.
+    fn ends_within(&self, tip: &Vec3, tool: &Tool<'_>, distance: f64) -> (Vec<Patch>, Vec<(usize, usize)>) {
+        let Some(sheet) = self.sheet() else { return Default::default() };
+        let (middle, girth) = tool.ball_about(tip);
+        let all = sheet.patches.iter().enumerate();
+        let near = all.filter(|(_, patch)| patch.within(&middle, distance + girth).is_some());
+        let ends = near.flat_map(|(piece, patch)| {
+            let is_end = self.ends(piece);
+            let sides = sides(&patch.net).into_iter().enumerate().filter(move |(side, _)| is_end[*side]);
+            sides.map(move |(side, curve)| (Patch::straight(&[curve, curve]), (piece, side)))
+        });
+        ends.unzip()
+    }
+
+    /// At which of its sides the surface ends on a patch.
+    fn ends(&self, piece: usize) -> [bool; 4] {
+        match self {
+            Self::Joining(surface) => surface.ends(piece),
+            Self::Conics(surface) => surface.ends(piece),
+            Self::Parallel(_) | Self::Sculptured(_) => [false; 4],
         }
     }
 
@@ -342,12 +366,19 @@ impl<'a> Bodies<'a> {
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
         if self.tool.profile.widest() <= 0.0
-            && let Some(found) = self.led_out(tip, touch)?
+            && let Some(found) = self.led_out_anywhere(tip, touch)?
         {
             return Some(found);
         }
         let mut deepest = (-touch.value, self.away(touch)?);
         let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
+        // What of the tool is under the surface by more comes out past the end by less.
+        if touch.value <= 0.0
+            && self.surface.ends_at(touch)
+            && let Some(found) = self.moved_past_end(tip, touch)?
+        {
+            return Some(found);
+        }
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
         let shallow = touch.value <= 0.0 && deepest.0 <= self.deep;
@@ -391,6 +422,30 @@ impl<'a> Bodies<'a> {
         }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
         Some(depth_of(&deepest, error))
+    }
+
+    /// The clearance of a tool that an end of the surface is deepest in, by the translation past that end: from each place that is deepest
+    /// then it is moved off in turn. No translation that is less than the first depth frees it. None inside where it is not freed so.
+    fn moved_past_end(&self, tip: &Vec3, first: &Touch) -> Option<Option<Reading>> {
+        let (mut way, mut touch) = (Vec3::zeros(), *first);
+        for _ in 0..PROOF_STEPS {
+            way -= touch.outward * (self.close() - touch.value);
+            if way.norm() > self.deep || !self.is_off_own_side(first, &way)? {
+                break;
+            }
+            touch = self.touch(&(tip + way))?;
+            if touch.value >= touch.gap {
+                let error = way.norm() + first.value;
+                let found = Reading { value: -way.norm(), normal: way.normalize(), error };
+                return Some(self.is_on_side(&touch)?.then_some(found));
+            }
+        }
+        Some(None)
+    }
+
+    /// Whether a tool that is moved in a direction from a place comes off the surface on its own side.
+    fn is_off_own_side(&self, touch: &Touch, out: &Vec3) -> Option<bool> {
+        Some(self.side * self.surface.natural(touch)?.dot(out) >= 0.0)
     }
 
     /// Looks for deeper places of the tool's edges on the side of it where it is nearest.
@@ -506,10 +561,42 @@ impl<'a> Bodies<'a> {
         Some(())
     }
 
-    /// The clearance of a tool without a body by the translation that just frees it: no place of the surface is deep in it, and what is
-    /// under the surface may be anywhere along it. None inside where none is found.
-    fn led_out(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
-        let (mut out, mut way) = (self.away(touch)?, self.deep);
+    /// The clearance of a tool without a body by the lesser of the translations that just free it: off the surface where that is nearest,
+    /// and past the end. None inside where neither is found.
+    fn led_out_anywhere(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
+        let through = self.led_out(tip, self.away(touch)?, self.deep)?;
+        let less = through.map_or(self.deep, |found| -found.value);
+        let past = self.led_past_end(tip, less)?;
+        Some([through, past].into_iter().flatten().max_by(|a, b| a.value.total_cmp(&b.value)))
+    }
+
+    /// The same past an end of the surface that is no farther away than `most`.
+    fn led_past_end(&self, tip: &Vec3, most: f64) -> Option<Option<Reading>> {
+        let (ends, sides) = self.surface.ends_within(tip, self.tool, most);
+        if ends.is_empty() {
+            return Some(None);
+        }
+        let end = nearest(&ends, tip, self.tool, self.resolution, self.deep)?;
+        let way = end.value + 2.0 * self.close();
+        let (piece, side) = *sides.get(end.piece)?;
+        let [along, across] = [[0.0, end.along], [1.0, end.along], [end.along, 0.0], [end.along, 1.0]][side];
+        let at_end = Touch { piece, along, across, ..end };
+        if way > most || !self.is_off_own_side(&at_end, &end.outward)? {
+            return Some(None);
+        }
+        let touch = self.touch(&(tip + end.outward * way))?;
+        let is_freed = touch.value >= touch.gap && self.is_on_side(&touch)?;
+        // Where it goes through the surface it goes on doing so as long as it meets neither an end of it nor what leads off it.
+        Some(is_freed.then(|| Reading {
+            value: -way,
+            normal: end.outward,
+            error: 2.0 * self.close() + end.gap,
+        }))
+    }
+
+    /// The same from a direction in which so long a way frees the tool: no place of the surface is deep in it, and what is under the
+    /// surface may be anywhere along it.
+    fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Reading>> {
         for _ in 0..DIRECTIONS {
             let Some((least, normal)) = self.freed(tip, &out, way)? else { return Some(None) };
             // The place that holds it there holds it as long as it is not moved as far in its own direction.

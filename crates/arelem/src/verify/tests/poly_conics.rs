@@ -2,13 +2,18 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Remembering},
+    canonical::{Geometry, Remembering, extent::POLYCONIC_STATIONS_BEYOND},
     motion::{DriveSide, Relation},
 };
 use proptest::prelude::*;
 
 use super::{
-    super::{Rule, VerifyError, clearance::Surface, verify},
+    super::{
+        Rule, VerifyError,
+        clearance::{Clearance, Surface},
+        tool::Profile,
+        verify,
+    },
     clearances::{clearance, direction},
     cutter, cylinder,
     paths::{self, BAND},
@@ -124,6 +129,35 @@ fn a_tube_is_a_cylinder_for_the_whole_tool() {
         let (value, ..) = clearance(&short, &arc, -1.0, [2.5, 0.2, height], [0.0, 0.0, -1.0]);
         let (closed, ..) = clearance(&short, &whole, -1.0, [2.5, 0.2, height], [0.0, 0.0, -1.0]);
         assert!((value - closed).abs() < 1e-6, "{value} {closed}");
+    }
+}
+
+/// A tool that stands over the end of a surface is as deep in it as it takes to come out past the end on its own side, be some of it
+/// under the surface by ever so much more, or a line that goes through.
+#[test]
+fn a_tool_over_the_end_is_as_deep_as_it_is_over_it() {
+    let stations = [0.0, 6.0];
+    let arc = tube(ALONG_X, 2.0, 0.0, [45.0, 135.0], stations);
+    let end = stations[1] + (stations[1] - stations[0]) * POLYCONIC_STATIONS_BEYOND;
+    let lean = 0.1f64;
+    let across = Vec3::new(lean.cos(), 0.0, lean.sin());
+    let axis = [-lean.sin(), 0.0, lean.cos()];
+    let cylinder = cutter(&[0.5, 0.0]);
+    let line = cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
+    for depth in [1e-5, 3e-4, 2e-3] {
+        for (tool, radius) in [(&cylinder, 0.25), (&line, 0.0)] {
+            // The end is .1 above the tool end.
+            let tip = Vec3::new(end, 0.0, 2.0) - Vec3::from(axis) * 0.1 + across * (radius - depth);
+            let profile = Profile::of(tool).expect("a tool");
+            let surface = Surface::of(&arc).expect("a surface");
+            let deep = Clearance { allowed: 0.01, ..Clearance::new(&surface, &profile, 1.0) };
+            let found = deep.at(&tip, &Vec3::from(axis)).expect("a clearance");
+            assert!(
+                (found.value + depth).abs() <= found.error + 1e-9 && found.error < 1e-7,
+                "{depth} {radius}: {found:?}"
+            );
+            assert!((found.normal - across).norm() < 1e-2, "{found:?}");
+        }
     }
 }
 
