@@ -14,7 +14,7 @@ use super::{
     ruling::Ruling,
     sculptured::SculpturedStrips,
     span::Bend,
-    strip::{Touch, nearest},
+    strip::{Touch, nearest, nearest_to_all},
     survey::{Accuracy, Sheet},
     tool::{Meridian, Patience, Profile, Tool, perpendicular},
 };
@@ -381,7 +381,8 @@ impl<'a> Bodies<'a> {
         }
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
-        let shallow = touch.value <= 0.0 && deepest.0 <= self.deep;
+        // No place is deep in a tool without a body.
+        let shallow = touch.value <= touch.gap && deepest.0 <= self.deep;
         // Under an edge the surface is less deep in the tool than the edge is under the surface.
         let under_edge = shallow && self.is_at_edge(tip, touch);
         if under_edge {
@@ -419,6 +420,9 @@ impl<'a> Bodies<'a> {
             if ruling.is_left_behind(self.side, tip, self.tool, ways)? {
                 return Some(depth_of(&deepest, self.close()));
             }
+        }
+        if shallow && self.is_left_behind(tip, &deepest)? {
+            return Some(depth_of(&deepest, 4.0 * self.close()));
         }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
         Some(depth_of(&deepest, error))
@@ -630,6 +634,22 @@ impl<'a> Bodies<'a> {
             way -= room - self.close();
         }
         Some(None)
+    }
+
+    /// Whether every place of the surface is left behind in one of several directions, each across the surface where those before did not
+    /// lead away from it, by as much as is deepest: what is deep at two places is not as deep as both together.
+    fn is_left_behind(&self, tip: &Vec3, deepest: &(f64, Vec3)) -> Option<bool> {
+        let Some(sheet) = self.surface.sheet() else { return Some(false) };
+        let depth = deepest.0 + 4.0 * self.close();
+        let mut tips = vec![tip + deepest.1 * depth];
+        for _ in 0..DIRECTIONS {
+            let touch = nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep)?;
+            if touch.value >= touch.gap {
+                return self.is_on_side(&touch);
+            }
+            tips.push(tip + self.away(&touch)? * depth);
+        }
+        Some(false)
     }
 
     /// How much farther than the depth found the tool must be moved out until it is clear for certain; None where none of

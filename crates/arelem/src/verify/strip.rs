@@ -95,8 +95,27 @@ pub(super) fn tangent(c: &Cubic, t: f64) -> Vec3 {
     lerp(&lerp(&ab, &bc, t), &lerp(&bc, &cd, t), t)
 }
 
+/// How far the middle of a cell is from a tool, the direction in which that is left behind fastest, how far any of its places is
+/// at least, and how much that bound varies along and across.
+#[derive(Clone, Copy)]
+struct Seen {
+    value: f64,
+    outward: Vec3,
+    lower: f64,
+    spread: [f64; 2],
+}
+
+impl Seen {
+    /// Of two tools that which is farther away; either bounds how far places are from the farther.
+    fn farther(self, other: Self) -> Self {
+        let lower = self.lower.max(other.lower);
+        if self.value >= other.value { Self { lower, ..self } } else { Self { lower, ..other } }
+    }
+}
+
 struct Search<'a> {
-    tip: Vec3,
+    /// Where the tool end is, in one place or several: what counts of a place is its greatest distance.
+    tips: &'a [Vec3],
     tool: &'a Tool<'a>,
     resolution: f64,
     sure: f64,
@@ -104,9 +123,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Distance of a place, and the direction in which the tool is left behind fastest.
-    fn measure(&self, x: &Vec3, surface_normal: &Vec3) -> (f64, Vec3) {
-        let w = x - self.tip;
+    /// Distance of a place from the tool with its end at `tip`, and the direction in which that is left behind fastest.
+    fn measure(&self, tip: &Vec3, x: &Vec3, surface_normal: &Vec3) -> (f64, Vec3) {
+        let w = x - tip;
         let (distance, q) = self.tool.signed_distance(&w);
         let away = w - q;
         let size = away.norm();
@@ -115,7 +134,7 @@ impl Search<'_> {
 
     /// The least height of a patch over the half-space with an outward normal that holds the tool, and how much the height
     /// varies along and across.
-    fn bound(&self, net: &Net, outward: &Vec3) -> (f64, [f64; 2]) {
+    fn bound(&self, tip: &Vec3, net: &Net, outward: &Vec3) -> (f64, [f64; 2]) {
         let mut lower = f64::INFINITY;
         let mut spread = [0.0f64; 2];
         let (mut lowest, mut highest) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
@@ -132,31 +151,27 @@ impl Search<'_> {
         for (low, high) in lowest.into_iter().zip(highest) {
             spread[1] = spread[1].max(high - low);
         }
-        (lower - outward.dot(&self.tip) - self.tool.support(outward).0, spread)
+        (lower - outward.dot(tip) - self.tool.support(outward).0, spread)
     }
 
     fn cell(&mut self, net: Net, piece: usize, along: [f64; 2], across: [f64; 2]) -> Cell {
         super::tool::count_work();
-        let [x, run, rise] = jet(&net, [0.5; 2]);
+        let jet @ [x, run, rise] = jet(&net, [0.5; 2]);
         let normal = run.cross(&rise);
         let size = normal.norm();
         let normal = if size > 0.0 { normal / size } else { self.tool.axis };
-        let (value, mut outward) = self.measure(&x, &normal);
-        let (mut lower, spread) = self.bound(&net, &outward);
-        if self.best.is_none_or(|b| lower < b.value) {
-            if value.abs() <= self.sure {
-                let w = x - self.tip;
-                let height = |n: &Vec3| n.dot(&w) - self.tool.support(n).0;
-                for level in self.tool.outward_at(&w) {
-                    lower = lower.max(self.bound(&net, &level).0);
-                    if height(&level) >= height(&outward) {
-                        outward = level;
-                    }
-                }
-            }
-            let enough = self.best.map_or(value, |b| b.value.min(value)) - self.resolution;
-            lower = self.closer((&net, [&x, &run, &rise]), [&outward, &normal], lower, enough);
+        let mut seen: Option<Seen> = None;
+        for tip in self.tips {
+            let other = self.seen(tip, (&net, &jet), &normal);
+            seen = Some(seen.map_or(other, |seen| seen.farther(other)));
         }
+        let seen = seen.unwrap_or(Seen {
+            value: f64::INFINITY,
+            outward: normal,
+            lower: f64::INFINITY,
+            spread: [0.0; 2],
+        });
+        let Seen { value, outward, lower, spread } = seen;
         if self.best.is_none_or(|b| value < b.value) {
             let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
             self.best = Some(Touch { value, gap: 0.0, outward, point: x, piece, along, across });
@@ -164,10 +179,33 @@ impl Search<'_> {
         Cell { net, piece, along, across, lower, halve_along: spread[0] >= spread[1] }
     }
 
+    /// How far a cell is from the tool with its end at `tip`; its middle, the derivatives there and its normal are given.
+    fn seen(&self, tip: &Vec3, (net, jet): (&Net, &[Vec3; 3]), normal: &Vec3) -> Seen {
+        let [x, run, rise] = jet;
+        let (value, mut outward) = self.measure(tip, x, normal);
+        let (mut lower, spread) = self.bound(tip, net, &outward);
+        if self.best.is_none_or(|b| lower < b.value) {
+            if value.abs() <= self.sure {
+                let w = x - tip;
+                let height = |n: &Vec3| n.dot(&w) - self.tool.support(n).0;
+                for level in self.tool.outward_at(&w) {
+                    lower = lower.max(self.bound(tip, net, &level).0);
+                    if height(&level) >= height(&outward) {
+                        outward = level;
+                    }
+                }
+            }
+            let enough = self.best.map_or(value, |b| b.value.min(value)) - self.resolution;
+            lower = self.closer(tip, (net, [x, run, rise]), [&outward, normal], lower, enough);
+        }
+        Seen { value, outward, lower, spread }
+    }
+
     /// A closer bound of a cell's distance than that by the half-space with an outward normal where its middle is nearest; its
     /// middle, the derivatives there and its normal are given. A bound of `enough` need not be made closer.
     fn closer(
         &self,
+        tip: &Vec3,
         (net, jet): (&Net, [&Vec3; 3]),
         [outward, normal]: [&Vec3; 2],
         mut lower: f64,
@@ -178,26 +216,26 @@ impl Search<'_> {
         let towards = if normal.dot(outward) < 0.0 { -normal } else { *normal };
         for level in [towards, -towards] {
             if lower < enough {
-                lower = lower.max(self.bound(net, &level).0);
+                lower = lower.max(self.bound(tip, net, &level).0);
             }
         }
         // Along a straight flank, or a tool that is a line, the surface says which of its normals is across it.
         if lower < enough
             && let Some(level) = self.tool.turned_to(outward, &towards)
         {
-            lower = lower.max(self.bound(net, &level).0);
+            lower = lower.max(self.bound(tip, net, &level).0);
         }
         // Beside the contact on an edge the surface turns along the edge: of its normals the part that the tool, a body
         // of revolution, can have where it is nearest.
         if lower < enough
-            && let Some(level) = self.tool.without_azimuth(&(jet[0] - self.tip), normal)
+            && let Some(level) = self.tool.without_azimuth(&(jet[0] - tip), normal)
         {
             let level = if level.dot(outward) < 0.0 { -level } else { level };
-            lower = lower.max(self.bound(net, &level).0);
+            lower = lower.max(self.bound(tip, net, &level).0);
         }
         // Beside an edge of the tool, or in its middle, several of its faces are as near; of what is outside one says all.
         if lower < enough.min(0.0) {
-            lower = lower.max(lower_bound(net, jet, (&self.tip, self.tool), enough));
+            lower = lower.max(lower_bound(net, jet, (tip, self.tool), enough));
         }
         lower
     }
@@ -254,9 +292,20 @@ pub(super) fn nearest(
     resolution: f64,
     deep: f64,
 ) -> Option<Touch> {
+    nearest_to_all(patches, &[*tip], tool, resolution, deep)
+}
+
+/// The same where the tool end is in several places, and what counts is the greatest distance of a place from the tool in all of them.
+pub(super) fn nearest_to_all(
+    patches: &[Patch],
+    tips: &[Vec3],
+    tool: &Tool<'_>,
+    resolution: f64,
+    deep: f64,
+) -> Option<Touch> {
     let sure = SURE_DIRECTION * tool.profile.reach() + resolution;
-    let mut search = Search { tip: *tip, tool, resolution, sure, best: None };
-    let middle = tip + tool.axis * (0.5 * tool.profile.reach());
+    let mut search = Search { tips, tool, resolution, sure, best: None };
+    let middle = tips.first()? + tool.axis * (0.5 * tool.profile.reach());
     let first = patches
         .iter()
         .enumerate()
@@ -268,13 +317,16 @@ pub(super) fn nearest(
     let mut open = BinaryHeap::with_capacity(32);
     open.push(search.whole(patches.get(first)?, first));
     search.close_in(&mut open, deep, &mut budget)?;
-    let found = search.best?;
-    let base = found.outward.dot(tip) + tool.support(&found.outward).0;
+    let outward = search.best?.outward;
+    // The greatest distances are from where that is least.
+    let level = |tip: &Vec3| outward.dot(tip) + tool.support(&outward).0;
+    let tip = tips.iter().min_by(|a, b| level(a).total_cmp(&level(b)))?;
+    let base = level(tip);
     for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
         let best = search.best?.value;
         let enough = best - resolution;
-        let [a, b] = patch.spine.map(|end| found.outward.dot(&end) - base - patch.girth);
-        if a.min(b) < enough && search.bound(&patch.net, &found.outward).0 < enough {
+        let [a, b] = patch.spine.map(|end| outward.dot(&end) - base - patch.girth);
+        if a.min(b) < enough && search.bound(tip, &patch.net, &outward).0 < enough {
             let cell = search.whole(patch, k);
             open.push(cell);
         }

@@ -111,9 +111,11 @@ fn a_tool_too_deep_at_two_places_is_as_deep_as_the_deeper() {
     for (depth, aside) in [(1e-4, 0.0), (4e-4, 1e-4), (9e-4, -2e-5)] {
         let tip = Vec3::new(aside, ((2.0 + depth) * (2.0 + depth) - 1.0_f64).sqrt(), 0.1);
         let deepest = (1.0 + aside.abs()).hypot(tip.y) - 2.0;
-        let found = vault.followed(1.0, &tip, &tool).expect("it is shown");
-        let error = found.error + 2.0 * vault.error() + 1e-9;
-        assert!((found.value + deepest).abs() <= error && error < 1e-7, "{found:?} {deepest}");
+        let followed = vault.followed(1.0, &tip, &tool).expect("it is shown");
+        for found in [followed, searched(vault, 1.0, &tip, &tool).expect("a clearance")] {
+            let error = found.error + 2.0 * vault.error() + 1e-9;
+            assert!((found.value + deepest).abs() <= error && error < 1e-7, "{found:?} {deepest}");
+        }
     }
 }
 
@@ -136,6 +138,31 @@ fn a_ball_too_deep_in_both_walls_of_a_groove_is_as_deep_as_in_the_deeper() {
         }
         assert!((apart(&center) - radius + depth).abs() < 1e-12);
         let found = searched(ruling, 1.0, &(center - tool.axis * radius), &tool).expect("a clearance");
+        assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
+    }
+}
+
+/// No place of the walls is deep in a line across a groove, and no one way leads both its ends out.
+#[test]
+fn a_line_too_long_for_a_groove_is_as_deep_as_its_deeper_end() {
+    let groove =
+        tabulated([Vec3::x(), Vec3::y(), Vec3::z()], &[[-2.0, 2.0, -2.0], [0.0, 0.0, 0.0], [2.0, 2.0, 2.0]]);
+    let surface = Surface::of(&groove).unwrap();
+    let Surface::Ruled(ruling) = &surface else { panic!("{surface:?}") };
+    let profile = line(2.0);
+    let mut tool = Tool::new(&profile, Vec3::x());
+    tool.depth = ALLOWED;
+    let depths =
+        |tip: &Vec3| [*tip, tip + tool.axis * 2.0].map(|end| -surface.point_distance(&end).unwrap().0);
+    for (depth, aside) in [(1e-5, 0.0), (4e-4, 1e-4), (9e-4, -2e-5)] {
+        let mut tip = Vec3::new(aside - 1.0, 1.5, 0.1);
+        for _ in 0..100 {
+            let [first, last] = depths(&tip);
+            tip.y += first.max(last) - depth;
+        }
+        let [first, last] = depths(&tip);
+        assert!((first.max(last) - depth).abs() < 1e-12 && first.min(last) > 0.0, "{first} {last}");
+        let found = searched(ruling, 1.0, &tip, &tool).expect("a clearance");
         assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
     }
 }
