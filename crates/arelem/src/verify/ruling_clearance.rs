@@ -27,7 +27,7 @@ const RESOLUTION_OF_ERROR: f64 = 0.05;
 const PARALLEL: f64 = 1e-13;
 /// Sine of the angle to the tool axis at which a normal is square to it.
 const UPRIGHT: f64 = 1e-9;
-/// Distance, relative to the tool, from which on the difference of two places is a direction.
+/// Distance, relative to the tool, or to the surface for a point, from which on the difference of two places is a direction.
 const SURE_DISTANCE: f64 = 1e-3;
 /// Parameter next to the end of a piece at which the surface may have an edge.
 const JOINT: f64 = 1e-7;
@@ -247,14 +247,22 @@ fn seen_from(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(Readi
     if let Some(found) = surface.followed(1.0, x, &tool) {
         return Some((found, false));
     }
-    let touch = surface.nearest(x, &tool, resolution(surface, x, 0.0), f64::INFINITY)?;
+    from_nearest(surface, x, &tool)
+}
+
+/// The same by the nearest place, for the tool end.
+fn from_nearest(surface: &Ruled, x: &Vec3, tool: &Tool<'_>) -> Option<(Reading, bool)> {
+    let touch = surface.nearest(x, tool, resolution(surface, x, 0.0), f64::INFINITY)?;
     let natural = surface.natural(&touch)?;
-    let error = surface.error_near(x, &tool, touch.value + touch.gap);
+    let error = surface.error_near(x, tool, touch.value + touch.gap);
     let height = natural.dot(&(x - touch.point));
     let away = x - touch.point;
-    // At a joint the point is in the fan of its normals.
+    // At a joint the point is in the fan of its normals. A place that is as near as the nearest, to within the gap, may be beside it by
+    // as much as says nothing of directions; far away it says more than a normal that is taken as much beside.
     let size = away.norm();
-    if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) {
+    let beside = away.norm_squared() - height * height;
+    let is_in_fan = size > SURE_DISTANCE * surface.size() || beside > touch.gap * (2.0 * size + touch.gap);
+    if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) && is_in_fan {
         let normal = away * (height.signum() / size);
         return Some((Reading { value: size.copysign(height), normal, error }, surface.ends_at(&touch)));
     }
@@ -322,6 +330,13 @@ fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Rea
 pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Reading> {
     let bodies = Bodies::of(surface, side, tool, tip);
     bodies.settled(tip, &bodies.touch(tip)?)
+}
+
+/// The signed distance of a point without regard to what was found before.
+#[cfg(test)]
+pub(super) fn searched_point(surface: &Ruled, x: &Vec3) -> Option<Reading> {
+    let profile = Profile::tool_end();
+    Some(from_nearest(surface, x, &Tool::new(&profile, Vec3::z()))?.0)
 }
 
 impl<'a> Bodies<'a> {

@@ -5,7 +5,7 @@ use apt_geometry::Vec3;
 use super::{
     super::{
         clearance::{Reading, Surface},
-        ruling_clearance::searched,
+        ruling_clearance::{searched, searched_point},
         tool::{Profile, Tool, WORK},
     },
     cutter, cylinder,
@@ -116,6 +116,23 @@ fn a_tool_too_deep_at_two_places_is_as_deep_as_the_deeper() {
             let error = found.error + 2.0 * vault.error() + 1e-9;
             assert!((found.value + deepest).abs() <= error && error < 1e-7, "{found:?} {deepest}");
         }
+    }
+}
+
+/// Close above a surface that is not known closely the nearest place found is beside the nearest, by more than the point is above it.
+#[test]
+fn the_direction_to_a_surface_close_by_is_its_normal() {
+    let wall = || cylinder([0.0; 3], UP, 2.0);
+    let curve = |z: f64| section(wall(), [[-2.0, 0.0, z], [2.0, 0.0, z]], [0.0, 1.0, 0.0]);
+    let surface = Surface::within(&ruled(curve(-1.0), curve(1.0)), 1e-7).unwrap();
+    let Surface::Ruled(vault) = &surface else { panic!("{surface:?}") };
+    for k in 0..40 {
+        let (sine, cosine) = (0.4 + 0.05 * f64::from(k)).sin_cos();
+        let normal = Vec3::new(cosine, sine, 0.0);
+        let place = normal * (2.0 - 2.5e-5) + Vec3::z() * (0.02 * f64::from(k) - 0.3);
+        let found = searched_point(vault, &place).expect("a distance");
+        assert!((found.value.abs() - 2.5e-5).abs() < 1e-6, "{k}: {found:?}");
+        assert!(found.normal.cross(&normal).norm() < 1e-4, "{k}: {found:?}");
     }
 }
 
