@@ -4,7 +4,7 @@
 use super::{
     Surface,
     bend::parallel_bend,
-    part::{Form, Survey, leading},
+    part::{Form, Lengthwise, Survey, leading},
     sheet::Jet,
 };
 use crate::Vec3;
@@ -225,22 +225,28 @@ impl Surface {
     /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of
     /// surface, and where it ends or has an edge or no tangent plane there.
     pub fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
-        self.forms_asked(side, center, reach, Survey::of_forms(center, reach, side)).map(leading)
-    }
-
-    /// The same with small errors, all of them.
-    pub fn fine_forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
-        self.forms_asked(side, center, reach, Survey::of_fine_forms(center, reach, side))
-    }
-
-    fn forms_asked(&self, side: f64, center: &Vec3, reach: f64, asked: Survey) -> Option<Vec<Form>> {
-        match self {
+        let asked = Survey::of_forms(center, reach, side);
+        let forms = match self {
             Self::Tabulated(curve) => curve.forms(side, center, reach),
             Self::Ruled(sheet) => sheet.survey(asked).forms(),
             Self::PolyConic(sheet) => sheet.forms(asked),
             Self::Sculptured(sheet) => sheet.survey(asked).forms(),
             _ => None,
-        }
+        };
+        forms.map(leading)
+    }
+
+    /// The curvature of a cylinder along a line that bends as much as a ruled, polyconic or sculptured surface towards a side at all places
+    /// within reach of a point; `None` where there is none as asked for, and where the surface ends or has an edge there.
+    pub fn curvature_across(&self, side: f64, center: &Vec3, reach: f64, asked: Lengthwise) -> Option<f64> {
+        let asked = Survey::of_lengthwise(center, reach, side, asked);
+        let survey = match self {
+            Self::Ruled(sheet) => sheet.survey(asked),
+            Self::PolyConic(sheet) => sheet.survey(asked),
+            Self::Sculptured(sheet) => sheet.survey(asked),
+            _ => return None,
+        };
+        survey.curvature_across()
     }
 
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.

@@ -253,12 +253,19 @@ proptest! {
         let side = if natural { 1.0 } else { -1.0 };
         let foot = surface.foot(&Vec3::from(near));
         let center = foot.point - foot.normal * surface.stock(1.0);
-        let Some(forms) = surface.forms(side, &center, reach) else { return Ok(()) };
-        prop_assert!(!forms.is_empty());
+        let forms = surface.forms(side, &center, reach);
+        prop_assert!(forms.as_ref().is_none_or(|forms| !forms.is_empty()));
         for along in alongs.into_iter().filter_map(|along| Vec3::from(along).try_normalize(0.1)) {
-            let curvatures: Option<Vec<f64>> = forms.iter().map(|form| form.curvature_across(&along, 0.0)).collect();
-            let Some(curvature) = curvatures.and_then(|all| all.into_iter().reduce(f64::max)) else { continue };
-            for e in &ways {
+            let curvatures: Option<Vec<f64>> =
+                forms.iter().flatten().map(|form| form.curvature_across(&along, 0.0)).collect();
+            let by_forms = curvatures.and_then(|all| all.into_iter().reduce(f64::max)).map(|across| (0.0, across));
+            let lengthwise = [0.0, 0.1].map(|least| {
+                let asked = Lengthwise { along, least, enough: 0.2, most: 5.0 };
+                surface.curvature_across(side, &center, reach, asked).map(|across| (least, across))
+            });
+            for ((least, curvature), e) in
+                [by_forms, lengthwise[0], lengthwise[1]].into_iter().flatten().flat_map(|one| ways.iter().map(move |e| (one, e)))
+            {
                 let foot = surface.foot(&(center + Vec3::new(e[0], e[1], e[2]) * reach));
                 let place = foot.point - foot.normal * surface.stock(1.0);
                 if (place - center).norm() > reach {
@@ -267,7 +274,8 @@ proptest! {
                 let way = Vec3::new(e[3], e[4], e[5]);
                 let bend = -side * way.dot(&(surface.foot_and_hessian(&place).1 * way));
                 let across = way.norm_squared() - way.dot(&along).powi(2);
-                prop_assert!(bend <= curvature * across + 1e-6, "{which}: {bend} with {curvature}");
+                let most = curvature * across + least * way.norm_squared();
+                prop_assert!(bend <= most + 1e-6, "{which}: {bend} with {curvature} and {least}");
             }
         }
     }

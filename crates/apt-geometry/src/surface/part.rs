@@ -5,7 +5,7 @@ mod body;
 mod form;
 mod kept;
 
-pub use self::form::Form;
+pub use self::form::{Form, Lengthwise};
 pub(super) use self::{
     form::leading,
     kept::{Count, Later},
@@ -230,6 +230,9 @@ pub(super) struct Survey {
     forms: Option<Vec<Form>>,
     /// Error of a form, as a share of it, that is close enough.
     form_error: f64,
+    /// Which cylinder along a line bends as much as all parts within reach, if that is asked for and nothing else, with the curvature
+    /// that those looked at need.
+    across: Option<(Lengthwise, f64)>,
 }
 
 impl Survey {
@@ -252,6 +255,7 @@ impl Survey {
             enough: f64::NEG_INFINITY,
             forms: None,
             form_error: CLOSE,
+            across: None,
         }
     }
 
@@ -263,8 +267,13 @@ impl Survey {
     }
 
     /// The same question in the coordinates of a surface.
-    pub(super) fn within(self, center: Vec3, normal: Vec3) -> Self {
-        Self { center, normal, ..self }
+    pub(super) fn within(self, center: Vec3, turned: impl Fn(&Vec3) -> Vec3) -> Self {
+        let normal = turned(&self.normal);
+        let across = self.across.map(|(asked, found)| {
+            let along = turned(&asked.along);
+            (Lengthwise { along, ..asked }, found)
+        });
+        Self { center, normal, across, ..self }
     }
 
     /// What was found of a sheet, unless the surface ends or turns away within reach.
@@ -272,10 +281,6 @@ impl Survey {
         let (seen, behind) = (self.curvature, self.behind);
         let curvature = if self.side > 0.0 { [seen, behind] } else { [behind, seen] };
         (!self.jumps).then_some(Facing { curvature, cosine: self.cosine })
-    }
-
-    pub(super) fn normal(&self) -> &Vec3 {
-        &self.normal
     }
 
     pub(super) fn center(&self) -> &Vec3 {
@@ -303,6 +308,7 @@ impl Survey {
     /// Whether what has been found is no less than parts with normals of at least a cosine.
     fn has(&self, parts: &Summary, cosine: f64) -> bool {
         self.forms.is_none()
+            && self.across.is_none()
             && parts.curvature(self.side) <= self.curvature
             && cosine >= self.cosine
             && !parts.ends
@@ -535,6 +541,9 @@ impl Part {
         }
         if survey.forms.is_some() {
             return self.survey_forms(sheet, survey, depth);
+        }
+        if survey.across.is_some() {
+            return self.survey_across(sheet, survey, depth);
         }
         survey.seen += 1;
         if (self.center - survey.center).norm() > survey.reach + self.radius {

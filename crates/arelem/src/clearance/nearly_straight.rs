@@ -4,7 +4,10 @@
 //! Where all forms S of the surface about are at most `μ I + b (I − t tᵀ)`, so are `S (1 − d S)⁻¹` at a distance d with
 //! `μ/(1 − d μ)` along t and `(μ + b)/(1 − d (μ + b))` across it, for that grows with S.
 
-use apt_geometry::{Vec3, surface::Surface};
+use apt_geometry::{
+    Vec3,
+    surface::{Lengthwise, Surface},
+};
 
 use super::{
     Tool,
@@ -35,14 +38,11 @@ impl Course {
         let stock = surface.stock(side);
         let distance = base.distance + stock;
         // No foot of a place within reach is farther away.
-        let forms = surface.fine_forms(side, &base.place, distance.abs() + 2.0 * reach)?;
-        let across = |least: f64| {
-            let mut all = forms.iter().map(|form| form.curvature_across(&along, -least));
-            all.try_fold(0.0, |most: f64, one| one.map(|one| most.max(one)))
-        };
+        let feet = distance.abs() + 2.0 * reach;
         let (least, across) = SHARES.into_iter().find_map(|share| {
             let least = share * bend;
-            across(least).filter(|across| *across <= MOST_ACROSS * bend).map(|across| (least, across))
+            let asked = Lengthwise { along, least, enough: bend, most: MOST_ACROSS * bend };
+            Some((least, surface.curvature_across(side, &base.place, feet, asked)?))
         })?;
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));

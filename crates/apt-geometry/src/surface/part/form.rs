@@ -13,6 +13,19 @@ const FINE: f64 = 1.0 / 32.0;
 /// Error of forms, as a share of them, that tells how a surface bends along a line that is nearly straight on it.
 const FINE_ERROR: f64 = 0.005;
 
+/// The question which curvature a cylinder along a line needs at least to bend as much as a surface that nearly goes along it.
+#[derive(Debug, Clone, Copy)]
+pub struct Lengthwise {
+    /// Unit direction of the line.
+    pub along: Vec3,
+    /// How much the surface may bend along it.
+    pub least: f64,
+    /// A curvature that no better one is looked for than.
+    pub enough: f64,
+    /// More is none.
+    pub most: f64,
+}
+
 /// Second fundamental forms of all places of a part of a surface, as forms on vectors in space: that of a vector is that of its
 /// part in the tangent plane. Positive where the surface bends towards the side asked about.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,9 +135,15 @@ impl Survey {
         Self { forms: Some(Vec::new()), ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
     }
 
-    /// The same, with errors that are small enough to tell how a surface bends along a line that is nearly straight on it.
-    pub(in super::super) fn of_fine_forms(center: &Vec3, reach: f64, side: f64) -> Self {
-        Self { form_error: FINE_ERROR, ..Self::of_forms(center, reach, side) }
+    /// Asks which cylinder along a line bends as much as all parts within reach of a point towards a side.
+    pub(in super::super) fn of_lengthwise(center: &Vec3, reach: f64, side: f64, asked: Lengthwise) -> Self {
+        let across = Some((asked, 0.0));
+        Self { across, form_error: FINE_ERROR, ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+    }
+
+    /// The curvature of that cylinder, unless it is more than asked for.
+    pub(in super::super) fn curvature_across(&self) -> Option<f64> {
+        self.across.filter(|_| !self.jumps).map(|(_, found)| found)
     }
 
     /// The forms asked for, unless some place within reach has none.
@@ -153,6 +172,28 @@ impl Part {
                 survey.forms.iter_mut().for_each(|forms| forms.push(form));
             }
             None => survey.jumps = true,
+        }
+    }
+
+    /// Takes the cylinder that a part within reach needs; its halves tell it more closely than needed only where they must.
+    pub(super) fn survey_across(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
+        let Some((asked, found)) = survey.across else { return };
+        if self.bound(&survey.center) > survey.reach {
+            return;
+        }
+        survey.seen += 1;
+        let form = self.form.get(|| self.form_of(sheet).map(Box::new)).as_deref();
+        let needed = form
+            .and_then(|form| form.seen_from(survey.side).curvature_across(&asked.along, -asked.least))
+            .unwrap_or(f64::INFINITY);
+        let close = |form: &Form| form.error <= survey.form_error * form.middle.norm();
+        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        if needed > asked.enough.max(found) && !fine && !form.is_some_and(close) {
+            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
+        } else if needed <= asked.most {
+            survey.across = Some((asked, found.max(needed)));
+        } else {
+            survey.jumps = true;
         }
     }
 

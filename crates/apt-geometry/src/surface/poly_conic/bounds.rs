@@ -111,8 +111,7 @@ impl PolyConicSheet {
     /// Answers a question about the conics' surface, asked in program coordinates.
     pub(in super::super) fn survey(&self, survey: Survey) -> Survey {
         let own = self.form.map.apply_point(survey.center());
-        let normal = self.form.map.apply_vector(survey.normal());
-        let mut survey = survey.within(own, normal);
+        let mut survey = survey.within(own, |way| self.form.map.apply_vector(way));
         let mut open = Vec::with_capacity(DEEP);
         open.push(0usize);
         while let Some(node) = open.pop() {
