@@ -510,14 +510,23 @@ fn offset_contact(
 
 /// Distance of the whole tool from a surface without regard to sides: positive when they do not touch, on whichever
 /// side the tool is; the side with the greater clearance. The side that the tool end is on is asked first: how deep a tool
-/// that is clear on one side is from the other is dear and of no account.
-pub(crate) fn separation(tool: &Tool, surface: &Surface, tip: &Vec3) -> (Contact, f64) {
+/// that is clear on one side is from the other is dear and of no account. What was found last on either side is remembered.
+pub(crate) fn separation(
+    tool: &Tool,
+    surface: &Surface,
+    tip: &Vec3,
+    memories: &[Memory; 2],
+) -> (Contact, f64) {
     let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
-    let here = offset_contact(tool, surface.met_from(side, &tool.axis), side, tip, None).0;
+    let contact = |side: f64| {
+        let memory = &memories[usize::from(side < 0.0)];
+        offset_contact(tool, surface.met_from(side, &tool.axis), side, tip, Some(memory)).0
+    };
+    let here = contact(side);
     if here.clearance >= 0.0 {
         return (here, side);
     }
-    let beyond = offset_contact(tool, surface.met_from(-side, &tool.axis), -side, tip, None).0;
+    let beyond = contact(-side);
     let is_here = here.clearance > beyond.clearance || here.clearance == beyond.clearance && side > 0.0;
     if is_here { (here, side) } else { (beyond, -side) }
 }

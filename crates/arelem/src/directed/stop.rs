@@ -4,6 +4,8 @@
 
 pub(super) mod graze;
 
+use std::rc::Rc;
+
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
@@ -80,6 +82,8 @@ pub(super) struct Watcher<'a> {
     pub(super) nearest: (f64, Vec3, usize),
     /// Looks for the nearest approach on every vector, also where no position is within reach.
     thorough: bool,
+    /// Where contact with each check surface was last, on the natural side and on the other.
+    memories: Rc<[[Memory; 2]]>,
 }
 
 impl<'a> Watcher<'a> {
@@ -91,6 +95,7 @@ impl<'a> Watcher<'a> {
             met: 0,
             nearest: (f64::INFINITY, prepared.tip, 0),
             thorough: false,
+            memories: checks.iter().map(|_| Default::default()).collect(),
         };
         for (index, check) in checks.iter().enumerate() {
             let value = if is_tangent(check.relation) {
@@ -128,7 +133,7 @@ impl<'a> Watcher<'a> {
             let distance = working.gauge.surface.signed_distance(tip);
             return (distance, if distance < 0.0 { -1.0 } else { 1.0 });
         }
-        let (contact, side) = separation(tool, &working.gauge.surface, tip);
+        let (contact, side) = separation(tool, &working.gauge.surface, tip, &self.memories[index]);
         (contact.clearance - working.gauge.thickness - working.rest(), side)
     }
 
