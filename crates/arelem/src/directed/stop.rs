@@ -338,10 +338,8 @@ impl<'a> Watcher<'a> {
         if last.abs() - (high - low) * sweep.stretch(reach) >= self.nearest.0 {
             return;
         }
-        let level = |x: f64| Some(self.value_at(index, sweep, x).0.abs());
-        if let Some((x, value)) = graze::least([low, high], &level) {
-            self.note(index, value, &sweep.at(x).0);
-        }
+        let (x, value) = graze::least_value([low, high], &|x| self.value_at(index, sweep, x).0.abs());
+        self.note(index, value, &sweep.at(x).0);
     }
 
     /// Bisects a sign change; the side is that on which the tool is clear (TO: before, PAST: after), for ON that it

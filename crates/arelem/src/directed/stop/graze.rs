@@ -16,6 +16,8 @@ const NEAR: f64 = 4.0;
 const MAX_ITERATIONS: u32 = 80;
 /// Share of the stretch at which it ends.
 const RESOLUTION: f64 = 1e-9;
+/// The same where only the value counts: beside the least one it changes with the square.
+const RESOLUTION_OF_VALUE: f64 = 1e-6;
 /// Share of the vector at its ends that belongs to its neighbours.
 const END: f64 = 1e-6;
 
@@ -43,6 +45,65 @@ pub(in crate::directed) fn least(
         }
     }
     Some(if at_x <= at_y { (x, at_x) } else { (y, at_y) })
+}
+
+/// The least value of a function of one valley on a stretch and where it is, by parabolas through the last places, and by golden sections
+/// where these do not close in on it (Brent): fewer places than by golden sections alone.
+pub(super) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> (f64, f64) {
+    let golden = 0.5 * (3.0 - 5.0_f64.sqrt());
+    let tolerance = RESOLUTION_OF_VALUE * (high - low);
+    let (mut a, mut b) = (low, high);
+    let first = a + golden * (b - a);
+    // The best places so far, the best one first, and the last two steps.
+    let [mut best, mut second, mut third] = [(first, value(first)); 3];
+    let (mut step, mut before) = (0.0_f64, 0.0_f64);
+    for _ in 0..MAX_ITERATIONS {
+        let middle = 0.5 * (a + b);
+        if (best.0 - middle).abs() + 0.5 * (b - a) <= 2.0 * tolerance {
+            break;
+        }
+        let parabola = vertex(best, second, third)
+            .filter(|x| *x > a + tolerance && *x < b - tolerance && (x - best.0).abs() < 0.5 * before.abs());
+        before = step;
+        step = match parabola {
+            Some(x) => x - best.0,
+            None => {
+                before = if best.0 >= middle { a - best.0 } else { b - best.0 };
+                golden * before
+            }
+        };
+        let x = best.0 + if step.abs() >= tolerance { step } else { tolerance.copysign(step) };
+        let found = (x, value(x));
+        if found.1 <= best.1 {
+            if x >= best.0 {
+                a = best.0
+            } else {
+                b = best.0
+            }
+            (third, second, best) = (second, best, found);
+        } else {
+            if x < best.0 {
+                a = x
+            } else {
+                b = x
+            }
+            if found.1 <= second.1 || second.0 == best.0 {
+                (third, second) = (second, found);
+            } else if found.1 <= third.1 || third.0 == best.0 || third.0 == second.0 {
+                third = found;
+            }
+        }
+    }
+    best
+}
+
+/// Where the parabola through three places has its vertex, if it has one.
+fn vertex(best: (f64, f64), second: (f64, f64), third: (f64, f64)) -> Option<f64> {
+    let side = |other: (f64, f64), against: (f64, f64)| (best.0 - other.0) * (best.1 - against.1);
+    let (r, q) = (side(second, third), side(third, second));
+    let (over, under) = ((best.0 - third.0) * q - (best.0 - second.0) * r, 2.0 * (q - r));
+    let x = best.0 - over / under;
+    x.is_finite().then_some(x)
 }
 
 impl Watcher<'_> {

@@ -1,17 +1,22 @@
 //! Tools so thin that a step, or the place in the band where they stop, is wider: they go through a check surface without
 //! ever being in it, and are TO and PAST it all the same.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     canonical::Geometry,
+    cutter::Cutter,
     motion::{MotionCommand, Relation, Turn},
+    surface::Surface,
 };
 
+use super::graze::least_value;
 use crate::{
-    clearance::EVALUATIONS,
+    clearance::{EVALUATIONS, Memory, Tool, separation},
     error::MotionFailure,
-    tests::{Program, circle, cylinder, motion, plane, sphere, v},
-    verify::verify,
+    tests::{Program, circle, cylinder, motion, plane, quadric, sphere, v},
+    verify::{tests::lofts, verify},
 };
 
 /// A needle a thousandth high in the planes y = 0 and z = 0.3 x, at x = −3, looking along +x.
@@ -94,4 +99,43 @@ fn a_check_surface_costs_as_much_from_behind_as_from_the_front() {
     };
     let [front, behind] = [plane(0.0, -1.0, 0.0, -0.1), plane(0.0, 1.0, 0.0, 0.1)].map(clearances);
     assert_eq!(front, behind);
+}
+
+#[test]
+fn the_least_value_takes_few_places_where_it_is_smooth() {
+    let smooth = |x: f64| (1.0 + (x - 0.37).powi(2)).sqrt() + 0.02 * (x - 0.37).powi(3);
+    let sharp = |x: f64| 0.2 + (x - 0.37).abs() * if x < 0.37 { 2.0 } else { 0.3 };
+    let falling = |x: f64| 3.0 - x;
+    for (value, least, most) in
+        [(&smooth as &dyn Fn(f64) -> f64, 1.0, 16), (&sharp, 0.2, 60), (&falling, 1.0, 40)]
+    {
+        let places = Cell::new(0);
+        let found = least_value([-1.0, 2.0], &|x| {
+            places.set(places.get() + 1);
+            value(x)
+        });
+        assert!((found.1 - least).abs() <= 2e-5, "{found:?} for {least}");
+        assert!(places.get() <= most, "{} places for {least}", places.get());
+    }
+}
+
+/// What is remembered of both sides of a check surface does not change the clearance.
+#[test]
+fn what_is_remembered_of_a_check_surface_changes_no_clearance() {
+    let cutter = Cutter::from_numbers(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 2.0], 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, v(0.1, -0.2, 1.0).normalize());
+    let bowl = quadric([1.0, 0.6, -0.8, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, -1.0]);
+    for geometry in [lofts::roof(), bowl] {
+        let surface = Surface::from_geometry(&geometry).expect("a surface");
+        let memories = <[Memory; 2]>::default();
+        for k in 0..40 {
+            let tip = v(-0.8 + 0.02 * f64::from(k), 0.3, 2.5 - 0.03 * f64::from(k));
+            let [remembered, fresh] = [&memories, &<[Memory; 2]>::default()].map(|memories| {
+                let (contact, side) = separation(&tool, &surface, &tip, memories);
+                (contact.clearance, side)
+            });
+            let is_same = remembered.1 == fresh.1 && (remembered.0 - fresh.0).abs() < 1e-7;
+            assert!(is_same, "{remembered:?} and {fresh:?} at {tip}");
+        }
+    }
 }
