@@ -76,16 +76,16 @@ pub(super) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> 
         let found = (x, value(x));
         if found.1 <= best.1 {
             if x >= best.0 {
-                a = best.0
+                a = best.0;
             } else {
-                b = best.0
+                b = best.0;
             }
             (third, second, best) = (second, best, found);
         } else {
             if x < best.0 {
-                a = x
+                a = x;
             } else {
-                b = x
+                b = x;
             }
             if found.1 <= second.1 || second.0 == best.0 {
                 (third, second) = (second, found);
