@@ -237,8 +237,15 @@ impl Surface {
     }
 
     /// The curvature of a cylinder along a line that bends as much as a ruled, polyconic or sculptured surface towards a side at all places
-    /// within reach of a point; `None` where there is none as asked for, and where the surface ends or has an edge there.
-    pub fn curvature_across(&self, side: f64, center: &Vec3, reach: f64, asked: Lengthwise) -> Option<f64> {
+    /// within reach of a point, after the least bend along the line with which there is one; `None` where there is none as asked for, and
+    /// where the surface ends or has an edge there.
+    pub fn curvature_across(
+        &self,
+        side: f64,
+        center: &Vec3,
+        reach: f64,
+        asked: Lengthwise,
+    ) -> Option<(f64, f64)> {
         let asked = Survey::of_lengthwise(center, reach, side, asked);
         let survey = match self {
             Self::Ruled(sheet) => sheet.survey(asked),

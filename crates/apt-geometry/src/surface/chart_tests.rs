@@ -259,9 +259,10 @@ proptest! {
             let curvatures: Option<Vec<f64>> =
                 forms.iter().flatten().map(|form| form.curvature_across(&along, 0.0)).collect();
             let by_forms = curvatures.and_then(|all| all.into_iter().reduce(f64::max)).map(|across| (0.0, across));
-            let lengthwise = [0.0, 0.1].map(|least| {
+            let lengthwise = [0.0, 0.1].map(|first| {
+                let least = std::array::from_fn(|k| first + 0.05 * k as f64);
                 let asked = Lengthwise { along, least, enough: 0.2, most: 5.0 };
-                surface.curvature_across(side, &center, reach, asked).map(|across| (least, across))
+                surface.curvature_across(side, &center, reach, asked)
             });
             for ((least, curvature), e) in
                 [by_forms, lengthwise[0], lengthwise[1]].into_iter().flatten().flat_map(|one| ways.iter().map(move |e| (one, e)))

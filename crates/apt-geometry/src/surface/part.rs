@@ -5,7 +5,8 @@ mod body;
 mod form;
 mod kept;
 
-pub use self::form::{Form, Lengthwise};
+use self::form::Across;
+pub use self::form::{Form, LENGTHWISE, Lengthwise};
 pub(super) use self::{
     form::leading,
     kept::{Count, Later},
@@ -230,9 +231,9 @@ pub(super) struct Survey {
     forms: Option<Vec<Form>>,
     /// Error of a form, as a share of it, that is close enough.
     form_error: f64,
-    /// Which cylinder along a line bends as much as all parts within reach, if that is asked for and nothing else, with the curvature
-    /// that those looked at need.
-    across: Option<(Lengthwise, f64)>,
+    /// Which cylinder along a line bends as much as all parts within reach, if that is asked for and nothing else, with what has been
+    /// found of it.
+    across: Option<(Lengthwise, Across)>,
 }
 
 impl Survey {

@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Lengthwise, Surface},
+    surface::{LENGTHWISE, Lengthwise, Surface},
 };
 
 use super::{
@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Shares of the bend that are tried for that along the piece.
-const SHARES: [f64; 6] = [0.0, 1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0];
+const SHARES: [f64; LENGTHWISE] = [0.0, 1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0, 1.0 / 4.0];
 /// How many times the bend in all directions that across the piece may be: the less is let along it, the more is needed across.
 const MOST_ACROSS: f64 = 2.0;
 /// Least share of its length that a piece counts with.
@@ -39,11 +39,13 @@ impl Course {
         let distance = base.distance + stock;
         // No foot of a place within reach is farther away.
         let feet = distance.abs() + 2.0 * reach;
-        let (least, across) = SHARES.into_iter().find_map(|share| {
-            let least = share * bend;
-            let asked = Lengthwise { along, least, enough: bend, most: MOST_ACROSS * bend };
-            Some((least, surface.curvature_across(side, &base.place, feet, asked)?))
-        })?;
+        let asked = Lengthwise {
+            along,
+            least: SHARES.map(|share| share * bend),
+            enough: bend,
+            most: MOST_ACROSS * bend,
+        };
+        let (least, across) = surface.curvature_across(side, &base.place, feet, asked)?;
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
         let is_bounded = deepest * (least + across) < 1.0;

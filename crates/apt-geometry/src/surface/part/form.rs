@@ -18,12 +18,24 @@ const FINE_ERROR: f64 = 0.005;
 pub struct Lengthwise {
     /// Unit direction of the line.
     pub along: Vec3,
-    /// How much the surface may bend along it.
-    pub least: f64,
+    /// How much the surface may bend along it, the least first: the less of that, the more it may bend across.
+    pub least: [f64; LENGTHWISE],
     /// A curvature that no better one is looked for than.
     pub enough: f64,
     /// More is none.
     pub most: f64,
+}
+
+/// How many bends along a line are asked about at once.
+pub const LENGTHWISE: usize = 6;
+
+/// What of that has been found.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Across {
+    /// Index of the least bend along the line with which there may be such a cylinder.
+    least: usize,
+    /// Its curvature, as far as parts have been looked at.
+    curvature: f64,
 }
 
 /// Second fundamental forms of all places of a part of a surface, as forms on vectors in space: that of a vector is that of its
@@ -137,13 +149,14 @@ impl Survey {
 
     /// Asks which cylinder along a line bends as much as all parts within reach of a point towards a side.
     pub(in super::super) fn of_lengthwise(center: &Vec3, reach: f64, side: f64, asked: Lengthwise) -> Self {
-        let across = Some((asked, 0.0));
+        let across = Some((asked, Across::default()));
         Self { across, form_error: FINE_ERROR, ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
     }
 
-    /// The curvature of that cylinder, unless it is more than asked for.
-    pub(in super::super) fn curvature_across(&self) -> Option<f64> {
-        self.across.filter(|_| !self.jumps).map(|(_, found)| found)
+    /// The least bend along the line with which there is such a cylinder, and the curvature of that.
+    pub(in super::super) fn curvature_across(&self) -> Option<(f64, f64)> {
+        let (asked, found) = self.across.filter(|_| !self.jumps)?;
+        Some((*asked.least.get(found.least)?, found.curvature))
     }
 
     /// The forms asked for, unless some place within reach has none.
@@ -177,24 +190,34 @@ impl Part {
 
     /// Takes the cylinder that a part within reach needs; its halves tell it more closely than needed only where they must.
     pub(super) fn survey_across(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
-        let Some((asked, found)) = survey.across else { return };
+        let Some((asked, mut found)) = survey.across else { return };
         if self.bound(&survey.center) > survey.reach {
             return;
         }
         survey.seen += 1;
         let form = self.form.get(|| self.form_of(sheet).map(Box::new)).as_deref();
-        let needed = form
-            .and_then(|form| form.seen_from(survey.side).curvature_across(&asked.along, -asked.least))
-            .unwrap_or(f64::INFINITY);
         let close = |form: &Form| form.error <= survey.form_error * form.middle.norm();
-        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-        if needed > asked.enough.max(found) && !fine && !form.is_some_and(close) {
-            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
-        } else if needed <= asked.most {
-            survey.across = Some((asked, found.max(needed)));
-        } else {
-            survey.jumps = true;
+        let is_fine = self.radius <= FINE * survey.reach
+            || depth >= MAX_DEPTH
+            || survey.seen >= MAX_PARTS
+            || form.is_some_and(close);
+        let seen = form.map(|form| form.seen_from(survey.side));
+        // The more it may bend along the line the less is needed across.
+        while let Some(least) = asked.least.get(found.least) {
+            let needed = seen.and_then(|form| form.curvature_across(&asked.along, -least));
+            let needed = needed.unwrap_or(f64::INFINITY);
+            if needed > asked.enough.max(found.curvature) && !is_fine {
+                self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
+                return;
+            }
+            if needed <= asked.most {
+                found.curvature = found.curvature.max(needed);
+                break;
+            }
+            found.least += 1;
         }
+        survey.jumps = found.least >= LENGTHWISE;
+        survey.across = Some((asked, found));
     }
 
     /// The forms of all places, if the part is smooth and does not end.
