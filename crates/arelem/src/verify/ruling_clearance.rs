@@ -4,11 +4,17 @@
 //! that frees the tool (arelem reference 5.2): not less than the depth of any place of the surface in the tool, and of
 //! any place of the tool under the surface; and not more than a translation after which the tool is clear.
 
+mod past_end;
+mod point;
+
 use apt_geometry::Vec3;
 
+pub(super) use self::point::point;
+#[cfg(test)]
+pub(super) use self::point::searched_point;
+use self::point::seen_from;
 use super::{
     clearance::Reading,
-    patch::{Patch, sides},
     poly_conic::ConicStrips,
     ruled::RuledStrips,
     ruling::Ruling,
@@ -16,7 +22,7 @@ use super::{
     span::Bend,
     strip::{Touch, nearest, nearest_to_all},
     survey::{Accuracy, Sheet},
-    tool::{Meridian, Patience, Profile, Tool, perpendicular},
+    tool::{Meridian, Patience, Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
@@ -176,20 +182,6 @@ impl Ruled {
         }
     }
 
-    /// Where it ends, as patches without width, and of which patch they are which side: what may be as near to a tool as a distance.
-    fn ends_within(&self, tip: &Vec3, tool: &Tool<'_>, distance: f64) -> (Vec<Patch>, Vec<(usize, usize)>) {
-        let Some(sheet) = self.sheet() else { return Default::default() };
-        let (middle, girth) = tool.ball_about(tip);
-        let all = sheet.patches.iter().enumerate();
-        let near = all.filter(|(_, patch)| patch.within(&middle, distance + girth).is_some());
-        let ends = near.flat_map(|(piece, patch)| {
-            let is_end = self.ends(piece);
-            let sides = sides(&patch.net).into_iter().enumerate().filter(move |(side, _)| is_end[*side]);
-            sides.map(move |(side, curve)| (Patch::straight(&[curve, curve]), (piece, side)))
-        });
-        ends.unzip()
-    }
-
     /// At which of its sides the surface ends on a patch.
     fn ends(&self, piece: usize) -> [bool; 4] {
         match self {
@@ -232,41 +224,6 @@ fn resolution(surface: &Ruled, tip: &Vec3, reach: f64) -> f64 {
 
 fn point_distance(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(f64, Vec3)> {
     point(surface, x, patience).map(|found| (found.value, found.normal))
-}
-
-/// Signed distance of a point along the natural normal; None beyond the end of a curve.
-pub(super) fn point(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<Reading> {
-    Some(seen_from(surface, x, patience)?.0)
-}
-
-/// The same, and whether the point is beyond the end of the surface, where the sign says nothing.
-fn seen_from(surface: &Ruled, x: &Vec3, patience: Patience<'_>) -> Option<(Reading, bool)> {
-    let profile = Profile::tool_end();
-    let axis = surface.axis().unwrap_or_else(Vec3::z);
-    let tool = Tool { profile: &profile, axis, patience, depth: 0.0 };
-    if let Some(found) = surface.followed(1.0, x, &tool) {
-        return Some((found, false));
-    }
-    from_nearest(surface, x, &tool)
-}
-
-/// The same by the nearest place, for the tool end.
-fn from_nearest(surface: &Ruled, x: &Vec3, tool: &Tool<'_>) -> Option<(Reading, bool)> {
-    let touch = surface.nearest(x, tool, resolution(surface, x, 0.0), f64::INFINITY)?;
-    let natural = surface.natural(&touch)?;
-    let error = surface.error_near(x, tool, touch.value + touch.gap);
-    let height = natural.dot(&(x - touch.point));
-    let away = x - touch.point;
-    // At a joint the point is in the fan of its normals. A place that is as near as the nearest, to within the gap, may be beside it by
-    // as much as says nothing of directions; far away it says more than a normal that is taken as much beside.
-    let size = away.norm();
-    let beside = away.norm_squared() - height * height;
-    let is_in_fan = size > SURE_DISTANCE * surface.size() || beside > touch.gap * (2.0 * size + touch.gap);
-    if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) && is_in_fan {
-        let normal = away * (height.signum() / size);
-        return Some((Reading { value: size.copysign(height), normal, error }, surface.ends_at(&touch)));
-    }
-    Some((Reading { value: height, normal: natural, error }, false))
 }
 
 struct Bodies<'a> {
@@ -332,13 +289,6 @@ pub(super) fn searched(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) 
     bodies.settled(tip, &bodies.touch(tip)?)
 }
 
-/// The signed distance of a point without regard to what was found before.
-#[cfg(test)]
-pub(super) fn searched_point(surface: &Ruled, x: &Vec3) -> Option<Reading> {
-    let profile = Profile::tool_end();
-    Some(from_nearest(surface, x, &Tool::new(&profile, Vec3::z()))?.0)
-}
-
 impl<'a> Bodies<'a> {
     fn of(surface: &'a Ruled, side: f64, tool: &'a Tool<'a>, tip: &Vec3) -> Self {
         let reach = tool.profile.reach();
@@ -385,15 +335,17 @@ impl<'a> Bodies<'a> {
         {
             return Some(found);
         }
+        // What of the tool is under the surface by more comes out past the end by less.
+        match self.past_end(tip, touch, || self.depth_of_violation(tip, touch))? {
+            Some(found) => Some(found),
+            None => self.depth_of_violation(tip, touch),
+        }
+    }
+
+    /// The clearance of a tool that the surface is in, without regard to where that ends.
+    fn depth_of_violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
         let mut deepest = (-touch.value, self.away(touch)?);
         let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
-        // What of the tool is under the surface by more comes out past the end by less.
-        if touch.value <= 0.0
-            && self.surface.ends_at(touch)
-            && let Some(found) = self.moved_past_end(tip, touch)?
-        {
-            return Some(found);
-        }
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
         // No place is deep in a tool without a body.
@@ -441,30 +393,6 @@ impl<'a> Bodies<'a> {
         }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);
         Some(depth_of(&deepest, error))
-    }
-
-    /// The clearance of a tool that an end of the surface is deepest in, by the translation past that end: from each place that is deepest
-    /// then it is moved off in turn. No translation that is less than the first depth frees it. None inside where it is not freed so.
-    fn moved_past_end(&self, tip: &Vec3, first: &Touch) -> Option<Option<Reading>> {
-        let (mut way, mut touch) = (Vec3::zeros(), *first);
-        for _ in 0..PROOF_STEPS {
-            way -= touch.outward * (self.close() - touch.value);
-            if way.norm() > self.deep || !self.is_off_own_side(first, &way)? {
-                break;
-            }
-            touch = self.touch(&(tip + way))?;
-            if touch.value >= touch.gap {
-                let error = way.norm() + first.value;
-                let found = Reading { value: -way.norm(), normal: way.normalize(), error };
-                return Some(self.is_on_side(&touch)?.then_some(found));
-            }
-        }
-        Some(None)
-    }
-
-    /// Whether a tool that is moved in a direction from a place comes off the surface on its own side.
-    fn is_off_own_side(&self, touch: &Touch, out: &Vec3) -> Option<bool> {
-        Some(self.side * self.surface.natural(touch)?.dot(out) >= 0.0)
     }
 
     /// Looks for deeper places of the tool's edges on the side of it where it is nearest.
@@ -578,39 +506,6 @@ impl<'a> Bodies<'a> {
             }
         }
         Some(())
-    }
-
-    /// The clearance of a tool without a body by the lesser of the translations that just free it: off the surface where that is nearest,
-    /// and past the end. None inside where neither is found.
-    fn led_out_anywhere(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
-        let through = self.led_out(tip, self.away(touch)?, self.deep)?;
-        let less = through.map_or(self.deep, |found| -found.value);
-        let past = self.led_past_end(tip, less)?;
-        Some([through, past].into_iter().flatten().max_by(|a, b| a.value.total_cmp(&b.value)))
-    }
-
-    /// The same past an end of the surface that is no farther away than `most`.
-    fn led_past_end(&self, tip: &Vec3, most: f64) -> Option<Option<Reading>> {
-        let (ends, sides) = self.surface.ends_within(tip, self.tool, most);
-        if ends.is_empty() {
-            return Some(None);
-        }
-        let end = nearest(&ends, tip, self.tool, self.resolution, self.deep)?;
-        let way = end.value + 2.0 * self.close();
-        let (piece, side) = *sides.get(end.piece)?;
-        let [along, across] = [[0.0, end.along], [1.0, end.along], [end.along, 0.0], [end.along, 1.0]][side];
-        let at_end = Touch { piece, along, across, ..end };
-        if way > most || !self.is_off_own_side(&at_end, &end.outward)? {
-            return Some(None);
-        }
-        let touch = self.touch(&(tip + end.outward * way))?;
-        let is_freed = touch.value >= touch.gap && self.is_on_side(&touch)?;
-        // Where it goes through the surface it goes on doing so as long as it meets neither an end of it nor what leads off it.
-        Some(is_freed.then(|| Reading {
-            value: -way,
-            normal: end.outward,
-            error: 2.0 * self.close() + end.gap,
-        }))
     }
 
     /// The same from a direction in which so long a way frees the tool: no place of the surface is deep in it, and what is under the
