@@ -76,6 +76,10 @@ pub(crate) struct Filled {
     since: Shares,
 }
 
+/// Share of a vector from which on one more is needed to come to a corner: the others may go beyond it by a tenth of their length, and the next
+/// one may begin as much before it (`directed::march::step::at_corner`).
+const NO_REST: f64 = 0.25;
+
 /// What a stretch of a path fills of a vector, as [`Filled`] has it.
 type Shares = [f64; 3];
 
@@ -94,6 +98,15 @@ impl Filled {
             self.vectors += 1.0;
             self.since = Shares::default();
             ahead -= room;
+        }
+    }
+
+    /// Ends a stretch at a corner of the path, next to which every sequence has a vertex: the vector that leads there is full if it is no
+    /// rest that another one could have taken along.
+    fn end_at_corner(&mut self) {
+        if self.since.into_iter().fold(0.0, f64::max) >= NO_REST {
+            self.vectors += 1.0;
+            self.since = Shares::default();
         }
     }
 
@@ -137,14 +150,24 @@ impl Record {
         Self { last: vec![Bent::none(from)], maximum_step }
     }
 
-    /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`].
-    pub(crate) fn add(&mut self, from: &Vec3, to: &Vec3, roles: [&Working; 2], turning: [f64; 2]) {
+    /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`], and whether it ends where
+    /// the path turns on the spot.
+    pub(crate) fn add(
+        &mut self,
+        (from, to): (&Vec3, &Vec3),
+        roles: [&Working; 2],
+        turning: [f64; 2],
+        is_at_corner: bool,
+    ) {
         if let Some(known) = self.last.iter().rposition(|bent| bent.to == *from) {
             // What led on from there has been taken back.
             self.last.truncate(known + 1);
         }
         let mut filled = self.last.last().map_or(Filled::default(), |bent| bent.filled);
         filled.add(shares(roles, turning, (to - from).norm(), self.maximum_step));
+        if is_at_corner {
+            filled.end_at_corner();
+        }
         if self.last.len() >= KEPT {
             self.last.remove(0);
         }
@@ -341,6 +364,17 @@ mod tests {
         assert!(count > 1.1 * 24.0 && count < 48.0, "{count}");
         let alike: Vec<_> = (0..40).map(|_| [0.5, 0.75, 0.2]).collect();
         assert!((filled(&alike).count() - 30.0).abs() < 1e-9);
+    }
+
+    /// Before a corner and beyond it there are whole vectors, but for what those to it may be longer.
+    #[test]
+    fn a_corner_ends_a_vector() {
+        let mut filled = Filled::default();
+        for (share, count) in [(2.4, 3.0), (1.2, 4.2), (0.0, 4.2), (0.1, 5.0), (0.1, 5.1)] {
+            (0..24).for_each(|_| filled.add([share / 24.0, 0.0, 0.0]));
+            filled.end_at_corner();
+            assert!((filled.count() - count).abs() < 1e-9, "{share}: {}", filled.count());
+        }
     }
 
     /// Each piece keeps both bands, so that there cannot be a need for more than the pieces are.

@@ -246,7 +246,8 @@ impl<'a> Stepper<'a> {
             self.trend.forget();
         }
         self.longest = self.longest.max(found.length);
-        self.record.add(from, &found.vertex.tip, [&self.prepared.part, &self.prepared.drive], found.turning);
+        let roles = [&self.prepared.part, &self.prepared.drive];
+        self.record.add((from, &found.vertex.tip), roles, found.turning, found.is_at_corner);
     }
 
     /// A trial that was refused, and how far the clearance for which that is was out of its band.

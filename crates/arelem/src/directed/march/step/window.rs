@@ -150,7 +150,7 @@ impl Stepper<'_> {
             bound::turning(length, [a, b].map(|contact| contact.gradient.dot(&way) / length))
         };
         let both = [turning(&from.part, &to.part), turning(&from.drive, &to.drive)];
-        self.record.add(&from.tip, &to.tip, [&self.prepared.part, &self.prepared.drive], both);
+        self.record.add((&from.tip, &to.tip), [&self.prepared.part, &self.prepared.drive], both, false);
     }
 
     /// A vector from the vertex before that leads past the last vertex to the other limits: that vertex can be spared.
