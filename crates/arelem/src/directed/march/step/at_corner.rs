@@ -85,30 +85,9 @@ impl Stepper<'_> {
         aim: Aim<'_>,
         corners: &mut Corners,
     ) -> Option<Trial> {
-        let from = proven.map_or(here.tip, |trial| trial.vertex.tip);
-        let is_known = corners.from == Some(from);
-        if is_known || corners.looked >= MOST_CORNERS || self.prepared.attitude.turns() {
-            return None;
-        }
-        let (targets, _, bends) = aim;
-        let (before, beyond, corner) = corners.beyond.into_iter().flatten().find_map(|beyond| {
-            let before = match proven {
-                Some(trial) => trial.vertex,
-                None if beyond.is_square => *here,
-                None => return None,
-            };
-            let before = self.at_limits(here, before, targets)?;
-            let after = self.at_limits(here, beyond.vertex, targets)?;
-            let corner = corner_between(here, &before, &after, beyond.is_square)?;
-            self.is_too_sharp(here, &corner).then_some((before, after, corner))
-        })?;
-        corners.looked += 1;
-        corners.from = Some(from);
-        let targets = self.targets_in(&corner, targets);
-        let [before, beyond] = [before, beyond].map(|vertex| self.meet(here, &vertex.tip, targets));
-        let (before, beyond) = (before?, beyond?);
-        let corner = corner_between(here, &before, &beyond, true)?;
-        let room = self.room(&corner, targets);
+        let (corner, targets) = self.corner_ahead(here, proven, aim.0, corners)?;
+        let bends = aim.2;
+        let room = self.room(&corner, targets)?;
         let vertex = self.meet(here, &(corner.at + corner.tangents[1] * (BEYOND * room)), targets)?;
         let [until, onward] = corner.tangents.map(|tangent| vertex.tangent.dot(&tangent));
         // There it may turn by up to a right angle.
@@ -128,6 +107,37 @@ impl Stepper<'_> {
                 None
             }
         }
+    }
+
+    /// A corner that has not been looked at from the end of this vector, and the clearances that a vertex has there.
+    fn corner_ahead(
+        &self,
+        here: &Vertex,
+        proven: Option<&Trial>,
+        targets: [f64; 2],
+        corners: &mut Corners,
+    ) -> Option<(Corner, [f64; 2])> {
+        let from = proven.map_or(here.tip, |trial| trial.vertex.tip);
+        let is_known = corners.from == Some(from);
+        if is_known || corners.looked >= MOST_CORNERS || self.prepared.attitude.turns() {
+            return None;
+        }
+        let (before, beyond, corner) = corners.beyond.into_iter().flatten().find_map(|beyond| {
+            let before = match proven {
+                Some(trial) => trial.vertex,
+                None if beyond.is_square => *here,
+                None => return None,
+            };
+            let before = self.at_limits(here, before, targets)?;
+            let after = self.at_limits(here, beyond.vertex, targets)?;
+            let corner = corner_between(here, &before, &after, beyond.is_square)?;
+            self.sharpness(here, &corner).contains(&true).then_some((before, after, corner))
+        })?;
+        corners.looked += 1;
+        corners.from = Some(from);
+        let targets = self.targets_in(here, &corner, targets);
+        let [before, beyond] = [before, beyond].map(|vertex| self.meet(here, &vertex.tip, targets));
+        Some((corner_between(here, &before?, &beyond?, true)?, targets))
     }
 
     /// True if a vector of a length is proven that begins at a corner: what touches the tool twice may be hard to prove.
@@ -153,27 +163,30 @@ impl Stepper<'_> {
         self.meet(here, &vertex.tip, targets)
     }
 
-    /// True if a vector cannot go on beyond a corner for a share of its length that is worth it.
-    fn is_too_sharp(&self, here: &Vertex, corner: &Corner) -> bool {
+    /// For which role a vector cannot go on beyond a corner for a share of its length that is worth it.
+    fn sharpness(&self, here: &Vertex, corner: &Corner) -> [bool; 2] {
         let length = (corner.at - here.tip).norm();
-        let far = |(role, leaves): (&Working, f64)| role.band() < leaves * TOO_SHARP * length;
-        self.roles().into_iter().zip(corner.leaves).any(far)
+        let [part, drive] = self.roles().map(Working::band);
+        let [by_part, by_drive] = corner.leaves.map(|leaves| leaves * TOO_SHARP * length);
+        [part < by_part, drive < by_drive]
     }
 
     /// The clearances in a corner: where it is left along another contact, not at the limit that a vector about it goes beyond.
-    fn targets_in(&self, corner: &Corner, mut targets: [f64; 2]) -> [f64; 2] {
-        for ((target, role), leaves) in targets.iter_mut().zip(self.roles()).zip(corner.leaves) {
-            if leaves > 0.0 {
+    fn targets_in(&self, here: &Vertex, corner: &Corner, mut targets: [f64; 2]) -> [f64; 2] {
+        let is_sharp = self.sharpness(here, corner);
+        for ((target, role), is_sharp) in targets.iter_mut().zip(self.roles()).zip(is_sharp) {
+            if is_sharp {
                 *target = target.min(role.outside - ROUNDED * role.band());
             }
         }
         targets
     }
 
-    /// How far beyond a corner a vector may end there.
-    fn room(&self, corner: &Corner, targets: [f64; 2]) -> f64 {
+    /// How far beyond a corner a vector may end there; `None` where no contact is left.
+    fn room(&self, corner: &Corner, targets: [f64; 2]) -> Option<f64> {
         let roles = self.roles().into_iter().zip(targets).zip(corner.leaves);
-        roles.map(|((role, target), leaves)| (role.outside - target) / leaves).fold(f64::INFINITY, f64::min)
+        let rooms = roles.map(|((role, target), leaves)| (role.outside - target) / leaves);
+        Some(rooms.fold(f64::INFINITY, f64::min)).filter(|room| room.is_finite() && *room > 0.0)
     }
 }
 
