@@ -8,7 +8,7 @@ use super::{
     attempt::{Aim, LEAST_TURN_COSINE},
 };
 use crate::{
-    clearance::Contact,
+    clearance::{Contact, Shape},
     directed::march::Vertex,
     role::{Bend, Working},
 };
@@ -117,9 +117,11 @@ impl Stepper<'_> {
         targets: [f64; 2],
         corners: &mut Corners,
     ) -> Option<(Corner, [f64; 2])> {
+        if corners.is_unknown() || corners.looked >= MOST_CORNERS || !self.may_have_corners() {
+            return None;
+        }
         let from = proven.map_or(here.tip, |trial| trial.vertex.tip);
-        let is_known = corners.from == Some(from);
-        if is_known || corners.looked >= MOST_CORNERS || self.prepared.attitude.turns() {
+        if corners.from == Some(from) {
             return None;
         }
         let (before, beyond, corner) = corners.beyond.into_iter().flatten().find_map(|beyond| {
@@ -138,6 +140,12 @@ impl Stepper<'_> {
         let targets = self.targets_in(here, &corner, targets);
         let [before, beyond] = [before, beyond].map(|vertex| self.meet(here, &vertex.tip, targets));
         Some((corner_between(here, &before?, &beyond?, true)?, targets))
+    }
+
+    /// Whether a tool that keeps its axis may touch a surface at a second place: outside of a convex one it does not.
+    pub(super) fn may_have_corners(&self) -> bool {
+        let may_touch_twice = |role: &Working| matches!(role.shape, Shape::General | Shape::Concave);
+        !self.prepared.attitude.turns() && self.roles().into_iter().any(may_touch_twice)
     }
 
     /// True if a vector of a length is proven that begins at a corner: what touches the tool twice may be hard to prove.

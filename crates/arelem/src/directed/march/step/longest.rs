@@ -163,6 +163,7 @@ impl Stepper<'_> {
         let targets = self.targets(here, &bends, places);
         let trial = self.attempt(here, search.length, cap, (targets, &bent, &bends));
         match &trial {
+            _ if !self.may_have_corners() => {}
             Some(trial) if !trial.proven => search.corners.note(here, trial.vertex, false),
             Some(_) => {}
             None if search.corners.is_unknown() => {
