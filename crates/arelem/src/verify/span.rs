@@ -12,6 +12,8 @@ const HALVINGS: u32 = 6;
 const SHARE_OF_ERROR: f64 = 0.1;
 /// Pieces a vector is cut into where nothing is known about the shape of the clearance.
 const FIRST_PIECES: usize = 4;
+/// How many times as much as the samples of a piece say it hides may be beside them, where that is within the band.
+const WIDE: f64 = 8.0;
 /// Evaluations over one vector of unknown shape.
 const FREE_EVALUATIONS: usize = 4096;
 /// Rate with which the slope of a clearance grows, in bands and the length of the vector, on a vector that fills its band twice.
@@ -334,13 +336,12 @@ impl Span<'_> {
         found
     }
 
-    /// Subdivision until second differences say that no piece hides more than `tolerance`; a piece shorter than that cannot
-    /// hide more, because clearance changes by no more than the tool moves.
+    /// Subdivision until second differences say that no piece hides more than `tolerance`, or leaves the band if it hides many times
+    /// as much; a piece shorter than that cannot hide more, because clearance changes by no more than the tool moves.
     fn free(&self, first: Sample, last: Sample, tolerance: f64) -> Option<Extremes> {
         let swing = if self.turns() { turning(&self.from, &self.to) * self.clearance.reach() } else { 0.0 };
         let length = (self.to.tip - self.from.tip).norm() + swing;
-        let mut found = Extremes::within(0.0, first.value.min(last.value), first.value.max(last.value));
-        let mut error: f64 = 0.0;
+        let mut found: Option<Extremes> = None;
         let mut pieces = Vec::with_capacity(2 * FIRST_PIECES);
         let mut left = first;
         for k in 1..=FIRST_PIECES {
@@ -350,36 +351,78 @@ impl Span<'_> {
         }
         let mut budget = FREE_EVALUATIONS;
         while let Some((a, b)) = pieces.pop() {
-            let width = b.t - a.t;
             let middle = self.sample(0.5 * (a.t + b.t))?;
-            let reading = a.error.max(b.error).max(middle.error);
-            error = error.max(reading);
-            let (least, most) =
-                (middle.value.min(a.value).min(b.value), middle.value.max(a.value).max(b.value));
-            found = found.join(Extremes::within(0.0, least, most));
-            // What the cubic through the ends misses at the middle, and what curvature can hide beside the three samples:
-            // twice the bulge of a parabola with the observed change of slope over each half.
-            let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
-            let surprise = (middle.value - cubic).abs();
-            let bend = (a.slope - middle.slope).abs().max((b.slope - middle.slope).abs());
-            // Where the slope keeps its sign by more than it changes, the extremes are at the ends.
-            let steepness = [a, middle, b].map(|s| s.slope.abs()).into_iter().fold(f64::INFINITY, f64::min);
-            let rises = [a, middle, b].map(|s| s.slope > 0.0);
-            let monotone = rises[0] == rises[1] && rises[1] == rises[2] && steepness > bend;
-            let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
-            let hidden = (bulge + surprise).min(0.5 * length * width);
-            if found.min < self.beyond[0] || found.max > self.beyond[1] {
-                return Some(Extremes::within(error, found.min, found.max));
-            }
-            if hidden <= tolerance.max(SHARE_OF_ERROR * reading) || budget == 0 {
-                error = error.max(reading + hidden);
+            let seen = told_by_each_other([a, middle, b], length);
+            let piece = Piece::of(&seen, length);
+            let (part, wide) = (piece.hiding(1.0), piece.hiding(WIDE));
+            let is_beyond = part.min < self.beyond[0] || part.max > self.beyond[1];
+            let is_close = piece.hidden <= tolerance.max(SHARE_OF_ERROR * piece.error);
+            if is_beyond || is_close || self.is_within(wide.low, wide.high) || budget == 0 {
+                found = Some(found.map_or(part, |f| f.join(part)));
+                if is_beyond {
+                    return found;
+                }
             } else {
                 budget -= 1;
-                pieces.push((a, middle));
-                pieces.push((middle, b));
+                let [a, middle, b] = seen;
+                pieces.extend([(a, middle), (middle, b)]);
             }
         }
-        Some(Extremes::within(error, found.min, found.max))
+        found
+    }
+}
+
+/// Three samples of which each is no farther from another than the tool moves between them, and their errors: what is known closely
+/// at one place tells how close the others are.
+fn told_by_each_other(samples: [Sample; 3], length: f64) -> [Sample; 3] {
+    samples.map(|sample| {
+        let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+        for other in samples {
+            let apart = length * (other.t - sample.t).abs() + other.error;
+            range = [range[0].max(other.value - apart), range[1].min(other.value + apart)];
+        }
+        if range[0] > range[1] {
+            return sample;
+        }
+        let value = sample.value.clamp(range[0], range[1]);
+        Sample { value, error: (value - range[0]).max(range[1] - value), ..sample }
+    })
+}
+
+/// What the samples at the ends and the middle of a piece of a vector say.
+struct Piece {
+    found: Extremes,
+    /// What it may hide beside them.
+    hidden: f64,
+    /// The greatest error of them.
+    error: f64,
+}
+
+impl Piece {
+    fn of([a, middle, b]: &[Sample; 3], length: f64) -> Self {
+        let samples = [a, middle, b];
+        let width = b.t - a.t;
+        // What the cubic through the ends misses at the middle, and what curvature can hide beside the three samples:
+        // twice the bulge of a parabola with the observed change of slope over each half.
+        let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
+        let surprise = (middle.value - cubic).abs();
+        let bend = (a.slope - middle.slope).abs().max((b.slope - middle.slope).abs());
+        // Where the slope keeps its sign by more than it changes, the extremes are at the ends.
+        let steepness = samples.map(|s| s.slope.abs()).into_iter().fold(f64::INFINITY, f64::min);
+        let rises = samples.map(|s| s.slope > 0.0);
+        let monotone = rises[0] == rises[1] && rises[1] == rises[2] && steepness > bend;
+        let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
+        // No place is farther from a sample than a quarter of the piece.
+        let hidden = (bulge + surprise).min(0.25 * length * width);
+        let one = |s: &Sample| Extremes::within(s.error, s.value, s.value);
+        let found = one(a).join(one(middle)).join(one(b));
+        Self { found, hidden, error: a.error.max(middle.error).max(b.error) }
+    }
+
+    /// Its extremes where it may hide so many times as much.
+    fn hiding(&self, times: f64) -> Extremes {
+        let hidden = times * self.hidden;
+        Extremes { low: self.found.low - hidden, high: self.found.high + hidden, ..self.found }
     }
 }
 
