@@ -356,7 +356,11 @@ impl Span<'_> {
             let piece = Piece::of(&seen, length);
             let (part, wide) = (piece.hiding(1.0), piece.hiding(WIDE));
             let is_beyond = part.min < self.beyond[0] || part.max > self.beyond[1];
-            let is_close = piece.hidden <= tolerance.max(SHARE_OF_ERROR * piece.error);
+            // Whether what it hides decides: then the errors of its readings do not excuse it.
+            let found_within = self.is_within(piece.found.low, piece.found.high);
+            let decides = found_within && !self.is_within(part.low, part.high);
+            let share = if decides { 0.0 } else { SHARE_OF_ERROR * piece.error };
+            let is_close = piece.hidden <= tolerance.max(share);
             if is_beyond || is_close || self.is_within(wide.low, wide.high) || budget == 0 {
                 found = Some(found.map_or(part, |f| f.join(part)));
                 if is_beyond {
@@ -470,4 +474,47 @@ fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64, slack: f64) -> Extremes {
         if at > 0.0 && at < width { most.max(a.value + a.slope * at + 0.5 * rate * at * at) } else { most };
     let error = a.error.max(b.error);
     Extremes { min: least, max: most, low: low - error, high: high + jumps * width + error }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn sample(t: f64, value: f64, error: f64) -> Sample {
+        Sample { t, value, slope: 0.0, error }
+    }
+
+    proptest! {
+        /// The true values are a sine that rises no faster than the tool moves.
+        #[test]
+        fn what_readings_tell_of_each_other_is_true(
+            phase in 0.0..6.0f64, rate in 0.1..9.0f64, width in 1e-6..0.5f64,
+            off in proptest::collection::vec(-1.0..1.0f64, 3),
+            errors in proptest::collection::vec(0.0..0.1f64, 3),
+        ) {
+            let truth = |t: f64| (phase + rate * t).sin();
+            let read = |k: usize| {
+                let t = 0.5 * width * k as f64;
+                sample(t, truth(t) + off[k] * errors[k], errors[k])
+            };
+            let samples = [read(0), read(1), read(2)];
+            for (told, own) in told_by_each_other(samples, rate).iter().zip(&samples) {
+                prop_assert!((told.value - truth(told.t)).abs() <= told.error + 1e-12);
+                prop_assert!(told.error <= 2.0 * own.error);
+            }
+        }
+    }
+
+    /// A reading that is known to little says no more than the close ones beside it; a slope that is not that of the values does not make a
+    /// piece hide more than the tool moves from its samples.
+    #[test]
+    fn close_readings_tell_of_a_loose_one() {
+        let samples = [sample(0.0, 1.0, 1e-6), sample(1e-4, 1.001, 1e-2), sample(2e-4, 1.0, 1e-6)];
+        let told = told_by_each_other(samples, 0.1);
+        assert!((told[1].value - 1.0).abs() <= 1.2e-5 && told[1].error <= 2.3e-5, "{:?}", told[1]);
+        let steep = told.map(|s| Sample { slope: 50.0 * s.t, ..s });
+        assert!(Piece::of(&steep, 0.1).hidden <= 0.25 * 0.1 * 2e-4 * 1.000_001);
+    }
 }

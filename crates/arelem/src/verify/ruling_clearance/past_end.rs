@@ -5,7 +5,7 @@ use apt_geometry::Vec3;
 use super::{Bodies, PROOF_STEPS, Ruled};
 use crate::verify::{
     clearance::Reading,
-    patch::{Patch, sides},
+    patch::{Patch, jet, sides},
     strip::{Touch, nearest},
     tool::Tool,
 };
@@ -13,6 +13,14 @@ use crate::verify::{
 /// How many times as closely as is looked for the way past an end may be told for it to be the answer at once: another place may be as
 /// deep.
 const MOST_STEPS_PAST: f64 = 4.0;
+/// How often the way past the tangent of an end is taken before what it leaves is gone off step by step.
+const TANGENTS: usize = 5;
+/// How far from the side of a patch, in its parameters, the end is whose tangent is taken.
+const BY_END: f64 = 1e-3;
+/// Directions about a tangent, off the own side of the surface, that are tried, and steps in which the best of them is closed in on, each to this share.
+const DIRECTIONS_ABOUT: usize = 48;
+const CLOSER: usize = 40;
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Ruled {
     /// Where it ends, as patches without width, and of which patch they are which side: what may be as near to a tool as a distance.
@@ -43,31 +51,94 @@ impl Bodies<'_> {
             return Some(None);
         }
         let Some(found) = self.moved_past_end(tip, touch)? else { return Some(None) };
-        if found.error <= MOST_STEPS_PAST * self.close() {
+        // No deeper than is allowed is as close as it is asked for.
+        if found.error <= MOST_STEPS_PAST * self.close() || found.error - found.value <= self.tool.depth {
             return Some(Some(found));
         }
         // No place is deeper than the way that frees the tool.
-        let is_better = |other: &Reading| other.value >= found.value && other.error < found.error;
+        let is_better = |other: &Reading| {
+            other.value - other.error >= found.value - found.error && other.error < found.error
+        };
         Some(Some(other().filter(is_better).unwrap_or(found)))
     }
 
-    /// The clearance of a tool that an end of the surface is deepest in, by the translation past that end: from each place that is deepest
-    /// then it is moved off in turn. No translation that is less than the first depth frees it. None inside where it is not freed so.
+    /// The clearance of a tool that an end of the surface is deepest in, by the translation past that end. It is no deeper than a translation
+    /// that frees it, and no less than its deepest place: it lies in the middle between both, with an error of half of what is between.
+    /// None inside where it is not freed so.
+    ///
+    /// Where the end crosses an edge of the tool, one face of that is as near as the other, and to be moved off each in turn leads too
+    /// far: the way is that past the tangent where the tool is met last. So it is where the way off leads to the other side of the surface.
     fn moved_past_end(&self, tip: &Vec3, first: &Touch) -> Option<Option<Reading>> {
+        let natural = self.surface.natural(first)?;
         let (mut way, mut touch) = (Vec3::zeros(), *first);
-        for _ in 0..PROOF_STEPS {
-            way -= touch.outward * (self.close() - touch.value);
-            if way.norm() > self.deep || !self.is_off_own_side(first, &way)? {
+        let mut shortest: Option<Vec3> = None;
+        for step in 0..PROOF_STEPS {
+            let push = way - touch.outward * (self.close() - touch.value);
+            let pushed = self.is_off_own_side(first, &push)?.then_some(push);
+            let is_close = touch.value.abs() <= MOST_STEPS_PAST * self.close();
+            if shortest.is_some() && (is_close || touch.value < 0.0 || step > TANGENTS) {
                 break;
             }
+            let by_tangent = (1..=TANGENTS).contains(&step) && !is_close || pushed.is_none();
+            let past = by_tangent.then(|| self.past_tangent(tip, &touch, &natural)).flatten();
+            // Led back by what it is clear it is clear still.
+            let back = shortest.map(|shortest| shortest * (1.0 - (touch.value - self.close()) / way.norm()));
+            let is_shorter = |past: &Vec3| back.is_none_or(|back| past.norm() < back.norm());
+            let next = past.filter(is_shorter).or(back).or(pushed);
+            let Some(next) = next.filter(|way| way.norm() <= self.deep) else { break };
+            way = next;
             touch = self.touch(&(tip + way))?;
-            if touch.value >= touch.gap {
-                let error = way.norm() + first.value;
-                let found = Reading { value: -way.norm(), normal: way.normalize(), error };
-                return Some(self.is_on_side(&touch)?.then_some(found));
+            let is_freed = touch.value >= touch.gap && self.is_on_side(&touch)?;
+            if is_freed && shortest.is_none_or(|shortest| way.norm() < shortest.norm()) {
+                shortest = Some(way);
             }
         }
-        Some(None)
+        Some(shortest.map(|way| {
+            let [least, most] = [-first.value, way.norm()];
+            let error = 0.5 * (most - least).max(0.0);
+            Reading { value: -0.5 * (least + most), normal: way.normalize(), error }
+        }))
+    }
+
+    /// The least translation on the own side that leaves the tangent of an end behind at a place by it, with the natural normal where the
+    /// tool is deepest; none where there is no such end.
+    fn past_tangent(&self, tip: &Vec3, touch: &Touch, natural: &Vec3) -> Option<Vec3> {
+        let tangent = self.tangent_of_end(touch)?;
+        let sideways = (natural * -self.side).cross(&tangent).try_normalize(0.0)?;
+        let behind = tangent.cross(&sideways);
+        let from = touch.point - tip;
+        let outward = |angle: f64| behind * angle.cos() + sideways * angle.sin();
+        // How far the tool goes beyond the tangent in a direction.
+        let beyond = |angle: f64| {
+            let outward = outward(angle);
+            self.tool.support(&outward).0 - outward.dot(&from)
+        };
+        let last = std::f64::consts::FRAC_PI_2 * (1.0 - f64::EPSILON);
+        let step = 2.0 * last / DIRECTIONS_ABOUT as f64;
+        let angles = (0..=DIRECTIONS_ABOUT).map(|k| step * k as f64 - last);
+        let best = angles.min_by(|a, b| beyond(*a).total_cmp(&beyond(*b)))?;
+        let (mut low, mut high) = ((best - step).max(-last), (best + step).min(last));
+        for _ in 0..CLOSER {
+            let inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+            if beyond(inner[0]) <= beyond(inner[1]) {
+                high = inner[1];
+            } else {
+                low = inner[0];
+            }
+        }
+        let angle = 0.5 * (low + high);
+        Some(-outward(angle) * (beyond(angle) + self.close()))
+    }
+
+    /// The direction of the end of the surface by a place.
+    fn tangent_of_end(&self, touch: &Touch) -> Option<Vec3> {
+        let patch = self.surface.sheet()?.patches.get(touch.piece)?;
+        let Touch { along, across, .. } = *touch;
+        let off = [along, 1.0 - along, across, 1.0 - across].into_iter().zip(self.surface.ends(touch.piece));
+        let by = off.enumerate().filter(|(_, (off, is_end))| *is_end && *off <= BY_END);
+        let (side, _) = by.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+        let [_, run, rise] = jet(&patch.net, [along, across]);
+        (if side < 2 { rise } else { run }).try_normalize(0.0)
     }
 
     /// Whether a tool that is moved in a direction from a place comes off the surface on its own side.

@@ -11,7 +11,7 @@ use super::{
     super::{
         Rule, VerifyError,
         clearance::{Clearance, Surface},
-        tool::Profile,
+        tool::{Profile, Tool},
         verify,
     },
     clearances::{clearance, direction},
@@ -157,6 +157,58 @@ fn a_tool_over_the_end_is_as_deep_as_it_is_over_it() {
                 "{depth} {radius}: {found:?}"
             );
             assert!((found.normal - across).norm() < 1e-2, "{found:?}");
+        }
+    }
+}
+
+/// How far a tool is moved in a direction until no place of the end of a tube is in it, by many of these.
+fn way_off_end(tool: &Tool<'_>, tip: &Vec3, out: &Vec3, end: &[Vec3]) -> f64 {
+    let is_free = |way: f64| {
+        let from = tip + out * way;
+        end.iter().all(|place| tool.signed_distance(&(place - from)).0 >= 0.0)
+    };
+    let (mut low, mut high) = (0.0, 0.1);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if is_free(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+/// Where the end crosses the edge of a tool both faces there are as near: neither leads the tool out by the least way, nor both in turn.
+#[test]
+fn a_tool_whose_edge_crosses_the_end_is_led_past_it_by_the_least_way() {
+    let stations = [0.0, 6.0];
+    let arc = tube(ALONG_X, 2.0, 0.0, [45.0, 135.0], stations);
+    let surface = Surface::of(&arc).expect("a surface");
+    let end = stations[1] + (stations[1] - stations[0]) * POLYCONIC_STATIONS_BEYOND;
+    // The more of them the nearer to the top.
+    let places: Vec<Vec3> = (-2000..=2000)
+        .map(|k| 0.05 * f64::from(k) * f64::from(k).abs() / 4e6)
+        .map(|angle| Vec3::new(end, 2.0 * angle.sin(), 2.0 * angle.cos()))
+        .collect();
+    let flat = cutter(&[0.5, 0.0]);
+    let profile = Profile::of(&flat).expect("a tool");
+    for lean in [0.3f64, 0.5, 0.7] {
+        // Seen along the end the edge is an ellipse; it crosses the end behind the tool end.
+        let axis = Vec3::new(0.2, lean.sin(), lean.cos()).normalize();
+        let tool = Tool::new(&profile, axis);
+        let radial = (Vec3::x() - axis * axis.x).normalize();
+        for depth in [1e-4, 1e-3, 4e-3] {
+            let tip = Vec3::new(end, 0.0, 2.0) + radial * (0.25 - depth) - axis * depth;
+            let deep = Clearance { allowed: 0.02, ..Clearance::new(&surface, &profile, 1.0) };
+            let found = deep.at(&tip, &axis).expect("a clearance");
+            let outs = (0..=40).map(|k| f64::from(k) * std::f64::consts::PI / 40.0);
+            let ways = outs
+                .map(|angle| Vec3::new(angle.cos(), 0.0, angle.sin()))
+                .map(|out| way_off_end(&tool, &tip, &out, &places));
+            let least = ways.fold(f64::INFINITY, f64::min);
+            let [low, high] = [found.value - found.error, found.value + found.error];
+            assert!(low >= -1.01 * least - 1e-8 && high >= -least, "{lean} {depth}: {found:?}, {least}");
         }
     }
 }
