@@ -26,6 +26,9 @@ use super::{
 
 /// Bound of the patches looked at. A proof takes some dozens; where contact is nearly flat, a few hundred.
 const MAX_PATCHES: u32 = 1500;
+/// How many are looked at before parts of a surface that has them are asked in their place. Many small patches are left where contact
+/// lies nearly along the surface, and each takes a search for its foot; a part takes some operations.
+const BEFORE_PARTS: u32 = 60;
 /// How many are looked at where no size of them can be shown, and the gap, as a share of the tool's size, that distances alone do
 /// not show.
 const FEW_PATCHES: u32 = 300;
@@ -61,6 +64,15 @@ pub(crate) enum Certificate {
     Lower(Contact),
     /// The patches ran out.
     Undecided,
+}
+
+/// How many patches are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// As many as take no more than other ways to show the same.
+    Few,
+    /// As many as a proof may take.
+    All,
 }
 
 /// What is known of the distance over a patch.
@@ -163,6 +175,12 @@ impl Proof {
         self.leaves = leaves;
     }
 
+    /// Patches of which enough is known, and those that are open.
+    fn leave(&mut self, mut leaves: Vec<Leaf>, open: BinaryHeap<Open>) {
+        leaves.extend(open.into_iter().map(|open| Leaf::new(open.patch)));
+        self.leaves = leaves;
+    }
+
     /// Whether it serves a next question: not if nothing holds, nor if it has become much finer than it was made.
     pub(super) fn serves(&self) -> bool {
         !self.leaves.is_empty() && self.leaves.len() <= FINER * self.made.max(LEAST_FINE)
@@ -221,6 +239,7 @@ pub(super) fn certify(
     level: f64,
     proof: &mut Proof,
     bases: Option<&Bases>,
+    effort: Effort,
 ) -> Certificate {
     let mut open: BinaryHeap<Open> = BinaryHeap::new();
     let mut seen = 0;
@@ -247,8 +266,7 @@ pub(super) fn certify(
             } else if judged.sample.clearance < level {
                 done.push(Leaf::new(leaf.patch));
                 done.extend(leaves);
-                done.extend(open.into_iter().map(|open| Leaf::new(open.patch)));
-                proof.leaves = done;
+                proof.leave(done, open);
                 return Certificate::Lower(judged.sample);
             } else {
                 open.push(Open { patch: leaf.patch, judged, number: seen });
@@ -260,6 +278,11 @@ pub(super) fn certify(
         };
         if seen > MAX_PATCHES || seen > FEW_PATCHES && *hopeless.get_or_insert_with(|| question.is_hopeless())
         {
+            return Certificate::Undecided;
+        }
+        if effort == Effort::Few && seen > BEFORE_PARTS {
+            done.push(Leaf::new(patch));
+            proof.leave(done, open);
             return Certificate::Undecided;
         }
         split(&mut leaves, tool, &patch, &judged);

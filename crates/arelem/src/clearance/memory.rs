@@ -17,6 +17,9 @@ const FADING: f64 = 0.7;
 /// Way of the tool, in radii of it, over which contact may jump back to where it was before.
 const BACK: f64 = 0.1;
 
+/// For how many contacts at most parts of a surface are not asked that were asked in vain.
+const LONGEST_PAUSE: u32 = 32;
+
 /// Where on the tool contact was.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -65,6 +68,51 @@ struct Shown {
     level: f64,
 }
 
+/// What parts of the surface showed of contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ByParts {
+    /// The last one, where they took less than patches of the tool: they are asked first about the next.
+    Cheaper,
+    /// The last one, where patches of the tool did not decide: so are they.
+    Needed,
+    /// Not the last one: for so many contacts they are not asked after few patches, and for so many when that is in vain again.
+    Not { pause: u32, next: u32 },
+}
+
+impl Default for ByParts {
+    fn default() -> Self {
+        Self::Not { pause: 0, next: 1 }
+    }
+}
+
+impl ByParts {
+    /// Whether they showed the last contact.
+    pub(super) fn showed(self) -> bool {
+        matches!(self, Self::Cheaper | Self::Needed)
+    }
+
+    /// Whether they are asked after few patches.
+    pub(super) fn is_worthwhile(self) -> bool {
+        !matches!(self, Self::Not { pause: 1.., .. })
+    }
+
+    /// After they have been asked in vain.
+    pub(super) fn in_vain(self) -> Self {
+        match self {
+            Self::Not { next, .. } => Self::Not { pause: next, next: (2 * next).min(LONGEST_PAUSE) },
+            Self::Cheaper | Self::Needed => Self::Not { pause: 1, next: 2 },
+        }
+    }
+
+    /// After a contact that was shown without them, or not at all.
+    pub(super) fn without(self) -> Self {
+        match self {
+            Self::Not { pause, next } => Self::Not { pause: pause.saturating_sub(1), next },
+            Self::Cheaper | Self::Needed => Self::default(),
+        }
+    }
+}
+
 /// Remembers the contact of one tool with one surface. It changes what a search costs, never what it finds.
 #[derive(Debug, Default, Clone)]
 pub struct Memory {
@@ -73,8 +121,8 @@ pub struct Memory {
     pub(super) near: RefCell<Contacts>,
     /// The place of an edge of the surface that contact was at last, if it was at one, and the side.
     crease: Cell<Option<(f64, Spot)>>,
-    /// Whether parts of the surface showed the last contact where patches of the tool did not.
-    by_parts: Cell<bool>,
+    /// What parts of the surface showed of the last contact.
+    by_parts: Cell<ByParts>,
     /// What was shown last, in turn.
     shown: RefCell<(usize, [Option<Shown>; MOST_SHOWN])>,
 }
@@ -168,13 +216,13 @@ impl Memory {
         self.crease.set(spot.map(|spot| (side, spot)));
     }
 
-    /// Whether parts of the surface showed the last contact where patches of the tool did not.
-    pub(super) fn is_shown_by_parts(&self) -> bool {
+    /// What parts of the surface showed of the last contact.
+    pub(super) fn by_parts(&self) -> ByParts {
         self.by_parts.get()
     }
 
-    /// Keeps whether they did.
-    pub(super) fn show_by_parts(&self, by_parts: bool) {
+    /// Keeps what they showed.
+    pub(super) fn show_by_parts(&self, by_parts: ByParts) {
         self.by_parts.set(by_parts);
     }
 

@@ -27,14 +27,16 @@ use apt_geometry::{
     surface::{Bend, Convexity, Region, Surface},
 };
 
+use self::{
+    certify::Effort,
+    crease::Beside,
+    floor::Bases,
+    memory::ByParts,
+    near::{Around, Followed},
+};
 pub(crate) use self::{
     certify::{Certificate, Face},
     cover::{steady_bend, upward_bend},
-};
-use self::{
-    crease::Beside,
-    floor::Bases,
-    near::{Around, Followed},
 };
 pub use self::{memory::Memory, tool::Tool};
 
@@ -201,7 +203,7 @@ impl Gauge {
             .place(tool, self.side)
             .map(|place| Bases::about(tool, tip, (surface, self.side), &(tip + place.point)));
         let mut proof = self.memory.proof(tool, self.side, tip);
-        let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref());
+        let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref(), Effort::All);
         self.memory.keep_proof(self.side, proof);
         if found == Certificate::Undecided && surface.has_charts() {
             // Parts of the surface may tell, from the contact.
@@ -267,7 +269,7 @@ impl Gauge {
 
     /// Whether patches of the tool did not decide about the last contact that was searched for.
     pub(crate) fn is_hard(&self) -> bool {
-        self.memory.is_shown_by_parts()
+        self.memory.by_parts() == ByParts::Needed
     }
 
     /// Whether the parts of a surface show the same, whatever is steady there: they are beside ends of it, and where long and thin gaps

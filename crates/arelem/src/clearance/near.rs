@@ -25,7 +25,7 @@ use self::held::{Cap, Held, Rest};
 use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
-    certify::{Certificate, Face, Proof, certify},
+    certify::{Certificate, Effort, Face, Proof, certify},
     memory::Memory,
     patch::flank_between,
 };
@@ -520,7 +520,8 @@ impl Near {
             });
             (known.size, known.proof.spread) = (size, AHEAD * pose.scale());
             let is_far = to <= from
-                || certify(face, pose.tool, pose.tip, level, &mut known.proof, None) == Certificate::Holds;
+                || certify(face, pose.tool, pose.tip, level, &mut known.proof, None, Effort::All)
+                    == Certificate::Holds;
             flank = Some(known);
             if is_far {
                 self.flank = flank;

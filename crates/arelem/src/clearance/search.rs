@@ -10,10 +10,10 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
     Contact, Shape, Tool,
-    certify::{Certificate, Face, Proof, certify},
+    certify::{Certificate, Effort, Face, Proof, certify},
     crease::Beside,
     floor::Bases,
-    memory::{Memory, Place},
+    memory::{ByParts, Memory, Place},
     open_top::is_entered,
     quadric::Posed,
     shape,
@@ -176,8 +176,8 @@ impl Search<'_> {
     fn complete(&mut self, memory: Option<&Memory>) -> Shown {
         let proof = memory.map(|memory| memory.proof(self.tool, self.side, self.tip));
         let mut proof = proof.unwrap_or_else(|| Proof::of_tool(self.tool));
-        let by_parts = memory.is_some_and(Memory::is_shown_by_parts);
-        let (shown, by_parts) = self.complete_with(&mut proof, by_parts);
+        let known = memory.map_or_else(ByParts::default, Memory::by_parts);
+        let (shown, by_parts) = self.complete_with(&mut proof, known);
         if let Some(memory) = memory {
             memory.keep_proof(self.side, proof);
             memory.show_by_parts(by_parts);
@@ -185,8 +185,8 @@ impl Search<'_> {
         shown
     }
 
-    /// Also whether it was shown by parts of the surface, which is tried first or after patches of the tool.
-    fn complete_with(&mut self, proof: &mut Proof, by_parts: bool) -> (Shown, bool) {
+    /// Also what is known of how parts of the surface show it, which are tried first, after few patches of the tool, or after all.
+    fn complete_with(&mut self, proof: &mut Proof, mut by_parts: ByParts) -> (Shown, ByParts) {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
@@ -197,25 +197,56 @@ impl Search<'_> {
             {
                 return (Shown::Within(slack), by_parts);
             }
-            if self.is_on_crease(slack) || by_parts && self.is_clear(level) {
+            if self.is_on_crease(slack) {
                 return (Shown::Within(slack), by_parts);
             }
-            let face = Face { surface: self.surface, side: self.side };
-            let bases = self
-                .best
-                .contact
-                .map(|contact| Bases::about(self.tool, self.tip, (self.surface, self.side), &contact.tool));
-            match certify(face, self.tool, self.tip, level, proof, bases.as_ref()) {
+            let is_asked = by_parts.showed();
+            if is_asked && self.is_clear(level) {
+                return (Shown::Within(slack), by_parts);
+            }
+            let (found, known) = self.certified(level, proof, by_parts, is_asked);
+            by_parts = known;
+            match found {
                 Certificate::Lower(point) => {
                     self.best.take(self.best.piece, point.clearance, || point);
                     self.descend(&(point.tool - self.tip), None);
                 }
-                Certificate::Holds => return (Shown::Within(slack), false),
-                Certificate::Undecided if self.is_clear(level) => return (Shown::Within(slack), true),
+                Certificate::Holds => return (Shown::Within(slack), by_parts),
+                Certificate::Undecided if !is_asked && self.is_clear(level) => {
+                    return (Shown::Within(slack), ByParts::Needed);
+                }
                 Certificate::Undecided => break,
             }
         }
-        (Shown::Nothing, false)
+        (Shown::Nothing, by_parts.without())
+    }
+
+    /// Whether no point of the tool is nearer than a level: by patches of it, but by parts of the surface where few of those do not decide and
+    /// these may take less, unless they have been asked in vain. Also what is then known of them.
+    fn certified(
+        &self,
+        level: f64,
+        proof: &mut Proof,
+        by_parts: ByParts,
+        is_asked: bool,
+    ) -> (Certificate, ByParts) {
+        let Self { tool, surface, side, tip, .. } = *self;
+        let face = Face { surface, side };
+        let contact = self.best.contact;
+        let bases = contact.map(|contact| Bases::about(tool, tip, (surface, side), &contact.tool));
+        let mut certified = |effort| certify(face, tool, tip, level, proof, bases.as_ref(), effort);
+        let shown = |found, then| if found == Certificate::Holds { (found, then) } else { (found, by_parts) };
+        if is_asked {
+            return shown(certified(Effort::All), by_parts.in_vain());
+        }
+        if !surface.has_charts() || !by_parts.is_worthwhile() {
+            return shown(certified(Effort::All), by_parts.without());
+        }
+        match certified(Effort::Few) {
+            Certificate::Undecided if self.is_clear(level) => (Certificate::Holds, ByParts::Cheaper),
+            Certificate::Undecided => (certified(Effort::All), by_parts.in_vain()),
+            found => shown(found, by_parts.without()),
+        }
     }
 
     /// Whether parts of the surface show that none is nearer to the tool than a level.

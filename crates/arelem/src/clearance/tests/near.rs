@@ -5,7 +5,15 @@ use std::sync::Arc;
 use apt_geometry::canonical::{Interval, TabulatedCylinder};
 
 use super::*;
-use crate::{clearance::certify::JUDGED, verify::tests::lofts};
+use crate::{
+    clearance::{
+        Face,
+        certify::{self, Effort, JUDGED, Proof},
+        floor::Bases,
+        search,
+    },
+    verify::tests::lofts,
+};
 
 /// A wave of three cubics along a direction, its joints without corners.
 fn wave(axes: [Vec3; 3]) -> Geometry {
@@ -191,6 +199,35 @@ fn a_proof_serves_many_positions() {
     }
     assert!(open * 100 <= positions, "{open} of {positions} not proven");
     assert!(remembering * 5 < anew * 3, "{remembering} patches looked at, {anew} anew");
+}
+
+/// Where a flank lies nearly along a ruled surface small patches are left all along it: parts of the surface show the contact after few of
+/// them.
+#[test]
+fn a_flank_nearly_along_a_surface_takes_few_patches() {
+    let cutter = Cutter::from_numbers(&[1.0], 3.0).expect("cutter");
+    let surface = Surface::from_geometry(&lofts::vault()).expect("surface");
+    let side = upper(&surface);
+    let face = Face { surface: &surface, side };
+    let (mut by_patches, mut by_parts) = (0, 0);
+    for k in 0..4 {
+        let tool = Tool::new(cutter, v(0.15 * f64::from(k), 1.0, 0.02).normalize());
+        let mut tip = v(-0.5, -1.5, 6.0);
+        for _ in 0..8 {
+            tip.z -= search::found(&tool, face, &tip).clearance * 0.9;
+        }
+        let start = JUDGED.get();
+        let (contact, missed) = search::contact(&tool, face, &tip, None, None);
+        assert!(missed < 1e-7, "not proven at {tip}");
+        let middle = JUDGED.get();
+        let bases = Bases::about(&tool, &tip, (&surface, side), &contact.tool);
+        let mut proof = Proof::of_tool(&tool);
+        let level = contact.clearance - missed;
+        certify::certify(face, &tool, &tip, level, &mut proof, Some(&bases), Effort::All);
+        by_parts += middle - start;
+        by_patches += JUDGED.get() - middle;
+    }
+    assert!(by_patches > 4 * by_parts, "{by_parts} patches looked at before parts, {by_patches} without");
 }
 
 /// Where a surface ends beside the tool, no ball that holds all of that is steady; one that holds what is near the contact is, and the
