@@ -239,7 +239,8 @@ impl Search<'_> {
         if is_asked {
             return shown(certified(Effort::All), by_parts.in_vain());
         }
-        if !surface.has_charts() || !by_parts.is_worthwhile() {
+        // A tool that is a line has stretches for patches, not so many of them.
+        if !surface.has_charts() || tool.radius() <= 0.0 || !by_parts.is_worthwhile() {
             return shown(certified(Effort::All), by_parts.without());
         }
         match certified(Effort::Few) {
