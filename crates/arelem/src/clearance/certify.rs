@@ -19,6 +19,7 @@ use apt_geometry::{
 
 use super::{
     Contact, Tool,
+    empty::Empty,
     floor::{Base, Bases, Course},
     nearly_straight,
     patch::{Middle, Patch, Stretch, boundary},
@@ -26,6 +27,8 @@ use super::{
 
 /// Bound of the patches looked at. A proof takes some dozens; where contact is nearly flat, a few hundred.
 const MAX_PATCHES: u32 = 1500;
+/// How many times as far off a surface as a patch needs it the middle of an empty ball is looked for.
+const AFAR: f64 = 2.0;
 /// How many are looked at before parts of a surface that has them are asked in their place. Many small patches are left where contact
 /// lies nearly along the surface, and each takes a search for its foot; a part takes some operations.
 const BEFORE_PARTS: u32 = 60;
@@ -33,7 +36,7 @@ const BEFORE_PARTS: u32 = 60;
 /// not show.
 const FEW_PATCHES: u32 = 300;
 const HAIR: f64 = 1e-6;
-/// How many are looked at before straight pieces are asked about as such.
+/// How many are looked at before straight pieces are asked about as such, and empty balls before bends.
 const MANY_PATCHES: u32 = 100;
 /// Share of the coordinates that is rounding of a distance.
 const ROUNDING: f64 = 1e-15;
@@ -130,9 +133,16 @@ impl Pose {
     }
 }
 
+/// Why a patch keeps a level.
+#[derive(Debug, Clone, Copy)]
+enum Ground {
+    Bending(Bending),
+    Empty(Empty),
+}
+
 /// A ball with how the distance bends in it, and a place in the ball to expand the distance about.
 #[derive(Debug, Clone, Copy)]
-struct Ground {
+struct Bending {
     base: Base,
     center: Vec3,
     radius: f64,
@@ -225,8 +235,10 @@ struct Question<'a> {
     generator: Option<Vec3>,
     /// How much farther than needed a bend is asked for, so that it serves the next positions.
     spread: f64,
-    /// Whether so many patches have been looked at that straight pieces are asked about as such.
-    is_thin: Cell<bool>,
+    /// Whether many patches have been looked at.
+    are_many: Cell<bool>,
+    /// Whether straight pieces are then asked about as such.
+    may_be_thin: bool,
 }
 
 /// Examines whether the distance from a surface is nowhere on the patches of a proof below a level. The patch that may be
@@ -245,9 +257,9 @@ pub(super) fn certify(
     let mut seen = 0;
     let cleared = level - ROUNDING * (tip.amax() + tool.radius() + tool.profile.top.height);
     let (generator, spread) = (face.surface.generator(), proof.spread);
-    let is_thin = Cell::new(false);
-    let question = Question { face, tool, tip, level: cleared, bases, generator, spread, is_thin };
-    let may_be_thin = nearly_straight::is_apt(face.surface);
+    let (are_many, may_be_thin) = (Cell::new(false), nearly_straight::is_apt(face.surface));
+    let question =
+        Question { face, tool, tip, level: cleared, bases, generator, spread, are_many, may_be_thin };
     let pose = Pose::of(tool, tip);
     let mut leaves = std::mem::take(&mut proof.leaves);
     let mut done = Vec::with_capacity(leaves.len());
@@ -259,7 +271,7 @@ pub(super) fn certify(
                 continue;
             }
             seen += 1;
-            question.is_thin.set(may_be_thin && seen > MANY_PATCHES);
+            question.are_many.set(seen > MANY_PATCHES);
             let (judged, ground) = question.judge(&leaf);
             if judged.least >= cleared {
                 done.push(Leaf { patch: leaf.patch, pose, least: judged.least, ground });
@@ -306,19 +318,31 @@ impl Question<'_> {
         if leaf.least - leaf.pose.moved(self.tool, self.tip) >= self.level {
             return Some(*leaf);
         }
-        let Ground { base, center, radius, course } = leaf.ground?;
-        let Middle { place, ball, reach, .. } =
-            leaf.patch.middle(self.tool, self.tip, self.generator.as_ref());
+        let middle = leaf.patch.middle(self.tool, self.tip, self.generator.as_ref());
+        let least = match leaf.ground? {
+            Ground::Empty(empty) => {
+                let (base, bend) = empty.about(&middle.place)?;
+                let least = self.least_about(&leaf.patch, &base, bend, &middle);
+                (least >= self.level).then_some((least, Ground::Empty(empty)))
+            }
+            Ground::Bending(ground) => self.least_on(&leaf.patch, &ground, &middle),
+        };
+        let pose = Pose::of(self.tool, self.tip);
+        least.map(|(least, ground)| Leaf { patch: leaf.patch, pose, least, ground: Some(ground) })
+    }
+
+    /// The least distance over a patch, if it is in the ball of a ground and that shows the level.
+    fn least_on(&self, patch: &Patch, ground: &Bending, middle: &Middle) -> Option<(f64, Ground)> {
+        let Bending { base, center, radius, course } = *ground;
         let within = |p: &Vec3| self.away(p, &center) <= radius;
-        if self.away(&place, &center) + reach > radius {
+        if self.away(&middle.place, &center) + middle.reach > radius {
             return None;
         }
-        let now = self.base(ball).filter(|base| within(&base.place));
+        let now = self.base(middle.ball).filter(|base| within(&base.place));
         now.into_iter().chain([base]).find_map(|base| {
-            let least = self.least(&leaf.patch, &base, course) - ball;
-            let ground = Some(Ground { base, center, radius, course });
-            let pose = Pose::of(self.tool, self.tip);
-            (least >= self.level).then_some(Leaf { patch: leaf.patch, pose, least, ground })
+            let least = self.least(patch, &base, course) - middle.ball;
+            let ground = Ground::Bending(Bending { base, center, radius, course });
+            (least >= self.level).then_some((least, ground))
         })
     }
 
@@ -347,7 +371,8 @@ impl Question<'_> {
         JUDGED.set(JUDGED.get() + 1);
         let Self { face, tool, tip, level, .. } = *self;
         let patch = &leaf.patch;
-        let Middle { place, ball, reach, length, round } = patch.middle(tool, tip, self.generator.as_ref());
+        let middle = patch.middle(tool, tip, self.generator.as_ref());
+        let Middle { place, ball, reach, length, round } = middle;
         let foot = face.surface.foot(&place);
         let distance = face.side * foot.distance;
         let sample = sample(tool, patch, &place, &foot, face.side);
@@ -355,26 +380,32 @@ impl Question<'_> {
         if judged.least >= level || reach == 0.0 {
             return (judged, None);
         }
+        let own = Base { place, distance, gradient: foot.normal * face.side };
+        // Where a bend takes a search through parts of the surface, a foot is found sooner; but what it shows serves fewer positions.
+        let is_empty_first = self.are_many.get() && face.surface.has_charts();
+        if is_empty_first && let Some(empty) = self.judge_empty(patch, &own, &middle, &mut judged) {
+            return (judged, Some(empty));
+        }
         // What is known of the bend about there from before.
         let known = |radius: f64| {
-            let ground = leaf.ground?;
+            let Some(Ground::Bending(ground)) = leaf.ground else { return None };
             (self.away(&place, &ground.center) + radius <= ground.radius).then_some(ground.course.bend)
         };
         let bend_within = |radius: f64| {
             known(radius).map_or_else(|| downward_bend(face, &foot, &place, radius), Bend::AtMost)
         };
-        let own = Base { place, distance, gradient: foot.normal * face.side };
-        let bound = |base: &Base, bend: f64, is_own: bool| match patch.stretch {
-            Stretch::Arc { .. } if is_own => {
-                distance + least_from_middle(tool, patch, &own, bend, length > 0.0)
+        let bound = |base: &Base, bend: f64, is_own: bool| {
+            if is_own {
+                self.least_about(patch, base, bend, &middle)
+            } else {
+                self.least(patch, base, self.course(bend)) - ball
             }
-            _ => self.least(patch, base, self.course(bend)) - ball,
         };
         let mut ground = None;
         let bend = if round { Bend::Unbounded } else { bend_within(reach) };
         if let Bend::AtMost(bend) = bend {
             judged.least = judged.least.max(bound(&own, bend, true));
-            ground = Some(Ground { base: own, center: place, radius: reach, course: self.course(bend) });
+            ground = Some(Bending { base: own, center: place, radius: reach, course: self.course(bend) });
         }
         let tried = round || ground.is_some();
         if judged.least < level
@@ -389,10 +420,17 @@ impl Question<'_> {
             if let Bend::AtMost(bend) = bend {
                 judged.least = judged.least.max(bound(&base, bend, false));
                 ground =
-                    Some(Ground { base, center: place, radius: away.max(reach), course: self.course(bend) });
+                    Some(Bending { base, center: place, radius: away.max(reach), course: self.course(bend) });
             }
         }
-        if self.is_thin.get()
+        if judged.least < level
+            && !is_empty_first
+            && let Some(empty) = self.judge_empty(patch, &own, &middle, &mut judged)
+        {
+            return (judged, Some(empty));
+        }
+        if self.are_many.get()
+            && self.may_be_thin
             && judged.least < level
             && let Bend::AtMost(bend) = bend
             && let Some(straight) = self.judge_straight(patch, &own, [reach, bend], &mut judged)
@@ -404,12 +442,42 @@ impl Question<'_> {
             let radius = ground.radius + self.spread;
             match downward_bend(face, &foot, &place, radius) {
                 Bend::AtMost(bend) if bound(&ground.base, bend, false) >= level => {
-                    Ground { radius, course: self.course(bend), ..ground }
+                    Bending { radius, course: self.course(bend), ..ground }
                 }
                 _ => ground,
             }
         });
-        (judged, ground)
+        (judged, ground.map(Ground::Bending))
+    }
+
+    /// The same by an empty ball above the middle of a patch, if that shows the level.
+    fn judge_empty(&self, patch: &Patch, own: &Base, middle: &Middle, judged: &mut Judged) -> Option<Ground> {
+        let room = own.distance - middle.ball - self.level;
+        if room <= 0.0 {
+            return None;
+        }
+        let size = self.tool.radius() + self.tool.profile.top.height;
+        let height = (AFAR * middle.reach * middle.reach / room).clamp(middle.reach, size.max(middle.reach));
+        if self.least_about(patch, own, height.recip(), middle) < self.level {
+            return None;
+        }
+        let empty = Empty::above(self.face, own, height);
+        let (base, bend) = empty.about(&own.place)?;
+        let least = self.least_about(patch, &base, bend, middle);
+        (least >= self.level).then(|| {
+            judged.least = judged.least.max(least);
+            Ground::Empty(empty)
+        })
+    }
+
+    /// The least distance over a patch for a bend downward about a base in its middle.
+    fn least_about(&self, patch: &Patch, base: &Base, bend: f64, middle: &Middle) -> f64 {
+        match patch.stretch {
+            Stretch::Arc { .. } => {
+                base.distance + least_from_middle(self.tool, patch, base, bend, middle.length > 0.0)
+            }
+            _ => self.least(patch, base, self.course(bend)) - middle.ball,
+        }
     }
 
     /// The same by how the distance bends along a straight piece and across it; that counts for how it is halved, too.
@@ -426,8 +494,8 @@ impl Question<'_> {
         let bases = std::iter::once(*own).chain(self.base(0.0).filter(is_within));
         bases.into_iter().find_map(|base| {
             judged.least = judged.least.max(self.least(patch, &base, course));
-            let ground = Ground { base, center: own.place, radius: within[0], course };
-            (judged.least >= self.level).then_some(ground)
+            let ground = Bending { base, center: own.place, radius: within[0], course };
+            (judged.least >= self.level).then_some(Ground::Bending(ground))
         })
     }
 }

@@ -6,6 +6,7 @@ mod closed_form;
 mod cover;
 mod crease;
 mod dual;
+mod empty;
 mod floor;
 mod matched;
 mod memory;
