@@ -23,6 +23,8 @@ use crate::{
 const DIFFERENCE: f64 = 0.05;
 /// Corrections for one position.
 const CORRECTIONS: u32 = 25;
+/// How near two starts are one, in bands.
+const SAME_START: f64 = 100.0;
 /// Steps to the place where the check surface was laid.
 const STEPS_TO_STOP: f64 = 60.0;
 /// The path is followed this many times as far as the check surface was laid.
@@ -107,6 +109,10 @@ impl<'a> Reader<'a> {
         if self.is_spent() {
             return None;
         }
+        self.read_with(&self.cutter, tip, wanted)
+    }
+
+    fn read_with(&self, cutter: &Cutter, tip: &Vec3, wanted: Wanted) -> Option<[f64; 3]> {
         let Case { part, drive, first, stop, axis, .. } = self.case;
         let place = ToolPosition { tip: *tip, axis: *axis };
         let check = match wanted {
@@ -117,7 +123,7 @@ impl<'a> Reader<'a> {
         let sequence = CutSequence {
             start: place,
             points: vec![place],
-            cutter: self.cutter,
+            cutter: *cutter,
             part: Some(self.role(part, part.side)),
             drive: Some(self.role(drive, drive.side)),
             stop: check.map(|role| Stop { role, occurrence: 1, index: 0 }),
@@ -203,7 +209,32 @@ impl<'a> Reader<'a> {
             let [i, j, l] = [k % 3, k / 3 % 3, k / 9].map(|x| f64::from(x) - 1.0);
             places.push(case.place + Vec3::new(i, j, l) * 0.6);
         }
-        places.iter().find_map(|place| self.settle(place, Wanted::First, None))
+        let mut behind: Vec<Vec3> = Vec::new();
+        let same = SAME_START * (case.inside + case.outside);
+        places.iter().filter_map(|place| self.settle(place, Wanted::First, None)).find(|tip| {
+            let is_known = behind.iter().any(|known| (known - tip).norm() <= same);
+            if !is_known && !self.is_behind(tip) {
+                return true;
+            }
+            behind.push(*tip);
+            false
+        })
+    }
+
+    /// Whether points on the axis of the tool are on the other side of a surface: one that ends, behind which the tool touches it
+    /// nowhere, or with another of its places.
+    fn is_behind(&self, tip: &Vec3) -> bool {
+        let Case { part, drive, axis, inside, .. } = self.case;
+        let point = Cutter::from_numbers(&[0.0], 0.0).expect("a point");
+        let height = self.cutter.height;
+        [0.0, 0.5, 1.0].iter().any(|share| {
+            let place = tip + axis * (share * height);
+            let read = self.read_with(&point, &place, Wanted::PathOnly);
+            let beyond = |(placed, value): (&Placed, f64)| placed.relation != Relation::On && value < -inside;
+            read.is_none_or(|[on_part, on_drive, _]| {
+                [(part, on_part), (drive, on_drive)].into_iter().any(beyond)
+            })
+        })
     }
 
     /// Unit tangent of the path in a sense.
