@@ -206,7 +206,10 @@ impl Course<'_, '_> {
         while let Some((a, b)) = open.pop() {
             match self.stretch(&a, &b, count - samples.len()) {
                 Stretch::Held => continue,
-                Stretch::Open(bend) => unbounded += usize::from(bend == Some(Bend::Unbounded)),
+                Stretch::Open(bend) => {
+                    unbounded +=
+                        usize::from(bend == Some(Bend::Unbounded) && self.bend_of_witness(&a, &b).is_none());
+                }
             }
             let x = cut(&a, &b);
             count += 1;
@@ -362,13 +365,18 @@ impl Course<'_, '_> {
     /// the tool, which is convex; where contact moves little on the surface, as while the tool moves along a straight piece of it, so
     /// does that point.
     fn is_held_by_witness(&self, a: &Sample, b: &Sample) -> bool {
-        let Line { sweep, role, .. } = self.line;
         let (length, way) = (b.x - a.x, b.contact.tool - a.contact.tool);
         let [first, last] =
             [a, b].map(|end| Sample { slope: end.contact.gradient.dot(&way) / length, ..*end });
         let held = |bend: f64| self.line.allows(highest(&first, &last, bend * (way.norm() / length).powi(2)));
+        held(0.0) && self.bend_of_witness(a, b).is_some_and(held)
+    }
+
+    /// Bound of the second derivative of that point's distance by the length of its way.
+    fn bend_of_witness(&self, a: &Sample, b: &Sample) -> Option<f64> {
+        let Line { sweep, role, .. } = self.line;
         let (from, tool) = sweep.at(a.x);
-        held(0.0) && role.gauge.bend_along(&tool, &from, &a.contact, &way).is_some_and(held)
+        role.gauge.bend_along(&tool, &from, &a.contact, &(b.contact.tool - a.contact.tool))
     }
 
     /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the
