@@ -236,6 +236,32 @@ impl Surface {
         forms.map(leading)
     }
 
+    /// How much the surface of the charts bends away from a side at most along a unit direction, at all places within reach of a point;
+    /// closely where that is more than enough. `None` for other kinds of surface, and where it ends or has an edge or no tangent plane
+    /// there.
+    pub fn bend_along(
+        &self,
+        side: f64,
+        center: &Vec3,
+        reach: f64,
+        (along, enough): (&Vec3, f64),
+    ) -> Option<f64> {
+        let asked = Survey::of_bend_along(center, reach, side, (*along, enough));
+        let survey = match self {
+            Self::Tabulated(curve) => {
+                let forms = curve.forms(side, center, reach)?;
+                return Some(
+                    forms.iter().map(|form| form.bend_away(along)).fold(f64::NEG_INFINITY, f64::max),
+                );
+            }
+            Self::Ruled(sheet) => sheet.survey(asked),
+            Self::PolyConic(sheet) => sheet.survey(asked),
+            Self::Sculptured(sheet) => sheet.survey(asked),
+            _ => return None,
+        };
+        survey.bend_along()
+    }
+
     /// The curvature of a cylinder along a line that bends as much as a ruled, polyconic or sculptured surface towards a side at all places
     /// within reach of a point, after the least bend along the line with which there is one; `None` where there is none as asked for, and
     /// where the surface ends or has an edge there.

@@ -5,10 +5,9 @@ mod body;
 mod form;
 mod kept;
 
-use self::form::Across;
 pub use self::form::{Form, LENGTHWISE, Lengthwise};
 pub(super) use self::{
-    form::leading,
+    form::{Forms, leading},
     kept::{Count, Later},
 };
 use super::{
@@ -227,13 +226,8 @@ pub(super) struct Survey {
     strict: bool,
     /// A curvature up to which bounds are close enough.
     enough: f64,
-    /// The forms of all parts within reach, if these are asked for and nothing else.
-    forms: Option<Vec<Form>>,
-    /// Error of a form, as a share of it, that is close enough.
-    form_error: f64,
-    /// Which cylinder along a line bends as much as all parts within reach, if that is asked for and nothing else, with what has been
-    /// found of it.
-    across: Option<(Lengthwise, Across)>,
+    /// What is asked of the forms of all parts within reach, if that is and nothing else.
+    forms: Forms,
 }
 
 impl Survey {
@@ -254,9 +248,7 @@ impl Survey {
             least_cosine: LEAST_COSINE,
             strict: false,
             enough: f64::NEG_INFINITY,
-            forms: None,
-            form_error: CLOSE,
-            across: None,
+            forms: Forms::NotAsked,
         }
     }
 
@@ -270,11 +262,8 @@ impl Survey {
     /// The same question in the coordinates of a surface.
     pub(super) fn within(self, center: Vec3, turned: impl Fn(&Vec3) -> Vec3) -> Self {
         let normal = turned(&self.normal);
-        let across = self.across.map(|(asked, found)| {
-            let along = turned(&asked.along);
-            (Lengthwise { along, ..asked }, found)
-        });
-        Self { center, normal, across, ..self }
+        let forms = self.forms.turned(turned);
+        Self { center, normal, forms, ..self }
     }
 
     /// What was found of a sheet, unless the surface ends or turns away within reach.
@@ -308,8 +297,7 @@ impl Survey {
 
     /// Whether what has been found is no less than parts with normals of at least a cosine.
     fn has(&self, parts: &Summary, cosine: f64) -> bool {
-        self.forms.is_none()
-            && self.across.is_none()
+        matches!(self.forms, Forms::NotAsked)
             && parts.curvature(self.side) <= self.curvature
             && cosine >= self.cosine
             && !parts.ends
@@ -540,11 +528,8 @@ impl Part {
         if survey.jumps {
             return;
         }
-        if survey.forms.is_some() {
+        if !matches!(survey.forms, Forms::NotAsked) {
             return self.survey_forms(sheet, survey, depth);
-        }
-        if survey.across.is_some() {
-            return self.survey_across(sheet, survey, depth);
         }
         survey.seen += 1;
         if (self.center - survey.center).norm() > survey.reach + self.radius {

@@ -262,6 +262,10 @@ pub(super) fn certify(
         Question { face, tool, tip, level: cleared, bases, generator, spread, are_many, may_be_thin };
     let pose = Pose::of(tool, tip);
     let mut leaves = std::mem::take(&mut proof.leaves);
+    if leaves.is_empty() {
+        // One that was given up: it covers nothing.
+        return Certificate::Undecided;
+    }
     let mut done = Vec::with_capacity(leaves.len());
     let mut hopeless = None;
     loop {
@@ -473,7 +477,7 @@ impl Question<'_> {
     /// The least distance over a patch for a bend downward about a base in its middle.
     fn least_about(&self, patch: &Patch, base: &Base, bend: f64, middle: &Middle) -> f64 {
         match patch.stretch {
-            Stretch::Arc { .. } => {
+            Stretch::Arc { .. } if !middle.round => {
                 base.distance + least_from_middle(self.tool, patch, base, bend, middle.length > 0.0)
             }
             _ => self.least(patch, base, self.course(bend)) - middle.ball,

@@ -382,13 +382,20 @@ impl Gauge {
     }
 
     /// The same for the tool's point at a contact on a surface with charts, by how the surface bends along the way; the tool end is there.
-    pub(crate) fn bend_along(&self, tool: &Tool, tip: &Vec3, contact: &Contact, way: &Vec3) -> Option<f64> {
+    /// It is told closely where it is more than enough.
+    pub(crate) fn bend_along(
+        &self,
+        (tool, tip): (&Tool, &Vec3),
+        contact: &Contact,
+        way: &Vec3,
+        enough: f64,
+    ) -> Option<f64> {
         if self.on || !self.surface.has_charts() {
             return None;
         }
         let (tool, tip) = &self.body(tool, tip);
         let contact = Contact { clearance: contact.clearance + self.thickness, ..*contact };
-        Around::new(self, tool, tip, 0.0).bend_along(&contact, way)
+        Around::new(self, tool, tip, 0.0).bend_along(&contact, way, enough)
     }
 
     /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.

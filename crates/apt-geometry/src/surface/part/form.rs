@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Bounds, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
+use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
 use crate::Vec3;
 
 /// Which multiple of the change of a frame its pseudo-inverse may change by, times the norms of both pseudo-inverses, if both frames
@@ -29,13 +29,46 @@ pub struct Lengthwise {
 /// How many bends along a line are asked about at once.
 pub const LENGTHWISE: usize = 6;
 
-/// What of that has been found.
+/// What is asked of the forms of all parts within reach, with what has been found.
+#[derive(Debug, Clone)]
+pub(in super::super) enum Forms {
+    NotAsked,
+    /// The forms themselves.
+    All(Vec<Form>),
+    /// Which cylinder along a line bends as much.
+    Across(Lengthwise, Across),
+    /// How much the surface bends away from the side along a direction.
+    Along(Along),
+}
+
+/// The least cylinder along a line, as far as parts have been looked at.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Across {
+pub(in super::super) struct Across {
     /// Index of the least bend along the line with which there may be such a cylinder.
     least: usize,
-    /// Its curvature, as far as parts have been looked at.
     curvature: f64,
+}
+
+/// The greatest bend along a unit direction, as far as parts have been looked at, and one up to which it need not be told closely.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Along {
+    direction: Vec3,
+    enough: f64,
+    found: f64,
+}
+
+impl Forms {
+    /// The same question in the coordinates of a surface.
+    pub(super) fn turned(self, turned: impl Fn(&Vec3) -> Vec3) -> Self {
+        match self {
+            Self::Across(asked, found) => {
+                let along = turned(&asked.along);
+                Self::Across(Lengthwise { along, ..asked }, found)
+            }
+            Self::Along(asked) => Self::Along(Along { direction: turned(&asked.direction), ..asked }),
+            asked => asked,
+        }
+    }
 }
 
 /// Second fundamental forms of all places of a part of a surface, as forms on vectors in space: that of a vector is that of its
@@ -142,82 +175,130 @@ pub(in super::super) fn leading(mut forms: Vec<Form>) -> Vec<Form> {
 }
 
 impl Survey {
+    fn about_forms(center: &Vec3, reach: f64, side: f64, forms: Forms) -> Self {
+        Self { forms, ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+    }
+
     /// Asks for the forms of all parts within reach of a point, as bent towards a side.
     pub(in super::super) fn of_forms(center: &Vec3, reach: f64, side: f64) -> Self {
-        Self { forms: Some(Vec::new()), ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+        Self::about_forms(center, reach, side, Forms::All(Vec::new()))
     }
 
     /// Asks which cylinder along a line bends as much as all parts within reach of a point towards a side.
     pub(in super::super) fn of_lengthwise(center: &Vec3, reach: f64, side: f64, asked: Lengthwise) -> Self {
-        let across = Some((asked, Across::default()));
-        Self { across, form_error: FINE_ERROR, ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+        Self::about_forms(center, reach, side, Forms::Across(asked, Across::default()))
+    }
+
+    /// Asks how much all parts within reach of a point bend away from a side along a unit direction, closely where that is more than
+    /// enough.
+    pub(in super::super) fn of_bend_along(
+        center: &Vec3,
+        reach: f64,
+        side: f64,
+        (direction, enough): (Vec3, f64),
+    ) -> Self {
+        let found = f64::NEG_INFINITY;
+        Self::about_forms(center, reach, side, Forms::Along(Along { direction, enough, found }))
     }
 
     /// The least bend along the line with which there is such a cylinder, and the curvature of that.
     pub(in super::super) fn curvature_across(&self) -> Option<(f64, f64)> {
-        let (asked, found) = self.across.filter(|_| !self.jumps)?;
-        Some((*asked.least.get(found.least)?, found.curvature))
+        match self.forms {
+            Forms::Across(asked, found) if !self.jumps => {
+                Some((*asked.least.get(found.least)?, found.curvature))
+            }
+            _ => None,
+        }
+    }
+
+    /// The greatest bend along the direction.
+    pub(in super::super) fn bend_along(&self) -> Option<f64> {
+        match self.forms {
+            Forms::Along(asked) if !self.jumps => Some(asked.found),
+            _ => None,
+        }
     }
 
     /// The forms asked for, unless some place within reach has none.
     pub(in super::super) fn forms(self) -> Option<Vec<Form>> {
-        self.forms.filter(|_| !self.jumps)
+        match self.forms {
+            Forms::All(forms) if !self.jumps => Some(forms),
+            _ => None,
+        }
+    }
+}
+
+impl Forms {
+    /// Takes a form, or that there is none, in so far as halves of its part are not to be looked at; whether they are.
+    fn take(&mut self, form: Option<&Form>, side: f64, is_fine: bool) -> Taken {
+        let close = |error: f64| form.is_some_and(|form| form.error <= error * form.middle.norm());
+        let seen = form.map(|form| form.seen_from(side));
+        match self {
+            Self::NotAsked => Taken::Whole,
+            Self::All(_) if !is_fine && !close(CLOSE) => Taken::Halves,
+            Self::All(forms) => seen.map_or(Taken::Nothing, |form| {
+                forms.push(form);
+                Taken::Whole
+            }),
+            Self::Across(asked, found) => found.take(asked, seen, is_fine || close(FINE_ERROR)),
+            Self::Along(asked) => {
+                let bend = seen.map_or(f64::INFINITY, |form| form.bend_away(&asked.direction));
+                let is_wanted = bend > asked.enough.max(asked.found) && asked.found <= asked.enough;
+                if (is_wanted || !bend.is_finite()) && !is_fine {
+                    return Taken::Halves;
+                }
+                asked.found = asked.found.max(bend);
+                if bend.is_finite() { Taken::Whole } else { Taken::Nothing }
+            }
+        }
+    }
+}
+
+/// What a form of a part tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Taken {
+    /// Enough.
+    Whole,
+    /// Less than its halves.
+    Halves,
+    /// That there is no answer.
+    Nothing,
+}
+
+impl Across {
+    /// Takes the cylinder that a part needs.
+    fn take(&mut self, asked: &Lengthwise, seen: Option<Form>, is_fine: bool) -> Taken {
+        // The more it may bend along the line the less is needed across.
+        while let Some(least) = asked.least.get(self.least) {
+            let needed = seen.and_then(|form| form.curvature_across(&asked.along, -least));
+            let needed = needed.unwrap_or(f64::INFINITY);
+            if needed > asked.enough.max(self.curvature) && !is_fine {
+                return Taken::Halves;
+            }
+            if needed <= asked.most {
+                self.curvature = self.curvature.max(needed);
+                return Taken::Whole;
+            }
+            self.least += 1;
+        }
+        Taken::Nothing
     }
 }
 
 impl Part {
-    /// Adds the forms of the places within reach.
+    /// Takes the forms of the places within reach; its halves tell them more closely where needed.
     pub(super) fn survey_forms(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
         if self.bound(&survey.center) > survey.reach {
             return;
         }
         survey.seen += 1;
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
-        let close = |form: &Form| form.error <= survey.form_error * form.middle.norm();
-        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-        if !(fine || form.as_deref().is_some_and(close)) {
-            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
-            return;
+        let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        match survey.forms.take(form.as_deref(), survey.side, is_fine) {
+            Taken::Whole => {}
+            Taken::Halves => self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1)),
+            Taken::Nothing => survey.jumps = true,
         }
-        match form {
-            Some(form) => {
-                let form = form.seen_from(survey.side);
-                survey.forms.iter_mut().for_each(|forms| forms.push(form));
-            }
-            None => survey.jumps = true,
-        }
-    }
-
-    /// Takes the cylinder that a part within reach needs; its halves tell it more closely than needed only where they must.
-    pub(super) fn survey_across(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
-        let Some((asked, mut found)) = survey.across else { return };
-        if self.bound(&survey.center) > survey.reach {
-            return;
-        }
-        survey.seen += 1;
-        let form = self.form.get(|| self.form_of(sheet).map(Box::new)).as_deref();
-        let close = |form: &Form| form.error <= survey.form_error * form.middle.norm();
-        let is_fine = self.radius <= FINE * survey.reach
-            || depth >= MAX_DEPTH
-            || survey.seen >= MAX_PARTS
-            || form.is_some_and(close);
-        let seen = form.map(|form| form.seen_from(survey.side));
-        // The more it may bend along the line the less is needed across.
-        while let Some(least) = asked.least.get(found.least) {
-            let needed = seen.and_then(|form| form.curvature_across(&asked.along, -least));
-            let needed = needed.unwrap_or(f64::INFINITY);
-            if needed > asked.enough.max(found.curvature) && !is_fine {
-                self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
-                return;
-            }
-            if needed <= asked.most {
-                found.curvature = found.curvature.max(needed);
-                break;
-            }
-            found.least += 1;
-        }
-        survey.jumps = found.least >= LENGTHWISE;
-        survey.across = Some((asked, found));
     }
 
     /// The forms of all places, if the part is smooth and does not end.

@@ -2,7 +2,10 @@
 
 use std::cell::Ref;
 
-use apt_geometry::{Vec3, surface::Foot};
+use apt_geometry::{
+    Vec3,
+    surface::{Foot, Steady},
+};
 
 use super::{Contacts, End, Far, Near, Pose, Start, Zone, trough::Grounds};
 use crate::clearance::{Contact, Gauge, Tool};
@@ -19,6 +22,15 @@ pub(in crate::clearance) struct Around<'a> {
     contacts: Option<Ref<'a, Contacts>>,
     /// Which of the places serves.
     place: Option<usize>,
+}
+
+impl Zone {
+    /// Whether the way of a point in contact is in the ball.
+    fn holds_way(&self, contact: &Contact, way: &Vec3) -> bool {
+        let is_in = |p: &Vec3| (p - self.center).norm() <= self.radius;
+        let Contact { clearance, tool: point, surface, .. } = contact;
+        is_in(point) && is_in(&(point + way)) && is_in(surface) && clearance + way.norm() <= self.depth
+    }
 }
 
 /// The steady ball about a contact, for feet of points near by.
@@ -134,27 +146,44 @@ impl<'a> Around<'a> {
     ///
     /// At a distance d from a surface with the form S it is that of `−S (1 − d S)⁻¹`: beyond the surface that is more than `−S` by
     /// `|d| S²` where S bends towards the point, and as much by the greater bend of the parallel surface there where it bends away.
-    pub(in crate::clearance) fn bend_along(&self, contact: &Contact, way: &Vec3) -> Option<f64> {
-        let (_, zone) = self.known()?;
-        let Contact { clearance, tool: point, gradient, surface } = contact;
-        let (length, stock) = (way.norm(), self.pose.surface.stock(self.pose.side));
+    pub(in crate::clearance) fn bend_along(&self, contact: &Contact, way: &Vec3, enough: f64) -> Option<f64> {
+        let Pose { surface, side, .. } = self.pose;
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        let (length, stock) = (way.norm(), surface.stock(side));
         let along = way.try_normalize(0.0)?;
-        let is_in = |p: &Vec3| (p - zone.center).norm() <= zone.radius;
+        let ball = match self.known() {
+            Some((_, zone)) if zone.holds_way(contact, way) => (zone.steady, zone.depth),
+            _ => self.steady_about(contact, way)?,
+        };
+        let (steady, depth) = ball;
         let farthest = clearance + length;
-        if !(is_in(point) && is_in(&(point + way)) && is_in(surface)) || farthest > zone.depth {
+        if farthest > depth {
             return None;
         }
-        let hollow = zone.steady.bend(farthest.max(-stock));
+        let hollow = steady.bend(farthest.max(-stock));
         let nearest = clearance + gradient.dot(way).min(0.0) - 0.5 * hollow * length * length;
-        let round = zone.steady.upward_bend(nearest)?;
+        let round = steady.upward_bend(nearest)?;
         let behind = (-(nearest + stock)).max(0.0);
         let ahead = (farthest + stock).max(0.0);
-        let reach = length * (1.0 + ahead * hollow).max(1.0 + behind * round);
-        let center = surface - gradient * stock;
-        let forms = self.pose.surface.forms(self.pose.side, &center, reach)?;
-        let away = forms.iter().map(|form| form.bend_away(&along)).fold(0.0, f64::max);
+        let reach = 0.5 * length * (1.0 + ahead * hollow).max(1.0 + behind * round);
+        let middle = surface.foot(&(point + way * 0.5));
+        let center = middle.point - middle.normal * (side * stock);
+        let away = surface.bend_along(side, &center, reach, (&along, enough))?.max(0.0);
         let bend = away + behind * hollow.max(round).powi(2);
         bend.is_finite().then_some(bend)
+    }
+
+    /// A steady ball about the way of a point in contact, and its depth.
+    fn steady_about(&self, contact: &Contact, way: &Vec3) -> Option<(Steady, f64)> {
+        let Pose { surface, side, .. } = self.pose;
+        let Contact { clearance, tool: point, surface: foot, .. } = contact;
+        let middle = surface.foot(&(point + way * 0.5));
+        // On the side that it is asked from.
+        let center = middle.point + middle.normal * (side * (side * middle.distance).max(0.0));
+        let farthest = |p: &Vec3| (p - center).norm();
+        let radius = farthest(point).max(farthest(&(point + way))).max(farthest(foot));
+        let depth = (clearance + way.norm()).max(0.0);
+        surface.steady(side, &center, [radius, depth]).map(|steady| (steady, depth))
     }
 
     /// Heights between which all of the tool is that is not known to be farther from the surface than a level; beside a contact on the

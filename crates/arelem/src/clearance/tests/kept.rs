@@ -6,7 +6,7 @@ use super::{
 };
 
 /// A quadric with these squares and constant, and half linear coefficients.
-fn quadric(squares: [f64; 3], linear: [f64; 3], constant: f64) -> Geometry {
+pub(super) fn quadric(squares: [f64; 3], linear: [f64; 3], constant: f64) -> Geometry {
     let mut coefficients = [0.0; 10];
     coefficients[..3].copy_from_slice(&squares);
     coefficients[3] = constant;
@@ -15,7 +15,7 @@ fn quadric(squares: [f64; 3], linear: [f64; 3], constant: f64) -> Geometry {
 }
 
 /// The tool end moved along the gradient until the clearance is about a given one.
-fn laid(gauge: &Gauge, tool: &Tool, mut tip: Vec3, clearance: f64) -> (Vec3, Contact) {
+pub(super) fn laid(gauge: &Gauge, tool: &Tool, mut tip: Vec3, clearance: f64) -> (Vec3, Contact) {
     for _ in 0..4 {
         let contact = gauge.contact(tool, &tip);
         tip -= contact.gradient * (contact.clearance - clearance);

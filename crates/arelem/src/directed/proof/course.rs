@@ -32,6 +32,8 @@ const MAX_DEPTH: u32 = 10;
 const MAX_SAMPLES: usize = 400;
 /// The same once one of them is out of the band: the vector is refused, and so many tell how much shorter it must be.
 const MAX_SAMPLES_REFUSED: usize = 48;
+/// Bisections that tell which bend serves.
+const BISECTIONS: usize = 20;
 /// Bound of the stretches on one vector that have no bound, as where the tool comes to the end of a surface: shorter ones may
 /// have, but so many tell that the vector must be shorter.
 const MAX_UNBOUNDED: usize = 12;
@@ -207,8 +209,10 @@ impl Course<'_, '_> {
             match self.stretch(&a, &b, count - samples.len()) {
                 Stretch::Held => continue,
                 Stretch::Open(bend) => {
-                    unbounded +=
-                        usize::from(bend == Some(Bend::Unbounded) && self.bend_of_witness(&a, &b).is_none());
+                    unbounded += usize::from(
+                        bend == Some(Bend::Unbounded)
+                            && self.bend_of_witness(&a, &b, f64::INFINITY).is_none(),
+                    );
                 }
             }
             let x = cut(&a, &b);
@@ -369,14 +373,17 @@ impl Course<'_, '_> {
         let [first, last] =
             [a, b].map(|end| Sample { slope: end.contact.gradient.dot(&way) / length, ..*end });
         let held = |bend: f64| self.line.allows(highest(&first, &last, bend * (way.norm() / length).powi(2)));
-        held(0.0) && self.bend_of_witness(a, b).is_some_and(held)
+        held(0.0) && {
+            let most = 8.0 * self.line.role.band() / way.norm_squared();
+            self.bend_of_witness(a, b, greatest(most, held)).is_some_and(held)
+        }
     }
 
-    /// Bound of the second derivative of that point's distance by the length of its way.
-    fn bend_of_witness(&self, a: &Sample, b: &Sample) -> Option<f64> {
+    /// Bound of the second derivative of that point's distance by the length of its way, closely where it is more than enough.
+    fn bend_of_witness(&self, a: &Sample, b: &Sample, enough: f64) -> Option<f64> {
         let Line { sweep, role, .. } = self.line;
         let (from, tool) = sweep.at(a.x);
-        role.gauge.bend_along(&tool, &from, &a.contact, &(b.contact.tool - a.contact.tool))
+        role.gauge.bend_along((&tool, &from), &a.contact, &(b.contact.tool - a.contact.tool), enough)
     }
 
     /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the
@@ -429,6 +436,16 @@ impl Course<'_, '_> {
         }
         role.gauge.is_clear_between(&tool, [(&from, &a.contact), (&to, &b.contact)], limits[0])
     }
+}
+
+/// The greatest bend up to a bound that holds, of which less does too.
+fn greatest(most: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let mut range = [0.0, most];
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (range[0] + range[1]);
+        range[usize::from(!holds(middle))] = middle;
+    }
+    range[0]
 }
 
 /// Where a vector is looked at first: at the extreme of the cubic through both ends with their slopes, if it has just one.
