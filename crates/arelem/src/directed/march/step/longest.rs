@@ -13,8 +13,11 @@ use crate::{
 
 /// Bound of the trials for one vector.
 const MAX_TRIALS: u32 = 60;
-/// Trials that try to lengthen a vector already proven.
+/// Trials that try to lengthen a vector already proven, and how many while one is refused that is no less than so many times as long: what
+/// is told by both is worth a vector.
 const LENGTHENINGS: u32 = 4;
+const MOST_LENGTHENINGS: u32 = 8;
+const MUCH_LONGER: f64 = 1.2;
 /// Share of the length that the next trial has at least.
 const GREATEST_SHRINKING: f64 = 0.3;
 /// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
@@ -63,7 +66,7 @@ impl Search {
         let is_enough = growth <= 1.0 + LONG_ENOUGH
             || trial.length >= self.cap * (1.0 - 1e-6)
             || self.corners.is_met
-            || self.lengthenings >= LENGTHENINGS;
+            || self.is_lengthened(length);
         let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(self.cap);
         if self.best.as_ref().is_none_or(|(best, _)| trial.length > best.length) {
             self.best = Some((trial, length));
@@ -77,6 +80,12 @@ impl Search {
         self.lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
         self.length = if next_is_bad { 0.5 * (length + self.shortest_bad) } else { next };
         true
+    }
+
+    /// Whether enough has been tried to find a longer one than that of a length.
+    fn is_lengthened(&self, known: f64) -> bool {
+        let is_far = self.shortest_bad.is_finite() && self.shortest_bad >= known * MUCH_LONGER;
+        self.lengthenings >= if is_far { MOST_LENGTHENINGS } else { LENGTHENINGS }
     }
 
     /// Goes on from a length with which no vector leads on.
@@ -94,7 +103,7 @@ impl Search {
         self.last_bad = Some(bad);
         if let Some((_, known)) = &self.best {
             // Where the bend changes the sag says little about the length.
-            if self.shortest_bad <= known * NEARLY || self.lengthenings >= LENGTHENINGS {
+            if self.shortest_bad <= known * NEARLY || self.is_lengthened(*known) {
                 return false;
             }
             self.lengthenings += 1;
