@@ -15,9 +15,11 @@ const STEADY_COSINE: f64 = 0.5;
 /// cosine is expected to be over them where that is not far enough.
 const WIDER: f64 = 1.25;
 const STEEPER: f64 = 0.1;
-/// How often a wider region is looked at if the paths reach out of one, and how much wider than they reach.
+/// How often a wider region is looked at if the paths reach out of one, and how much wider than they are foreseen to reach.
 const WIDENINGS: u32 = 3;
-const FURTHER: f64 = 1.05;
+const FURTHER: f64 = 1.02;
+/// Bound of the trials in which that is foreseen.
+const MOST_FORESEEN: u32 = 16;
 
 /// A place of a tabulated cylinder, ruled, polyconic or sculptured surface by its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,32 +184,8 @@ impl Surface {
         }
         let far = (depth + stock).max(0.0);
         let reach = radius + far;
-        let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
-        let wide =
-            |near: &Facing, path: &Facing| reach + far * sine(near.cosine) * sine(path.cosine) / path.cosine;
-        let all = |asked: f64| self.facing(side, center, asked, &foot.normal);
-        let (near, path) = if matches!(self, Self::Tabulated(_)) {
-            // The stretch of the curve between the places is among those looked at.
-            let near = all(reach)?;
-            (near, near)
-        } else {
-            match all(WIDER * reach).filter(|path| wide(path, path) <= WIDER * reach) {
-                Some(path) => (path, path),
-                None => {
-                    let near = all(reach)?;
-                    let least = Facing { cosine: (near.cosine - STEEPER).max(STEADY_COSINE), ..near };
-                    let mut asked = wide(&near, &least);
-                    let path = (0..WIDENINGS).find_map(|_| {
-                        let path = all(asked)?;
-                        let needed = wide(&near, &path);
-                        let serves = needed <= asked;
-                        asked = FURTHER * needed;
-                        serves.then_some(path)
-                    });
-                    (near, path?)
-                }
-            }
-        };
+        let asked = Asked { surface: self, side, center, normal: &foot.normal, reach, far };
+        let (near, path) = asked.sheet()?;
         let lean = path.lean();
         let [natural, other] = path.curvature;
         let (against, along) = if side > 0.0 { (other, natural) } else { (natural, other) };
@@ -313,5 +291,88 @@ impl Surface {
             Self::Sculptured(sheet) => sheet.survey(asked()).facing(),
             _ => None,
         }
+    }
+}
+
+/// A ball about a place that is to be steady.
+struct Asked<'a> {
+    surface: &'a Surface,
+    side: f64,
+    center: &'a Vec3,
+    /// The normal at the foot of the centre.
+    normal: &'a Vec3,
+    /// How far from the centre the nearest places of the surface can be, and how far from the points that they belong to.
+    reach: f64,
+    far: f64,
+}
+
+impl Asked<'_> {
+    fn facing(&self, within: f64) -> Option<Facing> {
+        self.surface.facing(self.side, self.center, within, self.normal)
+    }
+
+    /// How far from the centre the paths between two feet of one point can reach, given what the normals at the feet and on the paths
+    /// keep as cosine.
+    fn wide(&self, near: f64, path: f64) -> f64 {
+        let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
+        self.reach + self.far * sine(near) * sine(path) / path
+    }
+
+    /// What is known about the feet, and about the paths between them.
+    fn sheet(&self) -> Option<(Facing, Facing)> {
+        if matches!(self.surface, Surface::Tabulated(_)) {
+            // The stretch of the curve between the places is among those looked at.
+            let near = self.facing(self.reach)?;
+            return Some((near, near));
+        }
+        let first = WIDER * self.reach;
+        let about = self.facing(first);
+        match about.filter(|path| self.wide(path.cosine, path.cosine) <= first) {
+            Some(path) => Some((path, path)),
+            None => {
+                let near = self.facing(self.reach)?;
+                Some((near, self.paths(&near, about.map(|about| (first, about)))?))
+            }
+        }
+    }
+
+    /// What is known of the paths between feet, given what is about these and, if that is known, what is about them within a wider
+    /// reach.
+    fn paths(&self, near: &Facing, known: Option<(f64, Facing)>) -> Option<Facing> {
+        let mut inner = (self.reach, near.cosine);
+        let (mut within, mut path) = match known {
+            Some(known) => known,
+            None => {
+                let within = self.wide(near.cosine, (near.cosine - STEEPER).max(STEADY_COSINE));
+                (within, self.facing(within)?)
+            }
+        };
+        for _ in 0..WIDENINGS {
+            if self.wide(near.cosine, path.cosine) <= within {
+                return Some(path);
+            }
+            let next = self.foreseen(near.cosine, [inner, (within, path.cosine)])?;
+            inner = (within, path.cosine);
+            (within, path) = (next, self.facing(next)?);
+        }
+        (self.wide(near.cosine, path.cosine) <= within).then_some(path)
+    }
+
+    /// How far the paths will reach if the cosine goes on to fall as it does between two reaches; `None` if they lead away.
+    fn foreseen(&self, near: f64, [inner, outer]: [(f64, f64); 2]) -> Option<f64> {
+        let slope = ((outer.1 - inner.1) / (outer.0 - inner.0)).min(0.0);
+        let mut within = outer.0;
+        for _ in 0..MOST_FORESEEN {
+            let cosine = outer.1 + slope * (within - outer.0);
+            if cosine < STEADY_COSINE {
+                return None;
+            }
+            let needed = self.wide(near, cosine);
+            if needed <= within {
+                break;
+            }
+            within = FURTHER * needed;
+        }
+        Some(within)
     }
 }

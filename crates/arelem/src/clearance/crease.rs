@@ -164,8 +164,8 @@ impl Beside<'_> {
     /// are on one line at which the surface ends. The distance of a place from the tool is a convex function of both, so that it is nowhere
     /// greater than at the ends for a place that goes along the chord; and the line is no farther off that than it sags.
     pub(super) fn at_most_along(&self, to: &Vec3, [first, last]: [&Contact; 2]) -> Option<f64> {
-        let [from_spot, to_spot] = [first, last].map(|contact| self.spot(&contact.surface));
-        let (Spot { crease, at }, Spot { crease: other, at: there }) = (from_spot?, to_spot?);
+        let Spot { crease, at } = self.spot(&first.surface)?;
+        let Spot { crease: other, at: there } = self.spot(&last.surface)?;
         if crease != other {
             return None;
         }

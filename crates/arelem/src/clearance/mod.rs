@@ -358,9 +358,18 @@ impl Gauge {
         tool: &Tool,
         [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
     ) -> Option<f64> {
+        if near::goes_on_at(&self.surface, self.side, &first.surface, 0.0, &self.memory) {
+            return None;
+        }
         let (tool, start) = &self.body(tool, from);
         let beside = Beside { tool, surface: self.met(tool), side: self.side, tip: start };
         Some(beside.at_most_along(&(to + (start - from)), [first, last])? - self.thickness)
+    }
+
+    /// Whether the place of the surface that is nearest to a point, no farther from it than a distance, is where the surface ends.
+    pub(crate) fn ends_at(&self, point: &Vec3, distance: f64) -> bool {
+        !near::goes_on_at(&self.surface, self.side, point, distance, &self.memory)
+            && self.surface.ends_at(point)
     }
 
     /// A bound of the second derivative, by the length of the way, of the distance of a point that goes a straight way.

@@ -291,6 +291,15 @@ pub(super) fn remember(
     }
 }
 
+/// Whether a ruled or polyconic surface is known to go on about its place nearest to a point that is no farther from it than a distance,
+/// on a side: it does about steady balls.
+pub(super) fn goes_on_at(surface: &Surface, side: f64, point: &Vec3, distance: f64, memory: &Memory) -> bool {
+    let Ok(memory) = memory.near.try_borrow() else { return false };
+    let holds = |zone: &Zone| (point - zone.center).norm() <= zone.radius && distance <= zone.depth;
+    matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_))
+        && memory.places.iter().any(|known| known.side == side && known.zone.as_ref().is_ok_and(holds))
+}
+
 /// The foot of the tool end itself with its signed distance, as a contact.
 pub(super) fn foot(
     tool: &Tool,

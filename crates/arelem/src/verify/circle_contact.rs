@@ -506,6 +506,16 @@ impl Place<'_> {
 /// the circle, or one a little greater: from where that place is within the circle, Newton's method on the reciprocal of its radius
 /// never leaves that side.
 pub(super) fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64) -> f64 {
+    multiplier_of_circle_until(form, g, radius, |_, _| false)
+}
+
+/// The same, or the first multiplier on the way there that is enough, as told by it and the place of which it is the multiplier.
+pub(super) fn multiplier_of_circle_until(
+    form: &Matrix2<f64>,
+    g: &Vector2<f64>,
+    radius: f64,
+    mut is_enough: impl FnMut(f64, &Vector2<f64>) -> bool,
+) -> f64 {
     let (mean, half) = (0.5 * form.trace(), (0.5 * (form.m11 - form.m22)).hypot(form.m12));
     // Between the multiplier that makes the form just positive and one that is enough for any form so.
     let (mut low, mut high) = (half - mean, half - mean + g.norm() / radius);
@@ -514,6 +524,9 @@ pub(super) fn multiplier_of_circle(form: &Matrix2<f64>, g: &Vector2<f64>, radius
         let held = form + Matrix2::identity() * mu;
         let Some(inverse) = held.try_inverse() else { break };
         let place = inverse * g;
+        if is_enough(mu, &place) {
+            return mu;
+        }
         let size = place.norm();
         let step = size * size / place.dot(&(inverse * place)) * (size - radius) / radius;
         if !step.is_finite() {

@@ -17,7 +17,7 @@ use super::{
     patch::{held, jet, place_on},
     survey::{Accuracy, Part, Sheet, nearest_by},
     tool::{Profile, Tool},
-    trough::{Rise, farthest_from_line, straight_direction},
+    trough::{Rise, is_within_of_line, straight_direction},
 };
 
 /// Steps of Newton's method, the last of them, and the greatest, in parameters.
@@ -219,7 +219,7 @@ impl Following<'_> {
         let behind = part.hollow(-side)?;
         // The surface's place in the tool, or the tool's under the surface, is as deep as that.
         let own = jet(&part.net, contact.at.map(|x| x.clamp(0.0, 1.0)))[0];
-        let mut value = self.tool.signed_distance(&(own - self.tip)).0;
+        let mut value = self.tool.distance(&(own - self.tip));
         // A point is its own place under the surface: what is nearer beyond the end of a part says nothing of it.
         let is_under = contact.value < 0.0 && !self.tool.profile.is_point();
         if value > contact.value + self.tolerance && is_under && -contact.value * behind <= BEHIND {
@@ -271,7 +271,7 @@ impl Following<'_> {
     /// to a height.
     fn far(&self, part: &Part, [level, guard]: [&Guard; 2], below: f64, least: f64) -> f64 {
         let from = part.center - self.tip;
-        let far = self.tool.signed_distance(&from).0 - part.radius;
+        let far = self.tool.distance(&from) - part.radius;
         if far >= least {
             return far;
         }
@@ -288,7 +288,7 @@ impl Following<'_> {
         let Some(part) = self.parts.get(index) else { return false };
         let at = part.nearest_parameters(place);
         let own = jet(&part.net, at)[0];
-        let is_nearer = self.tool.signed_distance(&(own - self.tip)).0 < least;
+        let is_nearer = self.tool.distance(&(own - self.tip)) < least;
         if is_nearer {
             self.kept.nearer.set(Some(own));
         }
@@ -322,7 +322,7 @@ impl Following<'_> {
             return Some(());
         }
         let from = part.center - self.tip;
-        let (apart, _) = self.tool.signed_distance(&from);
+        let apart = self.tool.distance(&from);
         if apart < least && self.is_nearer(index, &part.center, least) {
             return None;
         }
@@ -339,7 +339,7 @@ impl Following<'_> {
         }
         // The nearer first, where a place nearer than the contact would be.
         let [first, last] = part.halves().0;
-        let apart = |half: &Part| self.tool.signed_distance(&(half.center - self.tip)).0;
+        let apart = |half: &Part| self.tool.distance(&(half.center - self.tip));
         for half in if apart(&last) < apart(&first) { [last, first] } else { [first, last] } {
             if self.far(&half, guards, below, least) < least {
                 self.show(&half, index, side, shown, halvings - 1)?;
@@ -400,7 +400,7 @@ impl Following<'_> {
                 let center = contact.place + contact.normal * radius;
                 let from = center - self.tip;
                 let low = low.as_ref().map_or(*tool, |low| tool.with(low));
-                if radius - farthest_from_line(&low, &from, &along) >= least {
+                if is_within_of_line(&low, &from, &along, radius - least) {
                     let below = if low.profile == tool.profile { f64::INFINITY } else { below };
                     return Some((Guard::Trough(center, along, radius), below));
                 }
@@ -421,7 +421,7 @@ impl Following<'_> {
     /// the surface bends towards the tool most.
     fn downhill(&self, part: &Part, contact: &Contact) -> Option<Vec3> {
         let [u, v] = Rise::of(&part.net, contact.at, &contact.normal)?.hollow_way()?;
-        let apart = |place: &Vec3| self.tool.signed_distance(&(place - self.tip)).0;
+        let apart = |place: &Vec3| self.tool.distance(&(place - self.tip));
         let least = contact.value - self.tolerance;
         let step = self.tool.profile.widest() / f64::from(SEEN_EACH_WAY);
         let beside = |way: f64| place_on(&part.net, [contact.at[0] + way * u, contact.at[1] + way * v]);
@@ -460,7 +460,7 @@ impl Following<'_> {
     fn seen(&self, place: &Vec3) -> Option<(f64, Vec3)> {
         let (index, at) = self.seen_at(place)?;
         let own = jet(&self.parts.get(index)?.net, at)[0];
-        Some((self.tool.signed_distance(&(own - self.tip)).0, own))
+        Some((self.tool.distance(&(own - self.tip)), own))
     }
 
     /// The part and its place nearest to a place.
@@ -474,7 +474,7 @@ impl Following<'_> {
         let (mut index, mut from) = match *last {
             Some(last) => last,
             None => {
-                let apart = |part: &Part| self.tool.signed_distance(&(part.center - self.tip)).0;
+                let apart = |part: &Part| self.tool.distance(&(part.center - self.tip));
                 (nearest_by(self.parts, apart)?, [0.5; 2])
             }
         };

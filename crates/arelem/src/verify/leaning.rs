@@ -265,7 +265,7 @@ mod tests {
             let [low, high] = if inside { [0.0, 1.0] } else { [-0.25, 1.25] };
             for (i, j) in (0..=40).flat_map(|i| (0..=40).map(move |j| (i, j))) {
                 let at = [i, j].map(|k| low + (high - low) * f64::from(k) / 40.0);
-                let apart = tool.signed_distance(&(jet(&net, at)[0] - tip)).0;
+                let apart = tool.distance(&(jet(&net, at)[0] - tip));
                 prop_assert!(apart >= least - 1e-12, "{apart} {least} at {at:?}");
             }
         }

@@ -362,7 +362,7 @@ impl<'a> Bodies<'a> {
         let top = tip + self.tool.axis * self.reach;
         for place in [*tip, (tip + top) * 0.5] {
             let depth = self.depth(&place)?;
-            if depth.0 > deepest.0 && self.tool.signed_distance(&(place - tip)).0 <= 0.0 {
+            if depth.0 > deepest.0 && self.tool.distance(&(place - tip)) <= 0.0 {
                 deepest = depth;
             }
         }

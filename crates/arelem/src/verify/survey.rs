@@ -145,7 +145,7 @@ impl Sheet {
             open.push((between_across(&patch.net, range), edges));
             while let Some((net, edges)) = open.pop() {
                 let (center, radius) = ball(&net);
-                let far = tool.signed_distance(&(center - tip)).0 - radius;
+                let far = tool.distance(&(center - tip)) - radius;
                 if far > bound {
                     continue;
                 }
@@ -251,7 +251,7 @@ impl Sheet {
             Some(jet(&near.parts.get(k)?.net, at.map(|x| x.clamp(0.0, 1.0)))[0])
         });
         let upper = match before {
-            Some(place) => tool.signed_distance(&(place - tip)).0,
+            Some(place) => tool.distance(&(place - tip)),
             None => self.upper(tip, tool)?,
         };
         if upper > far {
@@ -308,9 +308,7 @@ impl Sheet {
         };
         let mut rate: f64 = 0.0;
         for part in parts {
-            if part.far.get() - since > reach
-                || tool.signed_distance(&(part.center - tip)).0 - part.radius > reach
-            {
+            if part.far.get() - since > reach || tool.distance(&(part.center - tip)) - part.radius > reach {
                 continue;
             }
             let at_edges = part.bend_at_edges(reach, tip, tool);
@@ -495,7 +493,7 @@ impl Part {
     /// How the clearance may bend where the tool is nearer than `reach` to a place at which the surface ends or bends sharply: as the tool is
     /// round there, zero without such a place; none where that is not known.
     fn bend_at_edges(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
-        let apart = |place: &Vec3| tool.signed_distance(&(place - tip)).0;
+        let apart = |place: &Vec3| tool.distance(&(place - tip));
         let mut open: Vec<(Cubic, u32)> = Vec::new();
         let edges = sides(&self.net).into_iter().zip(self.edges.sides);
         open.extend(edges.filter(|(_, is_edge)| *is_edge).map(|(curve, _)| (curve, EDGE_HALVINGS)));

@@ -202,22 +202,23 @@ impl Profile {
 
     /// Signed distance of a point of the half-plane (ρ ≥ 0) to the body, negative inside, and the nearest boundary point.
     pub(super) fn signed_distance(&self, p: Meridian) -> (f64, Meridian) {
-        let mut best = (f64::INFINITY, [0.0; 2]);
+        let mut square = (f64::INFINITY, [0.0; 2]);
         for (a, b) in self.closed_lines() {
             let q = nearest_on_segment(p, a, b);
             let d = sub(p, q);
-            let distance = dot(d, d).sqrt();
-            if distance < best.0 {
-                best = (distance, q);
+            let distance = dot(d, d);
+            if distance < square.0 {
+                square = (distance, q);
             }
         }
+        let mut best = (square.0.sqrt(), square.1);
         if self.radius > 0.0 {
             let d = sub(p, self.center);
             let size = dot(d, d).sqrt();
-            if size > 0.0 && self.fan_holds([d[0] / size, d[1] / size]) && (size - self.radius).abs() < best.0
-            {
+            let apart = (size - self.radius).abs();
+            if size > 0.0 && apart < best.0 && self.fan_holds([d[0] / size, d[1] / size]) {
                 let k = self.radius / size;
-                best = ((size - self.radius).abs(), [self.center[0] + k * d[0], self.center[1] + k * d[1]]);
+                best = (apart, [self.center[0] + k * d[0], self.center[1] + k * d[1]]);
             }
         }
         if self.contains(p) { (-best.0, best.1) } else { best }
@@ -414,6 +415,13 @@ impl<'a> Tool<'a> {
         let (p, out) = self.split(w);
         let (distance, q) = self.profile.signed_distance(p);
         (distance, out * q[0] + self.axis * q[1])
+    }
+
+    /// Signed distance of a point to the body, negative inside.
+    pub(super) fn distance(&self, w: &Vec3) -> f64 {
+        let height = w.dot(&self.axis);
+        let from_axis = (w - self.axis * height).norm();
+        self.profile.signed_distance([from_axis, height]).0
     }
 
     /// A direction without its part round the axis at the azimuth of a point (from the tool end): what an outward normal of

@@ -7,7 +7,7 @@ use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 
 use super::{
-    circle_contact::{least_of, multiplier_of_circle},
+    circle_contact::{least_of, multiplier_of_circle_until},
     patch::{Net, differences, reached, turned},
     tool::{Meridian, Tool, perpendicular},
 };
@@ -128,38 +128,53 @@ pub(super) fn straight_direction(tool: &Tool<'_>, place: &Vec3, normal: &Vec3) -
     (way - normal * normal.dot(&way)).try_normalize(0.0)
 }
 
-/// No place of a tool is farther from the line through a place (from the tool end) in a unit direction.
-pub(super) fn farthest_from_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3) -> f64 {
+/// Whether it is shown that no place of a tool is farther from the line through a place (from the tool end) in a unit direction than a
+/// limit.
+pub(super) fn is_within_of_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3, limit: f64) -> bool {
     let across = |w: Vec3| w - along * along.dot(&w);
     let first = perpendicular(&tool.axis);
     let frame = [first, tool.axis.cross(&first)];
     let lean = Vector2::new(frame[0].dot(along), frame[1].dot(along));
     // The square of the distance on a circle, turned about: a form in the plane of the circle.
     let form = lean * lean.transpose() - Matrix2::identity();
-    let circle = |[rho, height]: Meridian| {
+    let is_within = |[rho, height]: Meridian, limit: f64| {
         let middle = across(tool.axis * height - center);
-        if rho <= 0.0 {
-            return middle.norm();
+        let room = limit * limit - middle.norm_squared();
+        if limit < 0.0 || rho <= 0.0 {
+            return limit >= 0.0 && room >= 0.0;
         }
         let pull = -Vector2::new(frame[0].dot(&middle), frame[1].dot(&middle));
-        // Every multiplier for which the form is positive gives a bound; the least of the form's two values is −1.
-        let best = multiplier_of_circle(&form, &pull, rho);
-        let bound = |mu: f64| middle.norm_squared() + mu * rho * rho - least_of(&form, mu, &pull);
-        bound(best).min(bound(best.max(1.0 + POSITIVE))).sqrt()
+        stands_out_by_at_most(&form, &pull, rho, room)
     };
     let [lower, upper, top] = tool.profile.edges();
-    let ends = || circle(lower).max(circle(upper));
-    let corner = match tool.profile.corner() {
+    let both_ends = || is_within(lower, limit) && is_within(upper, limit);
+    let corner = || match tool.profile.corner() {
         // The balls of the corner hold its arc, and so do its ends with where its tangents there meet.
         Some((center, radius)) => {
-            let balls = circle(center) + radius;
-            let tangents =
-                meeting([lower, upper], center, radius).map_or(f64::INFINITY, |p| circle(p).max(ends()));
-            balls.min(tangents)
+            is_within(center, limit - radius)
+                || both_ends() && meeting([lower, upper], center, radius).is_some_and(|p| is_within(p, limit))
         }
-        None => ends(),
+        None => both_ends(),
     };
-    circle([0.0; 2]).max(corner).max(circle(top))
+    corner() && is_within([0.0; 2], limit) && is_within(top, limit)
+}
+
+/// Whether it is shown that `−(wᵀHw + 2g·w)` is at most a limit on a circle about the origin; the least of the two values of H is −1.
+fn stands_out_by_at_most(form: &Matrix2<f64>, g: &Vector2<f64>, radius: f64, limit: f64) -> bool {
+    // Every multiplier for which the form is positive gives a bound, and the place that it belongs to, drawn out or in to the circle,
+    // a value.
+    let bound = |mu: f64| mu * radius * radius - least_of(form, mu, g);
+    let mut verdict = None;
+    let best = multiplier_of_circle_until(form, g, radius, |mu, place| {
+        if bound(mu) <= limit {
+            verdict = Some(true);
+        } else {
+            let w = place * (-radius / place.norm());
+            verdict = (-(form * w + g * 2.0).dot(&w) > limit).then_some(false);
+        }
+        verdict.is_some()
+    });
+    verdict.unwrap_or_else(|| bound(best).min(bound(best.max(1.0 + POSITIVE))) <= limit)
 }
 
 /// A place that makes with the ends of an arc a triangle beyond the arc: where its tangents there meet, or a little beyond where
@@ -214,36 +229,43 @@ mod tests {
         }
 
         #[test]
-        fn no_place_of_a_tool_is_farther_from_a_line_and_one_is_as_far(
+        fn no_place_of_a_tool_is_farther_from_a_line_than_it_is_within_and_one_is_as_far(
             tool in 0usize..4, center in prop::array::uniform3(-6.0..6.0f64), along in prop::array::uniform3(-1.0..1.0f64),
-            lean in prop::array::uniform2(-0.5..0.5f64),
+            lean in prop::array::uniform2(-0.5..0.5f64), share in 0.0..1.0f64,
         ) {
             prop_assume!(Vec3::from(along).norm() > 0.1);
-            let [found, bound] = from_line(tool, center, along, lean);
-            prop_assert!(found <= bound + 1e-9, "{found} {bound}");
+            let (found, is_within) = from_line(tool, center, along, lean);
+            prop_assert!(!is_within(found * (1.0 - 1e-9)), "{found}");
+            prop_assert!(!is_within(found * share), "{found} {share}");
             // Beside the line a whole ball of the corner may stand out of the tool.
-            prop_assert!(bound - found < 0.12, "{found} {bound}");
+            prop_assert!(is_within(found + 0.12), "{found}");
+            prop_assert!(is_within(found + 0.12 + 8.0 * share), "{found} {share}");
         }
     }
 
-    /// Greatest distance of sampled places of a tool from a line, and its bound.
-    fn from_line(tool: usize, center: [f64; 3], along: [f64; 3], lean: [f64; 2]) -> [f64; 2] {
+    /// Greatest distance of sampled places of a tool from a line, and whether it is within a distance of that.
+    fn from_line(
+        tool: usize,
+        center: [f64; 3],
+        along: [f64; 3],
+        lean: [f64; 2],
+    ) -> (f64, impl Fn(f64) -> bool) {
         let (center, along) = (Vec3::from(center), Vec3::from(along).normalize());
         let tools: [&[f64]; 4] =
             [&[0.5, 0.25], &[0.5, 0.0], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
         let cutter = cutter(tools[tool]);
         let profile = Profile::of(&cutter).unwrap();
         let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();
-        let bound = farthest_from_line(&Tool::new(&profile, axis), &center, &along);
         let apart = |x: &Vec3| (x - center).cross(&along).norm();
-        [samples(&cutter, Vec3::zeros(), axis).iter().map(apart).fold(0.0, f64::max), bound]
+        let found = samples(&cutter, Vec3::zeros(), axis).iter().map(apart).fold(0.0, f64::max);
+        (found, move |limit| is_within_of_line(&Tool::new(&profile, axis), &center, &along, limit))
     }
 
     #[test]
     fn a_circle_whose_best_multiplier_leaves_nothing_has_a_bound() {
         let center = [0.7428797089516813, -2.104753444745214, 3.866597629602039];
         let along = [0.6924128563884951, -0.6987785676831421, 0.28328497887246323];
-        let [found, bound] = from_line(0, center, along, [-0.38750552498363805, -0.043242945435448835]);
-        assert!(found <= bound + 1e-9 && bound - found < 0.12, "{found} {bound}");
+        let (found, is_within) = from_line(0, center, along, [-0.38750552498363805, -0.043242945435448835]);
+        assert!(is_within(found + 0.12) && !is_within(found * (1.0 - 1e-9)), "{found}");
     }
 }

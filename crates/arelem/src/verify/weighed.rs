@@ -143,7 +143,7 @@ mod tests {
             for j in 0..=8 {
                 for i in 0..=8 {
                     let [u, v] = [i, j].map(|k| f64::from(k) / 8.0);
-                    let (distance, _) = tool.signed_distance(&(jet(&net, [u, v])[0] - tip));
+                    let distance = tool.distance(&(jet(&net, [u, v])[0] - tip));
                     prop_assert!(distance >= lower - 1e-12, "{distance} under {lower} at {u} {v}");
                 }
             }

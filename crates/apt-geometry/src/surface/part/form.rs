@@ -112,13 +112,15 @@ impl Form {
         Self { middle: map.transpose() * self.middle * map, ..*self }
     }
 
-    /// The error with which this form would hold another one too, as far as it bends to the side asked about.
-    fn excess(&self, other: &Self) -> f64 {
+    /// The error with which this form would hold another one too, as far as it bends to the side asked about, if that is not more than
+    /// an error.
+    fn standing_in(&self, other: &Self, most: f64) -> Option<f64> {
         let apart = other.middle - self.middle;
         let mean = apart.trace() / 3.0;
+        let room = most - mean - other.error;
         // No eigenvalue is farther from their mean.
-        let most = mean + ((apart.norm_squared() - 3.0 * mean * mean).max(0.0) * (2.0 / 3.0)).sqrt();
-        most + other.error
+        let square = (apart.norm_squared() - 3.0 * mean * mean).max(0.0) * (2.0 / 3.0);
+        (room >= 0.0 && square <= room * room).then(|| mean + square.sqrt() + other.error)
     }
 
     /// How much the surface bends away from the side at most along a unit vector, at all these places.
@@ -156,18 +158,17 @@ impl Form {
 const ALIKE: f64 = 0.01;
 
 /// Few forms that bend in each direction as much as all of some, and hardly more.
-pub(in super::super) fn leading(mut forms: Vec<Form>) -> Vec<Form> {
-    let size = |form: &Form| form.middle.norm() + form.error;
-    forms.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let slack = ALIKE * forms.first().map_or(0.0, size);
+pub(in super::super) fn leading(forms: Vec<Form>) -> Vec<Form> {
+    let mut sized: Vec<(f64, Form)> =
+        forms.into_iter().map(|form| (form.middle.norm() + form.error, form)).collect();
+    sized.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let slack = ALIKE * sized.first().map_or(0.0, |first| first.0);
     let mut kept: Vec<(Form, f64)> = Vec::new();
-    for form in forms {
-        let stands_in = kept.iter_mut().find_map(|(known, most)| {
-            let needed = known.excess(&form);
-            (needed <= *most).then_some((known, needed))
-        });
+    for (_, form) in sized {
+        let stands_in =
+            kept.iter_mut().find_map(|(known, most)| Some((known.standing_in(&form, *most)?, known)));
         match stands_in {
-            Some((known, needed)) => known.error = known.error.max(needed),
+            Some((needed, known)) => known.error = known.error.max(needed),
             None => kept.push((form, form.error + slack)),
         }
     }

@@ -57,30 +57,37 @@ impl SurfaceEnd {
     }
 }
 
-/// A place on the tool's side of a contact; that of a tool that is a little inside would be beside the end of a surface that ends there.
-fn above(role: &Working, contact: &Contact) -> Vec3 {
-    contact.surface + contact.gradient * contact.clearance.max(role.band())
+/// A place on the tool's side of a contact, and how far from it that is; that of a tool that is a little inside would be beside the end of a
+/// surface that ends there.
+fn above(role: &Working, contact: &Contact) -> (Vec3, f64) {
+    let height = contact.clearance.max(role.band());
+    (contact.surface + contact.gradient * height, height)
+}
+
+/// Whether the surface ends at the place nearest to that.
+fn ends_below(role: &Working, contact: &Contact) -> bool {
+    let (above, height) = above(role, contact);
+    role.gauge.ends_at(&above, height)
 }
 
 /// Whether the tool touches the end of a role's surface.
 pub(super) fn is_at_end(role: &Working, contact: &Contact) -> bool {
-    role.gauge.surface.ends_at(&above(role, contact)) || is_pushed_back(role, contact)
+    ends_below(role, contact) || is_pushed_back(role, contact)
 }
 
 /// Whether a tool that is a little inside a role's surface is so beyond the end of that, which pushes it back along the surface: the
 /// place above the contact is over the surface then, that of the tool is not.
 fn is_pushed_back(role: &Working, contact: &Contact) -> bool {
-    contact.clearance < 0.0 && role.gauge.surface.ends_at(&contact.tool)
+    contact.clearance < 0.0 && role.gauge.ends_at(&contact.tool, (contact.tool - contact.surface).norm())
 }
 
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
 /// end of it; but it goes along that, not out over it or down behind it.
 fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
-    let above = above(role, contact);
-    if !role.gauge.surface.ends_at(&above) {
+    if !ends_below(role, contact) {
         return is_pushed_back(role, contact);
     }
-    let edge = role.gauge.surface.edge_at(&above);
+    let edge = role.gauge.surface.edge_at(&above(role, contact).0);
     let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
@@ -155,8 +162,8 @@ impl March<'_> {
     ) -> Result<(), MotionFailure> {
         let Prepared { tool, part, drive, .. } = self.prepared;
         let ends = |(role, contact): (&Working, &Contact)| {
-            let surface = &role.gauge.surface;
-            surface.has_ends() && surface.ends_at(&(contact.tool + here.tangent * tool.radius()))
+            let ahead = contact.tool + here.tangent * tool.radius();
+            role.gauge.surface.has_ends() && role.gauge.ends_at(&ahead, (ahead - contact.surface).norm())
         };
         if self.ahead > 0.0
             || self.points.len() + 1 < self.look_for_end

@@ -12,6 +12,8 @@ const FORESIGHT: f64 = 3.0;
 /// over which they change little.
 const FORESIGHT_BY_QUADRIC: f64 = 8.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
+/// How far from where there was no such bound none is asked for, relative to how far that was to reach.
+const CRAMPED: f64 = 0.5;
 
 /// Positions of the tool about one of them.
 #[derive(Clone, Copy)]
@@ -81,6 +83,8 @@ struct Level {
 pub(crate) struct Ledger {
     bound: Cell<Option<Bound>>,
     gap: Cell<Option<Gap>>,
+    /// Where there was none that reaches farther than the stretch.
+    cramped: Cell<Option<Vec3>>,
     /// Where a bound for all of the tool was of no use when one was last asked for.
     useless: Cell<Option<Vec3>>,
     /// The last two: where a vector begins and where it ends.
@@ -136,7 +140,9 @@ impl Ledger {
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
         let mut found = Some(Bend::Unbounded);
-        for (spread, more) in [(ample, ample), (spread, 0.0)] {
+        let is_cramped = self.cramped.get().is_some_and(|last| (tip - last).norm() <= CRAMPED * ample);
+        let wide = (!is_cramped).then_some((ample, ample));
+        for (spread, more) in wide.into_iter().chain([(spread, 0.0)]) {
             let range = [range[0] - more, range[1] + more];
             let gap = Gap { tip: *tip, axis: tool.axis, spread, range };
             if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
@@ -150,6 +156,9 @@ impl Ledger {
                 }
                 Some(Bend::Unbounded) => self.gap.set(Some(gap)),
                 None => {}
+            }
+            if more > 0.0 && found == Some(Bend::Unbounded) {
+                self.cramped.set(Some(*tip));
             }
         }
         found

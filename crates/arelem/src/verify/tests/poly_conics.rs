@@ -165,7 +165,7 @@ fn a_tool_over_the_end_is_as_deep_as_it_is_over_it() {
 fn way_off_end(tool: &Tool<'_>, tip: &Vec3, out: &Vec3, end: &[Vec3]) -> f64 {
     let is_free = |way: f64| {
         let from = tip + out * way;
-        end.iter().all(|place| tool.signed_distance(&(place - from)).0 >= 0.0)
+        end.iter().all(|place| tool.distance(&(place - from)) >= 0.0)
     };
     let (mut low, mut high) = (0.0, 0.1);
     for _ in 0..30 {
