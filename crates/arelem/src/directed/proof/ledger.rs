@@ -10,7 +10,7 @@ use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, steady_
 const FORESIGHT: f64 = 3.0;
 /// The same for quadrics and for surfaces with charts, whose bounds take long to make: at most as far as the tool is wide,
 /// over which they change little.
-const FORESIGHT_BY_QUADRIC: f64 = 8.0;
+const FORESIGHT_BY_QUADRIC: f64 = 16.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
 /// How far from where there was no such bound none is asked for, relative to how far that was to reach.
 const CRAMPED: f64 = 0.5;
