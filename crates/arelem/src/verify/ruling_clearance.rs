@@ -534,7 +534,7 @@ impl<'a> Bodies<'a> {
         for _ in 0..PROOF_STEPS {
             let touch = self.touch(&(tip + out * way))?;
             let room = touch.value - touch.gap;
-            if room < 0.0 || !self.is_on_side(&touch)? {
+            if room <= 0.0 || !self.is_on_side(&touch)? {
                 return Some(None);
             }
             if room <= 2.0 * self.close() {
@@ -554,7 +554,7 @@ impl<'a> Bodies<'a> {
         let mut tips = vec![tip + deepest.1 * depth];
         for _ in 0..DIRECTIONS {
             let touch = nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep)?;
-            if touch.value >= touch.gap {
+            if touch.value > touch.gap {
                 return self.is_on_side(&touch);
             }
             tips.push(tip + self.away(&touch)? * depth);
@@ -569,7 +569,8 @@ impl<'a> Bodies<'a> {
         let most = more * FARTHER.powi(steps.saturating_sub(1) as i32);
         for _ in 0..steps {
             let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
-            if touch.value >= touch.gap && self.is_on_side(&touch)? {
+            // A tool without a body touches where it goes through.
+            if touch.value > touch.gap && self.is_on_side(&touch)? {
                 return Some(Some(more));
             }
             // No place of the surface is left behind faster than the tool is moved.

@@ -13,6 +13,8 @@ use crate::verify::{
 /// How many times as closely as is looked for the way past an end may be told for it to be the answer at once: another place may be as
 /// deep.
 const MOST_STEPS_PAST: f64 = 4.0;
+/// How much longer than the depth that is meant the way may be out of a place that need not be the deepest.
+const ASTRAY: f64 = 2.0;
 /// How often the way past the tangent of an end is taken before what it leaves is gone off step by step.
 const TANGENTS: usize = 5;
 /// How far from the side of a patch, in its parameters, the end is whose tangent is taken.
@@ -88,7 +90,7 @@ impl Bodies<'_> {
             let Some(next) = next.filter(|way| way.norm() <= self.deep) else { break };
             way = next;
             touch = self.touch(&(tip + way))?;
-            let is_freed = touch.value >= touch.gap && self.is_on_side(&touch)?;
+            let is_freed = touch.value > touch.gap && self.is_on_side(&touch)?;
             if is_freed && shortest.is_none_or(|shortest| way.norm() < shortest.norm()) {
                 shortest = Some(way);
             }
@@ -149,7 +151,7 @@ impl Bodies<'_> {
     /// The clearance of a tool without a body by the lesser of the translations that just free it: off the surface where that is nearest,
     /// and past the end. None inside where neither is found.
     pub(super) fn led_out_anywhere(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
-        let through = self.led_out(tip, self.away(touch)?, self.deep)?;
+        let through = self.led_out(tip, self.away(touch)?, ASTRAY * self.deep)?;
         let less = through.map_or(self.deep, |found| -found.value);
         let past = self.led_past_end(tip, less)?;
         Some([through, past].into_iter().flatten().max_by(|a, b| a.value.total_cmp(&b.value)))
@@ -170,7 +172,7 @@ impl Bodies<'_> {
             return Some(None);
         }
         let touch = self.touch(&(tip + end.outward * way))?;
-        let is_freed = touch.value >= touch.gap && self.is_on_side(&touch)?;
+        let is_freed = touch.value > touch.gap && self.is_on_side(&touch)?;
         // Where it goes through the surface it goes on doing so as long as it meets neither an end of it nor what leads off it.
         Some(is_freed.then(|| Reading {
             value: -way,

@@ -38,7 +38,7 @@ fn a_line_through_a_hill_is_as_deep_as_the_hill_is_high_over_it() {
     let hill =
         tabulated([Vec3::x(), Vec3::y(), Vec3::z()], &[[-2.0, 0.0, 0.0], [0.0, 0.3, 0.0], [2.0, 0.0, 0.0]]);
     let surface = Surface::of(&hill).unwrap();
-    for (depth, rise) in [(1e-5, 0.0), (4e-4, 0.0), (1e-5, 0.3), (9e-4, -0.5)] {
+    for (depth, rise) in [(1e-5, 0.0), (4e-4, 0.0), (1e-5, 0.3), (9e-4, -0.5), (9.99e-4, 0.0), (1e-3, 0.3)] {
         let profile = line(2.0);
         let mut tool = Tool::new(&profile, Vec3::new(1.0, 0.0, rise).normalize());
         tool.depth = ALLOWED;
