@@ -76,8 +76,9 @@ pub(super) fn replay(
     };
     // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
     let may_have_changed = match role.relation {
-        Relation::To => since[1] > role.outside_tolerance,
-        // Or it went in by less than the band and comes out again.
+        // Or it came out by less than the band and goes in again.
+        Relation::To => since[1] > role.outside_tolerance || since[1] > guard && end < since[1] - guard,
+        // The other way round.
         Relation::Past => since[0] < -role.inside_tolerance || since[0] < -guard && end > since[0] + guard,
         _ => false,
     };

@@ -160,6 +160,29 @@ fn a_position_past_what_is_only_brushed_is_one() {
     }
 }
 
+/// Where the path comes out of a check surface by less than its band and goes in again, that may be called a TO position; where it stops
+/// before that, or stays in, it may not.
+#[test]
+fn a_position_to_what_is_only_brushed_from_within_is_one() {
+    let cases: [([f64; 2], f64, bool); 5] = [
+        ([0.0003, 0.0003], 1.0, true),
+        ([0.0003, 0.0003], -1.0, false),
+        ([-0.0002, 0.0004], 1.0, false),
+        ([0.0003, -0.0001], 1.0, true),
+        ([0.0003, -0.0001], -1.0, false),
+    ];
+    for ([out, left], sense, is_to) in cases {
+        let mut brushed = paths::to_circle(Relation::To, 1).sequence;
+        let stop = &mut brushed.stop.as_mut().unwrap().role;
+        stop.surface.geometry = cylinder([0.9, 0.5 - out, 0.0], [0.0, 0.0, 1.0], 1.0);
+        stop.side = -1.0;
+        let (near, at_end): (f64, f64) = (0.75 - out, 0.75 + left);
+        brushed.points[0].tip.x = 0.9 + sense * (at_end * at_end - near * near).sqrt();
+        let wanted: &[Rule] = if is_to { &[] } else { &[Rule::StopEvent] };
+        assert_eq!(rules(&brushed), wanted, "{out} {left} {sense}");
+    }
+}
+
 #[test]
 fn the_count_of_positions_is_replayed() {
     for relation in [Relation::To, Relation::On, Relation::Past] {
