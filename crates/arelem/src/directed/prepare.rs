@@ -76,9 +76,9 @@ pub(super) fn prepare(
             });
         }
     }
-    let part_contact = start_check(&tool, &mut part, &tip, size)?;
+    let part_contact = start_check(&tool, &mut part, (&tip, state.side_of_part), size)?;
     // A direction that is not defined is the plainer mistake: it is named before a drive surface out of reach.
-    let checked = start_check(&tool, &mut drive, &tip, size);
+    let checked = start_check(&tool, &mut drive, (&tip, None), size);
     let mut drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn)?;
@@ -139,10 +139,15 @@ fn tangent_on(check: &CheckSurface, state: &State) -> bool {
 }
 
 /// Operation 1: the tool must be within the band of the surface, on one side or the other; the side is the one where it
-/// is, that of the observer when both would do.
-fn start_check(tool: &Tool, role: &mut Working, tip: &Vec3, size: f64) -> Result<Contact, MotionFailure> {
-    let observed = tool.observed(&role.gauge.surface, tip);
-    let preferred = if observed < 0.0 { -1.0 } else { 1.0 };
+/// is, when both would do that where the last motion left it, or that of the observer.
+fn start_check(
+    tool: &Tool,
+    role: &mut Working,
+    (tip, last): (&Vec3, Option<f64>),
+    size: f64,
+) -> Result<Contact, MotionFailure> {
+    let observed = || if tool.observed(&role.gauge.surface, tip) < 0.0 { -1.0 } else { 1.0 };
+    let preferred = last.unwrap_or_else(observed);
     let mut nearest: Option<(f64, Contact)> = None;
     for side in [preferred, -preferred] {
         role.set_side(side);

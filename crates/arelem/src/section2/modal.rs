@@ -4,7 +4,7 @@ use apt_geometry::{
     Vec3,
     canonical::{Geometry, Plane},
     cutter::{Cutter, CutterError, Disk},
-    motion::{Delta, Direction, MotionCommand, NamedSurface, PerRole, RoleDisk, ToolAxis},
+    motion::{Delta, Direction, MotionCommand, NamedSurface, PerRole, Relation, RoleDisk, ToolAxis},
 };
 
 use super::{Output, State};
@@ -33,6 +33,7 @@ pub(super) fn apply(
             // The origin counts as previous position, as it always has: a first direction comes from there.
             state.forward = None;
             state.move_to(Vec3::zeros(), *position);
+            state.side_of_part = None;
             Ok(position_output(state))
         }
         MotionCommand::GoTo { position, axis, .. } => {
@@ -83,6 +84,7 @@ pub(super) fn apply(
             let ends: Vec<Vec3> = path.positions().rev().take(2).map(|position| position.tip).collect();
             if let Some(last) = ends.first() {
                 state.move_to(ends.get(1).copied().unwrap_or(state.previous), *last);
+                state.side_of_part = None;
             }
             Ok(Some(Output::Pocket(path)))
         }
@@ -98,7 +100,9 @@ fn set_modal(
     match command {
         MotionCommand::DriveSide(side) => state.drive_side = *side,
         MotionCommand::PartSide(side) => state.part_side = *side,
-        MotionCommand::PartSurface(surface) => state.part = surface.clone(),
+        MotionCommand::PartSurface(surface) => {
+            (state.part, state.side_of_part) = (surface.clone(), None);
+        }
         MotionCommand::AutomaticPartSurface => automatic_part(state, warnings)?,
         MotionCommand::NoPartSurface => state.no_part = true,
         MotionCommand::Cutter(numbers) => {
@@ -159,6 +163,7 @@ fn position_output(state: &State) -> Option<Output> {
 fn go_to(state: &mut State, tip: Vec3) {
     let previous = state.tip.unwrap_or_else(Vec3::zeros);
     state.move_to(previous, tip);
+    state.side_of_part = None;
 }
 
 /// Takes over the end of a computed motion.
@@ -170,6 +175,8 @@ fn finish(state: &mut State, sequence: CutSequence) -> Output {
         state.axis = last.axis;
         state.move_to(previous, last.tip);
     }
+    let offset_part = sequence.part.as_ref().filter(|role| role.relation != Relation::On);
+    state.side_of_part = offset_part.filter(|role| role.surface == state.part).map(|role| role.side);
     state.clear_one_shot();
     Output::Sequence(sequence)
 }
@@ -201,6 +208,7 @@ fn automatic_part(state: &mut State, warnings: &mut Vec<MotionWarning>) -> Resul
     }
     let plane = Plane { normal: Vec3::z(), distance: tip.z };
     state.part = NamedSurface { name: String::new(), geometry: Geometry::Plane(plane) };
+    state.side_of_part = None;
     Ok(())
 }
 

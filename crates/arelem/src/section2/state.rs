@@ -55,6 +55,8 @@ pub struct State {
     pub part: NamedSurface,
     /// TLOFPS or TLONPS.
     pub part_side: PartSide,
+    /// Which side of the part surface the last motion left the tool on, if it has not been moved since.
+    pub side_of_part: Option<f64>,
     /// TLLFT, TLRGT, TLON.
     pub drive_side: DriveSide,
     /// The cutter, once defined.
@@ -105,6 +107,7 @@ impl State {
             forward: None,
             part: NamedSurface { name: String::new(), geometry: Geometry::Plane(plane) },
             part_side: PartSide::Offset,
+            side_of_part: None,
             drive_side: DriveSide::On,
             cutter: None,
             disk: None,

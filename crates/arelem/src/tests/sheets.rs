@@ -3,7 +3,11 @@
 use DriveSide::{Left, On as TlOn};
 use Relation::{On, Past, To};
 use Turn::{Forward, Right as GoRgt};
-use apt_geometry::canonical::{Matrix, Remembering, RuledSurface, matrix::CoordinatePlane};
+use apt_geometry::{
+    canonical::{Matrix, Remembering, RuledSurface, matrix::CoordinatePlane},
+    motion::Delta,
+    surface::Surface,
+};
 
 use super::*;
 
@@ -217,4 +221,32 @@ fn a_ruled_wall_has_two_sides() {
     assert!(((p.tip() - v(3.0, -6.0, 0.0)).norm() - 5.75).abs() < 0.0011, "inside: {}", p.tip());
     p.side(DriveSide::Right).drive(GoRgt, &wall, On, &x(4.5)).verified();
     assert!(((p.tip() - v(3.0, -6.0, 0.0)).norm() - 5.75).abs() < 0.0011, "inside: {}", p.tip());
+}
+
+/// A start-up onto a ramp that rises to its end, past that: the tool touches the end, where it would do on either side, and who looks
+/// from the tool sees the ramp from below. It goes back over the ramp, where it came from, until it is told to be elsewhere.
+#[test]
+fn a_tool_past_the_end_of_a_surface_stays_on_the_side_that_it_came_to() {
+    let slope = || plane(-3.0, 0.0, 4.0, 0.0);
+    let across = v(-3.0, 0.0, 4.0);
+    let ramp = ruled([
+        (slope(), v(0.0, -1.0, 0.0), v(4.0, -1.0, 3.0), across),
+        (slope(), v(0.0, 3.0, 0.0), v(4.0, 3.0, 3.0), across),
+    ]);
+    let surface = Surface::from_geometry(&ramp).expect("a surface");
+    let (mut before, mut beyond) = (4.0, 400.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (before + beyond);
+        *(if surface.ends_at(&v(middle, 1.0, 0.75 * middle)) { &mut beyond } else { &mut before }) = middle;
+    }
+    let end = v(before, 1.0, 0.75 * before);
+    let mut program = Program::new();
+    program.cutter(&[0.5, 0.25]).tolerance(0.0, 0.001).side(TlOn).from(end.x - 1.0, 1.0, end.z + 2.0);
+    program.go(&[(On, &y(1.0)), (To, &ramp), (On, &x(end.x + 0.15))]);
+    program.ends(end.x + 0.15, 1.0, end.z - 0.05, 0.002);
+    assert!(program.state.side_of_part.is_some());
+    program.indirv(-1.0, 0.0, 0.0).drive(Forward, &y(1.0), On, &x(2.0));
+    program.ends(2.0, 1.0, 1.5625, 0.002).verified();
+    program.run(&MotionCommand::GoDelta(Delta::Vector(Vec3::z(), None)));
+    assert_eq!(program.state.side_of_part, None);
 }

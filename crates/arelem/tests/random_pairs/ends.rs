@@ -47,7 +47,7 @@ pub(crate) fn is_over(
     let Some((distance, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
     let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&place) else { return false };
     let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
-    distance <= near && out.hypot(behind) >= along.dot(path).abs()
+    distance <= near && out.hypot(behind) > along.dot(path).abs()
 }
 
 /// The place of a line nearest to a tool, and how far that is.

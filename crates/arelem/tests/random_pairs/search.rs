@@ -289,11 +289,10 @@ impl<'a> Reader<'a> {
         }
         let stops_at_tangency =
             matches!(self.case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart);
-        let mut met = 0;
         let band = self.case.inside.max(self.case.outside);
         let long = self.case.reach / STEPS_TO_STOP;
         let mut length = 0.0;
-        let mut status: Option<bool> = None;
+        let mut events = Events::new(self.case, band);
         // No part of the tool moves farther than the tool end: so far the check surface need not be read again.
         let mut last: Option<(Vec3, f64)> = None;
         let mut senses = vec![sense; TURNING_BACK];
@@ -310,7 +309,7 @@ impl<'a> Reader<'a> {
                 return Found::Ends(length);
             }
             if senses[senses.len() - TURNING_BACK].dot(&sense) < 0.0 {
-                return Found::Ends(length);
+                return events.at_end(length);
             }
             if stops_at_tangency {
                 // It was laid there.
@@ -332,29 +331,16 @@ impl<'a> Reader<'a> {
                     value
                 }
             };
-            let now = value > 0.0;
-            match status {
-                None if value.abs() <= band => {}
-                None => status = Some(now),
-                Some(before) if before != now => {
-                    let wanted = match self.case.stop.relation {
-                        Relation::To => before,
-                        Relation::Past => now,
-                        _ => true,
-                    };
-                    met += u32::from(wanted);
-                    if met >= self.case.stop.occurrence {
-                        return Found::Path(length);
-                    }
-                    status = Some(now);
-                }
-                Some(_) => {}
+            if let Some(at) = events.note(value, length) {
+                return Found::Path(at);
             }
             let by_end = told.filter(|told| (told.tip - tip).norm() <= BY_END * long);
             if by_end.is_some_and(|told| self.is_over(&told, &tip, &sense)) {
-                return Found::Ends(length);
+                return events.at_end(length);
             }
-            let Some((next, next_sense)) = self.step(&tip, &sense, long) else { return Found::Ends(length) };
+            let Some((next, next_sense)) = self.step(&tip, &sense, long) else {
+                return events.at_end(length);
+            };
             length += (next - tip).norm();
             (tip, sense) = (next, next_sense);
         }
@@ -381,4 +367,61 @@ impl<'a> Reader<'a> {
 
 fn worst_of(rows: &[f64; 3]) -> f64 {
     rows.iter().fold(0.0, |w: f64, r| if r.is_nan() { f64::INFINITY } else { w.max(r.abs()) })
+}
+
+/// The positions at a check surface that a path comes to.
+struct Events<'a> {
+    case: &'a Case,
+    band: f64,
+    /// Whether the tool is clear of it, since that was beyond doubt.
+    is_clear: Option<bool>,
+    met: u32,
+    /// Where the path has come to the other state, which is not beyond doubt yet: it may only brush the band.
+    brushed: Option<f64>,
+}
+
+impl<'a> Events<'a> {
+    fn new(case: &'a Case, band: f64) -> Self {
+        Self { case, band, is_clear: None, met: 0, brushed: None }
+    }
+
+    /// Takes a clearance after a length of path; that of the position asked for, once it is known to be one.
+    fn note(&mut self, value: f64, length: f64) -> Option<f64> {
+        let (now, is_certain) = (value > 0.0, value.abs() > self.band);
+        let Some(before) = self.is_clear else {
+            self.is_clear = is_certain.then_some(now);
+            return None;
+        };
+        if before == now {
+            self.brushed = None;
+            return None;
+        }
+        let at = *self.brushed.get_or_insert(length);
+        if !is_certain {
+            return None;
+        }
+        let found = self.is_asked_for(before).then_some(at);
+        self.met += u32::from(self.counts(before));
+        (self.is_clear, self.brushed) = (Some(now), None);
+        found
+    }
+
+    /// What is found where the path goes no farther.
+    fn at_end(&self, length: f64) -> Found {
+        let position = self.brushed.filter(|_| self.is_clear.is_some_and(|before| self.is_asked_for(before)));
+        position.map_or(Found::Ends(length), Found::Path)
+    }
+
+    /// Whether the change out of a state is a position of the motion's label.
+    fn counts(&self, was_clear: bool) -> bool {
+        match self.case.stop.relation {
+            Relation::To => was_clear,
+            Relation::Past => !was_clear,
+            _ => true,
+        }
+    }
+
+    fn is_asked_for(&self, was_clear: bool) -> bool {
+        self.counts(was_clear) && self.met + 1 >= self.case.stop.occurrence
+    }
 }

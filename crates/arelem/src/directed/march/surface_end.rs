@@ -90,7 +90,7 @@ fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
     let edge = role.gauge.surface.edge_at(&above(role, contact).0);
     let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
-    role.gauge.on || out.hypot(behind) >= along.dot(path).abs()
+    role.gauge.on || out.hypot(behind) > along.dot(path).abs()
 }
 
 /// Whether a tool that touches the end of a surface touches it before the end, too, as along a straight piece: that guides it on.
