@@ -335,10 +335,15 @@ impl Gauge {
         }
         let distance = |point: &Vec3, tip: &Vec3| {
             let (tool, tip) = self.body(tool, tip);
-            let (along, across, _) = tool.split(&(point - tip));
-            tool.profile.distance(across, along).0 - self.thickness
+            let from_tip = point - tip;
+            let (along, across, _) = tool.split(&from_tip);
+            let found = tool.profile.distance(across, along).0 - self.thickness;
+            (!open_top::is_above_top(&tool, &from_tip)).then_some(found)
         };
-        let (ahead, behind) = (distance(&first.surface, to), distance(&last.surface, from));
+        let [ahead, behind] = [(first, from, to), (last, to, from)].map(|(contact, here, there)| {
+            distance(&contact.surface, here).and_then(|_| distance(&contact.surface, there))
+        });
+        let (ahead, behind) = (ahead?, behind?);
         let (start, end) = (first.clearance, last.clearance);
         let outside =
             [start, end, ahead, behind].into_iter().all(|clearance| clearance + self.thickness >= 0.0);
@@ -350,6 +355,12 @@ impl Gauge {
             let share = if falls + rises > 0.0 { falls / (falls + rises) } else { 0.0 };
             (start + share * (ahead - start)).max(behind + share * (end - behind)).max(start.max(end))
         })
+    }
+
+    /// Whether a tool touches with the edge of its top what is above it: nothing touches the disc there.
+    pub(crate) fn touches_from_below(&self, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
+        let (tool, tip) = self.body(tool, tip);
+        open_top::touches_from_below(&tool, &tip, contact)
     }
 
     /// The same by a line at which the surface ends, if both contacts are there.

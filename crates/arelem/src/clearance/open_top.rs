@@ -3,10 +3,27 @@
 
 use apt_geometry::{Vec3, surface::Surface};
 
-use super::Tool;
+use super::{Contact, Tool};
 
 /// Rounding of the direction in which a solid has no end, as a sine.
 const NEARLY_LEVEL: f64 = 1e-9;
+
+/// Share of the tool's height by which a place is above its top, or below, by rounding.
+const AT_TOP: f64 = 1e-9;
+
+/// Whether a place, from the tool end, is above the top of a tool. Over the disc there it is farther from the tool than from the tool
+/// with the disc, and how far is no convex function of the place.
+pub(super) fn is_above_top(tool: &Tool, from_tip: &Vec3) -> bool {
+    let top = tool.profile.top;
+    top.height > 0.0 && top.radius > 0.0 && tool.axis.dot(from_tip) > top.height * (1.0 + AT_TOP)
+}
+
+/// Whether a tool with its end at a place touches with the edge of its top what is above it.
+pub(super) fn touches_from_below(tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
+    let top = tool.profile.top;
+    let is_at_top = tool.axis.dot(&(contact.tool - tip)) >= top.height * (1.0 - AT_TOP);
+    top.height > 0.0 && top.radius > 0.0 && is_at_top && tool.axis.dot(&contact.gradient) < -NEARLY_LEVEL
+}
 
 /// Whether on the straight way of the tool end between two places the lowest point of a convex quadric, along the tool's
 /// axis, may come over the disc at the top, and not as low as the middle of the tool. The other solids are measured with the

@@ -90,3 +90,22 @@ proptest! {
         }
     }
 }
+
+/// A hanging bowl comes into the open top of a tool without touching it, but at the edge on one side and then on the other. Between
+/// those it is farther away than a tool with a disc at its top would be.
+#[test]
+fn over_the_open_top_the_contacts_at_both_ends_tell_no_bound_that_is_too_low() {
+    let (tool, height) = (tool(&[0.44, 0.0, 0.22, 0.0, 0.0, 0.0, 2.0]), 2.0);
+    for low in [0.0, 0.01, 0.02] {
+        let center: f64 = height + 1.0 - low;
+        let bowl = quadric([1.0, 1.1, 1.0], [0.0, 0.0, -center], center * center - 1.0);
+        let gauge = gauge(&bowl, 1.0);
+        let tips = [-0.1, 0.1].map(|x| v(x, 0.0, -0.005));
+        let [first, last] = tips.map(|tip| gauge.contact(&tool, &tip));
+        let middle = gauge.contact(&tool, &v(0.0, 0.0, -0.005)).clearance;
+        assert!(middle > first.clearance.max(last.clearance) + 1e-3, "{middle} {first:?} {last:?}");
+        let most = gauge.at_most_between(&tool, [(&tips[0], &first), (&tips[1], &last)]);
+        assert!(most.is_none_or(|most| most >= middle - 1e-12), "{most:?} below {middle}");
+        assert!(tips.iter().zip([&first, &last]).all(|(tip, end)| gauge.touches_from_below(&tool, tip, end)));
+    }
+}

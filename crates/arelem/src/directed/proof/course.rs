@@ -370,6 +370,13 @@ impl Course<'_, '_> {
     /// does that point.
     fn is_held_by_witness(&self, a: &Sample, b: &Sample) -> bool {
         let (length, way) = (b.x - a.x, b.contact.tool - a.contact.tool);
+        // From place to place under what is above the tool it would go over the disc at its top, which touches nothing.
+        if [a, b].into_iter().any(|end| {
+            let (tip, tool) = self.line.sweep.at(end.x);
+            self.line.role.gauge.touches_from_below(&tool, &tip, &end.contact)
+        }) {
+            return false;
+        }
         let [first, last] =
             [a, b].map(|end| Sample { slope: end.contact.gradient.dot(&way) / length, ..*end });
         let held = |bend: f64| self.line.allows(highest(&first, &last, bend * (way.norm() / length).powi(2)));
