@@ -149,15 +149,21 @@ fn a_position_past_what_is_only_brushed_is_one() {
         ([0.0004, -0.0001], -1.0, false),
     ];
     for ([depth, left], sense, is_past) in cases {
-        let mut brushed = paths::to_circle(Relation::Past, 1).sequence;
-        let stop = &mut brushed.stop.as_mut().unwrap().role;
-        stop.surface.geometry = cylinder([2.0, 1.0 - depth, 0.0], [0.0, 0.0, 1.0], 1.0);
-        stop.side = 1.0;
         let (near, at_end): (f64, f64) = (1.25 - depth, 1.25 + left);
-        brushed.points[0].tip.x = 2.0 + sense * (at_end * at_end - near * near).sqrt();
-        let wanted: &[Rule] = if is_past { &[] } else { &[Rule::StopEvent] };
-        assert_eq!(rules(&brushed), wanted, "{depth} {left} {sense}");
+        let end = 2.0 + sense * (at_end * at_end - near * near).sqrt();
+        assert_stop(Relation::Past, [2.0, 1.0 - depth, 0.0], end, is_past);
     }
+}
+
+/// That the path along a line to an end beside a circle of radius 1 ends at a position of the label there, or at none.
+fn assert_stop(relation: Relation, center: [f64; 3], end: f64, is_position: bool) {
+    let mut brushed = paths::to_circle(relation, 1).sequence;
+    let stop = &mut brushed.stop.as_mut().unwrap().role;
+    stop.surface.geometry = cylinder(center, [0.0, 0.0, 1.0], 1.0);
+    stop.side = if relation == Relation::Past { 1.0 } else { -1.0 };
+    brushed.points[0].tip.x = end;
+    let wanted: &[Rule] = if is_position { &[] } else { &[Rule::StopEvent] };
+    assert_eq!(rules(&brushed), wanted, "{relation:?} {center:?} {end}");
 }
 
 /// Where the path comes out of a check surface by less than its band and goes in again, that may be called a TO position; where it stops
@@ -172,14 +178,9 @@ fn a_position_to_what_is_only_brushed_from_within_is_one() {
         ([0.0003, -0.0001], -1.0, false),
     ];
     for ([out, left], sense, is_to) in cases {
-        let mut brushed = paths::to_circle(Relation::To, 1).sequence;
-        let stop = &mut brushed.stop.as_mut().unwrap().role;
-        stop.surface.geometry = cylinder([0.9, 0.5 - out, 0.0], [0.0, 0.0, 1.0], 1.0);
-        stop.side = -1.0;
         let (near, at_end): (f64, f64) = (0.75 - out, 0.75 + left);
-        brushed.points[0].tip.x = 0.9 + sense * (at_end * at_end - near * near).sqrt();
-        let wanted: &[Rule] = if is_to { &[] } else { &[Rule::StopEvent] };
-        assert_eq!(rules(&brushed), wanted, "{out} {left} {sense}");
+        let end = 0.9 + sense * (at_end * at_end - near * near).sqrt();
+        assert_stop(Relation::To, [0.9, 0.5 - out, 0.0], end, is_to);
     }
 }
 
