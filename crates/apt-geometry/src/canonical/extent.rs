@@ -25,15 +25,20 @@ pub const LEAST_FULLNESS: f64 = 0.500_000_5;
 /// Greatest fullness of a conic: at 1 it is its two tangents.
 pub const GREATEST_FULLNESS: f64 = 1.0 - 1e-6;
 
+/// At how many shares of the chord, less one, it is looked where neighbouring rulings meet: at the same ones by whoever
+/// measures. Odd and no round number: joints of a curve lie at round shares.
+const RULED_STATIONS: u32 = 37;
 /// How far from 1 or 0 the rulings meet, as a share, up to which they are taken to meet on the curve itself: an apex.
 const AT_THE_CURVE: f64 = 1e-9;
 
 /// How far the rulings of a ruled surface go on, as shares of the way from its first curve (0) to its second (1): until
-/// neighbours would meet, seen along the mean of both curves. `tangents` are those of the two curves at both ends of
-/// rulings that do not stand near the ends of the chord ([`RULED_STEADY`]).
-pub fn ruled_shares(tangents: impl IntoIterator<Item = [Vec3; 2]>) -> [f64; 2] {
+/// neighbours would meet, seen along the mean of both curves. `tangents` tells how both curves run at a share of the chord; it
+/// is asked at places that do not stand near the ends of the chord ([`RULED_STEADY`]). None where it knows none.
+pub fn ruled_shares(tangents: impl Fn(f64) -> Option<[Vec3; 2]>) -> Option<[f64; 2]> {
     let (mut low, mut high) = (-RULED_BEYOND, 1.0 + RULED_BEYOND);
-    for [near, far] in tangents {
+    for station in 0..=RULED_STATIONS {
+        let part = f64::from(station) / f64::from(RULED_STATIONS);
+        let [near, far] = tangents(RULED_STEADY + (1.0 - 2.0 * RULED_STEADY) * part)?;
         let along = near + far;
         let (a, b) = (near.dot(&along), far.dot(&along));
         let meet = a / (a - b);
@@ -44,5 +49,5 @@ pub fn ruled_shares(tangents: impl IntoIterator<Item = [Vec3; 2]>) -> [f64; 2] {
             low = low.max(RULED_BEFORE_FOLD * meet.min(0.0));
         }
     }
-    [low, high]
+    Some([low, high])
 }

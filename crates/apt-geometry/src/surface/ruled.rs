@@ -24,7 +24,7 @@ use crate::{
     Vec3,
     canonical::{
         Made, RuledEnd, RuledSurface,
-        extent::{RULED_BEYOND, RULED_STEADY, ruled_shares},
+        extent::{RULED_BEYOND, ruled_shares},
     },
 };
 
@@ -175,7 +175,9 @@ impl RuledSheet {
         };
         let ruling = (other - first.start).try_normalize(0.0)?;
         let pieces = pieces(&edges, range, ACCURACY * size)?;
-        let limits = [range, [0.0, 1.0]];
+        // Both curves as the chord is gone along, on the side that is ahead.
+        let shares = ruled_shares(|share| Some([0, 1].map(|k: usize| edges[k].at(share, 1.0).first)))?;
+        let limits = [range, shares];
         let mut sheet = Self {
             pieces,
             bands: Arc::default(),
@@ -187,23 +189,8 @@ impl RuledSheet {
             beyond: None,
             met: Default::default(),
         };
-        sheet.limits[1] = sheet.shares();
         sheet.grow();
         Some(sheet)
-    }
-
-    /// How far the rulings go on.
-    fn shares(&self) -> [f64; 2] {
-        let places = self
-            .pieces
-            .iter()
-            .enumerate()
-            .flat_map(|(k, piece)| [0.0, 0.5, 1.0].map(|tau| (k, piece.from + piece.width * tau)));
-        let steady = places.filter(|(_, t)| (RULED_STEADY..=1.0 - RULED_STEADY).contains(t));
-        ruled_shares(steady.map(|(k, t)| {
-            let jet = self.jet(k, t, 0.0);
-            [jet.du, jet.du + jet.duv]
-        }))
     }
 
     fn jet(&self, piece: usize, t: f64, v: f64) -> Jet {

@@ -18,7 +18,7 @@ use super::{
     models::Models,
     patch::{Patch, jet},
     section::Section,
-    strip::{Cubic, Touch, lerp, place, tangent},
+    strip::{Cubic, Touch, lerp, place},
     survey::Sheet,
 };
 
@@ -128,6 +128,14 @@ impl Edge {
             Self::Apex(point) => Some(*point),
         }
     }
+
+    /// How it runs on from a share, per share.
+    fn run(&self, share: f64) -> Option<Vec3> {
+        match self {
+            Self::Curve(section) => section.run(share),
+            Self::Apex(_) => Some(Vec3::zeros()),
+        }
+    }
 }
 
 /// A piece of both curves.
@@ -165,7 +173,7 @@ impl Model {
     /// None if a section does not go all the way or a number is not finite.
     fn of(edges: &[Edge; 2], accuracy: f64) -> Option<Self> {
         let pieces = pieces(edges, accuracy)?;
-        let [low, high] = shares(&pieces);
+        let [low, high] = ruled_shares(|share| Some([edges[0].run(share)?, edges[1].run(share)?]))?;
         let mut size: f64 = 0.0;
         let error = pieces.iter().map(|piece| piece.error).fold(0.0, f64::max);
         let mut patches = Vec::with_capacity(pieces.len());
@@ -340,12 +348,4 @@ fn divide(
         }
     }
     Some(())
-}
-
-/// How far the rulings go on.
-fn shares(pieces: &[Piece]) -> [f64; 2] {
-    let inner = pieces.iter().filter(|piece| piece.inner);
-    ruled_shares(
-        inner.flat_map(|piece| [0.0, 0.5, 1.0].map(|x| [0, 1].map(|k: usize| tangent(&piece.curves[k], x)))),
-    )
 }

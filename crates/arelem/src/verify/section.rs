@@ -271,6 +271,20 @@ impl Section {
         if slope.is_nan() { f64::INFINITY } else { slope / self.chord.norm() }
     }
 
+    /// How it runs on from a share of the chord, per share.
+    pub(super) fn run(&self, share: f64) -> Option<Vec3> {
+        let held = share.clamp(self.reach[0], self.reach[1]);
+        let inward = if held < self.reach[1] { 1.0 } else { -1.0 };
+        let run = self.chord + self.across * self.slope(held, inward)?;
+        Some(if held == share { run } else { run * self.straight(&run) })
+    }
+
+    /// How much of its slope a section keeps where it goes on straight.
+    fn straight(&self, run: &Vec3) -> f64 {
+        let longest = (1.0 + SECTION_STEEP_BEYOND) * self.chord.norm();
+        (longest / run.norm()).min(1.0)
+    }
+
     /// The place at a share of the chord.
     pub(super) fn at(&self, share: f64) -> Option<Vec3> {
         let held = share.clamp(self.reach[0], self.reach[1]);
@@ -280,8 +294,7 @@ impl Section {
         }
         let slope = self.slope(held, if share < held { 1.0 } else { -1.0 })?;
         let run = self.chord + self.across * slope;
-        let longest = (1.0 + SECTION_STEEP_BEYOND) * self.chord.norm();
-        Some(place + run * (longest / run.norm()).min(1.0) * (share - held))
+        Some(place + run * self.straight(&run) * (share - held))
     }
 
     /// Shares of the chord at which the section may bend sharply.
