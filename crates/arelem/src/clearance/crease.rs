@@ -153,26 +153,37 @@ impl Beside<'_> {
     /// The contact at an edge where the last one was, if that is shown, and how much nearer to the surface another point of the tool may
     /// be.
     pub(super) fn followed(&self, memory: &Memory) -> Option<(Contact, f64)> {
-        let (spot, contact) = self.touch(&memory.crease(self.side)?)?;
+        let (spot, touch) = self.touch(&memory.crease(self.side)?)?;
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
-        let shown = self.is_off_own_side(&contact) && self.clears(&contact, contact.clearance - slack);
-        memory.remember_crease(self.side, shown.then_some(spot));
-        shown.then_some((contact, slack))
+        let off = self.leading_off(touch);
+        let shown = off.filter(|contact| self.clears(contact, contact.clearance - slack));
+        memory.remember_crease(self.side, shown.map(|_| spot));
+        shown.map(|contact| (contact, slack))
     }
 
     /// A bound from above of the clearance while the tool end goes straight from here to another place, by the contacts at both, if these
     /// are on one line at which the surface ends. The distance of a place from the tool is a convex function of both, so that it is nowhere
-    /// greater than at the ends for a place that goes along the chord; and the line is no farther off that than it sags.
+    /// greater than at the ends for a place that goes along the chord; and the line is no farther off that than it sags. A tool that is a
+    /// line and behind the end is as far behind the chord as its way in between says.
     pub(super) fn at_most_along(&self, to: &Vec3, [first, last]: [&Contact; 2]) -> Option<f64> {
         let Spot { crease, at } = self.spot(&first.surface)?;
         let Spot { crease: other, at: there } = self.spot(&last.surface)?;
         if crease != other {
             return None;
         }
-        let place = |at: f64| Some(self.surface.on_crease(&crease, at)?[0]);
         let [start, end] =
-            [(at, self.tip), (there, to)].map(|(at, tip)| Some(outward(self.tool, &(place(at)? - tip)).0));
-        Some(start?.max(end?) + self.surface.crease_sag(&crease, [at, there])?)
+            [self.surface.on_crease(&crease, at)?[0], self.surface.on_crease(&crease, there)?[0]];
+        let chord = self.tool.split(&(end - start)).2;
+        let value = |place: &Vec3, tip: &Vec3, contact: &Contact| {
+            let from_tip = place - tip;
+            if self.tool.radius() > 0.0 || contact.clearance >= 0.0 {
+                return outward(self.tool, &from_tip).0;
+            }
+            let (_, across, radial) = self.tool.split(&from_tip);
+            -across * (radial - chord * chord.dot(&radial)).norm()
+        };
+        let most = value(&start, self.tip, first).max(value(&end, to, last));
+        Some(most + self.surface.crease_sag(&crease, [at, there])?)
     }
 
     /// Whether the surface has an edge within a radius of the tool of one of its places.
@@ -188,6 +199,13 @@ impl Beside<'_> {
     pub(super) fn is_off_own_side(&self, contact: &Contact) -> bool {
         let end = self.surface.edge_at(&contact.surface);
         end.is_none_or(|end| self.side * end.normal.dot(&contact.gradient) >= 0.0)
+    }
+
+    /// The contact with an edge over which the tool comes off the surface on its own side. Within a tool that is a line there is no edge: it is
+    /// behind it by as much as it is away from it.
+    pub(super) fn leading_off(&self, touch: Contact) -> Option<Contact> {
+        let behind = (self.tool.radius() <= 0.0).then(|| touch.seen_from_behind());
+        [Some(touch), behind].into_iter().flatten().find(|contact| self.is_off_own_side(contact))
     }
 
     /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.

@@ -54,6 +54,13 @@ pub struct Contact {
     pub surface: Vec3,
 }
 
+impl Contact {
+    /// The same of what is on the other side of the place of the surface, and comes out past that.
+    fn seen_from_behind(self) -> Self {
+        Self { clearance: -self.clearance, gradient: -self.gradient, ..self }
+    }
+}
+
 /// How clearance behaves along a straight line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
@@ -193,8 +200,8 @@ impl Gauge {
         }
         if let Some(spot) = self.memory.crease(self.side)
             && let beside = (Beside { tool, surface, side: self.side, tip })
-            && let Some((_, contact)) = beside.touch(&spot)
-            && beside.is_off_own_side(&contact)
+            && let Some((_, touch)) = beside.touch(&spot)
+            && let Some(contact) = beside.leading_off(touch)
             && beside.clears(&contact, level)
         {
             return Certificate::Holds;
@@ -206,7 +213,11 @@ impl Gauge {
         let mut proof = self.memory.proof(tool, self.side, tip);
         let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref(), Effort::All);
         self.memory.keep_proof(self.side, proof);
-        if found == Certificate::Undecided && surface.has_charts() {
+        // What is deeper than that at some place may come out past the end of the surface by less.
+        let may_come_out = level < 0.0 && surface.has_ends();
+        if found == Certificate::Undecided && surface.has_charts()
+            || found != Certificate::Holds && may_come_out
+        {
             // Parts of the surface may tell, from the contact.
             let (contact, _) = offset_contact(tool, surface, self.side, tip, Some(&self.memory));
             let beside = Beside { tool, surface, side: self.side, tip };

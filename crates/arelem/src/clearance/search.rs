@@ -2,6 +2,8 @@
 //! circle is scanned and every promising valley refined by Newton's method with the surface's curvature; the bottom
 //! and the conical patches are looked into where their edges say that contact lies further inside.
 
+mod on_edge;
+
 use apt_geometry::{
     Vec3,
     surface::{Foot, Surface},
@@ -32,8 +34,6 @@ const MAX_RESTARTS: u32 = 12;
 pub(super) const MISSED: f64 = 1e-9;
 /// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
 const SAME: f64 = 1e-11;
-/// Clearance, in radii of the tool, below which an edge near the contact may be nearer than that.
-const ABOUT: f64 = 0.05;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
@@ -127,18 +127,6 @@ fn at_end(Face { surface, side }: Face<'_>, tip: &Vec3) -> Contact {
     Contact { clearance: side * foot.distance, gradient: foot.normal * side, tool: *tip, surface: foot.point }
 }
 
-/// How an edge of the surface is the contact.
-enum Taken {
-    /// It is not.
-    Not,
-    /// The tool touches it, but the surface elsewhere as well.
-    AsOneOfTwo,
-    /// No other place that was found is nearer.
-    AsNearest,
-    /// The tool comes out past the end there, which is shown.
-    AsFreed,
-}
-
 /// What is proven of a contact.
 enum Shown {
     /// It is the nearest.
@@ -218,7 +206,8 @@ impl Search<'_> {
                 Certificate::Undecided => break,
             }
         }
-        (Shown::Nothing, by_parts.without())
+        let shown = if self.takes_way_past_end(slack) { Shown::Within(slack) } else { Shown::Nothing };
+        (shown, by_parts.without())
     }
 
     /// Whether no point of the tool is nearer than a level: by patches of it, but by parts of the surface where few of those do not decide and
@@ -259,63 +248,6 @@ impl Search<'_> {
                 .best
                 .contact
                 .is_some_and(|contact| Beside { tool, surface, side, tip }.clears(&contact, level))
-    }
-
-    /// Whether the contact is at an edge of the surface, no place of which is nearer to the tool by more than a slack; the contact is
-    /// then exactly there.
-    fn is_on_crease(&mut self, slack: f64) -> bool {
-        let Some(touch) = self.touch_of_crease() else { return false };
-        match self.takes_crease(touch, slack) {
-            Taken::AsNearest => self.beside().clears(&touch, self.best.value - slack),
-            Taken::AsOneOfTwo => {
-                let level = self.best.value - slack;
-                self.best.contact.is_some_and(|contact| self.beside().clears(&contact, level))
-            }
-            Taken::AsFreed => true,
-            Taken::Not => false,
-        }
-    }
-
-    /// The tool beside the surface.
-    fn beside(&self) -> Beside<'_> {
-        let Self { tool, surface, side, tip, .. } = *self;
-        Beside { tool, surface, side, tip }
-    }
-
-    /// Where an edge of the surface next to the contact touches the tool.
-    fn touch_of_crease(&self) -> Option<Contact> {
-        let (contact, beside) = (self.best.contact?, self.beside());
-        // In the surface the edge may be deeper in the tool than any point of the tool is under the surface; next to it distances of
-        // points have valleys on both sides of it.
-        if self.best.value < ABOUT * self.tool.radius() {
-            beside.nearest_beside(&contact.surface)
-        } else {
-            beside.spot(&contact.surface).and_then(|spot| Some(beside.touch(&spot)?.1))
-        }
-    }
-
-    /// Takes where an edge touches the tool for the contact, if it is.
-    fn takes_crease(&mut self, touch: Contact, slack: f64) -> Taken {
-        // A straight piece that lies along the surface as far as the edge touches it before that as well: that is where it is guided.
-        let away = self.best.contact.map_or(0.0, |contact| (touch.surface - contact.surface).norm());
-        if away > ABOUT * self.tool.radius() && (touch.clearance - self.best.value).abs() <= slack {
-            return Taken::AsOneOfTwo;
-        }
-        if touch.clearance <= self.best.value + slack {
-            self.best.take(self.best.piece, touch.clearance, || touch);
-            return Taken::AsNearest;
-        }
-        let beside = self.beside();
-        // What of the tool is behind the surface by more comes out past the end by less.
-        let is_freed = touch.clearance < 0.0
-            && self.surface.edge_at(&touch.surface).is_some()
-            && beside.is_off_own_side(&touch)
-            && beside.clears(&touch, touch.clearance - slack);
-        if !is_freed {
-            return Taken::Not;
-        }
-        self.best = Best { value: touch.clearance, contact: Some(touch), piece: self.best.piece };
-        Taken::AsFreed
     }
 
     /// The valleys near a point of the tool, given from its end, on one piece or all of them.

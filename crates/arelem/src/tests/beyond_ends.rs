@@ -1,11 +1,13 @@
 //! Tools that are beside the end of a polyconic surface: what of a tool is beyond the end is not behind the surface.
 
-use apt_geometry::canonical::Remembering;
+use apt_geometry::{canonical::Remembering, surface::Surface};
 
 use super::{
     refused::{AMPLE, Found},
+    sheets::ruled,
     *,
 };
+use crate::verify::tests::point_distance;
 
 /// A polyconic surface by its rigid motion and length, and by the first two coefficients of its polynomials.
 fn poly_conic(head: &[f64; 16], polynomials: [[f64; 2]; 7]) -> Geometry {
@@ -285,5 +287,54 @@ fn the_clearance_along_an_end_is_no_greater_than_at_both_places() {
     for k in 0..=20 {
         let clearance = gauge.contact(&tool, &(tips[0] + way * (f64::from(k) / 20.0))).clearance;
         assert!(clearance <= most + 1e-9, "{clearance} beyond {most}");
+    }
+}
+
+/// A plane that rises with y and ends at y −16 with its extension.
+fn ramp() -> Geometry {
+    ruled([0.0, 4.0].map(|at| (level(at), v(0.0, at, at), v(6.0, at, at), Vec3::z())))
+}
+
+/// A tool that is a line.
+const LINE: [f64; 7] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 12.0];
+
+/// No place of it is beside the end by less than it is behind that; its own places are under the surface by much more.
+#[test]
+fn a_line_behind_the_end_comes_out_past_it() {
+    let cutter = Cutter::from_numbers(&LINE, 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let role = touched(&ramp());
+    for depth in [1e-4, 1e-3, 1e-2] {
+        let tip = v(3.0, depth - 16.0, -20.0);
+        let (contact, missed) = gauge(&role).contact_within(&tool, &tip);
+        assert!((contact.clearance + depth).abs() < 1e-9, "{contact:?}, not {depth} deep");
+        assert!((contact.gradient + Vec3::y()).norm() < 1e-6 && missed < 1e-6, "{contact:?}");
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        assert!((contact.clearance - verifier).abs() < 1e-7, "{contact:?}, {verifier}");
+        assert_eq!(gauge(&role).certify(&tool, &tip, -1.01 * depth), crate::clearance::Certificate::Holds);
+        assert_ne!(gauge(&role).certify(&tool, &tip, -0.99 * depth), crate::clearance::Certificate::Holds);
+        // On the way along the end it is as deep.
+        let there = tip + Vec3::x();
+        let ends = [&tip, &there].map(|tip| (tip, gauge(&role).contact(&tool, tip)));
+        let most = gauge(&role).at_most_between(&tool, [(ends[0].0, &ends[0].1), (ends[1].0, &ends[1].1)]);
+        assert!(most.is_some_and(|most| (most + depth).abs() < 1e-9), "{most:?}");
+    }
+}
+
+/// Where neighbouring rulings meet not far beyond a curve the extension ends before that: for the verifier where it does for
+/// the engine.
+#[test]
+fn an_extension_ends_where_the_verifier_ends_it() {
+    let floor = plane(0.078, 0.92, 0.385, -1.405);
+    let wall = cylinder(v(1.52, 1.45, 3.93), v(0.48, -0.373, 0.794).normalize(), 5.99);
+    let askew = ruled([
+        (floor, v(-3.06, -1.84, 1.37), v(4.07, -0.84, -2.47), v(0.078, 0.92, 0.385)),
+        (wall, v(-0.1, -4.79, 5.75), v(6.87, -2.38, 2.67), v(0.095, -0.877, -0.47)),
+    ]);
+    let surface = Surface::from_geometry(&askew).expect("a surface");
+    for place in [[-15.6, -43.0, -36.7], [0.0, 30.0, 4.0], [0.0, -40.0, 4.0], [2.0, 20.0, -60.0]] {
+        let place = Vec3::from(place);
+        let (foot, verifier) = (surface.foot(&place), point_distance(&askew, &place));
+        assert!((verifier - foot.distance).abs() < 1e-6, "{place:?}: {verifier} {foot:?}");
     }
 }

@@ -31,7 +31,7 @@ impl ToldEnd {
 }
 
 /// Whether a tool touches the end of a surface, which is no farther than a distance from it, and a path leads out over that end or down
-/// behind it, and not along it. Surfaces of which the end is not known have none.
+/// behind it, and not along it; where all rulings meet nothing leads along it. Surfaces of which the end is not known have none.
 pub(crate) fn is_over(
     placed: &Placed,
     (cutter, axis): (&Cutter, &Vec3),
@@ -45,9 +45,11 @@ pub(crate) fn is_over(
     let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
     let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
     let Some((distance, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
-    let Some(SurfaceEdge { outward, normal, along }) = surface.edge_at(&place) else { return false };
-    let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
-    distance <= near && out.hypot(behind) > along.dot(path).abs()
+    let leads_over = surface.edge_at(&place).is_none_or(|SurfaceEdge { outward, normal, along }| {
+        let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
+        out.hypot(behind) > along.dot(path).abs()
+    });
+    distance <= near && leads_over
 }
 
 /// The place of a line nearest to a tool, and how far that is.

@@ -38,8 +38,10 @@ const FIRST_STEPS: usize = 2;
 const SAME_WAY: f64 = 0.9;
 /// How near to where a motion is told to come to the end of a surface that end is looked for, in steps.
 const BY_END: f64 = 2.0;
+/// Share of a step that is not taken by itself.
+const SHORT: f64 = 1e-6;
 /// How much farther from the tool than the surface its end may be, relative to the band, where the tool touches it.
-const AT_END: f64 = 0.1;
+const AT_END: f64 = 0.5;
 /// A step is halved this often before the path counts as ended.
 const HALVINGS: u32 = 6;
 
@@ -269,7 +271,7 @@ impl<'a> Reader<'a> {
         let placed = if told.role == RoleName::Part { part } else { drive };
         let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
         let clearance = if told.role == RoleName::Part { on_part } else { on_drive };
-        let near = clearance + placed.thickness + AT_END * (inside + outside);
+        let near = clearance.abs() + placed.thickness + AT_END * (inside + outside);
         placed.relation != Relation::On && ends::is_over(placed, (&self.cutter, axis), tip, near, sense)
     }
 
@@ -311,12 +313,20 @@ impl<'a> Reader<'a> {
             if senses[senses.len() - TURNING_BACK].dot(&sense) < 0.0 {
                 return events.at_end(length);
             }
+            let by_end = told.filter(|told| (told.tip - tip).norm() <= BY_END * long);
+            // The place itself is not passed over.
+            let until = by_end.map(|told| sense.dot(&(told.tip - tip))).filter(|ahead| *ahead > SHORT * long);
+            let step = until.map_or(long, |ahead| ahead.min(long));
+            let is_over = by_end.is_some_and(|told| self.is_over(&told, &tip, &sense));
             if stops_at_tangency {
                 // It was laid there.
                 if (self.case.place - tip).norm() <= 1.5 * long {
                     return Found::Path(length);
                 }
-                let Some((next, next_sense)) = self.step(&tip, &sense, long) else {
+                if is_over {
+                    return Found::Ends(length);
+                }
+                let Some((next, next_sense)) = self.step(&tip, &sense, step) else {
                     return Found::Ends(length);
                 };
                 length += (next - tip).norm();
@@ -334,11 +344,10 @@ impl<'a> Reader<'a> {
             if let Some(at) = events.note(value, length) {
                 return Found::Path(at);
             }
-            let by_end = told.filter(|told| (told.tip - tip).norm() <= BY_END * long);
-            if by_end.is_some_and(|told| self.is_over(&told, &tip, &sense)) {
+            if is_over {
                 return events.at_end(length);
             }
-            let Some((next, next_sense)) = self.step(&tip, &sense, long) else {
+            let Some((next, next_sense)) = self.step(&tip, &sense, step) else {
                 return events.at_end(length);
             };
             length += (next - tip).norm();

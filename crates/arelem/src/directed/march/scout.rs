@@ -88,6 +88,11 @@ pub(super) fn ahead(
     };
     let untold = Outlook::Open { way: 0.0 };
     let Some(start) = scout.settled(&from.tip, &from.tangent) else { return Ok(untold) };
+    // From elsewhere in the bands to their middle the tool may already come to a position.
+    let aside = from.sweep(prepared, &start);
+    if aside.length > 0.0 && scout.watcher.scan(&aside).is_some() {
+        return Ok(Outlook::Open { way: aside.length });
+    }
     let met = scout.met();
     let least = least.clamp(REACH * prepared.size, LONGEST * prepared.size);
     let (mut here, mut step) = (start, FIRST * prepared.size);

@@ -52,8 +52,26 @@ impl SurfaceEnd {
     }
 
     fn ahead(prepared: &Prepared, vertex: &Vertex, reach: f64) -> Option<Self> {
-        let ahead = Vertex::at(prepared, vertex.tip + vertex.tangent * reach, &vertex.tangent).ok()?;
-        Self::at(prepared, &ahead)
+        let to = vertex.tip + vertex.tangent * reach;
+        let found = Self::at(prepared, &Vertex::at(prepared, to, &vertex.tangent).ok()?)?;
+        Some(found.from(prepared, vertex, &to))
+    }
+
+    /// Where on the straight way from a position to a place, at which the tool goes over this end, it comes to go over one.
+    fn from(self, prepared: &Prepared, vertex: &Vertex, to: &Vec3) -> Self {
+        let mut end = self;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let tip = vertex.tip + (to - vertex.tip) * middle;
+            // Without an axis on the way, as in the vertex of a cone, the place found last stands.
+            let Ok(there) = Vertex::at(prepared, tip, &vertex.tangent) else { break };
+            match Self::at(prepared, &there) {
+                Some(found) => (high, end) = (middle, found),
+                None => low = middle,
+            }
+        }
+        end
     }
 }
 
@@ -131,8 +149,8 @@ impl March<'_> {
         if !self.has_ends() {
             return Ok(());
         }
-        if let Some(end) = self.end_between(here, next) {
-            return Err(self.surface_ends(&end));
+        if let Some(end) = SurfaceEnd::at(self.prepared, next) {
+            return Err(self.surface_ends(&end.from(self.prepared, here, &next.tip)));
         }
         let Prepared { part, drive, .. } = self.prepared;
         let length = (next.tip - here.tip).norm();
@@ -173,23 +191,6 @@ impl March<'_> {
         }
         self.look_for_end = 2 * (self.points.len() + 1);
         self.judge_outlook(here, cancel)
-    }
-
-    /// Where on a vector the tool comes to go over the end of a surface, if it does at its last vertex.
-    fn end_between(&self, here: &Vertex, next: &Vertex) -> Option<SurfaceEnd> {
-        let mut end = SurfaceEnd::at(self.prepared, next)?;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let tip = here.tip + (next.tip - here.tip) * middle;
-            // Without an axis on the way, as in the vertex of a cone, the place found last stands.
-            let Ok(there) = Vertex::at(self.prepared, tip, &here.tangent) else { break };
-            match SurfaceEnd::at(self.prepared, &there) {
-                Some(found) => (high, end) = (middle, found),
-                None => low = middle,
-            }
-        }
-        Some(end)
     }
 
     /// Where no vector goes on because a surface ends within reach of the tool: that.

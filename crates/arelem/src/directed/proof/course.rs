@@ -352,6 +352,10 @@ impl Course<'_, '_> {
     /// Whether the places of contact at both ends of a stretch show that the tool is nowhere above the band on it.
     fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
+        // No clearance changes by more than the tool moves.
+        if 0.5 * (a.value + b.value + (b.x - a.x) * self.stretch_of_reach()) <= limits[1] {
+            return true;
+        }
         if sweep.turns() {
             return by_contacts
                 && self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
@@ -363,6 +367,12 @@ impl Course<'_, '_> {
             || self.is_held_by_witness(a, b)
             || by_contacts
                 && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
+    }
+
+    /// How far a place of the tool moves at most, for each length of the tool end.
+    fn stretch_of_reach(&self) -> f64 {
+        let Line { sweep, role, .. } = self.line;
+        if role.gauge.on { 1.0 } else { sweep.stretch(role.gauge.reach(sweep.tool())) }
     }
 
     /// Whether the point of the tool that goes from one contact to the other along with the vector is nowhere above the band. It is one of

@@ -31,7 +31,13 @@ use apt_geometry::{
     motion::{NamedSurface, Relation},
 };
 
+use super::clearance::Surface;
 use crate::sequence::Role;
+
+/// The signed distance of a point along the natural normal as the verifier measures it.
+pub(crate) fn point_distance(geometry: &Geometry, x: &Vec3) -> f64 {
+    Surface::of(geometry).expect("a surface").point_distance(x).expect("a distance").0
+}
 
 /// CUTTER/d,r and CUTTER/d,r,e,f,α,β,h; degrees.
 pub(super) fn cutter(numbers: &[f64]) -> Cutter {

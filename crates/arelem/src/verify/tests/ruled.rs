@@ -356,25 +356,3 @@ fn a_surface_that_is_smooth_between_the_ends_of_its_curves_has_no_edges_there() 
         assert!(edges.len() >= 4 && edges.iter().all(|is_edge| !is_edge), "{accuracy}: {edges:?}");
     }
 }
-
-/// Where neighbouring rulings meet not far beyond a curve the extension ends before that: for the verifier where it does for
-/// the engine.
-#[test]
-fn the_extension_ends_where_that_of_the_engine_does() {
-    let floor = plane([0.078, 0.92, 0.385], -1.405);
-    let wall = cylinder([1.52, 1.45, 3.93], [0.48, -0.373, 0.794], 5.99);
-    let askew = ruled(
-        section(floor, [[-3.06, -1.84, 1.37], [4.07, -0.84, -2.47]], [0.078, 0.92, 0.385]),
-        section(wall, [[-0.1, -4.79, 5.75], [6.87, -2.38, 2.67]], [0.095, -0.877, -0.47]),
-    );
-    for geometry in [askew, bent()] {
-        let engine = apt_geometry::surface::Surface::from_geometry(&geometry).expect("a surface");
-        let verifier = Surface::of(&geometry).expect("a surface");
-        for place in [[-15.6, -43.0, -36.7], [0.0, 30.0, 4.0], [0.0, -40.0, 4.0], [2.0, 20.0, -60.0]] {
-            let place = Vec3::from(place);
-            let (told, _) = verifier.point_distance(&place).expect("a distance");
-            let foot = engine.foot(&place);
-            assert!((told - foot.distance).abs() < 1e-6, "{place:?}: {told} {foot:?}");
-        }
-    }
-}
