@@ -74,12 +74,16 @@ pub(super) fn replay(
         Relation::Past => State::Violating,
         _ => state,
     };
+    // A position is where the tool is in the middle of the band.
+    let middle = 0.5 * (role.outside_tolerance - role.inside_tolerance);
+    let [low, high] = since.map(|value| value - middle);
+    let end = end - middle;
     // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
     let may_have_changed = match role.relation {
-        // Or it came out by less than the band and goes in again.
-        Relation::To => since[1] > role.outside_tolerance || since[1] > guard && end < since[1] - guard,
+        // Or it came out past the middle and goes in again.
+        Relation::To => since[1] > role.outside_tolerance || high > guard && end < high - guard,
         // The other way round.
-        Relation::Past => since[0] < -role.inside_tolerance || since[0] < -guard && end > since[0] + guard,
+        Relation::Past => since[0] < -role.inside_tolerance || low < -guard && end > low + guard,
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;

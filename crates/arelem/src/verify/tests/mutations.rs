@@ -137,14 +137,15 @@ fn to_and_past_are_told_apart() {
     }
 }
 
-/// Where the path goes through a check surface by less than its band and out again, if only in the band, that may be called a PAST
-/// position; where it stops before that, or comes near without going in, it may not.
+/// Where the path goes through the middle of the band of a check surface, in which a position is, and out again, if only in the band, that
+/// may be called a PAST position; where it stops before that, or comes near without going in, it may not.
 #[test]
 fn a_position_past_what_is_only_brushed_is_one() {
-    let cases: [([f64; 2], f64, bool); 5] = [
+    let cases: [([f64; 2], f64, bool); 6] = [
         ([0.0004, 0.0003], 1.0, true),
         ([0.0004, 0.0003], -1.0, false),
-        ([-0.0002, 0.0003], 1.0, false),
+        ([-0.0002, 0.0004], 1.0, true),
+        ([-0.0003, 0.0004], 1.0, false),
         ([0.0004, -0.0001], 1.0, true),
         ([0.0004, -0.0001], -1.0, false),
     ];
@@ -166,13 +167,14 @@ fn assert_stop(relation: Relation, center: [f64; 3], end: f64, is_position: bool
     assert_eq!(rules(&brushed), wanted, "{relation:?} {center:?} {end}");
 }
 
-/// Where the path comes out of a check surface by less than its band and goes in again, that may be called a TO position; where it stops
-/// before that, or stays in, it may not.
+/// Where the path comes out of a check surface past the middle of its band and goes in again, that may be called a TO position; where it
+/// stops before that, or stays in, it may not.
 #[test]
 fn a_position_to_what_is_only_brushed_from_within_is_one() {
-    let cases: [([f64; 2], f64, bool); 5] = [
+    let cases: [([f64; 2], f64, bool); 6] = [
         ([0.0003, 0.0003], 1.0, true),
         ([0.0003, 0.0003], -1.0, false),
+        ([0.0002, 0.0004], 1.0, false),
         ([-0.0002, 0.0004], 1.0, false),
         ([0.0003, -0.0001], 1.0, true),
         ([0.0003, -0.0001], -1.0, false),
