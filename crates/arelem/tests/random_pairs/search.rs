@@ -38,6 +38,8 @@ const FIRST_STEPS: usize = 2;
 const SAME_WAY: f64 = 0.9;
 /// How near to where a motion is told to come to the end of a surface that end is looked for, in steps.
 const BY_END: f64 = 2.0;
+/// How far beside the place of a tangency a path may lead, in bands: out of a corner that is near the other way leads there.
+const AT_PLACE: f64 = 5.0;
 /// Share of a step that is not taken by itself.
 const SHORT: f64 = 1e-6;
 /// How much farther from the tool than the surface its end may be, relative to the band, where the tool touches it.
@@ -320,12 +322,16 @@ impl<'a> Reader<'a> {
             let is_over = by_end.is_some_and(|told| self.is_over(&told, &tip, &sense));
             if stops_at_tangency {
                 // It was laid there.
-                if (self.case.place - tip).norm() <= 1.5 * long {
+                let rest = self.case.place - tip;
+                if rest.norm() <= AT_PLACE * (self.case.inside + self.case.outside) {
                     return Found::Path(length);
                 }
-                if is_over {
+                let ahead = sense.dot(&rest);
+                let is_aside = rest.norm() <= 1.5 * long && ahead <= SHORT * long;
+                if is_over || is_aside {
                     return Found::Ends(length);
                 }
+                let step = if rest.norm() <= 1.5 * long { step.min(ahead) } else { step };
                 let Some((next, next_sense)) = self.step(&tip, &sense, step) else {
                     return Found::Ends(length);
                 };
