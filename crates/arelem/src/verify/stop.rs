@@ -87,8 +87,15 @@ pub(super) fn replay(
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;
+    // Where the tool end is back on the surface it went through that before, by less than the band.
+    let is_back = match state {
+        State::Clear => since[0] < -guard,
+        State::Violating => since[1] > guard,
+        State::Touching => false,
+    };
+    let doubtful = count.doubtful + u32::from(on && is_back);
     let asked = occurrence.max(1) - 1;
-    if arrives && count.certain <= asked && asked <= count.certain + count.doubtful {
+    if arrives && count.certain <= asked && asked <= count.certain + doubtful {
         return Some(Ok(()));
     }
     Some(Err(WrongEvent { found: if arrives { count.certain + 1 } else { 0 } }))

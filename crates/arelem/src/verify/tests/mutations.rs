@@ -186,6 +186,24 @@ fn a_position_to_what_is_only_brushed_from_within_is_one() {
     }
 }
 
+/// Where the tool end goes through a check surface by less than the band and comes back to it, that may be called the second position
+/// ON it; where it comes to the surface first it is the first one alone.
+#[test]
+fn a_position_on_what_was_gone_through_by_little_may_be_the_second() {
+    let depth: f64 = 0.0004;
+    let half = (1.0 - (1.0 - depth) * (1.0 - depth)).sqrt();
+    for (end, occurrence, is_position) in
+        [(2.0 - half, 1, true), (2.0 - half, 2, false), (2.0 + half, 2, true), (2.0 + half, 3, false)]
+    {
+        let mut path = paths::to_circle(Relation::On, occurrence).sequence;
+        let check = &mut path.stop.as_mut().unwrap().role;
+        check.surface.geometry = cylinder([2.0, 0.75 - depth, 0.0], [0.0, 0.0, 1.0], 1.0);
+        path.points[0].tip.x = end;
+        let wanted: &[Rule] = if is_position { &[] } else { &[Rule::StopEvent] };
+        assert_eq!(rules(&path), wanted, "{end} {occurrence}");
+    }
+}
+
 #[test]
 fn the_count_of_positions_is_replayed() {
     for relation in [Relation::To, Relation::On, Relation::Past] {
