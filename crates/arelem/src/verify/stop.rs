@@ -87,13 +87,13 @@ pub(super) fn replay(
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;
-    // Where the tool end is back on the surface it went through that before, by less than the band.
+    // The tool end may be back on a surface that it went through by less than the band.
     let is_back = match state {
-        State::Clear => since[0] < -guard,
-        State::Violating => since[1] > guard,
+        State::Clear => on && since[0] < -guard,
+        State::Violating => on && since[1] > guard,
         State::Touching => false,
     };
-    let doubtful = count.doubtful + u32::from(on && is_back);
+    let doubtful = count.doubtful + u32::from(is_back);
     let asked = occurrence.max(1) - 1;
     if arrives && count.certain <= asked && asked <= count.certain + doubtful {
         return Some(Ok(()));

@@ -311,8 +311,7 @@ impl Course<'_, '_> {
         let (low, high) = (a.value.min(b.value), a.value.max(b.value));
         let thickness = role.gauge.thickness;
         let (tip, tool) = sweep.at(0.5 * (a.x + b.x));
-        let stretch_of = |reach: f64| if role.gauge.on { 1.0 } else { sweep.stretch(reach) };
-        let way_of = |reach: f64| (b.x - a.x) * stretch_of(reach) * across.max(LEAST_ACROSS);
+        let way_of = |reach: f64| (b.x - a.x) * self.stretch_of(reach) * across.max(LEAST_ACROSS);
         // A point that is in contact on the way is nowhere farther from contact than the way is long.
         let farthest = |way: f64| high + 1.5 * way + thickness;
         let mut reach = role.gauge.reach(sweep.tool());
@@ -333,7 +332,7 @@ impl Course<'_, '_> {
             spread: 0.5 * way,
             reach,
             range: [low - way + thickness, farthest(way)],
-            speed: stretch_of(reach) * across,
+            speed: self.stretch_of(reach) * across,
             swing: if role.gauge.on { 0.0 } else { sweep.swing(reach) },
         }
     }
@@ -353,7 +352,8 @@ impl Course<'_, '_> {
     fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
         let Line { sweep, role, limits, .. } = self.line;
         // No clearance changes by more than the tool moves.
-        if 0.5 * (a.value + b.value + (b.x - a.x) * self.stretch_of_reach()) <= limits[1] {
+        let way = (b.x - a.x) * self.stretch_of(role.gauge.reach(sweep.tool()));
+        if 0.5 * (a.value + b.value + way) <= limits[1] {
             return true;
         }
         if sweep.turns() {
@@ -369,10 +369,10 @@ impl Course<'_, '_> {
                 && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
     }
 
-    /// How far a place of the tool moves at most, for each length of the tool end.
-    fn stretch_of_reach(&self) -> f64 {
+    /// How far what is measured of the tool within a distance of its end moves at most, for each length that the end does.
+    fn stretch_of(&self, reach: f64) -> f64 {
         let Line { sweep, role, .. } = self.line;
-        if role.gauge.on { 1.0 } else { sweep.stretch(role.gauge.reach(sweep.tool())) }
+        if role.gauge.on { 1.0 } else { sweep.stretch(reach) }
     }
 
     /// Whether the point of the tool that goes from one contact to the other along with the vector is nowhere above the band. It is one of
