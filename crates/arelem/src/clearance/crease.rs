@@ -156,9 +156,26 @@ impl Beside<'_> {
         let (spot, touch) = self.touch(&memory.crease(self.side)?)?;
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let off = self.leading_off(touch);
-        let shown = off.filter(|contact| self.clears(contact, contact.clearance - slack));
+        let shown = off.filter(|contact| {
+            self.clears(contact, contact.clearance - slack) && !self.has_shorter_way(contact, slack)
+        });
         memory.remember_crease(self.side, shown.map(|_| spot));
         shown.map(|contact| (contact, slack))
+    }
+
+    /// Whether a tool that is a line, behind an end by a contact, is in the surface with one of its own ends alone: that comes out by less.
+    fn has_shorter_way(&self, contact: &Contact, slack: f64) -> bool {
+        let Self { tool, surface, side, tip } = *self;
+        if tool.radius() > 0.0 || contact.clearance >= 0.0 {
+            return false;
+        }
+        let ends = [*tip, tip + tool.axis * tool.profile.top.height];
+        ends.iter().any(|end| {
+            let foot = surface.foot(end);
+            let (clearance, gradient) = (side * foot.distance, foot.normal * side);
+            let way = Contact { clearance, gradient, tool: *end, surface: foot.point };
+            clearance < 0.0 && clearance > contact.clearance && self.clears(&way, clearance - slack)
+        })
     }
 
     /// A bound from above of the clearance while the tool end goes straight from here to another place, by the contacts at both, if these

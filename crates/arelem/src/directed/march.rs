@@ -19,6 +19,7 @@ use crate::{
     attitude::Sweep,
     clearance::{Contact, Shape},
     error::{Course, Iteration, MotionFailure},
+    position::{self, Condition, Solution},
     section2::State,
 };
 
@@ -40,6 +41,27 @@ impl Vertex {
         let drive = posture.contact(&prepared.drive.gauge, &tip);
         let axis = posture.tool.axis;
         Ok(Self { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
+    }
+
+    /// The position on both surfaces next to a place, in the middle of their bands, with the path in a given sense.
+    fn settled(prepared: &Prepared, place: &Vec3, sense: &Vec3) -> Option<Self> {
+        Self::settled_at(prepared, [prepared.part.rest(), prepared.drive.rest()], place, sense)
+    }
+
+    /// The same with these clearances from part and drive surface.
+    fn settled_at(
+        prepared: &Prepared,
+        [from_part, from_drive]: [f64; 2],
+        place: &Vec3,
+        sense: &Vec3,
+    ) -> Option<Self> {
+        let Prepared { attitude, part, drive, .. } = prepared;
+        let conditions =
+            [Condition::Passing(&part.gauge, from_part), Condition::Passing(&drive.gauge, from_drive)];
+        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, place).ok()?;
+        let [Some(part), Some(drive), _] = contacts else { return None };
+        let axis = attitude.tool_at(&tip).ok()?.axis;
+        Some(Self { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
     }
 
     /// Where the motion begins, with the axis that the tool has there: the first vector turns it if need be.

@@ -1,5 +1,7 @@
 //! Tools that are beside the end of a polyconic surface: what of a tool is beyond the end is not behind the surface.
 
+use std::f64::consts::SQRT_2;
+
 use apt_geometry::{canonical::Remembering, surface::Surface};
 
 use super::{
@@ -318,6 +320,21 @@ fn a_line_behind_the_end_comes_out_past_it() {
         let ends = [&tip, &there].map(|tip| (tip, gauge(&role).contact(&tool, tip)));
         let most = gauge(&role).at_most_between(&tool, [(ends[0].0, &ends[0].1), (ends[1].0, &ends[1].1)]);
         assert!(most.is_some_and(|most| (most + depth).abs() < 1e-9), "{most:?}");
+    }
+}
+
+/// The way out past the end, where a contact is followed along that, does not tell how deep one end of the line is in the surface far from there.
+#[test]
+fn a_line_in_a_surface_by_little_does_not_come_out_past_a_far_end() {
+    let tool = Tool::new(Cutter::from_numbers(&LINE, 1.0).expect("a cutter"), Vec3::z());
+    let follows = gauge(&touched(&ramp()));
+    let behind = follows.contact(&tool, &v(3.0, 1e-3 - 16.0, -20.0));
+    assert!((behind.clearance + 1e-3).abs() < 1e-9, "{behind:?}");
+    for away in [0.5, 4.0, 15.0] {
+        let depth = 0.2;
+        let tip = v(3.0, away - 16.0, away - 16.0 - depth * SQRT_2);
+        let contact = follows.contact(&tool, &tip);
+        assert!((contact.clearance + depth).abs() < 1e-9, "{contact:?}, {away} from the end");
     }
 }
 

@@ -9,7 +9,7 @@ use apt_geometry::canonical::Remembering;
 
 use super::{
     sculptured::{hill, made},
-    sheets::round_wall,
+    sheets::{round_wall, ruled},
     *,
 };
 use crate::{
@@ -79,6 +79,19 @@ fn a_drive_surface_that_ends_is_told() {
     p.go(&[(To, &wall), (To, &level(1.0)), (On, &x(3.0))]).side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
     let failure = p.attempt(&motion(Forward, &wall, &[(On, 1, &x(900.0))])).expect_err("no way there");
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Drive, .. }), "{failure:?}");
+}
+
+/// The top of a tool that is a line, under a plane that rises with y and ends at y 20, goes up past the end; the side of the tool then goes along that.
+#[test]
+fn a_line_whose_top_passes_the_end_goes_along_it() {
+    let ramp = ruled([0.0, 4.0].map(|at| (level(at), v(-30.0, at, at), v(30.0, at, at), Vec3::z())));
+    // The way of the top up the ramp is along (.8, 1, 1), that beside the end along (1, 0, .3).
+    let floor = plane(0.3, 0.76, -1.0, 10.0);
+    let mut p = Program::new();
+    p.tolerance(0.002, 0.002).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 12.0]).from(-3.5, 5.0, -8.0);
+    p.go(&[(To, &ramp), (To, &floor), (On, &x(-3.0))]).side(DriveSide::Left).indirv(1.0, 1.0, 0.0);
+    p.drive(Forward, &ramp, On, &x(15.0)).verified();
+    assert!((p.tip() - v(15.0, 20.0, 9.7)).norm() < 0.01, "{:?}", p.tip());
 }
 
 /// A quarter of a tube in a frame, which becomes wider or narrower by some slopes, as random motions drew it.

@@ -7,11 +7,11 @@
 
 use apt_geometry::{Vec3, motion::CheckSurface};
 
-use super::{Vertex, surface_end::SurfaceEnd, tangency, tangent};
+use super::{Vertex, surface_end::SurfaceEnd, tangency};
 use crate::{
     directed::{Prepared, is_tangent, stop::Watcher},
     error::{Course, MotionFailure},
-    position::{self, Condition, Solution},
+    position::{self, Condition},
 };
 
 /// Bound of the steps of one look ahead.
@@ -87,7 +87,7 @@ pub(super) fn ahead(
         log: vec![[0.0; 2]],
     };
     let untold = Outlook::Open { way: 0.0 };
-    let Some(start) = scout.settled(&from.tip, &from.tangent) else { return Ok(untold) };
+    let Some(start) = Vertex::settled(prepared, &from.tip, &from.tangent) else { return Ok(untold) };
     // From elsewhere in the bands to their middle the tool may already come to a position.
     let aside = from.sweep(prepared, &start);
     if aside.length > 0.0 && scout.watcher.scan(&aside).is_some() {
@@ -150,21 +150,12 @@ pub(super) fn ahead(
 }
 
 impl Scout<'_> {
-    /// The position on both surfaces next to a place, with the path in a given sense.
-    fn settled(&self, place: &Vec3, sense: &Vec3) -> Option<Vertex> {
-        let Prepared { attitude, part, drive, .. } = self.prepared;
-        let conditions =
-            [Condition::Passing(&part.gauge, part.rest()), Condition::Passing(&drive.gauge, drive.rest())];
-        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, place).ok()?;
-        let [Some(part), Some(drive), _] = contacts else { return None };
-        let axis = attitude.tool_at(&tip).ok()?.axis;
-        Some(Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
-    }
-
     /// The next place and the turn of the path on the way; shortens the step until the path is followed.
     fn leg(&self, here: &Vertex, step: &mut f64) -> Option<Leg> {
         while *step > LEAST * self.prepared.size {
-            if let Some(to) = self.settled(&(here.tip + here.tangent * *step), &here.tangent) {
+            if let Some(to) =
+                Vertex::settled(self.prepared, &(here.tip + here.tangent * *step), &here.tangent)
+            {
                 let chord = to.tip - here.tip;
                 let length = chord.norm();
                 // Not one where the tool has fallen off the end.
@@ -195,7 +186,10 @@ impl Scout<'_> {
             if (beyond.tip - before).norm() <= SAME * self.prepared.size {
                 break;
             }
-            let Some(middle) = self.settled(&(0.5 * (before + beyond.tip)), &from.tangent) else { break };
+            let Some(middle) = Vertex::settled(self.prepared, &(0.5 * (before + beyond.tip)), &from.tangent)
+            else {
+                break;
+            };
             match SurfaceEnd::at(self.prepared, &middle) {
                 Some(there) => (beyond, end) = (middle, there),
                 None => before = middle.tip,

@@ -1,7 +1,7 @@
 //! Paths that come to the end of a surface that does not go on. Vectors are proven from what lies within reach of the tool,
 //! so that they become shorter and shorter there; it is told before.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use apt_geometry::{Vec3, surface::SurfaceEdge};
 
@@ -21,6 +21,14 @@ const CREEPING: f64 = 0.1;
 const HALVINGS: u32 = 24;
 /// Stretches of the flank and of the bottom's edge between places at which it is looked whether the tool touches a surface before its end.
 const PLACES: u32 = 8;
+/// Cosine of the greatest angle by which a path turns along the end of a surface; one that turns by more leads against the end. The place next to one
+/// that lies straight ahead is ahead by the square of it.
+const TURNED: f64 = 0.5;
+/// Share of the way of a tool by which its place of contact with the end of a surface goes along that, at least, where the tool does: as much as
+/// on a path at 45 degrees to the end.
+const ALONG: f64 = FRAC_1_SQRT_2;
+/// Cosine of the angle between contact and tool axis up to which the tool touches with its side.
+const BESIDE: f64 = FRAC_1_SQRT_2;
 /// Ratio of a vector to the one before below which the way on may be the way to the end of a surface.
 const SHRINKING: f64 = 0.5;
 
@@ -43,7 +51,8 @@ impl SurfaceEnd {
                 && !is_touched_inside(role, &prepared.tool.turned(axis), &tip, contact)
         };
         let (role, contact) = touches.into_iter().find(goes_over)?;
-        Some(Self { role: role.name, tip, axis, place: contact.surface })
+        let end = Self { role: role.name, tip, axis, place: contact.surface };
+        (!end.is_gone_along(prepared, &vertex.tangent)).then_some(end)
     }
 
     /// The same a little ahead of a position.
@@ -72,6 +81,32 @@ impl SurfaceEnd {
             }
         }
         end
+    }
+
+    /// Whether the path, which leads over the end here, turns along it within the bands, as that of a line does whose top passes below the end:
+    /// beyond that it touches the end with its side, along which the place of contact goes. A path that leads over the end does not get on,
+    /// or leaves that place behind. It is looked at as far outside the surfaces as the bands allow: at the end itself contact has no one
+    /// direction.
+    fn is_gone_along(&self, prepared: &Prepared, tangent: &Vec3) -> bool {
+        let Prepared { part, drive, .. } = prepared;
+        let reach = AHEAD * (part.band() + drive.band());
+        let outside = [part, drive].map(|role| if role.outside > 0.0 { role.outside } else { role.rest() });
+        let ahead = |from: &Vec3| Vertex::settled_at(prepared, outside, &(from + tangent * reach), tangent);
+        let Some(turned) = ahead(&self.tip) else { return false };
+        let Some(beyond) = ahead(&turned.tip) else { return false };
+        let way = beyond.tip - turned.tip;
+        let gets_on = |way: &Vec3| way.dot(tangent) >= TURNED * (TURNED * reach).max(way.norm());
+        if !gets_on(&(turned.tip - self.tip)) || !gets_on(&way) {
+            return false;
+        }
+        let guided = [(part, &turned.part, &beyond.part), (drive, &turned.drive, &beyond.drive)];
+        guided.into_iter().all(|(role, contact, later)| {
+            let is_led = role.name != self.role || is_at_end(role, contact);
+            // Below the bottom contact with an end that is parallel to it may be anywhere.
+            let is_beside = !role.gauge.on && contact.gradient.dot(&turned.axis).abs() <= BESIDE;
+            let goes_along = is_beside && (later.surface - contact.surface).norm() >= ALONG * way.norm();
+            is_led && (goes_along || !is_over(role, contact, &way.normalize()))
+        })
     }
 }
 
