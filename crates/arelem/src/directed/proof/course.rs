@@ -280,7 +280,7 @@ impl Course<'_, '_> {
         if high && low {
             return Stretch::Held;
         }
-        if !is_asked {
+        if !is_asked || bend.is_some() && ledger.is_loose(&about) {
             bend = found(&|bend| {
                 let (held, kept) = bounded(Bend::AtMost(bend));
                 (high || held) && (low || kept)

@@ -12,6 +12,8 @@ const FORESIGHT: f64 = 3.0;
 /// over which they change little.
 const FORESIGHT_BY_QUADRIC: f64 = 16.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
+/// How many times as far as asked for a bound reaches, at least, that is made anew where it does not decide: more than the foresight.
+const LOOSE: f64 = 32.0;
 /// How far from where there was no such bound none is asked for, relative to how far that was to reach.
 const CRAMPED: f64 = 0.5;
 
@@ -125,6 +127,11 @@ impl Ledger {
         steady_bend(gauge, place.tool, place.tip, place.spread, range)
     }
 
+    /// Whether the bound that is known reaches so much farther than about a place that one for that alone may be much less.
+    pub(super) fn is_loose(&self, place: &About<'_>) -> bool {
+        self.bound.get().is_some_and(|bound| bound.spread > LOOSE * place.spread)
+    }
+
     /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
     /// distances of the points of contact are in `range`. There is none once `cancel` says true; `None` where it is greater than
     /// what `is_of_use` takes.
@@ -150,6 +157,8 @@ impl Ledger {
             }
             found = upward_bend(gauge, tool, tip, spread, range, is_of_use, cancel);
             match found {
+                // One that reaches farther may hold a place that bends much more.
+                Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}
                 Some(Bend::AtMost(bend)) => {
                     self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread, range, bend }));
                     return found;
