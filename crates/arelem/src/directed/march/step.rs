@@ -48,18 +48,22 @@ const KINK_BANDS: f64 = 0.1;
 /// How many times the square of the angle between path and vector at its start that at its end may be on a bend that goes on as it
 /// begins: on one that grows tighter it is twice the angle at most.
 const MOST_TURNED: f64 = 4.0;
+/// Shares of the way to the middle of the bands that a vector goes which does not keep its place in them.
+const INWARD: [f64; 3] = [0.03, 0.1, 0.3];
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
 const PROBE: f64 = 1e-4;
 
 /// Where in the bands a vector ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Places {
     /// At the limits opposite to the sag.
     Limits,
     /// Where it begins.
     Level,
+    /// Nearer to the middle of the bands by this share.
+    Inward(f64),
 }
 
 /// Computes vectors one after the other, remembering curvature.
@@ -226,7 +230,10 @@ impl<'a> Stepper<'a> {
         let bends = self.bends(&curvature);
         let foretold = self.predict(here, &curvature, &bends);
         let length = foretold * self.trend.ratio();
-        let mut best = self.longest(here, cap, places, &Guess { bends, curvature, length })?;
+        let mut best = match places {
+            Places::Level => self.level(here, cap, &Guess { bends, curvature, length })?,
+            _ => self.longest(here, cap, places, &Guess { bends, curvature, length })?,
+        };
         self.trend.compare(foretold, best.length * best.growth * AIM);
         if places == Places::Limits
             && let Some(other) = self.at_the_other_limit(here, cap, &best)?
@@ -237,6 +244,26 @@ impl<'a> Stepper<'a> {
         let vertex = best.vertex;
         self.latest = Some(best);
         Ok(vertex)
+    }
+
+    /// A vector that keeps its place in the bands, or one that ends nearer to their middle if that is longer: at a limit there is hardly room
+    /// for the sag.
+    fn level(&self, here: &Vertex, cap: f64, guess: &Guess) -> Result<Trial, MotionFailure> {
+        let mut best = self.longest(here, cap, Places::Level, guess);
+        for share in INWARD {
+            if matches!(best, Err(MotionFailure::Cancelled)) {
+                break;
+            }
+            let inward = self.longest(here, cap, Places::Inward(share), guess);
+            let is_better = match (&best, &inward) {
+                (Ok(level), Ok(inward)) => inward.length > level.length,
+                (level, inward) => level.is_err() && inward.is_ok(),
+            };
+            if is_better {
+                best = inward;
+            }
+        }
+        best
     }
 
     /// Goes on with a vector.
@@ -329,6 +356,13 @@ impl<'a> Stepper<'a> {
         match places {
             Places::Limits => [self.prepared.part.vertex(bends[0]), self.prepared.drive.vertex(bends[1])],
             Places::Level => [here.part.clearance, here.drive.clearance],
+            Places::Inward(share) => {
+                let inward = |role: &Working, clearance: f64| {
+                    clearance + share * (0.5 * (role.outside - role.inside) - clearance)
+                };
+                let [part, drive] = self.roles();
+                [inward(part, here.part.clearance), inward(drive, here.drive.clearance)]
+            }
         }
     }
 }

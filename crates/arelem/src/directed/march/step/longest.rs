@@ -131,7 +131,7 @@ impl Stepper<'_> {
     ) -> Result<Trial, MotionFailure> {
         let least = match places {
             Places::Limits => LEAST_VECTOR * self.prepared.size,
-            Places::Level => LEAST_LEVEL * self.bands(),
+            Places::Level | Places::Inward(_) => LEAST_LEVEL * self.bands(),
         };
         let mut search = Search::new(guess, cap);
         for _ in 0..MAX_TRIALS {
