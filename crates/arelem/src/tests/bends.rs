@@ -6,6 +6,7 @@ use apt_geometry::canonical::{Cone, Cylinder, Remembering, RuledSurface};
 use super::{
     ends::asked,
     refused::{AMPLE, Found},
+    sheets::ruled,
     *,
 };
 use crate::{error::RoleName, verify::verify};
@@ -67,6 +68,55 @@ fn a_lens_cutter_gets_round_a_bend_on_a_level() {
         ),
     };
     is_delivered(&motion);
+}
+
+/// Where the path turns tightly a vector has ended at the limit of the band on whose side the next one sags. None leads from there to the other
+/// limit, and on a level there is room for short ones only.
+#[test]
+fn a_flat_cutter_at_the_wrong_limit_of_the_band_goes_inward() {
+    let arc = cylinder(
+        v(-0.16784421715820463, -5.627465421248393, -2.139722101997199),
+        v(-0.4210040575800915, -0.060749608888469975, 0.9050221370336733),
+        6.001186332945495,
+    );
+    let across = v(-0.2970871075594128, -0.9334849106193136, -0.2008610767870022);
+    let straight = plane(across.x, across.y, across.z, 1.3085019874749997);
+    let strip = ruled([
+        (
+            arc,
+            v(5.407615636870052, -1.9254347245986538, -2.6124308282907087),
+            v(-1.7251599220327152, -0.2361933592346952, -5.817111223566135),
+            v(0.16676471872772985, 0.9755629036197576, 0.14306134931786774),
+        ),
+        (
+            straight,
+            v(2.78160606070646, -2.874839561585584, 2.731928323542074),
+            v(-4.151199036830222, -0.015783828909404773, -0.30120473099483713),
+            across,
+        ),
+    ]);
+    let drive = quadric([
+        0.0818756258577166,
+        0.03540271348983006,
+        0.28709656661784333,
+        0.7168895638265679,
+        0.053692961099671144,
+        -0.0931103495296875,
+        -0.05361597660838097,
+        0.13999418496545446,
+        0.5090553741455424,
+        0.09173060440588161,
+    ]);
+    let stop = sphere(6.78592700572511, -2.2981127687979046, 0.9212183933850553, 7.496005740708918);
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005).cutter(&[1.161920615897211]);
+    p.from(1.5688812861380392, 0.29341443102352693, 0.4775323033163531);
+    p.go(&[(Relation::To, &drive), (Relation::To, &strip)]).side(DriveSide::Right);
+    p.indirv(-0.6567028252775652, 0.4523552052616749, -0.6034203903955615);
+    p.run(&MotionCommand::MaximumStep(10.0));
+    p.drive(Turn::Forward, &drive, Relation::To, &stop).verified();
+    let count = p.last().points.len();
+    assert!(count <= 14, "{count} vectors");
 }
 
 /// Soon after the tangency another part of the tool goes into the check surface: seen from a long way off the slope never

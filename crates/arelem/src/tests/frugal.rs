@@ -188,3 +188,24 @@ fn a_vector_ends_in_a_corner() {
         }
     }
 }
+
+/// The tool end goes along a ruling of a hyperboloid whose narrow waist is near: how the distance bends there says nothing of the
+/// stretches before it, though the bound for those was made for as far as that.
+#[test]
+fn a_narrow_waist_ahead_does_not_shorten_vectors() {
+    let part = quadric([1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1e-6]);
+    let drive = circle(1.0, 40.001, 40.0);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[2.0]).from(1.5, 0.02, 1.5);
+    p.run(&MotionCommand::PartSide(PartSide::On)).side(DriveSide::On);
+    p.go(&[(On, &drive), (On, &part), (On, &x(1.7))]).indirv(-1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &drive, On, &x(0.1)).verified();
+    // From one limit of the band to the other and back: sag of the whole band over a circle of radius 40, seen at 45 degrees.
+    let full = 0.99 * (2.0f64 * 8.0 * 40.0 * 0.0005).sqrt();
+    let points = &p.last().points;
+    for pair in points[..points.len() - 1].windows(2) {
+        let length = (pair[1].tip - pair[0].tip).norm();
+        assert!(length > full, "{length}, not {full}, from {}", pair[0].tip);
+    }
+    assert_eq!(points.len(), 5);
+}
