@@ -205,14 +205,17 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     let (part, drive) = (&prepared.part, &prepared.drive);
     let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
     let on_rings = rings.iter().flatten().map(|ring| ring.of_path(&path)).max().unwrap_or(1);
+    // Between two planes MAXDP does not count (language reference 6.8).
+    let planar = part.shape == Shape::Flat && drive.shape == Shape::Flat;
+    let maximum_step = if planar { f64::INFINITY } else { sequence.maximum_step };
     // The straight way from start to end at MAXDP a vector.
     let straight = match (path.first(), path.last()) {
         (Some(first), Some(last)) => (last - first).norm(),
         _ => 0.0,
     };
     on_rings
-        .max(bends(prepared, &path, bent, sequence.maximum_step))
-        .max(whole(straight / sequence.maximum_step * (1.0 - 1e-9)))
+        .max(bends(prepared, &path, bent, maximum_step))
+        .max(whole(straight / maximum_step * (1.0 - 1e-9)))
 }
 
 /// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position.

@@ -196,3 +196,22 @@ fn straight_paths_on_curved_surfaces_need_one_vector() {
     p.side(Left).drive(GoRgt, &circle(0.0, 0.0, 2.0), On, &x(1.3)).verified();
     assert!(p.last().minimum <= Some(p.last().points.len() as u32));
 }
+
+/// MAXDP does not count where part and drive surface are both planes (language reference 6.8): the bound does not count it either, as
+/// far as either surface is no plane it does.
+#[test]
+fn maxdp_is_no_bound_between_planes() {
+    let canted = plane(0.1, 0.0, 1.0, 0.0);
+    for part in [ground(), canted] {
+        let mut p = Program::new();
+        p.run(&MotionCommand::MaximumStep(0.1)).cutter(&[0.5, 0.25]).from(0.0, 2.0, 1.0);
+        p.go(&[(To, &y(0.0)), (To, &part), (On, &x(0.0))]).side(Left).drive(GoLft, &y(0.0), On, &x(105.0)).verified();
+        assert_eq!((p.last().points.len(), p.last().minimum), (1, Some(1)));
+    }
+    let mut p = Program::new();
+    p.run(&MotionCommand::MaximumStep(0.1)).cutter(&[0.5, 0.25]).from(0.0, -5.0, 1.0);
+    let hill = cylinder(Vec3::zeros(), Vec3::x(), 1.0);
+    p.go(&[(On, &y(0.0)), (To, &hill), (On, &x(0.0))]).side(DriveSide::On);
+    p.drive(GoRgt, &y(0.0), On, &x(5.0)).verified();
+    assert!(p.last().minimum.is_some_and(|minimum| (45..=50).contains(&minimum)), "{:?}", p.last().minimum);
+}
