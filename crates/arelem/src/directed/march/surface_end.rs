@@ -83,12 +83,16 @@ impl SurfaceEnd {
         end
     }
 
-    /// Whether the path, which leads over the end here, turns along it within the bands, as that of a line does whose top passes below the end:
+    /// Whether the path of a line, which leads over the end here, turns along it within the bands, as where its top passes below the end:
     /// beyond that it touches the end with its side, along which the place of contact goes. A path that leads over the end does not get on,
     /// or leaves that place behind. It is looked at as far outside the surfaces as the bands allow: at the end itself contact has no one
     /// direction.
     fn is_gone_along(&self, prepared: &Prepared, tangent: &Vec3) -> bool {
-        let Prepared { part, drive, .. } = prepared;
+        let Prepared { tool, part, drive, .. } = prepared;
+        // How deep a wider tool is there engine and verifier may tell differently: its motion ends.
+        if tool.radius() > 0.0 {
+            return false;
+        }
         let reach = AHEAD * (part.band() + drive.band());
         let outside = [part, drive].map(|role| if role.outside > 0.0 { role.outside } else { role.rest() });
         let ahead = |from: &Vec3| Vertex::settled_at(prepared, outside, &(from + tangent * reach), tangent);
