@@ -114,7 +114,12 @@ pub(super) trait Enclose {
     /// The number of parts that were made.
     fn parts(&self) -> &Count;
 
-    /// Bounds over a rectangle with a side that is one point, where the parameters say nothing of them.
+    /// Whether a rectangle has a side that is one point, about which the parameters say nothing of curvature and normals.
+    fn has_pole(&self, _: &Rectangle) -> bool {
+        false
+    }
+
+    /// Bounds over such a rectangle.
     fn cap(&self, _: &Rectangle) -> Option<Cap> {
         None
     }
@@ -452,10 +457,12 @@ impl Part {
                 *curvature = f64::INFINITY;
             }
         }
-        // What stands out sharply is told from the rest by its place.
+        // What stands out sharply is told from the rest by its place; and about a pole narrow parts have no closer bounds than wide ones
+        // that reach as far from it.
         let lengths = [u.norm(), v.norm()];
-        let tried = bounds.curvature.iter().all(|k| k.is_finite());
-        let sizes = if sharp.contains(&true) { lengths } else { bounds.loose };
+        let by_place = sharp.contains(&true) || sheet.has_pole(&rectangle);
+        let tried = !by_place && bounds.curvature.iter().all(|k| k.is_finite());
+        let sizes = if by_place { lengths } else { bounds.loose };
         Self {
             rectangle,
             center: jet.point,

@@ -155,6 +155,12 @@ fn touched(rectangle: &Rectangle) -> impl Iterator<Item = Edge> {
 }
 
 impl Stretch<'_> {
+    /// The edge of the patch that is one point, if the rectangle touches it.
+    fn pole(&self, rectangle: &Rectangle) -> Option<Edge> {
+        let sides = &self.sheet.pieces.get(self.piece)?.sides;
+        touched(rectangle).find(|edge| sides[edge.number()] == Side::Point)
+    }
+
     /// Natural normal and curvatures, seen from the natural side and from the other, at shares of a rectangle.
     fn bent(&self, rectangle: &Rectangle, shares: [f64; 2]) -> Option<(Vec3, [f64; 2])> {
         let piece = self.sheet.pieces.get(self.piece)?;
@@ -175,11 +181,15 @@ impl Enclose for Stretch<'_> {
         &self.sheet.parts
     }
 
+    fn has_pole(&self, rectangle: &Rectangle) -> bool {
+        self.pole(rectangle).is_some()
+    }
+
     /// About a pole the parameters have no frame. There the surface is looked at in many places; how far it may bend more
     /// between them is a margin, not a proof.
     fn cap(&self, rectangle: &Rectangle) -> Option<Cap> {
         let piece = self.sheet.pieces.get(self.piece)?;
-        let pole = touched(rectangle).find(|edge| piece.sides[edge.number()] == Side::Point)?;
+        let pole = self.pole(rectangle)?;
         let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
         // From the pole on, and along it.
         let place = |away: f64, along: f64| match pole {

@@ -268,3 +268,20 @@ proptest! {
         prop_assert!((found - wanted).norm() < 0.1 * step, "{found} {wanted}");
     }
 }
+
+/// Parts about a pole are cut by their length, not into slivers that all reach as far from it.
+#[test]
+fn few_parts_tell_of_what_is_beside_a_pole() {
+    let surface = made(vec![barrel(0.0)], Some((1, 1)), 1.0);
+    let Surface::Sculptured(sheet) = &surface else { panic!("a sculptured surface") };
+    let mut steady = 0;
+    for (away, along) in (1..=8).flat_map(|away| (1..8).map(move |along| (away, along))) {
+        let [polar, azimuth] = [0.04 * f64::from(away), 0.2 * f64::from(along)];
+        let out = v(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+        let center = out * 2.2;
+        let side = surface.signed_distance(&center).signum();
+        steady += usize::from(surface.steady(side, &center, [0.25, 0.01]).is_some());
+    }
+    assert!(steady > 20, "{steady} of 56 balls are steady");
+    assert!(sheet.parts.get() < 1_500, "{} parts", sheet.parts.get());
+}
