@@ -40,11 +40,18 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
     }
 }
 
-/// Distance of the tool end from the surface at contact where the tool is a disc seen along the rulings of a surface that
-/// ends: there is no bound about its ends.
+/// Distance of the tool end from the surface at contact where the tool is a disc seen along the generators or rulings of a surface: about
+/// the ends of one that ends there is none.
 pub(super) fn disc(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<f64> {
-    let curve = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_));
-    (curve && contact(tool, surface, side, tip).is_some()).then(|| tool.profile.support(1.0, 0.0).0)
+    let is_section = match surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) | Surface::Cone(_) => false,
+        Surface::Quadric(_)
+        | Surface::Tabulated(_)
+        | Surface::Ruled(_)
+        | Surface::PolyConic(_)
+        | Surface::Sculptured(_) => true,
+    };
+    (is_section && contact(tool, surface, side, tip).is_some()).then(|| tool.profile.support(1.0, 0.0).0)
 }
 
 /// Seen along generators that are parallel to the tool, the surface is a plane curve and the tool a disc.

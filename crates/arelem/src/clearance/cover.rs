@@ -47,8 +47,27 @@ pub(crate) fn steady_bend(
     spread: f64,
     range: [f64; 2],
 ) -> Option<f64> {
+    if gauge.on {
+        return None;
+    }
+    match disc_bend(gauge, tool, tip, spread, range) {
+        Some(Bend::AtMost(bend)) => return Some(bend),
+        Some(Bend::Unbounded) => return None,
+        None => {}
+    }
     let (tool, tip) = &gauge.body(tool, tip);
-    if gauge.on { None } else { near::Around::new(gauge, tool, tip, spread).upward_bend(spread, range) }
+    near::Around::new(gauge, tool, tip, spread).upward_bend(spread, range)
+}
+
+/// The bound of [`upward_bend`] where the tool is a disc seen along the surface: all of it is as near as its end, less its radius, so that
+/// it bends as the distance of that.
+fn disc_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Option<Bend> {
+    let surface = gauge.met(tool);
+    let (tool, tip) = &gauge.body(tool, tip);
+    let reach = closed_form::disc(tool, surface, gauge.side, tip)?;
+    let [lowest, highest] = range.map(|distance| distance + reach);
+    let region = Region { center: *tip, radius: spread, lowest, highest };
+    Some(surface.bend(gauge.side, &surface.foot(tip), &region))
 }
 
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
@@ -68,14 +87,12 @@ pub(crate) fn upward_bend(
     if gauge.on {
         return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread)));
     }
+    if let Some(bend) = disc_bend(gauge, tool, tip, spread, range) {
+        return Some(bend);
+    }
     let surface = gauge.met(tool);
     let touch = || gauge.contact(tool, tip).tool;
     let (tool, tip) = &gauge.body(tool, tip);
-    if let Some(reach) = closed_form::disc(tool, surface, gauge.side, tip) {
-        // All of the tool is as near as its end, less its radius.
-        let region = Region { lowest: range[0] + reach, highest: range[1] + reach, ..region(*tip, spread) };
-        return Some(surface.bend(gauge.side, &surface.foot(tip), &region));
-    }
     let radius = tool.radius();
     // Of what is known to be far away nothing comes within range.
     let near = near::Around::new(gauge, tool, tip, spread);

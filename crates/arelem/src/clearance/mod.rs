@@ -123,13 +123,13 @@ impl Gauge {
         let Self { side, thickness, .. } = self;
         let (tool, tip) = self.body(tool, tip);
         let surface = self.met(&tool);
-        let found = || search::found(&tool, Face { surface, side: *side }, &tip);
-        let found = match near::contact(&tool, surface, *side, &tip, &self.memory) {
-            Followed::Proven(contact, _) => contact,
-            Followed::Likely(..) | Followed::Lost => {
-                closed_form::contact(&tool, surface, *side, &tip).unwrap_or_else(found)
-            }
+        let followed = || match near::contact(&tool, surface, *side, &tip, &self.memory) {
+            Followed::Proven(contact, _) => Some(contact),
+            Followed::Likely(..) | Followed::Lost => None,
         };
+        let found = closed_form::contact(&tool, surface, *side, &tip)
+            .or_else(followed)
+            .unwrap_or_else(|| search::found(&tool, Face { surface, side: *side }, &tip));
         Contact { clearance: found.clearance - thickness, ..found }
     }
 

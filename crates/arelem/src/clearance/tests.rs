@@ -265,3 +265,15 @@ fn contact_on_a_shallow_flank_near_the_tip_is_found() {
         assert!((contact.clearance - expected).abs() < 1e-9, "{} {expected}", contact.clearance);
     }
 }
+
+/// Seen along generators a tool that is parallel to them is a disc, whose clearance bends as that of its middle: at a radius from the
+/// surface, and without a search for which of its points may touch.
+#[test]
+fn along_generators_the_clearance_bends_as_the_distance_of_the_tool_end() {
+    let [a, b, r] = [2.0, 1.0, 0.25];
+    let coefficients = [1.0 / (a * a), 1.0 / (b * b), 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let gauge = gauge(&Geometry::Quadric(Quadric { coefficients }), 1.0);
+    let found = steady_bend(&gauge, &tool(&[2.0 * r]), &v(a + r, 0.0, 0.3), 1e-3, [-1e-3, 1e-3]);
+    let own = 1.0 / (b * b / a + r);
+    assert!(found.is_some_and(|found| found >= own && found <= 1.02 * own), "{found:?} for {own}");
+}
