@@ -13,7 +13,7 @@ use std::{
 use apt_geometry::{motion::MotionCommand, regional::RegionalMilling};
 use apt_sculptured::mill::{Milled, Setting};
 use arelem::{
-    cure::Remedy,
+    cure::{Patience, Remedy},
     section2::{Execution, Output, State},
     story::{Story, tell},
     verify::{Evidence, VerifyError},
@@ -31,6 +31,8 @@ pub struct ComputedMotion {
     pub evidence: Option<Result<Evidence, VerifyError>>,
     /// What would cure the failure, if there is one.
     pub remedies: Vec<Remedy>,
+    /// What may be spent on trying more cures.
+    pub patience: Patience,
     /// How long engine and verifier took, seconds; for people, never for decisions.
     pub seconds: f64,
 }
@@ -54,6 +56,8 @@ pub struct Computation {
     pub evidence: Option<Result<Evidence, VerifyError>>,
     /// What would cure a failure.
     pub remedies: Vec<Remedy>,
+    /// What may be spent on trying cures.
+    pub patience: Patience,
     /// The time taken, seconds.
     pub seconds: f64,
 }
@@ -132,13 +136,14 @@ impl MotionMemo {
         if let Some(found) = self.find(key, state, command) {
             return Some(found);
         }
-        let Computation { execution, evidence, remedies, seconds } = compute()?;
+        let Computation { execution, evidence, remedies, patience, seconds } = compute()?;
         let motion = Arc::new(ComputedMotion {
             state: state.clone(),
             command: command.clone(),
             execution,
             evidence,
             remedies,
+            patience,
             seconds,
         });
         let mut inner = self.lock();
@@ -221,7 +226,8 @@ mod tests {
         let command = MotionCommand::MaximumPoints(limit);
         let compute = || {
             let execution = execute(state, &command, &|| false);
-            Some(Computation { execution, evidence: None, remedies: Vec::new(), seconds: 0.0 })
+            let patience = Patience::after(0);
+            Some(Computation { execution, evidence: None, remedies: Vec::new(), patience, seconds: 0.0 })
         };
         memo.get_or_compute(state, &command, compute).unwrap()
     }

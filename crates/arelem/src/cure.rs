@@ -8,6 +8,8 @@ mod earlier;
 #[cfg(test)]
 mod tests;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
@@ -100,6 +102,28 @@ const MOST: usize = 3;
 const WIDEST: f64 = 20.0;
 /// Factor by which NUMPTS is raised, and the greatest count that is tried.
 const MORE_POINTS: (u32, u32) = (8, 20_000);
+
+/// How much may be spent on trying the cures of a failed motion: whoever made a mistake waits for them. It is counted in questions
+/// whether to go on, so that what is offered does not depend on the machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Patience(u32);
+
+/// What may be spent in any case, and how many times what the failed motion took more.
+const LEAST_PATIENCE: u32 = 5_000;
+const MORE_PATIENCE: u32 = 4;
+
+impl Patience {
+    /// For the cures of a motion that asked so often whether to go on before it failed.
+    pub fn after(asked: u32) -> Self {
+        Self(LEAST_PATIENCE.saturating_add(asked.saturating_mul(MORE_PATIENCE)))
+    }
+
+    /// What says true when `cancel` does, and once it has been asked too often.
+    pub fn limit<C: Fn() -> bool + ?Sized>(self, cancel: &C) -> impl Fn() -> bool {
+        let asked = AtomicU32::new(0);
+        move || asked.fetch_add(1, Ordering::Relaxed) >= self.0 || cancel()
+    }
+}
 
 /// The remedies for the failure of a command in a state, the likeliest first; empty where nothing that was tried helps. When
 /// `cancel` says true, what has been found so far.

@@ -2,7 +2,10 @@
 
 mod milling;
 
-use std::time::Instant;
+use std::{
+    sync::atomic::{AtomicU32, Ordering},
+    time::Instant,
+};
 
 use apt_cldata::{
     edit::EditItem,
@@ -15,7 +18,7 @@ use apt_geometry::{
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use apt_syntax::dialect::DialectName;
 use arelem::{
-    cure::{Remedy, remedies},
+    cure::{Patience, Remedy, remedies},
     error::MotionWarning,
     section2::{Execution, Output, Restart, StartUpRule, State, execute},
     sequence::{CutSequence, PocketPath, ToolPosition},
@@ -193,7 +196,7 @@ impl<'a> Section2<'a> {
 
     fn command(&mut self, command: &MotionCommand, origin: &Origin, source: u32) -> Result<(), Cancelled> {
         self.parameter_record(command, origin.isn, source);
-        let (execution, mut remedies) = if is_costly(command) {
+        let (execution, mut remedies, patience) = if is_costly(command) {
             let computed = {
                 let (state, cancel) = (&self.state, self.cancel);
                 self.memo.get_or_compute(state, command, || compute(state, command, cancel))
@@ -203,11 +206,11 @@ impl<'a> Section2<'a> {
             if matches!(computed.execution.output, Some(Output::Sequence(_) | Output::Pocket(_))) {
                 self.output.motions.push(Motion { origin: origin.clone(), computed: computed.clone() });
             }
-            (computed.execution.clone(), computed.remedies.clone())
+            (computed.execution.clone(), computed.remedies.clone(), computed.patience)
         } else {
-            (execute(&self.state, command, &self.cancel), Vec::new())
+            (execute(&self.state, command, &self.cancel), Vec::new(), Patience::after(0))
         };
-        let earlier = self.earlier(command, &execution, &mut remedies);
+        let earlier = self.earlier(command, &execution, &mut remedies, patience);
         if (self.cancel)() {
             return Err(Cancelled);
         }
@@ -222,9 +225,10 @@ impl<'a> Section2<'a> {
         command: &MotionCommand,
         execution: &Execution,
         remedies: &mut Vec<Remedy>,
+        patience: Patience,
     ) -> Option<Origin> {
         let (failure, before) = (execution.failure.as_ref()?, self.before.as_ref()?);
-        let (memo, cancel) = (self.memo, self.cancel);
+        let (memo, cancel) = (self.memo, &patience.limit(self.cancel));
         let mut carry_out = |state: &State, command: &MotionCommand| {
             if !is_costly(command) {
                 return Some(execute(state, command, &cancel));
@@ -441,18 +445,24 @@ fn is_costly(command: &MotionCommand) -> bool {
 /// Computes and verifies; `None` when cancelled on the way.
 fn compute(state: &State, command: &MotionCommand, cancel: Cancel<'_>) -> Option<Computation> {
     let begin = Instant::now();
-    let execution = execute(state, command, &cancel);
+    let asked = AtomicU32::new(0);
+    let counted = || {
+        asked.fetch_add(1, Ordering::Relaxed);
+        cancel()
+    };
+    let execution = execute(state, command, &counted);
+    let patience = Patience::after(asked.into_inner());
     let evidence = match &execution.output {
         Some(Output::Sequence(sequence)) if !cancel() => Some(verify(sequence, &cancel)),
         Some(Output::Pocket(path)) if !cancel() => Some(verify_pocket(path, &cancel)),
         _ => None,
     };
     let remedies = match &execution.failure {
-        Some(failure) if !cancel() => remedies(state, command, failure, &cancel),
+        Some(failure) if !cancel() => remedies(state, command, failure, &patience.limit(cancel)),
         _ => Vec::new(),
     };
     let seconds = begin.elapsed().as_secs_f64();
-    (!cancel()).then_some(Computation { execution, evidence, remedies, seconds })
+    (!cancel()).then_some(Computation { execution, evidence, remedies, patience, seconds })
 }
 
 fn control(word: &str, code: [u16; 2], numbers: &[f64]) -> ClKind {

@@ -1,10 +1,12 @@
 //! Every failure that suggests a change gets the change that works, and no other.
 
+use std::cell::Cell;
+
 use Relation::{On, Past, TangentToDrive as Tanto, To};
 use Turn::{Forward, Left as GoLft, Right as GoRgt};
 use apt_geometry::motion::{DriveSide, MotionCommand, NamedSurface, PartSide, Relation, StartSurface, Turn};
 
-use super::{Cure, Earlier, Remedy, earlier, remedies};
+use super::{Cure, Earlier, Patience, Remedy, earlier, remedies};
 use crate::{
     error::RoleName,
     section2::{State, execute},
@@ -252,4 +254,25 @@ fn a_start_up_with_several_answers_is_named_and_a_direction_settles_it() {
         p.cutter(&[0.5]).from(nearer.x, nearer.y, nearer.z).run(&command);
         assert!((p.tip() - places[1]).norm() < 0.05, "{:?}", p.tip());
     }
+}
+
+/// Trying the cures of a motion may ask as often as the motion did, and some times more, on every machine.
+#[test]
+fn cures_are_tried_with_a_patience_that_depends_on_the_motion_alone() {
+    let asked = |patience: Patience| {
+        let limit = patience.limit(&|| false);
+        (0..100_000).take_while(|_| !limit()).count()
+    };
+    assert_eq!([0, 50, 5_000].map(|before| asked(Patience::after(before))), [5_000, 5_200, 25_000]);
+    assert!(Patience::after(50).limit(&|| true)());
+    // Which cures are offered is a matter of that: those found by then.
+    let mut p = beside();
+    let state = p.state.clone();
+    let wrong = motion(GoRgt, &line(0.0, 0.0, 1.0, 0.0), &[(To, 1, &line(6.0, 0.0, 6.0, 1.0))]);
+    let failure = p.attempt(&wrong).expect_err("must fail");
+    let within = |questions: u32| {
+        let left = Cell::new(questions);
+        remedies(&state, &wrong, &failure, &|| left.replace(left.get().saturating_sub(1)) == 0).len()
+    };
+    assert_eq!([0, 1, 10_000].map(within), [0, 0, 1]);
 }

@@ -20,6 +20,7 @@ use crate::{
     dense,
     ends::ToldEnd,
     laws::Laws,
+    number,
     search::{Found, Reader},
 };
 
@@ -40,9 +41,12 @@ impl Budget {
     /// Where distances are searched for, which cost as much more.
     const SEARCHED: Self = Self { asks: 60_000, reads: 10_000, asks_of_search: 100_000 };
 
-    /// The budget of a motion, if distances to one of its surfaces are searched for or not.
+    /// The budget of a motion, if distances to one of its surfaces are searched for or not; `APT_BUDGET` times that.
     pub(crate) fn of(searched: bool) -> Self {
-        if searched { Self::SEARCHED } else { Self::COMPUTED }
+        let Self { asks, reads, asks_of_search } = if searched { Self::SEARCHED } else { Self::COMPUTED };
+        let times = number("APT_BUDGET").and_then(|times| u32::try_from(times).ok()).unwrap_or(1);
+        let [asks, reads, asks_of_search] = [asks, reads, asks_of_search].map(|most| most.saturating_mul(times));
+        Self { asks, reads, asks_of_search }
     }
 }
 

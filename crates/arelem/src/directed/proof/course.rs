@@ -271,8 +271,9 @@ impl Course<'_, '_> {
             (bend, is_asked) = (found(&is_of_use), true);
             ledger.note_use(&asked.tip, serves(bend));
         }
-        // Where pieces will do, that takes less than the contacts on a quadric.
-        let by_contacts = !serves(bend) || role.gauge.surface.has_charts();
+        // Where pieces will do, that takes less than the contacts on a quadric, and than those of a disc seen along a surface.
+        let by_contacts = !serves(bend)
+            || role.gauge.surface.has_charts() && !role.gauge.is_seen_along(&asked.tool, &asked.tip);
         let (held, kept) = bend.map_or((false, false), bounded);
         // Where shorter stretches will do, two more feet on the surface cost more than a contact.
         let high = held || self.is_held_from_both(a, b, !serves(bend));
