@@ -298,13 +298,17 @@ fn path(failure: &Failure) -> Text {
             say("APT0642", format!("ahead there is no position {} the surface to stop at", relation(*wanted)))
                 .hint(format!("{there}; the direction may be wrong, or TO and PAST exchanged"))
         }
-        Failure::NotTangent { gap, .. } => say(
-            "APT0643",
-            format!(
-                "the drive and the check surface are not tangent: {} is between them where they are parallel",
-                number(*gap)
-            ),
-        )
+        Failure::NotTangent { gap, .. } => {
+            let parallel = "where the path is parallel to the check surface";
+            let words = if !gap.is_finite() {
+                "ahead the path is nowhere parallel to the check surface, so that the tool cannot stop tangent to it".to_owned()
+            } else if *gap < 0.0 {
+                format!("{parallel} the tool does not touch it, but is {} deep in it", number(-gap))
+            } else {
+                format!("{parallel} the tool does not touch it, but is {} away from it", number(*gap))
+            };
+            say("APT0643", words)
+        }
         .hint("use TO, ON or PAST"),
         Failure::TangentLines { .. } => {
             say("APT0644", "two lines cannot be tangent").hint("use TO, ON or PAST")

@@ -67,10 +67,15 @@ struct Line<'a> {
     limits: [f64; 2],
 }
 
-/// The limits between the ends of a vector: the band less a little room, where the ends themselves leave it.
+/// What the proof that no place of the tool is deeper may leave open at least, as a share of the band.
+const LEAST_OPEN: f64 = 1e-5;
+
+/// The limits between the ends of a vector: the band less a little room, where the ends themselves leave it. A tool that begins at the
+/// very limit, as one beside a plane does where INTOL is zero, is there as far as a proof can tell.
 fn limits(role: &Working, ends: &Extremes, size: f64) -> [f64; 2] {
-    let (room, rounding) = (ROOM * role.band(), ROUNDING * size);
-    [(room - role.inside).min(ends.least) - rounding, (role.outside - room).max(ends.greatest) + rounding]
+    let (room, open, rounding) = (ROOM * role.band(), LEAST_OPEN * role.band(), ROUNDING * size);
+    let lowest = (room - role.inside).min(ends.least - open);
+    [lowest - rounding, (role.outside - room).max(ends.greatest) + rounding]
 }
 
 impl Line<'_> {

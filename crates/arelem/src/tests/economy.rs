@@ -205,7 +205,10 @@ fn maxdp_is_no_bound_between_planes() {
     for part in [ground(), canted] {
         let mut p = Program::new();
         p.run(&MotionCommand::MaximumStep(0.1)).cutter(&[0.5, 0.25]).from(0.0, 2.0, 1.0);
-        p.go(&[(To, &y(0.0)), (To, &part), (On, &x(0.0))]).side(Left).drive(GoLft, &y(0.0), On, &x(105.0)).verified();
+        p.go(&[(To, &y(0.0)), (To, &part), (On, &x(0.0))])
+            .side(Left)
+            .drive(GoLft, &y(0.0), On, &x(105.0))
+            .verified();
         assert_eq!((p.last().points.len(), p.last().minimum), (1, Some(1)));
     }
     let mut p = Program::new();

@@ -4,6 +4,7 @@ mod axis_modes;
 mod bends;
 mod beside_ends;
 mod beyond_ends;
+mod blends;
 mod closed_paths;
 mod corners;
 mod corpus_plane;

@@ -45,7 +45,8 @@ impl Budget {
     pub(crate) fn of(searched: bool) -> Self {
         let Self { asks, reads, asks_of_search } = if searched { Self::SEARCHED } else { Self::COMPUTED };
         let times = number("APT_BUDGET").and_then(|times| u32::try_from(times).ok()).unwrap_or(1);
-        let [asks, reads, asks_of_search] = [asks, reads, asks_of_search].map(|most| most.saturating_mul(times));
+        let [asks, reads, asks_of_search] =
+            [asks, reads, asks_of_search].map(|most| most.saturating_mul(times));
         Self { asks, reads, asks_of_search }
     }
 }

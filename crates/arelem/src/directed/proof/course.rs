@@ -8,7 +8,8 @@ use std::borrow::Cow;
 use apt_geometry::{Vec3, surface::Bend};
 
 use super::{
-    ENOUGH, Extremes, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About, tangents_meet,
+    ENOUGH, Extremes, LEAST_OPEN, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About,
+    tangents_meet,
 };
 use crate::{
     bound,
@@ -39,8 +40,6 @@ const BISECTIONS: usize = 20;
 const MAX_UNBOUNDED: usize = 12;
 /// Share of what is left of the band below a sample that the proof of its depth may leave open.
 const OPEN: f64 = 0.1;
-/// What it may leave open at least, as a share of the band.
-const LEAST_OPEN: f64 = 1e-5;
 /// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
 const MOST_PIECES: f64 = 8.0;
 /// Cuts of stretches on one vector after which the parts of the surface are looked at: a vector where nothing is steady takes some
