@@ -150,7 +150,8 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             MotionFailure::NeverMet { check, .. }
             | MotionFailure::NoneAhead { check, .. }
             | MotionFailure::NotTangent { check, .. }
-            | MotionFailure::TangentLines { check },
+            | MotionFailure::TangentLines { check }
+            | MotionFailure::ParallelThroughout { check },
             MotionCommand::Drive { turn, checks, .. },
         ) => stops(*check, *turn, checks.get(*check).map(|check| (check.relation, check.occurrence))),
         (MotionFailure::TooManyPoints { limit, .. }, MotionCommand::Drive { turn, .. }) => {

@@ -326,6 +326,12 @@ pub enum MotionFailure {
         /// Which check surface.
         check: usize,
     },
+    /// TANTO: the path runs along the check surface from its beginning to its end (720).
+    #[error("the path runs along the check surface throughout")]
+    ParallelThroughout {
+        /// Which check surface.
+        check: usize,
+    },
     /// The tool is larger than the circle it runs in (705).
     #[error("tool radius {tool} in a circle of radius {circle}")]
     ToolTooLarge {
@@ -413,7 +419,7 @@ impl MotionFailure {
             Self::NoPositionAlong { .. } => 724,
             Self::ParallelPlanes { .. } => 602,
             Self::NotTangent { .. } => 721,
-            Self::TangentLines { .. } => 720,
+            Self::TangentLines { .. } | Self::ParallelThroughout { .. } => 720,
             Self::ToolTooLarge { .. } => 705,
             Self::TooManyPoints { .. } => 803,
             Self::IterationLimit { iteration, .. } => match iteration {

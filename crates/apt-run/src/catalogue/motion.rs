@@ -313,6 +313,11 @@ fn path(failure: &Failure) -> Text {
         Failure::TangentLines { .. } => {
             say("APT0644", "two lines cannot be tangent").hint("use TO, ON or PAST")
         }
+        Failure::ParallelThroughout { .. } => say(
+            "APT0652",
+            "the path runs along the check surface from its beginning to its end, so that the tangency has no place on it",
+        )
+        .hint("use ON with a line or plane across the path"),
         Failure::ToolTooLarge { tool, circle } => say(
             "APT0645",
             format!(

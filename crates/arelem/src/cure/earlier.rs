@@ -33,6 +33,7 @@ pub fn earlier(
         MotionFailure::NeverMet { .. }
             | MotionFailure::NoneAhead { .. }
             | MotionFailure::NotTangent { .. }
+            | MotionFailure::ParallelThroughout { .. }
             | MotionFailure::DirectionUndetermined { .. }
             | MotionFailure::OutOfToleranceAtStart { .. }
             | MotionFailure::NoAdmissibleVector { .. }

@@ -2,6 +2,7 @@
 //! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
 
 mod finish;
+mod parallel_way;
 mod scout;
 mod step;
 mod straight;
@@ -94,6 +95,25 @@ fn tangent(part: &Contact, drive: &Contact, sense: &Vec3) -> Vec3 {
     }
 }
 
+/// The first stop on a vector, by crossing a check surface or by a tangency; without one the vector counts as travelled.
+fn first_stop<'a>(
+    (watcher, tangency): (&mut Watcher<'a>, &mut tangency::Watch<'a>),
+    sweep: &Sweep<'_>,
+    [from, to]: [&Vertex; 2],
+) -> Result<Option<Event>, MotionFailure> {
+    if !tangency.has_any() {
+        return Ok(watcher.scan(sweep));
+    }
+    let before = (watcher.clone(), tangency.clone());
+    let found = [watcher.scan(sweep), tangency.scan(from, to)?];
+    let first = found.into_iter().flatten().min_by(|a, b| a.x.total_cmp(&b.x));
+    if first.is_some() {
+        // The vector may be tried again shorter: what either saw on it does not count then.
+        (*watcher, *tangency) = before;
+    }
+    Ok(first)
+}
+
 /// No last vector leads from a place to the stop.
 fn without_last(tip: Vec3, limit: u32) -> MotionFailure {
     MotionFailure::IterationLimit { iteration: Iteration::FinalVector, limit, tip }
@@ -138,7 +158,7 @@ pub(super) fn run(
         checks,
         stepper: Stepper::new(prepared, state.maximum_step, cancel),
         watcher: Watcher::new(prepared, checks),
-        tangency: tangency::Watch::new(prepared, checks),
+        tangency: tangency::Watch::new(prepared, checks, cancel),
         points: Vec::new(),
         look: FIRST_LOOK,
         ahead: 0.0,
@@ -320,10 +340,7 @@ impl<'a> March<'a> {
 
     /// The first stop on a vector.
     fn scan(&mut self, here: &Vertex, next: &Vertex) -> Result<Option<Event>, MotionFailure> {
-        match self.watcher.scan(&here.sweep(self.prepared, next)) {
-            Some(event) => Ok(Some(event)),
-            None => self.tangency.scan(here, next),
-        }
+        first_stop((&mut self.watcher, &mut self.tangency), &here.sweep(self.prepared, next), [here, next])
     }
 
     /// Moves the last vertex back on the vector that leads to it, if the next one then goes farther. Both vectors are to be
@@ -527,6 +544,6 @@ impl<'a> March<'a> {
                 course,
             };
         }
-        MotionFailure::NotTangent { check: self.tangency.check, gap: self.tangency.nearest }
+        self.tangency.failure()
     }
 }

@@ -4,24 +4,34 @@
 use std::sync::Arc;
 
 use DriveSide::{Left, Right};
-use Relation::{On, To};
-use Turn::Forward;
+use Relation::{On, TangentToDrive as Tanto, TangentToPart as Pstan, To};
+use Turn::{Back, Forward};
 use apt_geometry::canonical::{Interval, TabulatedCylinder};
 
 use super::*;
+use crate::error::MotionFailure;
 
 /// Where the tabulated cylinder ends, and its last extension.
 const END: [f64; 2] = [4.0, 1.5];
 
 /// A tabulated cylinder upright that leaves the x axis at the origin, rises in one cubic and is level again at its end, with extensions.
 fn blend() -> Geometry {
+    blend_along([Vec3::x(), Vec3::y(), Vec3::z()], 0.0)
+}
+
+/// The same that rises from a height.
+fn ramp(from: f64) -> Geometry {
+    blend_along([Vec3::x(), Vec3::z(), -Vec3::y()], from)
+}
+
+fn blend_along(axes: [Vec3; 3], base: f64) -> Geometry {
     let [length, lean] = [END[0].hypot(END[1]), END[1].atan2(END[0])];
     // Both slopes over the chord are those of a level line.
     let slope = -lean.tan();
     let (a, b) = (2.0 * slope / (length * length), -3.0 * slope / length);
     let interval = |u: f64, v: f64, a: f64, b: f64, length: f64| Interval {
         u,
-        v,
+        v: base + v,
         a,
         b,
         length,
@@ -34,10 +44,10 @@ fn blend() -> Geometry {
         interval(END[0], END[1], 0.0, 0.0, 10.0),
     ];
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
-        axes: [Vec3::x(), Vec3::y(), Vec3::z()],
+        axes,
         kind: 0.0,
         intervals,
-        last: [END[0] + 10.0, END[1]],
+        last: [END[0] + 10.0, base + END[1]],
     }))
 }
 
@@ -66,5 +76,76 @@ fn a_path_goes_on_from_the_limit_of_a_band_along_what_is_tangent() {
             // The first vector begins at a limit that another one would not have led to.
             assert!(count as f64 <= 1.02 * f64::from(least) + 3.0, "{count} to {stop}, {least} at least");
         }
+    }
+}
+
+/// A line and the extension of the tabulated cylinder in it are parallel all along: from the one onto the other the motion stops where they
+/// part, and from the other onto the one where they come together.
+#[test]
+fn a_motion_stops_where_a_curve_leaves_its_tangent_or_comes_into_it() {
+    for (band, above) in BANDS.into_iter().flat_map(|band| [(band, true), (band, false)]) {
+        let off = if above { 0.125 } else { -0.125 };
+        let mut p = beside(band, above);
+        p.drive(Forward, &axis(), Tanto, &blend()).ends(0.0, off, 0.0, 1e-3).verified();
+        p.drive(Forward, &blend(), Tanto, &upper_line()).ends(4.0, 1.5 + off, 0.0, 1e-3).verified();
+        assert!(p.last().points.len() > 1);
+        p.drive(Forward, &upper_line(), On, &x(6.0)).verified();
+        p.drive(Back, &upper_line(), Tanto, &blend()).ends(4.0, 1.5 + off, 0.0, 1e-3).verified();
+        p.drive(Forward, &blend(), Tanto, &axis()).ends(0.0, off, 0.0, 1e-3).verified();
+    }
+}
+
+/// The line in which the tabulated cylinder ends.
+fn upper_line() -> Geometry {
+    line(0.0, END[1], 5.0, END[1])
+}
+
+/// On its way beside the line nothing tells where the tangency is.
+#[test]
+fn a_path_that_runs_along_the_check_surface_for_ever_is_told() {
+    let mut p = beside(BANDS[0], true);
+    let failure = p.attempt(&motion(Back, &axis(), &[(Tanto, 1, &blend())])).expect_err("no tangency");
+    assert!(matches!(failure, MotionFailure::ParallelThroughout { check: 0 }), "{failure:?}");
+}
+
+/// As long as the slope of a curve at its end has a few decimals, it is tangent to what it was made for.
+#[test]
+fn a_curve_whose_slope_is_rounded_is_tangent_still() {
+    for lean in [1e-5_f64, -1e-5] {
+        let along = |x: f64| line(x, 0.0, x + lean.cos(), lean.sin());
+        let mut p = Program::new();
+        p.tolerance(0.0, 5e-4).cutter(&[0.25]).from(-3.0, 2.0, 0.0);
+        p.go(&[(To, &along(0.0)), (To, &ground()), (On, &x(-2.0))]).side(Left).indirv(1.0, 0.0, 0.0);
+        p.drive(Forward, &along(0.0), Tanto, &blend()).ends(0.0, 0.125, 0.0, 1e-3).verified();
+        p.drive(Forward, &blend(), On, &x(1.0)).verified();
+    }
+}
+
+/// Where another check surface is met before the place at which a way parallel to the first is a tangency, that stops the motion.
+#[test]
+fn what_is_met_before_the_end_of_the_way_stops_the_motion() {
+    for (stop, check) in [(-1.0, 1), (1.0, 0)] {
+        let mut p = beside(BANDS[2], true);
+        p.run(&motion(Forward, &axis(), &[(Tanto, 1, &blend()), (On, 1, &x(stop))]));
+        assert_eq!(p.verified().last().stop.as_ref().map(|stop| stop.index), Some(check));
+    }
+}
+
+/// The same with the part surface: from the ground onto a ramp, and from that onto a plane above. A flat bottom meets the ramp with its rim,
+/// and is on the plane before all of it is.
+#[test]
+fn a_motion_stops_where_a_ramp_leaves_the_ground_and_comes_into_a_plane() {
+    let cutters = [(&[0.5, 0.25][..], 0.0), (&[0.5], 0.25), (&[0.5, 0.1], 0.15)];
+    for ((cutter, rim), base) in
+        cutters.into_iter().flat_map(|cutter| [0.0, 0.1, 0.3].map(|base| (cutter, base)))
+    {
+        let mut p = Program::new();
+        p.tolerance(5e-4, 5e-4).cutter(cutter).from(-3.0, -2.0, 1.0);
+        p.go(&[(To, &axis()), (To, &level(base)), (On, &x(-2.0))]).side(Right).indirv(1.0, 0.0, 0.0);
+        p.drive(Forward, &axis(), Pstan, &ramp(base)).ends(-rim, -0.25, base, 2e-3).verified();
+        p.run(&MotionCommand::PartSurface(named(&ramp(base))));
+        let top = base + END[1];
+        p.drive(Forward, &axis(), Pstan, &level(top)).ends(4.0 - rim, -0.25, top, 2e-3).verified();
+        assert!(p.last().points.len() > 1);
     }
 }

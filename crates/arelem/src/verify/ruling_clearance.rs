@@ -35,6 +35,8 @@ const PARALLEL: f64 = 1e-13;
 const UPRIGHT: f64 = 1e-9;
 /// Distance, relative to the tool, or to the surface for a point, from which on the difference of two places is a direction.
 const SURE_DISTANCE: f64 = 1e-3;
+/// The same relative to how exactly both places are known, where they differ across an edge of the surface.
+const SURE_DIRECTION: f64 = 1e3;
 /// Parameter next to the end of a piece at which the surface may have an edge.
 const JOINT: f64 = 1e-7;
 /// Azimuths at which an edge of the tool is looked at before its deepest place is closed in.
@@ -314,11 +316,12 @@ impl<'a> Bodies<'a> {
     }
 
     /// The direction that leads the tool away. Next to a sharp edge of the tool the difference of two places says little;
-    /// the surface's own normal does, but where the surface has an edge.
+    /// the surface's own normal does, but where the surface has an edge; where tool and edge all but touch, that of either face.
     fn away(&self, touch: &Touch) -> Option<Vec3> {
         let normal = self.surface.natural(touch)? * self.side;
         let far = touch.value.abs() > SURE_DISTANCE * self.reach;
-        Some(if far || self.surface.may_have_edge(touch) { -touch.outward } else { normal })
+        let is_told = touch.value.abs() > SURE_DIRECTION * self.resolution;
+        Some(if far || is_told && self.surface.may_have_edge(touch) { -touch.outward } else { normal })
     }
 
     /// Whether the tool is on its side of the surface where it is nearest.

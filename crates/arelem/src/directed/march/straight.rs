@@ -2,7 +2,7 @@
 
 use apt_geometry::motion::CheckSurface;
 
-use super::{Vertex, finish, tangency};
+use super::{Vertex, finish, first_stop, tangency};
 use crate::{
     bound::Bent,
     directed::{Path, Prepared, is_tangent, stop::Watcher},
@@ -19,7 +19,7 @@ pub(super) fn run(
 ) -> Result<Path, MotionFailure> {
     let here = Vertex::at(prepared, prepared.tip, &prepared.tangent)?;
     let mut watcher = Watcher::new(prepared, checks).thorough();
-    let mut tangency = tangency::Watch::new(prepared, checks);
+    let mut tangency = tangency::Watch::new(prepared, checks, cancel);
     let mut from = here;
     let mut length = prepared.size;
     let mut travelled = 0.0;
@@ -30,11 +30,7 @@ pub(super) fn run(
         }
         let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent)?;
         let sweep = from.sweep(prepared, &to);
-        let event = match watcher.scan(&sweep) {
-            Some(event) => Some(event),
-            None => tangency.scan(&from, &to)?,
-        };
-        if let Some(event) = event {
+        if let Some(event) = first_stop((&mut watcher, &mut tangency), &sweep, [&from, &to])? {
             let towards = finish::Towards { event: &event, tangent: &here.tangent, held: None };
             let end = finish::end(prepared, checks, (&watcher, &sweep), &towards)?;
             let bent = Bent::none(&prepared.tip);
@@ -46,7 +42,7 @@ pub(super) fn run(
     }
     let (nearest, at, check) = watcher.nearest;
     if checks.iter().all(|c| is_tangent(c.relation)) {
-        return Err(MotionFailure::NotTangent { check: tangency.check, gap: tangency.nearest });
+        return Err(tangency.failure());
     }
     Err(if watcher.met > 0 {
         MotionFailure::NoneAhead { check, relation: checks[check].relation, found: watcher.met }

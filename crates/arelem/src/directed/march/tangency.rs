@@ -5,7 +5,11 @@ use apt_geometry::{
     motion::{CheckSurface, Relation},
 };
 
-use super::{Vertex, surface_end::is_at_end};
+use super::{
+    Vertex,
+    parallel_way::{ParallelWay, Reach},
+    surface_end::is_at_end,
+};
 use crate::{
     clearance::{Contact, Gauge},
     directed::{
@@ -57,6 +61,8 @@ enum Slope {
     Changes { is_positive: bool },
     /// It comes to nothing and goes on with the same sign: the path goes through the surface there.
     Touches,
+    /// It stays what it is, as far as it is looked at.
+    Stays,
 }
 
 /// A check surface seen from a place on a cut vector.
@@ -92,16 +98,45 @@ impl Reading {
 /// What the slope of a check surface's clearance does on the way to where the path is parallel to the surface.
 #[derive(Clone, Default)]
 struct Approach {
+    /// Whether the path was looked at already.
+    begun: bool,
     /// Whether the clearance grew where it last changed.
     grew: Option<bool>,
     /// Where the slope fell to what it is, or to nothing: the place before.
     steeper: Option<Reading>,
+    /// The way parallel to the surface that the path is on.
+    on_way: Option<OnWay>,
+}
+
+/// A straight way on which the path is parallel to a check surface.
+#[derive(Clone)]
+struct OnWay {
+    slope: f64,
+    /// Where it is a tangency, on this side of the check surface, as long as that lies ahead.
+    stop: Option<(Vertex, f64)>,
+}
+
+impl OnWay {
+    /// The tangency on it, if that lies before a distance on a cut vector.
+    fn stop_before(&mut self, [from, to]: [&Vertex; 2], x: f64) -> Option<(Vertex, f64)> {
+        let along = (to.tip - from.tip).try_normalize(0.0)?;
+        self.stop.take_if(|(vertex, _)| (vertex.tip - from.tip).dot(&along) <= x)
+    }
+
+    /// Whether a place is on it.
+    fn has(&self, place: &Reading) -> bool {
+        (place.slope - self.slope).abs() <= PARALLEL
+    }
 }
 
 impl Approach {
     /// The same on the next cut vector.
     fn onto(&self, first: &Reading) -> Self {
-        Self { grew: first.grows().or(self.grew), steeper: self.steeper.as_ref().map(|_| first.clone()) }
+        Self {
+            grew: first.grows().or(self.grew),
+            steeper: self.steeper.as_ref().map(|_| first.clone()),
+            ..self.clone()
+        }
     }
 
     /// Whether the path is parallel to the surface before the next place, or may be: since where, and how.
@@ -132,6 +167,7 @@ impl Approach {
 pub(super) struct Watch<'a> {
     prepared: &'a Prepared,
     checks: &'a [CheckSurface],
+    cancel: &'a dyn Fn() -> bool,
     counts: Vec<u32>,
     approaches: Vec<Approach>,
     /// Tangencies met so far.
@@ -139,18 +175,37 @@ pub(super) struct Watch<'a> {
     /// Gap at the nearest parallel position that was not a tangency, and of which check surface.
     pub(super) nearest: f64,
     pub(super) check: usize,
+    /// The check surface along which the path leads from its beginning, touching it, for ever.
+    along: Option<usize>,
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
+    pub(super) fn new(
+        prepared: &'a Prepared,
+        checks: &'a [CheckSurface],
+        cancel: &'a dyn Fn() -> bool,
+    ) -> Self {
         let (counts, approaches) = (vec![0; checks.len()], vec![Approach::default(); checks.len()]);
-        Self { prepared, checks, counts, approaches, met: 0, nearest: f64::INFINITY, check: 0 }
+        let (nearest, check, along) = (f64::INFINITY, 0, None);
+        Self { prepared, checks, cancel, counts, approaches, met: 0, nearest, check, along }
     }
 
-    /// The first tangency on a cut vector.
+    /// Why there is no tangency.
+    pub(super) fn failure(&self) -> MotionFailure {
+        match self.along {
+            Some(check) => MotionFailure::ParallelThroughout { check },
+            None => MotionFailure::NotTangent { check: self.check, gap: self.nearest },
+        }
+    }
+
+    /// Whether a check surface stops at a tangency.
+    pub(super) fn has_any(&self) -> bool {
+        self.checks.iter().any(|check| is_tangent(check.relation))
+    }
+
+    /// The first tangency on a cut vector. With one, or without, the vector counts as travelled.
     pub(super) fn scan(&mut self, from: &Vertex, to: &Vertex) -> Result<Option<Event>, MotionFailure> {
         let mut first: Option<Event> = None;
-        let before = (self.counts.clone(), self.approaches.clone(), self.met);
         for index in 0..self.checks.len() {
             if !is_tangent(self.checks[index].relation) {
                 continue;
@@ -161,10 +216,6 @@ impl<'a> Watch<'a> {
                     first = Some(Event { check: index, tip: vertex.tip, x, side, grazed: false });
                 }
             }
-        }
-        if first.is_some() {
-            // The vector may be tried again shorter: what it showed does not count then.
-            (self.counts, self.approaches, self.met) = before;
         }
         Ok(first)
     }
@@ -181,38 +232,106 @@ impl<'a> Watch<'a> {
         let least = (length / PIECES).max(LEAST_PIECE * self.prepared.size);
         let reach =
             self.prepared.checks[index].band() + self.prepared.part.band() + self.prepared.drive.band();
-        let mut here = self.read(index, [from, to], 0.0)?;
+        let vector = [from, to];
+        let mut here = self.read(index, vector, 0.0)?;
         let mut approach = self.approaches[index].onto(&here);
+        if !approach.begun {
+            (approach.begun, approach.on_way) = (true, self.way(index, &here, true)?);
+        }
         while here.x < length {
+            if (self.cancel)() {
+                return Err(MotionFailure::Cancelled);
+            }
             let mut step = (here.gap.abs() - reach).max(least);
-            let mut next = self.read(index, [from, to], (here.x + step).min(length))?;
+            let mut next = self.read(index, vector, (here.x + step).min(length))?;
             while step > reach && here.jumps_before(&next, reach) {
                 step *= 0.5;
-                next = self.read(index, [from, to], (here.x + step).min(length))?;
+                next = self.read(index, vector, (here.x + step).min(length))?;
             }
-            if let Some((start, slope)) = approach.parallel(&here, &next)
-                && (slope != Slope::Touches || here.gap.abs() <= reach + step)
-            {
-                let stretch = Stretch { index, from: &start.vertex, to: &next.vertex, slope };
-                match self.touching(&stretch)? {
-                    Gap::Closed(vertex, side) => {
-                        self.counts[index] += 1;
-                        self.met += 1;
-                        if self.counts[index] >= self.checks[index].occurrence.max(1) {
-                            return Ok(Some((*vertex, side)));
-                        }
-                    }
-                    Gap::Open(gap) if slope != Slope::Touches && gap.abs() < self.nearest.abs() => {
-                        (self.nearest, self.check) = (gap, index);
-                    }
-                    Gap::Open(_) => {}
+            if approach.on_way.is_none() {
+                approach.on_way = self.way(index, &next, false)?;
+            }
+            let tangency = match &mut approach.on_way {
+                Some(way) => way.stop_before(vector, next.x),
+                None => self.touch_before(index, &approach, [&here, &next], reach + step)?,
+            };
+            if let Some(tangency) = tangency {
+                self.counts[index] += 1;
+                self.met += 1;
+                if self.counts[index] >= self.checks[index].occurrence.max(1) {
+                    return Ok(Some(tangency));
                 }
             }
             let last = std::mem::replace(&mut here, next);
-            approach.go_on(last, &here);
+            match &approach.on_way {
+                Some(way) if way.has(&here) => {}
+                Some(_) => approach = Approach { begun: true, grew: here.grows(), ..Approach::default() },
+                None => approach.go_on(last, &here),
+            }
         }
         self.approaches[index] = approach;
         Ok(None)
+    }
+
+    /// The way parallel to a check surface that leads on from a place, if there is one, with its tangency: in its middle, or where
+    /// the motion begins on it at its end, and where it has no end at its beginning.
+    fn way(&mut self, index: usize, place: &Reading, is_first: bool) -> Result<Option<OnWay>, MotionFailure> {
+        let check = &self.prepared.checks[index];
+        let Some(way) = ParallelWay::from(self.prepared, check, (&place.vertex, place.slope), self.cancel)?
+        else {
+            return Ok(None);
+        };
+        let Reach { back, ahead } = way.reach()?;
+        let back = if is_first { None } else { back };
+        let place = match (back, ahead) {
+            (Some(back), Some(ahead)) => 0.5 * (ahead - back),
+            (None, Some(ahead)) if way.is_long(ahead) => ahead,
+            (Some(back), None) => -back,
+            (None, None) => 0.0,
+            (None, Some(_)) => return Ok(None),
+        };
+        let vertex = way.at(place)?;
+        let stretch = Stretch { index, from: &vertex, to: &vertex, slope: Slope::Stays };
+        let stop = match self.touching(&stretch)? {
+            Gap::Closed(..) if back.or(ahead).is_none() => {
+                self.along = Some(index);
+                None
+            }
+            Gap::Closed(vertex, side) => Some((*vertex, side)),
+            Gap::Open(gap) => {
+                self.note_gap(index, gap);
+                None
+            }
+        };
+        Ok(Some(OnWay { slope: way.slope(), stop }))
+    }
+
+    /// The tangency before the next place on a cut vector.
+    fn touch_before(
+        &mut self,
+        index: usize,
+        approach: &Approach,
+        [here, next]: [&Reading; 2],
+        near: f64,
+    ) -> Result<Option<(Vertex, f64)>, MotionFailure> {
+        let Some((start, slope)) = approach.parallel(here, next) else { return Ok(None) };
+        let touches = slope == Slope::Touches;
+        if touches && here.gap.abs() > near {
+            return Ok(None);
+        }
+        let stretch = Stretch { index, from: &start.vertex, to: &next.vertex, slope };
+        match self.touching(&stretch)? {
+            Gap::Closed(vertex, side) => return Ok(Some((*vertex, side))),
+            Gap::Open(gap) if !touches => self.note_gap(index, gap),
+            Gap::Open(_) => {}
+        }
+        Ok(None)
+    }
+
+    fn note_gap(&mut self, index: usize, gap: f64) {
+        if gap.abs() < self.nearest.abs() {
+            (self.nearest, self.check) = (gap, index);
+        }
     }
 
     /// The check surface at a distance from the start of a cut vector.
@@ -351,6 +470,7 @@ impl<'a> Watch<'a> {
             Slope::Touches => {
                 graze::least([0.0, 1.0], &|x| Some(slope_at(x).ok()?.abs())).map_or(0.5, |(place, _)| place)
             }
+            Slope::Stays => return at(0.0),
         };
         // A flat bottom may be tangent to a surface all along a stretch of the path: then in the middle of it.
         let is_parallel = |x: f64| Ok(slope_at(x)?.abs() <= PARALLEL);
@@ -383,7 +503,11 @@ fn bisected(
 }
 
 /// Contact with the check surface on the side where the tool touches it more nearly.
-fn nearer(prepared: &Prepared, check: &Working, tip: &Vec3) -> Result<(Contact, f64), MotionFailure> {
+pub(super) fn nearer(
+    prepared: &Prepared,
+    check: &Working,
+    tip: &Vec3,
+) -> Result<(Contact, f64), MotionFailure> {
     let posture = prepared.attitude.posture(tip)?;
     let mut gauge = check.gauge.clone();
     gauge.side = 1.0;

@@ -324,3 +324,18 @@ fn a_broken_frame_or_an_empty_curve_is_an_error() {
         assert!(matches!(verify(&broken, &|| false), Err(VerifyError::Degenerate { .. })));
     }
 }
+
+/// Where the rim of a flat tool all but touches the ruling between two pieces, which are tangent there, the difference of both places tells no
+/// direction.
+#[test]
+fn a_rim_at_a_joint_stands_away_from_the_surface() {
+    let ramp = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [2.0, 0.5, 0.6], [3.0, 1.2, 0.5], [4.0, 1.5, 0.0]];
+    let geometry = tabulated(frame([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]), &ramp);
+    for (x, z) in
+        [-1e-10, -1e-12, 0.0, 3e-12, 1e-10].into_iter().flat_map(|x| [-1e-11, 1e-12, 1e-11].map(|z| (x, z)))
+    {
+        let tip = [3.75 + x, 0.25, 1.5 + z];
+        let (value, normal, _) = clearance(&cutter(&[0.5, 0.0]), &geometry, 1.0, tip, [0.0, 0.0, 1.0]);
+        assert!(value.abs() < 1e-9 && normal.z > 1.0 - 1e-6, "{tip:?}: {value} {normal:?}");
+    }
+}
