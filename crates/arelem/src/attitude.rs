@@ -126,6 +126,12 @@ impl Posture<'_> {
         self.with_turning(gauge, tip, gauge.contact_passing(&self.tool, tip))
     }
 
+    /// The contact where the last one leads, and whether it is known to be the nearest.
+    pub(crate) fn contact_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
+        let (contact, is_nearest) = gauge.contact_followed(&self.tool, tip);
+        (self.with_turning(gauge, tip, contact), is_nearest)
+    }
+
     fn with_turning(&self, gauge: &Gauge, tip: &Vec3, mut contact: Contact) -> Contact {
         if let Some(rate) = &self.rate
             && !gauge.on

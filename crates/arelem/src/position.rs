@@ -1,6 +1,8 @@
 //! Positioning on one, two or three surfaces (CENTR, CENTR2, GAUSS): Newton's method on the clearances with their
 //! analytic gradients, taking the shortest correction when there are fewer than three surfaces.
 
+use std::cell::Cell;
+
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
@@ -67,17 +69,33 @@ pub(crate) struct Unsolved {
     pub(crate) iterations: u32,
 }
 
+/// How contacts are found on the way to a position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Manner {
+    /// Each is the nearest.
+    Proven,
+    /// Where the last one leads: another may be nearer.
+    Followed,
+}
+
 #[derive(Clone, Copy)]
 struct Rows {
     residual: [f64; 3],
     normal: [Vec3; 3],
     contacts: [Option<Contact>; 3],
     count: usize,
+    /// Whether every contact that is to be the nearest is known to be it.
+    is_proven: bool,
 }
 
 impl Rows {
-    const NONE: Self =
-        Self { residual: [0.0; 3], normal: [Vec3::new(0.0, 0.0, 0.0); 3], contacts: [None; 3], count: 0 };
+    const NONE: Self = Self {
+        residual: [0.0; 3],
+        normal: [Vec3::new(0.0, 0.0, 0.0); 3],
+        contacts: [None; 3],
+        count: 0,
+        is_proven: true,
+    };
 
     fn greatest(&self) -> (f64, usize) {
         let mut best = (0.0, 0);
@@ -124,40 +142,109 @@ pub(crate) struct Effort {
 }
 
 /// As [`solve`] with so much effort; it is given up where it comes to a place that is in vain.
+///
+/// Corrections are made with the contacts where the last ones lead. That they are the nearest is proven where these have led, and only if
+/// that is wrong it is proven on the way, too.
 pub(crate) fn solve_unless(
     attitude: &Attitude,
     conditions: &[Condition<'_>],
     start: &Vec3,
-    Effort { corrections, halvings }: Effort,
+    effort: Effort,
     is_in_vain: &dyn Fn(&Vec3) -> bool,
 ) -> Result<Solution, Unsolved> {
-    let mut tip = *start;
-    let mut rows = evaluate(attitude, conditions, &tip);
-    for iteration in 0..corrections {
-        let (worst, row) = rows.greatest();
-        let scale = size(attitude.tool(), &tip);
-        if worst <= RESOLUTION * scale {
-            return Ok(Solution { tip, corrections: iteration, contacts: rows.contacts });
+    let search = Search { attitude, conditions, effort, is_in_vain, is_proven: Cell::new(true) };
+    let (found, is_proven) = search.newton(start, Manner::Followed);
+    if is_proven {
+        return found;
+    }
+    match found {
+        Ok(Solution { tip, corrections, .. }) => {
+            if let (Ok(proven), _) = search.newton(&tip, Manner::Proven) {
+                return Ok(Solution { corrections: corrections + proven.corrections, ..proven });
+            }
         }
-        if is_in_vain(&tip) {
-            return Err(Unsolved { residual: worst, row, tip, iterations: iteration });
-        }
-        let step = correction(&rows);
-        let Some((next, next_rows)) = improve(attitude, conditions, (&tip, &rows), &step, halvings) else {
-            return if worst <= ACCEPTABLE * scale {
-                Ok(Solution { tip, corrections: iteration, contacts: rows.contacts })
-            } else {
-                Err(Unsolved { residual: worst, row, tip, iterations: iteration + 1 })
+        // Where the nearest contacts are those that led there they would lead there, too.
+        Err(unsolved) if search.is_known_at(&unsolved) => return found,
+        Err(_) => {}
+    }
+    search.newton(start, Manner::Proven).0
+}
+
+/// A search for a position.
+struct Search<'a> {
+    attitude: &'a Attitude,
+    conditions: &'a [Condition<'a>],
+    effort: Effort,
+    is_in_vain: &'a dyn Fn(&Vec3) -> bool,
+    /// Whether all contacts so far were known to be the nearest.
+    is_proven: Cell<bool>,
+}
+
+impl Search<'_> {
+    /// What Newton's method finds, and whether contacts that need not be the nearest have no part in it.
+    fn newton(&self, start: &Vec3, manner: Manner) -> (Result<Solution, Unsolved>, bool) {
+        let Self { attitude, effort: Effort { corrections, halvings }, is_in_vain, .. } = *self;
+        let unsolved = |unsolved: Unsolved| (Err(unsolved), manner == Manner::Proven || self.is_proven.get());
+        let mut tip = *start;
+        let mut rows = self.evaluate(&tip, manner);
+        for iteration in 0..corrections {
+            let (worst, row) = rows.greatest();
+            let scale = size(attitude.tool(), &tip);
+            let solution = Solution { tip, corrections: iteration, contacts: rows.contacts };
+            if worst <= RESOLUTION * scale {
+                // What was on the way does not matter where the end is proven.
+                return (Ok(solution), rows.is_proven);
+            }
+            if is_in_vain(&tip) {
+                return unsolved(Unsolved { residual: worst, row, tip, iterations: iteration });
+            }
+            let step = correction(&rows);
+            let Some((next, next_rows)) = self.improve((&tip, &rows), &step, (halvings, manner)) else {
+                if worst <= ACCEPTABLE * scale {
+                    return (Ok(solution), rows.is_proven);
+                }
+                return unsolved(Unsolved { residual: worst, row, tip, iterations: iteration + 1 });
             };
-        };
-        tip = next;
-        rows = next_rows;
+            (tip, rows) = (next, next_rows);
+        }
+        let (residual, row) = rows.greatest();
+        if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
+            return (Ok(Solution { tip, corrections, contacts: rows.contacts }), rows.is_proven);
+        }
+        unsolved(Unsolved { residual, row, tip, iterations: corrections })
     }
-    let (residual, row) = rows.greatest();
-    if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
-        return Ok(Solution { tip, corrections, contacts: rows.contacts });
+
+    /// The first of the step and its halves that reduces the greatest residual.
+    fn improve(
+        &self,
+        (tip, rows): (&Vec3, &Rows),
+        step: &Vec3,
+        (halvings, manner): (u32, Manner),
+    ) -> Option<(Vec3, Rows)> {
+        let (worst, _) = rows.greatest();
+        let mut share = 1.0;
+        for _ in 0..=halvings {
+            let next = tip + step * share;
+            let next_rows = self.evaluate(&next, manner);
+            if next_rows.greatest().0 < worst {
+                return Some((next, next_rows));
+            }
+            share *= 0.5;
+        }
+        None
     }
-    Err(Unsolved { residual, row, tip, iterations: corrections })
+
+    /// Whether what is left where a search ended is left of the nearest contacts there.
+    fn is_known_at(&self, &Unsolved { residual, ref tip, .. }: &Unsolved) -> bool {
+        let nearest = self.evaluate(tip, Manner::Proven).greatest().0;
+        (nearest - residual).abs() <= ACCEPTABLE * size(self.attitude.tool(), tip)
+    }
+
+    fn evaluate(&self, tip: &Vec3, manner: Manner) -> Rows {
+        let rows = evaluate(self.attitude, self.conditions, tip, manner);
+        self.is_proven.set(self.is_proven.get() && rows.is_proven);
+        rows
+    }
 }
 
 /// Where a number of corrections lead, each made in full whether it helps or not; the last place that has coordinates.
@@ -169,7 +256,7 @@ pub(crate) fn corrected(
 ) -> Vec3 {
     let mut tip = *start;
     for _ in 0..corrections {
-        let next = tip + correction(&evaluate(attitude, conditions, &tip));
+        let next = tip + correction(&evaluate(attitude, conditions, &tip, Manner::Proven));
         if !next.iter().all(|x| x.is_finite()) {
             break;
         }
@@ -178,40 +265,24 @@ pub(crate) fn corrected(
     tip
 }
 
-/// The first of the step and its halves that reduces the greatest residual.
-fn improve(
-    attitude: &Attitude,
-    conditions: &[Condition<'_>],
-    (tip, rows): (&Vec3, &Rows),
-    step: &Vec3,
-    halvings: u32,
-) -> Option<(Vec3, Rows)> {
-    let (worst, _) = rows.greatest();
-    let mut share = 1.0;
-    for _ in 0..=halvings {
-        let next = tip + step * share;
-        let next_rows = evaluate(attitude, conditions, &next);
-        if next_rows.greatest().0 < worst {
-            return Some((next, next_rows));
-        }
-        share *= 0.5;
-    }
-    None
-}
-
 /// Residuals and their gradients. Where the axis is not determined, and where dependent normals lead nowhere, the residuals are not
 /// numbers, and no step goes there.
-fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Rows {
+fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3, manner: Manner) -> Rows {
     let mut rows = Rows { count: conditions.len().min(3), ..Rows::NONE };
     let is_place = tip.iter().all(|x| x.is_finite());
     let Some(posture) = is_place.then(|| attitude.posture(tip).ok()).flatten() else {
         rows.residual = [f64::NAN; 3];
         return rows;
     };
+    let contact = |gauge: &Gauge| match manner {
+        Manner::Proven => (posture.contact(gauge, tip), true),
+        Manner::Followed => posture.contact_followed(gauge, tip),
+    };
     for (k, condition) in conditions.iter().take(3).enumerate() {
         (rows.residual[k], rows.normal[k]) = match condition {
             Condition::Clearance(gauge, target) => {
-                let contact = posture.contact(gauge, tip);
+                let (contact, is_proven) = contact(gauge);
+                rows.is_proven &= is_proven;
                 rows.contacts[k] = Some(contact);
                 (contact.clearance - target, contact.gradient)
             }
@@ -221,7 +292,8 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3) -> Ro
                 (contact.clearance - target, contact.gradient)
             }
             Condition::Between(gauge, [least, greatest]) => {
-                let contact = posture.contact(gauge, tip);
+                let (contact, is_proven) = contact(gauge);
+                rows.is_proven &= is_proven;
                 rows.contacts[k] = Some(contact);
                 // What lies between counts as it is.
                 (contact.clearance - contact.clearance.max(*least).min(*greatest), contact.gradient)

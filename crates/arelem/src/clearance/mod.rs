@@ -133,6 +133,31 @@ impl Gauge {
         Contact { clearance: found.clearance - thickness, ..found }
     }
 
+    /// The contact where the last one leads, and whether it is known to be the nearest: that is shown only where it is done at once, or where no
+    /// last one leads anywhere.
+    pub(crate) fn contact_followed(&self, tool: &Tool, tip: &Vec3) -> (Contact, bool) {
+        if self.on || !self.surface.has_charts() {
+            return (self.contact(tool, tip), true);
+        }
+        let Self { side, thickness, ref memory, .. } = *self;
+        let (tool, tip) = &self.body(tool, tip);
+        let surface = self.met(tool);
+        let level = |contact: Contact| Contact { clearance: contact.clearance - thickness, ..contact };
+        if let Some(contact) = closed_form::contact(tool, surface, side, tip) {
+            return (level(contact), true);
+        }
+        let beside = Beside { tool, surface, side, tip };
+        let touch = memory.crease(side).and_then(|spot| beside.touch(&spot));
+        if let Some(contact) = touch.and_then(|(_, touch)| beside.leading_off(touch)) {
+            return (level(contact), false);
+        }
+        match near::contact(tool, surface, side, tip, memory) {
+            Followed::Proven(contact, _) => (level(contact), true),
+            Followed::Likely(_, contact) => (level(contact), false),
+            Followed::Lost => (level(offset_contact(tool, surface, side, tip, Some(memory)).0), true),
+        }
+    }
+
     /// The contact, and how much nearer to the surface another point of the tool may be for all that the search knows:
     /// infinitely much where it proves nothing.
     pub(crate) fn contact_within(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
