@@ -372,6 +372,16 @@ pub enum MotionFailure {
         /// Where the tool was.
         tip: Vec3,
     },
+    /// Cut vectors that are a small share of the tolerance follow each other (801).
+    #[error("no progress: {vectors} vectors of {length}")]
+    NoProgress {
+        /// How many.
+        vectors: u32,
+        /// None of them is longer.
+        length: f64,
+        /// Where it ends.
+        tip: Vec3,
+    },
     /// No cut vector from here stays in tolerance (801).
     #[error("no admissible cut vector")]
     NoAdmissibleVector {
@@ -428,7 +438,7 @@ impl MotionFailure {
                 Iteration::StepLength | Iteration::FinalVector => 801,
                 Iteration::Stop => 804,
             },
-            Self::NoAdmissibleVector { .. } | Self::SurfaceEnds { .. } => 801,
+            Self::NoAdmissibleVector { .. } | Self::NoProgress { .. } | Self::SurfaceEnds { .. } => 801,
         })
     }
 }

@@ -354,6 +354,15 @@ fn path(failure: &Failure) -> Text {
             ),
         )
         .hint("the tool may touch the surface at a second place, or the tolerance is too tight"),
+        Failure::NoProgress { vectors, length, tip } => say(
+            "APT0653",
+            format!(
+                "the path hardly goes on at {}: the last {vectors} cut vectors are no longer than {}",
+                place(tip),
+                number(*length)
+            ),
+        )
+        .hint("a surface may end or fold there: stop earlier, give the other direction, or widen the tolerance"),
         Failure::SurfaceEnds { role: name, place: at, remaining, .. } => {
             let text =
                 say("APT0649", format!("the path comes to the end of the {} at {}", role(*name), place(at)));

@@ -37,6 +37,7 @@ pub fn earlier(
             | MotionFailure::DirectionUndetermined { .. }
             | MotionFailure::OutOfToleranceAtStart { .. }
             | MotionFailure::NoAdmissibleVector { .. }
+            | MotionFailure::NoProgress { .. }
             | MotionFailure::SurfaceEnds { .. }
             | MotionFailure::IterationLimit { .. }
     );

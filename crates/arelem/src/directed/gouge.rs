@@ -35,7 +35,7 @@ struct Cut {
 pub(super) fn where_stuck(prepared: &Prepared, failure: &MotionFailure) -> Vec<MotionWarning> {
     match failure {
         MotionFailure::NoAdmissibleVector { role, tip, .. } => ahead(prepared, *role, tip),
-        MotionFailure::IterationLimit { tip, .. } => {
+        MotionFailure::IterationLimit { tip, .. } | MotionFailure::NoProgress { tip, .. } => {
             let roles = [RoleName::Part, RoleName::Drive];
             roles.into_iter().flat_map(|role| ahead(prepared, role, tip)).collect()
         }

@@ -129,6 +129,10 @@ const MAX_FINALS: u32 = 60;
 const PATIENT_FINALS: u32 = 12;
 /// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
 const WITHOUT_AXIS: f64 = 0.25;
+/// Length of a vector, as a share of the bands and of MAXDP, that hardly leads on: a path that bends so tightly turns back within it.
+const CREEPING: f64 = 0.02;
+/// How many such vectors may follow each other.
+const MOST_CREEPING: u32 = 6;
 /// Cut vectors after which it is first looked whether a check surface lies ahead.
 const FIRST_LOOK: usize = 25;
 /// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
@@ -163,6 +167,7 @@ pub(super) fn run(
         look: FIRST_LOOK,
         ahead: 0.0,
         look_for_end: 1,
+        creeping: 0,
         revolutions: 0,
         before: None,
     };
@@ -191,6 +196,8 @@ struct March<'a> {
     ahead: f64,
     /// The same number for the end of a surface, where vectors become shorter.
     look_for_end: usize,
+    /// Vectors since the last one that led on.
+    creeping: u32,
     revolutions: u32,
     before: Option<Before<'a>>,
 }
@@ -220,6 +227,7 @@ impl<'a> March<'a> {
                 self.count_revolution(&start, &here, &next)?;
                 self.look_ahead((&here, &next), cancel)?;
                 self.look_for_end(&here, &next, cancel)?;
+                self.count_creeping(&here, &next, cap)?;
                 here = next;
                 cap = self.state.maximum_step;
                 continue;
@@ -311,6 +319,19 @@ impl<'a> March<'a> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let ahead = here.tip + here.tangent * (WITHOUT_AXIS * (part.band() + drive.band()));
         attitude.tool_at(&ahead).err()
+    }
+
+    /// Where one vector after the other hardly leads on, though none has to: that.
+    fn count_creeping(&mut self, here: &Vertex, next: &Vertex, cap: f64) -> Result<(), MotionFailure> {
+        let Prepared { part, drive, .. } = self.prepared;
+        let length = CREEPING * cap.min(part.band() + drive.band());
+        let creeps = (next.tip - here.tip).norm() <= length;
+        self.creeping = if creeps { self.creeping + 1 } else { 0 };
+        if self.creeping < MOST_CREEPING {
+            return Ok(());
+        }
+        let failure = MotionFailure::NoProgress { vectors: self.creeping, length, tip: next.tip };
+        Err(self.explained(next, failure))
     }
 
     fn snapshot(&self, vertex: &Vertex) -> Before<'a> {

@@ -66,6 +66,7 @@ fn turn_at_start(prepared: &Prepared) -> Result<f64, MotionFailure> {
 fn is_stuck_within(failure: &MotionFailure, prepared: &Prepared, distance: f64) -> bool {
     match failure {
         MotionFailure::NoAdmissibleVector { tip, .. }
+        | MotionFailure::NoProgress { tip, .. }
         | MotionFailure::IterationLimit {
             iteration: Iteration::StepLength | Iteration::FinalVector,
             tip,

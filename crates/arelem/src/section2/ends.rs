@@ -32,7 +32,8 @@ fn place(failure: &MotionFailure) -> Option<Vec3> {
     match failure {
         MotionFailure::StartUpDiverges { tip, .. }
         | MotionFailure::IterationLimit { tip, .. }
-        | MotionFailure::NoAdmissibleVector { tip, .. } => Some(*tip),
+        | MotionFailure::NoAdmissibleVector { tip, .. }
+        | MotionFailure::NoProgress { tip, .. } => Some(*tip),
         MotionFailure::NeverMet { at, .. } => Some(*at),
         _ => None,
     }
