@@ -62,6 +62,12 @@ impl Tool {
         Self { axis, across: [x, axis.cross(&x)], ..self.clone() }
     }
 
+    /// Radius of a ball that the body holds: one in the cone on its widest circle to the end of the axis that is farther from that.
+    pub(crate) fn held_ball(&self) -> f64 {
+        let (radius, height) = (self.widest, 0.5 * self.profile.top.height);
+        if radius > 0.0 { radius * height / (radius + radius.hypot(height)) } else { 0.0 }
+    }
+
     /// Greatest distance of the body from its axis.
     pub fn radius(&self) -> f64 {
         self.widest

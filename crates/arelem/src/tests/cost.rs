@@ -3,6 +3,8 @@
 
 use std::cell::Cell;
 
+use apt_geometry::canonical::{Remembering, RuledSurface};
+
 use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
     clearance::{EVALUATIONS, FLOORS},
@@ -230,4 +232,26 @@ fn a_start_up_without_a_position_proves_few_clearances() {
     let clearances = EVALUATIONS.get() - before;
     assert!(matches!(failure, Err(MotionFailure::StartUpDiverges { .. })), "{failure:?}");
     assert!(clearances <= VAIN_START, "{clearances}");
+}
+
+/// Where the path is parallel to a ruled surface is closed in along the last contacts, on the side of the surface on which the tool is. What
+/// is known of contact is not lost on the way.
+#[test]
+fn a_tangency_takes_few_clearances() {
+    let section = |y: f64| {
+        let ends = [v(-1.8, y, 2.0 - 0.76_f64.sqrt()), v(0.0, y, 0.0)].map(Geometry::Point);
+        let trough = cylinder(v(0.0, 0.0, 2.0), Vec3::y(), 2.0);
+        [trough].into_iter().chain(ends).chain([Geometry::Vector(-Vec3::z())])
+    };
+    let parts = section(-1.0).chain(section(5.0)).collect();
+    let valley = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let wall = plane(0.0, 1.0, 0.0, 2.0);
+    let mut p = Program::new();
+    p.tolerance(0.0, 1e-3).cutter(&[0.5, 0.25]).from(3.0, 0.0, 1.0);
+    p.go(&[(Relation::To, &wall), (Relation::To, &ground()), (Relation::On, &x(2.0))]);
+    p.indirv(-1.0, 0.0, 0.0).side(DriveSide::Right);
+    let before = EVALUATIONS.get();
+    p.drive(Turn::Forward, &wall, Relation::TangentToPart, &valley).ends(0.0, 1.75, 0.0, 1e-3).verified();
+    let count = EVALUATIONS.get() - before;
+    assert!(count <= 500, "{count} clearances");
 }

@@ -28,6 +28,8 @@ pub(super) struct Shadow<'a> {
     pub(super) middle: Flat,
     /// From that along the axis up and down, as far as the tool is about the same all round.
     spine: Flat,
+    /// Whether it is the end of the tool alone.
+    is_point: bool,
 }
 
 /// A half-plane that holds the figure.
@@ -120,7 +122,8 @@ impl<'a> Shadow<'a> {
         let tip = flat(tip);
         let (half, axis) = (0.5 * tool.profile.top_height(), flat(&tool.axis));
         let spine = axis * (half - tool.profile.widest()).max(0.0);
-        Self { tool, frame, tip, middle: tip + axis * half, spine }
+        let is_point = tool.profile.is_point();
+        Self { tool, frame, tip, middle: tip + axis * half, spine, is_point }
     }
 
     /// About the direction in which a point is away from the figure.
@@ -138,6 +141,9 @@ impl<'a> Shadow<'a> {
 
     /// The half-plane with an outward unit normal.
     pub(super) fn level(&self, normal: Flat) -> Level {
+        if self.is_point {
+            return Level { normal, height: self.tip.dot(&normal), support: self.tip };
+        }
         let [u, v] = self.frame;
         let (height, place) = self.tool.support(&(u * normal.x + v * normal.y));
         let support = self.tip + Flat::new(u.dot(&place), v.dot(&place));
@@ -177,6 +183,10 @@ impl<'a> Shadow<'a> {
     /// The distance of a point, to within `tolerance` if the budget allows.
     pub(super) fn distance(&self, x: &Flat, tolerance: f64) -> Distance {
         let first = self.direction_to(x).unwrap_or_else(Flat::x);
+        if self.is_point {
+            let level = self.level(first);
+            return Distance { value: level.above(x), gap: 0.0, level };
+        }
         if let Some(found) = self.to_ball(x, first, tolerance) {
             return found;
         }

@@ -1,8 +1,8 @@
 //! Straight ways on which the path is parallel to a check surface: along the extension of a tabulated cylinder that lies in the line to
 //! which that is tangent, or above the line on which a bar and the part surface touch.
 
-use super::{Vertex, tangency::nearer};
-use crate::{clearance::Gauge, directed::Prepared, error::MotionFailure, role::Working};
+use super::{Vertex, tangency::Sides};
+use crate::{clearance::Gauge, directed::Prepared, error::MotionFailure};
 
 /// Sine of the angle between path and check surface up to which they may be meant to be parallel: what the decimals of a slope leave.
 const NEARLY: f64 = 1e-4;
@@ -23,7 +23,7 @@ const MAX_HALVINGS: u32 = 60;
 pub(super) struct ParallelWay<'a> {
     prepared: &'a Prepared,
     /// Of the check surface, on the side on which the tool is nearer to it.
-    gauge: Gauge,
+    gauge: &'a Gauge,
     cancel: &'a dyn Fn() -> bool,
     origin: Vertex,
     slope: f64,
@@ -39,7 +39,7 @@ impl<'a> ParallelWay<'a> {
     /// The way that leads on from a place where the check surface's clearance changes at this rate.
     pub(super) fn from(
         prepared: &'a Prepared,
-        check: &Working,
+        check: &'a Sides,
         (place, slope): (&Vertex, f64),
         cancel: &'a dyn Fn() -> bool,
     ) -> Result<Option<Self>, MotionFailure> {
@@ -47,10 +47,9 @@ impl<'a> ParallelWay<'a> {
             return Ok(None);
         }
         let Some(origin) = Vertex::settled(prepared, &place.tip, &place.tangent) else { return Ok(None) };
-        let (contact, side) = nearer(prepared, check, &origin.tip)?;
+        let (contact, side) = check.nearer(prepared, &origin.tip)?;
         let slope = (contact.gradient * side).dot(&origin.tangent);
-        let gauge = Gauge { side, ..check.gauge.clone() };
-        let way = Self { prepared, gauge, cancel, origin, slope };
+        let way = Self { prepared, gauge: check.on(side), cancel, origin, slope };
         Ok(way.is_on(LEAST * prepared.size).then_some(way))
     }
 
@@ -67,7 +66,7 @@ impl<'a> ParallelWay<'a> {
         let rounding = STEADY * (1.0 + x.abs() / size);
         let is_straight = (there.tangent - self.origin.tangent).norm() <= rounding;
         let slope = || {
-            let contact = posture.contact(&self.gauge, &there.tip);
+            let contact = posture.contact(self.gauge, &there.tip);
             (contact.gradient * self.gauge.side).dot(&there.tangent)
         };
         is_straight && (slope() - self.slope).abs() <= rounding

@@ -1,5 +1,7 @@
 //! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
 
+use std::rc::Rc;
+
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
@@ -30,6 +32,9 @@ const PIECES: f64 = 24.0;
 const LEAST_PIECE: f64 = 2e-3;
 /// How exactly, relative to the size of the coordinates, a place where both surfaces are parallel is found.
 const POSITION: f64 = 1e-10;
+
+/// Half the length, relative to the size of the coordinates, from which on they are so on a stretch and not at a place.
+const STRETCH: f64 = 1e-7;
 
 /// Sine of the angle between path and check surface below which they are parallel.
 const PARALLEL: f64 = 1e-9;
@@ -170,6 +175,7 @@ pub(super) struct Watch<'a> {
     cancel: &'a dyn Fn() -> bool,
     counts: Vec<u32>,
     approaches: Vec<Approach>,
+    sides: Rc<[Sides]>,
     /// Tangencies met so far.
     pub(super) met: usize,
     /// Gap at the nearest parallel position that was not a tangency, and of which check surface.
@@ -186,8 +192,9 @@ impl<'a> Watch<'a> {
         cancel: &'a dyn Fn() -> bool,
     ) -> Self {
         let (counts, approaches) = (vec![0; checks.len()], vec![Approach::default(); checks.len()]);
+        let sides = prepared.checks.iter().map(Sides::of).collect();
         let (nearest, check, along) = (f64::INFINITY, 0, None);
-        Self { prepared, checks, cancel, counts, approaches, met: 0, nearest, check, along }
+        Self { prepared, checks, cancel, counts, approaches, sides, met: 0, nearest, check, along }
     }
 
     /// Why there is no tangency.
@@ -276,9 +283,9 @@ impl<'a> Watch<'a> {
     /// The way parallel to a check surface that leads on from a place, if there is one, with its tangency: in its middle, or where
     /// the motion begins on it at its end, and where it has no end at its beginning.
     fn way(&mut self, index: usize, place: &Reading, is_first: bool) -> Result<Option<OnWay>, MotionFailure> {
-        let check = &self.prepared.checks[index];
-        let Some(way) = ParallelWay::from(self.prepared, check, (&place.vertex, place.slope), self.cancel)?
-        else {
+        let sides = self.sides.clone();
+        let start = (&place.vertex, place.slope);
+        let Some(way) = ParallelWay::from(self.prepared, &sides[index], start, self.cancel)? else {
             return Ok(None);
         };
         let Reach { back, ahead } = way.reach()?;
@@ -344,15 +351,9 @@ impl<'a> Watch<'a> {
         } else {
             *to
         };
-        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
+        let (contact, side) = self.sides[index].nearer(self.prepared, &vertex.tip)?;
         let slope = (contact.gradient * side).dot(&vertex.tangent);
         Ok(Reading { x, vertex, slope, gap: contact.clearance, side })
-    }
-
-    /// How fast the tool moves away from the check surface.
-    fn slope(&self, index: usize, vertex: &Vertex) -> Result<f64, MotionFailure> {
-        let (contact, side) = nearer(self.prepared, &self.prepared.checks[index], &vertex.tip)?;
-        Ok((contact.gradient * side).dot(&vertex.tangent))
     }
 
     /// Where the path runs parallel, the check surface is in its band too, if need be elsewhere in the band of the surface
@@ -375,7 +376,7 @@ impl<'a> Watch<'a> {
         let Prepared { part, drive, size, .. } = self.prepared;
         let parallel = self.parallel(stretch, base)?;
         let check = &self.prepared.checks[stretch.index];
-        let (contact, side) = nearer(self.prepared, check, &parallel.tip)?;
+        let (contact, side) = self.sides[stretch.index].nearer(self.prepared, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
         // Nothing is tangent to the end of a surface.
         if is_at_end(check, &contact) {
@@ -404,7 +405,7 @@ impl<'a> Watch<'a> {
             }
             let shifted =
                 self.parallel(stretch, if to_part { [shift, base[1]] } else { [base[0], shift] })?;
-            let (contact, side) = nearer(self.prepared, check, &shifted.tip)?;
+            let (contact, side) = self.sides[stretch.index].nearer(self.prepared, &shifted.tip)?;
             let outside_by = (low - contact.clearance).max(contact.clearance - high);
             let apart = self.apart(stretch.index, partner, &shifted)?;
             if apart > (1.0 - GUARD) * (check.band() + partner.band()) {
@@ -423,9 +424,8 @@ impl<'a> Watch<'a> {
     /// differ across the path, and two surfaces that touch the tool there are not tangent by that.
     fn apart(&self, index: usize, partner: &Working, place: &Vertex) -> Result<f64, MotionFailure> {
         let tool = self.prepared.attitude.tool_at(&place.tip)?;
-        let (touched, side) = nearer(self.prepared, &self.prepared.checks[index], &place.tip)?;
-        let mut check = self.prepared.checks[index].gauge.clone();
-        check.side = side;
+        let (touched, side) = self.sides[index].nearer(self.prepared, &place.tip)?;
+        let check = self.sides[index].on(side);
         let normal = partner.gauge.contact(&tool, &place.tip).gradient;
         let sense = touched.gradient.dot(&normal).signum();
         let lean = touched.gradient * sense - normal * touched.gradient.dot(&normal).abs();
@@ -436,7 +436,7 @@ impl<'a> Watch<'a> {
             (at(step) - at(-step)).norm() / (2.0 * step)
         };
         // The parabola whose slope is the sine of the angle there.
-        Ok(lean.norm_squared() / (2.0 * (turning(&check) + turning(&partner.gauge))))
+        Ok(lean.norm_squared() / (2.0 * (turning(check) + turning(&partner.gauge))))
     }
 
     /// The position on both surfaces where the path is parallel to the check surface; the shifts are added to the clearances
@@ -462,24 +462,66 @@ impl<'a> Watch<'a> {
             })?;
             Vertex::at(self.prepared, solved.tip, &from.tangent)
         };
-        let slope_at = |share: f64| self.slope(index, &at(share)?);
+        if slope == Slope::Stays {
+            return at(0.0);
+        }
+        let (sides, size) = (&self.sides[index], self.prepared.size);
+        let nearest = |tip: &Vec3| sides.nearer(self.prepared, tip);
+        let ends = [nearest(&from.tip)?.1, nearest(&to.tip)?.1];
+        if ends[0] == ends[1] {
+            let gauge = sides.on(ends[0]);
+            let followed = |vertex: &Vertex| {
+                let posture = attitude.posture(&vertex.tip)?;
+                Ok(slope_of((posture.contact_followed(gauge, &vertex.tip).0, gauge.side), vertex))
+            };
+            let find = Parallel { at: &at, slope: &followed, length: (to.tip - from.tip).norm(), size };
+            let place = find.place(slope)?;
+            // Another contact may be nearer than the one that was followed.
+            if (slope_of(nearest(&place.tip)?, &place) - followed(&place)?).abs() <= PARALLEL {
+                return Ok(place);
+            }
+        }
+        let proven = |vertex: &Vertex| Ok(slope_of(nearest(&vertex.tip)?, vertex));
+        Parallel { at: &at, slope: &proven, length: (to.tip - from.tip).norm(), size }.place(slope)
+    }
+}
+
+/// How fast the tool moves away from a check surface, by contact with it on a side.
+fn slope_of((contact, side): (Contact, f64), vertex: &Vertex) -> f64 {
+    (contact.gradient * side).dot(&vertex.tangent)
+}
+
+/// The search for where the path is parallel to a check surface.
+struct Parallel<'a> {
+    /// The position on the path at a share of the stretch.
+    at: &'a dyn Fn(f64) -> Result<Vertex, MotionFailure>,
+    slope: &'a dyn Fn(&Vertex) -> Result<f64, MotionFailure>,
+    /// Of the stretch, and the size of the coordinates.
+    length: f64,
+    size: f64,
+}
+
+impl Parallel<'_> {
+    fn place(&self, slope: Slope) -> Result<Vertex, MotionFailure> {
+        let slope_at = |share: f64| (self.slope)(&(self.at)(share)?);
         let place = match slope {
             Slope::Changes { is_positive } => {
                 bisected([0.0, 1.0], |x| Ok((slope_at(x)? > 0.0) == is_positive))?
             }
-            Slope::Touches => {
+            Slope::Touches | Slope::Stays => {
                 graze::least([0.0, 1.0], &|x| Some(slope_at(x).ok()?.abs())).map_or(0.5, |(place, _)| place)
             }
-            Slope::Stays => return at(0.0),
         };
         // A flat bottom may be tangent to a surface all along a stretch of the path: then in the middle of it.
         let is_parallel = |x: f64| Ok(slope_at(x)?.abs() <= PARALLEL);
-        if !is_parallel(place)? {
-            return at(place);
+        let beside = STRETCH * self.size / self.length;
+        let ends = [(place - beside).max(0.0), (place + beside).min(1.0)];
+        if !is_parallel(place)? || !is_parallel(ends[0])? && !is_parallel(ends[1])? {
+            return (self.at)(place);
         }
         let begin = bisected([0.0, place], |x| Ok(!is_parallel(x)?))?;
         let end = bisected([place, 1.0], is_parallel)?;
-        at(0.5 * (begin + end))
+        (self.at)(0.5 * (begin + end))
     }
 }
 
@@ -502,17 +544,37 @@ fn bisected(
     Ok(0.5 * (low + high))
 }
 
-/// Contact with the check surface on the side where the tool touches it more nearly.
-pub(super) fn nearer(
-    prepared: &Prepared,
-    check: &Working,
-    tip: &Vec3,
-) -> Result<(Contact, f64), MotionFailure> {
-    let posture = prepared.attitude.posture(tip)?;
-    let mut gauge = check.gauge.clone();
-    gauge.side = 1.0;
-    let above = posture.contact(&gauge, tip);
-    gauge.side = -1.0;
-    let below = posture.contact(&gauge, tip);
-    Ok(if above.clearance.abs() <= below.clearance.abs() { (above, 1.0) } else { (below, -1.0) })
+/// A check surface seen from either side; what is known of contact stays with each.
+pub(super) struct Sides([Gauge; 2]);
+
+impl Sides {
+    fn of(check: &Working) -> Self {
+        Self([1.0, -1.0].map(|side| Gauge { side, ..check.gauge.clone() }))
+    }
+
+    /// What is measured on a side.
+    pub(super) fn on(&self, side: f64) -> &Gauge {
+        &self.0[usize::from(side < 0.0)]
+    }
+
+    /// Contact on the side where the tool touches the surface more nearly.
+    pub(super) fn nearer(&self, prepared: &Prepared, tip: &Vec3) -> Result<(Contact, f64), MotionFailure> {
+        let posture = prepared.attitude.posture(tip)?;
+        let contact = |side: f64| posture.contact(self.on(side), tip);
+        let Gauge { on, surface, disk, .. } = self.on(1.0);
+        if *on {
+            return Ok((contact(1.0), 1.0));
+        }
+        let first = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
+        let here = contact(first);
+        // Where it has come off on this side the middle of a ball that it holds is as far from the surface as the ball is large, and on the
+        // other side it is as deep.
+        let ball = if disk.is_some() { 0.0 } else { posture.tool.held_ball() };
+        if here.clearance >= 0.0 || -here.clearance <= 0.5 * ball {
+            return Ok((here, first));
+        }
+        let beyond = contact(-first);
+        let is_nearer = beyond.clearance.abs() < here.clearance.abs();
+        Ok(if is_nearer { (beyond, -first) } else { (here, first) })
+    }
 }
