@@ -129,7 +129,19 @@ pub(crate) fn solve_within(
     start: &Vec3,
     corrections: u32,
 ) -> Result<Solution, Unsolved> {
-    let effort = Effort { corrections, halvings: MAX_HALVINGS };
+    let effort = Effort { corrections, halvings: MAX_HALVINGS, is_one_of_many: false };
+    solve_unless(attitude, conditions, start, effort, &|_| false)
+}
+
+/// The same for one of many tries: where the last contacts lead nowhere, and the nearest ones are the same there, these are not followed on
+/// the way.
+pub(crate) fn try_within(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    corrections: u32,
+) -> Result<Solution, Unsolved> {
+    let effort = Effort { corrections, halvings: MAX_HALVINGS, is_one_of_many: true };
     solve_unless(attitude, conditions, start, effort, &|_| false)
 }
 
@@ -139,6 +151,8 @@ pub(crate) struct Effort {
     pub(crate) corrections: u32,
     /// How often one that makes things worse is halved.
     pub(crate) halvings: u32,
+    /// Whether it may end where the nearest contacts may not have led.
+    pub(crate) is_one_of_many: bool,
 }
 
 /// As [`solve`] with so much effort; it is given up where it comes to a place that is in vain.
@@ -163,8 +177,7 @@ pub(crate) fn solve_unless(
                 return Ok(Solution { corrections: corrections + proven.corrections, ..proven });
             }
         }
-        // Where the nearest contacts are those that led there they would lead there, too.
-        Err(unsolved) if search.is_known_at(&unsolved) => return found,
+        Err(unsolved) if effort.is_one_of_many && search.is_known_at(&unsolved) => return found,
         Err(_) => {}
     }
     search.newton(start, Manner::Proven).0
@@ -183,7 +196,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// What Newton's method finds, and whether contacts that need not be the nearest have no part in it.
     fn newton(&self, start: &Vec3, manner: Manner) -> (Result<Solution, Unsolved>, bool) {
-        let Self { attitude, effort: Effort { corrections, halvings }, is_in_vain, .. } = *self;
+        let Self { attitude, effort: Effort { corrections, halvings, .. }, is_in_vain, .. } = *self;
         let unsolved = |unsolved: Unsolved| (Err(unsolved), manner == Manner::Proven || self.is_proven.get());
         let mut tip = *start;
         let mut rows = self.evaluate(&tip, manner);

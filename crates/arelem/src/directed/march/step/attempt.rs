@@ -87,7 +87,7 @@ impl Stepper<'_> {
         let conditions =
             [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
         let Solution { tip, contacts, .. } =
-            position::solve_within(attitude, &conditions, start, CORRECTIONS).ok()?;
+            position::try_within(attitude, &conditions, start, CORRECTIONS).ok()?;
         let [Some(part), Some(drive), _] = contacts else { return None };
         let axis = attitude.tool_at(&tip).ok()?.axis;
         Some(Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) })
