@@ -6,6 +6,7 @@
 
 mod past_end;
 mod point;
+mod way_out;
 
 use apt_geometry::Vec3;
 
@@ -20,7 +21,7 @@ use super::{
     ruling::Ruling,
     sculptured::SculpturedStrips,
     span::Bend,
-    strip::{Touch, nearest, nearest_to_all},
+    strip::{Touch, nearest},
     survey::{Accuracy, Sheet},
     tool::{Meridian, Patience, Tool, perpendicular},
 };
@@ -509,80 +510,6 @@ impl<'a> Bodies<'a> {
             }
         }
         Some(())
-    }
-
-    /// The same from a direction in which so long a way frees the tool: no place of the surface is deep in it, and what is under the
-    /// surface may be anywhere along it.
-    fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Reading>> {
-        for _ in 0..DIRECTIONS {
-            let Some((least, normal)) = self.freed(tip, &out, way)? else { return Some(None) };
-            // The place that holds it there holds it as long as it is not moved as far in its own direction.
-            let error = least * (1.0 - normal.dot(&out)) + 3.0 * self.close();
-            if error <= 4.0 * self.close() {
-                return Some(Some(Reading { value: -least, normal, error }));
-            }
-            (out, way) = (normal, least + self.close());
-        }
-        Some(None)
-    }
-
-    /// What a way need not be closer than.
-    fn close(&self) -> f64 {
-        4.0 * self.resolution
-    }
-
-    /// The least way in a direction, from one on that frees the tool, that is found to do so, and the normal where the tool is nearest then.
-    /// None inside where that way does not free it.
-    fn freed(&self, tip: &Vec3, out: &Vec3, mut way: f64) -> Option<Option<(f64, Vec3)>> {
-        for _ in 0..PROOF_STEPS {
-            let touch = self.touch(&(tip + out * way))?;
-            let room = touch.value - touch.gap;
-            if room <= 0.0 || !self.is_on_side(&touch)? {
-                return Some(None);
-            }
-            if room <= 2.0 * self.close() {
-                return Some(Some((way, self.away(&touch)?)));
-            }
-            // Led back by what it is clear it is clear still.
-            way -= room - self.close();
-        }
-        Some(None)
-    }
-
-    /// Whether every place of the surface is left behind in one of several directions, each across the surface where those before did not
-    /// lead away from it, by as much as is deepest: what is deep at two places is not as deep as both together.
-    fn is_left_behind(&self, tip: &Vec3, deepest: &(f64, Vec3)) -> Option<bool> {
-        let Some(sheet) = self.surface.sheet() else { return Some(false) };
-        let depth = deepest.0 + 4.0 * self.close();
-        let mut tips = vec![tip + deepest.1 * depth];
-        for _ in 0..DIRECTIONS {
-            let touch = nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep)?;
-            if touch.value > touch.gap {
-                return self.is_on_side(&touch);
-            }
-            tips.push(tip + self.away(&touch)? * depth);
-        }
-        Some(false)
-    }
-
-    /// How much farther than the depth found the tool must be moved out until it is clear for certain; None where none of
-    /// the translations tried frees it.
-    fn unproven(&self, tip: &Vec3, deepest: &(f64, Vec3), steps: usize) -> Option<Option<f64>> {
-        let mut more = self.close();
-        let most = more * FARTHER.powi(steps.saturating_sub(1) as i32);
-        for _ in 0..steps {
-            let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
-            // A tool without a body touches where it goes through.
-            if touch.value > touch.gap && self.is_on_side(&touch)? {
-                return Some(Some(more));
-            }
-            // No place of the surface is left behind faster than the tool is moved.
-            more = (FARTHER * more).max(more + self.resolution - touch.value);
-            if more > most {
-                break;
-            }
-        }
-        Some(None)
     }
 }
 
