@@ -129,7 +129,7 @@ const MAX_FINALS: u32 = 60;
 const PATIENT_FINALS: u32 = 12;
 /// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
 const WITHOUT_AXIS: f64 = 0.25;
-/// Length of a vector, as a share of the bands and of MAXDP, that hardly leads on: a path that bends so tightly turns back within it.
+/// Length of a vector, as a share of the narrower band and of MAXDP, that hardly leads on: a path that bends so tightly turns back within it.
 const CREEPING: f64 = 0.02;
 /// How many such vectors may follow each other.
 const MOST_CREEPING: u32 = 6;
@@ -324,7 +324,7 @@ impl<'a> March<'a> {
     /// Where one vector after the other hardly leads on, though none has to: that.
     fn count_creeping(&mut self, here: &Vertex, next: &Vertex, cap: f64) -> Result<(), MotionFailure> {
         let Prepared { part, drive, .. } = self.prepared;
-        let length = CREEPING * cap.min(part.band() + drive.band());
+        let length = CREEPING * cap.min(part.band()).min(drive.band());
         let creeps = (next.tip - here.tip).norm() <= length;
         self.creeping = if creeps { self.creeping + 1 } else { 0 };
         if self.creeping < MOST_CREEPING {

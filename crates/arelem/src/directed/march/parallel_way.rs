@@ -8,8 +8,8 @@ use crate::{clearance::Gauge, directed::Prepared, error::MotionFailure};
 const NEARLY: f64 = 1e-4;
 /// How much that sine, or the direction of the path, changes on a way by rounding.
 const STEADY: f64 = 1e-9;
-/// The least length of a way, relative to the size of the coordinates. Where a curve begins to bend with its third derivative alone, the sine
-/// is rounding for a third of that.
+/// How far a way leads on at least, relative to the size of the coordinates: where a curve begins to bend with its third derivative alone, the
+/// sine is rounding for a third of that.
 const LEAST: f64 = 1e-4;
 /// The longest step along a way as far as there may be surfaces, and how far that is, relative to the size of the coordinates.
 const STEP: f64 = 0.02;
@@ -108,11 +108,6 @@ impl<'a> ParallelWay<'a> {
             }
         }
         on
-    }
-
-    /// Whether a length is more than that of the place where a curve begins to bend.
-    pub(super) fn is_long(&self, length: f64) -> bool {
-        length > LEAST * self.prepared.size
     }
 
     /// The rate at which the clearance of the check surface changes on it.

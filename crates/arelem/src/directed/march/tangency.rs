@@ -292,10 +292,9 @@ impl<'a> Watch<'a> {
         let back = if is_first { None } else { back };
         let place = match (back, ahead) {
             (Some(back), Some(ahead)) => 0.5 * (ahead - back),
-            (None, Some(ahead)) if way.is_long(ahead) => ahead,
+            (None, Some(ahead)) => ahead,
             (Some(back), None) => -back,
             (None, None) => 0.0,
-            (None, Some(_)) => return Ok(None),
         };
         let vertex = way.at(place)?;
         let stretch = Stretch { index, from: &vertex, to: &vertex, slope: Slope::Stays };
