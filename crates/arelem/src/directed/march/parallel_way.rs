@@ -81,11 +81,9 @@ impl<'a> ParallelWay<'a> {
         let size = self.prepared.size;
         let (mut on, mut step) = (0.0, LEAST * size);
         while on < ENDLESS * size {
-            if (self.cancel)() {
-                return Err(MotionFailure::Cancelled);
-            }
+            self.ask()?;
             if !self.is_on(sense * (on + step)) {
-                return Ok(Some(self.last_on(sense, [on, on + step])));
+                return self.last_on(sense, [on, on + step]).map(Some);
             }
             on += step;
             let is_beyond = on > SURFACES * size;
@@ -95,8 +93,9 @@ impl<'a> ParallelWay<'a> {
     }
 
     /// Where it ends between a place on it and one that is not.
-    fn last_on(&self, sense: f64, [mut on, mut beyond]: [f64; 2]) -> f64 {
+    fn last_on(&self, sense: f64, [mut on, mut beyond]: [f64; 2]) -> Result<f64, MotionFailure> {
         for _ in 0..MAX_HALVINGS {
+            self.ask()?;
             let middle = 0.5 * (on + beyond);
             if middle <= on || middle >= beyond {
                 break;
@@ -107,7 +106,12 @@ impl<'a> ParallelWay<'a> {
                 beyond = middle;
             }
         }
-        on
+        Ok(on)
+    }
+
+    /// Whether to go on.
+    fn ask(&self) -> Result<(), MotionFailure> {
+        if (self.cancel)() { Err(MotionFailure::Cancelled) } else { Ok(()) }
     }
 
     /// The rate at which the clearance of the check surface changes on it.

@@ -451,6 +451,9 @@ impl<'a> Watch<'a> {
             Condition::Clearance(&drive.gauge, drive.rest() + shift[1]),
         ];
         let at = |share: f64| -> Result<Vertex, MotionFailure> {
+            if (self.cancel)() {
+                return Err(MotionFailure::Cancelled);
+            }
             let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;
             let solved = position::solve(attitude, &conditions, &on_chord).map_err(|unsolved| {
                 MotionFailure::IterationLimit {
