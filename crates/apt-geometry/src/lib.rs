@@ -9,6 +9,7 @@ pub mod cutter;
 pub mod definition;
 pub mod motion;
 pub mod parametric;
+pub mod patience;
 pub mod regional;
 pub mod surface;
 

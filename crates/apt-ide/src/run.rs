@@ -54,10 +54,11 @@ impl Analysis {
         };
         let mut stories = Vec::new();
         for motion in result.motions.iter().filter(wanted) {
+            let story = motion.computed.story(cancel);
             if cancel() {
                 return Err(Cancelled);
             }
-            stories.push(motion.computed.story().map_or_else(Vec::new, |story| story_lines(&story)));
+            stories.push(story.map_or_else(Vec::new, |story| story_lines(&story)));
         }
         Ok(stories)
     }

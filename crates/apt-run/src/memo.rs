@@ -38,10 +38,10 @@ pub struct ComputedMotion {
 }
 
 impl ComputedMotion {
-    /// The story of the motion; none for a failure and for commands that do not move along surfaces.
-    pub fn story(&self) -> Option<Story> {
+    /// The story of the motion; none for a failure, for commands that do not move along surfaces, and once `cancel` says true.
+    pub fn story(&self, cancel: &dyn Fn() -> bool) -> Option<Story> {
         match &self.execution.output {
-            Some(Output::Sequence(sequence)) => tell(&self.state, &self.command, sequence),
+            Some(Output::Sequence(sequence)) => tell(&self.state, &self.command, sequence, cancel),
             _ => None,
         }
     }

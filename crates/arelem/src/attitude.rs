@@ -26,9 +26,9 @@ const DERIVATIVE_STEP: f64 = 1e-5;
 
 /// How the axis is controlled during one motion.
 #[derive(Debug, Clone)]
-pub(crate) struct Attitude {
+pub(crate) struct Attitude<'a> {
     /// The tool at the start of the motion, all along it if there is no law.
-    tool: Tool,
+    tool: Tool<'a>,
     law: Option<Law>,
     /// How the axis comes to follow the law, unless the first vector turns it.
     run_in: Option<RunIn>,
@@ -36,17 +36,17 @@ pub(crate) struct Attitude {
 
 /// The tool at a position, and how fast its axis turns when the position changes.
 pub(crate) struct Posture<'a> {
-    pub(crate) tool: Cow<'a, Tool>,
+    pub(crate) tool: Cow<'a, Tool<'a>>,
     rate: Option<Matrix3<f64>>,
 }
 
-impl Attitude {
-    pub(crate) fn fixed(tool: Tool) -> Self {
+impl<'a> Attitude<'a> {
+    pub(crate) fn fixed(tool: Tool<'a>) -> Self {
         Self { tool, law: None, run_in: None }
     }
 
     /// An axis that follows a law.
-    pub(crate) fn following(tool: &Tool, law: Law) -> Self {
+    pub(crate) fn following(tool: &Tool<'a>, law: Law) -> Self {
         Self { tool: tool.clone(), law: Some(law), run_in: None }
     }
 
@@ -63,7 +63,7 @@ impl Attitude {
     }
 
     /// The cutter, whatever its axis.
-    pub(crate) fn tool(&self) -> &Tool {
+    pub(crate) fn tool(&self) -> &Tool<'a> {
         &self.tool
     }
 
@@ -73,7 +73,7 @@ impl Attitude {
     }
 
     /// The tool at a position.
-    pub(crate) fn tool_at(&self, tip: &Vec3) -> Result<Cow<'_, Tool>, MotionFailure> {
+    pub(crate) fn tool_at(&self, tip: &Vec3) -> Result<Cow<'_, Tool<'_>>, MotionFailure> {
         match &self.law {
             None => Ok(Cow::Borrowed(&self.tool)),
             Some(law) => self
@@ -150,7 +150,7 @@ fn undetermined(cause: AxisFailure, tip: &Vec3) -> MotionFailure {
 /// A straight move of the tool end during which the axis turns evenly in the plane of its ends: what a machine does
 /// between two positions, and what the verifier assumes.
 pub(crate) struct Sweep<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     from: Vec3,
     /// Unit direction; zero for a move without length.
     pub(crate) direction: Vec3,
@@ -165,7 +165,7 @@ const NO_TURN: f64 = 1e-14;
 
 impl<'a> Sweep<'a> {
     /// From one tool end and axis to another.
-    pub(crate) fn new(tool: &'a Tool, from: (&Vec3, &Vec3), to: (&Vec3, &Vec3)) -> Self {
+    pub(crate) fn new(tool: &'a Tool<'a>, from: (&Vec3, &Vec3), to: (&Vec3, &Vec3)) -> Self {
         let delta = to.0 - from.0;
         let length = delta.norm();
         let direction = if length > 0.0 { delta / length } else { Vec3::zeros() };
@@ -176,7 +176,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The tool, with the axis that it was given.
-    pub(crate) fn tool(&self) -> &Tool {
+    pub(crate) fn tool(&self) -> &Tool<'a> {
         self.tool
     }
 
@@ -185,7 +185,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The tool end and the tool at a distance from the start.
-    pub(crate) fn at(&self, x: f64) -> (Vec3, Cow<'_, Tool>) {
+    pub(crate) fn at(&self, x: f64) -> (Vec3, Cow<'_, Tool<'_>>) {
         let tip = self.from + self.direction * x;
         match self.turn {
             None if self.axis == self.tool.axis => (tip, Cow::Borrowed(self.tool)),

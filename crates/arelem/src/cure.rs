@@ -109,7 +109,7 @@ const MORE_POINTS: (u32, u32) = (8, 20_000);
 pub struct Patience(u32);
 
 /// What may be spent in any case, and how many times what the failed motion took more.
-const LEAST_PATIENCE: u32 = 5_000;
+const LEAST_PATIENCE: u32 = 15_000;
 const MORE_PATIENCE: u32 = 4;
 
 impl Patience {

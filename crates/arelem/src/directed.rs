@@ -13,6 +13,7 @@ mod stop;
 use apt_geometry::{
     Vec3,
     motion::{AxisTangency, CheckSurface, NamedSurface, Relation, ToolAxis, Turn},
+    patience::Patience,
 };
 
 pub(crate) use self::prepare::Prepared;
@@ -53,13 +54,13 @@ pub(crate) fn run(
     drive: &NamedSurface,
     checks: &[CheckSurface],
     warnings: &mut Vec<MotionWarning>,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<CutSequence, MotionFailure> {
     if checks.is_empty() {
         return Err(MotionFailure::SurfaceCount { found: 1 });
     }
-    let prepared = prepare::prepare(state, turn, drive, checks, warnings)?;
-    let path = |prepared: &Prepared| follow(state, prepared, checks, cancel);
+    let prepared = prepare::prepare(state, turn, drive, checks, warnings, patience)?;
+    let path = |prepared: &Prepared| follow(state, prepared, checks, patience);
     let found = match state.axis_mode {
         ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => fan::follow(prepared, &path),
         _ => run_in::follow(prepared, &path),
@@ -80,10 +81,10 @@ fn follow(
     state: &State,
     prepared: &Prepared,
     checks: &[CheckSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Path, Stuck> {
-    let path = plane_route::run(state, prepared, checks, cancel).transpose();
-    path.unwrap_or_else(|| march::run(state, prepared, checks, cancel)).map_err(|failure| {
+    let path = plane_route::run(state, prepared, checks, patience).transpose();
+    path.unwrap_or_else(|| march::run(state, prepared, checks, patience)).map_err(|failure| {
         let gouges = if state.gouge_check { gouge::where_stuck(prepared, &failure) } else { Vec::new() };
         Stuck { failure: Box::new(failure), gouges }
     })
@@ -91,11 +92,12 @@ fn follow(
 
 /// By which route a directed motion is computed.
 pub(crate) fn route(state: &State, turn: Turn, drive: &NamedSurface, checks: &[CheckSurface]) -> Route {
-    let Ok(prepared) = prepare::prepare(state, turn, drive, checks, &mut Vec::new()) else {
+    let Ok(prepared) = prepare::prepare(state, turn, drive, checks, &mut Vec::new(), Patience::default())
+    else {
         return Route::Iteration;
     };
     let flat = [&prepared.part, &prepared.drive].iter().all(|role| role.shape == Shape::Flat);
-    if matches!(plane_route::run(state, &prepared, checks, &|| false), Ok(Some(_))) {
+    if matches!(plane_route::run(state, &prepared, checks, Patience::default()), Ok(Some(_))) {
         Route::ClosedForm
     } else if flat && !prepared.attitude.turns() {
         Route::Straight

@@ -185,7 +185,7 @@ pub(crate) fn solve_unless(
 
 /// A search for a position.
 struct Search<'a> {
-    attitude: &'a Attitude,
+    attitude: &'a Attitude<'a>,
     conditions: &'a [Condition<'a>],
     effort: Effort,
     is_in_vain: &'a dyn Fn(&Vec3) -> bool,
@@ -278,11 +278,11 @@ pub(crate) fn corrected(
     tip
 }
 
-/// Residuals and their gradients. Where the axis is not determined, and where dependent normals lead nowhere, the residuals are not
-/// numbers, and no step goes there.
+/// Residuals and their gradients. Where the axis is not determined, where dependent normals lead nowhere, and once the tool's patience is
+/// over, the residuals are not numbers, and no step goes there.
 fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3, manner: Manner) -> Rows {
     let mut rows = Rows { count: conditions.len().min(3), ..Rows::NONE };
-    let is_place = tip.iter().all(|x| x.is_finite());
+    let is_place = tip.iter().all(|x| x.is_finite()) && !attitude.tool().patience.was_over();
     let Some(posture) = is_place.then(|| attitude.posture(tip).ok()).flatten() else {
         rows.residual = [f64::NAN; 3];
         return rows;

@@ -5,7 +5,7 @@ mod modal;
 mod restart;
 mod state;
 
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{motion::MotionCommand, patience::Waiting};
 
 pub(crate) use self::modal::required_position;
 pub use self::{
@@ -46,12 +46,16 @@ pub struct Execution {
 
 /// Carries out one command. A function of its arguments: nothing else is read, nothing is kept.
 ///
-/// `cancel` is polled once per cut vector and iteration; when it says true the failure is
+/// `cancel` is asked at least once per cut vector and iteration, and during long searches, until it says true; the failure is then
 /// [`MotionFailure::Cancelled`] and the state is the one before.
 pub fn execute(state: &State, command: &MotionCommand, cancel: &dyn Fn() -> bool) -> Execution {
     let mut next = state.clone();
     let mut warnings = Vec::new();
-    match modal::apply(&mut next, command, &mut warnings, cancel) {
+    let waiting = Waiting::until(cancel);
+    let applied = modal::apply(&mut next, command, &mut warnings, waiting.patience());
+    // What was found by searches that were given up is worth nothing.
+    let applied = if waiting.has_given_up() { Err(MotionFailure::Cancelled) } else { applied };
+    match applied {
         Ok(output) => Execution { state: next, output, warnings, failure: None },
         Err(MotionFailure::Cancelled) => Execution {
             state: state.clone(),

@@ -12,6 +12,7 @@ mod tests;
 use apt_geometry::{
     Vec3,
     motion::{PartSide, Relation, StartSurface, ToolAxis},
+    patience::Patience,
     surface::{RootSelection, Surface},
 };
 
@@ -30,21 +31,21 @@ use crate::{
 /// What a start-up works with.
 pub(crate) struct StartUp<'a> {
     pub(crate) state: &'a State,
-    pub(crate) tool: Tool,
+    pub(crate) tool: Tool<'a>,
     /// How the axis follows the surfaces, once their sides are known.
-    pub(crate) attitude: Attitude,
+    pub(crate) attitude: Attitude<'a>,
     pub(crate) tip: Vec3,
     /// Drive, part, check, as far as they take part.
     pub(crate) roles: Vec<Working>,
     /// Whether to give up.
-    pub(crate) cancel: &'a dyn Fn() -> bool,
+    pub(crate) patience: Patience<'a>,
 }
 
 /// GO (class 7000/1).
 pub(crate) fn start(
     state: &State,
     surfaces: &[StartSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<CutSequence, MotionFailure> {
     if surfaces.is_empty() || surfaces.len() > 3 {
         return Err(MotionFailure::SurfaceCount { found: surfaces.len() });
@@ -52,10 +53,10 @@ pub(crate) fn start(
     if state.no_part && surfaces.len() > 1 {
         return Err(MotionFailure::NoPartWithSeveral { found: surfaces.len() });
     }
-    if cancel() {
+    if patience.is_over() {
         return Err(MotionFailure::Cancelled);
     }
-    let mut work = StartUp::new(state, surfaces, cancel)?;
+    let mut work = StartUp::new(state, surfaces, patience)?;
     let closed = match state.start_up {
         StartUpRule::Apt3 => plane::solve(&mut work)?,
         StartUpRule::Apt4 => None,
@@ -93,7 +94,7 @@ fn parallel(work: &StartUp<'_>, failure: MotionFailure) -> MotionFailure {
 /// By which route a GO finds its position.
 pub(crate) fn route(state: &State, surfaces: &[StartSurface]) -> Route {
     let closed = state.start_up == StartUpRule::Apt3
-        && StartUp::new(state, surfaces, &|| false).is_ok_and(|work| plane::applies(&work));
+        && StartUp::new(state, surfaces, Patience::default()).is_ok_and(|work| plane::applies(&work));
     if closed { Route::ClosedForm } else { Route::Iteration }
 }
 
@@ -103,15 +104,15 @@ pub(crate) fn route(state: &State, surfaces: &[StartSurface]) -> Route {
 pub(crate) fn offset(
     state: &State,
     surfaces: &[StartSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<CutSequence, MotionFailure> {
     if surfaces.is_empty() || surfaces.len() > 2 {
         return Err(MotionFailure::SurfaceCount { found: surfaces.len() });
     }
-    if cancel() {
+    if patience.is_over() {
         return Err(MotionFailure::Cancelled);
     }
-    let mut work = StartUp::new(state, surfaces, cancel)?;
+    let mut work = StartUp::new(state, surfaces, patience)?;
     let Some(direction) = state.directions[0] else { return Err(MotionFailure::OffsetWithoutDirection) };
     let direction = directed::unit_direction(&direction, &work.tip)?;
     side::assign(&mut work, None)?;
@@ -178,7 +179,7 @@ impl<'a> StartUp<'a> {
     fn new(
         state: &'a State,
         surfaces: &[StartSurface],
-        cancel: &'a dyn Fn() -> bool,
+        patience: Patience<'a>,
     ) -> Result<Self, MotionFailure> {
         let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: true })?;
         let ToolPosition { tip, axis } = required_position(state)?;
@@ -198,9 +199,9 @@ impl<'a> StartUp<'a> {
             let relation = if on { Relation::On } else { Relation::To };
             roles.push(Working::new(state, RoleName::Part, &state.part, relation, on)?);
         }
-        let tool = Tool::new(cutter, axis);
+        let tool = Tool::awaited(cutter, axis, patience);
         let attitude = Attitude::fixed(tool.clone());
-        Ok(Self { state, tool, attitude, tip, roles, cancel })
+        Ok(Self { state, tool, attitude, tip, roles, patience })
     }
 
     fn sequence(&self, tip: Vec3) -> Result<CutSequence, MotionFailure> {
@@ -347,7 +348,7 @@ pub(crate) fn converge(
     };
     // A turning axis has its own way to every position: what cannot be followed from the start is not looked for.
     if !is_following(work)
-        && let Some(tip) = around::solve(&work.attitude, conditions, start, work.cancel)?
+        && let Some(tip) = around::solve(&work.attitude, conditions, start, work.patience)?
     {
         return Ok(tip);
     }

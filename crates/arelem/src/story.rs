@@ -10,6 +10,7 @@ use apt_geometry::{
     Vec3,
     canonical::GeometryKind,
     motion::{CheckSurface, MotionCommand, Relation},
+    patience::{Patience, Waiting},
     surface::Surface,
 };
 
@@ -152,8 +153,15 @@ const FILLS: f64 = 0.5;
 /// Angle between two vectors, radians, from which the turn is what ends the first (10°).
 const TURNS: f64 = 0.175;
 
-/// The story of the sequence that a command gave in a state; none for commands that are not motions along surfaces.
-pub fn tell(state: &State, command: &MotionCommand, sequence: &CutSequence) -> Option<Story> {
+/// The story of the sequence that a command gave in a state; none for commands that are not motions along surfaces, and once `cancel`
+/// says true.
+pub fn tell(
+    state: &State,
+    command: &MotionCommand,
+    sequence: &CutSequence,
+    cancel: &dyn Fn() -> bool,
+) -> Option<Story> {
+    let waiting = Waiting::until(cancel);
     let route = match command {
         MotionCommand::Start(surfaces) => start_up::route(state, surfaces),
         MotionCommand::Offset(_) => Route::Iteration,
@@ -161,9 +169,9 @@ pub fn tell(state: &State, command: &MotionCommand, sequence: &CutSequence) -> O
         _ => return None,
     };
     let end = *sequence.points.last()?;
-    let teller = Teller::new(sequence);
+    let teller = Teller::new(sequence, waiting.patience());
     let forward = (sequence.forward != Vec3::zeros()).then_some(sequence.forward);
-    Some(Story {
+    let story = Story {
         route,
         start_up: sequence.start_up,
         surfaces: teller.surfaces(&end),
@@ -178,7 +186,8 @@ pub fn tell(state: &State, command: &MotionCommand, sequence: &CutSequence) -> O
         corrections: if route == Route::ClosedForm { None } else { teller.corrections(&end) },
         vectors: teller.vectors(command),
         minimum: sequence.minimum,
-    })
+    };
+    (!waiting.has_given_up()).then_some(story)
 }
 
 /// Angle between two unit vectors, radians.
@@ -196,10 +205,11 @@ struct Told<'a> {
 struct Teller<'a> {
     sequence: &'a CutSequence,
     told: Vec<Told<'a>>,
+    patience: Patience<'a>,
 }
 
 impl<'a> Teller<'a> {
-    fn new(sequence: &'a CutSequence) -> Self {
+    fn new(sequence: &'a CutSequence, patience: Patience<'a>) -> Self {
         let stop = sequence.stop.as_ref().map(|stop| (RoleName::Check(stop.index), &stop.role));
         let roles = [(RoleName::Part, sequence.part.as_ref()), (RoleName::Drive, sequence.drive.as_ref())];
         let roles = roles.into_iter().filter_map(|(name, role)| Some((name, role?))).chain(stop);
@@ -211,11 +221,11 @@ impl<'a> Teller<'a> {
             let gauge = Gauge { surface, on, side, thickness, disk, memory };
             Some(Told { name, role, gauge })
         });
-        Self { sequence, told: told.collect() }
+        Self { sequence, told: told.collect(), patience }
     }
 
-    fn tool(&self, at: &ToolPosition) -> Tool {
-        Tool::new(self.sequence.cutter, at.axis)
+    fn tool(&self, at: &ToolPosition) -> Tool<'_> {
+        Tool::awaited(self.sequence.cutter, at.axis, self.patience)
     }
 
     fn surfaces(&self, end: &ToolPosition) -> Vec<StorySurface> {
@@ -263,6 +273,9 @@ impl<'a> Teller<'a> {
         let mut vectors = Vec::with_capacity(self.sequence.points.len());
         for (index, pair) in positions.windows(2).enumerate() {
             let [from, to] = pair else { continue };
+            if self.patience.is_over() {
+                break;
+            }
             let clearance = [RoleName::Part, RoleName::Drive].map(|role| self.seen(role, from, to));
             let length = (to.tip - from.tip).norm();
             let next = positions.get(index + 2).map(|next| next.tip - to.tip);

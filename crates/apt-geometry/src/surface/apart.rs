@@ -4,7 +4,7 @@
 //! a part of a surface reaches, in which directions, from a place tells how near to the body it comes at most.
 
 use super::{Surface, part::Part};
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// Bound of the nodes and parts that one question looks at: what takes more is too close.
 const MOST_LOOKS: u32 = 600;
@@ -32,6 +32,15 @@ pub struct Body<'a> {
     pub within: Option<HalfSpace>,
 }
 
+/// How many nodes and parts a question looks at, and how long.
+#[derive(Debug, Clone, Copy)]
+pub struct Limit<'a> {
+    /// What takes more is too close.
+    pub looks: u32,
+    /// Who waits for it.
+    pub patience: Patience<'a>,
+}
+
 /// The question how far a surface keeps off a body.
 pub(super) struct Apart<'a> {
     away: &'a Away<'a>,
@@ -41,19 +50,32 @@ pub(super) struct Apart<'a> {
     /// What the parts looked at so far keep.
     least: f64,
     looks: u32,
-    most_looks: u32,
+    limit: Limit<'a>,
     /// The place of the body nearest to what was looked at last.
     nearest: Vec3,
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(Body { away, within }: Body<'a>, wanted: f64, most_looks: u32) -> Self {
-        Self { away, within, wanted, least: f64::INFINITY, looks: 0, most_looks, nearest: Vec3::zeros() }
+    pub(super) fn new(Body { away, within }: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
+        Self { away, within, wanted, least: f64::INFINITY, looks: 0, limit, nearest: Vec3::zeros() }
+    }
+
+    /// Counts a look; a question that is given up has had all of them.
+    fn look(&mut self) {
+        self.looks += 1;
+        if self.limit.patience.ends_after(1) {
+            self.looks = self.limit.looks + 1;
+        }
+    }
+
+    /// Whether there may be more of them.
+    fn may_look(&self) -> bool {
+        self.looks <= self.limit.looks
     }
 
     /// The distance that all parts keep, unless they were too many to look at.
     pub(super) fn kept(&self) -> Option<f64> {
-        (self.looks <= self.most_looks).then_some(self.least)
+        self.may_look().then_some(self.least)
     }
 
     /// Whether a part that keeps a distance adds nothing to what is known.
@@ -72,7 +94,7 @@ impl<'a> Apart<'a> {
 
     /// What all within a ball keeps.
     pub(super) fn ball(&mut self, center: &Vec3, radius: f64) -> f64 {
-        self.looks += 1;
+        self.look();
         (self.away)(center).0 - radius
     }
 
@@ -85,7 +107,7 @@ impl<'a> Apart<'a> {
         };
         let (mut share, mut most) = (shares(&self.nearest), f64::NEG_INFINITY);
         for _ in 0..PLACES {
-            self.looks += 1;
+            self.look();
             let place = start + along * share;
             let (distance, outward) = (self.away)(&place);
             let slope = outward.dot(along);
@@ -106,7 +128,7 @@ impl<'a> Apart<'a> {
 
     /// What a part of a surface keeps, and how far its middle is.
     fn part(&mut self, part: &Part) -> [f64; 2] {
-        self.looks += 1;
+        self.look();
         let (distance, outward) = (self.away)(part.center());
         let by_point = distance - part.reach_along(&outward);
         let by_plane = self.within.filter(|_| by_point < self.wanted).map(|HalfSpace { outward, level }| {
@@ -120,23 +142,24 @@ impl<'a> Apart<'a> {
         let [least, middle] = self.part(part);
         self.is_settled(least)
             || self.takes(least)
-            || middle >= self.wanted && self.looks <= self.most_looks && halves(self)
+            || middle >= self.wanted && self.may_look() && halves(self)
     }
 }
 
 impl Surface {
     /// A distance from a convex body, not below the one wanted, that all of the surface is known to keep; `None` for surfaces
     /// of which that is not known, and where some place may be nearer.
-    pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64) -> Option<f64> {
-        self.keeps_off_body(Body { away, within: None }, wanted, MOST_LOOKS)
+    pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64, patience: Patience<'_>) -> Option<f64> {
+        let limit = Limit { looks: MOST_LOOKS, patience };
+        self.keeps_off_body(Body { away, within: None }, wanted, limit)
     }
 
-    /// The same by looking at no more than so many of its parts.
-    pub fn keeps_off_body(&self, body: Body<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
-        let mut asked = Apart::new(body, wanted, most_looks);
+    /// The same within a limit.
+    pub fn keeps_off_body(&self, body: Body<'_>, wanted: f64, limit: Limit<'_>) -> Option<f64> {
+        let mut asked = Apart::new(body, wanted, limit);
         let keeps = match self {
             Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
-            Self::PolyConic(sheet) => return sheet.keeps_apart(body, wanted, most_looks),
+            Self::PolyConic(sheet) => return sheet.keeps_apart(body, wanted, limit),
             Self::Sculptured(sheet) => sheet.keeps_apart(&mut asked),
             _ => false,
         };

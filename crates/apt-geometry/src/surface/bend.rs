@@ -2,7 +2,7 @@
 //! such a bound finitely many distances prove an inequality for all points between them.
 
 use super::{ConeForm, Foot, Surface, part::Survey};
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// How much farther than its feet the paths between feet are looked for at first.
 const WIDER: f64 = 1.25;
@@ -47,8 +47,10 @@ impl Surface {
     /// A bound for `side · signed distance` over the points of a region, given the foot of its centre.
     ///
     /// The function may have concave ridges there (points with several nearest points on that side): its slope only
-    /// falls at them, so that the bound holds along every straight line all the same.
-    pub fn bend(&self, side: f64, foot: &Foot, region: &Region) -> Bend {
+    /// falls at them, so that the bound holds along every straight line all the same. There is none once `patience` is over.
+    pub fn bend(&self, side: f64, foot: &Foot, region: &Region, patience: Patience<'_>) -> Bend {
+        let asked =
+            |reach: f64| Survey::new(&region.center, [region.radius, reach], (side, &foot.normal), patience);
         let nearest = region.lowest.max(side * foot.distance - region.radius);
         // Distance is the least of the distances to points, and each of these bends by its reciprocal.
         let far = if nearest > 0.0 { 1.0 / nearest } else { f64::INFINITY };
@@ -69,23 +71,15 @@ impl Surface {
                 }
             }
             Self::Ruled(sheet) => {
-                let survey = |reach: f64| {
-                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
-                };
-                return sheet_bend(survey, region.reach(foot), nearest);
+                return sheet_bend(|reach| sheet.survey(asked(reach)), region.reach(foot), nearest);
             }
             Self::Sculptured(sheet) => {
-                let survey = |reach: f64| {
-                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
-                };
-                return sheet_bend(survey, region.reach(foot), nearest);
+                return sheet_bend(|reach| sheet.survey(asked(reach)), region.reach(foot), nearest);
             }
             Self::PolyConic(sheet) => {
                 // Off a surface that lies at a thickness from its conics distances bend as those from the conics.
                 let stock = side * sheet.thickness();
-                let survey = |reach: f64| {
-                    sheet.survey(Survey::new(&region.center, [region.radius, reach], side, &foot.normal))
-                };
+                let survey = |reach| sheet.survey(asked(reach));
                 return sheet_bend(survey, region.reach(foot) + stock.abs(), nearest + stock);
             }
         };
@@ -121,7 +115,7 @@ impl Surface {
 
 /// The bend for places at least `nearest` from a sheet, from what is found of it within so far from the centre. Beyond the
 /// sheet its places are to be on one piece: the paths between feet of one point reach farther than the feet.
-fn sheet_bend(survey: impl Fn(f64) -> Survey, reach: f64, nearest: f64) -> Bend {
+fn sheet_bend<'a>(survey: impl Fn(f64) -> Survey<'a>, reach: f64, nearest: f64) -> Bend {
     if nearest >= 0.0 {
         return survey(reach).bend(nearest);
     }
@@ -223,7 +217,7 @@ mod tests {
             let side = if side { 1.0 } else { -1.0 };
             let center = Vec3::from(center);
             let region = Region { center, radius, lowest: -depth, highest: height };
-            let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { return Ok(()) };
+            let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region, Patience::default()) else { return Ok(()) };
             let inside = |p: &Vec3| {
                 let d = side * surface.signed_distance(p);
                 ((p - center).norm() <= radius && d >= -depth && d <= height).then_some(d)
@@ -251,7 +245,7 @@ mod tests {
             let (foot, hessian) = surface.foot_and_hessian(&center);
             let greatest = SymmetricEigen::new(hessian).eigenvalues.max();
             let region = Region { center, radius: 1e-4, lowest: -1e-4, highest: 1e-4 };
-            match surface.bend(1.0, &foot, &region) {
+            match surface.bend(1.0, &foot, &region, Patience::default()) {
                 Bend::AtMost(bound) => prop_assert!(bound >= greatest * (1.0 - 1e-6)),
                 other => prop_assert!(greatest > 100.0, "{other:?} where it bends by {greatest}"),
             }
@@ -263,7 +257,10 @@ mod tests {
         for surface in &surfaces()[..3] {
             let center = v(0.1, 0.1, -0.5);
             let region = Region { center, radius: 0.5, lowest: 0.0, highest: 2.0 };
-            assert_eq!(surface.bend(-1.0, &surface.foot(&center), &region), Bend::AtMost(0.0));
+            assert_eq!(
+                surface.bend(-1.0, &surface.foot(&center), &region, Patience::default()),
+                Bend::AtMost(0.0)
+            );
         }
     }
 
@@ -287,6 +284,6 @@ mod tests {
         let cone = &surfaces()[2];
         let center = v(0.0, 0.0, 1.6);
         let region = Region { center, radius: 0.2, lowest: -0.1, highest: 0.3 };
-        assert_eq!(cone.bend(1.0, &cone.foot(&center), &region), Bend::Unbounded);
+        assert_eq!(cone.bend(1.0, &cone.foot(&center), &region, Patience::default()), Bend::Unbounded);
     }
 }

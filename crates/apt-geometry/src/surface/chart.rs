@@ -7,7 +7,7 @@ use super::{
     part::{Form, Lengthwise, Survey, leading},
     sheet::Jet,
 };
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// Cosine of the angle to the middle normal up to which normals may turn within a steady ball.
 const STEADY_COSINE: f64 = 0.5;
@@ -173,7 +173,13 @@ impl Surface {
     /// and the path between them that is straight as seen along the middle normal leads through a place where distance
     /// bends downward; none does up to a depth of `c/(κ (1 + (1 − c²)/c))`. As no part of the path is steeper than the normals let
     /// it be, it is nowhere farther from the straight line between its ends than half its length times that slope.
-    pub fn steady(&self, side: f64, center: &Vec3, [radius, depth]: [f64; 2]) -> Option<Steady> {
+    pub fn steady(
+        &self,
+        side: f64,
+        center: &Vec3,
+        [radius, depth]: [f64; 2],
+        patience: Patience<'_>,
+    ) -> Option<Steady> {
         if !self.has_charts() {
             return None;
         }
@@ -184,7 +190,7 @@ impl Surface {
         }
         let far = (depth + stock).max(0.0);
         let reach = radius + far;
-        let asked = Asked { surface: self, side, center, normal: &foot.normal, reach, far };
+        let asked = Asked { surface: self, side, center, normal: &foot.normal, reach, far, patience };
         let (near, path) = asked.sheet()?;
         let lean = path.lean();
         let [natural, other] = path.curvature;
@@ -202,8 +208,8 @@ impl Surface {
 
     /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of
     /// surface, and where it ends or has an edge or no tangent plane there.
-    pub fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
-        let asked = Survey::of_forms(center, reach, side);
+    pub fn forms(&self, side: f64, center: &Vec3, reach: f64, patience: Patience<'_>) -> Option<Vec<Form>> {
+        let asked = Survey::of_forms(center, reach, side, patience);
         let forms = match self {
             Self::Tabulated(curve) => curve.forms(side, center, reach),
             Self::Ruled(sheet) => sheet.survey(asked).forms(),
@@ -223,8 +229,9 @@ impl Surface {
         center: &Vec3,
         reach: f64,
         (along, enough): (&Vec3, f64),
+        patience: Patience<'_>,
     ) -> Option<f64> {
-        let asked = Survey::of_bend_along(center, reach, side, (*along, enough));
+        let asked = Survey::of_bend_along(center, reach, side, (*along, enough), patience);
         let survey = match self {
             Self::Tabulated(curve) => {
                 let forms = curve.forms(side, center, reach)?;
@@ -249,8 +256,9 @@ impl Surface {
         center: &Vec3,
         reach: f64,
         asked: Lengthwise,
+        patience: Patience<'_>,
     ) -> Option<(f64, f64)> {
-        let asked = Survey::of_lengthwise(center, reach, side, asked);
+        let asked = Survey::of_lengthwise(center, reach, side, asked, patience);
         let survey = match self {
             Self::Ruled(sheet) => sheet.survey(asked),
             Self::PolyConic(sheet) => sheet.survey(asked),
@@ -282,8 +290,15 @@ impl Surface {
 
     /// Curvature and normals within reach of a point, given a normal; `None` if the surface ends there or turns away. The
     /// curvature towards the points on a side is the close one.
-    fn facing(&self, side: f64, center: &Vec3, reach: f64, normal: &Vec3) -> Option<Facing> {
-        let asked = || Survey::of_sheet(center, reach, -side, normal, STEADY_COSINE);
+    fn facing(
+        &self,
+        side: f64,
+        center: &Vec3,
+        reach: f64,
+        normal: &Vec3,
+        patience: Patience<'_>,
+    ) -> Option<Facing> {
+        let asked = || Survey::of_sheet(center, reach, (-side, normal), STEADY_COSINE, patience);
         match self {
             Self::Tabulated(curve) => curve.facing(center, reach, normal, STEADY_COSINE),
             Self::Ruled(sheet) => sheet.survey(asked()).facing(),
@@ -304,11 +319,12 @@ struct Asked<'a> {
     /// How far from the centre the nearest places of the surface can be, and how far from the points that they belong to.
     reach: f64,
     far: f64,
+    patience: Patience<'a>,
 }
 
 impl Asked<'_> {
     fn facing(&self, within: f64) -> Option<Facing> {
-        self.surface.facing(self.side, self.center, within, self.normal)
+        self.surface.facing(self.side, self.center, within, self.normal, self.patience)
     }
 
     /// How far from the centre the paths between two feet of one point can reach, given what the normals at the feet and on the paths

@@ -9,7 +9,10 @@ use super::{
     sheet_bend_tests::{COUNT, THICK, made, places},
     *,
 };
-use crate::canonical::{Interval, TabulatedCylinder};
+use crate::{
+    canonical::{Interval, TabulatedCylinder},
+    patience::Patience,
+};
 
 #[test]
 fn charts_are_about_the_nearest_places() {
@@ -83,7 +86,7 @@ proptest! {
         let side = if natural { 1.0 } else { -1.0 };
         let foot = surface.foot(&Vec3::from(near));
         let center = foot.point + foot.normal * (side * off);
-        let Some(steady) = surface.steady(side, &center, [radius, depth]) else { return Ok(()) };
+        let Some(steady) = surface.steady(side, &center, [radius, depth], Patience::default()) else { return Ok(()) };
         let inside = |p: &Vec3| (p - center).norm() <= radius;
         for e in ends {
             let (p, q) = (center + Vec3::new(e[0], e[1], e[2]) * radius, center + Vec3::new(e[3], e[4], e[5]) * radius);
@@ -155,7 +158,7 @@ proptest! {
         let level = ends.iter().map(|end| outward.dot(end) + radius).fold(f64::NEG_INFINITY, f64::max);
         let within = is_within.then_some(HalfSpace { outward, level });
         let body = Body { away: &away, within };
-        let Some(kept) = surface.keeps_off_body(body, wanted, 600) else { return Ok(()) };
+        let Some(kept) = surface.keeps_off_body(body, wanted, Limit { looks: 600, patience: Patience::default() }) else { return Ok(()) };
         prop_assert!(kept >= wanted);
         for (k, aside) in asides.iter().enumerate() {
             let share = k as f64 / asides.len() as f64;
@@ -180,7 +183,8 @@ fn bodies_off_a_surface_are_known_to_keep_most_of_their_distance() {
             if distance > 0.2 {
                 asked += 1;
                 let away = |p: &Vec3| away_from_stretch(p, &ends, 0.1);
-                kept += usize::from(surface.keeps_apart(&away, 0.8 * distance).is_some());
+                kept +=
+                    usize::from(surface.keeps_apart(&away, 0.8 * distance, Patience::default()).is_some());
             }
         }
     }
@@ -197,7 +201,14 @@ fn steady_balls_are_found_and_far_points_keep_off() {
         for near in places(200) {
             let foot = surface.foot(&near);
             let found = [1.0, -1.0].map(|side| {
-                surface.steady(side, &(foot.point + foot.normal * (side * 0.02)), [0.03, 0.05]).is_some()
+                surface
+                    .steady(
+                        side,
+                        &(foot.point + foot.normal * (side * 0.02)),
+                        [0.03, 0.05],
+                        Patience::default(),
+                    )
+                    .is_some()
             });
             balls += usize::from(found.contains(&true));
             off += usize::from(surface.keeps_off(&(near + away * 40.0), 20.0));
@@ -230,14 +241,14 @@ fn there_is_no_steady_ball_and_no_bound_between_the_walls_of_a_slot() {
     let middle = Vec3::new(0.0, 5.0, 0.0);
     let side = slot.foot(&middle).distance.signum();
     assert!((slot.foot(&middle).distance.abs() - 1.0).abs() < 1e-12);
-    assert_eq!(slot.steady(side, &middle, [0.3, 1.2]), None);
+    assert_eq!(slot.steady(side, &middle, [0.3, 1.2], Patience::default()), None);
     // The distance taken negative bends without bound where the nearest wall changes.
     let region = Region { center: middle, radius: 0.3, lowest: -1.0, highest: -0.6 };
-    assert_eq!(slot.bend(-side, &slot.foot(&middle), &region), Bend::Unbounded);
+    assert_eq!(slot.bend(-side, &slot.foot(&middle), &region, Patience::default()), Bend::Unbounded);
     let beside = Vec3::new(0.6, 5.0, 0.0);
-    assert!(slot.steady(side, &beside, [0.2, 0.6]).is_some());
+    assert!(slot.steady(side, &beside, [0.2, 0.6], Patience::default()).is_some());
     let region = Region { center: beside, radius: 0.2, lowest: -0.6, highest: 0.0 };
-    assert_eq!(slot.bend(-side, &slot.foot(&beside), &region), Bend::AtMost(0.0));
+    assert_eq!(slot.bend(-side, &slot.foot(&beside), &region, Patience::default()), Bend::AtMost(0.0));
 }
 
 proptest! {
@@ -253,7 +264,7 @@ proptest! {
         let side = if natural { 1.0 } else { -1.0 };
         let foot = surface.foot(&Vec3::from(near));
         let center = foot.point - foot.normal * surface.stock(1.0);
-        let forms = surface.forms(side, &center, reach);
+        let forms = surface.forms(side, &center, reach, Patience::default());
         prop_assert!(forms.as_ref().is_none_or(|forms| !forms.is_empty()));
         for along in alongs.into_iter().filter_map(|along| Vec3::from(along).try_normalize(0.1)) {
             let curvatures: Option<Vec<f64>> =
@@ -262,7 +273,7 @@ proptest! {
             let lengthwise = [0.0, 0.1].map(|first| {
                 let least = std::array::from_fn(|k| first + 0.05 * k as f64);
                 let asked = Lengthwise { along, least, enough: 0.2, most: 5.0 };
-                surface.curvature_across(side, &center, reach, asked)
+                surface.curvature_across(side, &center, reach, asked, Patience::default())
             });
             for ((least, curvature), e) in
                 [by_forms, lengthwise[0], lengthwise[1]].into_iter().flatten().flat_map(|one| ways.iter().map(move |e| (one, e)))
@@ -297,8 +308,12 @@ fn cylinders_across_a_direction_are_found_where_surfaces_bend_away_along_it() {
                     continue;
                 }
                 let along: Vec3 = eigen.eigenvectors.column(away).into();
-                let Some(forms) = surface.forms(side, &(foot.point - foot.normal * surface.stock(1.0)), 0.02)
-                else {
+                let Some(forms) = surface.forms(
+                    side,
+                    &(foot.point - foot.normal * surface.stock(1.0)),
+                    0.02,
+                    Patience::default(),
+                ) else {
                     continue;
                 };
                 let curvatures: Option<Vec<f64>> =

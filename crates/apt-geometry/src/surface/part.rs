@@ -16,7 +16,7 @@ use super::{
     interval::{Box3, Interval},
     sheet::Jet,
 };
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// Change of the tangent plane over a part, relative to its frame, above which nothing is said of its curvature.
 const STEADY: f64 = 0.4;
@@ -38,6 +38,11 @@ pub(super) const LEAST_COSINE: f64 = 0.5;
 const MAX_DEPTH: u32 = 24;
 /// Bound of the parts that one question looks at.
 const MAX_PARTS: u32 = 3000;
+
+/// What the bounds of a part that are not known yet count in units of work.
+const WORK_OF_PART: u32 = 8;
+/// How many nodes above parts are one unit of work.
+const NODES_A_UNIT: u32 = 8;
 
 /// Parts of a surface that are kept, some 160 MB of them: those beyond are made for each question that needs them.
 const MOST_KEPT: usize = 400_000;
@@ -208,7 +213,7 @@ impl Summary {
 
 /// What is asked of a surface about the places of a ball, and what has been found.
 #[derive(Debug)]
-pub(super) struct Survey {
+pub(super) struct Survey<'a> {
     center: Vec3,
     radius: f64,
     /// How far from the centre the nearest places of the surface can be.
@@ -217,6 +222,7 @@ pub(super) struct Survey {
     side: f64,
     normal: Vec3,
     seen: u32,
+    nodes: u32,
     /// Greatest curvature within reach.
     curvature: f64,
     /// The same as seen from the other side, if that is asked too; it need not be close.
@@ -233,12 +239,19 @@ pub(super) struct Survey {
     enough: f64,
     /// What is asked of the forms of all parts within reach, if that is and nothing else.
     forms: Forms,
+    /// How long parts may be looked at; of a survey that is given up nothing is known.
+    patience: Patience<'a>,
 }
 
-impl Survey {
+impl<'a> Survey<'a> {
     /// Asks about the surface within reach of the points of a ball, as seen from a side; `normal` is that at the foot of its
     /// centre.
-    pub(super) fn new(center: &Vec3, [radius, reach]: [f64; 2], side: f64, normal: &Vec3) -> Self {
+    pub(super) fn new(
+        center: &Vec3,
+        [radius, reach]: [f64; 2],
+        (side, normal): (f64, &Vec3),
+        patience: Patience<'a>,
+    ) -> Self {
         Self {
             center: *center,
             radius,
@@ -246,6 +259,7 @@ impl Survey {
             side,
             normal: *normal,
             seen: 0,
+            nodes: 0,
             curvature: f64::NEG_INFINITY,
             behind: f64::NEG_INFINITY,
             cosine: 1.0,
@@ -254,14 +268,21 @@ impl Survey {
             strict: false,
             enough: f64::NEG_INFINITY,
             forms: Forms::NotAsked,
+            patience,
         }
     }
 
     /// Asks about all of the surface within reach of a point, which must face one way: the normals have at least a cosine
     /// to the given one.
-    pub(super) fn of_sheet(center: &Vec3, reach: f64, side: f64, normal: &Vec3, least_cosine: f64) -> Self {
+    pub(super) fn of_sheet(
+        center: &Vec3,
+        reach: f64,
+        seen: (f64, &Vec3),
+        least_cosine: f64,
+        patience: Patience<'a>,
+    ) -> Self {
         let enough = FAINT / reach;
-        Self { least_cosine, strict: true, enough, ..Self::new(center, [0.0, reach], side, normal) }
+        Self { least_cosine, strict: true, enough, ..Self::new(center, [0.0, reach], seen, patience) }
     }
 
     /// The same question in the coordinates of a surface.
@@ -337,6 +358,31 @@ impl Survey {
         let cosine = self.cosine;
         let faces = !self.jumps && cosine >= LEAST_COSINE;
         faces.then(|| 2.0 * depth * (1.0 - cosine * cosine).max(0.0) / cosine)
+    }
+
+    /// Counts a part; whether the survey is given up with it.
+    fn is_given_up(&mut self) -> bool {
+        self.seen += 1;
+        self.counts(1);
+        self.jumps
+    }
+
+    /// Counts work; a survey that is given up with it tells no more than one of a surface that ends.
+    fn counts(&mut self, work: u32) {
+        self.jumps |= self.patience.ends_after(work);
+    }
+
+    /// Counts a node above the parts.
+    pub(super) fn counts_node(&mut self) {
+        self.nodes += 1;
+        if self.nodes.is_multiple_of(NODES_A_UNIT) {
+            self.counts(1);
+        }
+    }
+
+    /// Counts the bounds of a part that are made.
+    pub(super) fn counts_part(&mut self) {
+        self.counts(WORK_OF_PART);
     }
 
     /// Whether a part faces the ball, so that no point of it can be beyond that part.
@@ -527,18 +573,20 @@ impl Part {
     }
 
     /// Adds what this part means for a question.
-    pub(super) fn survey(&self, sheet: &impl Enclose, survey: &mut Survey) {
+    pub(super) fn survey(&self, sheet: &impl Enclose, survey: &mut Survey<'_>) {
         self.survey_within(sheet, survey, 0);
     }
 
-    fn survey_within(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
+    fn survey_within(&self, sheet: &impl Enclose, survey: &mut Survey<'_>, depth: u32) {
         if survey.jumps {
             return;
         }
         if !matches!(survey.forms, Forms::NotAsked) {
             return self.survey_forms(sheet, survey, depth);
         }
-        survey.seen += 1;
+        if survey.is_given_up() {
+            return;
+        }
         if (self.center - survey.center).norm() > survey.reach + self.radius {
             return;
         }
@@ -564,8 +612,15 @@ impl Part {
             survey.cosine = survey.cosine.min(cosine);
             survey.jumps |= jumps;
         } else {
-            self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
+            self.survey_halves(sheet, survey, depth);
         }
+    }
+
+    fn survey_halves(&self, sheet: &impl Enclose, survey: &mut Survey<'_>, depth: u32) {
+        if self.halves.made().is_none() {
+            survey.counts(2 * WORK_OF_PART);
+        }
+        self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1));
     }
 
     fn for_halves(&self, sheet: &impl Enclose, look: impl FnMut(&Self)) {

@@ -16,7 +16,7 @@ use nalgebra::Matrix3;
 use self::tree::{halved, joined};
 use super::{
     Chart, Foot, Place, Surface,
-    apart::{Apart, Body, HalfSpace},
+    apart::{Apart, Body, HalfSpace, Limit},
     descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
     part::{Count, Part, Rectangle, Summary},
@@ -415,7 +415,7 @@ impl PolyConicSheet {
     }
 
     /// A distance from a body, not below the one wanted, that all cells keep: the nearest first, after which others add nothing.
-    pub(super) fn keeps_apart(&self, body: Body<'_>, wanted: f64, most_looks: u32) -> Option<f64> {
+    pub(super) fn keeps_apart(&self, body: Body<'_>, wanted: f64, limit: Limit<'_>) -> Option<f64> {
         let own = |p: &Vec3| {
             let (distance, outward) = (body.away)(&self.linear.tr_mul(&(p - self.origin)));
             (distance, self.linear * outward)
@@ -425,7 +425,7 @@ impl PolyConicSheet {
             HalfSpace { outward, level: level + outward.dot(&self.origin) }
         });
         let stock = self.form.thickness.abs();
-        let mut asked = Apart::new(Body { away: &own, within }, wanted + stock, most_looks);
+        let mut asked = Apart::new(Body { away: &own, within }, wanted + stock, limit);
         let look = |asked: &mut Apart<'_>, node: usize| {
             let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;
             Some((asked.ball(&cell.center, cell.radius), node))

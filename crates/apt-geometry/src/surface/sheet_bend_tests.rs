@@ -10,7 +10,10 @@ use super::{
     sheet_tests::{half_pipe, sheets, surface},
     *,
 };
-use crate::canonical::{Interval, Made, Plane, Remembering, RuledSurface, TabulatedCylinder};
+use crate::{
+    canonical::{Interval, Made, Plane, Remembering, RuledSurface, TabulatedCylinder},
+    patience::Patience,
+};
 
 /// How many surfaces [`made`] has.
 pub(super) const COUNT: usize = 11;
@@ -57,7 +60,7 @@ proptest! {
         let foot = surface.foot(&Vec3::from(near));
         let center = foot.point + foot.normal * off;
         let region = Region { center, radius, lowest: -depth, highest: height };
-        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { return Ok(()) };
+        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region, Patience::default()) else { return Ok(()) };
         let inside = |p: &Vec3| {
             let d = side * surface.signed_distance(p);
             ((p - center).norm() <= radius && d >= -depth && d <= height).then_some(d)
@@ -99,7 +102,11 @@ fn small_regions_have_bounds_near_the_curvature() {
         for (place, side) in places(100).flat_map(|place| [(place, 1.0), (place, -1.0)]) {
             let center = surface.foot(&place).point;
             let region = Region { center, radius, lowest: -radius, highest: radius };
-            let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { continue };
+            let Bend::AtMost(bound) =
+                surface.bend(side, &surface.foot(&center), &region, Patience::default())
+            else {
+                continue;
+            };
             let here = eigenvalues(surface, &center, side).max();
             assert!(bound >= here * (1.0 - 1e-3) - 1e-8, "{which}: {bound} below {here}");
             let steps = [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| axis * (0.5 * radius));
@@ -123,7 +130,10 @@ fn nearly_all_places_away_from_edges_have_bounds() {
         for near in places(400) {
             let foot = surface.foot(&near);
             let region = Region { center: foot.point, radius: 0.02, lowest: -1e-3, highest: 0.02 };
-            bounded += usize::from(matches!(surface.bend(1.0, &foot, &region), Bend::AtMost(_)));
+            bounded += usize::from(matches!(
+                surface.bend(1.0, &foot, &region, Patience::default()),
+                Bend::AtMost(_)
+            ));
         }
         assert!(bounded >= 300, "{which}: only {bounded} of 400 places have a bound");
     }
@@ -133,7 +143,7 @@ fn nearly_all_places_away_from_edges_have_bounds() {
 fn a_region_about_an_edge_has_no_bound() {
     let cone = made(2);
     let region = Region { center: Vec3::new(0.0, 0.0, 3.0), radius: 0.01, lowest: -0.01, highest: 0.01 };
-    assert_eq!(cone.bend(1.0, &cone.foot(&region.center), &region), Bend::Unbounded);
+    assert_eq!(cone.bend(1.0, &cone.foot(&region.center), &region, Patience::default()), Bend::Unbounded);
 }
 
 /// Rulings from a line to a point lie in a plane, and their directions change fast near the point: that bends nothing.
@@ -152,7 +162,7 @@ fn a_flat_fan_of_rulings_is_flat_in_few_parts() {
     let center = Vec3::new(0.4, 5.0, 0.1);
     let region = Region { center, radius: 0.2, lowest: -0.1, highest: 0.5 };
     for side in [1.0, -1.0] {
-        let bend = fan.bend(side, &fan.foot(&center), &region);
+        let bend = fan.bend(side, &fan.foot(&center), &region, Patience::default());
         assert!(matches!(bend, Bend::AtMost(bound) if bound < 1e-3), "{bend:?}");
     }
     let Surface::Ruled(sheet) = &fan else { panic!("not ruled") };

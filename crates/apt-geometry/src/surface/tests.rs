@@ -3,7 +3,10 @@ use std::sync::Arc;
 use proptest::prelude::*;
 
 use super::*;
-use crate::canonical::{Cone, Interval, Quadric, TabulatedCylinder};
+use crate::{
+    canonical::{Cone, Interval, Quadric, TabulatedCylinder},
+    patience::Patience,
+};
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
@@ -192,7 +195,7 @@ proptest! {
         let surface = tabulated();
         let (side, center) = (if above { 1.0 } else { -1.0 }, Vec3::from(center));
         let region = Region { center, radius, lowest: -0.05, highest: 3.0 };
-        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region) else { return Ok(()) };
+        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region, Patience::default()) else { return Ok(()) };
         let distance = |p: &Vec3| side * surface.signed_distance(p);
         for end in ends {
             let place = |k: usize| {

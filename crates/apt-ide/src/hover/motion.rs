@@ -57,9 +57,11 @@ impl Analysis {
         };
         text.push_str(&times);
         text.push_str(&verdict(evidence));
-        if let Some(story) = motion.computed.story() {
-            text.push_str(&short(&story));
+        let story = motion.computed.story(cancel);
+        if cancel() {
+            return Err(Cancelled);
         }
+        text.push_str(&story.as_ref().map(short).unwrap_or_default());
         list(&mut text, positions.iter().map(|position| position.tip.into()), positions.len());
         Ok(text)
     }

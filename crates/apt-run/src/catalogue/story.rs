@@ -181,7 +181,7 @@ mod tests {
         let document = Document::new(text, None, &std::sync::Arc::new(Settings::default()));
         let result = document.run(&|| false, &mut |_, _| {}).unwrap();
         let motion = result.motions.iter().find(|motion| motion.origin.isn == isn).unwrap();
-        lines(&motion.computed.story().unwrap()).join("\n")
+        lines(&motion.computed.story(&|| false).unwrap()).join("\n")
     }
 
     const PROGRAM: &str = "CUTTER/.5\nL1=LINE/0,0,1,0\nC1=CIRCLE/5,2,2\nFROM/0,2,0\nGO/TO,L1\n\

@@ -52,10 +52,13 @@ const BESIDE: f64 = 3.0;
 const FINER: usize = 2;
 const LEAST_FINE: usize = 12;
 
+/// What a look at a patch counts beside the parts of the surface that it takes, in units of work.
+const WORK_OF_PATCH: u32 = 8;
+
 #[cfg(test)]
 thread_local! {
     /// Patches that this thread has looked at.
-    pub(super) static JUDGED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+    pub(crate) static JUDGED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 /// What is known about a level.
@@ -228,7 +231,7 @@ impl Eq for Open {}
 /// expanded about.
 struct Question<'a> {
     face: Face<'a>,
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     tip: &'a Vec3,
     level: f64,
     bases: Option<&'a Bases>,
@@ -243,7 +246,7 @@ struct Question<'a> {
 
 /// Examines whether the distance from a surface is nowhere on the patches of a proof below a level. The patch that may be
 /// lowest is halved first: where the level is not kept that leads down to a lower point. `bases` are about the contact
-/// found. The proof is left for the next question.
+/// found. The proof is left for the next question, unless the tool's patience ends before it.
 pub(super) fn certify(
     face: Face<'_>,
     tool: &Tool,
@@ -275,6 +278,9 @@ pub(super) fn certify(
                 continue;
             }
             seen += 1;
+            if tool.patience.ends_after(WORK_OF_PATCH) {
+                return Certificate::Undecided;
+            }
             question.are_many.set(seen > MANY_PATCHES);
             let (judged, ground) = question.judge(&leaf);
             if judged.least >= cleared {
@@ -313,7 +319,7 @@ impl Question<'_> {
         self.bases.is_some_and(|Bases { contact: Base { place, distance, .. }, .. }| {
             let foot = self.face.surface.foot(place);
             distance - self.level <= HAIR * size
-                && matches!(downward_bend(self.face, &foot, place, 0.0), Bend::Unbounded)
+                && matches!(downward_bend(self.face, self.tool, &foot, (place, 0.0)), Bend::Unbounded)
         })
     }
 
@@ -396,7 +402,7 @@ impl Question<'_> {
             (self.away(&place, &ground.center) + radius <= ground.radius).then_some(ground.course.bend)
         };
         let bend_within = |radius: f64| {
-            known(radius).map_or_else(|| downward_bend(face, &foot, &place, radius), Bend::AtMost)
+            known(radius).map_or_else(|| downward_bend(face, tool, &foot, (&place, radius)), Bend::AtMost)
         };
         let bound = |base: &Base, bend: f64, is_own: bool| {
             if is_own {
@@ -444,7 +450,7 @@ impl Question<'_> {
         let ground = ground.filter(|_| judged.least >= level && self.spread > 0.0).map(|ground| {
             // More ground for the next positions, if it bears as well.
             let radius = ground.radius + self.spread;
-            match downward_bend(face, &foot, &place, radius) {
+            match downward_bend(face, tool, &foot, (&place, radius)) {
                 Bend::AtMost(bend) if bound(&ground.base, bend, false) >= level => {
                     Bending { radius, course: self.course(bend), ..ground }
                 }
@@ -551,11 +557,11 @@ fn sample(tool: &Tool, patch: &Patch, p: &Vec3, foot: &Foot, side: f64) -> Conta
 }
 
 /// How strongly the distance bends downward within reach of a point.
-fn downward_bend(face: Face<'_>, foot: &Foot, center: &Vec3, reach: f64) -> Bend {
+fn downward_bend(face: Face<'_>, tool: &Tool, foot: &Foot, (center, reach): (&Vec3, f64)) -> Bend {
     let distance = face.side * foot.distance;
     let region =
         Region { center: *center, radius: reach, lowest: -distance - reach, highest: reach - distance };
-    face.surface.bend(-face.side, foot, &region)
+    face.surface.bend(-face.side, foot, &region, tool.patience)
 }
 
 /// Lower bound of `a (1 − cos ψ) + b sin ψ` for |ψ| up to `half`, at most a right angle.

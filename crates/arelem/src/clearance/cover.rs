@@ -67,13 +67,13 @@ fn disc_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2
     let reach = closed_form::disc(tool, surface, gauge.side, tip)?;
     let [lowest, highest] = range.map(|distance| distance + reach);
     let region = Region { center: *tip, radius: spread, lowest, highest };
-    Some(surface.bend(gauge.side, &surface.foot(tip), &region))
+    Some(surface.bend(gauge.side, &surface.foot(tip), &region, tool.patience))
 }
 
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
-/// strays farther than `spread` from its place for the given tool end. There is none once `cancel`, asked once in
-/// [`BOXES_A_QUESTION`] boxes, says true; `None` where it is greater than what `is_of_use` takes.
+/// strays farther than `spread` from its place for the given tool end. There is none once the tool's patience is over, asked once in
+/// [`BOXES_A_QUESTION`] boxes; `None` where it is greater than what `is_of_use` takes.
 pub(crate) fn upward_bend(
     gauge: &Gauge,
     tool: &Tool,
@@ -81,11 +81,11 @@ pub(crate) fn upward_bend(
     spread: f64,
     range: [f64; 2],
     is_of_use: &dyn Fn(f64) -> bool,
-    cancel: &dyn Fn() -> bool,
 ) -> Option<Bend> {
     let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
     if gauge.on {
-        return Some(gauge.surface.bend(gauge.side, &gauge.surface.foot(tip), &region(*tip, spread)));
+        let foot = gauge.surface.foot(tip);
+        return Some(gauge.surface.bend(gauge.side, &foot, &region(*tip, spread), tool.patience));
     }
     if let Some(bend) = disc_bend(gauge, tool, tip, spread, range) {
         return Some(bend);
@@ -105,7 +105,7 @@ pub(crate) fn upward_bend(
     let mut is_probed = false;
     while let Some(cell) = cells.pop() {
         seen += 1;
-        if seen % BOXES_A_QUESTION == 0 && cancel() {
+        if seen % BOXES_A_QUESTION == 0 && tool.patience.is_over() {
             return Some(Bend::Unbounded);
         }
         if cell.beside(radius) || corner.is_some_and(|corner| cell.is_held(tool, &corner)) {
@@ -127,7 +127,7 @@ pub(crate) fn upward_bend(
         if distance - reach > range[1] || distance + reach < range[0] {
             continue;
         }
-        let found = surface.bend(gauge.side, &foot, &region(center, reach));
+        let found = surface.bend(gauge.side, &foot, &region(center, reach), tool.patience);
         let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
         if let Bend::AtMost(bound) = found
             && (small || bound <= greatest.max(close * needed))
@@ -135,7 +135,7 @@ pub(crate) fn upward_bend(
             greatest = greatest.max(bound);
             continue;
         }
-        let at_best = surface.bend(gauge.side, &foot, &region(center, spread));
+        let at_best = surface.bend(gauge.side, &foot, &region(center, spread), tool.patience);
         // Every box about a place in contact has it within its reach, and no better bound.
         let is_met = distance - spread <= range[1] && distance + spread >= range[0];
         match at_best {
@@ -154,7 +154,7 @@ pub(crate) fn upward_bend(
             let is_met = distance - spread <= range[1] && distance + spread >= range[0];
             if is_met
                 && !is_round
-                && surface.bend(gauge.side, &foot, &region(place, spread)) == Bend::Unbounded
+                && surface.bend(gauge.side, &foot, &region(place, spread), tool.patience) == Bend::Unbounded
             {
                 return Some(Bend::Unbounded);
             }

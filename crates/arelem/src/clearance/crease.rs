@@ -6,7 +6,7 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Away, Body, Chart, Crease, HalfSpace, Surface},
+    surface::{Away, Body, Chart, Crease, HalfSpace, Limit, Surface},
 };
 
 use super::{Contact, Memory, Tool, search::MISSED};
@@ -48,7 +48,7 @@ struct Slope {
 /// A tool in a place beside a surface, on a side of it.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
-    pub(super) tool: &'a Tool,
+    pub(super) tool: &'a Tool<'a>,
     pub(super) surface: &'a Surface,
     pub(super) side: f64,
     pub(super) tip: &'a Vec3,
@@ -259,7 +259,8 @@ pub(super) fn clears(
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
-    surface.keeps_off_body(body, level.max(0.0), MOST_LOOKS).is_some()
+    let limit = Limit { looks: MOST_LOOKS, patience: tool.patience };
+    surface.keeps_off_body(body, level.max(0.0), limit).is_some()
 }
 
 /// The half-space across a unit direction that holds a tool in some places of its end.
@@ -291,12 +292,13 @@ pub(super) fn clears_turning(
     };
     let wanted = level.max(0.0) + angle * angle * reach / 8.0;
     let body = Body { away: &|place: &Vec3| hull.away(place), within: None };
-    surface.keeps_off_body(body, wanted, MOST_LOOKS).is_some()
+    let limit = Limit { looks: MOST_LOOKS, patience: first.0.patience };
+    surface.keeps_off_body(body, wanted, limit).is_some()
 }
 
 /// The convex hull of two positions of a tool.
 struct Hull<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     axes: [Vec3; 2],
     tips: [Vec3; 2],
     /// Differences of distances below this are none.

@@ -165,10 +165,11 @@ impl Gauge {
     }
 
     /// What is measured, and where its end is: the tool, or the disk in its place.
-    pub(crate) fn body<'a>(&self, tool: &'a Tool, tip: &Vec3) -> (Cow<'a, Tool>, Vec3) {
+    pub(crate) fn body<'a>(&self, tool: &'a Tool<'a>, tip: &Vec3) -> (Cow<'a, Tool<'a>>, Vec3) {
         match &self.disk {
             Some(disk) if !self.on => {
-                (Cow::Owned(Tool::new(disk.cutter(), tool.axis)), tip + tool.axis * disk.height)
+                let disk_alone = Tool::awaited(disk.cutter(), tool.axis, tool.patience);
+                (Cow::Owned(disk_alone), tip + tool.axis * disk.height)
             }
             _ => (Cow::Borrowed(tool), *tip),
         }
@@ -431,7 +432,7 @@ impl Gauge {
         let foot = surface.foot(&center);
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };
-        match surface.bend(self.side, &foot, &region) {
+        match surface.bend(self.side, &foot, &region, tool.patience) {
             Bend::AtMost(bend) => Some(bend),
             Bend::Unbounded => None,
         }
@@ -527,7 +528,7 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
 }
 
 #[cfg(test)]
-pub(crate) use self::quadric::FLOORS;
+pub(crate) use self::{certify::JUDGED, quadric::FLOORS};
 
 #[cfg(test)]
 thread_local! {

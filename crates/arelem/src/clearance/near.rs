@@ -573,7 +573,7 @@ impl Far {
 /// A tool in a position beside a surface.
 #[derive(Clone, Copy)]
 struct Pose<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     surface: &'a Surface,
     side: f64,
     tip: &'a Vec3,

@@ -28,7 +28,7 @@ impl Course {
     /// in any direction.
     pub(super) fn nearly_straight(
         face: Face<'_>,
-        tool: &Tool,
+        tool: &Tool<'_>,
         patch: &Patch,
         base: &Base,
         [reach, bend]: [f64; 2],
@@ -45,7 +45,7 @@ impl Course {
             enough: bend,
             most: MOST_ACROSS * bend,
         };
-        let (least, across) = surface.curvature_across(side, &base.place, feet, asked)?;
+        let (least, across) = surface.curvature_across(side, &base.place, feet, asked, tool.patience)?;
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
         let is_bounded = deepest * (least + across) < 1.0;
@@ -110,7 +110,9 @@ mod tests {
                     lowest: -distance - reach,
                     highest: reach - distance,
                 };
-                let Bend::AtMost(bend) = surface.bend(-side, &surface.foot(&base.place), &region) else {
+                let Bend::AtMost(bend) =
+                    surface.bend(-side, &surface.foot(&base.place), &region, tool.patience)
+                else {
                     continue;
                 };
                 let face = Face { surface: &surface, side };

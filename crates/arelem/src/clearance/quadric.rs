@@ -54,7 +54,7 @@ const MAX_PARTS: u32 = 200;
 /// Tool and surface in the principal coordinates of the surface.
 pub(super) struct Posed<'a> {
     form: Cow<'a, PrincipalQuadric>,
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     side: f64,
     tip: Vec3,
     axis: Vec3,
@@ -171,7 +171,7 @@ pub(super) fn contact_anywhere(
 
 /// Tool and surface, as contacts on circles are looked for.
 struct Scene<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     surface: &'a Surface,
     side: f64,
     tip: &'a Vec3,
@@ -190,7 +190,7 @@ enum Means<'a> {
 
 impl<'a> Scene<'a> {
     /// `None` for surfaces that are no quadrics.
-    fn new(tool: &'a Tool, surface: &'a Surface, side: f64, tip: &'a Vec3) -> Option<Self> {
+    fn new(tool: &'a Tool<'a>, surface: &'a Surface, side: f64, tip: &'a Vec3) -> Option<Self> {
         let convex = shape(surface, side) == Shape::Convex;
         let means = match Round::new(surface) {
             Some(round) if convex => Means::Round(round),
@@ -294,7 +294,7 @@ fn above_plane(tool: &Tool, contact: &Contact, tip: &Vec3) -> f64 {
 
 impl<'a> Posed<'a> {
     /// `None` for surfaces that are no quadrics.
-    pub(super) fn new(tool: &'a Tool, surface: &'a Surface, side: f64, tip: &Vec3) -> Option<Self> {
+    pub(super) fn new(tool: &'a Tool<'a>, surface: &'a Surface, side: f64, tip: &Vec3) -> Option<Self> {
         let form = surface.principal_quadric()?;
         let axis = form.direction_to_principal(&tool.axis);
         let across = [0, 1].map(|k| form.direction_to_principal(&tool.across[k]));

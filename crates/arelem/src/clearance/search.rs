@@ -34,6 +34,8 @@ const MAX_RESTARTS: u32 = 12;
 pub(super) const MISSED: f64 = 1e-9;
 /// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
 const SAME: f64 = 1e-11;
+/// What a foot that is looked for counts in units of work.
+const WORK_OF_FOOT: u32 = 8;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
@@ -56,7 +58,7 @@ impl Best {
 }
 
 struct Search<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     surface: &'a Surface,
     side: f64,
     tip: &'a Vec3,
@@ -73,6 +75,9 @@ pub(super) fn contact(
     memory: Option<&Memory>,
     likely: Option<(usize, Contact)>,
 ) -> (Contact, f64) {
+    if tool.patience.ends_after(WORK_OF_FOOT) {
+        return (at_end(face, tip), f64::INFINITY);
+    }
     let Face { surface, side } = face;
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };
@@ -90,7 +95,7 @@ pub(super) fn contact(
     }
     let guessed = place.is_some() || likely.is_some();
     let shown = if unique { Shown::Nearest } else { search.complete(memory) };
-    if guessed && matches!(shown, Shown::Nothing) {
+    if guessed && matches!(shown, Shown::Nothing) && !tool.patience.was_over() {
         // Nothing proves the contact near the last one: look everywhere.
         search.scan();
     }
@@ -178,6 +183,9 @@ impl Search<'_> {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
+            if self.tool.patience.was_over() {
+                break;
+            }
             let level = self.best.value - slack;
             if let Some(posed) = &posed
                 && let Some(contact) = &self.best.contact
@@ -282,6 +290,11 @@ impl Search<'_> {
         }
     }
 
+    /// Counts a foot; whether the search is given up with it: what has been found is then left as it is.
+    fn is_given_up(&self) -> bool {
+        self.tool.patience.ends_after(WORK_OF_FOOT)
+    }
+
     fn point(&self, radius: f64, height: f64, azimuth: f64) -> Vec3 {
         self.tip + self.tool.axis * height + self.direction(azimuth) * radius
     }
@@ -316,6 +329,9 @@ impl Search<'_> {
         let step = std::f64::consts::TAU / SCAN as f64;
         let mut values = [0.0; SCAN];
         for (k, value) in values.iter_mut().enumerate() {
+            if self.is_given_up() {
+                return;
+            }
             let p = self.point(radius, height, step * k as f64);
             *value = self.side * self.surface.signed_distance(&p) - ball;
         }
@@ -353,6 +369,9 @@ impl Search<'_> {
         let (mut low, mut high) = (azimuth - step, azimuth + step);
         let mut x = azimuth;
         for _ in 0..MAX_ITERATIONS {
+            if self.is_given_up() {
+                return x;
+            }
             let radial = self.direction(x);
             let tangent = self.tool.axis.cross(&radial);
             let p = self.tip + self.tool.axis * height + radial * radius;
@@ -401,6 +420,9 @@ impl Search<'_> {
         let mut q = start * (radius / start.norm().max(radius));
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
+            if self.is_given_up() {
+                return;
+            }
             let p = self.tip + self.tool.across[0] * q.x + self.tool.across[1] * q.y;
             let (foot, hessian) = self.surface.foot_and_hessian(&p);
             let value = self.side * foot.distance;
@@ -438,6 +460,9 @@ impl Search<'_> {
         };
         let mut lowest = (f64::INFINITY, 0);
         for k in 0..SCAN {
+            if self.is_given_up() {
+                return;
+            }
             let value = middle(k);
             if value < lowest.0 {
                 lowest = (value, k);
@@ -477,6 +502,9 @@ impl Search<'_> {
         let mut q = start;
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
+            if self.is_given_up() {
+                return;
+            }
             let rho = radius[0] + q.x * (radius[1] - radius[0]);
             if rho <= 0.0 {
                 // The tip has every azimuth: the one that faces the surface leads down, if any does.

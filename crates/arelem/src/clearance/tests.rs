@@ -10,7 +10,7 @@ fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-fn tool(numbers: &[f64]) -> Tool {
+fn tool(numbers: &[f64]) -> Tool<'static> {
     Tool::new(Cutter::from_numbers(numbers, 1.0).expect("cutter"), Vec3::z())
 }
 
@@ -74,7 +74,7 @@ fn surfaces() -> Vec<Geometry> {
     ]
 }
 
-fn tools() -> Vec<Tool> {
+fn tools() -> Vec<Tool<'static>> {
     let cutter = |numbers: &[f64]| Cutter::from_numbers(numbers, 1.0).expect("cutter");
     let tilted = v(0.2, -0.1, 1.0).normalize();
     vec![

@@ -3,6 +3,7 @@
 use apt_geometry::{
     Vec3,
     cutter::{Cutter, Profile},
+    patience::Patience,
     surface::{Surface, perpendicular},
 };
 
@@ -35,7 +36,7 @@ pub(crate) struct Circle {
 
 /// The cutter with its axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tool {
+pub struct Tool<'a> {
     /// The seven numbers.
     pub cutter: Cutter,
     /// Unit axis from the tip to the spindle.
@@ -45,15 +46,23 @@ pub struct Tool {
     widest: f64,
     pub(crate) across: [Vec3; 2],
     pub(crate) pieces: Vec<Piece>,
+    /// Who waits while it is measured: what is given up is measured no better than it is found without proof.
+    pub(crate) patience: Patience<'a>,
 }
 
-impl Tool {
-    /// A cutter with a fixed unit axis.
+impl<'a> Tool<'a> {
+    /// A cutter with a fixed unit axis, for which one waits without end.
     pub fn new(cutter: Cutter, axis: Vec3) -> Self {
+        Self::awaited(cutter, axis, Patience::default())
+    }
+
+    /// The same for which somebody waits.
+    pub(crate) fn awaited(cutter: Cutter, axis: Vec3, patience: Patience<'a>) -> Self {
         let profile = cutter.profile();
         let x = perpendicular(&axis);
         let widest = profile.greatest_radius();
-        Self { cutter, axis, profile, widest, across: [x, axis.cross(&x)], pieces: pieces(&profile) }
+        let across = [x, axis.cross(&x)];
+        Self { cutter, axis, profile, widest, across, pieces: pieces(&profile), patience }
     }
 
     /// The same cutter with another unit axis.

@@ -132,7 +132,7 @@ pub(super) fn band(state: &State, role: RoleName) -> f64 {
 }
 
 /// Tool and roles of a directed motion, with the sides on which the tool stands.
-fn roles(state: &State, drive: &NamedSurface) -> Option<(Tool, Vec3, Working, Working)> {
+fn roles(state: &State, drive: &NamedSurface) -> Option<(Tool<'static>, Vec3, Working, Working)> {
     let tip = state.tip?;
     let tool = Tool::new(state.cutter?, state.axis);
     let make = |name: RoleName, surface: &NamedSurface, on: bool| {

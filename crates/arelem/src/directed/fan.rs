@@ -13,10 +13,10 @@ const PASSES: u32 = 16;
 const SETTLED: f64 = 1e-9;
 
 /// The path with the axis turning evenly, and what it was computed with. `prepared` holds the axis of TANDS.
-pub(super) fn follow(
-    prepared: Prepared,
-    path: &dyn Fn(&Prepared) -> Result<Path, Stuck>,
-) -> Result<(Prepared, Path), Stuck> {
+pub(super) fn follow<'a>(
+    prepared: Prepared<'a>,
+    path: &dyn Fn(&Prepared<'_>) -> Result<Path, Stuck>,
+) -> Result<(Prepared<'a>, Path), Stuck> {
     if !prepared.attitude.turns() {
         let only = path(&prepared)?;
         return Ok((prepared, only));

@@ -102,6 +102,9 @@ fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSeque
         let floor = LEAST_STEP * sweep.length;
         let (mut before, mut x) = (0.0, 0.0);
         loop {
+            if prepared.tool.patience.is_over() {
+                return found;
+            }
             let (here, tip) = contact(x);
             if here.clearance < limit {
                 if worst.as_ref().is_none_or(|known| here.clearance < known.0) {

@@ -9,7 +9,7 @@ mod straight;
 mod surface_end;
 mod tangency;
 
-use apt_geometry::{Vec3, motion::CheckSurface};
+use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
 use self::{scout::Outlook, step::Stepper};
 use super::{
@@ -81,7 +81,7 @@ impl Vertex {
     }
 
     /// The straight move to another position.
-    pub(super) fn sweep<'a>(&self, prepared: &'a Prepared, to: &Self) -> Sweep<'a> {
+    pub(super) fn sweep<'a>(&self, prepared: &'a Prepared<'a>, to: &Self) -> Sweep<'a> {
         Sweep::new(&prepared.tool, (&self.tip, &self.axis), (&to.tip, &to.axis))
     }
 }
@@ -150,19 +150,19 @@ pub(super) fn run(
     state: &State,
     prepared: &Prepared,
     checks: &[CheckSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Path, MotionFailure> {
     let flat = prepared.part.shape == Shape::Flat && prepared.drive.shape == Shape::Flat;
     if flat && !prepared.attitude.turns() {
-        return straight::run(prepared, checks, cancel);
+        return straight::run(prepared, checks, patience);
     }
     let mut march = March {
         state,
         prepared,
         checks,
-        stepper: Stepper::new(prepared, state.maximum_step, cancel),
+        stepper: Stepper::new(prepared, state.maximum_step, patience),
         watcher: Watcher::new(prepared, checks),
-        tangency: tangency::Watch::new(prepared, checks, cancel),
+        tangency: tangency::Watch::new(prepared, checks, patience),
         points: Vec::new(),
         look: FIRST_LOOK,
         ahead: 0.0,
@@ -171,7 +171,7 @@ pub(super) fn run(
         revolutions: 0,
         before: None,
     };
-    march.run(cancel)
+    march.run(patience)
 }
 
 /// What was known before the last cut vector, to make that vector again.
@@ -184,7 +184,7 @@ struct Before<'a> {
 
 struct March<'a> {
     state: &'a State,
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
     stepper: Stepper<'a>,
     watcher: Watcher<'a>,
@@ -203,16 +203,16 @@ struct March<'a> {
 }
 
 impl<'a> March<'a> {
-    fn run(&mut self, cancel: &dyn Fn() -> bool) -> Result<Path, MotionFailure> {
+    fn run(&mut self, patience: Patience<'_>) -> Result<Path, MotionFailure> {
         let mut here = Vertex::start(self.prepared)?;
         let start = here;
         let mut cap = self.state.maximum_step;
         let mut finals = 0;
         while self.points.len() < self.state.maximum_points as usize {
-            if cancel() {
+            if patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
-            self.look_for_end_beside(&here, cancel)?;
+            self.look_for_end_beside(&here, patience)?;
             let advanced = self.stepper.advance(&mut here, cap);
             let mut next = advanced.map_err(|failure| self.explained(&here, failure))?;
             let mut before = self.snapshot(&here);
@@ -225,8 +225,8 @@ impl<'a> March<'a> {
                 self.before = Some(before);
                 self.points.push(next.tip);
                 self.count_revolution(&start, &here, &next)?;
-                self.look_ahead((&here, &next), cancel)?;
-                self.look_for_end(&here, &next, cancel)?;
+                self.look_ahead((&here, &next), patience)?;
+                self.look_for_end(&here, &next, patience)?;
                 self.count_creeping(&here, &next, cap)?;
                 here = next;
                 cap = self.state.maximum_step;
@@ -269,7 +269,7 @@ impl<'a> March<'a> {
                 return Ok(self.path(&end));
             }
         }
-        self.judge_outlook(&here, cancel)?;
+        self.judge_outlook(&here, patience)?;
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
             remaining: self.watcher.remaining(&here.tip, &here.axis).min(self.tangency.nearest.abs()),
@@ -281,22 +281,22 @@ impl<'a> March<'a> {
     fn look_ahead(
         &mut self,
         (here, next): (&Vertex, &Vertex),
-        cancel: &dyn Fn() -> bool,
+        patience: Patience<'_>,
     ) -> Result<(), MotionFailure> {
         self.ahead -= (next.tip - here.tip).norm();
         if self.points.len() < self.look || self.ahead > 0.0 {
             return Ok(());
         }
         self.look = 2 * self.points.len();
-        self.judge_outlook(next, cancel)
+        self.judge_outlook(next, patience)
     }
 
     /// Looks as far ahead as the cut vectors that are left can reach: an error if nothing there stops the motion.
-    fn judge_outlook(&mut self, from: &Vertex, cancel: &dyn Fn() -> bool) -> Result<(), MotionFailure> {
+    fn judge_outlook(&mut self, from: &Vertex, patience: Patience<'_>) -> Result<(), MotionFailure> {
         let left = (self.state.maximum_points as usize).saturating_sub(self.points.len());
         let reach = left as f64 * self.state.maximum_step;
         let watches = (&self.watcher, &self.tangency);
-        match scout::ahead(self.prepared, self.checks, watches, from, reach, cancel)? {
+        match scout::ahead(self.prepared, self.checks, watches, from, reach, patience)? {
             Outlook::Nothing { course, nearest, met } => Err(self.never_met(nearest, course, met)),
             Outlook::Ends(end) => Err(self.surface_ends(&end)),
             Outlook::Open { way } => {

@@ -5,6 +5,7 @@
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
+    patience::Patience,
     surface::Surface,
 };
 
@@ -129,11 +130,11 @@ pub(super) fn run(
     state: &State,
     prepared: &Prepared,
     checks: &[CheckSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Option<Path>, MotionFailure> {
     let [check] = checks else { return Ok(None) };
     let Some((drive, stop)) = eligible(state, prepared, check) else { return Ok(None) };
-    if cancel() {
+    if patience.is_over() {
         return Err(MotionFailure::Cancelled);
     }
     let along = |shift: f64| -> Result<Path, MotionFailure> {

@@ -3,6 +3,7 @@
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, DriveSide, NamedSurface, PartSide, Relation, Turn},
+    patience::Patience,
 };
 
 use crate::{
@@ -33,11 +34,11 @@ const SIDE_SINE: f64 = 0.05;
 
 /// A directed motion ready to go.
 #[derive(Debug, Clone)]
-pub(crate) struct Prepared {
+pub(crate) struct Prepared<'a> {
     /// The tool as it stands at the start.
-    pub(crate) tool: Tool,
+    pub(crate) tool: Tool<'a>,
     /// How its axis goes on from there.
-    pub(crate) attitude: Attitude,
+    pub(crate) attitude: Attitude<'a>,
     pub(crate) tip: Vec3,
     pub(crate) part: Working,
     pub(crate) drive: Working,
@@ -51,16 +52,17 @@ pub(crate) struct Prepared {
     pub(crate) drive_side: DriveSide,
 }
 
-pub(super) fn prepare(
+pub(super) fn prepare<'a>(
     state: &State,
     turn: Turn,
     drive: &NamedSurface,
     checks: &[CheckSurface],
     warnings: &mut Vec<MotionWarning>,
-) -> Result<Prepared, MotionFailure> {
+    patience: Patience<'a>,
+) -> Result<Prepared<'a>, MotionFailure> {
     let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: false })?;
     let position = required_position(state)?;
-    let (tool, tip) = (Tool::new(cutter, position.axis), position.tip);
+    let (tool, tip) = (Tool::awaited(cutter, position.axis, patience), position.tip);
     let size = position::size(&tool, &tip);
     let part_on = state.part_side == PartSide::On;
     let drive_on = state.drive_side == DriveSide::On;
@@ -112,13 +114,13 @@ pub(super) fn prepare(
 }
 
 /// The axis along the motion: fixed if it is everywhere what it is now.
-fn attitude(
+fn attitude<'a>(
     state: &State,
-    tool: &Tool,
+    tool: &Tool<'a>,
     (part, drive): (&Working, &Working),
     tip: &Vec3,
     wanted: &Vec3,
-) -> Result<Attitude, MotionFailure> {
+) -> Result<Attitude<'a>, MotionFailure> {
     let law = Law::new(&state.axis_mode, Some(part), Some(drive), (tool, tip, wanted))
         .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip: *tip })?;
     let Some(law) = law else { return Ok(Attitude::fixed(tool.clone())) };
@@ -215,7 +217,7 @@ fn line_of_motion(part: &Contact, drive: &Contact, wanted: &Vec3, tip: &Vec3) ->
 
 /// Where a motion begins.
 struct Corner<'a> {
-    tool: &'a Tool,
+    tool: &'a Tool<'a>,
     tip: Vec3,
     roles: [&'a Working; 2],
     contacts: [Contact; 2],

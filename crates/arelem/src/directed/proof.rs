@@ -6,7 +6,7 @@ mod course;
 mod ledger;
 mod support;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 pub(super) use self::course::lowest;
 pub(crate) use self::ledger::Ledger;
@@ -60,7 +60,7 @@ struct Line<'a> {
     sweep: &'a Sweep<'a>,
     role: &'a Working,
     ledger: &'a Ledger,
-    cancel: &'a dyn Fn() -> bool,
+    patience: Patience<'a>,
     /// −1 turns a concave clearance into a convex one.
     sign: f64,
     /// Least and greatest clearance that the vector may have between its ends.
@@ -102,7 +102,7 @@ impl Line<'_> {
     }
 }
 
-/// Least and greatest clearance over the straight move between two positions with known contacts. Once `cancel` says true,
+/// Least and greatest clearance over the straight move between two positions with known contacts. Once `patience` is over,
 /// nothing more is proven.
 pub(crate) fn extremes(
     sweep: &Sweep<'_>,
@@ -111,7 +111,7 @@ pub(crate) fn extremes(
     from: (&Vec3, &Contact),
     to: (&Vec3, &Contact),
     size: f64,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Extremes {
     let (least, greatest) = (from.1.clearance.min(to.1.clearance), from.1.clearance.max(to.1.clearance));
     let length = sweep.length;
@@ -137,7 +137,7 @@ pub(crate) fn extremes(
     }
     if length > 0.0 && turns {
         // Turning the tool bends every clearance, and the gradients at the ends follow the axis' law, not the move.
-        let line = Line { sweep, role, ledger, cancel, sign: 1.0, limits: limits(role, &ends, size) };
+        let line = Line { sweep, role, ledger, patience, sign: 1.0, limits: limits(role, &ends, size) };
         return course::extremes(&line, line.sample(0.0), line.sample(length), ends);
     }
     if shape == Shape::Flat || length <= 0.0 {
@@ -145,7 +145,7 @@ pub(crate) fn extremes(
     }
     let sign = if shape == Shape::Concave { -1.0 } else { 1.0 };
     let limits = limits(role, &ends, size);
-    let line = Line { sweep, role, ledger, cancel, sign, limits };
+    let line = Line { sweep, role, ledger, patience, sign, limits };
     let (a, b) = (line.known(0.0, from.1, from.0), line.known(length, to.1, to.0));
     match shape {
         Shape::Flat => ends,
@@ -191,7 +191,7 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> Minimum
     let (mut a, mut b) = (a, b);
     let mut last = None;
     for iteration in 0..MAX_ITERATIONS {
-        if (line.cancel)() {
+        if line.patience.is_over() {
             return found(value, f64::NEG_INFINITY, last);
         }
         let (meeting, bound) = tangents_meet(a, b);

@@ -14,10 +14,10 @@ const WAYS: u32 = 5;
 const NO_TURN: f64 = 1e-9;
 
 /// The path, and what it was computed with.
-pub(super) fn follow(
-    prepared: Prepared,
-    path: &dyn Fn(&Prepared) -> Result<Path, Stuck>,
-) -> Result<(Prepared, Path), Stuck> {
+pub(super) fn follow<'a>(
+    prepared: Prepared<'a>,
+    path: &dyn Fn(&Prepared<'_>) -> Result<Path, Stuck>,
+) -> Result<(Prepared<'a>, Path), Stuck> {
     let stuck = match path(&prepared) {
         Ok(found) => return Ok((prepared, found)),
         Err(stuck) => stuck,

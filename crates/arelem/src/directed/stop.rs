@@ -73,7 +73,7 @@ pub(super) struct Event {
 /// Watches all check surfaces of a motion.
 #[derive(Clone)]
 pub(super) struct Watcher<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
     watches: Vec<Watch>,
     /// Positions met so far, with any relation.
@@ -87,7 +87,7 @@ pub(super) struct Watcher<'a> {
 }
 
 impl<'a> Watcher<'a> {
-    pub(super) fn new(prepared: &'a Prepared, checks: &'a [CheckSurface]) -> Self {
+    pub(super) fn new(prepared: &'a Prepared<'a>, checks: &'a [CheckSurface]) -> Self {
         let mut watcher = Self {
             prepared,
             checks,
@@ -290,7 +290,7 @@ impl<'a> Watcher<'a> {
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
                 if let Some(Bend::AtMost(bend)) =
-                    upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|_| true, &|| false)
+                    upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|_| true)
                 {
                     let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;

@@ -11,7 +11,7 @@ mod polygon;
 #[cfg(test)]
 mod tests;
 
-use apt_geometry::motion::Pocket;
+use apt_geometry::{motion::Pocket, patience::Patience};
 
 pub use self::failure::{CornerFault, PocketFailure};
 use self::{outline::Outline, passes::Offsets};
@@ -29,7 +29,7 @@ const PLUNGE_FEED: usize = 3;
 const GENERAL_FEED: usize = 4;
 const FINISH_FEED: usize = 5;
 
-/// Computes a pocket from the modal state (tool axis, cutter, part surface) and the statement. `cancel` is polled
+/// Computes a pocket from the modal state (tool axis, cutter, part surface) and the statement. `patience` is asked
 /// once per pass.
 ///
 /// # Errors
@@ -39,7 +39,7 @@ const FINISH_FEED: usize = 5;
 pub(crate) fn clear(
     state: &State,
     pocket: &Pocket,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<PocketPath, MotionFailure> {
     let finite = pocket.numbers.iter().chain(pocket.points.iter().flatten()).all(|x| x.is_finite());
     if !finite {
@@ -61,7 +61,7 @@ pub(crate) fn clear(
     let outermost = if walls { outline.centers(radius)? } else { outline.polygon.clone() };
     let offsets = Offsets::new(&pocket.numbers, radius, !pocket.keep_offsets);
     let effective_radius = offsets.effective_radius;
-    let rings = passes::clear(outermost, offsets, cancel)?;
+    let rings = passes::clear(outermost, offsets, patience)?;
     let position = |point: &polygon::Vec2| ToolPosition { tip: outline.in_space(point), axis: state.axis };
     let finish = rings.first().map_or(0, Vec::len);
     let path: Vec<ToolPosition> = rings.iter().rev().flatten().map(position).collect();

@@ -4,6 +4,8 @@
 //! that is no wider than twice the effective radius, the half way is the last pass. So the area inside a pass is
 //! covered either from that pass or from one in its middle.
 
+use apt_geometry::patience::Patience;
+
 use super::{
     EFFECTIVE_RADIUS, FINISH_OFFSET, GENERAL_OFFSET,
     failure::PocketFailure,
@@ -110,7 +112,7 @@ impl Offsets {
 pub(super) fn clear(
     outermost: Polygon,
     mut offsets: Offsets,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Vec<Vec<Vec2>>, MotionFailure> {
     let both_sides = 2.0 * offsets.effective_radius;
     if offsets.reduce {
@@ -120,7 +122,7 @@ pub(super) fn clear(
     let mut polygon = outermost;
     let mut step = Step::Finish;
     while !polygon.is_within(both_sides) {
-        if cancel() {
+        if patience.is_over() {
             return Err(MotionFailure::Cancelled);
         }
         let offset = offsets.of(step);

@@ -5,6 +5,7 @@ use apt_geometry::{
     canonical::{Geometry, Plane, Sphere},
     cutter::Cutter,
     motion::{MotionCommand, NamedSurface, PerRole, Pocket},
+    patience::{Patience, Waiting},
 };
 use nalgebra::{Rotation3, Unit};
 use proptest::prelude::*;
@@ -45,7 +46,7 @@ fn near(found: &[Vec3], wanted: &[[f64; 3]]) {
 }
 
 fn fault(state: &State, pocket: &Pocket) -> PocketFailure {
-    match clear(state, pocket, &|| false) {
+    match clear(state, pocket, Patience::default()) {
         Err(MotionFailure::Pocket(failure)) => failure,
         other => panic!("{other:?}"),
     }
@@ -59,7 +60,7 @@ fn assert_verified(path: &PocketPath) {
 #[test]
 fn a_rectangle_is_cut_from_its_middle_to_its_walls() {
     let pocket = statement([0.49, 1.0, 0.8, 5.0, 10.0, 8.0], true, 1, &LEVEL);
-    let path = clear(&state(&[1.0]), &pocket, &|| false).unwrap();
+    let path = clear(&state(&[1.0]), &pocket, Patience::default()).unwrap();
     assert_eq!(
         path.passes.each_ref().map(|pass| (pass.feed, pass.points.len())),
         [(5.0, 1), (10.0, 19), (8.0, 5)]
@@ -85,7 +86,7 @@ fn a_rectangle_is_cut_from_its_middle_to_its_walls() {
 fn one_pass_belongs_to_the_plunge_and_the_finish() {
     let points = [[0.0, 0.0, 0.0], [1.8, 0.0, 0.0], [1.8, 1.6, 0.0], [0.0, 1.6, 0.0]];
     let pocket = statement([0.49, 1.0, 1.0, 5.0, 10.0, 8.0], true, 1, &points);
-    let path = clear(&state(&[1.0]), &pocket, &|| false).unwrap();
+    let path = clear(&state(&[1.0]), &pocket, Patience::default()).unwrap();
     assert_eq!(path.passes.each_ref().map(|pass| pass.points.len()), [1, 0, 4]);
     assert_verified(&path);
 }
@@ -95,7 +96,7 @@ fn a_narrow_middle_is_cut_by_one_line() {
     // Half an offset inside the finishing pass the rest is .485 wide: one side reaches all of it.
     let points = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 1.985, 0.0], [0.0, 1.985, 0.0]];
     let pocket = statement([0.49, 1.0, 1.0, 5.0, 10.0, 8.0], true, 1, &points);
-    let path = clear(&state(&[1.0]), &pocket, &|| false).unwrap();
+    let path = clear(&state(&[1.0]), &pocket, Patience::default()).unwrap();
     // Its end nearer to the first corner leads to the finishing pass.
     near(&tips(&path)[..3], &[[7.25, 0.75, 0.0], [0.75, 0.75, 0.0], [0.5, 0.5, 0.0]]);
     assert_eq!(path.passes.each_ref().map(|pass| pass.points.len()), [1, 1, 5]);
@@ -104,7 +105,7 @@ fn a_narrow_middle_is_cut_by_one_line() {
 #[test]
 fn tool_centres_are_the_outermost_pass() {
     let pocket = statement([0.49, 1.0, 0.8, 5.0, 10.0, 8.0], true, 0, &LEVEL);
-    let path = clear(&state(&[1.0]), &pocket, &|| false).unwrap();
+    let path = clear(&state(&[1.0]), &pocket, Patience::default()).unwrap();
     let finish: Vec<Vec3> = path.passes[2].points.iter().map(|position| position.tip).collect();
     near(&finish, &[LEVEL[0], LEVEL[1], LEVEL[2], LEVEL[3], LEVEL[0]]);
     assert_verified(&path);
@@ -116,7 +117,7 @@ fn walls_of_a_canted_pocket_stand_along_the_tool_axis() {
     state.part =
         part(Geometry::Plane(Plane { normal: Vec3::new(0.5, 0.0, 1.0).normalize(), distance: -1.0 }));
     let pocket = statement([0.49, 1.0, 0.8, 5.0, 10.0, 8.0], true, 3, &LEVEL);
-    let path = clear(&state, &pocket, &|| false).unwrap();
+    let path = clear(&state, &pocket, Patience::default()).unwrap();
     let level: Vec<Vec3> =
         path.passes[2].points.iter().map(|position| Vec3::new(position.tip.x, position.tip.y, 0.0)).collect();
     near(&level, &[[0.5, 0.5, 0.0], [7.5, 0.5, 0.0], [7.5, 4.5, 0.0], [0.5, 4.5, 0.0], [0.5, 0.5, 0.0]]);
@@ -183,8 +184,9 @@ fn numbers_out_of_range_are_refused() {
     let many = fault(&state(&[1.0]), &statement(zero, true, 1, &LEVEL));
     assert!(matches!(many, PocketFailure::TooManyPasses { .. }), "{many:?}");
     let not_finite = statement([f64::NAN, 1.0, 0.8, 5.0, 10.0, 8.0], true, 1, &LEVEL);
-    assert_eq!(clear(&state(&[1.0]), &not_finite, &|| false), Err(MotionFailure::NotFinite));
-    let cancelled = clear(&state(&[1.0]), &statement(good, true, 1, &LEVEL), &|| true);
+    assert_eq!(clear(&state(&[1.0]), &not_finite, Patience::default()), Err(MotionFailure::NotFinite));
+    let waiting = Waiting::until(&|| true);
+    let cancelled = clear(&state(&[1.0]), &statement(good, true, 1, &LEVEL), waiting.patience());
     assert_eq!(cancelled, Err(MotionFailure::Cancelled));
 }
 
@@ -208,7 +210,7 @@ fn the_tool_axis_must_stand_on_the_pocket_and_the_part_surface_be_a_plane() {
     curved.part = part(Geometry::Sphere(Sphere { center: Vec3::zeros(), radius: 20.0 }));
     assert_eq!(fault(&curved, &statement(numbers, true, 2, &LEVEL)).apt3(), Some(3519));
     assert!(
-        clear(&curved, &statement(numbers, true, 1, &LEVEL), &|| false).is_ok(),
+        clear(&curved, &statement(numbers, true, 1, &LEVEL), Patience::default()).is_ok(),
         "no projection, no plane"
     );
 }
@@ -229,7 +231,7 @@ fn motion_goes_on_from_the_last_corner() {
 #[test]
 fn the_verifier_sees_gouges_gaps_and_unfinished_walls() {
     let pocket = statement([0.49, 1.0, 0.8, 5.0, 10.0, 8.0], true, 1, &LEVEL);
-    let good = clear(&state(&[1.0]), &pocket, &|| false).unwrap();
+    let good = clear(&state(&[1.0]), &pocket, Patience::default()).unwrap();
     let rules = |path: &PocketPath| -> Vec<Rule> {
         let evidence = verify_pocket(path, &|| false).unwrap();
         assert_eq!(evidence.verified, evidence.violations.is_empty());
@@ -296,7 +298,7 @@ proptest! {
         state.axis = Vec3::new(tilt.sin(), 0.0, tilt.cos());
         let points: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, 0.5]).collect();
         let pocket = statement(numbers, false, 1, &points);
-        match clear(&state, &pocket, &|| false) {
+        match clear(&state, &pocket, Patience::default()) {
             Ok(path) => {
                 let evidence = verify_pocket(&path, &|| false).unwrap();
                 prop_assert!(evidence.verified, "{:?}", evidence.violations);
@@ -312,7 +314,7 @@ proptest! {
     fn kept_offsets_neither_gouge_nor_miss_the_walls(corners in shapes(), (radius, numbers) in numbers()) {
         let points: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
         let pocket = statement(numbers, true, 1, &points);
-        if let Ok(path) = clear(&state(&[2.0 * radius]), &pocket, &|| false) {
+        if let Ok(path) = clear(&state(&[2.0 * radius]), &pocket, Patience::default()) {
             let evidence = verify_pocket(&path, &|| false).unwrap();
             let broken = evidence.violations.iter().find(|violation| violation.rule != Rule::Cleared);
             prop_assert!(broken.is_none(), "{broken:?}");
@@ -338,7 +340,7 @@ proptest! {
         there.part = part(Geometry::Plane(Plane { normal, distance: plane.distance + normal.dot(&shift) }));
         let mut moved = pocket.clone();
         moved.points = pocket.points.iter().map(|point| turn * point + shift).collect();
-        match (clear(&here, &pocket, &|| false), clear(&there, &moved, &|| false)) {
+        match (clear(&here, &pocket, Patience::default()), clear(&there, &moved, Patience::default())) {
             (Ok(here), Ok(there)) => {
                 prop_assert_eq!(here.positions().count(), there.positions().count());
                 for (a, b) in here.positions().zip(there.positions()) {
@@ -374,7 +376,7 @@ proptest! {
         let points: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, 0.0]).collect();
         // A flat end clears all of its width, a ball what the programmer takes for enough.
         let cutter: &[f64] = if ball { &[2.0 * radius, radius] } else { &[2.0 * radius] };
-        let Ok(path) = clear(&state(cutter), &statement(numbers, keep, 1, &points), &|| false) else {
+        let Ok(path) = clear(&state(cutter), &statement(numbers, keep, 1, &points), Patience::default()) else {
             return Ok(());
         };
         let evidence = verify_pocket(&path, &|| false).unwrap();

@@ -5,6 +5,7 @@ use apt_geometry::{
     canonical::{Geometry, Plane},
     cutter::{Cutter, CutterError, Disk},
     motion::{Delta, Direction, MotionCommand, NamedSurface, PerRole, Relation, RoleDisk, ToolAxis},
+    patience::Patience,
 };
 
 use super::{Output, State};
@@ -21,7 +22,7 @@ pub(super) fn apply(
     state: &mut State,
     command: &MotionCommand,
     warnings: &mut Vec<MotionWarning>,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Option<Output>, MotionFailure> {
     if state.skip(command) {
         return Ok(Some(Output::Ignored));
@@ -62,25 +63,25 @@ pub(super) fn apply(
             Ok(None)
         }
         MotionCommand::Start(surfaces) => {
-            let sequence = start_up::start(state, surfaces, cancel)?;
+            let sequence = start_up::start(state, surfaces, patience)?;
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
             Ok(Some(finish(state, sequence)))
         }
         MotionCommand::Offset(surfaces) => {
-            let sequence = start_up::offset(state, surfaces, cancel)?;
+            let sequence = start_up::offset(state, surfaces, patience)?;
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
             Ok(Some(finish(state, sequence)))
         }
         MotionCommand::Drive { turn, drive, checks } => {
-            let sequence = directed::run(state, *turn, drive, checks, warnings, cancel)?;
+            let sequence = directed::run(state, *turn, drive, checks, warnings, patience)?;
             Ok(Some(finish(state, sequence)))
         }
         MotionCommand::Pocket(pocket) => {
-            let path = pocket::clear(state, pocket, cancel)?;
+            let path = pocket::clear(state, pocket, patience)?;
             let ends: Vec<Vec3> = path.positions().rev().take(2).map(|position| position.tip).collect();
             if let Some(last) = ends.first() {
                 state.move_to(ends.get(1).copied().unwrap_or(state.previous), *last);

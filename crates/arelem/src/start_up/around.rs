@@ -1,7 +1,7 @@
 //! The last resort of a start-up: Newton's method from places all about the start, in shells of growing radius. Surfaces that
 //! bend away, corners and edges can keep every single way from the start from its goal.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use crate::{
     attitude::Attitude,
@@ -30,7 +30,7 @@ pub(super) fn solve(
     attitude: &Attitude,
     conditions: &[Condition<'_>],
     start: &Vec3,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Option<Vec3>, MotionFailure> {
     let mut reach = attitude.tool().radius();
     for condition in conditions {
@@ -50,7 +50,7 @@ pub(super) fn solve(
     for shell in SHELLS {
         let mut nearest: Option<Vec3> = None;
         for direction in directions() {
-            if cancel() {
+            if patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let place = start + direction * (shell * reach);

@@ -38,7 +38,7 @@ pub(super) fn position(work: &mut StartUp<'_>, start: &Vec3) -> Result<Vec3, Mot
     let mut found: Vec<Tangency> = Vec::new();
     let mut failures = Vec::new();
     for way in [tangent, -tangent] {
-        if (work.cancel)() {
+        if work.patience.is_over() {
             return Err(MotionFailure::Cancelled);
         }
         match ahead(work, &begin, &way, size) {
@@ -86,7 +86,8 @@ fn ahead(work: &StartUp<'_>, begin: &Vec3, way: &Vec3, size: f64) -> Result<Tang
     };
     let check =
         CheckSurface { relation: check.relation, occurrence: 1, surface: check.named.clone(), label: None };
-    let sequence = motion::run(&state, Turn::Forward, &drive.named, &[check], &mut Vec::new(), work.cancel)?;
+    let sequence =
+        motion::run(&state, Turn::Forward, &drive.named, &[check], &mut Vec::new(), work.patience)?;
     let end: Option<&ToolPosition> = sequence.points.last();
     let (Some(end), Some(stop)) = (end, sequence.stop) else {
         return Err(MotionFailure::NotTangent { check: 0, gap: f64::INFINITY });

@@ -14,7 +14,7 @@ use crate::{
 fn story(p: &mut Program, command: &MotionCommand) -> Story {
     let state = p.state.clone();
     p.run(command);
-    tell(&state, command, p.last()).expect("a motion along surfaces")
+    tell(&state, command, p.last(), &|| false).expect("a motion along surfaces")
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_mere_move_has_no_story() {
     let mut p = Program::new();
     p.cutter(&[0.5]).from(0.0, 2.0, 0.0).go(&[(To, &line(0.0, 0.0, 1.0, 0.0))]);
     let command = MotionCommand::NoPartSurface;
-    assert_eq!(tell(&p.state, &command, p.last()), None);
+    assert_eq!(tell(&p.state, &command, p.last(), &|| false), None);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use apt_geometry::canonical::{Cone, Cylinder, Remembering, RuledSurface};
 
 use super::{
-    ends::asked,
+    ends::limited,
     refused::{AMPLE, Found},
     sheets::ruled,
     *,
@@ -503,8 +503,8 @@ fn no_vector_round_a_corner_comes_to_a_path_that_leads_back() {
     }
 }
 
-/// Questions whether to give up: more than a path asks that goes on, where two vertices that take turns ask for ever.
-const MOST_ASKED: u32 = 6_000;
+/// Clearances: more than a path takes that goes on, where two vertices that take turns take them for ever.
+const MOST_TAKEN: u64 = 6_000;
 
 /// The path of a bull nose along a cone over a ruled surface turns by more than a right angle. Two vertices there take turns in sparing each
 /// other, where vectors that end nearer than is of use count.
@@ -537,9 +537,9 @@ fn a_vector_that_ends_nearer_than_is_of_use_spares_no_vertex() {
     p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &first)]).side(DriveSide::Left);
     p.indirv(0.1684050949135663, -0.37268170510602866, 0.9125503113179109);
     let onward = motion(Turn::Forward, &drive, &[(Relation::On, 1, &x(0.6))]);
-    let (execution, asks) = asked(&p, &onward, MOST_ASKED);
+    let (execution, taken) = limited(&p, &onward, MOST_TAKEN);
     let Some(Output::Sequence(sequence)) = execution.output else {
-        panic!("{:?} after {asks} questions", execution.failure);
+        panic!("{:?} after {taken} clearances", execution.failure);
     };
     assert!(verify(&sequence, &|| false).expect("evidence").verified);
 }

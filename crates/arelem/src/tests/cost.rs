@@ -7,7 +7,7 @@ use apt_geometry::canonical::{Remembering, RuledSurface};
 
 use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
-    clearance::{EVALUATIONS, FLOORS},
+    clearance::{EVALUATIONS, FLOORS, JUDGED},
     verify::{
         VerifyError, WORK,
         tests::{lofted, lofts},
@@ -120,6 +120,56 @@ fn the_engine_asks_often_whether_to_go_on() {
     }
 }
 
+/// Patches of the tool that the engine may look at before it asks again, and clearances that it may ask for once it is told to give up: these
+/// are then found without a search. A patch takes some microseconds, a search without an end a thousand of them.
+const PATCHES_BETWEEN_QUESTIONS: u64 = 40;
+const AFTER_THE_LAST: u64 = 200;
+
+#[test]
+fn the_engine_asks_often_during_its_proofs() {
+    let mut most = 0;
+    for (name, part) in [("twisted", twisted_to(0.0)), ("vault", lofts::vault()), ("waves", waves_across())] {
+        for cutter in [&[0.5][..], CUTTERS[1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]] {
+            let (p, command) = pass(&part, cutter, 10.0);
+            let (last, longest) = (Cell::new(JUDGED.get()), Cell::new(0));
+            let (asked, limit) = (Cell::new(0), Cell::new(u64::MAX));
+            let ask = || {
+                longest.set(longest.get().max(JUDGED.get() - last.replace(JUDGED.get())));
+                asked.set(asked.get() + 1);
+                asked.get() > limit.get()
+            };
+            let execution = execute(&p.state, &command, &ask);
+            assert!(execution.failure.is_none(), "{name}, cutter {cutter:?}: {:?}", execution.failure);
+            most = most.max(longest.get());
+            // What is known of the surface by now is not looked for again.
+            asked.set(0);
+            execute(&p.state, &command, &ask);
+            let all = asked.get();
+            for share in [0, 1, all / 3, all / 2, all - 1] {
+                asked.set(0);
+                limit.set(share);
+                let before = Cell::new(0);
+                let execution = execute(&p.state, &command, &|| {
+                    before.set(EVALUATIONS.get());
+                    ask()
+                });
+                assert!(
+                    matches!(execution.failure, Some(MotionFailure::Cancelled)),
+                    "{name}: {:?}",
+                    execution.failure
+                );
+                assert_eq!(asked.get(), share + 1, "{name}: asked again after the answer");
+                let after = [EVALUATIONS.get() - before.get(), JUDGED.get() - last.get()];
+                assert!(
+                    after[0] <= AFTER_THE_LAST && after[1] == 0,
+                    "{name}, {cutter:?}: {after:?}, {share}"
+                );
+            }
+        }
+    }
+    assert!(most > 0 && most <= PATCHES_BETWEEN_QUESTIONS, "{most} patches");
+}
+
 /// Distances of points and parts of surfaces that the verifier may look at before it asks again. One takes up to a microsecond
 /// in a release build.
 const WORK_BETWEEN_QUESTIONS: u64 = 1000;
@@ -146,7 +196,9 @@ fn the_verifier_asks_often_whether_to_go_on() {
             assert!(evidence.verified, "{name}, cutter {cutter:?}: {evidence:?}");
             let longest = longest.get().max(WORK.get() - last.get());
             assert!(longest <= WORK_BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {longest}");
-            // Given up at any question, it does no more.
+            // Given up at any question, it does no more; what is known of the surface by now is not looked for again.
+            asked.set(0);
+            verify(p.last(), &ask).expect("evidence");
             let all = asked.get();
             for share in [0, 1, all / 3, all / 2, all - 1] {
                 asked.set(0);

@@ -1,7 +1,5 @@
 //! Paths that come to the end of a surface that does not go on: what is told, and how soon.
 
-use std::cell::Cell;
-
 use DriveSide::On as TlOn;
 use Relation::{On, Past, To};
 use Turn::Forward;
@@ -108,18 +106,16 @@ fn bent_tube(frame: [[f64; 4]; 3], root: f64, slopes: [f64; 7]) -> Geometry {
     Geometry::PolyConic(Remembering::new(values))
 }
 
-/// The outcome of a motion and how often it asks whether to give up, which it does after so many times.
-pub(super) fn asked(p: &Program, motion: &MotionCommand, most: u32) -> (Execution, u32) {
-    let asks = Cell::new(0);
-    let execution = execute(&p.state, motion, &|| {
-        asks.set(asks.get() + 1);
-        asks.get() > most
-    });
-    (execution, asks.get())
+/// The outcome of a motion and how many clearances it takes; it is given up after so many.
+pub(super) fn limited(p: &Program, motion: &MotionCommand, most: u64) -> (Execution, u64) {
+    let before = EVALUATIONS.get();
+    let taken = || EVALUATIONS.get() - before;
+    let execution = execute(&p.state, motion, &|| taken() > most);
+    (execution, taken())
 }
 
-/// Questions whether to give up until it is known that the path comes to the end: proofs beside the end take ten times as many.
-const FEW: u32 = 6_000;
+/// Clearances until it is known that the path comes to the end: proofs beside the end take ten times as many.
+const FEW: u64 = 6_000;
 
 /// A ball that is held a little inside a surface has no place beside the end of that: the path turns away there. The end is looked for
 /// where it is within sight of the tool, and known from what is just ahead.
@@ -163,10 +159,10 @@ fn the_end_is_told_where_a_path_turns_away_beside_it() {
     p.run(&MotionCommand::From { position, axis, name: String::new() });
     p.go(&[(To, &drive), (To, &part), (To, &first)]).side(DriveSide::Left);
     p.indirv(0.2332050278409635, -0.47106122626232655, -0.8507154260397121);
-    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(Past, 1, &check)]), FEW);
+    let (execution, taken) = limited(&p, &motion(Forward, &drive, &[(Past, 1, &check)]), FEW);
     let failure = execution.failure.expect("no way there");
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Part, .. }), "{failure:?}");
-    assert!(asks <= FEW, "{asks} questions");
+    assert!(taken <= FEW, "{taken} clearances");
 }
 
 /// The path of a bull nose in a hollow cylinder turns by more than a right angle where its flank comes to touch the cylinder. From the
@@ -203,15 +199,15 @@ fn a_vector_that_leads_to_a_vertex_again_does_not_spare_it() {
     p.run(&MotionCommand::From { position, axis, name: String::new() });
     p.go(&[(To, &drive), (To, &part), (On, &first)]).side(DriveSide::Right);
     p.indirv(0.5014350604196357, 0.3461225627517318, 0.7929451757442817);
-    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(On, 1, &y(4.5))]), FEW);
+    let (execution, taken) = limited(&p, &motion(Forward, &drive, &[(On, 1, &y(4.5))]), FEW);
     let Some(Output::Sequence(sequence)) = execution.output else {
-        panic!("{:?} after {asks} questions", execution.failure);
+        panic!("{:?} after {taken} clearances", execution.failure);
     };
     assert!(verify(&sequence, &|| false).expect("evidence").verified);
 }
 
 /// Questions of a motion beside an end: searches for a bound of how the clearance bends take seven times as many.
-const FEWER: u32 = 15_000;
+const FEWER: u64 = 15_000;
 
 /// A flat cutter beside the end of a polyconic surface, within sight of which nothing is steady: parts of the surface show that vectors keep
 /// the band, and not boxes of the tool.
@@ -254,8 +250,8 @@ fn vectors_beside_the_end_are_proven_by_parts_of_the_surface() {
     p.run(&MotionCommand::Thickness(PerRole { part: stock, drive: stock, check: [stock; 2] }));
     p.from(-1.4131429690392063, 1.6195763568089125, 1.3861194276529698).side(DriveSide::On);
     p.go(&[(On, &drive), (To, &part)]).indirv(forward.x, forward.y, forward.z);
-    let (execution, asks) = asked(&p, &motion(Forward, &drive, &[(On, 2, &check)]), FEWER);
+    let (execution, taken) = limited(&p, &motion(Forward, &drive, &[(On, 2, &check)]), FEWER);
     let failure = execution.failure.expect("no way there");
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Part, .. }), "{failure:?}");
-    assert!(asks <= FEWER, "{asks} questions");
+    assert!(taken <= FEWER, "{taken} clearances");
 }

@@ -1,11 +1,9 @@
 //! Random motions that end where the path does, and what is told about it.
 
-use std::cell::Cell;
-
 use apt_geometry::cutter::Cutter;
 
 use super::*;
-use crate::{error::RoleName, verify::verify};
+use crate::{clearance::EVALUATIONS, error::RoleName, verify::verify};
 
 /// A start-up and a directed motion.
 pub(super) struct Found {
@@ -24,19 +22,19 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Runs both, asking at most so often whether to give up; what they found is proven.
-    pub(super) fn run(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+    /// Runs both, taking at most so many clearances; what they found is proven.
+    pub(super) fn run(&self, most: u64) -> Result<Vec<CutSequence>, MotionFailure> {
         let [part, drive, first] =
             [&self.part, &self.drive, &self.first].map(|(relation, surface)| (*relation, surface));
-        self.run_after(&start(&[drive, part, first]), questions)
+        self.run_after(&start(&[drive, part, first]), most)
     }
 
     /// The same without a start-up, from where the tool is.
-    pub(super) fn run_from_there(&self, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
-        self.run_after(&MotionCommand::PartSurface(named(&self.part.1)), questions)
+    pub(super) fn run_from_there(&self, most: u64) -> Result<Vec<CutSequence>, MotionFailure> {
+        self.run_after(&MotionCommand::PartSurface(named(&self.part.1)), most)
     }
 
-    fn run_after(&self, begin: &MotionCommand, questions: u32) -> Result<Vec<CutSequence>, MotionFailure> {
+    fn run_after(&self, begin: &MotionCommand, most: u64) -> Result<Vec<CutSequence>, MotionFailure> {
         let ahead = Some(Direction::Vector(self.forward));
         let [part, drive, stop] =
             [&self.part, &self.drive, &self.stop].map(|(relation, surface)| (*relation, surface));
@@ -54,11 +52,8 @@ impl Found {
             MotionCommand::Direction([ahead, None, None]),
             motion(Turn::Forward, drive.1, &[(stop.0, 1, stop.1)]),
         ];
-        let left = Cell::new(questions);
-        let spent = || {
-            left.set(left.get().saturating_sub(1));
-            left.get() == 0
-        };
+        let before = EVALUATIONS.get();
+        let spent = || EVALUATIONS.get() - before > most;
         let mut state = State::new(1.0);
         let mut sequences = Vec::new();
         for command in &commands {
@@ -77,8 +72,8 @@ impl Found {
     }
 }
 
-/// More questions than any of these motions needs.
-pub(super) const AMPLE: u32 = 20_000;
+/// More clearances than any of these motions needs.
+pub(super) const AMPLE: u64 = 50_000;
 
 fn is_stopped_by_its_part_surface(motion: &Found) {
     match motion.run(AMPLE) {

@@ -2,9 +2,9 @@
 
 use super::{refused::Found, *};
 
-/// Questions whether to give up that are far more than such a motion takes, where the path turns from one half to the other in very
+/// Clearances that are far more than such a motion takes, where the path turns from one half to the other in very
 /// short vectors.
-const AMPLE: u32 = 100_000;
+const AMPLE: u64 = 100_000;
 
 fn is_delivered(motion: &Found) {
     let sequences = motion.run(AMPLE).expect("a path");

@@ -6,7 +6,7 @@ use apt_geometry::canonical::{Remembering, RuledSurface};
 use Relation::{On, To};
 use Turn::Forward;
 
-use super::{ends::asked, *};
+use super::{ends::limited, *};
 use crate::{error::RoleName, verify::verify};
 
 /// The straight curve of a ruled surface between two points, in the plane square to a direction across it.
@@ -26,11 +26,11 @@ fn fan() -> Geometry {
     ruled(parts)
 }
 
-/// The outcome of a motion that is proven, with no more than so many questions whether to give up.
-fn proven(p: &Program, motion: &MotionCommand, most: u32) -> CutSequence {
-    let (execution, asks) = asked(p, motion, most);
+/// The outcome of a motion that is proven, with no more than so many clearances.
+fn proven(p: &Program, motion: &MotionCommand, most: u64) -> CutSequence {
+    let (execution, taken) = limited(p, motion, most);
     let Some(Output::Sequence(sequence)) = execution.output else {
-        panic!("{:?} after {asks} questions", execution.failure);
+        panic!("{:?} after {taken} clearances", execution.failure);
     };
     let evidence = verify(&sequence, &|| false).expect("evidence");
     assert!(evidence.verified, "{:?}", evidence.violations);
@@ -72,11 +72,11 @@ fn the_end_of_a_wall_that_a_tool_lies_along_is_told_soon() {
         name: String::new(),
     });
     p.go(&[(To, &wall), (To, &ground()), (On, &x(30.0))]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
-    let (execution, asks) = asked(&p, &motion(Turn::Up, &wall, &[(On, 1, &x(900.0))]), 3_000);
+    let (execution, taken) = limited(&p, &motion(Turn::Up, &wall, &[(On, 1, &x(900.0))]), 3_000);
     let failure = execution.failure.expect("no way there");
     assert!(
         matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Drive, .. }),
-        "{failure:?} {asks}"
+        "{failure:?} {taken}"
     );
 }
 

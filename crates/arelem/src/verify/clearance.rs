@@ -4,6 +4,7 @@
 use apt_geometry::{
     Vec3,
     canonical::{self, Geometry},
+    patience::Patience,
 };
 
 use crate::sequence::ToolPosition;
@@ -19,7 +20,7 @@ use super::{
     ruling_clearance::{self, Ruled},
     sculptured::SculpturedStrips,
     span::Bend,
-    tool::{Patience, Profile, Tool},
+    tool::{Profile, Tool},
 };
 
 /// A surface prepared for the verifier.
@@ -78,14 +79,18 @@ impl Surface {
     /// As accurate as it can be.
     #[cfg(test)]
     pub(super) fn of(geometry: &Geometry) -> Result<Self, VerifyError> {
-        Self::within(geometry, 0.0)
+        Self::within(geometry, 0.0, Patience::default())
     }
 
-    /// The surface itself, or a model that need not be closer to it than `accuracy`.
+    /// The surface itself, or a model that need not be closer to it than `accuracy`; a model is not finished once `patience` is over.
     ///
     /// # Errors
     /// [`VerifyError::Unsupported`] for geometry the verifier has no model of, [`VerifyError::Degenerate`] for a form without a surface.
-    pub(super) fn within(geometry: &Geometry, accuracy: f64) -> Result<Self, VerifyError> {
+    pub(super) fn within(
+        geometry: &Geometry,
+        accuracy: f64,
+        patience: Patience<'_>,
+    ) -> Result<Self, VerifyError> {
         let degenerate = || VerifyError::Degenerate { kind: geometry.kind() };
         let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
         match geometry {
@@ -128,15 +133,15 @@ impl Surface {
                 Ok(Self::Ruled(Box::new(Ruled::Parallel(ruling))))
             }
             Geometry::RuledSurface(surface) => {
-                let strips = RuledStrips::of(surface, accuracy).ok_or_else(degenerate)?;
+                let strips = RuledStrips::of(surface, accuracy, patience).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Joining(Box::new(strips)))))
             }
             Geometry::PolyConic(values) => {
-                let strips = ConicStrips::of(values, accuracy).ok_or_else(degenerate)?;
+                let strips = ConicStrips::of(values, accuracy, patience).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Conics(Box::new(strips)))))
             }
             Geometry::Sculptured(surface) => {
-                let strips = SculpturedStrips::of(surface, accuracy).ok_or_else(degenerate)?;
+                let strips = SculpturedStrips::of(surface, accuracy, patience).ok_or_else(degenerate)?;
                 Ok(Self::Ruled(Box::new(Ruled::Sculptured(Box::new(strips)))))
             }
             other => Err(VerifyError::Unsupported { kind: other.kind() }),
@@ -306,8 +311,11 @@ impl<'a> Clearance<'a> {
         let tool = self.tool(from.axis);
         let tips = [from, to].map(|p| p.tip + p.axis * self.raise);
         if let Surface::Ruled(surface) = self.surface {
-            let surface =
-                if self.profile.is_point() { surface } else { surface.met_from(self.side, &tool.axis) };
+            let surface = if self.profile.is_point() {
+                surface
+            } else {
+                surface.met_from(self.side, &tool.axis, self.patience)
+            };
             return surface.bend(self.side, [&tips[0], &tips[1]], &tool, ends, self.thickness, travel);
         }
         let values = ends.map(|end| end.value + self.thickness);
@@ -346,9 +354,12 @@ impl<'a> Clearance<'a> {
                     if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
                 Some(Reading { value: found.value, normal: found.normal, error: found.error })
             }
-            Surface::Ruled(surface) => {
-                ruling_clearance::at(surface.met_from(self.side, &tool.axis), self.side, tip, &tool)
-            }
+            Surface::Ruled(surface) => ruling_clearance::at(
+                surface.met_from(self.side, &tool.axis, self.patience),
+                self.side,
+                tip,
+                &tool,
+            ),
             Surface::Quadric(quadric) => quadric_clearance::at(quadric, self.side, tip, &tool),
         }
     }

@@ -8,8 +8,8 @@ use super::shadow::{Distance, Flat, Level, Shadow, left};
 
 /// Parts that one search may look at; what is left then goes into the gap.
 const PART_BUDGET: usize = 4_000;
-/// After so many parts it is asked whether to go on.
-const PARTS_BETWEEN_QUESTIONS: usize = 100;
+/// What a part counts in units of work.
+const WORK_OF_PART: u32 = 2;
 /// Steps by which a nearest place is closed in.
 const CLOSING_STEPS: usize = 24;
 /// Sine of the angle to the curve below which a nearest place has been found.
@@ -276,7 +276,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             *budget -= 1;
-            if (*budget).is_multiple_of(PARTS_BETWEEN_QUESTIONS) && self.shadow.patience().is_over() {
+            if self.shadow.patience().ends_after(WORK_OF_PART) {
                 return None;
             }
             let [first, last] = halves(&part.control);

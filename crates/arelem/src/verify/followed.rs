@@ -15,11 +15,13 @@ use super::{
     clearance::Reading,
     leaning::keeps_apart,
     patch::{held, jet, place_on},
-    survey::{Accuracy, Part, Sheet, nearest_by},
+    survey::{Accuracy, Part, Sheet, nearest_by, work_of_pass},
     tool::{Profile, Tool},
     trough::{Rise, is_within_of_line, straight_direction},
 };
 
+/// What the proof that a part is not nearer counts in units of work.
+const WORK_OF_PROOF: u32 = 16;
 /// Steps of Newton's method, the last of them, and the greatest, in parameters.
 const STEPS: usize = 14;
 const LAST_STEP: f64 = 1e-7;
@@ -252,6 +254,9 @@ impl Following<'_> {
         let outward = -contact.normal;
         let level = Guard::Level(outward, outward.dot(&out) + self.tool.support(&outward).0 + least);
         let led_by = (out - self.tip).norm();
+        if self.tool.patience.ends_after(work_of_pass(self.parts)) {
+            return None;
+        }
         for (k, other) in self.parts.iter().enumerate() {
             if k == index || other.far.get() - self.way - led_by >= least {
                 continue;
@@ -318,6 +323,9 @@ impl Following<'_> {
     fn show(&self, part: &Part, index: usize, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
         let Shown { guards, below, least, place } = *shown;
         self.kept.looks.set(self.kept.looks.get() + 1);
+        if self.tool.patience.ends_after(WORK_OF_PROOF) {
+            return None;
+        }
         if self.is_above(part, side, least) || self.is_left_behind(part, side, shown) {
             return Some(());
         }
@@ -508,6 +516,9 @@ impl Following<'_> {
         let first = nearest_by(self.parts, least)?;
         let apart = |part: &Part| (part.near(place) - place).norm();
         let mut best = (first, apart(self.parts.get(first)?));
+        if self.tool.patience.ends_after(work_of_pass(self.parts)) {
+            return None;
+        }
         for (k, part) in self.parts.iter().enumerate() {
             if k == first || least(part) > close.min(best.1) {
                 continue;

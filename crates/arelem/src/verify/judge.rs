@@ -1,10 +1,11 @@
 //! The rules, one after the other.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 use apt_geometry::{
     Vec3,
     motion::{DriveSide, Relation},
+    patience::{Patience, Waiting},
 };
 
 use crate::sequence::{CutSequence, Role, ToolPosition};
@@ -14,7 +15,7 @@ use super::{
     clearance::{Clearance, Reading, Surface},
     span::{Extremes, Span},
     stop,
-    tool::{Patience, Profile},
+    tool::Profile,
 };
 
 /// Round-off allowed on every band, relative to the size of the geometry (arelem reference 1.7: no other slack).
@@ -74,7 +75,7 @@ impl<'a> Bound<'a> {
         let [intol, outtol] = if on { [wider; 2] } else { [role.inside_tolerance, role.outside_tolerance] };
         Ok(Self {
             role,
-            surface: Surface::within(&role.surface.geometry, model_share * (intol + outtol))?,
+            surface: Surface::within(&role.surface.geometry, model_share * (intol + outtol), patience)?,
             profile,
             raise,
             on,
@@ -173,13 +174,9 @@ struct Judge<'a> {
 /// See [`VerifyError`]; an error means that the sequence could not be judged, not that it is wrong.
 pub fn verify<'a>(sequence: &'a CutSequence, cancel: &'a dyn Fn() -> bool) -> Result<Evidence, VerifyError> {
     // A reading that is given up is missing like one that does not exist: what is to be said of it is settled here.
-    let given_up = Cell::new(false);
-    let asked = || {
-        given_up.set(given_up.get() || cancel());
-        given_up.get()
-    };
-    let evidence = settled(sequence, Patience::until(&asked));
-    if given_up.get() { Err(VerifyError::Cancelled) } else { evidence }
+    let waiting = Waiting::until(cancel);
+    let evidence = settled(sequence, waiting.patience());
+    if waiting.has_given_up() { Err(VerifyError::Cancelled) } else { evidence }
 }
 
 /// No inaccuracy of a model decides that could be less.

@@ -3,6 +3,9 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// What the fit of a patch of a model counts in units of work.
+pub(super) const WORK_OF_PATCH: u32 = 64;
+
 /// Models of one surface by how far they may be off it.
 #[derive(Debug)]
 pub(super) struct Models<M>(Mutex<Vec<(f64, Arc<M>)>>);
@@ -14,7 +17,7 @@ impl<M> Default for Models<M> {
 }
 
 impl<M> Models<M> {
-    /// The one that may be off by `accuracy`; made now if it is not kept. None if it cannot be made.
+    /// The one that may be off by `accuracy`; made now if it is not kept. None, and none is kept, if it cannot be made or is given up.
     pub(super) fn within(&self, accuracy: f64, make: impl FnOnce(f64) -> Option<M>) -> Option<Arc<M>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, kept)) = all.iter().find(|(of, _)| of.total_cmp(&accuracy).is_eq()) {

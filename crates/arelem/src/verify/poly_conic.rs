@@ -12,10 +12,11 @@ use apt_geometry::{
         Made, PolyConicForm, Remembering,
         extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
     },
+    patience::Patience,
 };
 
 use super::{
-    models::Models,
+    models::{Models, WORK_OF_PATCH},
     patch::{Edges, Net, Patch, extent, jet, place_on, turned},
     ruled::{ERROR_BEND, divided, parts_for, through},
     strip::Touch,
@@ -325,10 +326,13 @@ impl PartialEq for Part {
 
 impl Eq for Part {}
 
-/// The whole surface in patches that are off by `accuracy`, or by more where that would take too many.
-fn cover(conics: &Conics, size: f64, accuracy: f64) -> Option<BinaryHeap<Part>> {
+/// The whole surface in patches that are off by `accuracy`, or by more where that would take too many; none once `patience` is over.
+fn cover(conics: &Conics, size: f64, accuracy: f64, patience: Patience<'_>) -> Option<BinaryHeap<Part>> {
     let mut number = 0;
     let mut part = |rectangle: Rectangle| -> Option<Part> {
+        if patience.ends_after(WORK_OF_PATCH) {
+            return None;
+        }
         let fit = fit(conics, &rectangle, size)?;
         let off = ALLOWANCE * (fit.errors[0] + fit.errors[1]);
         number += 1;
@@ -374,8 +378,8 @@ impl Form {
         (extent > 0.0 && size.is_finite()).then(|| Self { conics, size, extent, models: Models::default() })
     }
 
-    fn model(&self, accuracy: f64) -> Option<Model> {
-        let mut parts = cover(&self.conics, self.extent, accuracy)?.into_vec();
+    fn model(&self, accuracy: f64, patience: Patience<'_>) -> Option<Model> {
+        let mut parts = cover(&self.conics, self.extent, accuracy, patience)?.into_vec();
         parts.sort_by_key(|part| part.number);
         let error = parts.iter().map(|part| part.off).fold(0.0, f64::max);
         let ranges = parts.iter().map(|part| part.rectangle).collect();
@@ -385,11 +389,12 @@ impl Form {
 }
 
 impl ConicStrips {
-    /// The model of a surface that need not be closer to it than `accuracy`; none if the values describe no surface.
-    pub(super) fn of(values: &Remembering<Vec<f64>>, accuracy: f64) -> Option<Self> {
+    /// The model of a surface that need not be closer to it than `accuracy`; none if the values describe no surface, and once
+    /// `patience` is over.
+    pub(super) fn of(values: &Remembering<Vec<f64>>, accuracy: f64, patience: Patience<'_>) -> Option<Self> {
         let form = values.made(|values| Form::of(values))?;
         let accuracy = accuracy.clamp(FINEST * form.extent, COARSEST * form.extent);
-        let model = form.models.within(accuracy, |accuracy| form.model(accuracy))?;
+        let model = form.models.within(accuracy, |accuracy| form.model(accuracy, patience))?;
         let (patches, ranges, error) = (Arc::clone(&model.patches), Arc::clone(&model.ranges), model.error);
         let size = form.size;
         Some(Self { sheet: Sheet::new(patches, false), ranges, size, error, form })

@@ -5,8 +5,6 @@
 //! plane at the contact proves the minimum at once (distance is a convex function); inside a convex hollow distance is
 //! concave, so only edges matter and the corners of a circumscribed polygon bound what lies between samples.
 
-use std::cell::Cell;
-
 use apt_geometry::Vec3;
 
 use super::{
@@ -33,8 +31,6 @@ const PROVING_WIDTH: f64 = 1e-9;
 const PATCH_PIECES: u32 = 16;
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
 const ARC_BUDGET: usize = 400;
-/// After so many distances it is asked whether to go on.
-const READS_BETWEEN_QUESTIONS: u32 = 500;
 
 /// A point of the tool with its distance on the tool's side.
 #[derive(Debug, Clone, Copy)]
@@ -57,8 +53,6 @@ struct Search<'a> {
     best: Option<Candidate>,
     /// Greatest amount by which the true minimum could be below the best candidate.
     gap: f64,
-    /// Distances of points read.
-    reads: Cell<u32>,
 }
 
 /// Whether a convex solid may reach into the top of a tool on a straight move: its lowest place along the axis comes over the
@@ -129,7 +123,6 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         open_top,
         best: None,
         gap: 0.0,
-        reads: Cell::new(0),
     };
     search.run()?;
     let best = search.best?;
@@ -153,8 +146,7 @@ impl Search<'_> {
 
     /// Distance of a point on the tool's side and its gradient; None when the search is given up, too.
     fn distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
-        self.reads.set(self.reads.get() + 1);
-        if self.reads.get().is_multiple_of(READS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
+        if self.tool.patience.ends_after(1) {
             return None;
         }
         let d = self.quadric.distance(x)?;

@@ -12,10 +12,11 @@ use apt_geometry::{
         Made, Remembering, RuledCurve, RuledEnd, RuledSurface,
         extent::{RULED_BEYOND, RULED_STEADY, ruled_shares},
     },
+    patience::Patience,
 };
 
 use super::{
-    models::Models,
+    models::{Models, WORK_OF_PATCH},
     patch::{Patch, jet},
     section::Section,
     strip::{Cubic, Touch, lerp, place},
@@ -170,9 +171,9 @@ impl Curves {
 }
 
 impl Model {
-    /// None if a section does not go all the way or a number is not finite.
-    fn of(edges: &[Edge; 2], accuracy: f64) -> Option<Self> {
-        let pieces = pieces(edges, accuracy)?;
+    /// None if a section does not go all the way or a number is not finite, and once `patience` is over.
+    fn of(edges: &[Edge; 2], accuracy: f64, patience: Patience<'_>) -> Option<Self> {
+        let pieces = pieces(edges, accuracy, patience)?;
         let [low, high] = ruled_shares(|share| Some([edges[0].run(share)?, edges[1].run(share)?]))?;
         let mut size: f64 = 0.0;
         let error = pieces.iter().map(|piece| piece.error).fold(0.0, f64::max);
@@ -203,11 +204,16 @@ impl Model {
 
 impl RuledStrips {
     /// The model of a surface that need not be closer to it than `accuracy`; none if the parts are not those of a definition or
-    /// a section does not join its end points.
-    pub(super) fn of(surface: &Remembering<RuledSurface>, accuracy: f64) -> Option<Self> {
+    /// a section does not join its end points, and once `patience` is over.
+    pub(super) fn of(
+        surface: &Remembering<RuledSurface>,
+        accuracy: f64,
+        patience: Patience<'_>,
+    ) -> Option<Self> {
         let curves = surface.made(Curves::of)?;
         let accuracy = accuracy.clamp(FINEST * curves.scale, COARSEST * curves.scale);
-        let model = curves.models.within(accuracy, |accuracy| Model::of(&curves.edges, accuracy))?;
+        let model =
+            curves.models.within(accuracy, |accuracy| Model::of(&curves.edges, accuracy, patience))?;
         let sheet = Sheet::new(Arc::clone(&model.patches), true);
         Some(Self { sheet, size: model.size, error: model.error, greatest_error: model.greatest_error })
     }
@@ -272,7 +278,7 @@ fn mark_edges(patches: &mut [Patch], off: &[f64], pieces: &[Piece]) {
 }
 
 /// Both curves in pieces, from one end of the extensions to the other.
-fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
+fn pieces(edges: &[Edge; 2], accuracy: f64, patience: Patience<'_>) -> Option<Vec<Piece>> {
     let steepest = |end: f64| edges.iter().map(|edge| edge.steepness(end)).fold(0.0, f64::max);
     let angular = Angular::of([steepest(0.0), steepest(1.0)]);
     let mut sharp = Vec::new();
@@ -290,7 +296,7 @@ fn pieces(edges: &[Edge; 2], accuracy: f64) -> Option<Vec<Piece>> {
     let mut found = Vec::new();
     for pair in cuts.windows(2) {
         let first = found.len();
-        divide((edges, angular), [pair[0], pair[1]], accuracy, &mut found)?;
+        divide((edges, angular), [pair[0], pair[1]], (accuracy, patience), &mut found)?;
         if let Some(piece) = found.get_mut(first) {
             piece.is_sharp = sharp.iter().any(|share| (share - pair[0]).abs() <= 2.0 * SAME_SHARE);
         }
@@ -315,7 +321,7 @@ pub(super) fn parts_for(accuracy: f64, error: f64) -> u32 {
 fn divide(
     (edges, angular): (&[Edge; 2], Angular),
     ends: [f64; 2],
-    accuracy: f64,
+    (accuracy, patience): (f64, Patience<'_>),
     found: &mut Vec<Piece>,
 ) -> Option<()> {
     let inner = ends[0] >= -1e-12 && ends[1] <= 1.0 + 1e-12;
@@ -335,7 +341,7 @@ fn divide(
                 error = error.max(ALLOWANCE * (at(edge, x)? - place(curve, x)).norm());
             }
         }
-        if !error.is_finite() || found.len() + open.len() > PIECES {
+        if !error.is_finite() || patience.ends_after(WORK_OF_PATCH) || found.len() + open.len() > PIECES {
             return None;
         }
         if error > accuracy && depth < DIVISIONS {

@@ -8,7 +8,7 @@ mod past_end;
 mod point;
 mod way_out;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 pub(super) use self::point::point;
 #[cfg(test)]
@@ -23,7 +23,7 @@ use super::{
     span::Bend,
     strip::{Touch, nearest},
     survey::{Accuracy, Sheet},
-    tool::{Meridian, Patience, Tool, perpendicular},
+    tool::{Meridian, Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
@@ -77,9 +77,9 @@ pub(super) enum Ruled {
 impl Ruled {
     /// The surface as a tool on a side of it meets it: where a sculptured surface ends it is taken for the face of a body, but by a
     /// tool that stands along all its straight lines.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> &Self {
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> &Self {
         match self {
-            Self::Sculptured(surface) => surface.met_from(side, axis).unwrap_or(self),
+            Self::Sculptured(surface) => surface.met_from(side, axis, patience).unwrap_or(self),
             _ => self,
         }
     }

@@ -12,11 +12,12 @@ use apt_geometry::{
     Vec3,
     canonical::{Made, Remembering},
     parametric::{self, Extended, ExtendedPatch, Flanged, SculpturedSurface, Side},
+    patience::Patience,
 };
 
 use self::misfit::Misfit;
 use super::{
-    models::Models,
+    models::{Models, WORK_OF_PATCH},
     patch::{Net, Patch, jet, turned},
     ruled::through,
     ruling_clearance::Ruled,
@@ -92,8 +93,8 @@ impl Made for Models<Model> {
 }
 
 impl Model {
-    /// None if there is nothing to measure.
-    fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64) -> Option<Self> {
+    /// None if there is nothing to measure, and once `patience` is over.
+    fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64, patience: Patience<'_>) -> Option<Self> {
         let extent = surface.size();
         if !(surface.is_finite() && extent > 0.0 && extent.is_finite()) {
             return None;
@@ -101,7 +102,7 @@ impl Model {
         let [low, high] = surface.bounds();
         let size = low.abs().sup(&high.abs()).norm();
         let accuracy = accuracy * extent;
-        let parts = covering(Extended::of(surface)?.patches(), accuracy);
+        let parts = covering(Extended::of(surface)?.patches(), accuracy, patience)?;
         let ruling = ruling(&parts, SHIFTED * extent);
         let cover = Cover::of(&parts);
         let whole = !parts.is_empty() && cover.error.is_finite() && size.is_finite();
@@ -109,10 +110,18 @@ impl Model {
     }
 
     /// The surface with what it is taken for behind its ends by a tool on a side.
-    fn met_from(&self, surface: &Remembering<SculpturedSurface>, side: f64) -> Option<Cover> {
-        let flanged = Flanged::of(surface)?;
-        let made = || Cover::of(&covering(flanged.patches(side), self.accuracy));
-        Some(self.met[usize::from(side < 0.0)].get_or_init(made).clone())
+    fn met_from(
+        &self,
+        surface: &Remembering<SculpturedSurface>,
+        side: f64,
+        patience: Patience<'_>,
+    ) -> Option<Cover> {
+        let kept = &self.met[usize::from(side < 0.0)];
+        if let Some(cover) = kept.get() {
+            return Some(cover.clone());
+        }
+        let parts = covering(Flanged::of(surface)?.patches(side), self.accuracy, patience)?;
+        Some(kept.get_or_init(|| Cover::of(&parts)).clone())
     }
 }
 
@@ -123,38 +132,42 @@ impl Cover {
     }
 }
 
-/// The parts in place of patches.
-fn covering(patches: &[ExtendedPatch], accuracy: f64) -> Vec<Part> {
+/// The parts in place of patches; none once `patience` is over.
+fn covering(patches: &[ExtendedPatch], accuracy: f64, patience: Patience<'_>) -> Option<Vec<Part>> {
     let mut parts = Vec::new();
     for patch in patches {
-        cover(patch, accuracy, &mut parts);
+        cover(patch, (accuracy, patience), &mut parts)?;
     }
-    parts
+    Some(parts)
 }
 
 impl SculpturedStrips {
-    /// A model of a surface that need not be closer to it than `accuracy`; none if there is nothing to measure.
-    pub(super) fn of(surface: &Remembering<SculpturedSurface>, accuracy: f64) -> Option<Self> {
+    /// A model of a surface that need not be closer to it than `accuracy`; none if there is nothing to measure, and once `patience` is over.
+    pub(super) fn of(
+        surface: &Remembering<SculpturedSurface>,
+        accuracy: f64,
+        patience: Patience<'_>,
+    ) -> Option<Self> {
         // One of few, so that motions share it.
         let finer = (accuracy / (FINEST * surface.size())).log(COARSER).floor();
         let number = if finer > 0.0 { (finer as usize).min(MODELS - 1) } else { 0 };
         let models = surface.made(|_| Some(Models::default()))?;
         let relative = FINEST * COARSER.powi(number as i32);
-        let model = models.within(relative, |relative| Model::of(surface, relative))?;
+        let model = models.within(relative, |relative| Model::of(surface, relative, patience))?;
         let sheet = Sheet::new(Arc::clone(&model.cover.patches), false);
         let (size, error, ruling) = (model.size, model.cover.error, model.ruling);
         let whole = Some((surface.clone(), model));
         Some(Self { sheet, size, error, ruling, whole, met: Default::default() })
     }
 
-    /// The surface as a tool on a side meets it; none if that is itself.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> Option<&Ruled> {
+    /// The surface as a tool on a side meets it; none if that is itself, and once `patience` is over.
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> Option<&Ruled> {
         let (surface, model) = self.whole.as_ref()?;
         if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ONE_DIRECTION) {
             return None;
         }
         let made = || {
-            let Cover { patches, error } = model.met_from(surface, side)?;
+            let Cover { patches, error } = model.met_from(surface, side, patience)?;
             let (sheet, size) = (Sheet::of_body(patches), self.size);
             let met = Self { sheet, size, error, ruling: None, whole: None, met: Default::default() };
             Some(Box::new(Ruled::Sculptured(Box::new(met))))
@@ -208,16 +221,23 @@ fn patch(part: &Part) -> Patch {
 }
 
 /// The nets in place of a patch.
-fn cover(given: &ExtendedPatch, accuracy: f64, parts: &mut Vec<Part>) {
+fn cover(
+    given: &ExtendedPatch,
+    (accuracy, patience): (f64, Patience<'_>),
+    parts: &mut Vec<Part>,
+) -> Option<()> {
     // Edges by their numbers: low and high along u, low and high along v.
     let sharp = given.sides.map(|side| side == Side::End || side.is_crease());
     if given.patch.is_polynomial() {
         parts.push(Part { net: turned(&given.patch.points()), off: 0.0, slack: 0.0, sharp });
-        return;
+        return Some(());
     }
     let most = parts.len() + PATCHES;
     let mut open = vec![(given.patch, [1.0f64; 2], sharp)];
     while let Some((whole, sides, sharp)) = open.pop() {
+        if patience.ends_after(WORK_OF_PATCH) {
+            return None;
+        }
         let net = fit(&whole);
         let misfit = Misfit::between(&whole, &net);
         let slack = misfit.slack(&net);
@@ -235,6 +255,7 @@ fn cover(given: &ExtendedPatch, accuracy: f64, parts: &mut Vec<Part>) {
         (low[2 * k + 1], high[2 * k]) = (false, false);
         open.extend([(last, sides, high), (first, sides, low)]);
     }
+    Some(())
 }
 
 /// Whether the derivatives of a patch change more across it than along it.

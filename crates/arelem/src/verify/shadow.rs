@@ -3,10 +3,10 @@
 //! Every half-plane that holds the figure bounds the distance of a point from below, every two places of it bound what the
 //! half-planes between theirs can give from above. The arc of directions with the greatest bound is divided until both agree.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 use nalgebra::Vector2;
 
-use super::tool::{Patience, Tool, TurningSupport};
+use super::tool::{Tool, TurningSupport};
 
 /// Arcs of directions looked at for one distance; what is left then is the gap.
 const ARCS: usize = 96;

@@ -4,13 +4,13 @@
 //! position, leaving it a PAST position. For ON the tool end changes sides. What only brushes the tolerance band is
 //! counted apart: a processor may or may not call it a position.
 
-use apt_geometry::motion::Relation;
+use apt_geometry::{motion::Relation, patience::Patience};
 
 use crate::sequence::{CutSequence, Role, ToolPosition};
 
 use super::clearance::{Clearance, Surface};
 use super::span::{between, turning};
-use super::tool::{Patience, Profile};
+use super::tool::Profile;
 
 /// Steps of the replay over the whole sequence; the shortest step is the path length divided by this.
 const FINEST_STEPS: f64 = 20_000.0;

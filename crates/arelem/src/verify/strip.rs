@@ -16,8 +16,8 @@ use super::{
 
 /// Cells that one search may look at; what is left then goes into the gap.
 const CELL_BUDGET: usize = 20_000;
-/// After so many cells it is asked whether to go on.
-const CELLS_BETWEEN_QUESTIONS: usize = 200;
+/// What a cell counts in units of work.
+const WORK_OF_CELL: u32 = 2;
 /// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction: rounded, it
 /// would say less of what is as far away as the tool is long than a distance need be close.
 const SURE_DIRECTION: f64 = 1e-4;
@@ -257,7 +257,7 @@ impl Search<'_> {
                 break;
             }
             *budget -= 1;
-            if (*budget).is_multiple_of(CELLS_BETWEEN_QUESTIONS) && self.tool.patience.is_over() {
+            if self.tool.patience.ends_after(WORK_OF_CELL) {
                 return None;
             }
             if let Some(cell) = open.pop() {

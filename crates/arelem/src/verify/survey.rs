@@ -47,6 +47,11 @@ const FAR_RADII: f64 = 32.0;
 const POINT_FAR: f64 = 1.0;
 /// Halvings of an edge that tell whether it is near.
 const EDGE_HALVINGS: u32 = 6;
+/// What a part counts in units of work, and how it bends, also at its edges.
+const WORK_OF_PART: u32 = 2;
+const WORK_OF_BENDS: u32 = 24;
+/// How many parts are one unit of work where hardly more than their distances is asked.
+const PARTS_A_UNIT: usize = 16;
 /// Halvings for one reading of the part that the contact is on, and product of its size and curvature below which none helps.
 const DIVISIONS: usize = 12;
 const TIGHT: f64 = 0.01;
@@ -125,8 +130,8 @@ impl Sheet {
     }
 
     /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
-    /// curves; where there are very many they are not halved further.
-    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> (Vec<Part>, f64) {
+    /// curves; where there are very many they are not halved further. None once the tool's patience is over.
+    fn survey(&self, tip: &Vec3, tool: &Tool<'_>, bound: f64, size: f64) -> Option<(Vec<Part>, f64)> {
         let widest = tool.profile.widest();
         let [smallest, greatest] = if widest > 0.0 {
             [SMALLEST_RADII * widest, PART_RADII * widest]
@@ -144,6 +149,9 @@ impl Sheet {
             edges.sides[3] = (edges.sides[3] || self.ends_across) && range[1] >= 1.0;
             open.push((between_across(&patch.net, range), edges));
             while let Some((net, edges)) = open.pop() {
+                if tool.patience.ends_after(WORK_OF_PART) {
+                    return None;
+                }
                 let (center, radius) = ball(&net);
                 let far = tool.distance(&(center - tip)) - radius;
                 if far > bound {
@@ -163,7 +171,7 @@ impl Sheet {
                 }
             }
         }
-        (parts, stretch)
+        Some((parts, stretch))
     }
 
     /// How far patches may be off the surface where they are nearer to a tool than `reach`, relative to those between the curves.
@@ -258,7 +266,7 @@ impl Sheet {
             return None;
         }
         let bound = upper.max(0.0) + 2.0 * margin;
-        let (parts, stretch) = self.survey(tip, tool, bound, size);
+        let (parts, stretch) = self.survey(tip, tool, bound, size)?;
         let last = before.and_then(|place| {
             let apart = |part: &Part| (part.center - place).norm() / part.radius;
             nearest_by(&parts, apart).map(|k| (k, [0.5; 2]))
@@ -302,14 +310,20 @@ impl Sheet {
         let (parts, since) = match known {
             Some(near) => (&near.parts, near.way + near.since(tip, tool)),
             None => {
-                seen = self.survey(tip, tool, reach, size).0;
+                seen = self.survey(tip, tool, reach, size)?.0;
                 (&seen, 0.0)
             }
         };
         let mut rate: f64 = 0.0;
+        if tool.patience.ends_after(work_of_pass(parts)) {
+            return None;
+        }
         for part in parts {
             if part.far.get() - since > reach || tool.distance(&(part.center - tip)) - part.radius > reach {
                 continue;
+            }
+            if tool.patience.ends_after(WORK_OF_BENDS) {
+                return None;
             }
             let at_edges = part.bend_at_edges(reach, tip, tool);
             rate = rate.max(at_edges.filter(|found| self.is_body || *found <= 0.0)?);
@@ -319,6 +333,11 @@ impl Sheet {
         }
         Bend::over(rate, depth)
     }
+}
+
+/// What a pass over parts counts in units of work.
+pub(super) fn work_of_pass(parts: &[Part]) -> u32 {
+    (parts.len() / PARTS_A_UNIT) as u32 + 1
 }
 
 /// What is asked of a survey.

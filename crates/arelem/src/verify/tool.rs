@@ -5,7 +5,7 @@
 //! and height above the tool end. The disc at the top closes the body where inside and outside are told apart; nothing
 //! touches it (arelem reference 1.3).
 
-use apt_geometry::{Vec3, cutter::Cutter};
+use apt_geometry::{Vec3, cutter::Cutter, patience::Patience};
 
 use super::VerifyError;
 
@@ -315,30 +315,6 @@ thread_local! {
 pub(super) fn count_work() {
     #[cfg(test)]
     WORK.set(WORK.get() + 1);
-}
-
-/// Whoever waits for a measurement, and may give it up. A measurement that is given up has no result.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Patience<'a> {
-    cancel: Option<&'a dyn Fn() -> bool>,
-}
-
-impl<'a> Patience<'a> {
-    /// Of somebody who says when to give up.
-    pub(super) fn until(cancel: &'a dyn Fn() -> bool) -> Self {
-        Self { cancel: Some(cancel) }
-    }
-
-    /// Whether the measurement is to be given up.
-    pub(super) fn is_over(&self) -> bool {
-        self.cancel.is_some_and(|cancel| cancel())
-    }
-}
-
-impl std::fmt::Debug for Patience<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Patience").field("has_limit", &self.cancel.is_some()).finish()
-    }
 }
 
 /// Some unit vector perpendicular to a unit vector.

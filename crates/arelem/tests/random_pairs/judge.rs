@@ -27,7 +27,7 @@ use crate::{
 /// What may be spent on a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Budget {
-    /// How often it may ask whether it is cancelled: more or less the number of clearances in engine and verifier.
+    /// How often it may ask whether it is cancelled: once for each clearance, more or less, and for what searches for it take.
     asks: u32,
     /// Clearances that the search for a path may read.
     pub(crate) reads: u32,
@@ -39,7 +39,7 @@ impl Budget {
     /// Of motions whose distances are computed.
     const COMPUTED: Self = Self { asks: 1_500_000, reads: 60_000, asks_of_search: 1_500_000 };
     /// Where distances are searched for, which cost as much more.
-    const SEARCHED: Self = Self { asks: 60_000, reads: 10_000, asks_of_search: 100_000 };
+    const SEARCHED: Self = Self { asks: 180_000, reads: 10_000, asks_of_search: 300_000 };
 
     /// The budget of a motion, if distances to one of its surfaces are searched for or not; `APT_BUDGET` times that.
     pub(crate) fn of(searched: bool) -> Self {
@@ -51,7 +51,8 @@ impl Budget {
     }
 }
 
-/// A motion that takes longer tells where the time goes; that decides nothing.
+/// A motion that takes longer tells where the time goes; that decides nothing. With `APT_SILENT` one tells, too, that asks longer than so
+/// many microseconds not whether to go on.
 const LONG: Duration = Duration::from_secs(1);
 
 /// What became of a motion.
@@ -79,6 +80,8 @@ pub(crate) struct Times {
     engine: Duration,
     verifier: Duration,
     search: Duration,
+    /// The longest that engine and verifier did not ask whether to go on.
+    silent: [Duration; 2],
 }
 
 impl Times {
@@ -90,6 +93,7 @@ impl Times {
         self.engine += other.engine;
         self.verifier += other.verifier;
         self.search += other.search;
+        self.silent = [0, 1].map(|k: usize| self.silent[k].max(other.silent[k]));
     }
 }
 
@@ -125,6 +129,14 @@ impl Tally {
                 [times.engine, times.verifier, times.search].map(|time| time.as_secs_f64());
             self.remarks.push(format!(
                 "#{index} {}: engine {engine:.1} s, verifier {verifier:.1} s, search {search:.1} s",
+                case.shape
+            ));
+        }
+        let longest = times.silent[0].max(times.silent[1]);
+        if number("APT_SILENT").is_some_and(|most| longest > Duration::from_micros(most)) {
+            let [engine, verifier] = times.silent.map(|time| 1e3 * time.as_secs_f64());
+            self.remarks.push(format!(
+                "#{index} {}: not asked for {engine:.2} ms by the engine, {verifier:.2} by the verifier",
                 case.shape
             ));
         }
@@ -250,20 +262,32 @@ pub(crate) struct Runner {
     pub(crate) state: State,
     pub(crate) sequences: Vec<CutSequence>,
     left: Cell<u32>,
+    /// When it was asked last whether to go on, and the longest time between two such questions.
+    asked: Cell<Instant>,
+    pub(crate) silent: Cell<Duration>,
 }
 
 impl Runner {
     pub(crate) fn new(case: &Case) -> Self {
-        Self { state: State::new(1.0), sequences: Vec::new(), left: Cell::new(case.budget.asks) }
+        Self {
+            state: State::new(1.0),
+            sequences: Vec::new(),
+            left: Cell::new(case.budget.asks),
+            asked: Cell::new(Instant::now()),
+            silent: Cell::default(),
+        }
     }
 
     fn spend(&self) -> bool {
+        let now = Instant::now();
+        self.silent.set(self.silent.get().max(now - self.asked.replace(now)));
         self.left.set(self.left.get().saturating_sub(1));
         self.left.get() == 0
     }
 
     pub(crate) fn run(&mut self, commands: &[MotionCommand]) -> Result<(), MotionFailure> {
         for command in commands {
+            self.asked.set(Instant::now());
             let execution = execute(&self.state, command, &|| self.spend());
             self.state = execution.state;
             if let Some(failure) = execution.failure {
@@ -278,6 +302,7 @@ impl Runner {
 
     /// Why a sequence is not proven, if it is not.
     pub(crate) fn fault(&self, sequence: &CutSequence) -> Option<Fault> {
+        self.asked.set(Instant::now());
         let words = match verify(sequence, &|| self.spend()) {
             Ok(evidence) if evidence.verified => return None,
             Err(VerifyError::Cancelled) => return Some(Fault::Slow(sequence.points.len())),
@@ -321,7 +346,9 @@ pub(crate) fn judge(case: &Case) -> (Verdict, Times) {
     let mut times = Times::default();
     let mut runner = Runner::new(case);
     let outcome = timed(&mut times.engine, || runner.run(&case.commands()));
+    times.silent[0] = runner.silent.take();
     let fault = timed(&mut times.verifier, || runner.sequences.iter().find_map(|s| runner.fault(s)));
+    times.silent[1] = runner.silent.take();
     let verdict = match (fault, outcome) {
         (_, Err(MotionFailure::Cancelled)) => {
             Verdict::Slow(format!("engine after {} sequences", runner.sequences.len()))

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 
-use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey};
-use crate::Vec3;
+use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey, WORK_OF_PART};
+use crate::{Vec3, patience::Patience};
 
 /// Which multiple of the change of a frame its pseudo-inverse may change by, times the norms of both pseudo-inverses, if both frames
 /// have full rank (Wedin).
@@ -175,19 +175,25 @@ pub(in super::super) fn leading(forms: Vec<Form>) -> Vec<Form> {
     kept.into_iter().map(|(form, _)| form).collect()
 }
 
-impl Survey {
-    fn about_forms(center: &Vec3, reach: f64, side: f64, forms: Forms) -> Self {
-        Self { forms, ..Self::new(center, [0.0, reach], side, &Vec3::zeros()) }
+impl<'a> Survey<'a> {
+    fn about_forms(center: &Vec3, reach: f64, side: f64, forms: Forms, patience: Patience<'a>) -> Self {
+        Self { forms, ..Self::new(center, [0.0, reach], (side, &Vec3::zeros()), patience) }
     }
 
     /// Asks for the forms of all parts within reach of a point, as bent towards a side.
-    pub(in super::super) fn of_forms(center: &Vec3, reach: f64, side: f64) -> Self {
-        Self::about_forms(center, reach, side, Forms::All(Vec::new()))
+    pub(in super::super) fn of_forms(center: &Vec3, reach: f64, side: f64, patience: Patience<'a>) -> Self {
+        Self::about_forms(center, reach, side, Forms::All(Vec::new()), patience)
     }
 
     /// Asks which cylinder along a line bends as much as all parts within reach of a point towards a side.
-    pub(in super::super) fn of_lengthwise(center: &Vec3, reach: f64, side: f64, asked: Lengthwise) -> Self {
-        Self::about_forms(center, reach, side, Forms::Across(asked, Across::default()))
+    pub(in super::super) fn of_lengthwise(
+        center: &Vec3,
+        reach: f64,
+        side: f64,
+        asked: Lengthwise,
+        patience: Patience<'a>,
+    ) -> Self {
+        Self::about_forms(center, reach, side, Forms::Across(asked, Across::default()), patience)
     }
 
     /// Asks how much all parts within reach of a point bend away from a side along a unit direction, closely where that is more than
@@ -197,9 +203,10 @@ impl Survey {
         reach: f64,
         side: f64,
         (direction, enough): (Vec3, f64),
+        patience: Patience<'a>,
     ) -> Self {
         let found = f64::NEG_INFINITY;
-        Self::about_forms(center, reach, side, Forms::Along(Along { direction, enough, found }))
+        Self::about_forms(center, reach, side, Forms::Along(Along { direction, enough, found }), patience)
     }
 
     /// The least bend along the line with which there is such a cylinder, and the curvature of that.
@@ -288,16 +295,21 @@ impl Across {
 
 impl Part {
     /// Takes the forms of the places within reach; its halves tell them more closely where needed.
-    pub(super) fn survey_forms(&self, sheet: &impl Enclose, survey: &mut Survey, depth: u32) {
+    pub(super) fn survey_forms(&self, sheet: &impl Enclose, survey: &mut Survey<'_>, depth: u32) {
         if self.bound(&survey.center) > survey.reach {
             return;
         }
-        survey.seen += 1;
+        if survey.is_given_up() {
+            return;
+        }
+        if self.form.made().is_none() {
+            survey.counts(WORK_OF_PART);
+        }
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
         let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         match survey.forms.take(form.as_deref(), survey.side, is_fine) {
             Taken::Whole => {}
-            Taken::Halves => self.for_halves(sheet, |half| half.survey_within(sheet, survey, depth + 1)),
+            Taken::Halves => self.survey_halves(sheet, survey, depth),
             Taken::Nothing => survey.jumps = true,
         }
     }

@@ -109,13 +109,14 @@ impl PolyConicSheet {
     }
 
     /// Answers a question about the conics' surface, asked in program coordinates.
-    pub(in super::super) fn survey(&self, survey: Survey) -> Survey {
+    pub(in super::super) fn survey<'a>(&self, survey: Survey<'a>) -> Survey<'a> {
         let own = self.form.map.apply_point(survey.center());
         let mut survey = survey.within(own, |way| self.form.map.apply_vector(way));
         let mut open = Vec::with_capacity(DEEP);
         open.push(0usize);
         while let Some(node) = open.pop() {
             let Some(cell) = self.cells.get(node).filter(|cell| cell.radius >= 0.0) else { continue };
+            survey.counts_node();
             if cell.summary.is_some_and(|all| survey.is_settled_by(&all))
                 || (own - cell.center).norm() > survey.reach() + cell.radius
             {
@@ -137,7 +138,7 @@ impl PolyConicSheet {
     }
 
     /// How the conics' surface bends, asked and told in program coordinates.
-    pub(in super::super) fn forms(&self, asked: Survey) -> Option<Vec<Form>> {
+    pub(in super::super) fn forms(&self, asked: Survey<'_>) -> Option<Vec<Form>> {
         let linear = self.form.map.linear();
         let forms = self.survey(asked).forms()?;
         Some(forms.iter().map(|form| form.turned(&linear)).collect())

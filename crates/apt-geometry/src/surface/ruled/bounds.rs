@@ -136,12 +136,13 @@ impl RuledSheet {
     }
 
     /// Answers a question about the curvature near a place.
-    pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
+    pub(in super::super) fn survey<'a>(&self, mut survey: Survey<'a>) -> Survey<'a> {
         let mut open = Vec::with_capacity(DEEP);
         for nodes in self.bands.iter() {
             open.push(0usize);
             while let Some(node) = open.pop() {
                 let Some(strip) = nodes.get(node).filter(|strip| strip.piece != usize::MAX) else { continue };
+                survey.counts_node();
                 let all = summary(nodes, node);
                 if all.is_some_and(|all| survey.is_settled_by(all))
                     || strip.bound(survey.center()) > survey.reach()
@@ -157,6 +158,9 @@ impl RuledSheet {
                     continue;
                 }
                 let stretch = Stretch { sheet: self, piece: strip.piece };
+                if strip.part.made().is_none() {
+                    survey.counts_part();
+                }
                 stretch.part(strip).survey(&stretch, &mut survey);
             }
         }

@@ -276,7 +276,7 @@ impl SculpturedSheet {
     }
 
     /// Answers a question about the curvature near a place.
-    pub(in super::super) fn survey(&self, mut survey: Survey) -> Survey {
+    pub(in super::super) fn survey<'a>(&self, mut survey: Survey<'a>) -> Survey<'a> {
         let (center, reach) = (*survey.center(), survey.reach());
         let mut near = Vec::new();
         self.leaves_near(

@@ -7,6 +7,7 @@ use super::*;
 use crate::{
     canonical::{Geometry, Remembering},
     parametric::{Mesh, SCULPTURED_BEYOND},
+    patience::Patience,
     surface::{RootSelection, Surface},
 };
 
@@ -203,7 +204,7 @@ fn a_pole_is_bounded_like_its_surroundings() {
     for off in [0.0, 0.01, 0.2] {
         let center = v(off + 0.05, 0.05, 2.0);
         let region = Region { center, radius: 0.02, lowest: -1e-3, highest: 0.1 };
-        let bend = ball.bend(side, &ball.foot(&center), &region);
+        let bend = ball.bend(side, &ball.foot(&center), &region, Patience::default());
         assert!(
             matches!(bend, Bend::AtMost(bend) if (0.45..1.0).contains(&bend)),
             "{bend:?} at {off} from {pole}"
@@ -217,7 +218,7 @@ fn a_pole_is_bounded_like_its_surroundings() {
     let cone = made(vec![cone], None, 1.0);
     let center = v(0.01, 0.01, 0.0);
     let region = Region { center, radius: 0.02, lowest: -1e-3, highest: 0.05 };
-    assert_eq!(cone.bend(1.0, &cone.foot(&center), &region), Bend::Unbounded);
+    assert_eq!(cone.bend(1.0, &cone.foot(&center), &region, Patience::default()), Bend::Unbounded);
 }
 
 proptest! {
@@ -280,7 +281,7 @@ fn few_parts_tell_of_what_is_beside_a_pole() {
         let out = v(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
         let center = out * 2.2;
         let side = surface.signed_distance(&center).signum();
-        steady += usize::from(surface.steady(side, &center, [0.25, 0.01]).is_some());
+        steady += usize::from(surface.steady(side, &center, [0.25, 0.01], Patience::default()).is_some());
     }
     assert!(steady > 20, "{steady} of 56 balls are steady");
     assert!(sheet.parts.get() < 1_500, "{} parts", sheet.parts.get());

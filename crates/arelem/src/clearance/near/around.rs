@@ -41,7 +41,12 @@ pub(in crate::clearance) struct Feet<'a> {
 }
 
 impl<'a> Around<'a> {
-    pub(in crate::clearance) fn new(gauge: &'a Gauge, tool: &'a Tool, tip: &'a Vec3, spread: f64) -> Self {
+    pub(in crate::clearance) fn new(
+        gauge: &'a Gauge,
+        tool: &'a Tool<'a>,
+        tip: &'a Vec3,
+        spread: f64,
+    ) -> Self {
         let Gauge { side, memory, .. } = gauge;
         let pose = Pose { tool, surface: gauge.met(tool), side: *side, tip };
         let contacts = memory.near.try_borrow().ok();
@@ -147,7 +152,7 @@ impl<'a> Around<'a> {
     /// At a distance d from a surface with the form S it is that of `−S (1 − d S)⁻¹`: beyond the surface that is more than `−S` by
     /// `|d| S²` where S bends towards the point, and as much by the greater bend of the parallel surface there where it bends away.
     pub(in crate::clearance) fn bend_along(&self, contact: &Contact, way: &Vec3, enough: f64) -> Option<f64> {
-        let Pose { surface, side, .. } = self.pose;
+        let Pose { tool, surface, side, .. } = self.pose;
         let Contact { clearance, tool: point, gradient, .. } = contact;
         let (length, stock) = (way.norm(), surface.stock(side));
         let along = way.try_normalize(0.0)?;
@@ -168,14 +173,14 @@ impl<'a> Around<'a> {
         let reach = 0.5 * length * (1.0 + ahead * hollow).max(1.0 + behind * round);
         let middle = surface.foot(&(point + way * 0.5));
         let center = middle.point - middle.normal * (side * stock);
-        let away = surface.bend_along(side, &center, reach, (&along, enough))?.max(0.0);
+        let away = surface.bend_along(side, &center, reach, (&along, enough), tool.patience)?.max(0.0);
         let bend = away + behind * hollow.max(round).powi(2);
         bend.is_finite().then_some(bend)
     }
 
     /// A steady ball about the way of a point in contact, and its depth.
     fn steady_about(&self, contact: &Contact, way: &Vec3) -> Option<(Steady, f64)> {
-        let Pose { surface, side, .. } = self.pose;
+        let Pose { tool, surface, side, .. } = self.pose;
         let Contact { clearance, tool: point, surface: foot, .. } = contact;
         let middle = surface.foot(&(point + way * 0.5));
         // On the side that it is asked from.
@@ -183,7 +188,7 @@ impl<'a> Around<'a> {
         let farthest = |p: &Vec3| (p - center).norm();
         let radius = farthest(point).max(farthest(&(point + way))).max(farthest(foot));
         let depth = (clearance + way.norm()).max(0.0);
-        surface.steady(side, &center, [radius, depth]).map(|steady| (steady, depth))
+        surface.steady(side, &center, [radius, depth], tool.patience).map(|steady| (steady, depth))
     }
 
     /// Heights between which all of the tool is that is not known to be farther from the surface than a level; beside a contact on the

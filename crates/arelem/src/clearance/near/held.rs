@@ -237,7 +237,8 @@ impl Pose<'_> {
 
     /// A distance of all of the surface from an end of the tool, if it is known not to be below a given one.
     pub(super) fn apart_of(&self, end: End, distance: f64) -> Option<f64> {
-        self.surface.keeps_apart(&|place: &Vec3| self.away_from(end, &(place - self.tip)), distance)
+        let away = |place: &Vec3| self.away_from(end, &(place - self.tip));
+        self.surface.keeps_apart(&away, distance, self.tool.patience)
     }
 
     /// Whether all of the surface keeps a distance from an end of the tool while that moves straight to another place.
@@ -245,7 +246,7 @@ impl Pose<'_> {
         let (body, way) = (|place: &Vec3| self.away_from(end, place), to - self.tip);
         let close = CLOSE * distance.abs();
         let away = |place: &Vec3| nearest_on_way(&body, &(place - self.tip), &way, close);
-        self.surface.keeps_apart(&away, distance).is_some()
+        self.surface.keeps_apart(&away, distance, self.tool.patience).is_some()
     }
 
     /// No place of an end of the tool is nearer to one from the tool end than this, and the direction in which that grows. What is below a
@@ -305,7 +306,7 @@ mod tests {
     use super::*;
     use crate::{tests::v, verify::tests::lofts};
 
-    fn tool() -> Tool {
+    fn tool() -> Tool<'static> {
         let cutter = Cutter::from_numbers(&[0.5, 0.1, 0.1661, 0.1, 0.0, 10.0, 4.0], 1.0).expect("cutter");
         Tool::new(cutter, v(0.2, -0.3, 1.0).normalize())
     }

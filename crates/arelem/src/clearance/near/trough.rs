@@ -101,7 +101,7 @@ impl Bends {
     ) -> Option<Self> {
         let (center, reach) = pose.feet(contact, grounds, extent)?;
         let radius = reach + EASE * pose.scale();
-        let forms = pose.surface.forms(pose.side, &center, radius)?;
+        let forms = pose.surface.forms(pose.side, &center, radius, pose.tool.patience)?;
         Some(Self { center, radius, forms })
     }
 

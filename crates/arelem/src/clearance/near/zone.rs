@@ -25,7 +25,7 @@ impl Pose<'_> {
             return POINT_BALLS.iter().find_map(|share| {
                 let radius = share * scale;
                 let depth = found.contact.clearance.max(0.0) + radius;
-                let steady = surface.steady(side, &center, [radius, depth])?;
+                let steady = surface.steady(side, &center, [radius, depth], self.tool.patience)?;
                 let held = Held::POINT;
                 Some(Zone { center, radius, depth, held, size: 0, steady, tip: *self.tip, deepest: 0.0 })
             });
@@ -49,7 +49,7 @@ impl Pose<'_> {
             let way = last.as_ref().map_or(Vec3::zeros(), |last| self.middle(&last.held) - last.center);
             let ahead = way.try_normalize(0.0).map_or(Vec3::zeros(), |way| way * (AHEAD * ease * scale));
             let center = middle + ahead;
-            let steady = surface.steady(side, &center, [radius, depth])?;
+            let steady = surface.steady(side, &center, [radius, depth], self.tool.patience)?;
             let deepest = match held.cap {
                 Some(cap) => self.deepest_in(&held, &cap, &found.contact, &steady)?,
                 None => 0.0,

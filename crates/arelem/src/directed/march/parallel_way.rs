@@ -1,6 +1,8 @@
 //! Straight ways on which the path is parallel to a check surface: along the extension of a tabulated cylinder that lies in the line to
 //! which that is tangent, or above the line on which a bar and the part surface touch.
 
+use apt_geometry::patience::Patience;
+
 use super::{Vertex, tangency::Sides};
 use crate::{clearance::Gauge, directed::Prepared, error::MotionFailure};
 
@@ -21,10 +23,10 @@ const MAX_HALVINGS: u32 = 60;
 
 /// Such a way, from a place on it.
 pub(super) struct ParallelWay<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     /// Of the check surface, on the side on which the tool is nearer to it.
     gauge: &'a Gauge,
-    cancel: &'a dyn Fn() -> bool,
+    patience: Patience<'a>,
     origin: Vertex,
     slope: f64,
 }
@@ -38,10 +40,10 @@ pub(super) struct Reach {
 impl<'a> ParallelWay<'a> {
     /// The way that leads on from a place where the check surface's clearance changes at this rate.
     pub(super) fn from(
-        prepared: &'a Prepared,
+        prepared: &'a Prepared<'a>,
         check: &'a Sides,
         (place, slope): (&Vertex, f64),
-        cancel: &'a dyn Fn() -> bool,
+        patience: Patience<'a>,
     ) -> Result<Option<Self>, MotionFailure> {
         if slope.abs() > NEARLY {
             return Ok(None);
@@ -49,7 +51,7 @@ impl<'a> ParallelWay<'a> {
         let Some(origin) = Vertex::settled(prepared, &place.tip, &place.tangent) else { return Ok(None) };
         let (contact, side) = check.nearer(prepared, &origin.tip)?;
         let slope = (contact.gradient * side).dot(&origin.tangent);
-        let way = Self { prepared, gauge: check.on(side), cancel, origin, slope };
+        let way = Self { prepared, gauge: check.on(side), patience, origin, slope };
         Ok(way.is_on(LEAST * prepared.size).then_some(way))
     }
 
@@ -111,7 +113,7 @@ impl<'a> ParallelWay<'a> {
 
     /// Whether to go on.
     fn ask(&self) -> Result<(), MotionFailure> {
-        if (self.cancel)() { Err(MotionFailure::Cancelled) } else { Ok(()) }
+        if self.patience.is_over() { Err(MotionFailure::Cancelled) } else { Ok(()) }
     }
 
     /// The rate at which the clearance of the check surface changes on it.

@@ -5,7 +5,7 @@
 //! A step and the path between its ends are apart by no more than the sag of the step; a check surface that stays farther
 //! away than that is not met.
 
-use apt_geometry::{Vec3, motion::CheckSurface};
+use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
 use super::{Vertex, surface_end::SurfaceEnd, tangency};
 use crate::{
@@ -60,7 +60,7 @@ enum Leg {
 
 /// A path being looked along.
 struct Scout<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     watcher: Watcher<'a>,
     tangency: tangency::Watch<'a>,
     nearest: (f64, Vec3, usize),
@@ -76,7 +76,7 @@ pub(super) fn ahead(
     (watcher, tangency): (&Watcher<'_>, &tangency::Watch<'_>),
     from: &Vertex,
     least: f64,
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Outlook, MotionFailure> {
     let nearest = (f64::INFINITY, from.tip, 0);
     let mut scout = Scout {
@@ -98,7 +98,7 @@ pub(super) fn ahead(
     let (mut here, mut step) = (start, FIRST * prepared.size);
     let tangent = checks.iter().any(|check| is_tangent(check.relation));
     for _ in 0..MAX_STEPS {
-        if cancel() {
+        if patience.is_over() {
             return Err(MotionFailure::Cancelled);
         }
         let (to, turn, end) = match scout.leg(&here, &mut step) {

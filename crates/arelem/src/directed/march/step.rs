@@ -13,7 +13,7 @@ mod sag;
 mod trend;
 mod window;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use self::{overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex};
@@ -68,9 +68,9 @@ enum Places {
 
 /// Computes vectors one after the other, remembering curvature.
 pub(super) struct Stepper<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     maximum: f64,
-    cancel: &'a dyn Fn() -> bool,
+    patience: Patience<'a>,
     /// How clearances are expected to bend along the next vector.
     trend: Trend,
     /// The vector found last.
@@ -131,11 +131,11 @@ struct Guess {
 }
 
 impl<'a> Stepper<'a> {
-    pub(super) fn new(prepared: &'a Prepared, maximum: f64, cancel: &'a dyn Fn() -> bool) -> Self {
+    pub(super) fn new(prepared: &'a Prepared<'a>, maximum: f64, patience: Patience<'a>) -> Self {
         Self {
             prepared,
             maximum,
-            cancel,
+            patience,
             trend: Trend::default(),
             latest: None,
             turned: None,
@@ -293,7 +293,7 @@ impl<'a> Stepper<'a> {
         let Prepared { part, drive, size, .. } = self.prepared;
         let sweep = from.sweep(self.prepared, to);
         let [for_part, for_drive] = &self.ledgers;
-        let over = |role, ledger, a, b| proof::extremes(&sweep, role, ledger, a, b, *size, self.cancel);
+        let over = |role, ledger, a, b| proof::extremes(&sweep, role, ledger, a, b, *size, self.patience);
         [
             over(part, for_part, (&from.tip, &from.part), (&to.tip, &to.part)),
             over(drive, for_drive, (&from.tip, &from.drive), (&to.tip, &to.drive)),

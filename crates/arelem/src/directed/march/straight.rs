@@ -1,6 +1,6 @@
 //! Part and drive surface both planes: one straight vector of any length.
 
-use apt_geometry::motion::CheckSurface;
+use apt_geometry::{motion::CheckSurface, patience::Patience};
 
 use super::{Vertex, finish, first_stop, tangency};
 use crate::{
@@ -15,17 +15,17 @@ const REACH: f64 = 1e5;
 pub(super) fn run(
     prepared: &Prepared,
     checks: &[CheckSurface],
-    cancel: &dyn Fn() -> bool,
+    patience: Patience<'_>,
 ) -> Result<Path, MotionFailure> {
     let here = Vertex::at(prepared, prepared.tip, &prepared.tangent)?;
     let mut watcher = Watcher::new(prepared, checks).thorough();
-    let mut tangency = tangency::Watch::new(prepared, checks, cancel);
+    let mut tangency = tangency::Watch::new(prepared, checks, patience);
     let mut from = here;
     let mut length = prepared.size;
     let mut travelled = 0.0;
     // Stretches of growing length keep the steps of the search in proportion.
     while travelled < REACH * prepared.size {
-        if cancel() {
+        if patience.is_over() {
             return Err(MotionFailure::Cancelled);
         }
         let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent)?;

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use apt_geometry::{Vec3, surface::SurfaceEdge};
+use apt_geometry::{Vec3, patience::Patience, surface::SurfaceEdge};
 
 use super::{March, Vertex};
 use crate::{
@@ -183,7 +183,7 @@ impl March<'_> {
         &mut self,
         here: &Vertex,
         next: &Vertex,
-        cancel: &dyn Fn() -> bool,
+        patience: Patience<'_>,
     ) -> Result<(), MotionFailure> {
         if !self.has_ends() {
             return Ok(());
@@ -208,14 +208,14 @@ impl March<'_> {
             return Ok(());
         }
         self.look_for_end = 2 * self.points.len();
-        self.judge_outlook(next, cancel)
+        self.judge_outlook(next, patience)
     }
 
     /// Where a surface ends within a radius of the tool ahead of a contact, so that proofs become dear: the same.
     pub(super) fn look_for_end_beside(
         &mut self,
         here: &Vertex,
-        cancel: &dyn Fn() -> bool,
+        patience: Patience<'_>,
     ) -> Result<(), MotionFailure> {
         let Prepared { tool, part, drive, .. } = self.prepared;
         let ends = |(role, contact): (&Working, &Contact)| {
@@ -229,7 +229,7 @@ impl March<'_> {
             return Ok(());
         }
         self.look_for_end = 2 * (self.points.len() + 1);
-        self.judge_outlook(here, cancel)
+        self.judge_outlook(here, patience)
     }
 
     /// Where no vector goes on because a surface ends within reach of the tool: that.

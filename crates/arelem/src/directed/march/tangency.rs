@@ -5,6 +5,7 @@ use std::rc::Rc;
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
+    patience::Patience,
 };
 
 use super::{
@@ -170,9 +171,9 @@ impl Approach {
 /// Watches the check surfaces that stop at a tangency.
 #[derive(Clone)]
 pub(super) struct Watch<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
-    cancel: &'a dyn Fn() -> bool,
+    patience: Patience<'a>,
     counts: Vec<u32>,
     approaches: Vec<Approach>,
     sides: Rc<[Sides]>,
@@ -187,14 +188,14 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     pub(super) fn new(
-        prepared: &'a Prepared,
+        prepared: &'a Prepared<'a>,
         checks: &'a [CheckSurface],
-        cancel: &'a dyn Fn() -> bool,
+        patience: Patience<'a>,
     ) -> Self {
         let (counts, approaches) = (vec![0; checks.len()], vec![Approach::default(); checks.len()]);
         let sides = prepared.checks.iter().map(Sides::of).collect();
         let (nearest, check, along) = (f64::INFINITY, 0, None);
-        Self { prepared, checks, cancel, counts, approaches, sides, met: 0, nearest, check, along }
+        Self { prepared, checks, patience, counts, approaches, sides, met: 0, nearest, check, along }
     }
 
     /// Why there is no tangency.
@@ -246,7 +247,7 @@ impl<'a> Watch<'a> {
             (approach.begun, approach.on_way) = (true, self.way(index, &here, true)?);
         }
         while here.x < length {
-            if (self.cancel)() {
+            if self.patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let mut step = (here.gap.abs() - reach).max(least);
@@ -285,7 +286,7 @@ impl<'a> Watch<'a> {
     fn way(&mut self, index: usize, place: &Reading, is_first: bool) -> Result<Option<OnWay>, MotionFailure> {
         let sides = self.sides.clone();
         let start = (&place.vertex, place.slope);
-        let Some(way) = ParallelWay::from(self.prepared, &sides[index], start, self.cancel)? else {
+        let Some(way) = ParallelWay::from(self.prepared, &sides[index], start, self.patience)? else {
             return Ok(None);
         };
         let Reach { back, ahead } = way.reach()?;
@@ -451,7 +452,7 @@ impl<'a> Watch<'a> {
             Condition::Clearance(&drive.gauge, drive.rest() + shift[1]),
         ];
         let at = |share: f64| -> Result<Vertex, MotionFailure> {
-            if (self.cancel)() {
+            if self.patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let on_chord: Vec3 = from.tip + (to.tip - from.tip) * share;

@@ -86,7 +86,7 @@ enum Stretch {
 struct Asked<'a> {
     /// The tool in the middle of the stretch.
     tip: Vec3,
-    tool: Cow<'a, Tool>,
+    tool: Cow<'a, Tool<'a>>,
     /// No point of the tool that may be in contact strays farther from its place there.
     spread: f64,
     /// No such point is farther from the tool end.
@@ -152,7 +152,7 @@ impl Course<'_, '_> {
         let misfit = (b.value - a.value) - 0.5 * (a.slope + b.slope) * (b.x - a.x);
         if misfit.abs() > self.telling(JUMP) && depth < MAX_DEPTH {
             let limit = if self.holds() { MAX_SAMPLES } else { MAX_SAMPLES_REFUSED };
-            if self.samples.len() >= limit || (self.line.cancel)() {
+            if self.samples.len() >= limit || self.line.patience.is_over() {
                 self.is_exhausted = true;
                 return;
             }
@@ -220,7 +220,7 @@ impl Course<'_, '_> {
                 || unbounded > MAX_UNBOUNDED
                 || x <= a.x
                 || x >= b.x
-                || (self.line.cancel)()
+                || self.line.patience.is_over()
             {
                 return false;
             }
@@ -250,12 +250,11 @@ impl Course<'_, '_> {
     /// use, by the contacts at both ends, or by a bound after all; and by parts of the surface where cuts have not done.
     fn stretch(&self, a: &Sample, b: &Sample, cuts: usize) -> Stretch {
         let asked = self.ask(a, b);
-        let Line { role, ledger, cancel, .. } = self.line;
+        let Line { role, ledger, .. } = self.line;
         let about = asked.about();
         let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
-        let found = |is_of_use: &dyn Fn(f64) -> bool| {
-            ledger.bend(&role.gauge, &about, asked.range, is_of_use, cancel)
-        };
+        let found =
+            |is_of_use: &dyn Fn(f64) -> bool| ledger.bend(&role.gauge, &about, asked.range, is_of_use);
         let piece = (b.x - a.x) / MOST_PIECES;
         let is_of_use = |bend| match asked.scaled(Bend::AtMost(bend)) {
             Bend::AtMost(bend) => 0.125 * bend * piece * piece <= role.band(),

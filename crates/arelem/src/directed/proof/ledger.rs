@@ -20,7 +20,7 @@ const CRAMPED: f64 = 0.5;
 /// Positions of the tool about one of them.
 #[derive(Clone, Copy)]
 pub(super) struct About<'a> {
-    pub(super) tool: &'a Tool,
+    pub(super) tool: &'a Tool<'a>,
     pub(super) tip: &'a Vec3,
     /// No point of the tool within `reach` of its end strays farther than this from its place there.
     pub(super) spread: f64,
@@ -133,7 +133,7 @@ impl Ledger {
     }
 
     /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
-    /// distances of the points of contact are in `range`. There is none once `cancel` says true; `None` where it is greater than
+    /// distances of the points of contact are in `range`. There is none once the tool's patience is over; `None` where it is greater than
     /// what `is_of_use` takes.
     pub(super) fn bend(
         &self,
@@ -141,7 +141,6 @@ impl Ledger {
         place: &About<'_>,
         range: [f64; 2],
         is_of_use: &dyn Fn(f64) -> bool,
-        cancel: &dyn Fn() -> bool,
     ) -> Option<Bend> {
         let About { tool, tip, spread, .. } = *place;
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
@@ -155,7 +154,7 @@ impl Ledger {
             if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
                 continue;
             }
-            found = upward_bend(gauge, tool, tip, spread, range, is_of_use, cancel);
+            found = upward_bend(gauge, tool, tip, spread, range, is_of_use);
             match found {
                 // One that reaches farther may hold a place that bends much more.
                 Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}

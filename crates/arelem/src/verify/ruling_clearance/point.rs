@@ -1,11 +1,11 @@
 //! Signed distances of points from a surface, and whether they are beyond where it ends.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use super::{Ruled, SURE_DISTANCE, resolution};
 use crate::verify::{
     clearance::Reading,
-    tool::{Patience, Profile, Tool},
+    tool::{Profile, Tool},
 };
 
 /// Cosine between the direction to the nearest place and the surface's normal there below which that is where the surface ends.

@@ -1,6 +1,6 @@
 //! Tools that all but touch surfaces of patches, and tools that are a little too deep in them.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use super::{
     super::{
@@ -124,7 +124,7 @@ fn a_tool_too_deep_at_two_places_is_as_deep_as_the_deeper() {
 fn the_direction_to_a_surface_close_by_is_its_normal() {
     let wall = || cylinder([0.0; 3], UP, 2.0);
     let curve = |z: f64| section(wall(), [[-2.0, 0.0, z], [2.0, 0.0, z]], [0.0, 1.0, 0.0]);
-    let surface = Surface::within(&ruled(curve(-1.0), curve(1.0)), 1e-7).unwrap();
+    let surface = Surface::within(&ruled(curve(-1.0), curve(1.0)), 1e-7, Patience::default()).unwrap();
     let Surface::Ruled(vault) = &surface else { panic!("{surface:?}") };
     for k in 0..40 {
         let (sine, cosine) = (0.4 + 0.05 * f64::from(k)).sin_cos();

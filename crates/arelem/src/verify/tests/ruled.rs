@@ -4,6 +4,7 @@ use apt_geometry::{
     Vec3,
     canonical::Geometry,
     motion::{DriveSide, Relation},
+    patience::Patience,
 };
 use proptest::prelude::*;
 
@@ -202,7 +203,7 @@ proptest! {
 fn a_coarse_model_is_as_close_as_it_was_asked_to_be() {
     let surface = half_cylinder();
     for accuracy in [1e-5, 1e-6, 1e-8] {
-        let model = Surface::within(&surface, accuracy).unwrap();
+        let model = Surface::within(&surface, accuracy, Patience::default()).unwrap();
         assert!(model.error() <= accuracy, "{} for {accuracy}", model.error());
         for k in 1..40 {
             let angle = std::f64::consts::PI * f64::from(k) / 40.0;
@@ -348,7 +349,7 @@ fn contacts_beside_the_end_of_a_curve_are_followed() {
 fn a_surface_that_is_smooth_between_the_ends_of_its_curves_has_no_edges_there() {
     let Geometry::RuledSurface(surface) = &lofts::roof() else { panic!("a ruled surface") };
     for accuracy in [0.0, 1e-9, 1e-6, 1e-3] {
-        let strips = RuledStrips::of(surface, accuracy).expect("patches");
+        let strips = RuledStrips::of(surface, accuracy, Patience::default()).expect("patches");
         // Its chords go from x = −2 to x = 2.
         let inside = |place: &Vec3| place.x.abs() < 2.0 + 1e-9;
         let joints = strips.sheet.patches.iter().filter(|patch| inside(&patch.net[0][0]));

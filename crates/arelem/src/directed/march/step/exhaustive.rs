@@ -50,7 +50,7 @@ impl Stepper<'_> {
         let place = |role: &Working, share: f64| share * role.band() - role.inside;
         let [part, drive] = self.roles();
         for share in PLACES.iter().flat_map(|p| PLACES.iter().map(move |d| (*p, *d))) {
-            if (self.cancel)() {
+            if self.patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let targets = [place(part, share.0), place(drive, share.1)];

@@ -138,7 +138,7 @@ impl Stepper<'_> {
             if search.length <= least {
                 break;
             }
-            if (self.cancel)() {
+            if self.patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let Some(trial) = self.trial(here, places, &mut search) else {

@@ -112,7 +112,7 @@ impl Stepper<'_> {
             if length > cap {
                 break;
             }
-            if (self.cancel)() {
+            if self.patience.is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             match self.attempt(here, length, cap, (targets, &bent, &guess.bends)) {
