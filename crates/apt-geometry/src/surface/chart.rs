@@ -217,7 +217,7 @@ impl Surface {
             Self::Sculptured(sheet) => sheet.survey(asked).forms(),
             _ => None,
         };
-        forms.map(leading)
+        leading(forms?, patience)
     }
 
     /// How much the surface of the charts bends away from a side at most along a unit direction, at all places within reach of a point;

@@ -10,6 +10,8 @@ use crate::{Vec3, patience::Patience};
 const PSEUDO_INVERSE: f64 = std::f64::consts::SQRT_2;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
 const FINE: f64 = 1.0 / 32.0;
+/// How many forms are one unit of work where they are compared.
+const FORMS_A_UNIT: usize = 8;
 /// Error of forms, as a share of them, that tells how a surface bends along a line that is nearly straight on it.
 const FINE_ERROR: f64 = 0.005;
 
@@ -157,14 +159,17 @@ impl Form {
 /// Share of the greatest curvature by which one form may stand in for others.
 const ALIKE: f64 = 0.01;
 
-/// Few forms that bend in each direction as much as all of some, and hardly more.
-pub(in super::super) fn leading(forms: Vec<Form>) -> Vec<Form> {
+/// Few forms that bend in each direction as much as all of some, and hardly more; none once `patience` is over.
+pub(in super::super) fn leading(forms: Vec<Form>, patience: Patience<'_>) -> Option<Vec<Form>> {
     let mut sized: Vec<(f64, Form)> =
         forms.into_iter().map(|form| (form.middle.norm() + form.error, form)).collect();
     sized.sort_by(|a, b| b.0.total_cmp(&a.0));
     let slack = ALIKE * sized.first().map_or(0.0, |first| first.0);
     let mut kept: Vec<(Form, f64)> = Vec::new();
     for (_, form) in sized {
+        if patience.ends_after((kept.len() / FORMS_A_UNIT) as u32 + 1) {
+            return None;
+        }
         let stands_in =
             kept.iter_mut().find_map(|(known, most)| Some((known.standing_in(&form, *most)?, known)));
         match stands_in {
@@ -172,7 +177,7 @@ pub(in super::super) fn leading(forms: Vec<Form>) -> Vec<Form> {
             None => kept.push((form, form.error + slack)),
         }
     }
-    kept.into_iter().map(|(form, _)| form).collect()
+    Some(kept.into_iter().map(|(form, _)| form).collect())
 }
 
 impl<'a> Survey<'a> {
