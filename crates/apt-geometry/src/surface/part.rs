@@ -40,7 +40,7 @@ const MAX_DEPTH: u32 = 24;
 const MAX_PARTS: u32 = 3000;
 
 /// What the bounds of a part that are not known yet count in units of work.
-const WORK_OF_PART: u32 = 8;
+const WORK_OF_PART: u32 = 16;
 /// How many nodes above parts are one unit of work.
 const NODES_A_UNIT: u32 = 8;
 

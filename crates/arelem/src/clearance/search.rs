@@ -35,7 +35,7 @@ pub(super) const MISSED: f64 = 1e-9;
 /// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
 const SAME: f64 = 1e-11;
 /// What a foot that is looked for counts in units of work.
-const WORK_OF_FOOT: u32 = 8;
+const WORK_OF_FOOT: u32 = 16;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
