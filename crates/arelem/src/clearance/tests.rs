@@ -277,3 +277,17 @@ fn along_generators_the_clearance_bends_as_the_distance_of_the_tool_end() {
     let own = 1.0 / (b * b / a + r);
     assert!(found.is_some_and(|found| found >= own && found <= 1.02 * own), "{found:?} for {own}");
 }
+
+/// The tool stands along the normal of a cylinder: what is left of that across the tool is rounding, and no direction.
+#[test]
+fn a_corner_on_a_cylinder_along_whose_normal_the_tool_stands_is_as_far_as_the_bottom() {
+    let geometry = Geometry::Cylinder(Cylinder { point: v(0.0, 0.0, -8.0), axis: Vec3::y(), radius: 8.5 });
+    for k in 0..200 {
+        let x = 0.04 * f64::from(k) - 4.0;
+        let tip = v(x, 0.5, (8.566_f64.powi(2) - x * x).sqrt() - 8.0);
+        let axis = v(tip.x, 0.0, tip.z + 8.0).normalize();
+        let tool = Tool::new(Cutter::from_numbers(&[1.0, 0.2], 1.0).expect("cutter"), axis);
+        let clearance = gauge(&geometry, 1.0).contact(&tool, &tip).clearance;
+        assert!((clearance - 0.066).abs() <= 1e-9, "at {tip}: {clearance}");
+    }
+}

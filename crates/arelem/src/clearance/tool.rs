@@ -10,6 +10,10 @@ use apt_geometry::{
 /// How often the observer of a side looks from another place, and how far apart, relative to the tool, places are one.
 const MOST_GLANCES: u32 = 32;
 const SAME_GLANCE: f64 = 1e-6;
+/// Tangent of the angle to the axis below which rounding may leave something of the axis in what is across it, and sine of the angle of a
+/// direction to the axis below which that is all there is.
+const NEAR_AXIS: f64 = 1e-6;
+const ALONG_AXIS: f64 = 1e-3;
 
 /// A piece of the tool's boundary, for surfaces without closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,12 +115,18 @@ impl<'a> Tool<'a> {
         surface.signed_distance(&observer)
     }
 
-    /// Component of a vector along the axis, length of the rest and its unit direction.
+    /// Component of a vector along the axis, length of the rest and its unit direction, which is square to the axis even where the rest is
+    /// rounding.
     pub(crate) fn split(&self, w: &Vec3) -> (f64, f64, Vec3) {
         let along = w.dot(&self.axis);
         let radial = w - self.axis * along;
         let across = radial.norm();
-        (along, across, if across > 0.0 { radial / across } else { self.across[0] })
+        if across > NEAR_AXIS * along.abs() {
+            return (along, across, radial / across);
+        }
+        let direction = radial.try_normalize(0.0).map(|radial| radial - self.axis * radial.dot(&self.axis));
+        let square = direction.and_then(|direction| direction.try_normalize(ALONG_AXIS));
+        (along, across, square.unwrap_or(self.across[0]))
     }
 }
 
