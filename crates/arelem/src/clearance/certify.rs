@@ -498,7 +498,8 @@ impl Question<'_> {
         within: [f64; 2],
         judged: &mut Judged,
     ) -> Option<Ground> {
-        let course = Course::nearly_straight(self.face, self.tool, patch, own, within)?;
+        let along = nearly_straight::direction(self.tool, patch, &own.gradient)?;
+        let course = Course::nearly_straight(self.face, self.tool, &along, own, within)?;
         judged.length *= course.share_of_length();
         let is_within = |base: &Base| self.away(&base.place, &own.place) <= within[0];
         let bases = std::iter::once(*own).chain(self.base(0.0).filter(is_within));
@@ -557,7 +558,7 @@ fn sample(tool: &Tool, patch: &Patch, p: &Vec3, foot: &Foot, side: f64) -> Conta
 }
 
 /// How strongly the distance bends downward within reach of a point.
-fn downward_bend(face: Face<'_>, tool: &Tool, foot: &Foot, (center, reach): (&Vec3, f64)) -> Bend {
+pub(super) fn downward_bend(face: Face<'_>, tool: &Tool, foot: &Foot, (center, reach): (&Vec3, f64)) -> Bend {
     let distance = face.side * foot.distance;
     let region =
         Region { center: *center, radius: reach, lowest: -distance - reach, highest: reach - distance };

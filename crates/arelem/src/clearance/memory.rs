@@ -8,7 +8,9 @@ use std::cell::{Cell, RefCell};
 
 use apt_geometry::Vec3;
 
-use super::{Contact, Tool, certify::Proof, crease::Spot, near::Contacts, quadric::Start, tool::Piece};
+use super::{
+    Contact, Tool, certify::Proof, crease::Spot, near::Contacts, quadric::Start, search::Courses, tool::Piece,
+};
 
 /// How many times the last steps the tool may move before the bends are looked at again.
 const FORESIGHT: f64 = 3.0;
@@ -123,6 +125,8 @@ pub struct Memory {
     crease: Cell<Option<(f64, Spot)>>,
     /// What parts of the surface showed of the last contact.
     by_parts: Cell<ByParts>,
+    /// How distances bend in balls about the axis of a tool whose flank was in contact.
+    pub(super) courses: Courses,
     /// What was shown last, in turn.
     shown: RefCell<(usize, [Option<Shown>; MOST_SHOWN])>,
 }

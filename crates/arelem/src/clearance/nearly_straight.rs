@@ -24,23 +24,22 @@ const MOST_ACROSS: f64 = 2.0;
 const LEAST_LENGTH: f64 = 1.0 / 64.0;
 
 impl Course {
-    /// About a patch of a straight piece with its middle at a base, within reach of which distances bend by no more than `bend`
-    /// in any direction.
+    /// About a straight piece along a unit direction in the tangent plane, with its middle at a base within reach of which distances bend by
+    /// no more than `bend` in any direction.
     pub(super) fn nearly_straight(
         face: Face<'_>,
         tool: &Tool<'_>,
-        patch: &Patch,
+        along: &Vec3,
         base: &Base,
         [reach, bend]: [f64; 2],
     ) -> Option<Self> {
         let Face { surface, side } = face;
-        let along = direction(tool, patch, &base.gradient)?;
         let stock = surface.stock(side);
         let distance = base.distance + stock;
         // No foot of a place within reach is farther away.
         let feet = distance.abs() + 2.0 * reach;
         let asked = Lengthwise {
-            along,
+            along: *along,
             least: SHARES.map(|share| share * bend),
             enough: bend,
             most: MOST_ACROSS * bend,
@@ -49,8 +48,14 @@ impl Course {
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
         let is_bounded = deepest * (least + across) < 1.0;
-        let straight = Some(Straight { along, spared: most - least });
+        let straight = Some(Straight { along: *along, spared: most - least });
         is_bounded.then_some(Self { bend: most, straight })
+    }
+
+    /// How much distances bend along a unit direction.
+    pub(super) fn bend_along(&self, way: &Vec3) -> f64 {
+        let spared = self.straight.map_or(0.0, |straight| straight.spared * straight.along.dot(way).powi(2));
+        self.bend - spared
     }
 
     /// How long a piece along the straight direction is beside one across, for how the distance bends.
@@ -61,7 +66,7 @@ impl Course {
 }
 
 /// The direction of a straight piece in the middle of a patch, in the tangent plane of a surface.
-fn direction(tool: &Tool, patch: &Patch, normal: &Vec3) -> Option<Vec3> {
+pub(super) fn direction(tool: &Tool, patch: &Patch, normal: &Vec3) -> Option<Vec3> {
     let Stretch::Line([a, b]) = patch.stretch else { return None };
     let (sin, cos) = patch.azimuth.sin_cos();
     let radial = tool.across[0] * cos + tool.across[1] * sin;
@@ -116,7 +121,8 @@ mod tests {
                     continue;
                 };
                 let face = Face { surface: &surface, side };
-                let Some(course) = Course::nearly_straight(face, &tool, &patch, &base, [reach, bend]) else {
+                let along = direction(&tool, &patch, &base.gradient).expect("a direction");
+                let Some(course) = Course::nearly_straight(face, &tool, &along, &base, [reach, bend]) else {
                     continue;
                 };
                 let least = patch.least(&tool, &tip, &base, course);

@@ -2,7 +2,10 @@
 //! circle is scanned and every promising valley refined by Newton's method with the surface's curvature; the bottom
 //! and the conical patches are looked into where their edges say that contact lies further inside.
 
+mod along_axis;
 mod on_edge;
+
+pub(super) use self::along_axis::Courses;
 
 use apt_geometry::{
     Vec3,
@@ -94,6 +97,7 @@ pub(super) fn contact(
         search.scan();
     }
     let guessed = place.is_some() || likely.is_some();
+
     let shown = if unique { Shown::Nearest } else { search.complete(memory) };
     if guessed && matches!(shown, Shown::Nothing) && !tool.patience.was_over() {
         // Nothing proves the contact near the last one: look everywhere.
@@ -170,7 +174,9 @@ impl Search<'_> {
         let proof = memory.map(|memory| memory.proof(self.tool, self.side, self.tip));
         let mut proof = proof.unwrap_or_else(|| Proof::of_tool(self.tool));
         let known = memory.map_or_else(ByParts::default, Memory::by_parts);
-        let (shown, by_parts) = self.complete_with(&mut proof, known);
+        let fresh = Courses::default();
+        let courses = memory.map_or(&fresh, |memory| &memory.courses);
+        let (shown, by_parts) = self.complete_with(&mut proof, known, courses);
         if let Some(memory) = memory {
             memory.keep_proof(self.side, proof);
             memory.show_by_parts(by_parts);
@@ -179,7 +185,12 @@ impl Search<'_> {
     }
 
     /// Also what is known of how parts of the surface show it, which are tried first, after few patches of the tool, or after all.
-    fn complete_with(&mut self, proof: &mut Proof, mut by_parts: ByParts) -> (Shown, ByParts) {
+    fn complete_with(
+        &mut self,
+        proof: &mut Proof,
+        mut by_parts: ByParts,
+        courses: &Courses,
+    ) -> (Shown, ByParts) {
         let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
         for _ in 0..MAX_RESTARTS {
@@ -200,7 +211,10 @@ impl Search<'_> {
             if is_asked && self.is_clear(level) {
                 return (Shown::Within(slack), by_parts);
             }
-            let (found, known) = self.certified(level, proof, by_parts, is_asked);
+            let (found, known) = match self.certified_along_axis(level, courses) {
+                Certificate::Undecided => self.certified(level, proof, by_parts, is_asked),
+                found => (found, by_parts),
+            };
             by_parts = known;
             match found {
                 Certificate::Lower(point) => {
