@@ -217,7 +217,8 @@ mod tests {
             let side = if side { 1.0 } else { -1.0 };
             let center = Vec3::from(center);
             let region = Region { center, radius, lowest: -depth, highest: height };
-            let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region, Patience::default()) else { return Ok(()) };
+            let bend = surface.bend(side, &surface.foot(&center), &region, Patience::default());
+            let Bend::AtMost(bound) = bend else { return Ok(()) };
             let inside = |p: &Vec3| {
                 let d = side * surface.signed_distance(p);
                 ((p - center).norm() <= radius && d >= -depth && d <= height).then_some(d)

@@ -195,7 +195,8 @@ proptest! {
         let surface = tabulated();
         let (side, center) = (if above { 1.0 } else { -1.0 }, Vec3::from(center));
         let region = Region { center, radius, lowest: -0.05, highest: 3.0 };
-        let Bend::AtMost(bound) = surface.bend(side, &surface.foot(&center), &region, Patience::default()) else { return Ok(()) };
+        let bend = surface.bend(side, &surface.foot(&center), &region, Patience::default());
+        let Bend::AtMost(bound) = bend else { return Ok(()) };
         let distance = |p: &Vec3| side * surface.signed_distance(p);
         for end in ends {
             let place = |k: usize| {

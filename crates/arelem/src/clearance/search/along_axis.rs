@@ -229,14 +229,21 @@ impl Search<'_> {
             let is_close = course.is_some_and(|course| course.straight.is_some() || !is_apt);
             Known { bend, half, is_close }
         };
-        if let Some(course) = courses.about(side, &base.place, half) {
+        // A surface of lines in one direction is met as another one by a tool along these: what is known of one is not that of the other.
+        let may_keep = surface.common_ruling().is_none();
+        if may_keep && let Some(course) = courses.about(side, &base.place, half) {
             return known(course);
         }
         // More than is asked, for the next positions.
         let reach = WIDER * half;
+        let keep = |course: Option<Course>| {
+            if may_keep {
+                courses.keep(Kept { side, center: base.place, radius: reach, course });
+            }
+        };
         let face = Face { surface, side };
         let Bend::AtMost(bend) = downward_bend(face, tool, foot, (&base.place, reach)) else {
-            courses.keep(Kept { side, center: base.place, radius: reach, course: None });
+            keep(None);
             return known(None);
         };
         let along = tool.axis - base.gradient * base.gradient.dot(&tool.axis);
@@ -245,7 +252,7 @@ impl Search<'_> {
             .filter(|_| is_apt)
             .and_then(|along| Course::nearly_straight(face, tool, &along, base, [reach, bend]))
             .unwrap_or_else(|| Course::along_generator(bend, None));
-        courses.keep(Kept { side, center: base.place, radius: reach, course: Some(course) });
+        keep(Some(course));
         known(Some(course))
     }
 }
