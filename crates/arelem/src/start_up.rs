@@ -11,7 +11,7 @@ mod tests;
 
 use apt_geometry::{
     Vec3,
-    motion::{PartSide, Relation, StartSurface, ToolAxis},
+    motion::{DriveSide, PartSide, Relation, StartSurface, ToolAxis},
     patience::Patience,
     surface::{RootSelection, Surface},
 };
@@ -20,7 +20,7 @@ use crate::{
     attitude::{Attitude, Law},
     clearance::{Shape, Tool},
     directed::is_tangent,
-    error::{MotionFailure, RoleName},
+    error::{AxisFailure, MotionFailure, RoleName},
     position::{self, Condition, Unsolved},
     role::Working,
     section2::{StartUpRule, State, required_position},
@@ -239,10 +239,7 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         return tangent::position(work, &start);
     }
     let mut tip = if is_following(work) {
-        // The sense of the move, where the law needs it, is that of the move with the present axis.
-        let first = settle(work, guide, &start).unwrap_or(start);
-        follow_surfaces(work, &(first - original), Some(first))?;
-        settle(work, guide, &first).or_else(|_| settle(work, guide, &start))?
+        settle_following(work, guide, (&original, &start))?
     } else {
         settle(work, guide, &start)?
     };
@@ -264,6 +261,31 @@ fn is_following(work: &StartUp<'_>) -> bool {
     !matches!(work.state.axis_mode, ToolAxis::Fixed(_) | ToolAxis::Keep)
 }
 
+/// The position of a tool whose axis follows the surfaces. How it does is judged where the move with the present axis ends, and again
+/// where the move ends that comes of it: the next motion will judge it there.
+fn settle_following(
+    work: &mut StartUp<'_>,
+    guide: Option<(Vec3, f64)>,
+    (original, start): (&Vec3, &Vec3),
+) -> Result<Vec3, MotionFailure> {
+    let first = settle(work, guide, start).unwrap_or(*start);
+    follow_surfaces(work, &(first - original), Some(first))?;
+    let nearest = settle(work, guide, &first).or_else(|_| settle(work, guide, start))?;
+    let mut tip = nearest;
+    for _ in 0..JUDGEMENTS {
+        let axis = work.attitude.tool_at(&tip)?.axis;
+        follow_surfaces(work, &(tip - original), Some(tip))?;
+        if (work.attitude.tool_at(&tip)?.axis - axis).norm() <= SAME_AXIS {
+            return Ok(tip);
+        }
+        let Ok(next) = settle(work, guide, &tip) else { break };
+        tip = next;
+    }
+    // Each place asks for the other one.
+    follow_surfaces(work, &(first - original), Some(first))?;
+    Ok(nearest)
+}
+
 /// Lets the axis follow the surfaces, whose sides are known, for a move `ahead`. A part surface that takes no part in the
 /// start-up (NOPS) still guides the axis.
 ///
@@ -279,12 +301,31 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3, place: Option<Vec3>) ->
     let find = |name: RoleName| work.roles.iter().find(|r| r.name == name);
     let part = find(RoleName::Part).unwrap_or(&modal);
     let tip = place.unwrap_or(tip);
-    let law = Law::new(&state.axis_mode, Some(part), find(RoleName::Drive), (&work.tool, &tip, ahead))
-        .map_err(|cause| MotionFailure::AxisUndetermined { cause, tip })?;
+    let drive = find(RoleName::Drive);
+    let towards = |ahead: &Vec3| Law::new(&state.axis_mode, Some(part), drive, (&work.tool, &tip, ahead));
+    let law = match (towards(ahead), drive) {
+        (Err(AxisFailure::SignUnresolved), Some(drive)) => {
+            towards(&ahead_by_side(state.drive_side, (part, drive), &tip))
+        }
+        (law, _) => law,
+    };
+    let law = law.map_err(|cause| MotionFailure::AxisUndetermined { cause, tip })?;
     if let Some(law) = law {
         work.attitude = Attitude::following(&work.tool, law);
     }
     Ok(())
+}
+
+/// Where the next motion leads as far as TLLFT and TLRGT tell, for a start-up that goes straight at both surfaces and so in no
+/// direction along them. With TLON the natural normal of the drive surface points to the right.
+fn ahead_by_side(side: DriveSide, (part, drive): (&Working, &Working), tip: &Vec3) -> Vec3 {
+    let outward = |role: &Working| role.gauge.surface.foot(tip).normal * role.gauge.side;
+    let right = match side {
+        DriveSide::On => drive.gauge.surface.foot(tip).normal,
+        DriveSide::Right => outward(drive),
+        DriveSide::Left => -outward(drive),
+    };
+    outward(part).cross(&right)
 }
 
 /// The position where every relation holds, in the guide plane if there is one; where there is no position in it, by the
@@ -346,10 +387,7 @@ pub(crate) fn converge(
         Ok(tip) => return Ok(tip),
         Err(unsolved) => unsolved,
     };
-    // A turning axis has its own way to every position: what cannot be followed from the start is not looked for.
-    if !is_following(work)
-        && let Some(tip) = around::solve(&work.attitude, conditions, start, work.patience)?
-    {
+    if let Some(tip) = around::solve(&work.attitude, conditions, start, work.patience)? {
         return Ok(tip);
     }
     Err(MotionFailure::StartUpDiverges {
@@ -392,6 +430,10 @@ fn staged(
 
 /// Sine between the normals of two planes below which they are parallel.
 const PARALLEL_SINE: f64 = 1e-6;
+/// How often the law of the axis is judged anew where the move ends.
+const JUDGEMENTS: u32 = 3;
+/// Difference of unit vectors below which an axis is the same.
+const SAME_AXIS: f64 = 1e-7;
 /// Stages of the homotopy.
 const HOMOTOPY_STEPS: u32 = 24;
 

@@ -212,10 +212,11 @@ impl Law {
                 let turning = vector.cross(&flat);
                 let aside = self.other.as_ref().map_or(0.0, |other| other.normal(tip).dot(&turning));
                 // Where the drive surface lies across the plane alpha leads (+) or lags.
-                let towards = if aside.abs() > LEAD_SINE { aside } else { ahead.dot(&turning) };
-                if towards == 0.0 && angle.abs() > ZERO_ANGLE {
-                    return Err(AxisFailure::SignUnresolved);
-                }
+                let towards = match aside {
+                    aside if aside.abs() > LEAD_SINE => aside,
+                    _ if angle.abs() <= ZERO_ANGLE => 0.0,
+                    _ => leading(&turning, ahead)?,
+                };
                 Mode::Across { vector, cosine, sine: if towards < 0.0 { -sine } else { sine } }
             }
             AxisAngle::Lead(lead) => {
@@ -224,10 +225,7 @@ impl Law {
                     return Err(AxisFailure::ImpossibleAngles { alpha: angle, beta: *lead });
                 }
                 let (tangent, _) = self.frame(&self.base.normal(tip), tip)?;
-                let forward = tangent.dot(ahead);
-                if forward == 0.0 && *lead != 0.0 {
-                    return Err(AxisFailure::SignUnresolved);
-                }
+                let forward = if *lead == 0.0 { 0.0 } else { leading(&tangent, ahead)? };
                 let aside = rest.max(0.0).sqrt().copysign(angle);
                 Mode::Lead {
                     along: cosine,
@@ -390,6 +388,15 @@ impl Led {
         }
         Ok(None)
     }
+}
+
+/// Component of a move along a unit vector.
+///
+/// # Errors
+/// [`AxisFailure::SignUnresolved`] where the move goes across it, so that its sign would be that of rounding.
+fn leading(direction: &Vec3, ahead: &Vec3) -> Result<f64, AxisFailure> {
+    let along = direction.dot(ahead);
+    if along.abs() > SAME_DIRECTION * ahead.norm() { Ok(along) } else { Err(AxisFailure::SignUnresolved) }
 }
 
 /// The part of a normal in the plane across a unit vector, as a unit vector.

@@ -21,7 +21,7 @@ pub(super) fn follow<'a>(
         let only = path(&prepared)?;
         return Ok((prepared, only));
     }
-    let fixed = Prepared { attitude: Attitude::fixed(prepared.tool.clone()), ..prepared.clone() };
+    let fixed = prepared.with(Attitude::fixed(prepared.tool.clone()));
     let first = path(&fixed)?;
     let undetermined = |cause, tip| MotionFailure::AxisUndetermined { cause, tip };
     let mut end = first.points.last().copied().unwrap_or(prepared.tip);
@@ -30,8 +30,7 @@ pub(super) fn follow<'a>(
         let axis = prepared.attitude.tool_at(&end)?.axis;
         let begin = (&prepared.tool.axis, &prepared.tip);
         let attitude = prepared.attitude.fanned(begin, (&axis, &end));
-        let fanned =
-            Prepared { attitude: attitude.map_err(|cause| undetermined(cause, end))?, ..prepared.clone() };
+        let fanned = prepared.with(attitude.map_err(|cause| undetermined(cause, end))?);
         let found = path(&fanned)?;
         let last = found.points.last().copied().unwrap_or(prepared.tip);
         moved = (last - end).norm();

@@ -238,10 +238,12 @@ impl<'a> March<'a> {
             let towards = finish::Towards { event: &event, tangent: &next.tangent, held };
             let sweep = here.sweep(self.prepared, &next);
             let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
-            if self.is_passed_by(&here, &end)? {
+            let is_passed_by = self.is_passed_by(&here, &end)?;
+            // What turns the first vector is that the tool comes to its law, which takes a way; a later one is made shorter.
+            if is_passed_by && self.points.is_empty() {
                 return Err(without_last(here.tip, finals + 1));
             }
-            if self.accept(&here, &end.tip)? {
+            if !is_passed_by && self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
                 self.straighten_end(&start)?;
                 return Ok(self.path(&end));

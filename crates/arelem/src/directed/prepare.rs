@@ -46,6 +46,9 @@ pub(crate) struct Prepared<'a> {
     pub(crate) checks: Vec<Working>,
     /// Unit tangent of the path in the sense of motion.
     pub(crate) tangent: Vec3,
+    /// The same for a tool that keeps its axis, and the direction asked for.
+    standing: Vec3,
+    wanted: Vec3,
     /// Size of the coordinates, for rounding.
     pub(crate) size: f64,
     /// Where the tool is along the drive surface: what the program says, unless it is plainly on the other side.
@@ -98,6 +101,9 @@ pub(super) fn prepare<'a>(
     if let Some((along, contact)) = place.way_out(&tangent, &wanted) {
         (tangent, drive_contact) = (along, contact);
     }
+    let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
+    let standing = tangent;
+    tangent = line_of_turning(&attitude, [&part, &drive], &tip, (&standing, &wanted)).unwrap_or(standing);
     let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
     let mut working = Vec::with_capacity(checks.len());
     for (index, check) in checks.iter().enumerate() {
@@ -105,12 +111,21 @@ pub(super) fn prepare<'a>(
             check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
         working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
     }
-    let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
     if attitude.turns() {
         part.turn_freely(&tip);
         drive.turn_freely(&tip);
     }
-    Ok(Prepared { tool, attitude, tip, part, drive, checks: working, tangent, size, drive_side })
+    let checks = working;
+    Ok(Prepared { tool, attitude, tip, part, drive, checks, tangent, standing, wanted, size, drive_side })
+}
+
+impl<'a> Prepared<'a> {
+    /// The same motion with another way of the axis.
+    pub(super) fn with(&self, attitude: Attitude<'a>) -> Self {
+        let lines = (&self.standing, &self.wanted);
+        let tangent = line_of_turning(&attitude, [&self.part, &self.drive], &self.tip, lines);
+        Self { tangent: tangent.unwrap_or(self.standing), attitude, ..self.clone() }
+    }
 }
 
 /// The axis along the motion: fixed if it is everywhere what it is now.
@@ -213,6 +228,25 @@ fn line_of_motion(part: &Contact, drive: &Contact, wanted: &Vec3, tip: &Vec3) ->
         return Err(MotionFailure::DirectionUndetermined { angle, tangent, wanted: *wanted });
     }
     Ok(if cosine > 0.0 { tangent } else { -tangent })
+}
+
+/// The line of motion of a tool that turns on its way, which leads that aside: in the direction asked for, or where it goes across that
+/// in the sense of the line of a tool that keeps its axis. None where that does not turn, or has no line.
+fn line_of_turning(
+    attitude: &Attitude<'_>,
+    roles: [&Working; 2],
+    tip: &Vec3,
+    (standing, wanted): (&Vec3, &Vec3),
+) -> Option<Vec3> {
+    if !attitude.turns() {
+        return None;
+    }
+    let posture = attitude.posture(tip).ok()?;
+    let [part, drive] = roles.map(|role| posture.contact(&role.gauge, tip).gradient);
+    let along = part.cross(&drive).try_normalize(TANGENT_SINE)?;
+    let [asked, standing] = [wanted, standing].map(|direction| along.dot(direction));
+    let sense = if asked.abs() > UNDETERMINED { asked } else { standing };
+    Some(if sense < 0.0 { -along } else { along })
 }
 
 /// Where a motion begins.

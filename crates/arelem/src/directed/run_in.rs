@@ -33,7 +33,7 @@ pub(super) fn follow<'a>(
     for k in 0..WAYS {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, length);
-        let running = Prepared { attitude, ..prepared.clone() };
+        let running = prepared.with(attitude);
         match path(&running) {
             Err(again) if is_stuck_within(&again.failure, &prepared, length) => {}
             // Where it comes back the axis would leave its law again.

@@ -23,6 +23,7 @@ mod sculptured;
 mod sheets;
 mod tangencies;
 mod turning;
+mod turning_begins;
 mod vertices;
 mod walls;
 mod worked;

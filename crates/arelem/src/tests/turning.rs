@@ -30,7 +30,7 @@ fn over_the_ball(cutter: &[f64], mode: ToolAxis) -> Program {
     p
 }
 
-fn proven(p: &Program) {
+pub(super) fn proven(p: &Program) {
     for sequence in &p.sequences {
         let evidence = verify(sequence, &|| false).expect("a judgement");
         assert!(evidence.verified, "{:?}", evidence.violations);

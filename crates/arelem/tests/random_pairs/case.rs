@@ -288,7 +288,9 @@ impl Case {
         }
         case.approach(&cutter, random, [&up, &out, &along])?;
         let first_fits = wish.first.is_none() || case.stands_at_first();
-        (!is_certain || case.stands_at_place() && case.is_tangent_there(&along) && first_fits).then_some(case)
+        (!is_certain
+            || case.stands_at_place() && case.is_tangent_there(&Reader::new(&case), &along) && first_fits)
+            .then_some(case)
     }
 
     /// Finds a place to come from with the observer on the sides on which the tool is meant to end.
@@ -334,24 +336,18 @@ impl Case {
 
     /// For a motion that stops at a tangency: whether the tool touches the check surface at the place, and the path leaves it
     /// there to the same side before and after.
-    fn is_tangent_there(&self, along: &Vec3) -> bool {
+    pub(crate) fn is_tangent_there(&self, reader: &Reader<'_>, along: &Vec3) -> bool {
         let to_part = match self.stop.relation {
             Relation::TangentToPart => true,
             Relation::TangentToDrive => false,
             _ => return true,
         };
-        let reader = Reader::new(self);
+        let sense = self.sense_of_tangency();
         let apart = |way: f64| {
             let read = reader.read(&(self.place + along * way), Wanted::Stop(self.stop.side))?;
             let [part, drive, stop] = read;
-            let partner = if to_part { (&self.part, part) } else { (&self.drive, drive) };
             // The path keeps to its partner, on whichever side of the check surface that is.
-            let normal = |role: &Placed| {
-                let surface = Surface::from_geometry(&role.geometry).ok()?;
-                Some(surface.foot(&self.place).normal * role.side)
-            };
-            let sense = normal(&self.stop)?.dot(&normal(partner.0)?).signum();
-            Some(stop - sense * partner.1)
+            Some(stop - sense? * if to_part { part } else { drive })
         };
         let there = reader.read(&self.place, Wanted::Stop(self.stop.side)).map(|[_, _, stop]| stop);
         let least = LEAST_BEND * TANGENT_WAY * TANGENT_WAY;
@@ -361,6 +357,22 @@ impl Case {
             }
             _ => false,
         }
+    }
+
+    /// Whether the tool stands on the same side of the check surface as of the one that this is tangent to: where it stands between
+    /// both they are parallel only as long as it does not turn.
+    pub(crate) fn is_tangent_on_one_side(&self) -> bool {
+        !is_tangency(self.stop.relation) || self.sense_of_tangency().is_some_and(|sense| sense > 0.0)
+    }
+
+    /// Whether the sides of the check surface and of the one that it is tangent to point the same way: 1, or opposite ways: −1.
+    fn sense_of_tangency(&self) -> Option<f64> {
+        let partner = if self.stop.relation == Relation::TangentToPart { &self.part } else { &self.drive };
+        let normal = |role: &Placed| {
+            let surface = Surface::from_geometry(&role.geometry).ok()?;
+            Some(surface.foot(&self.place).normal * role.side)
+        };
+        Some(normal(&self.stop)?.dot(&normal(partner)?).signum())
     }
 
     /// Commands up to the start-up, and the directed motion.

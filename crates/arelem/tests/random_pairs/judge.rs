@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{Vec3, motion::MotionCommand};
 use arelem::{
     MotionFailure,
     section2::{Output, State, execute},
@@ -373,9 +373,13 @@ pub(crate) fn timed_verdict(work: impl FnOnce() -> Verdict) -> (Verdict, Times) 
 
 /// Whether a refusal is right.
 fn refused(case: &Case, runner: &Runner, failure: &MotionFailure) -> Verdict {
-    let words = format!("{failure:?}");
-    let reader = Reader::new(case);
     let start = if runner.sequences.is_empty() { None } else { runner.state.tip };
+    told(&Reader::new(case), start, failure)
+}
+
+/// What a search from a start, or for one, says of a failure.
+pub(crate) fn told(reader: &Reader<'_>, start: Option<Vec3>, failure: &MotionFailure) -> Verdict {
+    let words = format!("{failure:?}");
     match reader.search(start, ToldEnd::of(failure)) {
         _ if reader.is_spent() => Verdict::NotJudged(words),
         Found::Path(length) => Verdict::WronglyRefused(format!("a path of {length:.3}: {words}")),

@@ -18,6 +18,7 @@ mod kinds;
 mod laws;
 mod modes;
 mod search;
+mod stand;
 #[path = "../support/mod.rs"]
 mod support;
 mod tools;

@@ -1,23 +1,23 @@
 //! Random motions on which the tool axis follows a surface, or is another one for every motion: the verifier proves the
-//! bands of the turning tool, and at every position the axis is what its law says.
-//!
-//! Whether a refusal is right is not judged: the search for a path knows fixed axes only.
+//! bands of the turning tool, at every position the axis is what its law says, and what is refused is looked for with an axis
+//! that stands as the law says.
 
 use apt_geometry::{
     Vec3,
     cutter::Cutter,
-    motion::{AxisAngle, MotionCommand, Relation, ToolAxis},
-    surface::Surface,
+    motion::{AxisAngle, DriveSide, MotionCommand, Relation, ToolAxis},
 };
 use arelem::{
     MotionFailure,
-    sequence::{CutSequence, Role, ToolPosition},
+    sequence::{CutSequence, ToolPosition},
 };
 
 use crate::{
-    case::{self, Case, Stance},
-    judge::{Fault, Runner, Verdict},
+    case::{self, Case, Placed, Stance},
+    judge::{self, Fault, Runner, Verdict},
     kinds::Kind,
+    search::Reader,
+    stand::Stand,
     support::Random,
 };
 
@@ -31,17 +31,11 @@ const ANGLES: [f64; 2] = [3.0, 20.0];
 const LEADS: f64 = 0.8;
 /// How far the next fixed axis may be from the last one, degrees.
 const FARTHEST: f64 = 25.0;
-/// Steps in which axis and contact are looked for together.
-const ROUNDS: u32 = 100;
-/// Places around the corner from which contact is looked for.
-const AROUND: u32 = 8;
 /// Positions of a sequence that is not proven that are shown.
 const SHOWN: usize = 12;
 /// Shapes that touch a surface under them at the corner: there the angles hold.
 const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
 
-/// Sine between the other surface and the plane across a vector up to which an angle leads or lags.
-const LEAST_ASIDE: f64 = 1e-3;
 /// The way over which the axis comes to follow its law, as a multiple of what the turn moves the tool by at most.
 const RUN_IN: f64 = 2.0;
 
@@ -69,7 +63,7 @@ impl Turning {
         let case = if on_part {
             Case::draw_standing(part, drive, stance, seed)?
         } else {
-            turned_round(Case::draw_standing(drive, part, stance, seed)?)
+            turned_round(Case::draw_standing(drive, part, stance, seed)?)?
         };
         let mode = match mode {
             ToolAxis::Fixed(_) => ToolAxis::Fixed(case::near(&case.axis, FARTHEST, &mut random)),
@@ -109,16 +103,22 @@ fn mode(part: bool, random: &mut Random) -> ToolAxis {
     ToolAxis::AtAngle { part, angle, mode }
 }
 
-/// What was part surface is drive surface, and the other way round.
-fn turned_round(case: Case) -> Case {
-    Case {
+/// What was part surface is drive surface, and the other way round. None where the tool comes from the other side of what is part
+/// surface then.
+fn turned_round(case: Case) -> Option<Case> {
+    let stop = match case.stop.relation {
+        Relation::TangentToDrive => Relation::TangentToPart,
+        Relation::TangentToPart => Relation::TangentToDrive,
+        other => other,
+    };
+    (!case.passes_drive).then(|| Case {
         part: case.drive.clone(),
         drive: case.part.clone(),
-        drive_side: apt_geometry::motion::DriveSide::On,
-        passes_drive: false,
+        stop: Placed { relation: stop, ..case.stop.clone() },
+        drive_side: DriveSide::On,
         surfaces: 3,
         ..case
-    }
+    })
 }
 
 /// Runs the motion and asks the verifier and the law.
@@ -145,7 +145,7 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
     }
     match outcome {
         Ok(()) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
-        Err(failure) => Verdict::Refused(format!("{failure:?}")),
+        Err(failure) => refused(turning, &runner, &failure),
     }
 }
 
@@ -156,52 +156,19 @@ fn positions(sequence: &CutSequence) -> String {
     all.map(|p| format!("{}{}", triple(&p.tip), triple(&p.axis))).collect::<Vec<_>>().join(" ")
 }
 
-/// A surface whose normal counts.
-struct Guide {
-    surface: Surface,
-    sign: f64,
-}
-
-impl Guide {
-    fn new(role: &Role, sign: f64) -> Self {
-        Self { surface: Surface::from_geometry(&role.surface.geometry).expect("a surface"), sign }
-    }
-
-    /// The surface that guides the axis: on the side where the tool is, where the end is ON it where the axis is.
-    fn base(role: &Role, start: &ToolPosition) -> Self {
-        let natural = Self::new(role, 1.0);
-        let side = natural.normal(&start.tip).dot(&start.axis).signum();
-        Self { sign: if role.relation == Relation::On { side } else { role.side }, ..natural }
-    }
-
-    /// The surface towards which a positive angle tilts: to the side where the tool is, along its own normal for ON.
-    fn other(role: &Role) -> Self {
-        Self::new(role, if role.relation == Relation::On { 1.0 } else { role.side })
-    }
-
-    fn normal(&self, p: &Vec3) -> Vec3 {
-        self.surface.foot(p).normal * self.sign
-    }
-}
-
 /// Where the axis is not what its law says.
 fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
-    let part_guides = match turning.mode {
-        ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } => part,
-        _ => return None,
-    };
     let (part, drive) = (sequence.part.as_ref()?, sequence.drive.as_ref()?);
-    let (base, other) = if part_guides { (part, drive) } else { (drive, part) };
-    let (base, other) = (Guide::base(base, &sequence.start), Guide::other(other));
     let cutter = sequence.cutter;
-    let sense = sense(&turning.mode, (&base, &other), &sequence.start.tip, &sequence.forward);
-    let off = |at: &ToolPosition| off(&turning.mode, (&base, &other), &cutter, (&at.tip, &at.axis), sense);
+    let begin = (&sequence.start, &sequence.forward);
+    let stand = Stand::of_motion(&turning.mode, (part, drive), &cutter, begin)?;
     // A tool that stands otherwise at the start may turn over a way.
     let widest = 0.5 * cutter.diameter + cutter.height;
-    let run_in = RUN_IN * widest * off(&sequence.start);
+    let run_in = RUN_IN * widest * stand.off(&sequence.start);
     let mut runs_in = true;
-    for point in &sequence.points {
-        let off = off(point);
+    let band = turning.case.inside + turning.case.outside;
+    for point in sequence.points.iter().filter(|point| !stand.is_about_vertex(point, band)) {
+        let off = stand.off(point);
         runs_in &= (point.tip - sequence.start.tip).norm() <= run_in && off > turning.exact;
         if off > turning.exact && !runs_in {
             return Some(format!("axis off by {off:e} at {point:?}"));
@@ -210,70 +177,44 @@ fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
     None
 }
 
-/// The sense that the angles have all along a motion: of the lead against the product of both normals, and of the turn about a vector,
-/// towards the side of the other surface, or ahead where that lies across.
-fn sense(mode: &ToolAxis, (base, other): (&Guide, &Guide), tip: &Vec3, forward: &Vec3) -> f64 {
-    let (normal, aside) = (base.normal(tip), other.normal(tip));
-    match mode {
-        ToolAxis::AtAngle { mode: AxisAngle::Lead(_), .. } => normal.cross(&aside).dot(forward).signum(),
-        ToolAxis::AtAngle { mode: AxisAngle::PerpendicularTo(vector), .. } => {
-            let vector = vector.normalize();
-            let turning = vector.cross(&(normal - vector * normal.dot(&vector)).normalize());
-            let towards = aside.dot(&turning);
-            if towards.abs() > LEAST_ASIDE { towards.signum() } else { forward.dot(&turning).signum() }
-        }
-        _ => 1.0,
+/// Whether a refusal is right: the search goes along with an axis that stands as its law says.
+fn refused(turning: &Turning, runner: &Runner, failure: &MotionFailure) -> Verdict {
+    let case = &turning.case;
+    let at = ToolPosition { tip: runner.state.tip.unwrap_or(case.from), axis: runner.state.axis };
+    if let ToolAxis::Fixed(axis) = turning.mode {
+        return refused_with(axis, case, runner, (&at.tip, failure));
     }
+    let has_started = !runner.sequences.is_empty();
+    let begin = if has_started { at } else { ToolPosition { tip: case.place, axis: case.axis } };
+    let forward = if has_started { case.forward } else { case.place - case.from };
+    let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
+    let stand =
+        Stand::of_case(&turning.mode, (&case.part, &case.drive), &cutter, (&begin, &forward)).expect("a law");
+    let axis = |tip: &Vec3| stand.axis(tip);
+    let start = has_started.then_some(at.tip);
+    let reader = Reader::turning(case, &axis);
+    if !case.is_tangent_on_one_side() || !case.is_tangent_there(&reader, &case.forward) {
+        // The tangency was laid for an axis that keeps its direction.
+        return Verdict::NotJudged(format!("{failure:?}"));
+    }
+    judge::told(&reader, start, failure)
 }
 
-/// How far the axis is from what its law asks for.
-fn off(
-    mode: &ToolAxis,
-    (base, other): (&Guide, &Guide),
-    cutter: &Cutter,
-    (tip, axis): (&Vec3, &Vec3),
-    sense: f64,
-) -> f64 {
-    let ToolAxis::AtAngle { angle, mode, .. } = mode else { return (axis - base.normal(tip)).norm() };
-    let aside = other.normal(tip);
-    // The angles hold at the contact, which moves with the axis: both are looked for together. On a surface that bends more
-    // than the corner does there may be several contacts.
-    let settled = |first: Vec3| {
-        let mut normal = base.normal(&first);
-        let mut asked = asked((*angle, mode), &normal, &aside, sense);
-        for _ in 0..ROUNDS {
-            let radial =
-                (normal - asked * normal.dot(&asked)).try_normalize(1e-6).unwrap_or_else(Vec3::zeros);
-            let corner = asked * cutter.corner_height - radial * cutter.corner_offset.max(0.0);
-            normal = base.normal(&(tip + corner));
-            asked = self::asked((*angle, mode), &normal, &aside, sense);
-        }
-        (asked - axis).norm()
-    };
-    let across = apt_geometry::surface::perpendicular(axis);
-    let around = (0..AROUND).map(|k| {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)).sin_cos();
-        let radial = (across * cos + axis.cross(&across) * sin) * cutter.corner_offset.max(0.0);
-        tip + axis * cutter.corner_height + radial
-    });
-    std::iter::once(*tip).chain(around).map(settled).fold(f64::INFINITY, f64::min)
-}
-
-/// The axis that the angles ask for with a normal of the guiding surface.
-fn asked((angle, mode): (f64, &AxisAngle), normal: &Vec3, aside: &Vec3, sense: f64) -> Vec3 {
-    let tangent = normal.cross(aside).normalize();
-    let across = tangent.cross(normal);
-    let (sine, cosine) = angle.sin_cos();
-    match mode {
-        AxisAngle::Plain => normal * cosine + across * sine,
-        AxisAngle::Lead(lead) => {
-            let rest = (1.0 - cosine * cosine - lead.sin().powi(2)).max(0.0).sqrt().copysign(angle);
-            normal * cosine + tangent * (sense * lead.sin()) + across * rest
-        }
-        AxisAngle::PerpendicularTo(vector) => {
-            let vector = vector.normalize();
-            let flat = (normal - vector * normal.dot(&vector)).normalize();
-            flat * cosine + vector.cross(&flat) * (sense * sine)
-        }
+/// The same where the axis is another one for the second motion.
+fn refused_with(
+    axis: Vec3,
+    case: &Case,
+    runner: &Runner,
+    (tip, failure): (&Vec3, &MotionFailure),
+) -> Verdict {
+    let done = runner.sequences.len();
+    if done < 2 {
+        return judge::told(&Reader::new(case), (done > 0).then_some(*tip), failure);
     }
+    if case.passes_drive {
+        // It stands past the drive surface, and goes to the other side of it.
+        return Verdict::NotJudged(format!("{failure:?}"));
+    }
+    let second = Case { axis, from: *tip, is_certain: false, ..case.clone() };
+    judge::told(&Reader::new(&second), (done > 2).then_some(*tip), failure)
 }

@@ -57,9 +57,14 @@ pub(crate) enum Wanted {
     Stop(f64),
 }
 
+/// The axis at a tool end; None where there is none.
+pub(crate) type AxisAt<'a> = &'a dyn Fn(&Vec3) -> Option<Vec3>;
+
 /// Reads clearances of a case.
 pub(crate) struct Reader<'a> {
     case: &'a Case,
+    /// Where the axis is not that of the case all along.
+    axis: Option<AxisAt<'a>>,
     cutter: Cutter,
     reads: Cell<u32>,
     asks: Cell<u32>,
@@ -82,7 +87,17 @@ impl<'a> Reader<'a> {
     pub(crate) fn new(case: &'a Case) -> Self {
         let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
         let budget = &case.budget;
-        Self { case, cutter, reads: Cell::new(budget.reads), asks: Cell::new(budget.asks_of_search) }
+        let [reads, asks] = [budget.reads, budget.asks_of_search].map(Cell::new);
+        Self { case, axis: None, cutter, reads, asks }
+    }
+
+    /// Reads with an axis that depends on the tool end.
+    pub(crate) fn turning(case: &'a Case, axis: AxisAt<'a>) -> Self {
+        Self { axis: Some(axis), ..Self::new(case) }
+    }
+
+    fn axis(&self, tip: &Vec3) -> Option<Vec3> {
+        self.axis.map_or(Some(self.case.axis), |axis| axis(tip))
     }
 
     /// The budget is used up: what the search finds then says nothing.
@@ -117,8 +132,8 @@ impl<'a> Reader<'a> {
     }
 
     fn read_with(&self, cutter: &Cutter, tip: &Vec3, wanted: Wanted) -> Option<[f64; 3]> {
-        let Case { part, drive, first, stop, axis, .. } = self.case;
-        let place = ToolPosition { tip: *tip, axis: *axis };
+        let Case { part, drive, first, stop, .. } = self.case;
+        let place = ToolPosition { tip: *tip, axis: self.axis(tip)? };
         let check = match wanted {
             Wanted::PathOnly => None,
             Wanted::First => Some(self.role(first, first.side)),
@@ -203,7 +218,7 @@ impl<'a> Reader<'a> {
     /// A position where the start-up may end.
     fn start(&self) -> Option<Vec3> {
         let case = self.case;
-        if case.is_certain {
+        if case.is_certain && self.axis.is_none() {
             return (!matches!(case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart))
                 .then_some(case.place)
                 .or_else(|| self.settle(&(case.place - case.forward * case.reach), Wanted::First, None));
@@ -228,7 +243,8 @@ impl<'a> Reader<'a> {
     /// Whether points on the axis of the tool are on the other side of a surface: one that ends, behind which the tool touches it
     /// nowhere, or with another of its places.
     fn is_behind(&self, tip: &Vec3) -> bool {
-        let Case { part, drive, axis, inside, .. } = self.case;
+        let Case { part, drive, inside, .. } = self.case;
+        let Some(axis) = self.axis(tip) else { return true };
         let point = Cutter::from_numbers(&[0.0], 0.0).expect("a point");
         let height = self.cutter.height;
         [0.0, 0.5, 1.0].iter().any(|share| {
@@ -269,12 +285,13 @@ impl<'a> Reader<'a> {
 
     /// Whether the path comes to the end of a surface where a motion is told so.
     fn is_over(&self, told: &ToldEnd, tip: &Vec3, sense: &Vec3) -> bool {
-        let Case { part, drive, axis, inside, outside, .. } = self.case;
+        let Case { part, drive, inside, outside, .. } = self.case;
+        let Some(axis) = self.axis(tip) else { return false };
         let placed = if told.role == RoleName::Part { part } else { drive };
         let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
         let clearance = if told.role == RoleName::Part { on_part } else { on_drive };
         let near = clearance.abs() + placed.thickness + AT_END * (inside + outside);
-        placed.relation != Relation::On && ends::is_over(placed, (&self.cutter, axis), tip, near, sense)
+        placed.relation != Relation::On && ends::is_over(placed, (&self.cutter, &axis), tip, near, sense)
     }
 
     /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of
@@ -282,8 +299,8 @@ impl<'a> Reader<'a> {
     pub(crate) fn search(&self, start: Option<Vec3>, told: Option<ToldEnd>) -> Found {
         let Some(mut tip) = start.or_else(|| self.start()) else { return Found::NoStart };
         // Directions count across the tool axis.
-        let Case { forward, axis, .. } = self.case;
-        let Some(wanted) = (forward - axis * axis.dot(forward)).try_normalize(1e-9) else {
+        let (forward, Some(axis)) = (self.case.forward, self.axis(&tip)) else { return Found::Ends(0.0) };
+        let Some(wanted) = (forward - axis * axis.dot(&forward)).try_normalize(1e-9) else {
             return Found::Ends(0.0);
         };
         let Some(mut sense) = self.tangent(&tip, &wanted) else { return Found::Ends(0.0) };

@@ -424,11 +424,13 @@ impl<'a> Watch<'a> {
     /// differ across the path, and two surfaces that touch the tool there are not tangent by that.
     fn apart(&self, index: usize, partner: &Working, place: &Vertex) -> Result<f64, MotionFailure> {
         let tool = self.prepared.attitude.tool_at(&place.tip)?;
-        let (touched, side) = self.sides[index].nearer(self.prepared, &place.tip)?;
+        let (_, side) = self.sides[index].nearer(self.prepared, &place.tip)?;
         let check = self.sides[index].on(side);
-        let normal = partner.gauge.contact(&tool, &place.tip).gradient;
-        let sense = touched.gradient.dot(&normal).signum();
-        let lean = touched.gradient * sense - normal * touched.gradient.dot(&normal).abs();
+        // Normals count, whether or not the tool turns on its way.
+        let [touched, normal] =
+            [check, &partner.gauge].map(|gauge| gauge.contact(&tool, &place.tip).gradient);
+        let sense = touched.dot(&normal).signum();
+        let lean = touched * sense - normal * touched.dot(&normal).abs();
         let Some(across) = lean.try_normalize(AGREEING) else { return Ok(0.0) };
         let step = TURNING_STEP * self.prepared.size;
         let turning = |gauge: &Gauge| {

@@ -1,0 +1,185 @@
+//! Where motions begin and end on which the tool axis follows a surface.
+
+use apt_geometry::motion::{AxisAngle, ToolAxis};
+
+use super::{turning::proven, *};
+
+fn from(p: &mut Program, position: Vec3, axis: Vec3) {
+    p.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
+}
+
+fn along(p: &mut Program, mode: ToolAxis) {
+    p.run(&MotionCommand::ToolAxis(mode));
+}
+
+/// What Newton's method and stages do not reach from the start is looked for from places all about, with a tool that turns, too.
+#[test]
+fn a_position_of_a_tool_that_turns_is_looked_for_all_about() {
+    let under = cone(v(2.0045, 3.1579, -0.2887), v(-0.1092, -0.5341, -0.8384), 31.638);
+    let beside = quadric([
+        0.36853, 0.048695, -0.047037, -0.63292, -0.021936, 0.175615, -0.163765, 0.46393, -0.864212, 0.456155,
+    ]);
+    let first = plane(-0.69767, -0.47007, -0.54064, 0.13218);
+    let mode = AxisAngle::Lead(-0.0557);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[0.47866]);
+    from(&mut p, v(-0.1762, 1.4315, -1.7272), v(-0.4925, -0.2333, 0.8384));
+    along(&mut p, ToolAxis::AtAngle { part: true, angle: 0.27, mode });
+    p.go(&[(Relation::To, &beside), (Relation::To, &under), (Relation::Past, &first)]);
+    proven(&p);
+}
+
+/// To which side an angle about a vector turns the axis is judged where the tool stands in the end: there the motion judges it again.
+#[test]
+fn the_sense_of_an_angle_is_judged_where_the_start_up_ends() {
+    let bowl = sphere(-3.243305698686835, -0.9759428411007164, 4.698820214620849, 3.9623942652541038);
+    let through = plane(0.8048105912811022, -0.2023787976224974, 0.5579630224617355, 0.28750092558654355);
+    let first = plane(0.16250949001375228, 0.9792854790504659, 0.1207916229561042, -1.5299733680293546);
+    let mode = AxisAngle::PerpendicularTo(v(0.7733885830151002, -0.5326568585955873, -0.3366373071518196));
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.0001).cutter(&[0.7871787556606091, 0.39358937783030457]);
+    from(
+        &mut p,
+        v(-0.6332934049214634, -1.129445196600587, 1.7265006029075272),
+        v(-0.5708507491606128, -0.006540091266317751, 0.8210278006188313),
+    );
+    along(&mut p, ToolAxis::AtAngle { part: true, angle: -0.2891594364248293, mode });
+    p.go(&[(Relation::On, &through), (Relation::To, &bowl), (Relation::To, &first)]);
+    let ToolPosition { tip, axis } = p.last().points[0];
+    let inward =
+        v(-3.243305698686835, -0.9759428411007164, 4.698820214620849) - (tip + axis * 0.39358937783030457);
+    let across = Vec3::new(0.7733885830151002, -0.5326568585955873, -0.3366373071518196).normalize();
+    let flat = (inward - across * inward.dot(&across)).normalize();
+    let towards =
+        across.cross(&flat).dot(&v(0.8048105912811022, -0.2023787976224974, 0.5579630224617355)).signum();
+    // A negative angle leads away from the side to which the normal of the plane points.
+    let turned = axis.dot(&across.cross(&flat)) * towards;
+    assert!((turned - (-0.2891594364248293f64).sin()).abs() < 1e-6, "{turned} at {tip:?} {axis:?}");
+    proven(&p);
+}
+
+/// A start-up that goes straight at both surfaces leads in no direction along them: TLLFT and TLRGT tell where ahead is.
+#[test]
+fn the_side_of_the_tool_tells_where_a_lead_angle_leads() {
+    let (ground, wall) = (plane(0.0, 0.0, 1.0, 0.0), plane(0.3, 1.0, 0.0, 1.0));
+    let lead = 8f64.to_radians();
+    let mode = ToolAxis::AtAngle { part: true, angle: 20f64.to_radians(), mode: AxisAngle::Lead(lead) };
+    // The tool comes to stand on the side of the wall to which y falls: that is to its right on the way towards x.
+    let ahead = v(1.0, -0.3, 0.0).normalize();
+    for (side, sense) in [(DriveSide::Right, 1.0), (DriveSide::Left, -1.0)] {
+        for start_y in [0.5, -1.7] {
+            let mut p = Program::new();
+            p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-2.0, start_y, 5.0).side(side);
+            along(&mut p, mode);
+            p.go(&[(Relation::To, &wall), (Relation::To, &ground)]);
+            let axis = p.last().points[0].axis;
+            assert!((axis.dot(&ahead) - sense * lead.sin()).abs() < 1e-9, "{side:?}: {axis:?}");
+            proven(&p);
+        }
+    }
+}
+
+/// The last vector turns the tool past the check surface by more than the band: a shorter one does not.
+#[test]
+fn a_last_vector_that_turns_past_the_check_surface_is_made_shorter() {
+    let under = sphere(2.855566662609784, 2.6672771101236776, -3.3020914601848834, 3.662119877238961);
+    let beside = sphere(4.669242943977835, -0.826551788583846, 0.6445081439609215, 4.202474088821485);
+    let check = quadric([
+        -0.5504520033835406,
+        0.49646342087886974,
+        0.0,
+        -2.8638066331879877,
+        0.0,
+        0.0,
+        -0.003876440838087621,
+        1.0241023154993663,
+        -0.13634808888738228,
+        0.0,
+    ]);
+    let mut p = Program::new();
+    p.tolerance(0.00002, 0.00003).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.074627733375481]);
+    from(
+        &mut p,
+        v(1.0963848695938319, 1.4497223665037524, -0.17377610206415683),
+        v(-0.4066428732761628, -0.2752208784459985, 0.871145821135084),
+    );
+    along(&mut p, ToolAxis::Normal { part: true });
+    p.go(&[(Relation::To, &beside), (Relation::To, &under)]);
+    p.side(DriveSide::Left).indirv(0.46578462914243635, 0.7578471749719099, 0.4568504554465703);
+    p.run(&motion(Turn::Forward, &beside, &[(Relation::Past, 2, &check)]));
+    proven(&p);
+}
+
+/// A tool that turns is led aside from the line of motion of one that does not, here by more than a right angle: the direction asked for
+/// tells which way its own line leads.
+#[test]
+fn a_motion_goes_along_the_line_of_the_turning_tool() {
+    let under = quadric([
+        0.16453255774755998,
+        0.3479284684928868,
+        -0.6606304229633305,
+        -0.5932255905444932,
+        0.4343626851395216,
+        0.11302835605140071,
+        -0.3046636756790664,
+        -0.2790388169030514,
+        -0.05696288045497863,
+        0.7835360792951901,
+    ]);
+    let through = quadric([
+        0.697950816163661,
+        0.41250696444814106,
+        0.0,
+        3.1234567028706737,
+        0.0,
+        0.0,
+        -0.20560432748309596,
+        -0.7321091838619642,
+        1.3023769614336946,
+        0.0,
+    ]);
+    let first = plane(0.7633596853232165, -0.30548167127656495, 0.5691774234255224, 1.9465032139246934);
+    let check = quadric([
+        0.2630667705367127,
+        0.23897572157109404,
+        0.20809155790225156,
+        -3.754637361912372,
+        0.3003047625572681,
+        0.11705283253464442,
+        0.35016778880585425,
+        0.40879994608330783,
+        -0.738469522744355,
+        0.3200455451811559,
+    ]);
+    let mode = AxisAngle::Plain;
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005).cutter(&[0.23486590330520712]);
+    from(
+        &mut p,
+        v(0.24381236897848762, -1.377839021006954, 2.037720249907877),
+        v(-0.3715351482823049, -0.9284188890747784, 0.0),
+    );
+    along(&mut p, ToolAxis::AtAngle { part: false, angle: 0.24268566165159655, mode });
+    p.go(&[(Relation::On, &through), (Relation::To, &under), (Relation::On, &first)]);
+    p.side(DriveSide::On).indirv(0.7633596853232167, -0.3054816712765648, 0.5691774234255224);
+    p.drive(Turn::Forward, &through, Relation::On, &check);
+    proven(&p);
+}
+
+/// Where the tool touches two surfaces with one normal they are tangent, however it turns on its way.
+#[test]
+fn surfaces_are_tangent_to_a_tool_that_turns() {
+    let rolls = cylinder(v(0.0, 0.0, 0.0), v(1.0, -1.0, 0.0), 5.0);
+    let (wall, round) = (plane(0.0, 1.0, 0.0, 0.5), cylinder(v(1.5, 1.5, 0.0), Vec3::z(), 1.0));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-2.0, -1.0, 7.0);
+    along(&mut p, ToolAxis::Normal { part: true });
+    p.go(&[(Relation::To, &wall), (Relation::To, &rolls), (Relation::On, &x(-1.0))]);
+    p.side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &wall, Relation::TangentToDrive, &round);
+    proven(&p);
+    let end = p.last().points.last().expect("a path");
+    // It leans to the wall, so that its top touches both.
+    let top = end.tip + end.axis * p.last().cutter.height;
+    assert!((top.x - 1.5).abs() < 0.01, "{end:?}");
+}
