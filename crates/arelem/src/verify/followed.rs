@@ -54,7 +54,7 @@ const LOOKS: u32 = 2000;
 /// Halvings of a part whose distance is not shown at once.
 const HALVINGS: u32 = 18;
 /// Radii of the balls tried, in radii of the tool, before that of the surface itself.
-const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
+pub(super) const BALLS: [f64; 4] = [2.0, 4.0, 16.0, 64.0];
 /// Share of the radius of the tool behind the deepest place that is meant at which it is met by Newton's method, and of the radius
 /// of curvature.
 const BEHIND: f64 = 0.5;
@@ -335,7 +335,9 @@ impl Following<'_> {
             return None;
         }
         if let Some(contact) = self.solve(part, side, part.nearest_parameters(place)) {
-            if self.guard(part, side, &contact, least).is_some() {
+            if self.guard(part, side, &contact, least).is_some()
+                || self.is_beside_straight(part, contact.at, least)
+            {
                 return Some(());
             }
             if contact.value < least && self.is_nearer(index, &contact.place, least) {

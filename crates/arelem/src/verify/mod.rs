@@ -4,6 +4,7 @@
 //! The clearance of the whole tool is measured by tangent planes and supports, the extremes over a cut vector by
 //! convexity ([`span`]); the stop by replaying the path against the check surface ([`stop`]).
 
+mod beside;
 mod bow;
 mod circle_contact;
 mod clearance;

@@ -346,7 +346,7 @@ impl<'a> Tool<'a> {
     }
 
     /// Distance from the axis, height, and the unit radial direction of a vector from the tool end.
-    fn split(&self, w: &Vec3) -> (Meridian, Vec3) {
+    pub(super) fn split(&self, w: &Vec3) -> (Meridian, Vec3) {
         let z = w.dot(&self.axis);
         let radial = w - self.axis * z;
         let rho = radial.norm();

@@ -22,6 +22,9 @@ const POSITIVE: f64 = 1e-9;
 pub(super) struct Rise {
     /// The greatest form of the second differences along the normal, the parameters measured by the lengths they stand for.
     pub(super) greatest: Matrix2<f64>,
+    /// The greatest of those with both parameters the same, and by how much the mixed one may be more or less.
+    own: [f64; 2],
+    twist: f64,
     /// The differences both ways, and those lengths.
     differences: [[[Vec3; 3]; 4]; 2],
     lengths: [f64; 2],
@@ -30,6 +33,7 @@ pub(super) struct Rise {
 /// What way across a direction there is in both parameters, and how far that may be from everywhere the same.
 pub(super) struct Way {
     across: Vector2<f64>,
+    off: [f64; 2],
     spread: f64,
 }
 
@@ -58,7 +62,14 @@ impl Rise {
         // 2ab·x is not more than (a² + b²)·|x|.
         let greatest = Matrix2::new(uu + more_u + more, uv, uv, vv + more_v + more);
         let is_finite = greatest.iter().all(|x| x.is_finite());
-        is_finite.then_some(Self { greatest, differences: [along_all, across_all], lengths: [u, v] })
+        let (own, twist) = ([uu + more_u, vv + more_v], more);
+        is_finite.then_some(Self {
+            greatest,
+            own,
+            twist,
+            differences: [along_all, across_all],
+            lengths: [u, v],
+        })
     }
 
     /// The way across a unit direction in the tangent plane.
@@ -68,7 +79,7 @@ impl Rise {
             let [way, off] = interval(all).map(|x| x / self.lengths[k]);
             (way, off)
         });
-        Way { across: Vector2::new(way_u, way_v), spread: off_u.hypot(off_v) }
+        Way { across: Vector2::new(way_u, way_v), off: [off_u, off_v], spread: off_u.hypot(off_v) }
     }
 
     /// The greatest curvature with which it rises along its parameters.
@@ -94,6 +105,29 @@ impl Rise {
             rest -= way.least() * *curvature;
         }
         rest.trace() <= 0.0 && rest.determinant() >= 0.0
+    }
+
+    /// How far it rises at most, anywhere on the patch seen from the place at these parameters, beyond half of a curvature times the
+    /// square of the way across. A twisted surface rises beyond a cylinder along any direction, by the square of how far it goes along
+    /// that.
+    pub(super) fn beyond(&self, (way, curvature): (&Way, f64), at: [f64; 2]) -> f64 {
+        // The differences count thirds of the derivatives.
+        let reach = [0, 1].map(|k| 3.0 * self.lengths[k] * at[k].abs().max((1.0 - at[k]).abs()));
+        let own =
+            [0, 1].map(|k| self.own[k] - curvature * (way.across[k].abs() - way.off[k]).max(0.0).powi(2));
+        let ends = |k: usize| [way.across[k] - way.off[k], way.across[k] + way.off[k]];
+        let products = ends(0).into_iter().flat_map(|x| ends(1).map(|y| x * y));
+        let mixed = products.map(|product| (self.greatest.m12 - curvature * product).abs());
+        let mixed = mixed.fold(0.0, f64::max) + self.twist;
+        let anywhere: f64 = (0..2).map(|k| own[k].max(0.0) * reach[k] * reach[k]).sum();
+        // Where it falls with the one parameter it is highest where that is level.
+        let level = |k: usize| {
+            let other = own[1 - k];
+            let rises = if other < 0.0 { own[k] - mixed * mixed / other } else { f64::INFINITY };
+            rises.max(0.0) * reach[k] * reach[k]
+        };
+        let found = (anywhere + 2.0 * mixed * reach[0] * reach[1]).min(level(0)).min(level(1));
+        0.5 * found
     }
 }
 
@@ -225,6 +259,34 @@ mod tests {
                 let apart = jet(&net, at)[0] - touch;
                 let room = 0.5 * curvature * side.dot(&apart).powi(2);
                 prop_assert!(normal.dot(&apart) <= room + 1e-12, "{} {room}", normal.dot(&apart));
+            }
+        }
+
+        /// A twisted patch, seen from a direction that need not be square to it.
+        #[test]
+        fn no_place_of_a_patch_rises_farther_over_a_cylinder_than_it_does_at_most(
+            bumps in proptest::collection::vec(-1e-3..1e-3f64, 48), twist in -0.5..0.5f64,
+            bends in (-1.0..1.0f64, -0.2..0.2f64), tilt in prop::array::uniform2(-0.1..0.1f64),
+            places in proptest::collection::vec([0.0..1.0f64, 0.0..1.0f64], 32), turn in -0.5..0.5f64,
+            [u, v] in [0.0..1.0f64, 0.0..1.0f64], curvature in 0.0..3.0f64,
+        ) {
+            let net: Net = std::array::from_fn(|j| std::array::from_fn(|i| {
+                let k = 3 * (4 * j + i);
+                let [x, y] = [i, j].map(|k| k as f64 / 3.0);
+                let z = bends.0 * x * x + bends.1 * y * y + twist * x * y;
+                Vec3::new(x + bumps[k], 0.8 * y + bumps[k + 1], z + bumps[k + 2])
+            }));
+            let [touch, by_u, by_v] = jet(&net, [u, v]);
+            let normal = (by_u.cross(&by_v).normalize() + Vec3::new(tilt[0], tilt[1], 0.0)).normalize();
+            let along = by_v + by_u * turn;
+            let side = normal.cross(&(along - normal * normal.dot(&along))).normalize();
+            let Some(rise) = Rise::of(&net, [u, v], &normal) else { return Ok(()) };
+            let most = rise.beyond((&rise.way(&side), curvature), [u, v]);
+            for at in places {
+                let apart = jet(&net, at)[0] - touch;
+                let level = normal.dot(&by_u) * (at[0] - u) + normal.dot(&by_v) * (at[1] - v);
+                let room = level + 0.5 * curvature * side.dot(&apart).powi(2);
+                prop_assert!(normal.dot(&apart) <= room + most + 1e-12, "{} {room} {most}", normal.dot(&apart));
             }
         }
 

@@ -1,9 +1,12 @@
 //! Contacts that are followed along ruled and polyconic surfaces, and bounds of how the slope of a clearance grows.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, Remembering},
     parametric::{Mesh, Patch, SculpturedSurface},
+    patience::Waiting,
 };
 
 use super::{
@@ -15,7 +18,7 @@ use super::{
     },
     cutter, cylinder,
     lofts::{roof, vault},
-    plane, quadric, sphere,
+    plane, quadric, ruled, section, sphere,
 };
 use crate::sequence::ToolPosition;
 
@@ -62,6 +65,53 @@ fn contacts_are_followed_and_are_those_of_the_search() {
             tip.z -= found.value;
         }
         assert!(followed >= 28, "{followed} of 30: {profile:?} {side}");
+    }
+}
+
+/// A wall between two arcs, of which the upper one is a little flatter.
+fn wall() -> Geometry {
+    let arc = |y: f64, radius: f64, z: f64| {
+        let depth = y - (radius * radius - 16.0f64).sqrt();
+        let round = cylinder([0.0, y, 0.0], [0.0, 0.0, 1.0], radius);
+        section(round, [[-4.0, depth, z], [4.0, depth, z]], [0.0, -1.0, 0.0])
+    };
+    ruled(arc(6.0, 9.3, -1.0), arc(7.0, 9.8, 3.0))
+}
+
+/// How often one may be asked whether to go on while clearances are shown at ten places: it was up to 520 times.
+const ASKED: u32 = 20;
+
+/// A flank that lies along a wall is nearly as near all along: its parts have no contacts of their own.
+#[test]
+fn a_flank_along_a_twisted_wall_is_measured_in_few_looks() {
+    let surface = Surface::of(&wall()).unwrap();
+    let Surface::Ruled(wall) = &surface else { panic!("{surface:?}") };
+    let profile = Profile::of(&cutter(&BALL)).unwrap();
+    // The ruling from x = 1 on the one arc to x = 1 on the other.
+    let [low, high] = [(6.0, 9.3, -1.0), (7.0, 9.8, 3.0)]
+        .map(|(y, radius, z): (f64, f64, f64)| Vec3::new(1.0, y - (radius * radius - 1.0).sqrt(), z));
+    let along = (high - low).normalize();
+    let out = Vec3::new(1.0, -6.0, 0.0);
+    let outward = (out - along * along.dot(&out)).normalize();
+    for tilt in [1e-3, 5e-4, 2e-4, 1e-4] {
+        let tool = Tool::new(&profile, (along + outward * tilt).normalize());
+        let mut tip = low + along + outward * 0.3;
+        for _ in 0..40 {
+            tip -= outward * searched(wall, 1.0, &tip, &tool).unwrap().value;
+        }
+        let asked = Cell::new(0);
+        let count = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let waiting = Waiting::until(&count);
+        let tool = Tool { patience: waiting.patience(), ..tool };
+        for k in 0..10 {
+            let above = 1e-6 * f64::from(k);
+            let found = wall.followed(1.0, &(tip + outward * above), &tool).expect("it is shown");
+            assert!((found.value - above).abs() <= 5e-3 * above + found.error, "{tilt} {above}: {found:?}");
+        }
+        assert!(asked.get() <= ASKED, "{tilt}: {}", asked.get());
     }
 }
 
