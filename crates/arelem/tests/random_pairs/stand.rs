@@ -20,8 +20,10 @@ const SETTLED: f64 = 1e-15;
 /// A change that is left after all of them, above which there is no axis.
 const UNSETTLED: f64 = 1e-6;
 /// Places around the corner between which the contact is closed in, and how often.
-const AROUND: u32 = 64;
+const AROUND: [u32; 2] = [64, 4096];
 const HALVINGS: u32 = 60;
+/// How far off an axis certainly follows its law.
+const CERTAIN: f64 = 1e-10;
 /// How many times the depth of the band the vertex of a cone may be away for an axis that turns about it.
 const ABOUT_VERTEX: f64 = 3.0;
 /// Sine between the other surface and the plane across a vector up to which an angle leads or lags.
@@ -134,12 +136,17 @@ impl Stand {
         let ToolAxis::AtAngle { .. } = self.mode else { return (axis - self.base.normal(tip)).norm() };
         let aside = self.other.normal(tip);
         let off = |normal: Vec3| (self.asked(&normal, &aside) - axis).norm();
-        self.normals_at_corner(tip, axis).into_iter().map(off).fold(f64::INFINITY, f64::min)
+        let least = |around: u32| {
+            self.normals_at_corner((tip, axis), around).into_iter().map(off).fold(f64::INFINITY, f64::min)
+        };
+        // Two of them may be close together.
+        let first = least(AROUND[0]);
+        if first <= CERTAIN { first } else { first.min(least(AROUND[1])) }
     }
 
     /// Normals of the guiding surface in whose direction, seen from the axis, the corner is where they are taken. On a surface that bends
     /// more than the corner does there may be several.
-    fn normals_at_corner(&self, tip: &Vec3, axis: &Vec3) -> Vec<Vec3> {
+    fn normals_at_corner(&self, (tip, axis): (&Vec3, &Vec3), around: u32) -> Vec<Vec3> {
         let (center, radius) = (tip + axis * self.cutter.corner_height, self.cutter.corner_offset.max(0.0));
         let across = apt_geometry::surface::perpendicular(axis);
         let normal = |turn: f64| {
@@ -152,9 +159,9 @@ impl Stand {
         if radius == 0.0 {
             return vec![normal(0.0).0];
         }
-        let at = |k: u32| TAU * f64::from(k) / f64::from(AROUND);
+        let at = |k: u32| TAU * f64::from(k) / f64::from(around);
         let mut found = Vec::new();
-        for k in 0..AROUND {
+        for k in 0..around {
             let (mut low, mut high) = (at(k), at(k + 1));
             let sign = normal(low).1 > 0.0;
             if (normal(high).1 > 0.0) == sign {

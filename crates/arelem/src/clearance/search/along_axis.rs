@@ -22,6 +22,8 @@ use crate::clearance::{
 
 /// How far (radians) the normal of a contact may lean from that of the flank.
 const LEANING: f64 = 0.2;
+/// The same of a contact with the corner where the flank begins: one that leans more is told by patches in few looks.
+const LEANING_AT_CORNER: f64 = 1e-4;
 /// Bound of the stretches of the axis that are looked at.
 const MOST_STRETCHES: u32 = 200;
 /// How much shorter than where it was told a stretch is before it is told anew how it bends.
@@ -109,7 +111,8 @@ impl Search<'_> {
         let leaning = (contact.gradient.dot(&self.tool.axis) - core.lean[0]).abs();
         let height = (contact.tool - self.tip).dot(&self.tool.axis);
         let size = self.tool.profile.top.height;
-        if leaning > LEANING || height < self.tool.profile.upper.height - ROUNDING * size {
+        let is_on_flank = height >= self.tool.profile.upper.height - ROUNDING * size;
+        if leaning > if is_on_flank { LEANING } else { LEANING_AT_CORNER } {
             return Certificate::Undecided;
         }
         let [first, last] = core.range;
