@@ -183,3 +183,40 @@ fn surfaces_are_tangent_to_a_tool_that_turns() {
     let top = end.tip + end.axis * p.last().cutter.height;
     assert!((top.x - 1.5).abs() < 0.01, "{end:?}");
 }
+
+/// A tool that stands nearly where its motion ends, with another axis than the last one, does not go back to where it would be at rest on
+/// all three surfaces.
+#[test]
+fn a_motion_that_begins_where_it_ends_does_not_lead_back() {
+    let under = quadric([
+        0.06080881052224199,
+        0.0953689093867015,
+        -0.009393482647261787,
+        0.7092039882464511,
+        -0.040660235717927255,
+        0.08360315020248243,
+        -0.010076204725353883,
+        0.13021433276433708,
+        -0.08456902820454418,
+        0.48127351310221655,
+    ]);
+    let beside = plane(-0.49667235254881387, 0.867938116580685, 0.0, 1.0478760598918138);
+    let check = cone(
+        v(-3.0636503288682553, 2.639558211353319, -3.6484345337861486),
+        v(0.8391666541760114, -0.09836877723626238, 0.5349045804478414),
+        0.8608141635281971f64.acos().to_degrees(),
+    );
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001]);
+    from(&mut p, v(-0.7393000414913327, -0.2636691703315487, -0.35740671177648364), Vec3::z());
+    let leaning = v(0.22704057863294977, 0.024328247552203128, 0.9735813843870753);
+    for axis in [Vec3::z(), leaning] {
+        p.run(&MotionCommand::MultipleAxes(Some(true)));
+        along(&mut p, ToolAxis::Fixed(axis));
+        p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: under.clone() }));
+        p.go(&[(Relation::Past, &beside)]);
+        p.side(DriveSide::Left).indirv(0.867938116580685, 0.49667235254881387, 0.0);
+        p.drive(Turn::Forward, &beside, Relation::To, &check);
+    }
+    proven(&p);
+}

@@ -10,7 +10,7 @@ use super::{
     patch::jet,
     survey::Part,
     tool::Tool,
-    trough::{Rise, is_within_of_line},
+    trough::{Rise, is_within_of_line, nearest_piece},
 };
 
 /// Steps to the place that is nearest on a line of a part, the last of them, and the first, in parameters.
@@ -29,15 +29,8 @@ struct Piece {
 impl Piece {
     /// Beside a place, from the tool end. None for a tool without straight pieces.
     fn beside(tool: &Tool<'_>, place: &Vec3) -> Option<Self> {
-        let ([rho, height], out) = tool.split(place);
-        let pieces = tool.profile.lines().into_iter().filter(|(a, b)| a != b);
-        let apart = |(a, b): &([f64; 2], [f64; 2])| {
-            let way = [b[0] - a[0], b[1] - a[1]];
-            let square = way[0] * way[0] + way[1] * way[1];
-            let share = (((rho - a[0]) * way[0] + (height - a[1]) * way[1]) / square).clamp(0.0, 1.0);
-            (rho - a[0] - share * way[0]).hypot(height - a[1] - share * way[1])
-        };
-        let (a, b) = pieces.min_by(|x, y| apart(x).total_cmp(&apart(y)))?;
+        let (at, out) = tool.split(place);
+        let (a, b) = nearest_piece(tool, at)?;
         let way = [b[0] - a[0], b[1] - a[1]];
         let length = way[0].hypot(way[1]);
         let [across, up] = way.map(|x| x / length);

@@ -150,6 +150,13 @@ impl Way {
 pub(super) fn straight_direction(tool: &Tool<'_>, place: &Vec3, normal: &Vec3) -> Option<Vec3> {
     let facing = (tool.axis * tool.axis.dot(normal) - normal).try_normalize(0.0)?;
     let at = [facing.dot(place), tool.axis.dot(place)];
+    let (a, b) = nearest_piece(tool, at)?;
+    let way = facing * (b[0] - a[0]) + tool.axis * (b[1] - a[1]);
+    (way - normal * normal.dot(&way)).try_normalize(0.0)
+}
+
+/// The straight piece of the meridian that is nearest to a place of its plane, by its ends. None where the tool has none.
+pub(super) fn nearest_piece(tool: &Tool<'_>, at: Meridian) -> Option<(Meridian, Meridian)> {
     let from = |(a, b): &(Meridian, Meridian)| {
         let way = [b[0] - a[0], b[1] - a[1]];
         let square = way[0] * way[0] + way[1] * way[1];
@@ -157,9 +164,7 @@ pub(super) fn straight_direction(tool: &Tool<'_>, place: &Vec3, normal: &Vec3) -
         (at[0] - a[0] - share * way[0]).hypot(at[1] - a[1] - share * way[1])
     };
     let pieces = tool.profile.lines().into_iter().filter(|(a, b)| a != b);
-    let (a, b) = pieces.min_by(|x, y| from(x).total_cmp(&from(y)))?;
-    let way = facing * (b[0] - a[0]) + tool.axis * (b[1] - a[1]);
-    (way - normal * normal.dot(&way)).try_normalize(0.0)
+    pieces.min_by(|x, y| from(x).total_cmp(&from(y)))
 }
 
 /// Whether it is shown that no place of a tool is farther from the line through a place (from the tool end) in a unit direction than a

@@ -216,5 +216,10 @@ fn refused_with(
         return Verdict::NotJudged(format!("{failure:?}"));
     }
     let second = Case { axis, from: *tip, is_certain: false, ..case.clone() };
-    judge::told(&Reader::new(&second), (done > 2).then_some(*tip), failure)
+    let reader = Reader::new(&second);
+    if !second.is_tangent_there(&reader, &second.forward) {
+        // The tangency was laid for the first axis.
+        return Verdict::NotJudged(format!("{failure:?}"));
+    }
+    judge::told(&reader, (done > 2).then_some(*tip), failure)
 }

@@ -40,6 +40,8 @@ const SAME_WAY: f64 = 0.9;
 const BY_END: f64 = 2.0;
 /// How far beside the place of a tangency a path may lead, in bands: out of a corner that is near the other way leads there.
 const AT_PLACE: f64 = 5.0;
+/// Cosine between the axes at both ends of a step below which the axis jumps in between.
+const SAME_AXIS: f64 = 0.9;
 /// Share of a step that is not taken by itself.
 const SHORT: f64 = 1e-6;
 /// How much farther from the tool than the surface its end may be, relative to the band, where the tool touches it.
@@ -387,6 +389,7 @@ impl<'a> Reader<'a> {
             if let Some(next) = self.settle(&goal, Wanted::PathOnly, guide)
                 && (next - tip).norm() < 3.0 * length
                 && (next - tip).dot(sense) > 0.0
+                && self.axis(&next)?.dot(&self.axis(tip)?) > SAME_AXIS
                 && let Some(next_sense) = self.tangent(&next, &(next - tip))
             {
                 return Some((next, next_sense));

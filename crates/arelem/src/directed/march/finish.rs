@@ -80,6 +80,15 @@ fn locate(
     }
 }
 
+/// Half way from a place to an event, if the tool is in the band of the check surface there.
+pub(in crate::directed) fn half_way(prepared: &Prepared, from: &Vec3, event: &Event) -> Option<End> {
+    let tip = 0.5 * (from + event.tip);
+    let mut check = prepared.checks.get(event.check)?.clone();
+    check.set_side(event.side);
+    check.look_from(&tip);
+    keeps(prepared, &check, &tip).then_some(End { tip, check: event.check, side: event.side })
+}
+
 /// True if the tool, at a place of the path, is in the band of a check surface.
 fn keeps(prepared: &Prepared, check: &Working, tip: &Vec3) -> bool {
     let posture = prepared.attitude.posture(tip);
