@@ -52,12 +52,14 @@ impl Guide {
         Self::new(geometry, if relation == Relation::On { 1.0 } else { side })
     }
 
-    /// How near the vertex of a cone is, across a band of which the axis may turn from one side of the cone to the other, relative to
-    /// the depth of that band along the axis of the cone.
-    fn nearness_of_vertex(&self, p: &Vec3, band: f64) -> f64 {
+    /// Whether the vertex of a cone is the nearest place, or hardly farther than it: across a band along the axis of the cone the normal
+    /// may turn there from one side of the cone to the other.
+    fn is_about_vertex(&self, p: &Vec3, band: f64) -> bool {
         match &self.surface {
-            Surface::Cone(cone) => (p - cone.vertex).norm() * cone.sine / band,
-            _ => f64::INFINITY,
+            Surface::Cone(cone) => {
+                (self.surface.foot(p).point - cone.vertex).norm() * cone.sine <= ABOUT_VERTEX * band
+            }
+            _ => false,
         }
     }
 
@@ -128,7 +130,7 @@ impl Stand {
 
     /// Whether a position is so near to the vertex of a cone that the tool may turn about it.
     pub(crate) fn is_about_vertex(&self, at: &ToolPosition, band: f64) -> bool {
-        self.base.nearness_of_vertex(&at.tip, band) <= ABOUT_VERTEX
+        self.base.is_about_vertex(&at.tip, band) || self.other.is_about_vertex(&at.tip, band)
     }
 
     /// How far the axis of a position is from what the law asks for.
