@@ -273,17 +273,24 @@ fn settle_following(
     let nearest = settle(work, guide, &first).or_else(|_| settle(work, guide, start))?;
     let mut tip = nearest;
     for _ in 0..JUDGEMENTS {
-        let axis = work.attitude.tool_at(&tip)?.axis;
-        follow_surfaces(work, &(tip - original), Some(tip))?;
-        if (work.attitude.tool_at(&tip)?.axis - axis).norm() <= SAME_AXIS {
-            return Ok(tip);
+        match is_judged_alike(work, original, &tip) {
+            Ok(true) => return Ok(tip),
+            Ok(false) => {}
+            Err(_) => break,
         }
         let Ok(next) = settle(work, guide, &tip) else { break };
         tip = next;
     }
-    // Each place asks for the other one.
+    // Each place asks for the other one, or nothing is told there.
     follow_surfaces(work, &(first - original), Some(first))?;
     Ok(nearest)
+}
+
+/// Judges how the axis follows the surfaces at a place where a move ends; whether it is there as it was.
+fn is_judged_alike(work: &mut StartUp<'_>, original: &Vec3, tip: &Vec3) -> Result<bool, MotionFailure> {
+    let before = work.attitude.tool_at(tip)?.axis;
+    follow_surfaces(work, &(tip - original), Some(*tip))?;
+    Ok((work.attitude.tool_at(tip)?.axis - before).norm() <= SAME_AXIS)
 }
 
 /// Lets the axis follow the surfaces, whose sides are known, for a move `ahead`. A part surface that takes no part in the

@@ -235,9 +235,10 @@ impl<'a> March<'a> {
             // An end at rest in the band may lie farther across the path than a last vector may be long: then where the
             // path is.
             let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);
-            let towards = finish::Towards { event: &event, tangent: &next.tangent, held };
+            let begin = self.points.is_empty().then_some(&here.tip);
+            let towards = finish::Towards { event: &event, tangent: &next.tangent, held, begin };
             let sweep = here.sweep(self.prepared, &next);
-            let end = self.end((&here, &sweep), &towards)?;
+            let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
             let is_passed_by = self.is_passed_by(&here, &end)?;
             // What turns the first vector is that the tool comes to its law, which takes a way; a later one is made shorter.
             if is_passed_by && self.points.is_empty() {
@@ -402,19 +403,6 @@ impl<'a> March<'a> {
         let points = std::mem::take(&mut self.points);
         let bent = self.stepper.record.along(&self.prepared.tip, &points);
         Path { points, check: end.check, check_side: end.side, bent }
-    }
-
-    /// Where the motion ends. One that begins in the band of its check surface, farther in than motions end, ends half way to where it
-    /// would come out of it: it does not lead back.
-    fn end(
-        &self,
-        (here, sweep): (&Vertex, &Sweep<'_>),
-        towards: &finish::Towards<'_>,
-    ) -> Result<finish::End, MotionFailure> {
-        let at_rest = finish::end(self.prepared, self.checks, (&self.watcher, sweep), towards)?;
-        let leads_back = self.points.is_empty() && (at_rest.tip - here.tip).dot(&here.tangent) < 0.0;
-        let ahead = if leads_back { finish::half_way(self.prepared, &here.tip, towards.event) } else { None };
-        Ok(ahead.unwrap_or(at_rest))
     }
 
     /// Whether a tool that turns on the way to the end, more than on the vector that leads beyond it, is past the check surface

@@ -27,10 +27,13 @@ pub(in crate::directed) struct Towards<'a> {
     pub(in crate::directed) tangent: &'a Vec3,
     /// Clearances of part and drive surface to end with, instead of those at rest.
     pub(in crate::directed) held: Option<[f64; 2]>,
+    /// Where the motion begins, if the vector does.
+    pub(in crate::directed) begin: Option<&'a Vec3>,
 }
 
 /// The end of a motion at an event found on a straight vector: where the path only touches the check surface, the place of
-/// contact.
+/// contact. A motion that begins in the band of its check surface, farther in than motions end, ends half way to where it would come out
+/// of it: it does not lead back.
 pub(in crate::directed) fn end(
     prepared: &Prepared,
     checks: &[CheckSurface],
@@ -38,17 +41,22 @@ pub(in crate::directed) fn end(
     towards: &Towards<'_>,
 ) -> Result<End, MotionFailure> {
     let event = towards.event;
-    locate(prepared, checks, towards).or_else(|failure| {
+    let end = locate(prepared, checks, towards).or_else(|failure| -> Result<End, MotionFailure> {
         let touch = watcher.touch(event.check, sweep).ok_or(failure)?;
         Ok(End { tip: touch.tip, check: touch.check, side: touch.side })
-    })
+    })?;
+    let ahead = towards
+        .begin
+        .filter(|begin| (end.tip - *begin).dot(towards.tangent) < 0.0)
+        .and_then(|begin| half_way(prepared, begin, event));
+    Ok(ahead.unwrap_or(end))
 }
 
 /// The exact position of an event found on a straight vector.
 fn locate(
     prepared: &Prepared,
     checks: &[CheckSurface],
-    &Towards { event, tangent, held }: &Towards<'_>,
+    &Towards { event, tangent, held, .. }: &Towards<'_>,
 ) -> Result<End, MotionFailure> {
     if event.grazed || is_tangent(checks[event.check].relation) {
         return Ok(End { tip: event.tip, check: event.check, side: event.side });
@@ -81,7 +89,7 @@ fn locate(
 }
 
 /// Half way from a place to an event, if the tool is in the band of the check surface there.
-pub(in crate::directed) fn half_way(prepared: &Prepared, from: &Vec3, event: &Event) -> Option<End> {
+fn half_way(prepared: &Prepared, from: &Vec3, event: &Event) -> Option<End> {
     let tip = 0.5 * (from + event.tip);
     let mut check = prepared.checks.get(event.check)?.clone();
     check.set_side(event.side);

@@ -31,7 +31,8 @@ pub(super) fn run(
         let to = Vertex::at(prepared, from.tip + here.tangent * length, &here.tangent)?;
         let sweep = from.sweep(prepared, &to);
         if let Some(event) = first_stop((&mut watcher, &mut tangency), &sweep, [&from, &to])? {
-            let towards = finish::Towards { event: &event, tangent: &here.tangent, held: None };
+            let begin = (travelled == 0.0).then_some(&prepared.tip);
+            let towards = finish::Towards { event: &event, tangent: &here.tangent, held: None, begin };
             let end = finish::end(prepared, checks, (&watcher, &sweep), &towards)?;
             let bent = Bent::none(&prepared.tip);
             return Ok(Path { points: vec![end.tip], check: end.check, check_side: end.side, bent });
