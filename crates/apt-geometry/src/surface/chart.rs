@@ -268,6 +268,21 @@ impl Surface {
         survey.curvature_across()
     }
 
+    /// How much a ruled surface bends towards a side at most along a unit direction that its rulings nearly have, at all places within reach
+    /// of a point, given the curvature b that it may have across: with the direction t no form there is greater than `μ I + b (I − t tᵀ)`,
+    /// μ being this bend. `None` for other kinds of surface, and where it ends or has an edge, or bends more across.
+    pub fn bend_on_rulings(
+        &self,
+        side: f64,
+        center: &Vec3,
+        reach: f64,
+        beside: (&Vec3, f64),
+        patience: Patience<'_>,
+    ) -> Option<f64> {
+        let Self::Ruled(sheet) = self else { return None };
+        sheet.survey(Survey::on_rulings(center, reach, side, beside, patience)).bend_on_rulings()
+    }
+
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.
     pub fn stock(&self, side: f64) -> f64 {
         match self {

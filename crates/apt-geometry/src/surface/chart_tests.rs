@@ -293,6 +293,74 @@ proptest! {
     }
 }
 
+/// The direction of the ruling at the foot of a point of a ruled surface.
+fn ruling_at(surface: &Surface, near: &Vec3) -> Option<Vec3> {
+    let chart = surface.place(near).and_then(|place| surface.chart(&place))?;
+    matches!(surface, Surface::Ruled(_)).then_some(chart.first[1])?.try_normalize(0.0)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+    /// Nor does it along a direction near its rulings, in the tangent planes or not, by more than is told of it and of what is across it.
+    #[test]
+    fn no_place_within_reach_bends_more_than_is_told_of_a_direction_near_its_rulings(
+        which in 0usize..COUNT, natural in prop::bool::ANY, near in prop::array::uniform3(-1.0..6.0f64), reach in 0.02..1.0f64,
+        off in prop::array::uniform3(-0.3..0.3f64), across in 0.05..5.0f64,
+        ways in prop::collection::vec(prop::array::uniform6(-1.0..1.0f64), 40),
+    ) {
+        let surface = made(which);
+        let side = if natural { 1.0 } else { -1.0 };
+        let center = surface.foot(&Vec3::from(near)).point;
+        let Some(ruling) = ruling_at(surface, &center) else { return Ok(()) };
+        let along = (ruling + Vec3::from(off)).normalize();
+        let told = surface.bend_on_rulings(side, &center, reach, (&along, across), Patience::default());
+        let Some(told) = told else { return Ok(()) };
+        for e in ways {
+            let foot = surface.foot(&(center + Vec3::new(e[0], e[1], e[2]) * reach));
+            if (foot.point - center).norm() > reach {
+                continue;
+            }
+            let hessian = surface.foot_and_hessian(&foot.point).1;
+            for way in [Vec3::new(e[3], e[4], e[5]), along] {
+                let bend = -side * way.dot(&(hessian * way));
+                let aside = way.norm_squared() - way.dot(&along).powi(2);
+                let most = across * aside + told * way.norm_squared();
+                prop_assert!(bend <= most + 1e-6, "{which}: {bend} with {across} and {told}");
+            }
+        }
+    }
+}
+
+/// Along rulings that is told much more closely than by what bends in any direction.
+#[test]
+fn a_surface_hardly_bends_beside_its_rulings() {
+    let (mut told, mut faint) = (0, 0);
+    for which in 0..COUNT {
+        let surface = made(which);
+        for (near, side) in places(40).flat_map(|near| [(near, 1.0), (near, -1.0)]) {
+            let foot = surface.foot(&near);
+            let region = Region { center: foot.point, radius: 0.01, lowest: -0.01, highest: 0.01 };
+            let Some(ruling) = ruling_at(surface, &foot.point) else { continue };
+            let Bend::AtMost(bend) = surface.bend(-side, &foot, &region, Patience::default()) else {
+                continue;
+            };
+            if bend < 1e-6 {
+                continue;
+            }
+            let beside = (&ruling, bend + 2.0);
+            let Some(along) = surface.bend_on_rulings(side, &foot.point, 0.01, beside, Patience::default())
+            else {
+                continue;
+            };
+            // What it twists counts, and little else.
+            let twist = (surface.foot_and_hessian(&foot.point).1 * ruling).norm();
+            told += 1;
+            faint += u32::from(along <= 0.02 * bend + 2.0 * twist * twist);
+        }
+    }
+    assert!(told >= 100 && 10 * faint >= 9 * told, "{faint} of {told}");
+}
+
 #[test]
 fn cylinders_across_a_direction_are_found_where_surfaces_bend_away_along_it() {
     let mut found = [0; COUNT];

@@ -120,6 +120,13 @@ impl Box3 {
     }
 
     /// Greatest length.
+    /// No vector has a longer part across a unit direction.
+    pub(super) fn across(&self, along: &Vec3) -> f64 {
+        let middle = Vec3::from(self.0.map(Interval::middle));
+        let beside = Vec3::from(self.0.map(Interval::radius));
+        (middle - along * middle.dot(along)).norm() + beside.norm()
+    }
+
     pub(super) fn length(&self) -> f64 {
         Vector3::from(self.0.map(Interval::magnitude)).norm()
     }

@@ -4,8 +4,13 @@
 mod body;
 mod form;
 mod kept;
+mod rulings;
 
 pub use self::form::{Form, LENGTHWISE, Lengthwise};
+use self::{
+    form::Bent,
+    rulings::{Rulings, Turning},
+};
 pub(super) use self::{
     form::{Forms, leading},
     kept::{Count, Later},
@@ -168,7 +173,7 @@ pub(super) struct Part {
     /// Those of the longer side, where that counts and not how the surface bends.
     shorter: Later<Box<[Part; 2]>>,
     /// The forms of all its places, where it is smooth and does not end.
-    form: Later<Option<Box<Form>>>,
+    form: Later<Option<Box<Bent>>>,
 }
 
 /// Bounds over one or several parts as wholes.
@@ -407,7 +412,7 @@ struct Bounds {
     spread: f64,
     /// How much each side of the rectangle changes the frame and the curvature.
     loose: [f64; 2],
-    form: Option<Form>,
+    bent: Option<Bent>,
 }
 
 impl Bounds {
@@ -422,7 +427,7 @@ impl Bounds {
             normal: None,
             spread: 2.0,
             loose: [half[0] * jet.du.norm(), half[1] * jet.dv.norm()],
-            form: None,
+            bent: None,
         };
         let Some(normal) = jet.du.cross(&jet.dv).try_normalize(0.0) else { return unknown };
         let Some(x) = jet.du.try_normalize(0.0) else { return unknown };
@@ -465,7 +470,9 @@ impl Bounds {
             most / (stretch * stretch)
         });
         let form = Form::about([x, y], [p, q, r], error, change);
-        Self { curvature, least, close, normal: Some(normal), spread, loose, form: Some(form) }
+        let rulings = Rulings::of(enclosure, half, &Turning { normal, spread, change, curvature });
+        let bent = Some(Bent { form, rulings });
+        Self { curvature, least, close, normal: Some(normal), spread, loose, bent }
     }
 }
 

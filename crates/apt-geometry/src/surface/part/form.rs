@@ -2,7 +2,10 @@
 
 use nalgebra::Matrix3;
 
-use super::{Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey, WORK_OF_PART};
+use super::{
+    Bounds, CLOSE, Enclose, MAX_DEPTH, MAX_PARTS, Part, Survey, WORK_OF_PART,
+    rulings::{OnRulings, Rulings},
+};
 use crate::{Vec3, patience::Patience};
 
 /// Which multiple of the change of a frame its pseudo-inverse may change by, times the norms of both pseudo-inverses, if both frames
@@ -41,6 +44,16 @@ pub(in super::super) enum Forms {
     Across(Lengthwise, Across),
     /// How much the surface bends away from the side along a direction.
     Along(Along),
+    /// How much it bends to the side beside straight lines of its own, along a direction.
+    OnRulings(OnRulings),
+}
+
+/// How all places of a part bend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bent {
+    pub(super) form: Form,
+    /// Where lines of the second parameter are straight.
+    pub(super) rulings: Option<Rulings>,
 }
 
 /// The least cylinder along a line, as far as parts have been looked at.
@@ -68,6 +81,7 @@ impl Forms {
                 Self::Across(Lengthwise { along, ..asked }, found)
             }
             Self::Along(asked) => Self::Along(Along { direction: turned(&asked.direction), ..asked }),
+            Self::OnRulings(asked) => Self::OnRulings(asked.turned(turned)),
             asked => asked,
         }
     }
@@ -181,7 +195,13 @@ pub(in super::super) fn leading(forms: Vec<Form>, patience: Patience<'_>) -> Opt
 }
 
 impl<'a> Survey<'a> {
-    fn about_forms(center: &Vec3, reach: f64, side: f64, forms: Forms, patience: Patience<'a>) -> Self {
+    pub(super) fn about_forms(
+        center: &Vec3,
+        reach: f64,
+        side: f64,
+        forms: Forms,
+        patience: Patience<'a>,
+    ) -> Self {
         Self { forms, ..Self::new(center, [0.0, reach], (side, &Vec3::zeros()), patience) }
     }
 
@@ -243,7 +263,8 @@ impl<'a> Survey<'a> {
 
 impl Forms {
     /// Takes a form, or that there is none, in so far as halves of its part are not to be looked at; whether they are.
-    fn take(&mut self, form: Option<&Form>, side: f64, is_fine: bool) -> Taken {
+    fn take(&mut self, bent: Option<&Bent>, side: f64, is_fine: bool) -> Taken {
+        let form = bent.map(|bent| &bent.form);
         let close = |error: f64| form.is_some_and(|form| form.error <= error * form.middle.norm());
         let seen = form.map(|form| form.seen_from(side));
         match self {
@@ -253,7 +274,16 @@ impl Forms {
                 forms.push(form);
                 Taken::Whole
             }),
-            Self::Across(asked, found) => found.take(asked, seen, is_fine || close(FINE_ERROR)),
+            Self::Across(asked, found) => {
+                let rulings = bent.and_then(|bent| bent.rulings.as_ref());
+                let needed = |least: f64| {
+                    let by_form = seen.and_then(|form| form.curvature_across(&asked.along, -least));
+                    let by_rulings =
+                        rulings.map(|rulings| rulings.curvature_across(side, &asked.along, least));
+                    by_form.unwrap_or(f64::INFINITY).min(by_rulings.unwrap_or(f64::INFINITY))
+                };
+                found.take(asked, needed, is_fine || close(FINE_ERROR))
+            }
             Self::Along(asked) => {
                 let bend = seen.map_or(f64::INFINITY, |form| form.bend_away(&asked.direction));
                 let is_wanted = bend > asked.enough.max(asked.found) && asked.found <= asked.enough;
@@ -263,13 +293,14 @@ impl Forms {
                 asked.found = asked.found.max(bend);
                 if bend.is_finite() { Taken::Whole } else { Taken::Nothing }
             }
+            Self::OnRulings(asked) => asked.take(bent.and_then(|bent| bent.rulings.as_ref()), side, is_fine),
         }
     }
 }
 
 /// What a form of a part tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Taken {
+pub(super) enum Taken {
     /// Enough.
     Whole,
     /// Less than its halves.
@@ -280,11 +311,10 @@ enum Taken {
 
 impl Across {
     /// Takes the cylinder that a part needs.
-    fn take(&mut self, asked: &Lengthwise, seen: Option<Form>, is_fine: bool) -> Taken {
+    fn take(&mut self, asked: &Lengthwise, needed: impl Fn(f64) -> f64, is_fine: bool) -> Taken {
         // The more it may bend along the line the less is needed across.
         while let Some(least) = asked.least.get(self.least) {
-            let needed = seen.and_then(|form| form.curvature_across(&asked.along, -least));
-            let needed = needed.unwrap_or(f64::INFINITY);
+            let needed = needed(*least);
             if needed > asked.enough.max(self.curvature) && !is_fine {
                 return Taken::Halves;
             }
@@ -320,9 +350,9 @@ impl Part {
     }
 
     /// The forms of all places, if the part is smooth and does not end.
-    fn form_of(&self, sheet: &impl Enclose) -> Option<Form> {
+    fn form_of(&self, sheet: &impl Enclose) -> Option<Bent> {
         let enclosure = sheet.enclose(&self.rectangle);
         let is_smooth = !enclosure.ends && enclosure.sharp == [false; 2];
-        Bounds::of(&enclosure, self.rectangle.half).form.filter(|_| is_smooth)
+        Bounds::of(&enclosure, self.rectangle.half).bent.filter(|_| is_smooth)
     }
 }

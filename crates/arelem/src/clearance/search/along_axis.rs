@@ -32,6 +32,8 @@ const FINER: f64 = 1.0 / 32.0;
 /// flank.
 const LEFT: f64 = 2.0;
 const LEAST_LEFT: f64 = 1.0 / 1024.0;
+/// Curvature of a cylinder along the axis, as a share of that of a ball that reaches the surface, that is taken for one to hold it.
+const ACROSS: f64 = 0.9;
 /// Bound of the pieces that are left: more lie along the surface.
 const MOST_LEFT: usize = 4;
 /// How much farther than asked it is told how distances bend, and how many such answers are kept.
@@ -249,6 +251,9 @@ impl Search<'_> {
             keep(None);
             return known(None);
         };
+        if let Some(bend) = self.bend_on_rulings(base, foot, (half, bend)) {
+            return Known { bend, half, is_close: false };
+        }
         let along = tool.axis - base.gradient * base.gradient.dot(&tool.axis);
         let course = along
             .try_normalize(0.0)
@@ -257,6 +262,22 @@ impl Search<'_> {
             .unwrap_or_else(|| Course::along_generator(bend, None));
         keep(Some(course));
         known(Some(course))
+    }
+
+    /// The same beside a ruled surface whose rulings the axis nearly has, in a ball in which distances bend by no more than `bend`, and
+    /// nearest places do not jump.
+    ///
+    /// Nearest places of two places are no farther apart than these times `1 + d bend`, d being the greatest distance. Where all forms
+    /// are at most `μ I + b (I − t tᵀ)` and `d (μ + b) < 1`, the distance bends by no more than `μ/(1 − d μ)` along t.
+    fn bend_on_rulings(&self, base: &Base, foot: &Foot, (reach, bend): (f64, f64)) -> Option<f64> {
+        let Self { tool, surface, side, .. } = *self;
+        let deepest = (base.distance + reach).max(reach);
+        let feet = reach * (1.0 + deepest * bend);
+        let curvature = bend / (1.0 + deepest * bend);
+        let across = (ACROSS / deepest).max(0.5 * (curvature + 1.0 / deepest));
+        let asked = (&tool.axis, across);
+        let along = surface.bend_on_rulings(side, &foot.point, feet, asked, tool.patience)?;
+        (deepest * (along + across) < 1.0).then(|| along / (1.0 - deepest * along))
     }
 }
 
