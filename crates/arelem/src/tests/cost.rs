@@ -176,9 +176,11 @@ fn the_engine_asks_often_during_its_proofs() {
 /// Patches of the tool that may be looked at for one of the motions below; 30,000 were when how the
 /// surface bends along its rulings was told by forms with one error for all directions.
 const PATCHES_ALONG_RULINGS: u64 = 100;
+/// Questions that the verifier may ask about one of them; 3,500 where slopes are taken from readings beside each.
+const QUESTIONS_ALONG_RULINGS: u64 = 1500;
 
 /// The flank of a tool whose axis goes along the rulings of a wall that is slightly twisted lies along that: balls about the axis show where
-/// it is nearest, also if that is where the flank begins.
+/// it is nearest, also if that is where the flank begins; and the verifier's readings tell by the place that touches how they change.
 #[test]
 fn a_flank_along_rulings_takes_few_patches() {
     let section = |y: f64, radius: f64, ends: [Vec3; 2]| {
@@ -199,8 +201,14 @@ fn a_flank_along_rulings_takes_few_patches() {
         let before = JUDGED.get();
         p.drive(Turn::Forward, &wall, Relation::On, &x(1.5));
         let count = JUDGED.get() - before;
-        assert!(verify(p.last(), &|| false).expect("evidence").verified);
         assert!(count <= PATCHES_ALONG_RULINGS, "{cutter:?}: {count} patches");
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        assert!(verify(p.last(), &ask).expect("evidence").verified);
+        assert!(asked.get() <= QUESTIONS_ALONG_RULINGS, "{cutter:?}: {} questions", asked.get());
     }
 }
 

@@ -90,7 +90,7 @@ pub(super) fn at(
         } else {
             place.keeps(value - error, touch)
         };
-        holds.then(|| Reading { value, normal: quadric.turned_out(&touch.normal), error })
+        holds.then(|| Reading::new(value, quadric.turned_out(&touch.normal), error))
     };
     // The tool end is in contact only where the bottom rises from it.
     let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));

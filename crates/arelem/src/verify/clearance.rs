@@ -68,6 +68,15 @@ pub(super) struct Reading {
     pub(super) value: f64,
     pub(super) normal: Vec3,
     pub(super) error: f64,
+    /// A place of the tool, from its end, that touches first with that normal, where one is told.
+    pub(super) place: Option<Vec3>,
+}
+
+impl Reading {
+    /// One that does not tell where the tool touches.
+    pub(super) fn new(value: f64, normal: Vec3, error: f64) -> Self {
+        Self { value, normal, error, place: None }
+    }
 }
 
 fn unit(v: &Vec3) -> Option<Vec3> {
@@ -191,7 +200,7 @@ impl Surface {
             Self::Quadric(quadric) => quadric.distance(x).map(|d| (d.distance, d.normal))?,
             Self::Ruled(surface) => return ruling_clearance::point(surface, x, patience),
         };
-        Some(Reading { value, normal, error: 0.0 })
+        Some(Reading::new(value, normal, 0.0))
     }
 
     /// The greatest curvature with which it bends away from a tool on a side, at places nearer to the tool than `reach`; what is
@@ -333,26 +342,27 @@ impl<'a> Clearance<'a> {
         }
         let mut reading = self.bare(&(tip + axis * self.raise), axis)?;
         reading.value -= self.thickness;
+        reading.place = reading.place.map(|place| place + axis * self.raise);
         (reading.value.is_finite() && reading.error.is_finite()).then_some(reading)
     }
 
     fn bare(&self, tip: &Vec3, axis: &Vec3) -> Option<Reading> {
         let tool = self.tool(*axis);
         if self.profile.is_point() {
-            let Reading { value, normal, error } = self.surface.distance(tip, self.patience)?;
-            return Some(Reading { value: self.side * value, normal: normal * self.side, error });
+            let Reading { value, normal, error, .. } = self.surface.distance(tip, self.patience)?;
+            return Some(Reading::new(self.side * value, normal * self.side, error));
         }
         match self.surface {
             Surface::Plane(normal, distance) => {
                 let n = normal * self.side;
                 let value = n.dot(tip) - self.side * distance - tool.support(&-n).0;
-                Some(Reading { value, normal: n, error: 0.0 })
+                Some(Reading::new(value, n, 0.0))
             }
             Surface::Sphere(center, radius) => Some(self.sphere(tip, &tool, center, *radius)),
             Surface::Pencil(pencil) => {
                 let found =
                     if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
-                Some(Reading { value: found.value, normal: found.normal, error: found.error })
+                Some(Reading::new(found.value, found.normal, found.error))
             }
             Surface::Ruled(surface) => ruling_clearance::at(
                 surface.met_from(self.side, &tool.axis, self.patience),
@@ -373,9 +383,9 @@ impl<'a> Clearance<'a> {
         let direction = if size > 0.0 { from_center / size } else { tool.axis };
         if outside {
             let normal = if distance < 0.0 { -direction } else { direction };
-            Reading { value: distance - radius, normal, error: 0.0 }
+            Reading::new(distance - radius, normal, 0.0)
         } else {
-            Reading { value: radius - distance, normal: -direction, error: 0.0 }
+            Reading::new(radius - distance, -direction, 0.0)
         }
     }
 }

@@ -207,7 +207,7 @@ impl Following<'_> {
         let sense = if contact.value < 0.0 { -1.0 } else { 1.0 };
         let found = self.settled(sense, last)?;
         let turn = sense * self.side;
-        Some(Reading { value: turn * found.value, normal: found.normal * turn, error: found.error })
+        Some(Reading::new(turn * found.value, found.normal * turn, found.error))
     }
 
     /// The clearance on a side, where it is shown.
@@ -269,7 +269,7 @@ impl Following<'_> {
                 other.far.set(far - led_by + self.way);
             }
         }
-        Some(Reading { value, normal: contact.normal, error })
+        Some(Reading { place: Some(contact.opposite), ..Reading::new(value, contact.normal, error) })
     }
 
     /// A bound of the distance of a part, where both have all outside as far as `least`; the second of them holds the tool up

@@ -13,7 +13,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
     clearance::{Clearance, Reading, Surface},
-    span::{Extremes, Span},
+    span::{Extremes, Readings, Span},
     stop,
     tool::Profile,
 };
@@ -319,8 +319,9 @@ impl Judge<'_> {
         for (vector, pair) in self.positions.windows(2).enumerate() {
             let ends = [left, bound.read(&pair[1])?];
             left = ends[1];
-            let span =
-                Span { clearance: &clearance, from: pair[0], to: pair[1], ends, beyond, band: allowed };
+            let read = Readings::default();
+            let (from, to) = (pair[0], pair[1]);
+            let span = Span { clearance: &clearance, from, to, ends, beyond, band: allowed, read: &read };
             let lost = VerifyError::NoDistance { vector };
             let mut found = span.extremes(tolerances[0]).ok_or(lost.clone())?;
             for finer in &tolerances[1..] {

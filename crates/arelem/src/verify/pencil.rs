@@ -160,7 +160,7 @@ impl Pencil {
 
     /// The clearance of a tool that touches with its corner or an edge, on this nappe of a cone.
     fn by_circle(&self, shape: Shape, side: f64, w: &Vec3, tool: &Tool<'_>) -> Option<Found> {
-        let Reading { value, normal, error } = circle_contact::at(&self.form, shape, side, w, tool)?;
+        let Reading { value, normal, error, .. } = circle_contact::at(&self.form, shape, side, w, tool)?;
         let ours = self.sine <= 0.0 || side * normal.dot(&self.axis) < 0.0;
         ours.then_some(Found { value, normal, error })
     }

@@ -100,7 +100,7 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
         // Seen along the rulings the tool is a disc: exact.
         let PointDistance { distance, normal } = quadric.distance(tip)?;
         let value = side * distance - tool.profile.widest();
-        return Some(Reading { value, normal: normal * side, error: 0.0 });
+        return Some(Reading::new(value, normal * side, 0.0));
     }
     let along = shape(quadric, side, [tip, tip], tool);
     let convex = quadric.convexity.shape(side) == Shape::Convex;
@@ -126,7 +126,7 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
     };
     search.run()?;
     let best = search.best?;
-    Some(Reading { value: best.value, normal: best.normal, error: search.gap })
+    Some(Reading::new(best.value, best.normal, search.gap))
 }
 
 impl Search<'_> {

@@ -247,7 +247,7 @@ pub(super) fn at(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Opt
         let (distance, normal) = point_distance(surface, tip, tool.patience)?;
         let error = resolution(surface, tip, 0.0);
         let value = side * distance - tool.profile.widest();
-        return Some(Reading { value, normal: normal * side, error });
+        return Some(Reading::new(value, normal * side, error));
     }
     if let Some(found) = beside(surface, side, tip, tool) {
         return Some(found);
@@ -278,11 +278,7 @@ fn beside(surface: &Ruled, side: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<Rea
     let level = [normal, other].iter().all(|n| n.dot(&tool.axis).abs() <= UPRIGHT);
     let value = side * distance - tool.profile.widest();
     let error = error + surface.error();
-    (level && (above - distance).abs() <= 2.0 * error).then_some(Reading {
-        value,
-        normal: normal * side,
-        error,
-    })
+    (level && (above - distance).abs() <= 2.0 * error).then_some(Reading::new(value, normal * side, error))
 }
 
 /// The clearance without regard to what was found before.
@@ -304,7 +300,10 @@ impl<'a> Bodies<'a> {
         let clear = self.is_on_side(touch)?;
         // A tool without a body is nowhere deep in the surface: where it is not clear for certain, its places are looked at.
         let mut reading = if touch.value > touch.gap && clear {
-            Reading { value: touch.value, normal: self.away(touch)?, error: touch.gap }
+            Reading {
+                place: Some(touch.opposite() - tip),
+                ..Reading::new(touch.value, self.away(touch)?, touch.gap)
+            }
         } else {
             self.violation(tip, touch)?
         };
@@ -348,12 +347,15 @@ impl<'a> Bodies<'a> {
 
     /// The clearance of a tool that the surface is in, without regard to where that ends.
     fn depth_of_violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
-        let mut deepest = (-touch.value, self.away(touch)?);
-        let depth_of = |d: &(f64, Vec3), error: f64| Reading { value: -d.0, normal: d.1, error };
+        let mut deepest = Deepest { depth: -touch.value, out: self.away(touch)?, place: touch.opposite() };
+        let depth_of = |found: &Deepest, error: f64| Reading {
+            place: Some(found.place - tip),
+            ..Reading::new(-found.depth, found.out, error)
+        };
         // Each depth found is a lower bound; the first that also frees the tool is the answer. First that of the surface in
         // the tool, then that of the tool's edges under the surface near there, then all round.
         // No place is deep in a tool without a body.
-        let shallow = touch.value <= touch.gap && deepest.0 <= self.deep;
+        let shallow = touch.value <= touch.gap && deepest.depth <= self.deep;
         // Under an edge the surface is less deep in the tool than the edge is under the surface.
         let under_edge = shallow && self.is_at_edge(tip, touch);
         if under_edge {
@@ -366,11 +368,11 @@ impl<'a> Bodies<'a> {
         let top = tip + self.tool.axis * self.reach;
         for place in [*tip, (tip + top) * 0.5] {
             let depth = self.depth(&place)?;
-            if depth.0 > deepest.0 && self.tool.distance(&(place - tip)) <= 0.0 {
+            if depth.depth > deepest.depth && self.tool.distance(&(place - tip)) <= 0.0 {
                 deepest = depth;
             }
         }
-        if deepest.0 > self.deep {
+        if deepest.depth > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
         if shallow && !under_edge {
@@ -383,11 +385,11 @@ impl<'a> Bodies<'a> {
         for p in self.edges() {
             self.edge(&circle, p, &mut deepest)?;
         }
-        if deepest.0 > self.deep {
+        if deepest.depth > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
         if shallow && let Ruled::Parallel(ruling) = self.surface {
-            let ways = [deepest.0 + self.close(), self.resolution];
+            let ways = [deepest.depth + self.close(), self.resolution];
             if ruling.is_left_behind(self.side, tip, self.tool, ways)? {
                 return Some(depth_of(&deepest, self.close()));
             }
@@ -400,7 +402,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Looks for deeper places of the tool's edges on the side of it where it is nearest.
-    fn deepest_beside(&self, tip: &Vec3, touch: &Touch, deepest: &mut (f64, Vec3)) -> Option<()> {
+    fn deepest_beside(&self, tip: &Vec3, touch: &Touch, deepest: &mut Deepest) -> Option<()> {
         let Some(circle) = self.circle_beside(tip, touch) else { return Some(()) };
         for p in self.edges() {
             self.deepest_near(&circle, p, [-0.5 * SECTOR, 0.5 * SECTOR], deepest)?;
@@ -434,15 +436,15 @@ impl<'a> Bodies<'a> {
         edges
     }
 
-    /// Depth of a place under the surface, and the direction out. What is beyond the end is not under it.
-    fn depth(&self, x: &Vec3) -> Option<(f64, Vec3)> {
+    /// How deep a place is under the surface. What is beyond the end is not under it.
+    fn depth(&self, x: &Vec3) -> Option<Deepest> {
         let (Reading { value, normal, .. }, is_beyond) = seen_from(self.surface, x, self.tool.patience)?;
         let side = if is_beyond { value.signum() } else { self.side };
-        Some((-side * value, normal * side))
+        Some(Deepest { depth: -side * value, out: normal * side, place: *x })
     }
 
     /// Deepest place of an edge circle under the surface, if it is deeper than `deepest`.
-    fn edge(&self, circle: &Circle, p: Meridian, deepest: &mut (f64, Vec3)) -> Option<()> {
+    fn edge(&self, circle: &Circle, p: Meridian, deepest: &mut Deepest) -> Option<()> {
         if p[0] <= 0.0 {
             return self.deepest_near(circle, p, [0.0, 0.0], deepest);
         }
@@ -452,16 +454,16 @@ impl<'a> Bodies<'a> {
             let phi = SECTOR * k as f64;
             // Depth changes no faster than the place moves; between two samples lies half a step more.
             known += SECTOR * p[0];
-            if known + 0.5 * SECTOR * p[0] <= deepest.0 {
+            if known + 0.5 * SECTOR * p[0] <= deepest.depth {
                 continue;
             }
-            known = self.depth(&circle.place(p, phi))?.0;
+            known = self.depth(&circle.place(p, phi))?.depth;
             if best.is_none_or(|b| known > b.1) {
                 best = Some((phi, known));
             }
         }
         match best {
-            Some((phi, value)) if value + SECTOR * p[0] > deepest.0 => {
+            Some((phi, value)) if value + SECTOR * p[0] > deepest.depth => {
                 self.deepest_near(circle, p, [phi - SECTOR, phi + SECTOR], deepest)
             }
             _ => Some(()),
@@ -474,18 +476,18 @@ impl<'a> Bodies<'a> {
         circle: &Circle,
         p: Meridian,
         [mut low, mut high]: [f64; 2],
-        deepest: &mut (f64, Vec3),
+        deepest: &mut Deepest,
     ) -> Option<()> {
-        let read = |phi: f64| -> Option<(f64, f64, Vec3)> {
-            let (depth, out) = self.depth(&circle.place(p, phi))?;
-            Some((depth, -p[0] * out.dot(&circle.radial_rate(phi)), out))
+        let read = |phi: f64| -> Option<(Deepest, f64)> {
+            let found = self.depth(&circle.place(p, phi))?;
+            Some((found, -p[0] * found.out.dot(&circle.radial_rate(phi))))
         };
-        let middle = read(0.5 * (low + high))?;
-        if middle.0 > deepest.0 {
-            *deepest = (middle.0, middle.2);
+        let (middle, _) = read(0.5 * (low + high))?;
+        if middle.depth > deepest.depth {
+            *deepest = middle;
         }
         // The places of the range are not farther from its middle than half its arc.
-        if p[0] <= 0.0 || middle.0 + 0.5 * (high - low) * p[0] <= deepest.0 {
+        if p[0] <= 0.0 || middle.depth + 0.5 * (high - low) * p[0] <= deepest.depth {
             return Some(());
         }
         let mut rates = [read(low)?.1, read(high)?.1];
@@ -496,9 +498,9 @@ impl<'a> Bodies<'a> {
             let secant = low - rates[0] * (high - low) / (rates[1] - rates[0]);
             let phi =
                 if turn % 3 == 2 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
-            let (depth, rate, out) = read(phi)?;
-            if depth > deepest.0 {
-                *deepest = (depth, out);
+            let (found, rate) = read(phi)?;
+            if found.depth > deepest.depth {
+                *deepest = found;
             }
             if rate.abs() <= LEVEL * p[0] || high - low <= LEVEL {
                 break;
@@ -511,6 +513,15 @@ impl<'a> Bodies<'a> {
         }
         Some(())
     }
+}
+
+/// A place of the tool under the surface, or across from one of the surface in the tool.
+#[derive(Debug, Clone, Copy)]
+struct Deepest {
+    depth: f64,
+    /// Unit direction out.
+    out: Vec3,
+    place: Vec3,
 }
 
 /// The edge circles of a tool in a place.

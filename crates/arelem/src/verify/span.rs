@@ -1,5 +1,9 @@
 //! Extremes of a clearance over the whole of one cut vector, with proof.
 
+use std::{cell::RefCell, collections::HashMap};
+
+use apt_geometry::Vec3;
+
 use crate::sequence::ToolPosition;
 
 use super::clearance::{Clearance, Reading, Shape};
@@ -49,6 +53,12 @@ pub(super) fn between(from: &ToolPosition, to: &ToolPosition, t: f64) -> Option<
 /// The angle that the axis turns through on a vector, radians.
 pub(super) fn turning(from: &ToolPosition, to: &ToolPosition) -> f64 {
     from.axis.cross(&to.axis).norm().atan2(from.axis.dot(&to.axis))
+}
+
+/// How fast the axis turns, by the parameter from 0 to 1, along the line that it turns about.
+pub(super) fn round(from: &ToolPosition, to: &ToolPosition) -> Vec3 {
+    let line = from.axis.cross(&to.axis);
+    line.try_normalize(0.0).map_or(line, |line| line * turning(from, to))
 }
 
 /// Least and greatest clearance found, and what no clearance is below or above.
@@ -110,6 +120,9 @@ struct Sample {
     t: f64,
     value: f64,
     slope: f64,
+    /// How far from there the slope may be that was told, by the parameter: infinitely where it is only one that the clearance does not
+    /// rise above.
+    slack: f64,
     error: f64,
 }
 
@@ -124,6 +137,25 @@ pub(super) struct Span<'a> {
     pub(super) beyond: [f64; 2],
     /// Least and greatest clearance allowed.
     pub(super) band: [f64; 2],
+    /// What has been read on a vector on which the axis turns.
+    pub(super) read: &'a Readings,
+}
+
+/// Readings by their positions, bit for bit: slopes need those beside one place, and closer bounds the same places again.
+#[derive(Debug, Default)]
+pub(super) struct Readings(RefCell<HashMap<[u64; 6], Reading>>);
+
+impl Readings {
+    fn get_or_read(&self, place: &ToolPosition, read: impl FnOnce() -> Option<Reading>) -> Option<Reading> {
+        let ToolPosition { tip, axis } = place;
+        let key = [tip.x, tip.y, tip.z, axis.x, axis.y, axis.z].map(f64::to_bits);
+        let known = self.0.borrow().get(&key).copied();
+        known.or_else(|| {
+            let reading = read()?;
+            self.0.borrow_mut().insert(key, reading);
+            Some(reading)
+        })
+    }
 }
 
 impl Span<'_> {
@@ -131,26 +163,35 @@ impl Span<'_> {
         self.from.axis != self.to.axis
     }
 
+    fn at(&self, place: &ToolPosition) -> Option<Reading> {
+        let read = || self.clearance.at(&place.tip, &place.axis);
+        if self.turns() { self.read.get_or_read(place, read) } else { read() }
+    }
+
     fn value(&self, t: f64) -> Option<f64> {
-        let place = between(&self.from, &self.to, t)?;
-        self.clearance.at(&place.tip, &place.axis).map(|r| r.value)
+        self.at(&between(&self.from, &self.to, t)?).map(|r| r.value)
     }
 
     fn sample(&self, t: f64) -> Option<Sample> {
         let place = between(&self.from, &self.to, t)?;
-        self.known(t, self.clearance.at(&place.tip, &place.axis)?)
+        self.known(t, self.at(&place)?)
     }
 
     fn known(&self, t: f64, reading: Reading) -> Option<Sample> {
-        let slope = if self.turns() {
-            // Where a flat face or a straight piece of the tool is in contact the reading does not say with which of its
-            // places, and they go round with different speeds.
-            let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
-            (self.value(high)? - self.value(low)?) / (high - low)
-        } else {
-            reading.normal.dot(&(self.to.tip - self.from.tip))
+        let way = self.to.tip - self.from.tip;
+        let (slope, slack) = match reading.place {
+            _ if !self.turns() => (reading.normal.dot(&way), 0.0),
+            // Where a flat face or a straight piece of the tool is in contact other places may touch as well, and go round with other
+            // speeds: none of them is farther away than this one, which tells no more.
+            Some(place) => {
+                (reading.normal.dot(&(way + round(&self.from, &self.to).cross(&place))), f64::INFINITY)
+            }
+            None => {
+                let (low, high) = ((t - TURN_STEP).max(0.0), (t + TURN_STEP).min(1.0));
+                ((self.value(high)? - self.value(low)?) / (high - low), TURN_STEP)
+            }
         };
-        Some(Sample { t, value: reading.value, slope, error: reading.error })
+        Some(Sample { t, value: reading.value, slope, slack, error: reading.error })
     }
 
     /// Extremes to within `tolerance`; None where there is no distance.
@@ -214,7 +255,7 @@ impl Span<'_> {
             _ => return self.free(first, last, tolerance),
         }
         let middle = between(&self.from, &self.to, 0.5)?;
-        let reading = self.clearance.at(&middle.tip, &middle.axis)?;
+        let reading = self.at(&middle)?;
         if reading.value < self.beyond[0] || reading.value > self.beyond[1] {
             let [low, high] = [first.value.min(last.value), first.value.max(last.value)];
             let error = first.error.max(last.error).max(reading.error);
@@ -312,7 +353,7 @@ impl Span<'_> {
         let mut open = vec![(first, last)];
         let mut budget = FREE_EVALUATIONS;
         while let Some((a, b)) = open.pop() {
-            let part = bounds([a, b], rate, jumps, if self.turns() { rate * TURN_STEP } else { 0.0 });
+            let part = bounds([a, b], rate, jumps);
             let is_whole = b.t - a.t >= 1.0;
             let within = part.low >= self.band[0] && part.high <= self.band[1];
             // Where the slope changes its sign, an extreme is looked at once.
@@ -442,8 +483,8 @@ fn lowest_of_cubic([a, b]: [Sample; 2]) -> f64 {
 
 /// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
 /// by at most `jumps`: not below its chord less the bulge of a parabola, nor below what leads to either end, nor above what
-/// leads on from either end. The slopes are known up to `slack`.
-fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64, slack: f64) -> Extremes {
+/// leads on from either end.
+fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
     let width = b.t - a.t;
     let (least, most) = (a.value.min(b.value), a.value.max(b.value));
     let rise = (b.value - a.value) / width;
@@ -454,8 +495,11 @@ fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64, slack: f64) -> Extremes {
         least
     };
     // From the one end on it is not below a parabola that has the slope of the other end there.
-    let from = |value: f64, slope: f64| {
-        let first = slope - slack - jumps - rate * width;
+    let from = |value: f64, slope: f64, slack: f64| {
+        if slack.is_infinite() {
+            return f64::NEG_INFINITY;
+        }
+        let first = slope - slack * rate - jumps - rate * width;
         let at = -first / rate;
         if first >= 0.0 {
             value
@@ -466,7 +510,7 @@ fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64, slack: f64) -> Extremes {
         }
     };
     let low = low - 0.25 * jumps * width;
-    let low = low.max(from(a.value, b.slope)).max(from(b.value, -a.slope)).min(least);
+    let low = low.max(from(a.value, b.slope, b.slack)).max(from(b.value, -a.slope, a.slack)).min(least);
     // Where the parabolas from both ends meet.
     let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
         / (a.slope - b.slope + rate * width);
@@ -483,7 +527,7 @@ mod tests {
     use super::*;
 
     fn sample(t: f64, value: f64, error: f64) -> Sample {
-        Sample { t, value, slope: 0.0, error }
+        Sample { t, value, slope: 0.0, slack: 0.0, error }
     }
 
     proptest! {

@@ -43,6 +43,13 @@ pub(super) struct Touch {
     pub(super) across: f64,
 }
 
+impl Touch {
+    /// The place of the tool straight across.
+    pub(super) fn opposite(&self) -> Vec3 {
+        self.point - self.outward * self.value
+    }
+}
+
 /// A part of a patch.
 #[derive(Debug, Clone)]
 struct Cell {

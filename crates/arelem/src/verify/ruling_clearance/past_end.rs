@@ -98,7 +98,7 @@ impl Bodies<'_> {
         Some(shortest.map(|way| {
             let [least, most] = [-first.value, way.norm()];
             let error = 0.5 * (most - least).max(0.0);
-            Reading { value: -0.5 * (least + most), normal: way.normalize(), error }
+            Reading::new(-0.5 * (least + most), way.normalize(), error)
         }))
     }
 
@@ -174,10 +174,6 @@ impl Bodies<'_> {
         let touch = self.touch(&(tip + end.outward * way))?;
         let is_freed = touch.value > touch.gap && self.is_on_side(&touch)?;
         // Where it goes through the surface it goes on doing so as long as it meets neither an end of it nor what leads off it.
-        Some(is_freed.then(|| Reading {
-            value: -way,
-            normal: end.outward,
-            error: 2.0 * self.close() + end.gap,
-        }))
+        Some(is_freed.then(|| Reading::new(-way, end.outward, 2.0 * self.close() + end.gap)))
     }
 }

@@ -45,9 +45,9 @@ fn from_nearest(surface: &Ruled, x: &Vec3, tool: &Tool<'_>) -> Option<(Reading, 
         // of both sides are not as far from that of a place.
         let is_past = matches!(surface, Ruled::Sculptured(_)) && height.abs() < PAST_END * size;
         let is_beyond = is_past || surface.ends_at(&touch);
-        return Some((Reading { value: size.copysign(height), normal, error }, is_beyond));
+        return Some((Reading::new(size.copysign(height), normal, error), is_beyond));
     }
-    Some((Reading { value: height, normal: natural, error }, false))
+    Some((Reading::new(height, natural, error), false))
 }
 
 /// The signed distance of a point without regard to what was found before.

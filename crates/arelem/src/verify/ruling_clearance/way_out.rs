@@ -2,7 +2,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{Bodies, DIRECTIONS, FARTHER, PROOF_STEPS};
+use super::{Bodies, DIRECTIONS, Deepest, FARTHER, PROOF_STEPS};
 use crate::verify::{
     clearance::Reading,
     strip::{Touch, nearest_to_all},
@@ -20,7 +20,7 @@ impl Bodies<'_> {
             // The place that holds it there holds it as long as it is not moved as far in its own direction.
             let error = least * (1.0 - normal.dot(&out)) + 3.0 * self.close();
             if error <= 4.0 * self.close() {
-                return Some(Some(Reading { value: -least, normal, error }));
+                return Some(Some(Reading::new(-least, normal, error)));
             }
             (out, way) = (normal, least + self.close());
         }
@@ -52,10 +52,10 @@ impl Bodies<'_> {
 
     /// Whether every place of the surface is left behind in one of several directions, each across the surface where those before did not
     /// lead away from it, by as much as is deepest: what is deep at two places is not as deep as both together.
-    pub(super) fn is_left_behind(&self, tip: &Vec3, deepest: &(f64, Vec3)) -> Option<bool> {
+    pub(super) fn is_left_behind(&self, tip: &Vec3, deepest: &Deepest) -> Option<bool> {
         let Some(sheet) = self.surface.sheet() else { return Some(false) };
-        let depth = deepest.0 + 4.0 * self.close();
-        let mut tips = vec![tip + deepest.1 * depth];
+        let depth = deepest.depth + 4.0 * self.close();
+        let mut tips = vec![tip + deepest.out * depth];
         for _ in 0..DIRECTIONS {
             let touch = nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep)?;
             if touch.value > touch.gap {
@@ -68,12 +68,12 @@ impl Bodies<'_> {
 
     /// How much farther than the depth found the tool must be moved out until it is clear for certain; None where none of
     /// the translations tried frees it.
-    pub(super) fn unproven(&self, tip: &Vec3, deepest: &(f64, Vec3), steps: usize) -> Option<Option<f64>> {
+    pub(super) fn unproven(&self, tip: &Vec3, deepest: &Deepest, steps: usize) -> Option<Option<f64>> {
         let mut more = self.close();
         let most = more * FARTHER.powi(steps.saturating_sub(1) as i32);
         let mut less = 0.0;
         for _ in 0..steps {
-            let touch = self.touch(&(tip + deepest.1 * (deepest.0 + more)))?;
+            let touch = self.touch(&(tip + deepest.out * (deepest.depth + more)))?;
             if self.is_free(&touch)? {
                 return self.closer(tip, deepest, [less, more]).map(Some);
             }
@@ -93,13 +93,13 @@ impl Bodies<'_> {
     }
 
     /// A way that frees the tool beyond a depth, between one that does not and one that does: the other way need not be much too long.
-    fn closer(&self, tip: &Vec3, deepest: &(f64, Vec3), [mut less, mut more]: [f64; 2]) -> Option<f64> {
+    fn closer(&self, tip: &Vec3, deepest: &Deepest, [mut less, mut more]: [f64; 2]) -> Option<f64> {
         for _ in 0..CLOSER {
             if more - less <= self.close() {
                 break;
             }
             let middle = 0.5 * (less + more);
-            let touch = self.touch(&(tip + deepest.1 * (deepest.0 + middle)))?;
+            let touch = self.touch(&(tip + deepest.out * (deepest.depth + middle)))?;
             if self.is_free(&touch)? {
                 more = middle;
             } else {

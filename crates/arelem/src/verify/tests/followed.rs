@@ -11,9 +11,9 @@ use apt_geometry::{
 
 use super::{
     super::{
-        clearance::{Clearance, Surface},
+        clearance::{Clearance, Reading, Surface},
         ruling_clearance::searched,
-        span::{between, turning},
+        span::{between, round, turning},
         tool::{Profile, Tool},
     },
     cutter, cylinder,
@@ -172,6 +172,7 @@ fn the_slope_of_a_clearance_grows_no_faster_than_its_bound() {
         (roof(), 1.0),
         (vault(), -1.0),
     ];
+    let mut told = 0;
     for ((geometry, side), tool) in surfaces.iter().flat_map(|s| [BALL, FLAT, BULL].map(|tool| (s, tool))) {
         let surface = Surface::of(geometry).unwrap();
         let mut numbers = cutter(&tool);
@@ -199,13 +200,31 @@ fn the_slope_of_a_clearance_grows_no_faster_than_its_bound() {
         let bend = bend.unwrap_or_else(|| panic!("{geometry:?} {profile:?}"));
         let most = bend.rate * travel * travel + turn * swing;
         let count = 40;
-        let values: Vec<f64> = (0..=count)
-            .map(|k| between(from, to, f64::from(k) / f64::from(count)).unwrap())
-            .map(|p| clearance.at(&p.tip, &p.axis).unwrap().value)
+        let at = |k: i32| f64::from(k) / f64::from(count);
+        let read: Vec<Reading> = (0..=count)
+            .map(|k| between(from, to, at(k)).unwrap())
+            .map(|p| clearance.at(&p.tip, &p.axis).unwrap())
             .collect();
+        let values: Vec<f64> = read.iter().map(|reading| reading.value).collect();
         for v in values.windows(3) {
             let second = (v[0] - 2.0 * v[1] + v[2]) * f64::from(count * count);
             assert!(second <= most + 1e-4, "{geometry:?} {profile:?}: {second} {most}");
         }
+        // Where a reading tells a place of the tool, it rises no faster from there than that place does.
+        for (k, reading) in (0..).zip(&read) {
+            let Some(place) = reading.place else { continue };
+            told += 1;
+            let slope = reading.normal.dot(&(to.tip - from.tip + round(from, to).cross(&place)));
+            for (j, other) in (0..).zip(&read) {
+                let way = at(j) - at(k);
+                let bound = reading.value + slope * way + 0.5 * most * way * way;
+                assert!(
+                    other.value <= bound + reading.error + other.error + 1e-9,
+                    "{geometry:?} {profile:?} from {k} to {j}: {} {bound}",
+                    other.value
+                );
+            }
+        }
     }
+    assert!(told >= 200, "{told} places");
 }
