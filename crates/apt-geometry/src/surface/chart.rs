@@ -4,7 +4,7 @@
 use super::{
     Surface,
     bend::parallel_bend,
-    part::{Form, Lengthwise, Survey, leading},
+    part::{Form, Lengthwise, Lying, Survey, leading},
     sheet::Jet,
 };
 use crate::{Vec3, patience::Patience};
@@ -268,19 +268,18 @@ impl Surface {
         survey.curvature_across()
     }
 
-    /// How much a ruled surface bends towards a side at most along a unit direction that its rulings nearly have, at all places within reach
-    /// of a point, given the curvature b that it may have across: with the direction t no form there is greater than `μ I + b (I − t tᵀ)`,
-    /// μ being this bend. `None` for other kinds of surface, and where it ends or has an edge, or bends more across.
-    pub fn bend_on_rulings(
+    /// Whether distances from a ruled surface, on a side of it, bend downward along a line by no more than is asked, at all points that have
+    /// their one nearest place within reach of a centre. Not for other kinds of surface, nor where it ends or has an edge there.
+    pub fn bends_little_along(
         &self,
         side: f64,
         center: &Vec3,
         reach: f64,
-        beside: (&Vec3, f64),
+        asked: Lying,
         patience: Patience<'_>,
-    ) -> Option<f64> {
-        let Self::Ruled(sheet) = self else { return None };
-        sheet.survey(Survey::on_rulings(center, reach, side, beside, patience)).bend_on_rulings()
+    ) -> bool {
+        let Self::Ruled(sheet) = self else { return false };
+        sheet.survey(Survey::on_rulings(center, reach, side, asked, patience)).bends_little()
     }
 
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.

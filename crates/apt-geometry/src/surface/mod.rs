@@ -30,7 +30,7 @@ pub use self::{
     cone::ConeForm,
     crease::{Crease, SurfaceEdge},
     directed::{NoDistance, RootSelection, solve_quadratic},
-    part::{Form, LENGTHWISE, Lengthwise},
+    part::{Form, LENGTHWISE, Lengthwise, Lying},
     poly_conic::PolyConicSheet,
     quadric::PrincipalQuadric,
     quadric_bound::{QuadraticFunction, Stationary},

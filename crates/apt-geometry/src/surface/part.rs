@@ -6,10 +6,13 @@ mod form;
 mod kept;
 mod rulings;
 
-pub use self::form::{Form, LENGTHWISE, Lengthwise};
 use self::{
     form::Bent,
     rulings::{Rulings, Turning},
+};
+pub use self::{
+    form::{Form, LENGTHWISE, Lengthwise},
+    rulings::Lying,
 };
 pub(super) use self::{
     form::{Forms, leading},
@@ -470,7 +473,7 @@ impl Bounds {
             most / (stretch * stretch)
         });
         let form = Form::about([x, y], [p, q, r], error, change);
-        let rulings = Rulings::of(enclosure, half, &Turning { normal, spread, change, curvature });
+        let rulings = Rulings::of(enclosure, half, &Turning { normal, spread, change }, &form);
         let bent = Some(Bent { form, rulings });
         Self { curvature, least, close, normal: Some(normal), spread, loose, bent }
     }

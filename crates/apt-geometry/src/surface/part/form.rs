@@ -139,6 +139,11 @@ impl Form {
         (room >= 0.0 && square <= room * room).then(|| mean + square.sqrt() + other.error)
     }
 
+    /// That of a unit vector, and how far from it those of others may be that differ from it by no longer a vector than `off`.
+    pub(super) fn about_direction(&self, way: &Vec3, off: f64) -> (f64, f64) {
+        (way.dot(&(self.middle * way)), self.error + self.middle.norm() * off * (2.0 + off))
+    }
+
     /// How much the surface bends away from the side at most along a unit vector, at all these places.
     pub fn bend_away(&self, along: &Vec3) -> f64 {
         self.error - along.dot(&(self.middle * along))
@@ -274,16 +279,7 @@ impl Forms {
                 forms.push(form);
                 Taken::Whole
             }),
-            Self::Across(asked, found) => {
-                let rulings = bent.and_then(|bent| bent.rulings.as_ref());
-                let needed = |least: f64| {
-                    let by_form = seen.and_then(|form| form.curvature_across(&asked.along, -least));
-                    let by_rulings =
-                        rulings.map(|rulings| rulings.curvature_across(side, &asked.along, least));
-                    by_form.unwrap_or(f64::INFINITY).min(by_rulings.unwrap_or(f64::INFINITY))
-                };
-                found.take(asked, needed, is_fine || close(FINE_ERROR))
-            }
+            Self::Across(asked, found) => found.take(asked, seen, is_fine || close(FINE_ERROR)),
             Self::Along(asked) => {
                 let bend = seen.map_or(f64::INFINITY, |form| form.bend_away(&asked.direction));
                 let is_wanted = bend > asked.enough.max(asked.found) && asked.found <= asked.enough;
@@ -311,10 +307,11 @@ pub(super) enum Taken {
 
 impl Across {
     /// Takes the cylinder that a part needs.
-    fn take(&mut self, asked: &Lengthwise, needed: impl Fn(f64) -> f64, is_fine: bool) -> Taken {
+    fn take(&mut self, asked: &Lengthwise, seen: Option<Form>, is_fine: bool) -> Taken {
         // The more it may bend along the line the less is needed across.
         while let Some(least) = asked.least.get(self.least) {
-            let needed = needed(*least);
+            let needed = seen.and_then(|form| form.curvature_across(&asked.along, -least));
+            let needed = needed.unwrap_or(f64::INFINITY);
             if needed > asked.enough.max(self.curvature) && !is_fine {
                 return Taken::Halves;
             }

@@ -1,33 +1,43 @@
 //! Parts whose lines of one parameter are straight, as those of a ruled surface: along these nothing bends, which a form with one error for
 //! all directions does not tell.
 //!
-//! With a unit ruling r and p across it in the tangent plane the form of a vector w is `2 m α β + k β²`, α and β being its parts along
-//! them. Let t be a unit vector with a part of length c in the tangent plane, and s the sine of the angle of that to r. The part of w in
-//! the tangent plane is off that of t by at most `σ/c`, σ being the part of w across t, so that `|β| ≤ σ/c + s`. So the form is at most
-//! `2 m s + k s² + 2 (m + k s) σ/c + k σ²/c²`, and with `2 x σ ≤ x²/λ + λ σ²` at most `μ + b σ²`: a bend μ along t, and b across.
+//! With a unit ruling r and `p = n × r` across it in the tangent plane, the form S of a surface has no term for r alone, the mixed term m
+//! and the term k for p. The distance at a depth d bends by `S (1 − d S)⁻¹`, which grows with S and with d. As
+//! `2 (m − m₀) x y ≤ |m − m₀| (ε x² + y²/ε)`, S is over a part at most the form with `ε |m − m₀|` for r alone, the mixed term m₀ of the
+//! middle, and the greatest k, raised by `|m − m₀|/ε`, for p.
 
-use super::{Enclosure, Survey, form::Forms, form::Taken};
-use crate::{Vec3, patience::Patience};
+use super::{
+    Enclosure, Survey,
+    form::{Form, Forms, Taken},
+};
+use crate::{Vec3, patience::Patience, surface::interval::Interval};
 
-/// How many times what it is in the middle of some part the bend along a line may be told to be.
-const LOOSE: f64 = 1.5;
-/// A bend along a line, as a share of that across it, of no account.
-const FAINT: f64 = 1e-7;
+/// The question whether distances on one side of a ruled surface bend little along a line that lies nearly along its rulings.
+#[derive(Debug, Clone, Copy)]
+pub struct Lying {
+    /// Unit direction of the line.
+    pub along: Vec3,
+    /// No place that matters is farther from the surface.
+    pub depth: f64,
+    /// How much they may bend downward, per unit of length squared.
+    pub enough: f64,
+}
 
-/// The rulings of a part.
+/// The rulings of a part, seen along the natural normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in super::super) struct Rulings {
-    /// Unit direction in the middle, and the sine of the angle that others are at most off it.
+    /// The ruling in the middle and the direction across it.
     along: Vec3,
+    across: Vec3,
+    /// No other ruling differs from that by a longer vector, and no direction across from that.
     turn: f64,
-    /// Greatest mixed term of the form along a ruling and across it, in the part and in its middle.
+    twirl: f64,
+    /// The mixed term in the middle, and how far others are from it.
     mixed: f64,
-    in_the_middle: f64,
-    /// Unit normal in the middle; no other differs from it by a longer vector.
-    normal: Vec3,
-    spread: f64,
-    /// Greatest curvature seen from the natural side, and from the other.
-    curvature: [f64; 2],
+    off: f64,
+    /// The term across the rulings in the middle, and how far others are from it.
+    bend: f64,
+    error: f64,
 }
 
 /// How the tangent plane of a part turns.
@@ -36,122 +46,101 @@ pub(super) struct Turning {
     pub(super) normal: Vec3,
     /// No normal differs from that by a longer vector.
     pub(super) spread: f64,
-    /// Change of the frame of the tangent plane, relative to that in the middle.
+    /// Change of the frame of the tangent plane, relative to that in the middle; less than one.
     pub(super) change: f64,
-    /// Greatest curvature seen from the natural side, and from the other.
-    pub(super) curvature: [f64; 2],
 }
 
 impl Rulings {
     /// None if the lines of the second parameter are not straight.
-    pub(super) fn of(enclosure: &Enclosure, half: [f64; 2], turning: &Turning) -> Option<Self> {
+    pub(super) fn of(enclosure: &Enclosure, half: [f64; 2], turning: &Turning, form: &Form) -> Option<Self> {
         let Enclosure { jet, duv, dvv, .. } = enclosure;
+        let Turning { normal, spread, change } = *turning;
         let length = jet.dv.norm();
         let area = jet.du.cross(&jet.dv).norm();
-        let left = 1.0 - turning.change;
         let shortest = length - half[0] * duv.length();
-        if dvv.length() > 0.0 || area <= 0.0 || left <= 0.0 || shortest <= 0.0 {
+        if dvv.length() > 0.0 || area <= 0.0 || change >= 1.0 || shortest <= 0.0 {
             return None;
         }
         let along = jet.dv / length;
         let turn = half[0] * duv.across(&along) / shortest;
-        let mixed =
-            (duv.dot(&turning.normal).magnitude() + turning.spread * duv.length()) / (area * left * left);
-        let in_the_middle = jet.duv.dot(&turning.normal).abs() / area;
-        let Turning { normal, spread, curvature, .. } = *turning;
-        Some(Self { along, turn, mixed, in_the_middle, normal, spread, curvature })
+        let twirl = spread + turn;
+        let out = duv.dot(&normal) + Interval::about(0.0, spread * duv.length());
+        let stretch = Interval::about(1.0, change);
+        let mixed = -jet.duv.dot(&normal) / area;
+        let off = (out / (stretch * stretch * area.into()) + mixed.into()).magnitude();
+        let across = normal.cross(&along);
+        let (bend, error) = form.about_direction(&across, twirl);
+        Some(Self { along, across, turn, twirl, mixed, off, bend, error })
     }
 
-    /// How much the part, and its middle, bends to a side at most along a unit direction, given how much it may bend across.
-    fn bend_along(&self, side: f64, along: &Vec3, across: f64) -> [f64; 2] {
-        self.beside(side, along).map(|beside| {
-            let spare = across * beside.within - beside.curvature;
-            let bend = beside.own + beside.lean * beside.lean / spare;
-            if spare > 0.0 && bend.is_finite() { bend } else { f64::INFINITY }
-        })
-    }
-
-    /// The curvature across a unit direction with which the part bends to a side by no more than so much along it.
-    pub(super) fn curvature_across(&self, side: f64, along: &Vec3, least: f64) -> f64 {
-        let [beside, _] = self.beside(side, along);
-        let spare = least - beside.own;
-        let needed = (beside.curvature + beside.lean * beside.lean / spare) / beside.within;
-        if spare > 0.0 && needed.is_finite() { needed } else { f64::INFINITY }
-    }
-
-    /// The same part, and its middle, beside a unit direction.
-    fn beside(&self, side: f64, along: &Vec3) -> [Beside; 2] {
-        let curvature = self.curvature[usize::from(side > 0.0)].max(0.0);
-        let off = self.along.cross(along);
-        let (leaning, aside) = (self.normal.dot(along).abs(), self.normal.dot(&off).abs());
-        let beside = |leaning: f64, aside: f64, mixed: f64| {
-            let within = (1.0 - leaning * leaning).max(0.0);
-            let sine = aside / within.sqrt();
-            let own = 2.0 * mixed * sine + curvature * sine * sine;
-            Beside { within, curvature, own, lean: mixed + curvature * sine }
+    /// How much distances at a depth bend downward along a unit direction at most, on a side of the part, and in its middle.
+    fn bend_along(&self, side: f64, along: &Vec3, depth: f64) -> [f64; 2] {
+        let [a, b] = [self.along, self.across].map(|way| way.dot(along));
+        let aside = (1.0 - a * a).max(0.0).sqrt();
+        let (mixed, bend) = (side * self.mixed, side * self.bend);
+        let middle = bend_of([0.0, mixed, bend], depth);
+        let exact = middle.map_or(f64::INFINITY, |[aa, ab, bb]| aa * a * a + 2.0 * ab * a * b + bb * b * b);
+        // How far both parts of the direction may be from those in the middle.
+        let (da, db) = (self.turn * (aside + self.turn), self.twirl * (aside + self.twirl).min(1.0));
+        let most = self.bend + self.error;
+        let most = if side > 0.0 { most } else { self.error - self.bend };
+        let room = 1.0 - depth * most;
+        if room <= 0.0 {
+            return [f64::INFINITY, exact];
+        }
+        let share = (b.abs() + db + depth * mixed.abs() / room).max(2.0 * depth * self.off / room);
+        let raised = if self.off > 0.0 { [self.off * share, self.off / share] } else { [0.0; 2] };
+        let Some([aa, ab, bb]) = bend_of([raised[0], mixed, most + raised[1]], depth) else {
+            return [f64::INFINITY, exact];
         };
-        let aside_at_most = aside + self.spread * off.norm() + self.turn;
-        [beside(leaning + self.spread, aside_at_most, self.mixed), beside(leaning, aside, self.in_the_middle)]
+        let (x, y) = (Interval::about(a, da), Interval::about(b, db));
+        let all = x * x * aa.into() + x * y * (2.0 * ab).into() + y * y * bb.into();
+        [if all.high.is_nan() { f64::INFINITY } else { all.high }, exact]
     }
 }
 
-/// How a part bends beside a direction t: `own + 2 lean σ/c + curvature σ²/c²` at most for a unit vector of which σ is across t.
-struct Beside {
-    /// `c²`: the part of t within the tangent plane, squared.
-    within: f64,
-    curvature: f64,
-    own: f64,
-    lean: f64,
+/// The terms of `S (1 − d S)⁻¹` from those of S: along, mixed, across. None where d is too deep.
+fn bend_of([aa, ab, bb]: [f64; 3], depth: f64) -> Option<[f64; 3]> {
+    let (left, right) = (1.0 - depth * aa, 1.0 - depth * bb);
+    let room = left * right - depth * depth * ab * ab;
+    let square = depth * ab * ab;
+    (left > 0.0 && room > 0.0).then(|| [aa * right + square, ab, bb * left + square].map(|x| x / room))
 }
 
-/// The question how much a surface bends to a side along a unit direction that its rulings nearly have, given how much it may bend across;
-/// with what has been found.
+/// The question about a line along rulings, as far as parts have been looked at.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct OnRulings {
-    along: Vec3,
-    across: f64,
-    /// The greatest bend, and that in the middle of parts.
-    found: f64,
-    least: f64,
-}
+pub(in super::super) struct OnRulings(Lying);
 
 impl OnRulings {
     pub(super) fn turned(self, turned: impl Fn(&Vec3) -> Vec3) -> Self {
-        Self { along: turned(&self.along), ..self }
+        Self(Lying { along: turned(&self.0.along), ..self.0 })
     }
 
-    pub(super) fn take(&mut self, rulings: Option<&Rulings>, side: f64, is_fine: bool) -> Taken {
-        let unknown = [f64::INFINITY, 0.0];
-        let [most, least] =
-            rulings.map_or(unknown, |rulings| rulings.bend_along(side, &self.along, self.across));
-        self.least = self.least.max(least);
-        if most > self.found.max(LOOSE * self.least).max(FAINT * self.across) && !is_fine {
-            return Taken::Halves;
+    pub(super) fn take(&self, rulings: Option<&Rulings>, side: f64, is_fine: bool) -> Taken {
+        let Lying { along, depth, enough } = &self.0;
+        match rulings.map(|rulings| rulings.bend_along(side, along, *depth)) {
+            Some([most, _]) if most <= *enough => Taken::Whole,
+            Some([_, middle]) if middle > *enough || is_fine => Taken::Nothing,
+            None if is_fine => Taken::Nothing,
+            _ => Taken::Halves,
         }
-        self.found = self.found.max(most);
-        if most.is_finite() { Taken::Whole } else { Taken::Nothing }
     }
 }
 
 impl<'a> Survey<'a> {
-    /// Asks how much all parts within reach of a point bend towards a side along a unit direction, given a curvature that they may have
-    /// across it.
+    /// Asks whether distances bend little along a line that lies along all parts within reach of a point.
     pub(in super::super) fn on_rulings(
         center: &Vec3,
         reach: f64,
         side: f64,
-        (along, across): (&Vec3, f64),
+        asked: Lying,
         patience: Patience<'a>,
     ) -> Self {
-        let asked = OnRulings { along: *along, across, found: 0.0, least: 0.0 };
-        Self::about_forms(center, reach, side, Forms::OnRulings(asked), patience)
+        Self::about_forms(center, reach, side, Forms::OnRulings(OnRulings(asked)), patience)
     }
 
-    /// The greatest bend along the direction.
-    pub(in super::super) fn bend_on_rulings(&self) -> Option<f64> {
-        match self.forms {
-            Forms::OnRulings(asked) if !self.jumps => Some(asked.found),
-            _ => None,
-        }
+    /// Whether they do.
+    pub(in super::super) fn bends_little(&self) -> bool {
+        matches!(self.forms, Forms::OnRulings(_)) && !self.jumps
     }
 }

@@ -9,7 +9,7 @@ use std::cell::{Cell, RefCell};
 
 use apt_geometry::{
     Vec3,
-    surface::{Bend, Foot},
+    surface::{Bend, Foot, Lying, Surface},
 };
 
 use super::{super::nearly_straight, Certificate, Search};
@@ -32,8 +32,6 @@ const FINER: f64 = 1.0 / 32.0;
 /// flank.
 const LEFT: f64 = 2.0;
 const LEAST_LEFT: f64 = 1.0 / 1024.0;
-/// Curvature of a cylinder along the axis, as a share of that of a ball that reaches the surface, that is taken for one to hold it.
-const ACROSS: f64 = 0.9;
 /// Bound of the pieces that are left: more lie along the surface.
 const MOST_LEFT: usize = 4;
 /// How much farther than asked it is told how distances bend, and how many such answers are kept.
@@ -200,7 +198,7 @@ impl Search<'_> {
     fn is_above(
         &self,
         core: &Core,
-        Ball { base, foot, clearance, .. }: &Ball,
+        Ball { height, base, foot, clearance }: &Ball,
         (half, level): (f64, f64),
         (known, courses): (&mut Known, &Courses),
     ) -> bool {
@@ -218,17 +216,20 @@ impl Search<'_> {
             return true;
         }
         // A shorter stretch may bend less, but not much: it is cut instead.
-        if known.is_close && half > FINER * known.half {
-            return false;
+        if !known.is_close || half <= FINER * known.half {
+            *known = self.known_along_axis(base, foot, half, courses);
         }
-        *known = self.known_along_axis(base, foot, half, courses);
+        let smallest = core.radius_at(height - half).min(core.radius_at(height + half));
+        let may_lie = known.is_close && level + smallest > 0.0;
         is_shown(known)
+            || may_lie && self.bends_little(base, foot, half, (known.bend, 2.0 * room / (half * half)))
     }
 
     /// How the distance bends at most downward along the axis within reach of a place of it.
     fn known_along_axis(&self, base: &Base, foot: &Foot, half: f64, courses: &Courses) -> Known {
         let Self { tool, surface, side, .. } = *self;
-        let is_apt = nearly_straight::is_apt(surface);
+        // Of a ruled surface it is asked how it bends along the axis, not more closely here.
+        let is_apt = nearly_straight::is_apt(surface) && !matches!(surface, Surface::Ruled(_));
         let known = |course: Option<Course>| {
             let bend = course.map_or(f64::INFINITY, |course| course.bend_along(&tool.axis));
             let is_close = course.is_some_and(|course| course.straight.is_some() || !is_apt);
@@ -251,9 +252,6 @@ impl Search<'_> {
             keep(None);
             return known(None);
         };
-        if let Some(bend) = self.bend_on_rulings(base, foot, (half, bend)) {
-            return Known { bend, half, is_close: false };
-        }
         let along = tool.axis - base.gradient * base.gradient.dot(&tool.axis);
         let course = along
             .try_normalize(0.0)
@@ -264,20 +262,17 @@ impl Search<'_> {
         known(Some(course))
     }
 
-    /// The same beside a ruled surface whose rulings the axis nearly has, in a ball in which distances bend by no more than `bend`, and
-    /// nearest places do not jump.
-    ///
-    /// Nearest places of two places are no farther apart than these times `1 + d bend`, d being the greatest distance. Where all forms
-    /// are at most `μ I + b (I − t tᵀ)` and `d (μ + b) < 1`, the distance bends by no more than `μ/(1 − d μ)` along t.
-    fn bend_on_rulings(&self, base: &Base, foot: &Foot, (reach, bend): (f64, f64)) -> Option<f64> {
+    /// Whether the distance from a ruled surface bends downward along the axis by no more than is enough within a stretch of it about a
+    /// place, in a ball about which distances bend by no more than `bend`, and nearest places do not jump: so that these are no farther apart than
+    /// places times `1 + d bend`, d being the greatest distance.
+    fn bends_little(&self, base: &Base, foot: &Foot, half: f64, (bend, enough): (f64, f64)) -> bool {
         let Self { tool, surface, side, .. } = *self;
-        let deepest = (base.distance + reach).max(reach);
-        let feet = reach * (1.0 + deepest * bend);
-        let curvature = bend / (1.0 + deepest * bend);
-        let across = (ACROSS / deepest).max(0.5 * (curvature + 1.0 / deepest));
-        let asked = (&tool.axis, across);
-        let along = surface.bend_on_rulings(side, &foot.point, feet, asked, tool.patience)?;
-        (deepest * (along + across) < 1.0).then(|| along / (1.0 - deepest * along))
+        let slope = base.gradient.dot(&tool.axis).abs();
+        // No farther than from the nearest place of the middle.
+        let depth = (base.distance * base.distance + half * (half + 2.0 * base.distance * slope)).sqrt();
+        let reach = half * (1.0 + depth * bend);
+        let asked = Lying { along: tool.axis, depth, enough };
+        surface.bends_little_along(side, &foot.point, reach, asked, tool.patience)
     }
 }
 
