@@ -207,11 +207,12 @@ impl Search<'_> {
             if self.is_on_crease(slack) {
                 return (Shown::Within(slack), by_parts);
             }
-            let is_asked = by_parts.showed();
+            let lying = self.certified_along_axis(level, courses);
+            let is_asked = lying == Certificate::Undecided && by_parts.showed();
             if is_asked && self.is_clear(level) {
                 return (Shown::Within(slack), by_parts);
             }
-            let (found, known) = match self.certified_along_axis(level, courses) {
+            let (found, known) = match lying {
                 Certificate::Undecided => self.certified(level, proof, by_parts, is_asked),
                 found => (found, by_parts),
             };
