@@ -220,3 +220,44 @@ fn a_motion_that_begins_where_it_ends_does_not_lead_back() {
     }
     proven(&p);
 }
+
+/// On which side of the drive surface a tool sets out is judged along its own way, which leads aside from that of one that keeps its axis.
+#[test]
+fn a_tool_that_turns_sets_out_on_its_side_along_its_own_way() {
+    let under = Geometry::Circle(apt_geometry::canonical::Cylinder {
+        point: v(6.523006419871945, -2.667256594494342, 0.32221582365887524),
+        axis: Vec3::z(),
+        radius: 5.684912734090713,
+    });
+    let beside = quadric([
+        -0.029934767058678147,
+        -0.11790831962167314,
+        0.2677255122851713,
+        0.04872940268746184,
+        0.10464624900684438,
+        0.20101747777881535,
+        -0.18300312135983182,
+        -0.001056993369048076,
+        0.9814262296820068,
+        -1.2642567243112377,
+    ]);
+    let first = plane(-0.44239106726779354, -0.7251195880761965, -0.5277231533577712, -1.1216805193115942);
+    let mode = AxisAngle::PerpendicularTo(v(0.7548907932041227, 0.6736214674332239, -0.801756523769394));
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[0.3074574705672753, 0.15372873528363765]);
+    from(
+        &mut p,
+        v(2.4433023353416736, -0.8222116823750495, 0.9259576390973798),
+        v(0.8536679554732166, -0.52081764735671, 0.0),
+    );
+    along(&mut p, ToolAxis::AtAngle { part: true, angle: 0.3443361133256503, mode });
+    p.go(&[(Relation::To, &beside), (Relation::To, &under), (Relation::On, &first)]);
+    p.side(DriveSide::Left).indirv(0.44239106726779326, 0.7251195880761965, 0.5277231533577714);
+    let check = cone(
+        v(-0.3461729521372876, 1.4878774403433859, 2.2029754487179685),
+        v(0.9354255273774135, -0.06224104636743197, -0.34800163056769623),
+        0.9408333443581138f64.acos().to_degrees(),
+    );
+    p.drive(Turn::Forward, &beside, Relation::Past, &check);
+    proven(&p);
+}

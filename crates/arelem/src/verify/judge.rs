@@ -407,15 +407,19 @@ impl Judge<'_> {
                 continue;
             }
             let lost = VerifyError::NoDistance { vector };
+            let across = |place: &ToolPosition, normal: &Vec3, onward: Vec3| {
+                wanted * normal.dot(&place.axis.cross(&onward))
+            };
             let sine_at = |place: &ToolPosition, normal: &Vec3| {
                 // Along the path, from which a long vector may lead away in a curve's chord.
                 let travel = part.and_then(|p| p.normal(place)).map_or(Vec3::zeros(), |n| n.cross(normal));
-                let onward = if travel.norm() > PARALLEL {
-                    travel * (travel.dot(&motion).signum() / travel.norm())
-                } else {
-                    motion / length
-                };
-                wanted * normal.dot(&place.axis.cross(&onward))
+                let chord = across(place, normal, motion / length);
+                if travel.norm() <= PARALLEL {
+                    return chord;
+                }
+                let sine = across(place, normal, travel * (travel.dot(&motion).signum() / travel.norm()));
+                // A tool that turns is led aside by that, with the path.
+                if from.axis == to.axis { sine } else { sine.max(chord) }
             };
             let normal = drive.normal(&from).ok_or(lost.clone())?;
             let mut sine = sine_at(&from, &normal);
