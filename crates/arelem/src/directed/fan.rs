@@ -1,5 +1,8 @@
 //! FAN: the axis turns evenly from where the motion begins to the axis that TANDS gives where it ends. Where that is, passes
-//! tell: the first with the present axis, each of the others with the fan to the end of the one before.
+//! tell: the first with the present axis, or that of TANDS all along where that leads nowhere, each of the others with the fan to where those
+//! before say that it ends.
+
+use apt_geometry::Vec3;
 
 use super::{Path, Prepared, Stuck};
 use crate::{
@@ -8,9 +11,11 @@ use crate::{
 };
 
 /// Bound of the passes until the end stays where it is.
-const PASSES: u32 = 16;
+const PASSES: u32 = 24;
 /// How far, relative to the size of the coordinates, it may move in the last.
 const SETTLED: f64 = 1e-9;
+/// How many times as far as the last two ends are apart the next may be looked for from them.
+const FARTHEST: f64 = 8.0;
 
 /// The path with the axis turning evenly, and what it was computed with. `prepared` holds the axis of TANDS.
 pub(super) fn follow<'a>(
@@ -21,23 +26,59 @@ pub(super) fn follow<'a>(
         let only = path(&prepared)?;
         return Ok((prepared, only));
     }
-    let fixed = prepared.with(Attitude::fixed(prepared.tool.clone()));
-    let first = path(&fixed)?;
+    let end = |path: &Path| path.points.last().copied().unwrap_or(prepared.tip);
     let undetermined = |cause, tip| MotionFailure::AxisUndetermined { cause, tip };
-    let mut end = first.points.last().copied().unwrap_or(prepared.tip);
+    let fixed = prepared.with(Attitude::fixed(prepared.tool.clone()));
+    let first = path(&fixed).or_else(|stuck| path(&prepared).map_err(|_| stuck))?;
+    let mut guess = Guess { asked: end(&first), last: None };
     let mut moved = f64::INFINITY;
     for _ in 0..PASSES {
-        let axis = prepared.attitude.tool_at(&end)?.axis;
-        let begin = (&prepared.tool.axis, &prepared.tip);
-        let attitude = prepared.attitude.fanned(begin, (&axis, &end));
-        let fanned = prepared.with(attitude.map_err(|cause| undetermined(cause, end))?);
-        let found = path(&fanned)?;
-        let last = found.points.last().copied().unwrap_or(prepared.tip);
-        moved = (last - end).norm();
-        if moved <= SETTLED * prepared.size {
-            return Ok((fanned, found));
+        let asked = guess.asked;
+        let pass = || -> Result<(Prepared<'a>, Path), Stuck> {
+            let axis = prepared.attitude.tool_at(&asked)?.axis;
+            let begin = (&prepared.tool.axis, &prepared.tip);
+            let attitude = prepared.attitude.fanned(begin, (&axis, &asked));
+            let fanned = prepared.with(attitude.map_err(|cause| undetermined(cause, asked))?);
+            let found = path(&fanned)?;
+            Ok((fanned, found))
+        };
+        match pass() {
+            Ok((fanned, found)) => {
+                let end = end(&found);
+                moved = (end - asked).norm();
+                if moved <= SETTLED * prepared.size {
+                    return Ok((fanned, found));
+                }
+                guess = guess.after(end);
+            }
+            Err(stuck) => guess = guess.without_foresight().ok_or(stuck)?,
         }
-        end = last;
     }
-    Err(undetermined(AxisFailure::NotSettled { change: moved / prepared.size }, end).into())
+    Err(undetermined(AxisFailure::NotSettled { change: moved / prepared.size }, guess.asked).into())
+}
+
+/// Where the motion is taken to end, with the last one and where it ended then.
+struct Guess {
+    asked: Vec3,
+    last: Option<[Vec3; 2]>,
+}
+
+impl Guess {
+    /// The next one, from where the motion ended with this: there, but where what is left has changed in proportion, where nothing is
+    /// left (Anderson's mixing of two).
+    fn after(&self, end: Vec3) -> Self {
+        let foreseen = self.last.and_then(|[asked, ended]| {
+            let left = end - self.asked;
+            let change = left - (ended - asked);
+            let share = left.dot(&change) / change.norm_squared();
+            (share.abs() <= FARTHEST).then(|| end - (end - ended) * share)
+        });
+        Self { asked: foreseen.unwrap_or(end), last: Some([self.asked, end]) }
+    }
+
+    /// Where the last motion ended, if this is another place.
+    fn without_foresight(&self) -> Option<Self> {
+        let [_, ended] = self.last?;
+        (ended != self.asked).then_some(Self { asked: ended, last: None })
+    }
 }

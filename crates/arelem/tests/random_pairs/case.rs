@@ -45,6 +45,9 @@ const WISHED_DRAWS: u32 = 2000;
 /// Draws of a place to come from.
 const APPROACHES: u32 = 40;
 
+/// Cosine between the axis of a tool that stands beside a drive surface and the normal of that.
+const BESIDE: f64 = 0.3;
+
 /// How the tool stands on the part surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stance {
@@ -54,6 +57,14 @@ pub(crate) enum Stance {
     Square,
     /// Along the normal, with its end ON the surface.
     SquareOn,
+    /// However it is drawn on the part surface, but nearly along the drive surface.
+    Beside,
+}
+
+impl Stance {
+    fn is_square(self) -> bool {
+        matches!(self, Self::Square | Self::SquareOn)
+    }
 }
 
 /// A surface in its role.
@@ -168,8 +179,11 @@ impl Case {
         let place =
             Vec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         let (axis, up) = axis_and_part_normal(part_kind, random)?;
-        let axis = if stance == Stance::Any { axis } else { up };
+        let axis = if stance.is_square() { up } else { axis };
         let out = drive_normal(drive_kind, &axis, &up, random)?;
+        if stance == Stance::Beside && out.dot(&axis).abs() > BESIDE {
+            return None;
+        }
         let along = up.cross(&out).normalize() * random.pick(&[1.0, -1.0]);
         let sine = along.cross(&out).dot(&axis);
         if sine.abs() < LEAST_SINE {

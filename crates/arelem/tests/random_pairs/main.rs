@@ -34,7 +34,7 @@ use modes::Turning;
 use support::Random;
 
 /// Seeds of the test command: of the motions, of those that the laws are tried on, and of those on which the axis turns.
-const SEEDS: [u64; 3] = [1, 19_610_315, 19_700_101];
+const SEEDS: [u64; 4] = [1, 19_610_315, 19_700_101, 19_850_601];
 
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
@@ -207,10 +207,20 @@ fn motions_of_every_pair_obey_the_laws_of_motion() {
 
 #[test]
 fn motions_on_which_the_axis_turns_keep_bands_and_angles() {
+    turn_on_every_pair(SEEDS[2], Turning::draw);
+}
+
+#[test]
+fn motions_on_which_the_axis_lies_along_the_drive_surface_keep_bands_and_law() {
+    turn_on_every_pair(SEEDS[3], Turning::draw_beside);
+}
+
+/// Motions whose axis follows a law on every pair, drawn so.
+fn turn_on_every_pair(seed: u64, draw: fn(Kind, Kind, u64) -> Option<Turning>) {
     let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(4));
     let told = number("APT_CASE").is_some();
-    let tallies = every_pair(SEEDS[2], cases, number("APT_CASES").is_none(), |place, tally| {
-        let drawn = Turning::draw(place.part, place.drive, place.seed);
+    let tallies = every_pair(seed, cases, number("APT_CASES").is_none(), |place, tally| {
+        let drawn = draw(place.part, place.drive, place.seed);
         let Some(turning) = place.wanted(drawn, |turning| &turning.case, tally) else { return };
         if told {
             println!("{turning:#?}");

@@ -5,7 +5,7 @@
 use apt_geometry::{
     Vec3,
     cutter::Cutter,
-    motion::{AxisAngle, DriveSide, MotionCommand, Relation, ToolAxis},
+    motion::{AxisAngle, AxisTangency, DriveSide, MotionCommand, Relation, ToolAxis},
 };
 use arelem::{
     MotionFailure,
@@ -72,6 +72,19 @@ impl Turning {
         Some(Self { case, mode, exact })
     }
 
+    /// The same with an axis that lies along the drive surface.
+    pub(crate) fn draw_beside(part: Kind, drive: Kind, seed: u64) -> Option<Self> {
+        let mut random = Random(seed ^ 0x2545_f491_4f6c_dd1d);
+        let exact = if part.is_slow() || drive.is_slow() { SEARCHED } else { EXACT };
+        let case = Case::draw_standing(part, drive, Stance::Beside, seed)?;
+        let mode = mode_beside(drive, &case.forward, &mut random);
+        Some(Self { case, mode, exact })
+    }
+
+    fn is_fan(&self) -> bool {
+        matches!(self.mode, ToolAxis::Tangent { mode: AxisTangency::Fan, .. })
+    }
+
     fn commands(&self) -> Vec<MotionCommand> {
         let mut commands = self.case.commands();
         let is_from = |c: &MotionCommand| matches!(c, MotionCommand::From { .. });
@@ -101,6 +114,19 @@ fn mode(part: bool, random: &mut Random) -> ToolAxis {
         _ => AxisAngle::Plain,
     };
     ToolAxis::AtAngle { part, angle, mode }
+}
+
+/// The plane of an axis that lies along a surface is across a vector that is not far from the way.
+fn mode_beside(drive: Kind, forward: &Vec3, random: &mut Random) -> ToolAxis {
+    let height = random.between(0.0, 1.0);
+    let height = random.pick(&[0.0, height]);
+    let mode = match (random.next() * 4.0) as u32 {
+        0 if drive == Kind::Ruled => return ToolAxis::Parallel { part: false },
+        0 | 1 => AxisTangency::Across,
+        2 => AxisTangency::PerpendicularTo(case::near(forward, FARTHEST, random)),
+        _ => return ToolAxis::Tangent { height: 0.0, mode: AxisTangency::Fan },
+    };
+    ToolAxis::Tangent { height, mode }
 }
 
 /// What was part surface is drive surface, and the other way round. None where the tool comes from the other side of what is part
@@ -136,8 +162,10 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
             }
             None => {}
         }
+        let has_law =
+            !matches!(turning.mode, ToolAxis::AtAngle { .. }) || CORNERED.contains(&turning.case.shape);
         if !sequence.start_up
-            && CORNERED.contains(&turning.case.shape)
+            && has_law
             && let Some(words) = misfit(turning, sequence)
         {
             return Verdict::Wrong(format!("{:?}: {words}", turning.mode));
@@ -162,6 +190,9 @@ fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
     let cutter = sequence.cutter;
     let begin = (&sequence.start, &sequence.forward);
     let stand = Stand::of_motion(&turning.mode, (part, drive), &cutter, begin)?;
+    if turning.is_fan() {
+        return stand.off_fan(&sequence.start, &sequence.points, turning.exact);
+    }
     // A tool that stands otherwise at the start may turn over a way.
     let widest = 0.5 * cutter.diameter + cutter.height;
     let run_in = RUN_IN * widest * stand.off(&sequence.start);
@@ -190,6 +221,10 @@ fn refused(turning: &Turning, runner: &Runner, failure: &MotionFailure) -> Verdi
     let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
     let stand =
         Stand::of_case(&turning.mode, (&case.part, &case.drive), &cutter, (&begin, &forward)).expect("a law");
+    if turning.is_fan() {
+        // Where it ends tells how it turns.
+        return Verdict::NotJudged(format!("{failure:?}"));
+    }
     let axis = |tip: &Vec3| stand.axis(tip);
     let start = has_started.then_some(at.tip);
     let reader = Reader::turning(case, &axis);

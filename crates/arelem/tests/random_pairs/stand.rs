@@ -6,7 +6,7 @@ use apt_geometry::{
     Vec3,
     canonical::Geometry,
     cutter::Cutter,
-    motion::{AxisAngle, Relation, ToolAxis},
+    motion::{AxisAngle, AxisTangency, Relation, ToolAxis},
     surface::Surface,
 };
 use arelem::sequence::{Role, ToolPosition};
@@ -22,6 +22,10 @@ const UNSETTLED: f64 = 1e-6;
 /// Places around the corner between which the contact is closed in, and how often.
 const AROUND: [u32; 2] = [64, 4096];
 const HALVINGS: u32 = 60;
+/// Share of the way by which an axis that fans goes on turning before its begin and behind its end.
+const BEYOND: f64 = 0.5;
+/// How far off an axis that fans may be where it ends, which is told to within a billionth of the coordinates.
+const AT_END: f64 = 1e-7;
 /// How far off an axis certainly follows its law.
 const CERTAIN: f64 = 1e-10;
 /// How many times the depth of the band the vertex of a cone may be away for an axis that turns about it.
@@ -66,6 +70,12 @@ impl Guide {
     fn normal(&self, p: &Vec3) -> Vec3 {
         self.surface.foot(p).normal * self.sign
     }
+
+    /// The straight line of a ruled surface through the place nearest to a point.
+    fn ruling(&self, p: &Vec3) -> Vec3 {
+        let place = self.surface.place(p).expect("a ruled surface");
+        self.surface.chart(&place).expect("a chart").first[1].normalize()
+    }
 }
 
 /// An axis as a function of the tool end.
@@ -107,14 +117,36 @@ impl Stand {
         (at, forward): (&ToolPosition, &Vec3),
     ) -> Option<Self> {
         let part_guides = match mode {
-            ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } => *part,
-            _ => return None,
+            ToolAxis::Normal { part } | ToolAxis::AtAngle { part, .. } | ToolAxis::Parallel { part } => *part,
+            ToolAxis::Tangent { .. } => false,
+            ToolAxis::Fixed(_) | ToolAxis::Keep => return None,
         };
         let (base, other) = if part_guides { (part, drive) } else { (drive, part) };
         let base = Guide::base(&base.0, (base.1, base.2), at);
         let other = Guide::other(&other.0, (other.1, other.2));
         let sense = sense(mode, (&base, &other), &at.tip, forward);
-        Some(Self { mode: *mode, base, other, cutter: *cutter, sense })
+        let stand = Self { mode: *mode, base, other, cutter: *cutter, sense };
+        Some(Self { sense: stand.sense_of(at).unwrap_or(sense), ..stand })
+    }
+
+    /// The sense of what has two along the guiding surface: the one in which the axis points where the motion begins.
+    fn sense_of(&self, at: &ToolPosition) -> Option<f64> {
+        let line = match self.mode {
+            ToolAxis::Parallel { .. } => self.base.ruling(&at.tip),
+            ToolAxis::Tangent { height, .. } => self.lying(&at.tip, &(at.tip + at.axis * height)),
+            _ => return None,
+        };
+        Some(line.dot(&at.axis).signum() * self.sense)
+    }
+
+    /// The axis along the guiding surface as it is beside a place.
+    fn lying(&self, tip: &Vec3, place: &Vec3) -> Vec3 {
+        let normal = self.base.normal(place);
+        let line = match self.mode {
+            ToolAxis::Tangent { mode: AxisTangency::PerpendicularTo(vector), .. } => normal.cross(&vector),
+            _ => normal.cross(&self.other.normal(tip)).cross(&normal),
+        };
+        line.normalize() * self.sense
     }
 
     /// The axis at a tool end, found from the normal there.
@@ -122,6 +154,21 @@ impl Stand {
         match self.mode {
             ToolAxis::AtAngle { .. } => {
                 let (axis, change) = self.settled(tip);
+                (change <= UNSETTLED).then_some(axis)
+            }
+            ToolAxis::Parallel { .. } => Some(self.base.ruling(tip) * self.sense),
+            ToolAxis::Tangent { mode: AxisTangency::Fan, .. } => None,
+            ToolAxis::Tangent { height, .. } => {
+                let mut axis = self.lying(tip, tip);
+                let mut change = f64::INFINITY;
+                for _ in 0..ROUNDS {
+                    let next = self.lying(tip, &(tip + axis * height));
+                    change = (next - axis).norm();
+                    axis = next;
+                    if change <= SETTLED {
+                        break;
+                    }
+                }
                 (change <= UNSETTLED).then_some(axis)
             }
             _ => Some(self.base.normal(tip)),
@@ -135,7 +182,14 @@ impl Stand {
 
     /// How far the axis of a position is from what the law asks for.
     pub(crate) fn off(&self, ToolPosition { tip, axis }: &ToolPosition) -> f64 {
-        let ToolAxis::AtAngle { .. } = self.mode else { return (axis - self.base.normal(tip)).norm() };
+        match self.mode {
+            ToolAxis::AtAngle { .. } => {}
+            ToolAxis::Parallel { .. } => return (axis - self.base.ruling(tip) * self.sense).norm(),
+            ToolAxis::Tangent { height, .. } => {
+                return (axis - self.lying(tip, &(tip + axis * height))).norm();
+            }
+            _ => return (axis - self.base.normal(tip)).norm(),
+        }
         let aside = self.other.normal(tip);
         let off = |normal: Vec3| (self.asked(&normal, &aside) - axis).norm();
         let least = |around: u32| {
@@ -144,6 +198,30 @@ impl Stand {
         // Two of them may be close together.
         let first = least(AROUND[0]);
         if first <= CERTAIN { first } else { first.min(least(AROUND[1])) }
+    }
+
+    /// Where an axis does not turn evenly, with the straight way, from where it begins to what it is along the guiding surface at the end.
+    pub(crate) fn off_fan(
+        &self,
+        start: &ToolPosition,
+        points: &[ToolPosition],
+        exact: f64,
+    ) -> Option<String> {
+        let last = points.last()?;
+        let off = self.off(last);
+        if off > AT_END {
+            return Some(format!("axis off by {off:e} at the end, {last:?}"));
+        }
+        let way = last.tip - start.tip;
+        let turn = start.axis.cross(&last.axis);
+        let (about, angle) = (turn.normalize(), turn.norm().atan2(start.axis.dot(&last.axis)));
+        points.iter().find_map(|point| {
+            let share = (point.tip - start.tip).dot(&way) / way.norm_squared();
+            let turned = angle * share.clamp(-BEYOND, 1.0 + BEYOND);
+            let asked = start.axis * turned.cos() + about.cross(&start.axis) * turned.sin();
+            let off = (asked - point.axis).norm();
+            (angle > exact && off > exact).then(|| format!("axis off by {off:e} at {point:?}"))
+        })
     }
 
     /// Normals of the guiding surface in whose direction, seen from the axis, the corner is where they are taken. On a surface that bends
