@@ -170,6 +170,22 @@ fn a_fan_turns_evenly_with_the_way() {
     verified(&p);
 }
 
+/// Where a fan ends its axis stands as that of TANDS does: it ends in the same position, which one pass with that tells.
+#[test]
+fn a_fan_ends_where_an_axis_along_the_surface_does() {
+    let of = |mode: AxisTangency| {
+        let before = EVALUATIONS.get();
+        let p = round_the_dome(ToolAxis::Tangent { height: 0.0, mode });
+        let last = *p.last().points.last().expect("a position");
+        (last, EVALUATIONS.get() - before)
+    };
+    let (along, fan) = (of(AxisTangency::Across), of(AxisTangency::Fan));
+    let apart = (along.0.tip - fan.0.tip).norm() + (along.0.axis - fan.0.axis).norm();
+    assert!(apart <= 1e-9, "{along:?} and {fan:?}");
+    // Passes until the end stays where it is took six times as many.
+    assert!(fan.1 <= 4 * along.1, "{} clearances, {} along the surface", fan.1, along.1);
+}
+
 /// A flank along the rulings of a cone that stands on its vertex or on its base, from outside and inside.
 fn along_the_rulings(upward: f64, inside: bool, height: f64, mode: AxisTangency) -> Program {
     // Of radius 5 at z=0.

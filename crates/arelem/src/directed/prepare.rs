@@ -53,6 +53,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) size: f64,
     /// Where the tool is along the drive surface: what the program says, unless it is plainly on the other side.
     pub(crate) drive_side: DriveSide,
+    /// A place to end at, if the tool is in all bands there.
+    pub(super) aim: Option<Vec3>,
 }
 
 pub(super) fn prepare<'a>(
@@ -116,10 +118,28 @@ pub(super) fn prepare<'a>(
         drive.turn_freely(&tip);
     }
     let checks = working;
-    Ok(Prepared { tool, attitude, tip, part, drive, checks, tangent, standing, wanted, size, drive_side })
+    Ok(Prepared {
+        tool,
+        attitude,
+        tip,
+        part,
+        drive,
+        checks,
+        tangent,
+        standing,
+        wanted,
+        size,
+        drive_side,
+        aim: None,
+    })
 }
 
 impl<'a> Prepared<'a> {
+    /// The same motion, to end at a place if it can.
+    pub(super) fn aimed_at(self, place: Vec3) -> Self {
+        Self { aim: Some(place), ..self }
+    }
+
     /// The same motion with another way of the axis.
     pub(super) fn with(&self, attitude: Attitude<'a>) -> Self {
         let lines = (&self.standing, &self.wanted);

@@ -191,7 +191,8 @@ fn misfit(turning: &Turning, sequence: &CutSequence) -> Option<String> {
     let begin = (&sequence.start, &sequence.forward);
     let stand = Stand::of_motion(&turning.mode, (part, drive), &cutter, begin)?;
     if turning.is_fan() {
-        return stand.off_fan(&sequence.start, &sequence.points, turning.exact);
+        let band = turning.case.inside + turning.case.outside;
+        return stand.off_fan(&sequence.start, &sequence.points, (turning.exact, band));
     }
     // A tool that stands otherwise at the start may turn over a way.
     let widest = 0.5 * cutter.diameter + cutter.height;

@@ -24,8 +24,10 @@ const AROUND: [u32; 2] = [64, 4096];
 const HALVINGS: u32 = 60;
 /// Share of the way by which an axis that fans goes on turning before its begin and behind its end.
 const BEYOND: f64 = 0.5;
-/// How far off an axis that fans may be where it ends, which is told to within a billionth of the coordinates.
+/// How far off an axis that fans may be where it ends, which is told to within a billionth of the coordinates, or so far that it leads the
+/// top of the tool off by such a share of the band, in which motions end now here, now there.
 const AT_END: f64 = 1e-7;
+const AMISS: f64 = 0.01;
 /// How far off an axis certainly follows its law.
 const CERTAIN: f64 = 1e-10;
 /// How many times the depth of the band the vertex of a cone may be away for an axis that turns about it.
@@ -205,11 +207,12 @@ impl Stand {
         &self,
         start: &ToolPosition,
         points: &[ToolPosition],
-        exact: f64,
+        (exact, band): (f64, f64),
     ) -> Option<String> {
         let last = points.last()?;
         let off = self.off(last);
-        if off > AT_END {
+        let reach = 0.5 * self.cutter.diameter + self.cutter.height;
+        if off > AT_END && off * reach > AMISS * band {
             return Some(format!("axis off by {off:e} at the end, {last:?}"));
         }
         let way = last.tip - start.tip;

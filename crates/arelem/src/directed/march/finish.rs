@@ -13,6 +13,9 @@ use crate::{
     role::Working,
 };
 
+/// Steps in which it is looked whether a place that is aimed at is in one band with the end that was found.
+const STEPS_TO_AIM: u32 = 4;
+
 /// Where a motion ends.
 pub(in crate::directed) struct End {
     pub(in crate::directed) tip: Vec3,
@@ -33,7 +36,7 @@ pub(in crate::directed) struct Towards<'a> {
 
 /// The end of a motion at an event found on a straight vector: where the path only touches the check surface, the place of
 /// contact. A motion that begins in the band of its check surface, farther in than motions end, ends half way to where it would come out
-/// of it: it does not lead back.
+/// of it: it does not lead back. One that aims at a place in all bands ends there.
 pub(in crate::directed) fn end(
     prepared: &Prepared,
     checks: &[CheckSurface],
@@ -45,11 +48,10 @@ pub(in crate::directed) fn end(
         let touch = watcher.touch(event.check, sweep).ok_or(failure)?;
         Ok(End { tip: touch.tip, check: touch.check, side: touch.side })
     })?;
-    let ahead = towards
-        .begin
-        .filter(|begin| (end.tip - *begin).dot(towards.tangent) < 0.0)
-        .and_then(|begin| half_way(prepared, begin, event));
-    Ok(ahead.unwrap_or(end))
+    let leads_back = |tip: &Vec3| towards.begin.filter(|begin| (tip - *begin).dot(towards.tangent) < 0.0);
+    let ahead = leads_back(&end.tip).and_then(|begin| half_way(prepared, begin, event));
+    let aimed = || at_aim(prepared, &end).filter(|aimed| leads_back(&aimed.tip).is_none());
+    Ok(ahead.or_else(aimed).unwrap_or(end))
 }
 
 /// The exact position of an event found on a straight vector.
@@ -88,6 +90,20 @@ fn locate(
     }
 }
 
+/// The place that a motion aims at, if the tool is in all bands there and does not leave that of the check surface on the way from an end.
+fn at_aim(prepared: &Prepared, end: &End) -> Option<End> {
+    let aim = prepared.aim?;
+    let mut check = prepared.checks.get(end.check)?.clone();
+    check.set_side(end.side);
+    check.look_from(&end.tip);
+    let stays = (0..=STEPS_TO_AIM).all(|k| {
+        keeps(prepared, &check, &(end.tip + (aim - end.tip) * (f64::from(k) / f64::from(STEPS_TO_AIM))))
+    });
+    let holds =
+        stays && [&prepared.part, &prepared.drive].into_iter().all(|role| keeps(prepared, role, &aim));
+    holds.then_some(End { tip: aim, ..*end })
+}
+
 /// Half way from a place to an event, if the tool is in the band of the check surface there.
 fn half_way(prepared: &Prepared, from: &Vec3, event: &Event) -> Option<End> {
     let tip = 0.5 * (from + event.tip);
@@ -97,8 +113,8 @@ fn half_way(prepared: &Prepared, from: &Vec3, event: &Event) -> Option<End> {
     keeps(prepared, &check, &tip).then_some(End { tip, check: event.check, side: event.side })
 }
 
-/// True if the tool, at a place of the path, is in the band of a check surface.
-fn keeps(prepared: &Prepared, check: &Working, tip: &Vec3) -> bool {
+/// True if the tool, at a place of the path, is in the band of a surface.
+fn keeps(prepared: &Prepared, role: &Working, tip: &Vec3) -> bool {
     let posture = prepared.attitude.posture(tip);
-    posture.is_ok_and(|posture| check.holds(posture.contact(&check.gauge, tip).clearance, prepared.size))
+    posture.is_ok_and(|posture| role.holds(posture.contact(&role.gauge, tip).clearance, prepared.size))
 }
