@@ -268,18 +268,20 @@ impl Surface {
         survey.curvature_across()
     }
 
-    /// Whether distances from a ruled surface, on a side of it, bend downward along a line by no more than is asked, at all points that have
-    /// their one nearest place within reach of a centre. Not for other kinds of surface, nor where it ends or has an edge there.
+    /// Whether distances from a ruled surface, on a side of it, bend downward along a line by no more than is asked, at all points of a
+    /// stretch whose middle has its nearest place at a foot, if no nearest place jumps and none is farther away from the foot than a reach.
+    /// Not for other kinds of surface, nor where it ends or has an edge there.
     pub fn bends_little_along(
         &self,
         side: f64,
-        center: &Vec3,
+        foot: &Vec3,
         reach: f64,
         asked: Lying,
         patience: Patience<'_>,
     ) -> bool {
         let Self::Ruled(sheet) = self else { return false };
-        sheet.survey(Survey::on_rulings(center, reach, side, asked, patience)).bends_little()
+        let Some(ruling) = sheet.ruling(foot) else { return false };
+        sheet.survey(Survey::on_rulings((foot, &ruling), reach, side, asked, patience)).bends_little()
     }
 
     /// How much farther the surface of the charts is, from a point on a side, than the one that distances are measured from.

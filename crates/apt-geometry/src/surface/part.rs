@@ -8,7 +8,7 @@ mod rulings;
 
 use self::{
     form::Bent,
-    rulings::{Rulings, Turning},
+    rulings::{Rulings, Turning, nearest_on},
 };
 pub use self::{
     form::{Form, LENGTHWISE, Lengthwise},
@@ -580,6 +580,21 @@ impl Part {
         }
         let (beside, above) = (beside.max(0.0), (height.abs() - self.sag).max(0.0));
         away.max((beside * beside + above * above).sqrt())
+    }
+
+    /// Whether it is known, from its size and the planes that it lies between, that no place of the part is within a distance of a straight
+    /// piece.
+    pub(super) fn is_off(&self, ends: &[Vec3; 2], distance: f64) -> bool {
+        if nearest_on(ends, &self.center).1 > self.radius + distance {
+            return true;
+        }
+        // Both ends on one side of a pair of planes: so is all between.
+        let is_beyond = |across: &Vec3, half: f64| {
+            let [first, last] = ends.map(|end| (end - self.center).dot(across));
+            first * last > 0.0 && first.abs().min(last.abs()) > half + distance
+        };
+        self.strips.iter().any(|(across, half)| is_beyond(across, *half))
+            || self.normal.is_some_and(|normal| is_beyond(&normal, self.sag))
     }
 
     /// Adds what this part means for a question.

@@ -205,8 +205,13 @@ impl Gauge {
         (contact, missed)
     }
 
-    /// Whether the clearance is nowhere on the tool below a level.
-    pub(crate) fn certify(&self, tool: &Tool, tip: &Vec3, level: f64) -> Certificate {
+    /// Whether the clearance is nowhere on the tool below a level; the contact that was found there tells where to look first.
+    pub(crate) fn certify(
+        &self,
+        tool: &Tool,
+        (tip, found): (&Vec3, Option<&Contact>),
+        level: f64,
+    ) -> Certificate {
         let (tool, tip) = &self.body(tool, tip);
         let surface = self.met(tool);
         let (face, level) = (Face { surface, side: self.side }, level + self.thickness);
@@ -232,10 +237,12 @@ impl Gauge {
         {
             return Certificate::Holds;
         }
-        let bases = self
-            .memory
-            .place(tool, self.side)
-            .map(|place| Bases::about(tool, tip, (surface, self.side), &(tip + place.point)));
+        let known = self.memory.place(tool, self.side).map(|place| tip + place.point);
+        let touching = known.or(found.map(|contact| contact.tool));
+        if touching.is_some_and(|point| search::lies_above(tool, face, (tip, &point), level, &self.memory)) {
+            return Certificate::Holds;
+        }
+        let bases = touching.map(|point| Bases::about(tool, tip, (surface, self.side), &point));
         let mut proof = self.memory.proof(tool, self.side, tip);
         let found = certify::certify(face, tool, tip, level, &mut proof, bases.as_ref(), Effort::All);
         self.memory.keep_proof(self.side, proof);

@@ -118,6 +118,23 @@ pub(super) fn contact(
     (contact, missed)
 }
 
+/// Whether balls about the axis show that no point of the tool is below a level, where a flank lies along the surface at a point of it.
+pub(super) fn lies_above(
+    tool: &Tool,
+    face: Face<'_>,
+    (tip, point): (&Vec3, &Vec3),
+    level: f64,
+    memory: &Memory,
+) -> bool {
+    let Face { surface, side } = face;
+    let foot = surface.foot(point);
+    let clearance = side * foot.distance;
+    let contact = Contact { clearance, gradient: foot.normal * side, tool: *point, surface: foot.point };
+    let best = Best { value: clearance, contact: Some(contact), piece: 0 };
+    let search = Search { tool, surface, side, tip, best, piece: 0 };
+    search.certified_along_axis(level, &memory.courses) == Certificate::Holds
+}
+
 /// The contact that the search finds everywhere; nothing is proven of it. At an edge of the surface it is exactly there.
 pub(super) fn found(tool: &Tool, face: Face<'_>, tip: &Vec3) -> Contact {
     let Face { surface, side } = face;

@@ -90,9 +90,9 @@ impl Line<'_> {
     }
 
     /// True if no part of the tool is nearer to the surface than a level.
-    fn certified(&self, x: f64, level: f64) -> bool {
+    fn certified(&self, x: f64, level: f64, found: Option<&Contact>) -> bool {
         let (tip, tool) = self.sweep.at(x);
-        self.ledger.certified(&self.role.gauge, &tool, &tip, level)
+        self.ledger.certified(&self.role.gauge, &tool, (&tip, found), level)
     }
 
     fn known(&self, x: f64, contact: &Contact, tip: &Vec3) -> Sample {
@@ -157,7 +157,7 @@ pub(crate) fn extremes(
         Shape::Concave => {
             let Minimum { value, bound, turning } = convex_minimum(&line, a, b, ENOUGH * role.band());
             // The least values are those of the ends, if no other part of the tool is deeper there.
-            let deepest = |x| line.certified(x, -role.inside - ROUNDING * size);
+            let deepest = |x| line.certified(x, -role.inside - ROUNDING * size, None);
             let proven = ends.proven && -bound <= limits[1] && deepest(0.0) && deepest(length);
             Extremes { least, greatest: (-value).max(greatest), proven, turning }
         }

@@ -313,8 +313,14 @@ fn a_line_behind_the_end_comes_out_past_it() {
         assert!((contact.gradient + Vec3::y()).norm() < 1e-6 && missed < 1e-6, "{contact:?}");
         let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
         assert!((contact.clearance - verifier).abs() < 1e-7, "{contact:?}, {verifier}");
-        assert_eq!(gauge(&role).certify(&tool, &tip, -1.01 * depth), crate::clearance::Certificate::Holds);
-        assert_ne!(gauge(&role).certify(&tool, &tip, -0.99 * depth), crate::clearance::Certificate::Holds);
+        assert_eq!(
+            gauge(&role).certify(&tool, (&tip, None), -1.01 * depth),
+            crate::clearance::Certificate::Holds
+        );
+        assert_ne!(
+            gauge(&role).certify(&tool, (&tip, None), -0.99 * depth),
+            crate::clearance::Certificate::Holds
+        );
         // On the way along the end it is as deep.
         let there = tip + Vec3::x();
         let ends = [&tip, &there].map(|tip| (tip, gauge(&role).contact(&tool, tip)));

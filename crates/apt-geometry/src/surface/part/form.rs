@@ -81,7 +81,6 @@ impl Forms {
                 Self::Across(Lengthwise { along, ..asked }, found)
             }
             Self::Along(asked) => Self::Along(Along { direction: turned(&asked.direction), ..asked }),
-            Self::OnRulings(asked) => Self::OnRulings(asked.turned(turned)),
             asked => asked,
         }
     }
@@ -268,7 +267,7 @@ impl<'a> Survey<'a> {
 
 impl Forms {
     /// Takes a form, or that there is none, in so far as halves of its part are not to be looked at; whether they are.
-    fn take(&mut self, bent: Option<&Bent>, side: f64, is_fine: bool) -> Taken {
+    fn take(&mut self, bent: Option<&Bent>, middle: &Vec3, side: f64, is_fine: bool) -> Taken {
         let form = bent.map(|bent| &bent.form);
         let close = |error: f64| form.is_some_and(|form| form.error <= error * form.middle.norm());
         let seen = form.map(|form| form.seen_from(side));
@@ -289,7 +288,9 @@ impl Forms {
                 asked.found = asked.found.max(bend);
                 if bend.is_finite() { Taken::Whole } else { Taken::Nothing }
             }
-            Self::OnRulings(asked) => asked.take(bent.and_then(|bent| bent.rulings.as_ref()), side, is_fine),
+            Self::OnRulings(asked) => {
+                asked.take(bent.and_then(|bent| bent.rulings.as_ref()), middle, side, is_fine)
+            }
         }
     }
 }
@@ -331,6 +332,11 @@ impl Part {
         if self.bound(&survey.center) > survey.reach {
             return;
         }
+        if let Forms::OnRulings(asked) = &survey.forms
+            && asked.is_off(self)
+        {
+            return;
+        }
         if survey.is_given_up() {
             return;
         }
@@ -339,7 +345,7 @@ impl Part {
         }
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
         let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-        match survey.forms.take(form.as_deref(), survey.side, is_fine) {
+        match survey.forms.take(form.as_deref(), &self.center, survey.side, is_fine) {
             Taken::Whole => {}
             Taken::Halves => self.survey_halves(sheet, survey, depth),
             Taken::Nothing => survey.jumps = true,

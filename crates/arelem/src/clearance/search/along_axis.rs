@@ -32,6 +32,8 @@ const FINER: f64 = 1.0 / 32.0;
 /// flank.
 const LEFT: f64 = 2.0;
 const LEAST_LEFT: f64 = 1.0 / 1024.0;
+/// How far the nearest places of a stretch may be beside the ruling through that of its middle, as shares of half the stretch.
+const BESIDE: [f64; 2] = [1.0 / 64.0, 1.0 / 4.0];
 /// Bound of the pieces that are left: more lie along the surface.
 const MOST_LEFT: usize = 4;
 /// How much farther than asked it is told how distances bend, and how many such answers are kept.
@@ -271,8 +273,10 @@ impl Search<'_> {
         // No farther than from the nearest place of the middle.
         let depth = (base.distance * base.distance + half * (half + 2.0 * base.distance * slope)).sqrt();
         let reach = half * (1.0 + depth * bend);
-        let asked = Lying { along: tool.axis, depth, enough };
-        surface.bends_little_along(side, &foot.point, reach, asked, tool.patience)
+        BESIDE.into_iter().any(|share| {
+            let asked = Lying { along: tool.axis, half, depth, enough, beside: share * half };
+            surface.bends_little_along(side, &foot.point, reach, asked, tool.patience)
+        })
     }
 }
 

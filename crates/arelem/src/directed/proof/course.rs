@@ -243,7 +243,7 @@ impl Course<'_, '_> {
 
     fn deep_enough(&self, sample: &Sample) -> bool {
         let open = self.open(sample);
-        sample.missed <= open || self.line.certified(sample.x, sample.value - open)
+        sample.missed <= open || self.line.certified(sample.x, sample.value - open, Some(&sample.contact))
     }
 
     /// Whether the clearance is in the band between two samples: by a bound for all of the tool, if one is known or likely to be of

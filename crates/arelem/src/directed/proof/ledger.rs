@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use crate::clearance::{Certificate, Gauge, Shape, Tool, has_closed_form, steady_bend, upward_bend};
+use crate::clearance::{Certificate, Contact, Gauge, Shape, Tool, has_closed_form, steady_bend, upward_bend};
 
 /// How much farther a bound reaches than the stretch it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
@@ -172,8 +172,14 @@ impl Ledger {
         found
     }
 
-    /// True if no part of the tool is nearer to the surface than a level.
-    pub(super) fn certified(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, level: f64) -> bool {
+    /// True if no part of the tool is nearer to the surface than a level; by the contact that was found there, if that is known.
+    pub(super) fn certified(
+        &self,
+        gauge: &Gauge,
+        tool: &Tool,
+        (tip, found): (&Vec3, Option<&Contact>),
+        level: f64,
+    ) -> bool {
         if !doubtful(gauge, tool, tip) {
             return true;
         }
@@ -181,7 +187,7 @@ impl Ledger {
         if known.iter().flatten().any(|k| k.tip == *tip && k.axis == tool.axis && k.level >= level) {
             return true;
         }
-        match gauge.certify(tool, tip, level) {
+        match gauge.certify(tool, (tip, found), level) {
             Certificate::Holds => {
                 self.levels.set([Some(Level { tip: *tip, axis: tool.axis, level }), known[0]]);
                 true
