@@ -47,9 +47,9 @@ struct Bound<'a> {
     on: bool,
     intol: f64,
     outtol: f64,
-    /// The clearance at each position, where the bands of whole vectors are judged: a position ends one vector and
+    /// The normal at each position, where the bands of whole vectors are judged: a position ends one vector and
     /// begins the next.
-    readings: RefCell<Vec<Reading>>,
+    normals: RefCell<Vec<Vec3>>,
     /// Who waits for the proof.
     patience: Patience<'a>,
 }
@@ -81,23 +81,23 @@ impl<'a> Bound<'a> {
             on,
             intol,
             outtol,
-            readings: RefCell::default(),
+            normals: RefCell::default(),
             patience,
         })
     }
 
     /// Reads the clearance at the next position.
     fn read(&self, place: &ToolPosition) -> Result<Reading, VerifyError> {
-        let mut readings = self.readings.borrow_mut();
-        let lost = VerifyError::NoDistance { vector: readings.len().saturating_sub(1) };
+        let mut normals = self.normals.borrow_mut();
+        let lost = VerifyError::NoDistance { vector: normals.len().saturating_sub(1) };
         let reading = self.clearance().at(&place.tip, &place.axis).ok_or(lost)?;
-        readings.push(reading);
+        normals.push(reading.normal);
         Ok(reading)
     }
 
-    /// The reading at a position that was read.
-    fn reading(&self, index: usize) -> Result<Reading, VerifyError> {
-        self.readings.borrow().get(index).copied().ok_or(VerifyError::NoDistance { vector: index })
+    /// The normal at a position that was read.
+    fn normal_at(&self, index: usize) -> Result<Vec3, VerifyError> {
+        self.normals.borrow().get(index).copied().ok_or(VerifyError::NoDistance { vector: index })
     }
 
     fn clearance(&self) -> Clearance<'_> {
@@ -314,7 +314,7 @@ impl Judge<'_> {
         let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
         let allowed = [-bound.intol - guard, bound.outtol + guard];
         let mut all: Option<Extremes> = None;
-        bound.readings.borrow_mut().reserve_exact(self.positions.len());
+        bound.normals.borrow_mut().reserve_exact(self.positions.len());
         let mut left = bound.read(self.positions.first().ok_or(VerifyError::Empty)?)?;
         for (vector, pair) in self.positions.windows(2).enumerate() {
             let ends = [left, bound.read(&pair[1])?];
@@ -455,7 +455,7 @@ impl Judge<'_> {
             let mut sine = if heading.norm() > 0.0 { direction.dot(&heading) } else { 1.0 };
             let mut begins = direction;
             if let (Some(part), Some(drive)) = (part, drive) {
-                let normals = [part.reading(vector)?.normal, drive.reading(vector)?.normal];
+                let normals = [part.normal_at(vector)?, drive.normal_at(vector)?];
                 let travel = normals[0].cross(&normals[1]);
                 if travel.norm() > PARALLEL && heading.norm() > 0.0 {
                     let travel = travel / travel.norm();

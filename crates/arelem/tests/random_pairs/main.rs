@@ -216,6 +216,7 @@ fn motions_on_which_the_axis_lies_along_the_drive_surface_keep_bands_and_law() {
 }
 
 /// Motions whose axis follows a law on every pair, drawn so.
+#[expect(clippy::print_stdout, reason = "a case that is looked at is told")]
 fn turn_on_every_pair(seed: u64, draw: fn(Kind, Kind, u64) -> Option<Turning>) {
     let cases = number("APT_CASES").map_or(1, |cases| cases.div_ceil(4));
     let told = number("APT_CASE").is_some();
