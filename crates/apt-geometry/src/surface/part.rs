@@ -8,7 +8,7 @@ mod rulings;
 
 use self::{
     form::Bent,
-    rulings::{Rulings, Turning, nearest_on},
+    rulings::{Rulings, Turning, distance_from},
 };
 pub use self::{
     form::{Form, LENGTHWISE, Lengthwise},
@@ -585,7 +585,7 @@ impl Part {
     /// Whether it is known, from its size and the planes that it lies between, that no place of the part is within a distance of a straight
     /// piece.
     pub(super) fn is_off(&self, ends: &[Vec3; 2], distance: f64) -> bool {
-        if nearest_on(ends, &self.center).1 > self.radius + distance {
+        if distance_from(ends, &self.center) > self.radius + distance {
             return true;
         }
         // Both ends on one side of a pair of planes: so is all between.

@@ -108,8 +108,7 @@ impl Rulings {
         let exact = middle.map_or(f64::INFINITY, |[aa, ab, bb]| aa * a * a + 2.0 * ab * a * b + bb * b * b);
         // How far both parts of the direction may be from those in the middle.
         let [da, db] = self.apart(along);
-        let most = self.bend + self.error;
-        let most = if side > 0.0 { most } else { self.error - self.bend };
+        let most = bend + self.error;
         let room = 1.0 - depth * most;
         if room <= 0.0 {
             return [f64::INFINITY, exact];
@@ -125,13 +124,12 @@ impl Rulings {
     }
 }
 
-/// The place of a straight piece nearest to a point, and how far it is away.
-pub(super) fn nearest_on([from, to]: &[Vec3; 2], point: &Vec3) -> (Vec3, f64) {
+/// How far a point is from a straight piece.
+pub(super) fn distance_from([from, to]: &[Vec3; 2], point: &Vec3) -> f64 {
     let way = to - from;
     let square = way.norm_squared();
     let share = if square > 0.0 { (point - from).dot(&way) / square } else { 0.0 };
-    let place = from + way * share.clamp(0.0, 1.0);
-    (place, (point - place).norm())
+    (point - from - way * share.clamp(0.0, 1.0)).norm()
 }
 
 /// The terms of `S (1 − d S)⁻¹` from those of S: along, mixed, across. None where d is too deep.
@@ -164,7 +162,7 @@ impl OnRulings {
         let [most, middle] = rulings.bend_along(side, along, *depth);
         let stays = || half * rulings.leads_aside(side, (along, &self.ruling), *depth) <= *beside;
         // More at a place that counts is more than enough.
-        let is_more = || middle > *enough && nearest_on(&self.ends, place).1 <= *beside;
+        let is_more = || middle > *enough && distance_from(&self.ends, place) <= *beside;
         if most <= *enough && stays() {
             Taken::Whole
         } else if is_fine || is_more() {
