@@ -1,6 +1,6 @@
 //! Where motions begin and end on which the tool axis follows a surface.
 
-use apt_geometry::motion::{AxisAngle, ToolAxis};
+use apt_geometry::motion::{AxisAngle, AxisTangency, ToolAxis};
 
 use super::{turning::proven, *};
 
@@ -259,5 +259,51 @@ fn a_tool_that_turns_sets_out_on_its_side_along_its_own_way() {
         0.9408333443581138f64.acos().to_degrees(),
     );
     p.drive(Turn::Forward, &beside, Relation::Past, &check);
+    proven(&p);
+}
+
+/// A flank that turns as it passes over the vertex of a pointed cone cuts it off: the place of the tool that is across the vertex from the
+/// flank is beside the cone, another one shows that the tool touches it.
+#[test]
+fn a_tool_that_turns_cuts_the_vertex_of_a_cone_off() {
+    let under = cone(
+        v(0.8990446581236853, -0.6222196885820392, -0.8278574844021687),
+        v(-0.26918916813477095, 0.8860703522573977, -0.3773811370608779),
+        20.955_234,
+    );
+    let beside = Geometry::GeneralConic(Quadric {
+        coefficients: [
+            0.054961038349246455,
+            0.10196640713774714,
+            0.0,
+            0.7094074039403793,
+            0.0,
+            0.0,
+            -0.074861068740919,
+            -0.5934067244794899,
+            -0.03660949301048111,
+            0.0,
+        ],
+    });
+    let check = plane(0.04469635731605225, -0.9985379350789879, -0.03040111594771851, 0.9218816147000888);
+    let across = v(-0.029826884932960714, -0.9889098593788477, 0.14549105456523348);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[
+        0.3243518201807389,
+        0.0,
+        0.16217591009036944,
+        0.0,
+        0.0,
+        4.551907553539284,
+        4.406024637239078,
+    ]);
+    from(&mut p, v(2.1777222063979877, 0.591045313235529, -0.7694598298543578), Vec3::z());
+    along(
+        &mut p,
+        ToolAxis::Tangent { height: 0.36036189430559595, mode: AxisTangency::PerpendicularTo(across) },
+    );
+    p.go(&[(Relation::To, &beside), (Relation::To, &under)]);
+    p.side(DriveSide::Left).indirv(0.1014338080128154, -0.9942568953022319, -0.0341234338246557);
+    p.run(&motion(Turn::Forward, &beside, &[(Relation::Past, 1, &check)]));
     proven(&p);
 }

@@ -6,10 +6,16 @@
 use apt_geometry::{Vec3, surface::Surface};
 
 use super::{Extremes, course::lowest};
-use crate::{attitude::Sweep, clearance::Gauge, role::Working};
+use crate::{
+    attitude::Sweep,
+    clearance::{Contact, Gauge, Tool},
+    role::Working,
+};
 
 /// Pieces into which a vector is cut at first.
 const PIECES: usize = 4;
+/// How often a place under the vertex of a cone is looked for nearer to that.
+const MOST_HALVINGS: u32 = 8;
 /// Bound of the samples on one vector.
 const MAX_SAMPLES: usize = 600;
 
@@ -73,9 +79,10 @@ struct Sample {
     distance: f64,
     /// Lower bound of the clearance.
     value: f64,
-    /// Tool end and contact point of the tool.
+    /// Tool end, contact point of the tool, and a place of the tool that is no higher than a contact should be.
     tip: Vec3,
     contact: Vec3,
+    witness: Vec3,
 }
 
 struct Turning<'a> {
@@ -140,7 +147,34 @@ impl Turning<'_> {
         let (support, _) = tool.profile.support(across, -along);
         let height = normal.dot(&way);
         let value = height - self.solid.level - support - self.role.gauge.thickness;
-        Some(Sample { x, normal, height, distance: way.norm(), value, tip, contact: contact.tool })
+        let witness = self.witness(&tool, &tip, &contact);
+        Some(Sample { x, normal, height, distance: way.norm(), value, tip, contact: contact.tool, witness })
+    }
+
+    /// A place of the tool within the solid, if it is in contact there. The contact is, but where a tool cuts the vertex of a cone off:
+    /// there it is across the vertex from the tool's face, beside the cone that is more pointed. Down the axis both are.
+    fn witness(&self, tool: &Tool<'_>, tip: &Vec3, contact: &Contact) -> Vec3 {
+        let Surface::Cone(cone) = &self.role.gauge.surface else { return contact.tool };
+        let depth = -(contact.clearance + self.role.gauge.thickness);
+        if depth <= 0.0 || self.distance(&contact.tool) <= 0.0 {
+            return contact.tool;
+        }
+        let mut down = depth;
+        for _ in 0..MOST_HALVINGS {
+            let place = cone.vertex + cone.axis * down;
+            let (along, across, _) = tool.split(&(place - tip));
+            if tool.profile.distance(across, along).0 <= 0.0 {
+                return place;
+            }
+            down *= 0.5;
+        }
+        contact.tool
+    }
+
+    /// The distance of a place from the solid.
+    fn distance(&self, place: &Vec3) -> f64 {
+        let Working { gauge, .. } = self.role;
+        gauge.side * gauge.surface.signed_distance(place) - gauge.thickness
     }
 
     /// Whether the bounds on a stretch are in the band.
@@ -149,27 +183,55 @@ impl Turning<'_> {
         let turn = a.normal.cross(&b.normal);
         let angle = turn.norm().atan2(a.normal.dot(&b.normal));
         let turn = turn.try_normalize(0.0).map_or_else(Vec3::zeros, |about| about * (angle / length));
+        let bend = self.bend_with_tool(a, b, &turn).min(self.bend_of_points(a, b, turn.norm()));
+        let low = lowest((a.value, b.value), bend, length);
+        let rate = self.sweep.rate().norm();
+        self.role.holds(low, self.size) && self.role.holds(self.highest(a, b, rate), self.size)
+    }
+
+    /// Bound of the second derivative of what the planes say: of the tool end's height above them, and of the support, which does not
+    /// change where the normal turns along with the tool.
+    fn bend_with_tool(&self, a: &Sample, b: &Sample, turn: &Vec3) -> f64 {
         let (rate, swing) = (turn.norm(), self.sweep.rate());
         // The tool end moves by the way, the normal turns: nowhere is it lower than this.
-        let lowest_height = a.height.min(b.height) - 0.5 * length * (1.0 + rate * a.distance.max(b.distance));
-        let bend = 2.0 * rate - rate * rate * lowest_height
-            + self.reach * (turn - swing).norm() * (rate + swing.norm());
-        let low = lowest((a.value, b.value), bend, length);
-        self.role.holds(low, self.size) && self.role.holds(self.highest(a, b, swing.norm()), self.size)
+        let lowest_height =
+            a.height.min(b.height) - 0.5 * (b.x - a.x) * (1.0 + rate * a.distance.max(b.distance));
+        2.0 * rate - rate * rate * lowest_height
+            + self.reach * (turn - swing).norm() * (rate + swing.norm())
+    }
+
+    /// The same from the points of the tool, none of which is lower than the lowest: as the normal turns, their heights bend down, by as much as
+    /// they are high. However far it turns about an edge that passes over the vertex of a cone, they do so little. The lowest they come to
+    /// follows from that bound itself.
+    fn bend_of_points(&self, a: &Sample, b: &Sample, rate: f64) -> f64 {
+        let (length, swing) = (b.x - a.x, self.sweep.rate().norm());
+        let angle = rate * length;
+        let left = 1.0 - angle * angle / 8.0;
+        if left <= 0.0 {
+            return f64::INFINITY;
+        }
+        let moved = 2.0 * rate * (1.0 + swing * self.reach) + swing * swing * self.reach;
+        let ends = a.value.min(b.value) + self.role.gauge.thickness + self.solid.level;
+        let lowest = ((ends - moved * length * length / 8.0) / left).min(ends);
+        (moved - rate * rate * lowest).max(0.0)
     }
 
     /// The least over some points of the tool of the greatest distance that they have on a stretch: distances are convex,
-    /// and the points leave the straight line by no more than the tool turns.
+    /// and the points leave the straight line by no more than the tool turns. One of them goes within the tool from the witness at
+    /// the one end to that at the other.
     fn highest(&self, a: &Sample, b: &Sample, rate: f64) -> f64 {
-        let Working { gauge, .. } = self.role;
         let length = b.x - a.x;
-        let distance = |p: &Vec3| gauge.side * gauge.surface.signed_distance(p) - gauge.thickness;
-        let course = |from: &Vec3, to: &Vec3| {
-            let arm = (from - a.tip).norm();
-            distance(from).max(distance(to)) + rate * rate * arm * length * length / 8.0
+        let course = |from: &Vec3, to: &Vec3, within: f64| {
+            let arm = (from - a.tip).norm() + within;
+            let bend = rate * rate * arm * length + 2.0 * rate * within;
+            self.distance(from).max(self.distance(to)) + bend * length / 8.0
         };
         let ahead = self.sweep.carried(&a.contact, a.x, b.x);
         let behind = self.sweep.carried(&b.contact, b.x, a.x);
-        course(&a.tip, &b.tip).min(course(&a.contact, &ahead)).min(course(&behind, &b.contact))
+        let within = (self.sweep.carried(&a.witness, a.x, b.x) - b.witness).norm();
+        course(&a.tip, &b.tip, 0.0)
+            .min(course(&a.contact, &ahead, 0.0))
+            .min(course(&behind, &b.contact, 0.0))
+            .min(course(&a.witness, &b.witness, within))
     }
 }
