@@ -27,6 +27,8 @@ const CORRECTIONS: u32 = 25;
 const SAME_START: f64 = 100.0;
 /// Steps to the place where the check surface was laid.
 const STEPS_TO_STOP: f64 = 60.0;
+/// How much shorter they are where a path is looked at again.
+const FINER: f64 = 8.0;
 /// The path is followed this many times as far as the check surface was laid.
 const FAR: f64 = 3.0;
 /// Cosine between the direction asked for and the path from which the direction is settled: two degrees from square.
@@ -297,9 +299,18 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of
-    /// a surface, as the motion was told.
+    /// a surface, as the motion was told. A path counts that is found in short steps, too: a long one may lead over a bend.
     pub(crate) fn search(&self, start: Option<Vec3>, told: Option<ToldEnd>) -> Found {
-        let Some(mut tip) = start.or_else(|| self.start()) else { return Found::NoStart };
+        let Some(tip) = start.or_else(|| self.start()) else { return Found::NoStart };
+        let long = self.case.reach / STEPS_TO_STOP;
+        match self.follow(tip, told, long) {
+            Found::Path(_) => self.follow(tip, told, long / FINER),
+            found => found,
+        }
+    }
+
+    /// The same from a place in steps of a length.
+    fn follow(&self, mut tip: Vec3, told: Option<ToldEnd>, long: f64) -> Found {
         // Directions count across the tool axis.
         let (forward, Some(axis)) = (self.case.forward, self.axis(&tip)) else { return Found::Ends(0.0) };
         let Some(wanted) = (forward - axis * axis.dot(&forward)).try_normalize(1e-9) else {
@@ -313,7 +324,6 @@ impl<'a> Reader<'a> {
         let stops_at_tangency =
             matches!(self.case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart);
         let band = self.case.inside.max(self.case.outside);
-        let long = self.case.reach / STEPS_TO_STOP;
         let mut length = 0.0;
         let mut events = Events::new(self.case, band);
         // No part of the tool moves farther than the tool end: so far the check surface need not be read again.
