@@ -6,9 +6,11 @@ use apt_geometry::{
     Vec3,
     cutter::Cutter,
     motion::{AxisAngle, AxisTangency, DriveSide, MotionCommand, Relation, ToolAxis},
+    surface::Surface,
 };
 use arelem::{
     MotionFailure,
+    clearance::Tool,
     sequence::{CutSequence, ToolPosition},
 };
 
@@ -236,6 +238,18 @@ fn refused(turning: &Turning, runner: &Runner, failure: &MotionFailure) -> Verdi
     judge::told(&reader, start, failure)
 }
 
+/// The side of a surface on which a start-up from a place ends, as the middle of the tool sees it.
+fn side_seen(placed: &Placed, case: &Case, (tip, axis): &(&Vec3, &Vec3)) -> f64 {
+    let cutter = Cutter::from_numbers(&case.cutter, 1.0).expect("a cutter");
+    let surface = Surface::from_geometry(&placed.geometry).expect("a surface");
+    let seen = surface.signed_distance(&Tool::new(cutter, **axis).observer(tip)).signum();
+    match placed.relation {
+        Relation::On => placed.side,
+        Relation::Past => -seen,
+        _ => seen,
+    }
+}
+
 /// The same where the axis is another one for the second motion.
 fn refused_with(
     axis: Vec3,
@@ -251,7 +265,13 @@ fn refused_with(
         // It stands past the drive surface, and goes to the other side of it.
         return Verdict::NotJudged(format!("{failure:?}"));
     }
-    let second = Case { axis, from: *tip, is_certain: false, ..case.clone() };
+    let seen = |placed: &Placed| side_seen(placed, case, &(tip, &axis));
+    if [&case.part, &case.drive].into_iter().any(|placed| seen(placed) != placed.side) {
+        // It stands on another side with the second axis than the motion is for.
+        return Verdict::NotJudged(format!("{failure:?}"));
+    }
+    let first = Placed { side: seen(&case.first), ..case.first.clone() };
+    let second = Case { axis, from: *tip, is_certain: false, first, ..case.clone() };
     let reader = Reader::new(&second);
     if !second.is_tangent_there(&reader, &second.forward) {
         // The tangency was laid for the first axis.
