@@ -212,7 +212,17 @@ impl Search<'_> {
                 return unsolved(Unsolved { residual: worst, row, tip, iterations: iteration });
             }
             let step = correction(&rows);
-            let Some((next, next_rows)) = self.improve((&tip, &rows), &step, (halvings, manner)) else {
+            let bounds = (halvings, manner);
+            let improved = self.improve((&tip, &rows), &step, bounds).or_else(|| {
+                // What has room in its band need not stay where it is in that.
+                let wrong = self.wrong_alone(&rows)?;
+                let step = correction(&wrong);
+                self.improve((&tip, &rows), &step, bounds).or_else(|| {
+                    let both = self.with_contact_ahead(wrong, &tip, &step, manner)?;
+                    self.improve((&tip, &rows), &correction(&both), bounds)
+                })
+            });
+            let Some((next, next_rows)) = improved else {
                 if worst <= ACCEPTABLE * scale {
                     return (Ok(solution), rows.is_proven);
                 }
@@ -245,6 +255,34 @@ impl Search<'_> {
             share *= 0.5;
         }
         None
+    }
+
+    /// The rows without those that are between their limits; `None` if there are no such.
+    fn wrong_alone(&self, rows: &Rows) -> Option<Rows> {
+        let mut wrong = Rows { count: 0, ..*rows };
+        for (k, condition) in self.conditions.iter().take(rows.count).enumerate() {
+            if matches!(condition, Condition::Between(..)) && rows.residual[k] == 0.0 {
+                continue;
+            }
+            wrong.residual[wrong.count] = rows.residual[k];
+            wrong.normal[wrong.count] = rows.normal[k];
+            wrong.count += 1;
+        }
+        (wrong.count > 0 && wrong.count < rows.count).then_some(wrong)
+    }
+
+    /// The rows and one more for the contact that the worst of them has after a step which makes it no better: there another part of the tool
+    /// comes nearer, and what leads away from both is the way.
+    fn with_contact_ahead(&self, mut wrong: Rows, tip: &Vec3, step: &Vec3, manner: Manner) -> Option<Rows> {
+        if wrong.count >= wrong.residual.len() {
+            return None;
+        }
+        let ahead = self.evaluate(&(tip + step), manner);
+        let (_, row) = ahead.greatest();
+        let (residual, normal) = (ahead.residual[row] - ahead.normal[row].dot(step), ahead.normal[row]);
+        (wrong.residual[wrong.count], wrong.normal[wrong.count]) = (residual, normal);
+        wrong.count += 1;
+        residual.is_finite().then_some(wrong)
     }
 
     /// Whether what is left where a search ended is left of the nearest contacts there.

@@ -397,10 +397,11 @@ pub(crate) fn converge(
     if let Some(tip) = around::solve(&work.attitude, conditions, start, work.patience)? {
         return Ok(tip);
     }
+    let nearest = if first.residual < last.residual { first } else { last };
     Err(MotionFailure::StartUpDiverges {
-        residual: last.residual.min(first.residual),
-        role: work.roles.get(last.row).map_or(RoleName::Drive, |r| r.name),
-        tip: last.tip,
+        residual: nearest.residual,
+        role: work.roles.get(nearest.row).map_or(RoleName::Drive, |r| r.name),
+        tip: nearest.tip,
         iterations: first.iterations + last.iterations,
     })
 }

@@ -269,7 +269,7 @@ fn a_tool_that_turns_cuts_the_vertex_of_a_cone_off() {
     let under = cone(
         v(0.8990446581236853, -0.6222196885820392, -0.8278574844021687),
         v(-0.26918916813477095, 0.8860703522573977, -0.3773811370608779),
-        20.955_234,
+        20.954_953,
     );
     let beside = Geometry::GeneralConic(Quadric {
         coefficients: [
@@ -305,5 +305,40 @@ fn a_tool_that_turns_cuts_the_vertex_of_a_cone_off() {
     p.go(&[(Relation::To, &beside), (Relation::To, &under)]);
     p.side(DriveSide::Left).indirv(0.1014338080128154, -0.9942568953022319, -0.0341234338246557);
     p.run(&motion(Turn::Forward, &beside, &[(Relation::Past, 1, &check)]));
+    proven(&p);
+}
+
+/// A start-up plane that the turning tool touches with the edge at its end or with that at its top, either way with too much of it where the
+/// others are in the middle of their bands: in the bands there is a position, away from both edges.
+#[test]
+fn a_tool_that_just_fits_before_a_plane_with_either_end_starts_up() {
+    let inside = cone(
+        v(2.378244699690608, 3.426918750701597, -0.2703661031833047),
+        v(-0.5689669941158946, -0.8211974725078046, -0.043718082683453986),
+        22.050_577,
+    );
+    let through = cylinder(
+        v(3.044047171029749, 1.9584202762697545, 0.13805893400332536),
+        v(-0.17672688271885237, -0.6626106688698491, 0.7278150248684953),
+        4.152024177844269,
+    );
+    let before = plane(-0.5676675773624443, 0.6925988034895058, 0.4450397948682326, -0.5898503288379341);
+    let mut p = Program::new();
+    p.tolerance(0.00002, 0.00003).cutter(&[
+        0.5593694112501204,
+        0.0,
+        0.2796847056250602,
+        0.16805152535441467,
+        31.0,
+        0.0,
+        3.835184285987133,
+    ]);
+    from(
+        &mut p,
+        v(0.4037114752621356, 0.4971009428513178, -1.1344280790324026),
+        v(0.029631175896626182, -0.5230443518941269, 0.851790232021145),
+    );
+    along(&mut p, ToolAxis::Normal { part: true });
+    p.go(&[(Relation::On, &through), (Relation::To, &inside), (Relation::To, &before)]);
     proven(&p);
 }
