@@ -11,6 +11,8 @@ use crate::Vec3;
 const SINGULAR: f64 = 1e-10;
 /// Distance, relative to the size of a surface, below which a point lies on it.
 pub(super) const ON_SURFACE: f64 = 1e-9;
+/// Cosine between the way to an edge and the normal there, below one, at which a point is over the surface.
+const OVER_EDGE: f64 = 1e-9;
 /// Stretch `1 + d·κ` of the parallel surface below which it is at its focus and has no curvature.
 const FOCUS: f64 = 1e-12;
 
@@ -84,16 +86,22 @@ impl Jet {
         let height = offset.dot(natural);
         let length = offset.norm();
         // Beyond an edge the nearest point stays on it while the normal turns, as at a corner of a curve.
-        if rest == Rest::Inside || length <= ON_SURFACE * size || height.abs() >= length * (1.0 - 1e-9) {
+        if rest == Rest::Inside || length <= ON_SURFACE * size || height.abs() >= length * (1.0 - OVER_EDGE) {
             return Foot { distance: height, point: p - natural * height, normal: *natural };
         }
         let distance = length.copysign(beyond.unwrap_or(height));
         Foot { distance, point: self.point, normal: offset / distance }
     }
 
-    /// Second derivatives of the signed distance at the point whose foot this is.
+    /// Second derivatives of the signed distance at the point whose foot this is. Just over an edge they are those that it has on the side of
+    /// the surface: on the other side the normal turns at once.
     pub(super) fn hessian(&self, foot: &Foot, rest: Rest) -> Matrix3<f64> {
         let d = foot.distance;
+        let natural = self.du.cross(&self.dv);
+        let aside = foot.normal.cross(&natural).norm_squared();
+        if rest != Rest::Inside && natural != Vec3::zeros() && aside <= 2.0 * OVER_EDGE * natural.norm_squared() {
+            return self.parallel(&foot.normal, d);
+        }
         let across = |n: &Vec3| Matrix3::identity() - n * n.transpose();
         let (tangent, bent) = match rest {
             Rest::Inside => return self.parallel(&foot.normal, d),

@@ -254,6 +254,23 @@ fn on_the_surface_the_hessian_is_that_of_its_curvature() {
 }
 
 #[test]
+fn over_an_edge_the_hessian_is_that_of_the_surface() {
+    for which in [0, 1, 2, 5] {
+        for share in [0.17, 0.4, 0.71] {
+            for (edge, inward) in [([0.0, share], [1e-4, share]), ([share, 0.0], [share, 1e-4])] {
+                let [over, beside] = [edge, inward].map(|[t, share]| {
+                    let on = exact(which, t, share);
+                    let normal = sheet(which).natural_normal(&on).expect("a normal");
+                    sheet(which).foot_and_hessian(&(on + normal * 1e-5)).1
+                });
+                // Beyond the edge the normal turns within that distance.
+                assert!((over - beside).norm() < 0.01 * (1.0 + beside.norm()), "{which} {edge:?}: {over} {beside}");
+            }
+        }
+    }
+}
+
+#[test]
 fn values_without_a_surface_are_degenerate() {
     let Geometry::PolyConic(values) = tube(0.0) else { panic!("a polyconic surface") };
     let kind = GeometryKind::PolyConic;
