@@ -99,7 +99,10 @@ impl Jet {
         let d = foot.distance;
         let natural = self.du.cross(&self.dv);
         let aside = foot.normal.cross(&natural).norm_squared();
-        if rest != Rest::Inside && natural != Vec3::zeros() && aside <= 2.0 * OVER_EDGE * natural.norm_squared() {
+        if rest != Rest::Inside
+            && natural != Vec3::zeros()
+            && aside <= 2.0 * OVER_EDGE * natural.norm_squared()
+        {
             return self.parallel(&foot.normal, d);
         }
         let across = |n: &Vec3| Matrix3::identity() - n * n.transpose();

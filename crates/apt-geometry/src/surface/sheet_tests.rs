@@ -264,7 +264,10 @@ fn over_an_edge_the_hessian_is_that_of_the_surface() {
                     sheet(which).foot_and_hessian(&(on + normal * 1e-5)).1
                 });
                 // Beyond the edge the normal turns within that distance.
-                assert!((over - beside).norm() < 0.01 * (1.0 + beside.norm()), "{which} {edge:?}: {over} {beside}");
+                assert!(
+                    (over - beside).norm() < 0.01 * (1.0 + beside.norm()),
+                    "{which} {edge:?}: {over} {beside}"
+                );
             }
         }
     }

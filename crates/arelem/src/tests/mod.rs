@@ -20,7 +20,7 @@ mod hollow;
 mod properties;
 mod refused;
 mod sculptured;
-mod sheets;
+pub(crate) mod sheets;
 mod tangencies;
 mod turning;
 mod turning_begins;

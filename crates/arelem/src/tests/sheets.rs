@@ -11,7 +11,7 @@ use apt_geometry::{
 
 use super::*;
 
-pub(super) fn ruled(curves: [(Geometry, Vec3, Vec3, Vec3); 2]) -> Geometry {
+pub(crate) fn ruled(curves: [(Geometry, Vec3, Vec3, Vec3); 2]) -> Geometry {
     let parts = curves.into_iter().flat_map(|(surface, start, end, across)| {
         [surface, Geometry::Point(start), Geometry::Point(end), Geometry::Vector(across)]
     });

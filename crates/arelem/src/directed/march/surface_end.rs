@@ -141,10 +141,14 @@ fn is_pushed_back(role: &Working, contact: &Contact) -> bool {
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
 /// end of it; but it goes along that, not out over it or down behind it.
 fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
-    if !ends_below(role, contact) {
-        return is_pushed_back(role, contact);
-    }
-    let edge = role.gauge.surface.edge_at(&above(role, contact).0);
+    let place = if ends_below(role, contact) {
+        above(role, contact).0
+    } else if is_pushed_back(role, contact) {
+        contact.tool
+    } else {
+        return false;
+    };
+    let edge = role.gauge.surface.edge_at(&place);
     let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
     role.gauge.on || out.hypot(behind) > along.dot(path).abs()
@@ -252,5 +256,45 @@ impl March<'_> {
     pub(super) fn surface_ends(&self, SurfaceEnd { role, tip, axis, place }: &SurfaceEnd) -> MotionFailure {
         let remaining = Some(self.watcher.remaining(tip, axis)).filter(|distance| distance.is_finite());
         MotionFailure::SurfaceEnds { role: *role, tip: *tip, place: *place, remaining }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::{
+        Vec3,
+        motion::{NamedSurface, Relation},
+    };
+
+    use super::{is_over, is_pushed_back};
+    use crate::{
+        clearance::Contact,
+        error::RoleName,
+        role::Working,
+        tests::{Program, level, sheets::ruled, v},
+    };
+
+    /// A wall along x, and a tool on the side of y > 0 that is a little inside it just beyond its end, and pushed back.
+    #[test]
+    fn what_is_pushed_back_goes_over_the_end_unless_it_goes_along_it() {
+        let edge = |z: f64| (level(z), v(0.0, 0.0, z), v(2.0, 0.0, z), Vec3::z());
+        let wall = NamedSurface { name: String::new(), geometry: ruled([edge(0.0), edge(1.0)]) };
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]);
+        let mut role = Working::new(&p.state, RoleName::Drive, &wall, Relation::To, false).expect("a wall");
+        role.set_side(role.gauge.surface.signed_distance(&v(1.0, 1.0, 0.5)).signum());
+        // It goes on beyond what it is defined by.
+        let (mut before, mut beyond) = (1.0, 100.0);
+        while beyond - before > 1e-9 {
+            let middle = 0.5 * (before + beyond);
+            let ends = role.gauge.surface.ends_at(&v(middle, 0.0, 0.5));
+            *(if ends { &mut beyond } else { &mut before }) = middle;
+        }
+        let (end, gradient) = (v(before, 0.0, 0.5), v(-0.5, 1.0, 0.0).normalize());
+        let contact = Contact { clearance: -1e-4, gradient, tool: end - gradient * 1e-4, surface: end };
+        assert!(is_pushed_back(&role, &contact));
+        for (path, goes_over) in [(Vec3::z(), false), (Vec3::x(), true), (v(2.0, 0.0, 1.0), true)] {
+            assert_eq!(is_over(&role, &contact, &path), goes_over, "{path:?}");
+        }
     }
 }

@@ -196,8 +196,7 @@ impl Turning<'_> {
         // The tool end moves by the way, the normal turns: nowhere is it lower than this.
         let lowest_height =
             a.height.min(b.height) - 0.5 * (b.x - a.x) * (1.0 + rate * a.distance.max(b.distance));
-        2.0 * rate - rate * rate * lowest_height
-            + self.reach * (turn - swing).norm() * (rate + swing.norm())
+        2.0 * rate - rate * rate * lowest_height + self.reach * (turn - swing).norm() * (rate + swing.norm())
     }
 
     /// The same from the points of the tool, none of which is lower than the lowest: as the normal turns, their heights bend down, by as much as
