@@ -2,11 +2,19 @@
 
 use std::f64::consts::TAU;
 
-use apt_geometry::{Vec3, cutter::Profile, surface::perpendicular};
+use apt_geometry::{
+    Vec3,
+    cutter::Profile,
+    surface::{Body, Limit, perpendicular},
+};
 
 use super::{Circle, End, Pose};
 use crate::clearance::{Contact, Tool, crease::nearest_on_way, waves::length};
 
+/// How many parts of a surface are looked at before it is looked whether one of its places comes near to an end of the tool, and where, as shares
+/// of that end, places nearest to its axis are.
+const FEW_LOOKS: u32 = 40;
+const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 /// Share of the flank's height up to which a contact counts as one on its lower edge.
 const NEAR_EDGE: f64 = 1e-6;
 
@@ -238,7 +246,27 @@ impl Pose<'_> {
     /// A distance of all of the surface from an end of the tool, if it is known not to be below a given one.
     pub(super) fn apart_of(&self, end: End, distance: f64) -> Option<f64> {
         let away = |place: &Vec3| self.away_from(end, &(place - self.tip));
-        self.surface.keeps_apart(&away, distance, self.tool.patience)
+        let body = Body { away: &away, within: None };
+        let few = Limit { looks: FEW_LOOKS, patience: self.tool.patience };
+        self.surface.keeps_off_body(body, distance, few).or_else(|| {
+            // What comes near cannot be told from what takes many looks but by the place that does.
+            let is_near = self.comes_near(end, distance);
+            if is_near { None } else { self.surface.keeps_apart(&away, distance, self.tool.patience) }
+        })
+    }
+
+    /// Whether one of some places of the surface is nearer to an end of the tool than a distance: those nearest to places of its axis.
+    fn comes_near(&self, end: End, distance: f64) -> bool {
+        let [low, high] = match end {
+            End::Above(from) => [from, self.tool.profile.top.height],
+            End::Below(to) => [0.0, to],
+            End::Behind(_) => return false,
+        };
+        PLACES.into_iter().any(|share| {
+            let place = self.tip + self.tool.axis * (low + share * (high - low));
+            let foot = self.surface.foot(&place).point;
+            self.away_from(end, &(foot - self.tip)).0 < distance
+        })
     }
 
     /// Whether all of the surface keeps a distance from an end of the tool while that moves straight to another place.

@@ -301,7 +301,7 @@ impl Course<'_, '_> {
 
     /// For which places a bound of the bend is needed on the stretch between two samples.
     fn ask(&self, a: &Sample, b: &Sample) -> Asked<'_> {
-        let Line { sweep, role, .. } = self.line;
+        let Line { sweep, role, ledger, .. } = self.line;
         // Along its generators a surface does not change, so that only the way across them counts.
         let across = match role.gauge.surface.generator() {
             Some(generator) if role.gauge.on || !sweep.turns() => sweep.direction.cross(&generator).norm(),
@@ -318,7 +318,7 @@ impl Course<'_, '_> {
         for _ in 0..nears {
             // What is too far to come into contact with the way of the farthest point that counts does not count.
             let way = way_of(reach);
-            let near = role.gauge.reach_within(&tool, &tip, farthest(way) + 0.5 * way);
+            let near = ledger.reach_within(&role.gauge, &tool, &tip, farthest(way) + 0.5 * way);
             if near >= reach {
                 break;
             }

@@ -14,6 +14,9 @@ const FORESIGHT_BY_QUADRIC: f64 = 16.0;
 const FORESIGHT_BY_CHART: f64 = 24.0;
 /// How many times as far as asked for a bound reaches, at least, that is made anew where it does not decide: more than the foresight.
 const LOOSE: f64 = 32.0;
+/// How many times the distance asked for it is told what of a tool is within it, and for which share of that it is told anew.
+const WIDER: f64 = 2.0;
+const MUCH_NEARER: f64 = 0.125;
 /// How far from where there was no such bound none is asked for, relative to how far that was to reach.
 const CRAMPED: f64 = 0.5;
 
@@ -72,6 +75,15 @@ impl Gap {
     }
 }
 
+/// At a place no point of the tool that is farther than `reach` from its end is within a distance of the surface.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    tip: Vec3,
+    axis: Vec3,
+    distance: f64,
+    reach: f64,
+}
+
 /// A level that the clearance at a place is not below.
 #[derive(Debug, Clone, Copy)]
 struct Level {
@@ -89,6 +101,7 @@ pub(crate) struct Ledger {
     cramped: Cell<Option<Vec3>>,
     /// Where a bound for all of the tool was of no use when one was last asked for.
     useless: Cell<Option<Vec3>>,
+    reach: Cell<Option<Reach>>,
     /// The last two: where a vector begins and where it ends.
     levels: Cell<[Option<Level>; 2]>,
 }
@@ -103,6 +116,24 @@ impl Ledger {
     /// Notes of what use a bound was.
     pub(super) fn note_use(&self, tip: &Vec3, is_of_use: bool) {
         self.useless.set((!is_of_use).then_some(*tip));
+    }
+
+    /// No point of the tool that may be within a distance of the surface is farther than this from its end. It is told of a greater distance than
+    /// asked for, and so for other positions about, too, but for much shorter distances.
+    pub(super) fn reach_within(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, distance: f64) -> f64 {
+        let (reach, distance) = (gauge.reach(tool), distance.max(0.0));
+        let about = About { tool, tip, spread: 0.0, reach };
+        let tells = |known: &Reach| {
+            distance >= MUCH_NEARER * known.distance
+                && distance + about.moved(&known.tip, &known.axis) <= known.distance
+        };
+        if let Some(known) = self.reach.get().filter(tells) {
+            return known.reach;
+        }
+        let distance = WIDER * distance;
+        let reach = gauge.reach_within(tool, tip, distance);
+        self.reach.set(Some(Reach { tip: *tip, axis: tool.axis, distance, reach }));
+        reach
     }
 
     /// The bound for stretches that are shorter by a ratio, if one is known without a search.
