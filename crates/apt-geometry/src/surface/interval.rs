@@ -119,7 +119,6 @@ impl Box3 {
         Vector3::new(far(0), far(1), far(2)).norm()
     }
 
-    /// Greatest length.
     /// No vector has a longer part across a unit direction.
     pub(super) fn across(&self, along: &Vec3) -> f64 {
         let middle = Vec3::from(self.0.map(Interval::middle));
@@ -127,6 +126,7 @@ impl Box3 {
         (middle - along * middle.dot(along)).norm() + beside.norm()
     }
 
+    /// Greatest length.
     pub(super) fn length(&self) -> f64 {
         Vector3::from(self.0.map(Interval::magnitude)).norm()
     }

@@ -9,13 +9,13 @@ use std::sync::{Arc, OnceLock};
 mod bounds;
 mod ends;
 mod rays;
+mod strip;
 
-use self::bounds::ranges;
+use self::strip::Strip;
 use super::{
     Chart, Place, Surface,
     apart::Apart,
-    interval::Interval,
-    part::{Count, Later, Part, Summary},
+    part::Count,
     perpendicular,
     section_curve::{CurvePoint, SectionCurve},
     sheet::{Jet, Landing, ON_SURFACE, Rest},
@@ -54,22 +54,6 @@ struct Piece {
     from: f64,
     width: f64,
     curves: [Quintic; 2],
-}
-
-/// All rulings of a range of the parameter, between two shares along them.
-#[derive(Debug, Clone, PartialEq)]
-struct Strip {
-    piece: usize,
-    range: [f64; 2],
-    shares: [f64; 2],
-    /// The middle ruling: a point and the way to its other end.
-    middle: [Vec3; 2],
-    /// No point of the strip is farther from its middle ruling.
-    radius: f64,
-    /// The curvature of a leaf.
-    part: Later<Box<Part>>,
-    /// That of all leaves below, once all of them are known.
-    summary: Later<Summary>,
 }
 
 /// A ruled surface ready for distance questions: `E(t) + v·(F(t) − E(t))`.
@@ -248,75 +232,6 @@ impl RuledSheet {
             }
         }
         greatest
-    }
-
-    /// A heap-ordered tree over ranges; a leaf keeps its own range and piece.
-    fn tree(&self, ranges: &[(usize, [f64; 2])], shares: [f64; 2]) -> Vec<Strip> {
-        let leaves = ranges.len().next_power_of_two();
-        let empty = Strip {
-            piece: usize::MAX,
-            range: [0.0; 2],
-            shares,
-            middle: [Vec3::zeros(); 2],
-            radius: f64::NEG_INFINITY,
-            part: Later::new(),
-            summary: Later::new(),
-        };
-        let mut nodes = vec![empty.clone(); leaves - 1];
-        nodes.extend(ranges.iter().map(|&(piece, range)| self.strip(piece, range, shares)));
-        nodes.resize(2 * leaves - 1, empty);
-        for node in (0..leaves - 1).rev() {
-            if let (Some(a), Some(b)) = (nodes.get(2 * node + 1), nodes.get(2 * node + 2)) {
-                nodes[node] = self.joined(a, b, shares);
-            }
-        }
-        nodes
-    }
-
-    fn strip(&self, piece: usize, range: [f64; 2], shares: [f64; 2]) -> Strip {
-        let middle = 0.5 * (range[0] + range[1]);
-        let ends = shares.map(|v| self.jet(piece, middle, v).point);
-        let mut radius: f64 = 0.0;
-        if let Some(curves) = self.pieces.get(piece) {
-            // Along a ruling distances from its place on the middle ruling are greatest at an end.
-            for v in shares {
-                let [places, ..] =
-                    ranges(curves, middle, 0.5 * (range[1] - range[0]), |e, f| e + (f - e) * v);
-                radius = radius.max(Vec3::from(places.0.map(Interval::radius)).norm());
-            }
-        }
-        let radius = radius + 1e-13 * self.size;
-        Strip {
-            piece,
-            range,
-            shares,
-            middle: [ends[0], ends[1] - ends[0]],
-            radius,
-            part: Later::new(),
-            summary: Later::new(),
-        }
-    }
-
-    /// Two neighbouring strips about the ruling between them. Points at the same share of two rulings are farthest apart
-    /// at an end.
-    fn joined(&self, a: &Strip, b: &Strip, shares: [f64; 2]) -> Strip {
-        if b.piece == usize::MAX {
-            return a.clone();
-        }
-        let ends = shares.map(|v| self.jet(b.piece, b.range[0], v).point);
-        let reach = |strip: &Strip| {
-            let [start, along] = strip.middle;
-            strip.radius + (start - ends[0]).norm().max((start + along - ends[1]).norm())
-        };
-        Strip {
-            piece: b.piece,
-            range: [a.range[0], b.range[1]],
-            shares,
-            middle: [ends[0], ends[1] - ends[0]],
-            radius: reach(a).max(reach(b)),
-            part: Later::new(),
-            summary: Later::new(),
-        }
     }
 
     /// The share along a ruling that is nearest to a point, and whether it is at a limit.
@@ -540,17 +455,6 @@ impl RuledSheet {
     /// Greatest absolute value of a principal curvature between the two curves, 1/length.
     pub fn greatest_curvature(&self) -> f64 {
         self.curvature
-    }
-}
-
-impl Strip {
-    /// No point of the strip is nearer than this.
-    fn bound(&self, p: &Vec3) -> f64 {
-        let [start, along] = &self.middle;
-        let w = p - start;
-        let square = along.norm_squared();
-        let x = if square > 0.0 { (w.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        (w - along * x).norm() - self.radius
     }
 }
 

@@ -6,7 +6,8 @@ use super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
         part::{Count, Enclose, Enclosure, Part, Rectangle, Summary, Survey},
     },
-    Piece, RuledSheet, Strip,
+    Piece, RuledSheet,
+    strip::Strip,
 };
 use crate::Vec3;
 
