@@ -126,6 +126,12 @@ impl Posture<'_> {
         self.with_turning(gauge, tip, gauge.contact_passing(&self.tool, tip))
     }
 
+    /// [`Gauge::contact_passing_followed`] with the gradient of the law.
+    pub(crate) fn contact_passing_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
+        let (contact, is_found) = gauge.contact_passing_followed(&self.tool, tip);
+        (self.with_turning(gauge, tip, contact), is_found)
+    }
+
     /// The contact where the last one leads, and whether it is known to be the nearest.
     pub(crate) fn contact_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
         let (contact, is_nearest) = gauge.contact_followed(&self.tool, tip);

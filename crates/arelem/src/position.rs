@@ -338,7 +338,11 @@ fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3, manne
                 (contact.clearance - target, contact.gradient)
             }
             Condition::Passing(gauge, target) => {
-                let contact = posture.contact_passing(gauge, tip);
+                let (contact, is_found) = match manner {
+                    Manner::Proven => (posture.contact_passing(gauge, tip), true),
+                    Manner::Followed => posture.contact_passing_followed(gauge, tip),
+                };
+                rows.is_proven &= is_found;
                 rows.contacts[k] = Some(contact);
                 (contact.clearance - target, contact.gradient)
             }

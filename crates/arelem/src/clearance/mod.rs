@@ -117,20 +117,33 @@ impl Gauge {
     /// The contact near the last one where that is proven, else as it is found where nothing need be proven: another point of the
     /// tool may be nearer. For places that are only passed through.
     pub(crate) fn contact_passing(&self, tool: &Tool, tip: &Vec3) -> Contact {
+        self.passing(tool, tip, false).0
+    }
+
+    /// The same where the last one leads, if it leads anywhere, and whether it is what is found, too.
+    pub(crate) fn contact_passing_followed(&self, tool: &Tool, tip: &Vec3) -> (Contact, bool) {
+        self.passing(tool, tip, true)
+    }
+
+    fn passing(&self, tool: &Tool, tip: &Vec3, follows: bool) -> (Contact, bool) {
         if self.on || !self.surface.has_charts() {
-            return self.contact(tool, tip);
+            return (self.contact(tool, tip), true);
         }
-        let Self { side, thickness, .. } = self;
+        let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
         let surface = self.met(&tool);
-        let followed = || match near::contact(&tool, surface, *side, &tip, &self.memory) {
-            Followed::Proven(contact, _) => Some(contact),
-            Followed::Likely(..) | Followed::Lost => None,
-        };
-        let found = closed_form::contact(&tool, surface, *side, &tip)
-            .or_else(followed)
-            .unwrap_or_else(|| search::found(&tool, Face { surface, side: *side }, &tip));
-        Contact { clearance: found.clearance - thickness, ..found }
+        let level = |contact: Contact| Contact { clearance: contact.clearance - thickness, ..contact };
+        if let Some(contact) = closed_form::contact(&tool, surface, *side, &tip) {
+            return (level(contact), true);
+        }
+        match near::contact(&tool, surface, *side, &tip, memory) {
+            Followed::Proven(contact, _) => return (level(contact), true),
+            Followed::Likely(_, contact) if follows => return (level(contact), false),
+            Followed::Likely(..) | Followed::Lost => {}
+        }
+        let found = search::found(&tool, Face { surface, side: *side }, &tip);
+        near::remember(&tool, surface, *side, &tip, memory, &found);
+        (level(found), true)
     }
 
     /// The contact where the last one leads, and whether it is known to be the nearest: that is shown only where it is done at once, or where no
