@@ -20,6 +20,8 @@ const MOST_LENGTHENINGS: u32 = 8;
 const MUCH_LONGER: f64 = 1.2;
 /// Share of the length that the next trial has at least.
 const GREATEST_SHRINKING: f64 = 0.3;
+/// Greatest change of the length that is led to, by the length, from which it is foreseen: beyond that the bend changes for another reason.
+const STEEPEST: f64 = 0.5;
 /// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
 const LEAST_LEVEL: f64 = 0.1;
 
@@ -67,7 +69,7 @@ impl Search {
             || trial.length >= self.cap * (1.0 - 1e-6)
             || self.corners.is_met
             || self.is_lengthened(length);
-        let next = (length * (growth * AIM).min(GREATEST_GROWTH)).min(self.cap);
+        let next = (length * (self.foreseen(growth) * AIM).min(GREATEST_GROWTH)).min(self.cap);
         if self.best.as_ref().is_none_or(|(best, _)| trial.length > best.length) {
             self.best = Some((trial, length));
         }
@@ -80,6 +82,21 @@ impl Search {
         self.lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
         self.length = if next_is_bad { 0.5 * (length + self.shortest_bad) } else { next };
         true
+    }
+
+    /// The growth to the length that needs no more of it. Where the bend changes along the vector, the growth of a longer one leads on from what that of the last one
+    /// led to: by the line through both.
+    fn foreseen(&self, growth: f64) -> f64 {
+        let length = self.length;
+        let Some((before, shorter)) = self.best.as_ref().filter(|(trial, _)| trial.growth < GREATEST_GROWTH)
+        else {
+            return growth;
+        };
+        if growth >= GREATEST_GROWTH || *shorter >= length {
+            return growth;
+        }
+        let slope = (length * growth - shorter * before.growth) / (length - shorter);
+        if slope <= 0.0 || slope > STEEPEST { growth } else { (growth - slope) / (1.0 - slope) }
     }
 
     /// Whether enough has been tried to find a longer one than that of a length.
