@@ -2,7 +2,7 @@
 //!
 //! The two curves are kept as quintic pieces that pass through their points with slope and curvature. Rulings go on
 //! beyond the curves, and the curves straight beyond their ends, for [`RULED_BEYOND`] times their length, but not to where
-//! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by its middle ruling.
+//! neighbouring rulings meet. The nearest point is found over a tree of strips, each bounded by a box about its middle ruling.
 
 use std::sync::{Arc, OnceLock};
 

@@ -47,9 +47,9 @@ struct Plate {
 
 /// Where a piece of a strip is at one end of the middle ruling: the way from there to its middle, how far it reaches from that in some
 /// directions, and besides.
-struct Held<'a> {
+struct Held {
     middle: Vec3,
-    ways: &'a [Vec3],
+    ways: [Vec3; 3],
     besides: f64,
 }
 
@@ -63,14 +63,14 @@ impl Plate {
     };
 
     /// About a ruling, with a direction that is to lie in it. Between the ends of the ruling places are between those there.
-    fn holding(along: &Vec3, wanted: &Vec3, held: &[Held<'_>]) -> Self {
+    fn holding(along: &Vec3, wanted: &Vec3, held: &[Held]) -> Self {
         let length = along.norm();
         let ruling = along.try_normalize(0.0).unwrap_or_else(Vec3::x);
         let aside = (wanted - ruling * wanted.dot(&ruling)).try_normalize(0.0);
         let aside = aside.unwrap_or_else(|| perpendicular(&ruling));
         let frame = [ruling, aside, ruling.cross(&aside)];
         let reach = |unit: &Vec3| {
-            let far = |held: &Held<'_>| {
+            let far = |held: &Held| {
                 let ways: f64 = held.ways.iter().map(|way| way.dot(unit).abs()).sum();
                 held.middle.dot(unit).abs() + ways + held.besides
             };
@@ -92,7 +92,7 @@ impl Plate {
         Vec3::from(outside.map(|far| far.max(0.0))).norm()
     }
 
-    /// Its sides, each half as long as it is wide in that direction beyond the ruling.
+    /// How far it reaches from places of the ruling, in each direction of its frame.
     fn sides(&self) -> [Vec3; 3] {
         let [ruling, aside, across] = self.frame;
         [ruling * self.beyond, aside * self.wide, across * self.thick]
@@ -147,17 +147,13 @@ impl RuledSheet {
             for (v, jet) in shares.into_iter().zip([&first, &last]) {
                 let [places, _, bent] = ranges(curves, middle, half, |e, f| e + (f - e) * v);
                 radius = radius.max(places.farthest(&jet.point));
-                held.push((jet.du * half, 0.5 * bent.length() * half * half + rounding));
+                held.push(Held {
+                    middle: Vec3::zeros(),
+                    ways: [jet.du * half, Vec3::zeros(), Vec3::zeros()],
+                    besides: 0.5 * bent.length() * half * half + rounding,
+                });
             }
         }
-        let held: Vec<_> = held
-            .iter()
-            .map(|(way, besides)| Held {
-                middle: Vec3::zeros(),
-                ways: std::slice::from_ref(way),
-                besides: *besides,
-            })
-            .collect();
         let plate = Plate::holding(&along, &(first.du + last.du), &held);
         Strip {
             piece,
@@ -186,9 +182,10 @@ impl RuledSheet {
         };
         let along = ends[1] - ends[0];
         let rounding = ROUNDING * self.size;
-        let sides = [a, b].map(|strip| strip.plate.sides());
-        let held = [(a, &sides[0]), (b, &sides[1])]
-            .map(|(strip, ways)| from(strip).map(|middle| Held { middle, ways, besides: rounding }));
+        let held = [a, b].map(|strip| {
+            let ways = strip.plate.sides();
+            from(strip).map(|middle| Held { middle, ways, besides: rounding })
+        });
         let wanted = [a, b].map(|strip| strip.middle[0] * 2.0 + strip.middle[1]);
         Strip {
             piece: b.piece,

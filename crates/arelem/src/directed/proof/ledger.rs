@@ -101,6 +101,7 @@ pub(crate) struct Ledger {
     cramped: Cell<Option<Vec3>>,
     /// Where a bound for all of the tool was of no use when one was last asked for.
     useless: Cell<Option<Vec3>>,
+    /// What of the tool was near by when that was last asked.
     reach: Cell<Option<Reach>>,
     /// The last two: where a vector begins and where it ends.
     levels: Cell<[Option<Level>; 2]>,
