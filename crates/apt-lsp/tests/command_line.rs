@@ -56,6 +56,30 @@ fn exit_codes_tell_clean_findings_and_unusable() {
 }
 
 #[test]
+fn an_option_that_would_do_nothing_is_refused() {
+    let folder = Folder::new("misplaced");
+    folder.write("good.apt", GOOD);
+    for (arguments, says) in [
+        (
+            &["--dialect", "apt4", "run", "good.apt"][..],
+            "`--dialect` stands behind the command: `apt-lsp run --dialect …`",
+        ),
+        (
+            &["--format", "json", "check", "good.apt"],
+            "`--format` stands behind the command: `apt-lsp check --format …`",
+        ),
+        (&["--severity", "APT0951=off", "tree", "good.apt"], "`--severity` stands behind the command"),
+        (&["--no-motion", "explain", "APT0951"], "`--no-motion` does not go with `explain`"),
+        (&["--stdio", "--dialect", "apt4"], "`--dialect` goes with `--check` or a command"),
+        (&["--deny-warnings"], "`--deny-warnings` goes with `--check` or a command"),
+    ] {
+        let ran = folder.run(arguments);
+        assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{arguments:?}: {ran:?}");
+        assert!(ran.stderr.contains(says), "{arguments:?}: {}", ran.stderr);
+    }
+}
+
+#[test]
 fn people_get_excerpts_and_a_count() {
     let folder = Folder::new("human");
     folder.write("bad.apt", BAD);

@@ -18,9 +18,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches};
 
-use self::arguments::{Arguments, Command};
+use self::arguments::{Arguments, CheckOptions, Command};
 use self::console::Console;
 use crate::analysis::Language;
 
@@ -43,7 +44,7 @@ impl From<Outcome> for ExitCode {
 
 /// Does what the arguments of the process say.
 pub(crate) fn main(language: Arc<dyn Language>) -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = typed();
     if arguments.command.is_none() && !arguments.check {
         return crate::server::run(language);
     }
@@ -57,6 +58,40 @@ pub(crate) fn main(language: Arc<dyn Language>) -> ExitCode {
             Outcome::Unusable.into()
         }
     }
+}
+
+/// What was typed; what cannot be understood, and options that would do nothing, end the process with a message.
+fn typed() -> Arguments {
+    let matches = Arguments::command().get_matches();
+    let arguments = Arguments::from_arg_matches(&matches)
+        .unwrap_or_else(|error| error.format(&mut Arguments::command()).exit());
+    if !arguments.check
+        && let Some(message) = misplaced(&matches)
+    {
+        Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
+    }
+    arguments
+}
+
+/// Why an option of `--check` that was typed without it would do nothing.
+fn misplaced(matches: &ArgMatches) -> Option<String> {
+    let definition = Arguments::command();
+    let typed = CheckOptions::augment_args(clap::Command::new("check"))
+        .get_arguments()
+        .find(|option| matches.value_source(option.get_id().as_str()) == Some(ValueSource::CommandLine))
+        .cloned()?;
+    let option = typed.get_long().unwrap_or_default();
+    let Some(command) = matches.subcommand_name() else {
+        return Some(format!(
+            "`--{option}` goes with `--check` or a command; the server takes its settings from the editor"
+        ));
+    };
+    let takes = |one: &clap::Arg| one.get_long() == Some(option);
+    if !definition.find_subcommand(command).is_some_and(|call| call.get_arguments().any(takes)) {
+        return Some(format!("`--{option}` does not go with `{command}`"));
+    }
+    let value = if typed.get_action().takes_values() { " …" } else { "" };
+    Some(format!("`--{option}` stands behind the command: `apt-lsp {command} --{option}{value}`"))
 }
 
 fn dispatch(arguments: Arguments, console: &Console, language: &dyn Language) -> Outcome {
