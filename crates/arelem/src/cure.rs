@@ -110,7 +110,7 @@ pub struct Patience(u32);
 
 /// What may be spent in any case, and how many times what the failed motion took more.
 const LEAST_PATIENCE: u32 = 15_000;
-const MORE_PATIENCE: u32 = 4;
+const MORE_PATIENCE: u32 = 2;
 
 impl Patience {
     /// For the cures of a motion that asked so often whether to go on before it failed.

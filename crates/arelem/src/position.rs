@@ -1,6 +1,9 @@
 //! Positioning on one, two or three surfaces (CENTR, CENTR2, GAUSS): Newton's method on the clearances with their
 //! analytic gradients, taking the shortest correction when there are fewer than three surfaces.
 
+#[cfg(test)]
+mod tests;
+
 use std::cell::Cell;
 
 use apt_geometry::Vec3;
@@ -21,6 +24,8 @@ const RESOLUTION: f64 = 1e-13;
 const ACCEPTABLE: f64 = 1e-10;
 /// Determinant of unit normals below which they are dependent.
 const DEPENDENT: f64 = 1e-10;
+/// Share of the residual that is left by a correction which hardly helps.
+const HARDLY: f64 = 0.5;
 /// Damping of the normal equations when the normals are dependent.
 const DAMPING: f64 = 1e-6;
 
@@ -213,7 +218,8 @@ impl Search<'_> {
             }
             let step = correction(&rows);
             let bounds = (halvings, manner);
-            let improved = self.improve((&tip, &rows), &step, bounds).or_else(|| {
+            let improved = self.improve((&tip, &rows), &step, bounds);
+            let improved = self.between_contacts((&tip, &rows), &step, improved, manner).or_else(|| {
                 // What has room in its band need not stay where it is in that.
                 let wrong = self.wrong_alone(&rows)?;
                 let step = correction(&wrong);
@@ -235,6 +241,28 @@ impl Search<'_> {
             return (Ok(Solution { tip, corrections, contacts: rows.contacts }), rows.is_proven);
         }
         unsolved(Unsolved { residual, row, tip, iterations: corrections })
+    }
+
+    /// What a correction has led to, or, where that hardly helped, what leads to the contact before it and to the one after it at once, if that does
+    /// help: a tool that lies between two walls would be led from one to the other and back.
+    fn between_contacts(
+        &self,
+        (tip, rows): (&Vec3, &Rows),
+        step: &Vec3,
+        improved: Option<(Vec3, Rows)>,
+        manner: Manner,
+    ) -> Option<(Vec3, Rows)> {
+        let left = improved.map_or(rows.greatest().0, |(_, next)| next.greatest().0);
+        if left < HARDLY * rows.greatest().0 {
+            return improved;
+        }
+        let both = self.with_contact_ahead(*rows, tip, step, manner);
+        let between = both.and_then(|both| {
+            let next = tip + correction(&both);
+            let next_rows = self.evaluate(&next, manner);
+            (next_rows.greatest().0 < HARDLY * left).then_some((next, next_rows))
+        });
+        between.or(improved)
     }
 
     /// The first of the step and its halves that reduces the greatest residual.
