@@ -54,6 +54,8 @@ impl Budget {
 /// A motion that takes longer tells where the time goes; that decides nothing. With `APT_SILENT` one tells, too, that asks longer than so
 /// many microseconds not whether to go on.
 const LONG: Duration = Duration::from_secs(1);
+/// Positions of a sequence that is not proven that are shown.
+const SHOWN: usize = 12;
 
 /// What became of a motion.
 #[derive(Debug, Clone)]
@@ -313,8 +315,15 @@ impl Runner {
             }
             Err(error) => format!("{error:?}"),
         };
-        Some(Fault::Wrong(format!("{} vectors: {words}", sequence.points.len())))
+        Some(Fault::Wrong(format!("{} vectors: {words} {}", sequence.points.len(), positions(sequence))))
     }
+}
+
+/// The first positions of a sequence, in short.
+fn positions(sequence: &CutSequence) -> String {
+    let all = std::iter::once(&sequence.start).chain(&sequence.points).take(SHOWN);
+    let triple = |v: &Vec3| format!("({:.5} {:.5} {:.5})", v.x, v.y, v.z);
+    all.map(|p| format!("{}{}", triple(&p.tip), triple(&p.axis))).collect::<Vec<_>>().join(" ")
 }
 
 /// Why a sequence is not proven.

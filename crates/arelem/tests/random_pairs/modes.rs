@@ -33,8 +33,6 @@ const ANGLES: [f64; 2] = [3.0, 20.0];
 const LEADS: f64 = 0.8;
 /// How far the next fixed axis may be from the last one, degrees.
 const FARTHEST: f64 = 25.0;
-/// Positions of a sequence that is not proven that are shown.
-const SHOWN: usize = 12;
 /// Shapes that touch a surface under them at the corner: there the angles hold.
 const CORNERED: [&str; 6] = ["ball", "flat", "bull nose", "tapered", "line", "needle"];
 
@@ -160,7 +158,7 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
         match runner.fault(sequence) {
             Some(Fault::Slow(vectors)) => return Verdict::Slow(format!("verifier, {vectors} vectors")),
             Some(Fault::Wrong(words)) => {
-                return Verdict::Wrong(format!("{:?}: {words} {}", turning.mode, positions(sequence)));
+                return Verdict::Wrong(format!("{:?}: {words}", turning.mode));
             }
             None => {}
         }
@@ -177,13 +175,6 @@ pub(crate) fn judge(turning: &Turning) -> Verdict {
         Ok(()) => Verdict::Proven(runner.sequences.iter().map(|s| s.points.len()).sum()),
         Err(failure) => refused(turning, &runner, &failure),
     }
-}
-
-/// The first positions of a sequence, in short.
-fn positions(sequence: &CutSequence) -> String {
-    let all = std::iter::once(&sequence.start).chain(&sequence.points).take(SHOWN);
-    let triple = |v: &Vec3| format!("({:.5} {:.5} {:.5})", v.x, v.y, v.z);
-    all.map(|p| format!("{}{}", triple(&p.tip), triple(&p.axis))).collect::<Vec<_>>().join(" ")
 }
 
 /// Where the axis is not what its law says.
