@@ -73,11 +73,12 @@ fn disc_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
 /// strays farther than `spread` from its place for the given tool end. There is none once the tool's patience is over, asked once in
-/// [`BOXES_A_QUESTION`] boxes; `None` where it is greater than what `is_of_use` takes.
+/// [`BOXES_A_QUESTION`] boxes; `None` where it is greater than what `is_of_use` takes, as places of the tool that are likely to be in
+/// contact mostly tell at once.
 pub(crate) fn upward_bend(
     gauge: &Gauge,
     tool: &Tool,
-    tip: &Vec3,
+    (tip, likely): (&Vec3, &[Vec3]),
     spread: f64,
     range: [f64; 2],
     is_of_use: &dyn Fn(f64) -> bool,
@@ -102,6 +103,10 @@ pub(crate) fn upward_bend(
     let close = if surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
+    let within = Within { surface, side: gauge.side, tool, tip, corner: corner.as_ref(), spread, range };
+    if likely.iter().filter_map(|place| within.bend_at(place)).any(|least| !is_of_use(least)) {
+        return None;
+    }
     let mut is_probed = false;
     while let Some(cell) = cells.pop() {
         seen += 1;
@@ -178,6 +183,42 @@ pub(crate) fn upward_bend(
         }
     }
     Some(Bend::AtMost(greatest))
+}
+
+/// A tool beside a surface, whose points stray no farther from their places than a spread, and count within a range of distances.
+struct Within<'a> {
+    surface: &'a Surface,
+    side: f64,
+    tool: &'a Tool<'a>,
+    tip: &'a Vec3,
+    corner: Option<&'a Circle>,
+    spread: f64,
+    range: [f64; 2],
+}
+
+impl Within<'_> {
+    /// What a bound for all of the tool is at least, for a point of it, if that counts; what a round corner holds counts with the centre of its
+    /// ball there.
+    fn bend_at(&self, place: &Vec3) -> Option<f64> {
+        let Self { surface, side, tool, tip, spread, range, .. } = *self;
+        let mut foot = surface.foot(place);
+        let (mut center, mut ball) = (*place, 0.0);
+        if let Some(corner) = self.corner.filter(|_| is_at_corner(tool, &(place - tip))) {
+            let (_, _, radial) = tool.split(&(place - tip));
+            ball = corner.ball;
+            center = tip + tool.axis * corner.height + radial * corner.radius;
+            foot = surface.foot(&center);
+        }
+        let distance = side * foot.distance;
+        let [lowest, highest] = range.map(|distance| distance + ball);
+        if distance - spread > highest || distance + spread < lowest {
+            return None;
+        }
+        match surface.bend(side, &foot, &Region { center, radius: spread, lowest, highest }, tool.patience) {
+            Bend::AtMost(bend) => Some(bend),
+            Bend::Unbounded => None,
+        }
+    }
 }
 
 /// The balls of a round corner, if they are all in the tool and hold what of it is neither above the corner nor nearer to the

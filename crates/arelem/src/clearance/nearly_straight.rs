@@ -3,6 +3,10 @@
 //!
 //! Where all forms S of the surface about are at most `μ I + b (I − t tᵀ)`, so are `S (1 − d S)⁻¹` at a distance d with
 //! `μ/(1 − d μ)` along t and `(μ + b)/(1 − d (μ + b))` across it, for that grows with S.
+//!
+//! Which places are about: where distances d > 0 bend downward by no more than `B`, nearest places do not jump, for a lesser one of two distances is
+//! bent without bound where they meet; and `I − d H` with `−B ≤ H ≤ 1/d`, which takes moves of a place to those of its nearest one, makes none
+//! longer than `1 + d B` times.
 
 use apt_geometry::{
     Vec3,
@@ -36,15 +40,20 @@ impl Course {
         let Face { surface, side } = face;
         let stock = surface.stock(side);
         let distance = base.distance + stock;
-        // No foot of a place within reach is farther away.
-        let feet = distance.abs() + 2.0 * reach;
+        // No foot of a place within reach is farther from the place, nor, where all of these are outside, from its foot.
+        let (feet, beside) = (distance.abs() + 2.0 * reach, reach * (1.0 + (distance + reach) * bend));
+        let (center, within) = if distance > reach && beside < feet {
+            (base.place - base.gradient * distance, beside)
+        } else {
+            (base.place, feet)
+        };
         let asked = Lengthwise {
             along: *along,
             least: SHARES.map(|share| share * bend),
             enough: bend,
             most: MOST_ACROSS * bend,
         };
-        let (least, across) = surface.curvature_across(side, &base.place, feet, asked, tool.patience)?;
+        let (least, across) = surface.curvature_across(side, &center, within, asked, tool.patience)?;
         let deepest = (distance + reach).max(0.0);
         let [least, most] = [least, least + across].map(|curvature| curvature / (1.0 - deepest * curvature));
         let is_bounded = deepest * (least + across) < 1.0;

@@ -290,7 +290,7 @@ impl<'a> Watcher<'a> {
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
                 if let Some(Bend::AtMost(bend)) =
-                    upward_bend(&gauge, &tool, &middle, 0.5 * way, range, &|_| true)
+                    upward_bend(&gauge, &tool, (&middle, &[]), 0.5 * way, range, &|_| true)
                 {
                     let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;

@@ -13,8 +13,6 @@ use crate::{Vec3, patience::Patience};
 const PSEUDO_INVERSE: f64 = std::f64::consts::SQRT_2;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
 const FINE: f64 = 1.0 / 32.0;
-/// Parts and their halves that are looked at for a cylinder along a line: a somewhat closer one does not make up for more of them.
-const MAX_PARTS_ACROSS: u32 = 300;
 /// How many forms are one unit of work where they are compared.
 const FORMS_A_UNIT: usize = 8;
 /// Error of forms, as a share of them, that tells how a surface bends along a line that is nearly straight on it.
@@ -346,8 +344,7 @@ impl Part {
             survey.counts(WORK_OF_PART);
         }
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
-        let most = if matches!(survey.forms, Forms::Across(..)) { MAX_PARTS_ACROSS } else { MAX_PARTS };
-        let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= most;
+        let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         match survey.forms.take(form.as_deref(), &self.center, survey.side, is_fine) {
             Taken::Whole => {}
             Taken::Halves => self.survey_halves(sheet, survey, depth),

@@ -91,6 +91,8 @@ struct Asked<'a> {
     spread: f64,
     /// No such point is farther from the tool end.
     reach: f64,
+    /// The points that are in contact at both ends, taken along to the middle.
+    likely: [Vec3; 2],
     /// Least and greatest distance from the surface of what may be in contact.
     range: [f64; 2],
     /// Of a point of the tool across the generators of the surface, by the way of the tool end.
@@ -101,7 +103,8 @@ struct Asked<'a> {
 
 impl Asked<'_> {
     fn about(&self) -> About<'_> {
-        About { tool: &self.tool, tip: &self.tip, spread: self.spread, reach: self.reach }
+        let Self { ref tool, ref tip, spread, reach, likely, .. } = *self;
+        About { tool, tip, spread, reach, likely }
     }
 
     /// The bound along the way of the tool end.
@@ -325,11 +328,14 @@ impl Course<'_, '_> {
             reach = near;
         }
         let way = way_of(reach);
+        let middle = 0.5 * (a.x + b.x);
+        let likely = [a, b].map(|end| sweep.carried(&end.contact.tool, end.x, middle));
         Asked {
             tip,
             tool,
             spread: 0.5 * way,
             reach,
+            likely,
             range: [low - way + thickness, farthest(way)],
             speed: self.stretch_of(reach) * across,
             swing: if role.gauge.on { 0.0 } else { sweep.swing(reach) },

@@ -29,6 +29,8 @@ pub(super) struct About<'a> {
     pub(super) spread: f64,
     /// No point of the tool that may be in contact there is farther from its end.
     pub(super) reach: f64,
+    /// Points of the tool there that are likely to come into contact.
+    pub(super) likely: [Vec3; 2],
 }
 
 impl About<'_> {
@@ -123,7 +125,7 @@ impl Ledger {
     /// asked for, and so for other positions about, too, but for much shorter distances.
     pub(super) fn reach_within(&self, gauge: &Gauge, tool: &Tool, tip: &Vec3, distance: f64) -> f64 {
         let (reach, distance) = (gauge.reach(tool), distance.max(0.0));
-        let about = About { tool, tip, spread: 0.0, reach };
+        let about = About { tool, tip, spread: 0.0, reach, likely: [*tip; 2] };
         let tells = |known: &Reach| {
             distance >= MUCH_NEARER * known.distance
                 && distance + about.moved(&known.tip, &known.axis) <= known.distance
@@ -178,6 +180,9 @@ impl Ledger {
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
         let mut found = Some(Bend::Unbounded);
+        // What a surface of lines in one direction says of a place is told without a search of its parts.
+        let is_told_at_once = gauge.surface.generator().is_some();
+        let likely = if is_told_at_once { &place.likely[..] } else { &[] };
         let is_cramped = self.cramped.get().is_some_and(|last| (tip - last).norm() <= CRAMPED * ample);
         let wide = (!is_cramped).then_some((ample, ample));
         for (spread, more) in wide.into_iter().chain([(spread, 0.0)]) {
@@ -186,7 +191,7 @@ impl Ledger {
             if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
                 continue;
             }
-            found = upward_bend(gauge, tool, tip, spread, range, is_of_use);
+            found = upward_bend(gauge, tool, (tip, likely), spread, range, is_of_use);
             match found {
                 // One that reaches farther may hold a place that bends much more.
                 Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}
