@@ -13,6 +13,8 @@ use crate::{Vec3, patience::Patience};
 const PSEUDO_INVERSE: f64 = std::f64::consts::SQRT_2;
 /// Size of a part, as a share of the reach of a question, from which on it is not halved.
 const FINE: f64 = 1.0 / 32.0;
+/// The same where a cylinder along a line is asked about: what smaller parts tell more closely does not make up for their number.
+const FINE_ACROSS: f64 = 1.0;
 /// How many forms are one unit of work where they are compared.
 const FORMS_A_UNIT: usize = 8;
 /// Error of forms, as a share of them, that tells how a surface bends along a line that is nearly straight on it.
@@ -344,7 +346,8 @@ impl Part {
             survey.counts(WORK_OF_PART);
         }
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
-        let is_fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        let fine = if matches!(survey.forms, Forms::Across(..)) { FINE_ACROSS } else { FINE };
+        let is_fine = self.radius <= fine * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         match survey.forms.take(form.as_deref(), &self.center, survey.side, is_fine) {
             Taken::Whole => {}
             Taken::Halves => self.survey_halves(sheet, survey, depth),
