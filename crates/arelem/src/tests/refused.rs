@@ -1,6 +1,9 @@
 //! Random motions that end where the path does, and what is told about it.
 
-use apt_geometry::cutter::Cutter;
+use apt_geometry::{
+    canonical::{Remembering, RuledSurface},
+    cutter::Cutter,
+};
 
 use super::*;
 use crate::{clearance::EVALUATIONS, error::RoleName, verify::verify};
@@ -422,4 +425,77 @@ fn a_way_back_into_the_bands_that_maxdp_does_not_allow_is_told() {
             }
         }
     }
+}
+
+/// Beside a wall of rulings that touches the line from both sides in turn corrections to one place of a vector lead far back along the path,
+/// into the band of the check surface: the motion led there, against its direction.
+#[test]
+fn a_position_far_along_the_path_is_not_next_to_a_place_of_it() {
+    let floor = RuledSurface {
+        parts: vec![
+            Geometry::Plane(Plane {
+                normal: v(-0.5130572280621063, 0.04455211814051614, -0.857197404045545),
+                distance: -0.34337791495918396,
+            }),
+            Geometry::Point(v(0.2760546602361189, 4.7926317520213715, 0.48444847154809545)),
+            Geometry::Point(v(-5.502924961196748, -0.21312277757980058, 3.683163593028847)),
+            Geometry::Vector(v(-0.5130572280621063, 0.04455211814051611, -0.8571974040455451)),
+            Geometry::Plane(Plane {
+                normal: v(-0.6719496895572603, -0.10880022943023872, -0.7325613454038024),
+                distance: -0.019544626079062724,
+            }),
+            Geometry::Point(v(2.573305500848547, -0.10141911723583186, -2.318649207721929)),
+            Geometry::Point(v(-1.7935724854186006, -4.8679465169701235, 2.3948421654543797)),
+            Geometry::Vector(v(-0.6719496895572602, -0.10880022943023859, -0.7325613454038025)),
+        ],
+    };
+    let arc = |point, radius| {
+        let axis = v(-0.19166538589377907, -0.41803382090664143, -0.8879820406001367);
+        Geometry::Circle(Cylinder { point, axis, radius })
+    };
+    let across = v(0.7228319550069443, -0.672148370822923, 0.16040739515661098);
+    let wall = RuledSurface {
+        parts: vec![
+            arc(v(-8.137365045638436, 10.695622211517634, -0.4169474829571562), 13.437036094231267),
+            Geometry::Point(v(4.365662328868199, 5.771968863894891, 2.580698790780787)),
+            Geometry::Point(v(-0.9456288567989692, 0.8830308708937327, 6.028665037953754)),
+            Geometry::Vector(across),
+            arc(v(13.522868455401401, -9.445837443829443, 4.389787485410949), 17.59854695048061),
+            Geometry::Point(v(3.2156700135055245, 3.263765938455042, -2.7471934528200332)),
+            Geometry::Point(v(-2.095621172161644, -1.6251720545461161, 0.7007727943529334)),
+            Geometry::Vector(-across),
+        ],
+    };
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.8967772508241594],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-0.2777050379971634, 0.5830542508941794, 0.4502625065760658),
+        band: [0.01, 0.005],
+        thickness: 0.034982228299922744,
+        drive_side: DriveSide::Left,
+        forward: v(-0.6141358977865509, -0.6241045542620281, 0.483043454036469),
+        part: (Relation::To, Geometry::RuledSurface(Remembering::new(floor))),
+        drive: (Relation::To, Geometry::RuledSurface(Remembering::new(wall))),
+        first: (Relation::On, level(0.0)),
+        stop: (
+            Relation::To,
+            Geometry::Ellipse(Quadric {
+                coefficients: [
+                    0.5405146895041177,
+                    0.13154858515602458,
+                    0.0,
+                    -0.00990980856512702,
+                    0.0,
+                    0.0,
+                    0.1491785327811344,
+                    0.5290710877537427,
+                    -0.060565223922065425,
+                    0.0,
+                ],
+            }),
+        ),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let end = sequences[0].points.last().expect("an end").tip;
+    assert!((end - motion.from).dot(&motion.forward) > 0.0, "the motion led back, to {end:?}");
 }

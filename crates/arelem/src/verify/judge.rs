@@ -233,6 +233,14 @@ fn stop_is_on(sequence: &CutSequence, role: &Role) -> bool {
     other.as_ref().is_some_and(|r| r.relation == Relation::On)
 }
 
+/// At which share of a vector a wall that is read with a normal where it begins is another one: at the end where the tool goes away from it, and
+/// where the tool would be out of the band where it goes towards it.
+fn share_of_other(normal: &Vec3, motion: &Vec3, band: f64) -> Option<f64> {
+    let away = normal.dot(motion);
+    let share = if away > 0.0 { 1.0 } else { band / -away };
+    (share <= 1.0).then_some(share)
+}
+
 /// All positions with unit axes.
 fn positions(sequence: &CutSequence) -> Result<Vec<ToolPosition>, VerifyError> {
     if sequence.points.is_empty() {
@@ -406,7 +414,6 @@ impl Judge<'_> {
             if length <= self.guard() {
                 continue;
             }
-            let lost = VerifyError::NoDistance { vector };
             let across = |place: &ToolPosition, normal: &Vec3, onward: Vec3| {
                 wanted * normal.dot(&place.axis.cross(&onward))
             };
@@ -421,11 +428,15 @@ impl Judge<'_> {
                 // A tool that turns is led aside by that, with the path.
                 if from.axis == to.axis { sine } else { sine.max(chord) }
             };
-            let normal = drive.normal(&from).ok_or(lost.clone())?;
+            let normal = drive.normal(&from).ok_or(VerifyError::NoDistance { vector })?;
             let mut sine = sine_at(&from, &normal);
-            // In a corner the tool goes away from the one wall that is read there, along the other.
-            if sine < -ACROSS && normal.dot(&motion) > 0.0 {
-                sine = sine.max(sine_at(&to, &drive.normal(&to).ok_or(lost)?));
+            // In a corner the tool goes away from the one wall that is read there, along the other. A place that it goes towards does not count
+            // where it would be out of the band.
+            let other = share_of_other(&normal, &motion, drive.intol + drive.outtol)
+                .filter(|share| sine < -ACROSS && (*share == 1.0 || from.axis == to.axis))
+                .map(|share| ToolPosition { tip: from.tip + motion * share, axis: to.axis });
+            if let Some((place, normal)) = other.and_then(|place| Some((place, drive.normal(&place)?))) {
+                sine = sine.max(sine_at(&place, &normal));
             }
             if sine < -ACROSS {
                 self.findings.add(Rule::Side, vector, sine, -sine);

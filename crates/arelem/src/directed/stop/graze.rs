@@ -118,17 +118,16 @@ impl Watcher<'_> {
     ) -> Option<Event> {
         let was_falling = std::mem::take(&mut watch.falling);
         let relation = self.checks[index].relation;
-        let prepared = self.prepared;
-        let near = NEAR * (prepared.part.band() + prepared.drive.band() + self.working(index).band());
         let waiting = match relation {
             Relation::To => watch.status == Status::Clear,
             Relation::On => watch.status != Status::Touching,
             _ => false,
         };
-        if !waiting || trail.least > near || sweep.length <= 0.0 {
+        if !waiting || trail.least > self.near(index) || sweep.length <= 0.0 {
             return None;
         }
-        let (x, value) = least([0.0, sweep.length], &|x| self.on_path(index, sweep, x).map(|found| found.1))?;
+        let value_at = |x: f64| Some(self.on_path(index, sweep, x).map_or(f64::INFINITY, |found| found.1));
+        let (x, value) = least([0.0, sweep.length], &value_at)?;
         let [low, high] = self.room(index);
         if value > high {
             return None;
@@ -167,6 +166,12 @@ impl Watcher<'_> {
         (value >= low && value <= high).then_some(event)
     }
 
+    /// How near a vector comes to the check surface where the path may touch it.
+    fn near(&self, index: usize) -> f64 {
+        let Self { prepared, .. } = self;
+        NEAR * (prepared.part.band() + prepared.drive.band() + self.working(index).band())
+    }
+
     /// The band about a check surface's relation, measured from where the tool rests in it.
     fn room(&self, index: usize) -> [f64; 2] {
         let working = self.working(index);
@@ -177,14 +182,19 @@ impl Watcher<'_> {
     }
 
     /// The position on part and drive surface next to a place of a vector, how far the check surface is from its relation
-    /// there, and the side of it.
+    /// there, and the side of it. A position that lies elsewhere along the vector is not next to the place: corrections lead across the path,
+    /// unless they are lost.
     fn on_path(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> Option<(Vertex, f64, f64)> {
         let prepared = self.prepared;
         let conditions = [
             Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
             Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),
         ];
-        let tip = position::solve(&prepared.attitude, &conditions, &sweep.at(x).0).ok()?.tip;
+        let place = sweep.at(x).0;
+        let tip = position::solve(&prepared.attitude, &conditions, &place).ok()?.tip;
+        if (tip - place).dot(&sweep.direction).abs() > self.near(index) {
+            return None;
+        }
         let vertex = Vertex::at(prepared, tip, &sweep.direction).ok()?;
         let tool = prepared.attitude.tool_at(&tip).ok()?;
         let (value, side) = self.value(index, &tool, &tip);
