@@ -1,6 +1,6 @@
 //! Tools that are beside the end of a polyconic surface: what of a tool is beyond the end is not behind the surface.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use apt_geometry::{canonical::Remembering, surface::Surface};
 
@@ -406,7 +406,7 @@ fn a_motion_that_sets_out_beside_an_end_is_on_its_side() {
             [-2.3065744057644366, -0.14089466935052544],
             [-2.3065744057644366, 0.07909158807781712],
             [2.3065744057644366, -0.10294451661509182],
-            [0.7071067811865476, 0.00526576034882701],
+            [FRAC_1_SQRT_2, 0.00526576034882701],
         ],
     );
     let motion = Found {
