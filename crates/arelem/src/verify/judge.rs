@@ -237,7 +237,7 @@ fn stop_is_on(sequence: &CutSequence, role: &Role) -> bool {
 /// where the tool would be out of the band where it goes towards it.
 fn share_of_other(normal: &Vec3, motion: &Vec3, band: f64) -> Option<f64> {
     let away = normal.dot(motion);
-    let share = if away > 0.0 { 1.0 } else { band / -away };
+    let share = if away > 0.0 { 1.0 } else { band / away.abs() };
     (share <= 1.0).then_some(share)
 }
 
@@ -505,5 +505,17 @@ impl Judge<'_> {
                 self.findings.add(Rule::StepLength, vector, length, length - limit);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_that_the_tool_goes_along_is_no_other_one() {
+        let share = |away: f64| share_of_other(&Vec3::z(), &Vec3::new(1.0, 0.0, away), 0.25);
+        assert_eq!([0.5, -0.5, -1.0].map(share), [Some(1.0), Some(0.5), Some(0.25)]);
+        assert_eq!([0.0, -0.0, -0.1].map(share), [None; 3]);
     }
 }
