@@ -1,21 +1,20 @@
 //! Tabulated cylinders: a piecewise cubic directrix ruled along a straight line.
 
+mod boxes;
+mod cubic;
 mod forms;
 
 use nalgebra::{Matrix3, Vector2};
 
+use self::{
+    boxes::Boxes,
+    cubic::{Cubic, SPANS},
+};
 use super::{Chart, Foot, Place, chart::Facing, part::LEAST_COSINE, sheet::Jet};
 use crate::{Vec3, canonical::TabulatedCylinder};
 
 type Vec2 = Vector2<f64>;
 
-/// Spans of an interval that are searched for a nearest point each.
-const SPANS: u32 = 8;
-/// Bound of the Newton iteration for the nearest point of an interval; it is bracketed.
-const MAX_ITERATIONS: u32 = 60;
-
-/// Step along the curve, relative to the lengths, below which its effect on the distance is far below rounding.
-const RESOLUTION: f64 = 1e-13;
 /// Cosine defect above which the nearest point is a corner of the curve.
 const CORNER: f64 = 1e-9;
 /// Distance from the curve, relative to the size of the coordinates, below which a point lies on it.
@@ -25,181 +24,12 @@ const SMOOTH: f64 = 1e-7;
 /// Curvature of a corner: large enough to be infinite for any tool, small enough to compute with.
 const CORNER_CURVATURE: f64 = 1e12;
 
-/// One cubic over its chord: `v = a u³ + b u² + c u` with the chord along u.
-#[derive(Debug, Clone, PartialEq)]
-struct Cubic {
-    start: Vec2,
-    along: Vec2,
-    length: f64,
-    coefficients: [f64; 3],
-    /// Least and greatest height over the chord.
-    bounds: [f64; 2],
-    /// The straight extension before the first or after the last point: it has no end on that side.
-    open: [bool; 2],
-    /// Bounds of the curvature of each span, against either side.
-    bends: [[f64; 2]; SPANS as usize],
-    /// Least and greatest slope over the chord on each span.
-    slopes: [[f64; 2]; SPANS as usize],
-    /// Sine of the turn from the interval before, positive to the right.
-    turn: f64,
-}
-
 /// The directrix with its frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DirectrixCurve {
     axes: [Vec3; 3],
     intervals: Vec<Cubic>,
-}
-
-impl Cubic {
-    fn new(start: Vec2, end: Vec2, a: f64, b: f64) -> Option<Self> {
-        let chord = end - start;
-        let length = chord.norm();
-        if !(length > 0.0 && a.is_finite() && b.is_finite() && length.is_finite()) {
-            return None;
-        }
-        let coefficients = [a, b, -length * (a * length + b)];
-        let mut cubic = Self {
-            start,
-            along: chord / length,
-            length,
-            coefficients,
-            bounds: [0.0, 0.0],
-            open: [false, false],
-            bends: [[0.0; 2]; SPANS as usize],
-            slopes: [[0.0; 2]; SPANS as usize],
-            turn: 0.0,
-        };
-        for s in super::solve_quadratic(3.0 * a, b, coefficients[2]) {
-            if s > 0.0 && s < length {
-                let height = cubic.height(s)[0];
-                cubic.bounds = [cubic.bounds[0].min(height), cubic.bounds[1].max(height)];
-            }
-        }
-        cubic.bends = std::array::from_fn(|k| {
-            let width = length / f64::from(SPANS);
-            let span = [k as f64 * width, (k + 1) as f64 * width];
-            [1.0, -1.0].map(|side| cubic.greatest_bend(side, span))
-        });
-        cubic.slopes = std::array::from_fn(|k| {
-            let width = length / f64::from(SPANS);
-            cubic.slope_range([k as f64 * width, (k + 1) as f64 * width])
-        });
-        Some(cubic)
-    }
-
-    /// Unit direction of the curve.
-    fn direction(&self, s: f64) -> Vec2 {
-        let [_, slope, _] = self.height(s);
-        (self.along + self.normal_axis() * slope) / slope.hypot(1.0)
-    }
-
-    /// Height over the chord, its slope and its second derivative. The extensions stay straight beyond their ends.
-    fn height(&self, s: f64) -> [f64; 3] {
-        let [a, b, c] = self.coefficients;
-        let inner = s.clamp(0.0, self.length);
-        let value = ((a * inner + b) * inner + c) * inner;
-        let slope = (3.0 * a * inner + 2.0 * b) * inner + c;
-        if inner == s {
-            [value, slope, 6.0 * a * s + 2.0 * b]
-        } else {
-            [value + slope * (s - inner), slope, 0.0]
-        }
-    }
-
-    fn normal_axis(&self) -> Vec2 {
-        Vec2::new(-self.along.y, self.along.x)
-    }
-
-    fn to_local(&self, p: Vec2) -> Vec2 {
-        let w = p - self.start;
-        Vec2::new(w.dot(&self.along), w.dot(&self.normal_axis()))
-    }
-
-    fn straight(&self) -> bool {
-        self.coefficients == [0.0; 3]
-    }
-
-    /// No point of the interval is nearer than the root of this.
-    fn least_square(&self, local: Vec2) -> f64 {
-        if (self.open[0] || self.open[1]) && !self.straight() {
-            return 0.0;
-        }
-        let before = if self.open[0] { 0.0 } else { -local.x };
-        let after = if self.open[1] { 0.0 } else { local.x - self.length };
-        let dx = before.max(after).max(0.0);
-        dx * dx + least_offset(self.bounds, local.y)
-    }
-
-    /// Half the derivative of the squared distance to the point of a parameter.
-    fn gradient(&self, local: Vec2, s: f64) -> f64 {
-        let [h, h1, _] = self.height(s);
-        (s - local.x) + (h - local.y) * h1
-    }
-
-    /// Parameter of the nearest point near a starting value, between limits.
-    fn nearest_from(&self, local: Vec2, from: f64, limits: [f64; 2]) -> f64 {
-        let [mut low, mut high] = limits;
-        let mut s = from;
-        for _ in 0..MAX_ITERATIONS {
-            let [h, h1, h2] = self.height(s);
-            let gradient = self.gradient(local, s);
-            if gradient > 0.0 {
-                high = s;
-            } else {
-                low = s;
-            }
-            let curvature = 1.0 + h1 * h1 + (h - local.y) * h2;
-            let newton = s - gradient / curvature;
-            let next =
-                if curvature > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            if (next - s).abs() <= RESOLUTION * (self.length + s.abs() + local.y.abs()) {
-                return next;
-            }
-            s = next;
-        }
-        s
-    }
-
-    /// The nearest point: its parameter and squared distance.
-    fn nearest(&self, local: Vec2) -> (f64, f64) {
-        let reach = self.length + local.norm();
-        let low = if self.open[0] { -reach } else { 0.0 };
-        let high = if self.open[1] { self.length + reach } else { self.length };
-        if self.straight() {
-            let s = local.x.clamp(low, high);
-            return (s, (s - local.x) * (s - local.x) + local.y * local.y);
-        }
-        let distance = |s: f64| {
-            let (x, y) = (s - local.x, self.height(s)[0] - local.y);
-            x * x + y * y
-        };
-        let mut best = (low, distance(low));
-        let mut take = |s: f64| {
-            let d = distance(s);
-            if d < best.1 {
-                best = (s, d);
-            }
-        };
-        take(high);
-        if self.open[0] || self.open[1] {
-            take(self.nearest_from(local, local.x.clamp(low, high), [low, high]));
-            return best;
-        }
-        let mut left = (low, self.gradient(local, low));
-        for k in 1..=SPANS {
-            let right = low + (high - low) * f64::from(k) / f64::from(SPANS);
-            let right = (right, self.gradient(local, right));
-            // A nearest point lies where the distance stops falling; elsewhere there is nothing to be found.
-            if left.1 <= 0.0 && right.1 >= 0.0 {
-                let share = if right.1 > left.1 { left.1 / (left.1 - right.1) } else { 0.5 };
-                let start = left.0 + (right.0 - left.0) * share;
-                take(self.nearest_from(local, start, [left.0, right.0]));
-            }
-            left = right;
-        }
-        best
-    }
+    boxes: Boxes,
 }
 
 impl DirectrixCurve {
@@ -224,7 +54,11 @@ impl DirectrixCurve {
             }
             intervals.push(cubic);
         }
-        if intervals.is_empty() { None } else { Some(Self { axes, intervals }) }
+        if intervals.is_empty() {
+            return None;
+        }
+        let boxes = Boxes::of(intervals.iter().map(Cubic::upright_box));
+        Some(Self { axes, intervals, boxes })
     }
 
     /// Unit direction of the generators.
@@ -247,18 +81,9 @@ impl DirectrixCurve {
 
     /// The interval with the nearest point and its parameter there.
     fn nearest(&self, flat: Vec2) -> (usize, f64) {
-        // First the interval that may be nearest, then all that still may be nearer.
-        let mut first = (f64::INFINITY, 0);
-        for (k, interval) in self.intervals.iter().enumerate() {
-            let least = interval.least_square(interval.to_local(flat));
-            if least < first.0 {
-                first = (least, k);
-            }
-        }
-        let mut best = (first.1, 0.0, f64::INFINITY);
-        let others = (0..self.intervals.len()).filter(|k| *k != first.1);
-        for k in std::iter::once(first.1).chain(others) {
-            let Some(interval) = self.intervals.get(k) else { continue };
+        let mut best = (0, 0.0, f64::INFINITY);
+        self.boxes.visit(flat, |k, nearest| {
+            let Some(interval) = self.intervals.get(k) else { return nearest };
             let local = interval.to_local(flat);
             if interval.least_square(local) <= best.2 {
                 let (s, square) = interval.nearest(local);
@@ -266,7 +91,8 @@ impl DirectrixCurve {
                     best = (k, s, square);
                 }
             }
-        }
+            best.2
+        });
         (best.0, best.1)
     }
 
@@ -425,112 +251,6 @@ impl DirectrixCurve {
         }
         roots
     }
-}
-
-impl Cubic {
-    /// Whether a point may be within reach of a span, by the least height of the span over its chord and the greatest, or of the
-    /// straight line that goes on from it.
-    fn is_near(&self, k: usize, local: Vec2, reach: f64) -> bool {
-        let width = self.length / f64::from(SPANS);
-        let (start, end) = (k as f64 * width, (k + 1) as f64 * width);
-        let aside = (start - local.x).max(local.x - end).max(0.0);
-        let steepest = self.slopes.get(k).map_or(0.0, |[least, greatest]| least.abs().max(greatest.abs()));
-        // Between its ends the span keeps to the steepest lines through both.
-        let (middle, half) = (self.height(start)[0] + self.height(end)[0], width * steepest);
-        let heights = [0.5 * (middle - half), 0.5 * (middle + half)];
-        let beyond = |open: bool, from: f64, sense: f64| {
-            let [height, slope, _] = self.height(from);
-            let (w, way) = (local - Vec2::new(from, height), Vec2::new(sense, sense * slope));
-            let along = (w.dot(&way) / way.norm_squared()).max(0.0);
-            open && (w - way * along).norm_squared() <= reach * reach
-        };
-        aside * aside + least_offset(heights, local.y) <= reach * reach
-            || beyond(k == 0 && self.open[0], 0.0, -1.0)
-            || beyond(k + 1 == SPANS as usize && self.open[1], self.length, 1.0)
-    }
-
-    /// A bound of the curvature against a side over the spans within reach of a point.
-    fn greatest_curvature(&self, side: f64, local: Vec2, reach: f64) -> f64 {
-        if self.straight() {
-            return 0.0;
-        }
-        let mut greatest = f64::NEG_INFINITY;
-        let width = self.length / f64::from(SPANS);
-        let within = (reach * reach - least_offset(self.bounds, local.y)).max(0.0).sqrt();
-        for (k, bends) in self.bends.iter().enumerate() {
-            let start = k as f64 * width;
-            if start - local.x <= within && local.x - start - width <= within {
-                greatest = greatest.max(if side > 0.0 { bends[0] } else { bends[1] });
-            }
-        }
-        greatest
-    }
-
-    /// A bound of the curvature against a side over a span.
-    fn greatest_bend(&self, side: f64, [a, b]: [f64; 2]) -> f64 {
-        let ([_, s0, b0], [_, s1, b1]) = (self.height(a), self.height(b));
-        // The second derivative is linear, the slope monotone unless it turns.
-        let bend = (-side * b0).max(-side * b1);
-        let wavers = (b0 > 0.0) != (b1 > 0.0) || (s0 > 0.0) != (s1 > 0.0);
-        let flattest = if wavers { 0.0 } else { s0.abs().min(s1.abs()) };
-        let steepest = s0.abs().max(s1.abs()) + b0.abs().max(b1.abs()) * (b - a);
-        bend / (if bend > 0.0 { flattest } else { steepest }).hypot(1.0).powi(3)
-    }
-
-    /// Least and greatest slope over a span: at its ends, or where the slope turns.
-    fn slope_range(&self, [from, to]: [f64; 2]) -> [f64; 2] {
-        let [a, b, _] = self.coefficients;
-        let turn = (-b / (3.0 * a)).clamp(from, to);
-        let turn = if turn.is_nan() { from } else { turn };
-        let slopes = [from, to, turn].map(|s| self.height(s)[1]);
-        [slopes[0].min(slopes[1]).min(slopes[2]), slopes[0].max(slopes[1]).max(slopes[2])]
-    }
-
-    fn ray_roots(&self, p: Vec2, d: Vec2, roots: &mut Vec<f64>) {
-        let local = self.to_local(p);
-        let (du, dv) = (d.dot(&self.along), d.dot(&self.normal_axis()));
-        let inside = |s: f64| (self.open[0] || s >= 0.0) && (self.open[1] || s <= self.length);
-        if du.abs() <= 1e-12 * dv.abs() {
-            if inside(local.x) {
-                roots.push((self.height(local.x)[0] - local.y) / dv);
-            }
-            return;
-        }
-        // Signed height of the curve over the ray, as a function of s; its turning points split the interval.
-        let slope = dv / du;
-        let gap = |s: f64| self.height(s)[0] - (local.y + slope * (s - local.x));
-        let [a, b, c] = self.coefficients;
-        let mut limits = vec![0.0];
-        for s in super::solve_quadratic(3.0 * a, b, c - slope) {
-            if s > 0.0 && s < self.length {
-                limits.push(s);
-            }
-        }
-        limits.push(self.length);
-        limits.sort_by(f64::total_cmp);
-        for pair in limits.windows(2) {
-            if let Some(s) = bracketed_root(&gap, pair[0], pair[1]) {
-                roots.push((s - local.x) / du);
-            }
-        }
-        // The straight extensions beyond their ends.
-        for (open, end, outward) in [(self.open[0], 0.0, -1.0), (self.open[1], self.length, 1.0)] {
-            let [h, h1, _] = self.height(end);
-            let relative = h1 - slope;
-            if open && relative != 0.0 {
-                let s = end - (h - (local.y + slope * (end - local.x))) / relative;
-                if (s - end) * outward > 0.0 {
-                    roots.push((s - local.x) / du);
-                }
-            }
-        }
-    }
-}
-
-/// Squared distance of a height from a range of heights.
-fn least_offset(bounds: [f64; 2], height: f64) -> f64 {
-    let away = (bounds[0] - height).max(height - bounds[1]).max(0.0);
-    away * away
 }
 
 /// Root of a monotone function between limits of opposite sign.

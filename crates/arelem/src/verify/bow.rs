@@ -127,7 +127,7 @@ impl Passing<'_> {
     }
 
     /// The bound for a curve in connected parts; `ends` are places at which it stops. None where there is none.
-    pub(super) fn bend(&self, bows: &[Bow], ends: &[Flat]) -> Option<Bend> {
+    pub(super) fn bend<'b>(&self, bows: impl IntoIterator<Item = &'b Bow>, ends: &[Flat]) -> Option<Bend> {
         let [reach, depth] = self.reach();
         let natural = left(&self.run);
         let facing = self.shadow.level(if self.left { -natural } else { natural });

@@ -157,10 +157,9 @@ impl Ruling {
             let ends = [self.bows.first()?.start(), self.bows.last()?.end()];
             passing.bend(&self.bows, &ends)?
         } else {
-            let [before, after] = self.rays(&shadow)?.map(|ray| vec![Bow::straight(ray)]);
-            let before = before.into_iter().map(Bow::turned_round).collect();
-            let all = [before, self.bows.clone(), after].concat();
-            passing.bend(&all, &[])?
+            let [before, after] = self.rays(&shadow)?.map(Bow::straight);
+            let before = before.turned_round();
+            passing.bend(std::iter::once(&before).chain(&self.bows).chain([&after]), &[])?
         };
         Some(Bend { rate: bend.rate * share * share, jumps: bend.jumps * share })
     }

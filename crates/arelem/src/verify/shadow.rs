@@ -13,6 +13,8 @@ const ARCS: usize = 96;
 /// Steps of Newton's method towards the best direction, and the greatest of them, radians.
 const STEPS: usize = 6;
 const LARGEST_TURN: f64 = 1.0;
+/// Sine of an axis to the direction along which it is seen below which it is rounding.
+const UPRIGHT: f64 = 1e-15;
 /// Two places nearer than this, relative to their distance from the point, are one.
 const SAME: f64 = 1e-15;
 
@@ -28,8 +30,8 @@ pub(super) struct Shadow<'a> {
     pub(super) middle: Flat,
     /// From that along the axis up and down, as far as the tool is about the same all round.
     spine: Flat,
-    /// Whether it is the end of the tool alone.
-    is_point: bool,
+    /// Its radius where it is a disc about its middle: a tool that is seen along its axis, or its end alone.
+    disc: Option<f64>,
 }
 
 /// A half-plane that holds the figure.
@@ -122,8 +124,14 @@ impl<'a> Shadow<'a> {
         let tip = flat(tip);
         let (half, axis) = (0.5 * tool.profile.top_height(), flat(&tool.axis));
         let spine = axis * (half - tool.profile.widest()).max(0.0);
-        let is_point = tool.profile.is_point();
-        Self { tool, frame, tip, middle: tip + axis * half, spine, is_point }
+        let leans = axis.norm() > UPRIGHT;
+        let disc = (!leans || tool.profile.is_point()).then(|| tool.profile.widest());
+        Self { tool, frame, tip, middle: tip + axis * half, spine, disc }
+    }
+
+    /// The radius of the figure about its middle, where it is a disc.
+    pub(super) fn disc(&self) -> Option<f64> {
+        self.disc
     }
 
     /// About the direction in which a point is away from the figure.
@@ -141,8 +149,9 @@ impl<'a> Shadow<'a> {
 
     /// The half-plane with an outward unit normal.
     pub(super) fn level(&self, normal: Flat) -> Level {
-        if self.is_point {
-            return Level { normal, height: self.tip.dot(&normal), support: self.tip };
+        if let Some(radius) = self.disc {
+            let height = self.middle.dot(&normal) + radius;
+            return Level { normal, height, support: self.middle + normal * radius };
         }
         let [u, v] = self.frame;
         let (height, place) = self.tool.support(&(u * normal.x + v * normal.y));
@@ -183,7 +192,7 @@ impl<'a> Shadow<'a> {
     /// The distance of a point, to within `tolerance` if the budget allows.
     pub(super) fn distance(&self, x: &Flat, tolerance: f64) -> Distance {
         let first = self.direction_to(x).unwrap_or_else(Flat::x);
-        if self.is_point {
+        if self.disc.is_some() {
             let level = self.level(first);
             return Distance { value: level.above(x), gap: 0.0, level };
         }
@@ -237,7 +246,7 @@ mod tests {
         fn a_distance_is_that_of_the_best_of_many_half_planes(
             [diameter, share, height] in [0.1..2.0f64, 0.0..1.0f64, 1.0..3.0f64],
             (cut, angles) in ([0.0..0.3f64, 0.0..0.3f64], [0.0..0.3f64, 0.0..0.3f64]),
-            lean in [-1.0..1.0f64, -1.0..1.0f64],
+            (lean, is_upright) in ([-1.0..1.0f64, -1.0..1.0f64], any::<bool>()),
             (at, is_inside) in ([-3.0..3.0f64, -3.0..3.0f64], any::<bool>()),
         ) {
             // Lines that touch the circle of the corner and lines that cut it.
@@ -256,7 +265,9 @@ mod tests {
             };
             let Ok(profile) = Profile::of(&cutter) else { return Ok(()) };
             let tool = Tool::new(&profile, Vec3::new(lean[0], lean[1], 1.0).normalize());
-            let frame = [Vec3::x(), Vec3::z()];
+            // Upright on what it is seen on it is a disc.
+            let turned = tool.axis.cross(&Vec3::x()).normalize();
+            let frame = if is_upright { [turned, tool.axis.cross(&turned)] } else { [Vec3::x(), Vec3::z()] };
             let shadow = Shadow::new(&tool, &frame, &Vec3::new(0.1, 0.2, 0.3));
             // Anywhere, and a little inside.
             let inside = shadow.level(Flat::new(at[0], at[1]).normalize());
