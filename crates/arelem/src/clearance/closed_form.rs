@@ -5,7 +5,7 @@ use apt_geometry::{
     Vec3,
     canonical::{Cylinder, Plane, Sphere},
     cutter::ProfilePoint,
-    surface::{ConeForm, Surface},
+    surface::{ConeForm, Foot, Surface},
 };
 
 use super::{Contact, Tool, dual};
@@ -26,37 +26,57 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
         Surface::Cone(given) if given.axis.cross(&tool.axis).norm() <= PARALLEL => {
             Some(parallel_cone(tool, given, side, tip))
         }
-        Surface::Quadric(_) | Surface::Tabulated(_) => {
-            let parallel = surface.generator()?.cross(&tool.axis).norm() <= PARALLEL;
-            parallel.then(|| along_generators(tool, surface, side, tip))
-        }
-        Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_) => {
-            let parallel = surface.common_ruling()?.cross(&tool.axis).norm() <= PARALLEL;
-            // Beyond the ends of the rulings the nearest point is no longer beside the tool.
-            let contact = parallel.then(|| along_generators(tool, surface, side, tip))?;
-            (contact.gradient.dot(&tool.axis).abs() <= LEVEL).then_some(contact)
-        }
-        _ => None,
-    }
-}
-
-/// Distance of the tool end from the surface at contact where the tool is a disc seen along the generators or rulings of a surface: about
-/// the ends of one that ends there is none.
-pub(super) fn disc(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Option<f64> {
-    let is_section = match surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) | Surface::Cone(_) => false,
         Surface::Quadric(_)
         | Surface::Tabulated(_)
         | Surface::Ruled(_)
         | Surface::PolyConic(_)
-        | Surface::Sculptured(_) => true,
+        | Surface::Sculptured(_) => Some(along_generators(tool, side, tip, &foot_along(tool, surface, tip)?)),
+        _ => None,
+    }
+}
+
+/// Whether the tool is seen along the generators of a surface, or the rulings of one that ends, and so is a disc there.
+fn is_along(tool: &Tool, surface: &Surface) -> bool {
+    let direction = match surface {
+        Surface::Quadric(_) | Surface::Tabulated(_) => surface.generator(),
+        Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_) => surface.common_ruling(),
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) | Surface::Cone(_) => None,
     };
-    (is_section && contact(tool, surface, side, tip).is_some()).then(|| tool.profile.support(1.0, 0.0).0)
+    direction.is_some_and(|direction| direction.cross(&tool.axis).norm() <= PARALLEL)
+}
+
+/// The foot of the tool end on a surface along which the tool is a disc.
+fn foot_along(tool: &Tool, surface: &Surface, tip: &Vec3) -> Option<Foot> {
+    let foot = is_along(tool, surface).then(|| surface.foot(tip))?;
+    let ends = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_));
+    // Beyond the ends of the rulings the nearest point is no longer beside the tool.
+    (!ends || foot.normal.dot(&tool.axis).abs() <= LEVEL).then_some(foot)
+}
+
+/// A tool that is seen along the generators or rulings of a surface.
+pub(super) struct Disc {
+    /// Distance of the tool end from the surface at contact.
+    pub(super) radius: f64,
+    /// The foot of the tool end.
+    pub(super) foot: Foot,
+}
+
+/// The tool where it is a disc seen along the generators or rulings of a surface: about the ends of one that ends it is none.
+pub(super) fn disc(tool: &Tool, surface: &Surface, tip: &Vec3) -> Option<Disc> {
+    let foot = foot_along(tool, surface, tip)?;
+    Some(Disc { radius: tool.profile.support(1.0, 0.0).0, foot })
+}
+
+/// Whether the tool is such a disc.
+pub(super) fn is_disc(tool: &Tool, surface: &Surface, tip: &Vec3) -> bool {
+    match surface {
+        Surface::Quadric(_) | Surface::Tabulated(_) => is_along(tool, surface),
+        _ => foot_along(tool, surface, tip).is_some(),
+    }
 }
 
 /// Seen along generators that are parallel to the tool, the surface is a plane curve and the tool a disc.
-fn along_generators(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> Contact {
-    let foot = surface.foot(tip);
+fn along_generators(tool: &Tool, side: f64, tip: &Vec3, foot: &Foot) -> Contact {
     let (reach, ProfilePoint { radius, height }) = tool.profile.support(1.0, 0.0);
     let gradient = foot.normal * side;
     let clearance = side * foot.distance - reach;

@@ -64,10 +64,10 @@ pub(crate) fn steady_bend(
 fn disc_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2]) -> Option<Bend> {
     let surface = gauge.met(tool);
     let (tool, tip) = &gauge.body(tool, tip);
-    let reach = closed_form::disc(tool, surface, gauge.side, tip)?;
-    let [lowest, highest] = range.map(|distance| distance + reach);
+    let closed_form::Disc { radius, foot } = closed_form::disc(tool, surface, tip)?;
+    let [lowest, highest] = range.map(|distance| distance + radius);
     let region = Region { center: *tip, radius: spread, lowest, highest };
-    Some(surface.bend(gauge.side, &surface.foot(tip), &region, tool.patience))
+    Some(surface.bend(gauge.side, &foot, &region, tool.patience))
 }
 
 /// Bound of the second derivative along any direction of the distances of all points of the tool that come within

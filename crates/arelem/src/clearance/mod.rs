@@ -478,7 +478,7 @@ impl Gauge {
     /// Whether the tool is a disc seen along generators or rulings of the surface, away from the ends of one that ends.
     pub(crate) fn is_seen_along(&self, tool: &Tool, tip: &Vec3) -> bool {
         let (body, tip) = self.body(tool, tip);
-        !self.on && closed_form::disc(&body, self.met(tool), self.side, &tip).is_some()
+        !self.on && closed_form::is_disc(&body, self.met(tool), &tip)
     }
 
     /// How the clearance behaves along a straight line, but for a solid that reaches into the top of the tool.
