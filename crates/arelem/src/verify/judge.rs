@@ -13,7 +13,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
     clearance::{Clearance, Reading, Surface},
-    span::{Extremes, Readings, Span},
+    span::{Extremes, Readings, Span, between},
     stop,
     tool::Profile,
 };
@@ -34,6 +34,10 @@ const NEARLY_SQUARE: f64 = 0.1;
 const ACROSS: f64 = 0.05;
 /// Sine of the angle that two normals may differ by at an exact tangency.
 const TANGENT: f64 = 1e-6;
+/// Share of a vector over which it is looked how its turning changes a clearance.
+const TURNING_STEP: f64 = 1e-5;
+/// How much a clearance may change along a line of motion, relative to the way of the tool end.
+const STEADY: f64 = 1e-3;
 /// Step of the curvature estimate at a tangency, relative to the size of the geometry.
 const CURVATURE_STEP: f64 = 1e-4;
 
@@ -241,6 +245,23 @@ fn share_of_other(normal: &Vec3, motion: &Vec3, band: f64) -> Option<f64> {
     (share <= 1.0).then_some(share)
 }
 
+/// How fast a clearance changes because the tool turns as it does where a vector begins, relative to the way of the tool end.
+fn turning(bound: &Bound<'_>, from: &ToolPosition, to: &ToolPosition) -> Option<f64> {
+    let step = TURNING_STEP * (to.tip - from.tip).norm();
+    let turned = ToolPosition { tip: from.tip, ..between(from, to, TURNING_STEP)? };
+    let value = |place: &ToolPosition| bound.clearance().at(&place.tip, &place.axis).map(|r| r.value);
+    Some((value(&turned)? - value(from)?) / step)
+}
+
+/// True if a tool that goes along a direction and turns about the same line as on a vector, as fast or faster or slower, keeps its clearances:
+/// a path may set out in that direction, whatever it does after it. Of each role the normal and [`turning`].
+fn is_line_of_motion(direction: &Vec3, roles: &[(Vec3, f64)]) -> bool {
+    let square: f64 = roles.iter().map(|(_, turning)| turning * turning).sum();
+    let against: f64 = roles.iter().map(|(normal, turning)| -normal.dot(direction) * turning).sum();
+    let speed = if square > 0.0 { (against / square).max(0.0) } else { 0.0 };
+    roles.iter().all(|(normal, turning)| (normal.dot(direction) + speed * turning).abs() <= STEADY)
+}
+
 /// All positions with unit axes.
 fn positions(sequence: &CutSequence) -> Result<Vec<ToolPosition>, VerifyError> {
     if sequence.points.is_empty() {
@@ -437,6 +458,15 @@ impl Judge<'_> {
                 .map(|share| ToolPosition { tip: from.tip + motion * share, axis: to.axis });
             if let Some((place, normal)) = other.and_then(|place| Some((place, drive.normal(&place)?))) {
                 sine = sine.max(sine_at(&place, &normal));
+            }
+            // The path of a tool that turns may turn over along its first vector, and sets out to where it is told if it can go that way.
+            let forward = self.sequence.forward;
+            if sine < -ACROSS && from.axis != to.axis && forward.dot(&motion) > 0.0 {
+                let turned = |bound: &Bound<'_>| Some((bound.normal(&from)?, turning(bound, &from, &to)?));
+                let roles = part.into_iter().chain([drive]).map(turned).collect::<Option<Vec<_>>>();
+                if roles.is_some_and(|roles| is_line_of_motion(&forward, &roles)) {
+                    sine = sine.max(across(&from, &normal, forward));
+                }
             }
             if sine < -ACROSS {
                 self.findings.add(Rule::Side, vector, sine, -sine);

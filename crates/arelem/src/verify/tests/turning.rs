@@ -155,3 +155,32 @@ fn opposite_axes_are_not_judged() {
     sequence.points[0].axis = -sequence.start.axis;
     assert_eq!(verify(&sequence, &|| false), Err(VerifyError::NoDistance { vector: 0 }));
 }
+
+/// A stick over a plane that leans with its top on a wall and rises: its end comes nearer to the wall as fast as its top would go away from it,
+/// and goes along the wall by what is left of the way.
+fn rising_along_a_wall(drift: f64, drive_side: DriveSide) -> CutSequence {
+    let height = 5.0;
+    let at = |lean: f64, along: f64| {
+        let (sine, cosine) = lean.sin_cos();
+        (Vec3::new(height * sine + 0.5 * BAND.1, along, 0.5 * BAND.1), Vec3::new(-sine, 0.0, cosine))
+    };
+    let wall = role(plane([1.0, 0.0, 0.0], 0.0), Relation::To, 1.0, BAND.0, BAND.1);
+    let floor = plane([0.0, 0.0, 1.0], 0.0);
+    let places = [at(0.3, 0.0), at(0.29, drift)];
+    CutSequence { drive: Some(wall), drive_side, ..sequence(floor, &[0.0, 0.0], &places) }
+}
+
+#[test]
+fn a_tool_that_turns_sets_out_in_the_direction_that_it_is_told() {
+    // The chord has the wall on the right, the path sets out nearly straight at it.
+    let mut set_out = rising_along_a_wall(0.005, DriveSide::Left);
+    assert_eq!(rules(&set_out), [Rule::Side]);
+    let straight = |along: f64| Vec3::new(-1.0, along, 0.0).normalize();
+    set_out.forward = straight(-0.02);
+    assert_eq!(rules(&set_out), []);
+    // On the other side it sets out, too, or in a direction in which no turn about that line keeps the clearances.
+    for forward in [straight(0.08), Vec3::new(-1.0, -0.02, 0.1).normalize()] {
+        set_out.forward = forward;
+        assert_eq!(rules(&set_out), [Rule::Side], "{forward}");
+    }
+}
