@@ -10,7 +10,7 @@ use apt_geometry::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 
 pub(crate) use self::law::Law;
-use self::run_in::RunIn;
+use self::{law::Standing, run_in::RunIn};
 use crate::{
     clearance::{Contact, Gauge, Tool},
     error::{AxisFailure, MotionFailure},
@@ -84,24 +84,33 @@ impl<'a> Attitude<'a> {
     }
 
     fn axis(&self, law: &Law, tip: &Vec3) -> Result<Vec3, AxisFailure> {
-        let axis = law.axis(&self.tool, tip)?;
+        self.brought_in(law.axis(&self.tool, tip)?, tip)
+    }
+
+    /// The axis at a place where the law has one.
+    fn brought_in(&self, axis: Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
         self.run_in.as_ref().map_or(Ok(axis), |run_in| run_in.axis(&axis, tip))
     }
 
     /// The tool at a position with the rate of its axis.
     pub(crate) fn posture(&self, tip: &Vec3) -> Result<Posture<'_>, MotionFailure> {
-        let tool = self.tool_at(tip)?;
-        let rate = self.law.as_ref().and_then(|law| self.rate(law, tip));
-        Ok(Posture { tool, rate })
+        let Some(law) = &self.law else { return Ok(Posture { tool: Cow::Borrowed(&self.tool), rate: None }) };
+        let standing = law.standing(&self.tool, tip).map_err(|cause| undetermined(cause, tip))?;
+        let axis = self.brought_in(standing.axis, tip).map_err(|cause| undetermined(cause, tip))?;
+        Ok(Posture { tool: Cow::Owned(self.tool.turned(axis)), rate: self.rate(law, tip, &standing) })
     }
 
     /// Derivatives of the axis by the coordinates of the tool end, as columns; `None` at the brink of the law's domain.
-    fn rate(&self, law: &Law, tip: &Vec3) -> Option<Matrix3<f64>> {
+    fn rate(&self, law: &Law, tip: &Vec3, standing: &Standing) -> Option<Matrix3<f64>> {
         if self.run_in.is_none()
-            && let Some(rate) = law.rate(tip)
+            && let Some(rate) = law.rate(&self.tool, tip, standing)
         {
             return Some(rate);
         }
+        self.rate_by_differences(law, tip)
+    }
+
+    fn rate_by_differences(&self, law: &Law, tip: &Vec3) -> Option<Matrix3<f64>> {
         let step = DERIVATIVE_STEP * crate::position::size(&self.tool, tip);
         let mut columns = [Vec3::zeros(); 3];
         for (k, column) in columns.iter_mut().enumerate() {

@@ -10,12 +10,16 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use crate::{clearance::Tool, error::AxisFailure, role::Working};
 
+mod rate;
+
 /// Bound of the iteration for the normal at the contact.
 const MAX_ITERATIONS: u32 = 40;
 /// A change of the normal below this ends it.
 const RESOLUTION: f64 = 1e-15;
 /// The change that may be left: nearest points of ruled and polyconic surfaces are known to about a tenth of it.
 const ACCEPTABLE: f64 = 1e-8;
+/// The change that rounding of nearest points may leave, where Newton's method has led.
+const ROUNDED: f64 = 1e-12;
 /// Ratio of a change to the one before above which the iteration is slow.
 const SLOW: f64 = 0.2;
 /// Difference of unit vectors by which Newton's method tells how they are led on: the root of the error of the normals.
@@ -36,6 +40,12 @@ const ON_VERTEX: f64 = 1e-12;
 const BEYOND: f64 = 0.5;
 /// Angles below this (radians) are zero.
 const ZERO_ANGLE: f64 = 1e-12;
+
+#[cfg(test)]
+thread_local! {
+    /// Normals of surfaces that axes were made of, on this thread.
+    static NORMALS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
 
 /// A surface whose normal counts, with the sign that turns the natural normal.
 #[derive(Debug, Clone)]
@@ -58,6 +68,8 @@ impl Directed {
     }
 
     fn normal(&self, p: &Vec3) -> Vec3 {
+        #[cfg(test)]
+        NORMALS.set(NORMALS.get() + 1);
         self.surface.foot(&(p + self.lift)).normal * self.sign
     }
 
@@ -68,9 +80,12 @@ impl Directed {
         self.sign < 0.0 && (foot - cone.vertex).norm() <= ON_VERTEX * (1.0 + cone.vertex.norm())
     }
 
-    /// Derivatives of the normal by the coordinates, as columns.
-    fn normal_rate(&self, p: &Vec3) -> Matrix3<f64> {
-        self.surface.foot_and_hessian(&(p + self.lift)).1 * self.sign
+    /// The normal, and its derivatives by the coordinates as columns.
+    fn bend(&self, p: &Vec3) -> Bent {
+        #[cfg(test)]
+        NORMALS.set(NORMALS.get() + 1);
+        let (foot, hessian) = self.surface.foot_and_hessian(&(p + self.lift));
+        (foot.normal * self.sign, hessian * self.sign)
     }
 }
 
@@ -117,6 +132,17 @@ enum Mode {
         aside: f64,
         sense: f64,
     },
+}
+
+/// A normal, and its derivatives by the coordinates as columns.
+type Bent = (Vec3, Matrix3<f64>);
+
+/// How a tool stands: its axis, the normal that this stands to, and that of the other surface where it counts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Standing {
+    pub(crate) axis: Vec3,
+    base: Bent,
+    other: Option<Bent>,
 }
 
 /// The axis as a function of the tool end.
@@ -173,7 +199,9 @@ impl Law {
             law.mode = Mode::Tangent { height: *height, vector, sense: 1.0 };
             // Both senses are tangent: the axis keeps to the one in which it points.
             let place = tip + tool.axis * *height;
-            let cosine = law.towards(&law.base.normal(&place), tip)?.dot(&tool.axis);
+            let cosine = law
+                .towards(&law.base.normal(&place), tip, law.others(tip).as_ref().map(|(normal, _)| normal))?
+                .dot(&tool.axis);
             if cosine.abs() <= SAME_DIRECTION {
                 return Err(AxisFailure::SignUnresolved);
             }
@@ -224,7 +252,10 @@ impl Law {
                 if rest < -ZERO_ANGLE {
                     return Err(AxisFailure::ImpossibleAngles { alpha: angle, beta: *lead });
                 }
-                let (tangent, _) = self.frame(&self.base.normal(tip), tip)?;
+                let (tangent, _) = frame(
+                    &self.base.normal(tip),
+                    self.other.as_ref().map(|other| other.normal(tip)).as_ref(),
+                )?;
                 let forward = if *lead == 0.0 { 0.0 } else { leading(&tangent, ahead)? };
                 let aside = rest.max(0.0).sqrt().copysign(angle);
                 Mode::Lead {
@@ -254,53 +285,76 @@ impl Law {
         plane(&self.base) && (alone || self.other.as_ref().is_some_and(plane))
     }
 
-    /// Derivatives of the axis by the coordinates of the tool end, as columns, where they have a closed form.
-    pub(crate) fn rate(&self, tip: &Vec3) -> Option<Matrix3<f64>> {
-        matches!(self.mode, Mode::Normal).then(|| self.base.normal_rate(tip))
-    }
-
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
-        match self.mode {
-            Mode::Parallel { sense } => return self.ruling(tip).map(|ruling| ruling * sense),
-            Mode::Fan { .. } => return self.towards(&Vec3::zeros(), tip),
-            _ => {}
-        }
-        let normal = self.base.normal(tip);
-        if matches!(self.mode, Mode::Normal) {
-            let axis = self.towards(&normal, tip)?;
-            return if self.base.at_vertex(tip) { Err(AxisFailure::Vertex) } else { Ok(axis) };
-        }
-        let normal = self.settled(tool, tip, normal)?;
-        let axis = self.towards(&normal, tip)?;
-        let is_vertex = self.base.at_vertex(&self.place(tool, tip, &axis, &normal));
-        if is_vertex { Err(AxisFailure::Vertex) } else { Ok(axis) }
+        self.standing(tool, tip).map(|standing| standing.axis)
     }
 
-    /// The normal at the contact, which moves with the axis that stands on it: each is taken where the last one leads as long as that
-    /// comes nearer fast, and then where Newton's method does.
-    fn settled(&self, tool: &Tool, tip: &Vec3, first: Vec3) -> Result<Vec3, AxisFailure> {
+    /// How a tool stands with its end at `tip`.
+    pub(crate) fn standing(&self, tool: &Tool, tip: &Vec3) -> Result<Standing, AxisFailure> {
+        if let Mode::Parallel { .. } | Mode::Fan { .. } = self.mode {
+            let base = (Vec3::zeros(), Matrix3::zeros());
+            return Ok(Standing { axis: self.towards(&base.0, tip, None)?, base, other: None });
+        }
+        if matches!(self.mode, Mode::Normal) {
+            let base = self.base.bend(tip);
+            let axis = self.towards(&base.0, tip, None)?;
+            let is_vertex = self.base.at_vertex(tip);
+            return if is_vertex {
+                Err(AxisFailure::Vertex)
+            } else {
+                Ok(Standing { axis, base, other: None })
+            };
+        }
+        let other = self.others(tip);
+        let beside = other.as_ref().map(|(normal, _)| normal);
+        let base = self.settled(tool, tip, beside)?;
+        let axis = self.towards(&base.0, tip, beside)?;
+        let is_vertex = self.base.at_vertex(&self.place(tool, tip, &axis, &base.0));
+        if is_vertex { Err(AxisFailure::Vertex) } else { Ok(Standing { axis, base, other }) }
+    }
+
+    /// The normal of the other surface beside a place, where the axis depends on it.
+    fn others(&self, tip: &Vec3) -> Option<Bent> {
+        let counts =
+            matches!(self.mode, Mode::Tilted { .. } | Mode::Lead { .. } | Mode::Tangent { vector: None, .. });
+        self.other.as_ref().filter(|_| counts).map(|other| other.bend(tip))
+    }
+
+    /// The normal at the contact, which moves with the axis that stands on it: each is taken where Newton's method leads; where that does not
+    /// come nearer, where the last one leads as long as that comes nearer fast, and then where Newton's method with differences does.
+    fn settled(&self, tool: &Tool, tip: &Vec3, other: Option<&Vec3>) -> Result<Bent, AxisFailure> {
         let led = |from: Vec3| -> Result<Led, AxisFailure> {
-            let axis = self.towards(&from, tip)?;
-            let to = self.base.normal(&self.place(tool, tip, &axis, &from));
-            Ok(Led { from, to, change: (to - from).norm() })
+            let axis = self.towards(&from, tip, other)?;
+            let (to, bend) = self.base.bend(&self.place(tool, tip, &axis, &from));
+            Ok(Led { from, to, change: (to - from).norm(), axis, bend })
         };
-        let mut here = led(first)?;
+        let mut here = led(self.base.normal(tip))?;
         let mut is_slow = false;
         for _ in 0..MAX_ITERATIONS {
             if here.change <= RESOLUTION {
-                return Ok(here.to);
+                return Ok((here.to, here.bend));
+            }
+            let foretold = self.foretold(tool, (&here.from, &here.to, &here.bend), (&here.axis, other));
+            if let Some(next) = foretold.and_then(|normal| led(normal).ok())
+                && next.change <= SLOW * here.change
+            {
+                here = next;
+                continue;
+            }
+            if here.change <= ROUNDED {
+                return Ok((here.to, here.bend));
             }
             let nearer = if is_slow { here.nearer(&led)? } else { None };
             if nearer.is_none() && is_slow && here.change <= ACCEPTABLE {
-                return Ok(here.to);
+                return Ok((here.to, here.bend));
             }
             let next = nearer.map_or_else(|| led(here.to), Ok)?;
             is_slow |= next.change > SLOW * here.change;
             here = next;
         }
         if here.change <= ACCEPTABLE {
-            Ok(here.to)
+            Ok((here.to, here.bend))
         } else {
             Err(AxisFailure::NotSettled { change: here.change })
         }
@@ -314,21 +368,22 @@ impl Law {
         }
     }
 
-    fn towards(&self, normal: &Vec3, tip: &Vec3) -> Result<Vec3, AxisFailure> {
+    /// The axis that stands to a normal, and to that of the other surface where this counts.
+    fn towards(&self, normal: &Vec3, tip: &Vec3, other: Option<&Vec3>) -> Result<Vec3, AxisFailure> {
         let axis = match self.mode {
             Mode::Normal => *normal,
             Mode::Parallel { sense } => self.ruling(tip)? * sense,
             Mode::Tangent { vector: Some(vector), sense, .. } => {
                 normal.cross(&vector).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::NoPlane)? * sense
             }
-            Mode::Tangent { vector: None, sense, .. } => self.frame(normal, tip)?.1 * sense,
+            Mode::Tangent { vector: None, sense, .. } => frame(normal, other)?.1 * sense,
             Mode::Fan { from, about, angle, origin, line } => {
-                let share = line.dot(&(tip - origin)).clamp(-BEYOND, 1.0 + BEYOND);
+                let share = share_of(&line, &(tip - origin));
                 let (sin, cos) = (angle * share).sin_cos();
                 from * cos + about.cross(&from) * sin
             }
             Mode::Tilted { cosine, sine } => {
-                let (_, aside) = self.frame(normal, tip)?;
+                let (_, aside) = frame(normal, other)?;
                 normal * cosine + aside * sine
             }
             Mode::Across { vector, cosine, sine } => {
@@ -336,28 +391,43 @@ impl Law {
                 flat * cosine + vector.cross(&flat) * sine
             }
             Mode::Lead { along, ahead, aside, sense } => {
-                let (tangent, across) = self.frame(normal, tip)?;
+                let (tangent, across) = frame(normal, other)?;
                 normal * along + tangent * (ahead * sense) + across * aside
             }
         };
         axis.try_normalize(0.0).ok_or(AxisFailure::NoNormal)
     }
 
-    /// Unit vectors across the normal: along the line of motion and towards the other surface's normal.
-    fn frame(&self, normal: &Vec3, tip: &Vec3) -> Result<(Vec3, Vec3), AxisFailure> {
-        let other = self.other.as_ref().ok_or(AxisFailure::NoSurface)?.normal(tip);
-        let tangent =
-            normal.cross(&other).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::SignUnresolved)?;
-        Ok((tangent, tangent.cross(normal)))
+    /// The share of its way that a fan has turned by; none where it does not go on turning.
+    fn share_of_fan(&self, tip: &Vec3) -> Option<f64> {
+        let Mode::Fan { origin, line, .. } = self.mode else { return None };
+        let way = tip - origin;
+        let share = share_of(&line, &way);
+        (share == line.dot(&way)).then_some(share)
     }
 }
 
-/// A unit vector, and where a map of unit vectors leads it.
+/// The share of its way at which a fan stands, for trials beyond its ends, too.
+fn share_of(line: &Vec3, way: &Vec3) -> f64 {
+    line.dot(way).clamp(-BEYOND, 1.0 + BEYOND)
+}
+
+/// Unit vectors across the normal: along the line of motion and towards the other surface's normal.
+fn frame(normal: &Vec3, other: Option<&Vec3>) -> Result<(Vec3, Vec3), AxisFailure> {
+    let other = other.ok_or(AxisFailure::NoSurface)?;
+    let tangent = normal.cross(other).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::SignUnresolved)?;
+    Ok((tangent, tangent.cross(normal)))
+}
+
+/// A normal, and where the law leads it: the axis that stands to it, and the normal with its derivatives that the surface has where a tool
+/// with that axis stands.
 #[derive(Debug, Clone, Copy)]
 struct Led {
     from: Vec3,
     to: Vec3,
     change: f64,
+    axis: Vec3,
+    bend: Matrix3<f64>,
 }
 
 impl Led {
