@@ -104,7 +104,13 @@ pub(crate) fn upward_bend(
     // What the bound is, and what it is at least.
     let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
     let within = Within { surface, side: gauge.side, tool, tip, corner: corner.as_ref(), spread, range };
-    if likely.iter().filter_map(|place| within.bend_at(place)).any(|least| !is_of_use(least)) {
+    // What a surface of lines in one direction says of a place is told without a search of its parts.
+    if surface.generator().is_some()
+        && likely
+            .iter()
+            .filter_map(|place| within.bend_at(place))
+            .any(|least| matches!(least, Bend::AtMost(bend) if !is_of_use(bend)))
+    {
         return None;
     }
     let mut is_probed = false;
@@ -149,18 +155,11 @@ pub(crate) fn upward_bend(
             Bend::Unbounded if is_met => return Some(at_best),
             Bend::Unbounded => {}
         }
-        // Where the surface ends within reach of the contact no box helps.
+        // Where the surface ends within reach of a place in contact no box helps.
         if found == Bend::Unbounded && !is_probed {
             is_probed = true;
-            let place = touch();
-            let is_round = corner.is_some() && is_at_corner(tool, &(place - tip));
-            let foot = surface.foot(&place);
-            let distance = gauge.side * foot.distance;
-            let is_met = distance - spread <= range[1] && distance + spread >= range[0];
-            if is_met
-                && !is_round
-                && surface.bend(gauge.side, &foot, &region(place, spread), tool.patience) == Bend::Unbounded
-            {
+            let places = if likely.is_empty() { vec![touch()] } else { with_middles(likely) };
+            if places.iter().any(|place| within.bend_at(place) == Some(Bend::Unbounded)) {
                 return Some(Bend::Unbounded);
             }
         }
@@ -199,7 +198,7 @@ struct Within<'a> {
 impl Within<'_> {
     /// What a bound for all of the tool is at least, for a point of it, if that counts; what a round corner holds counts with the centre of its
     /// ball there.
-    fn bend_at(&self, place: &Vec3) -> Option<f64> {
+    fn bend_at(&self, place: &Vec3) -> Option<Bend> {
         let Self { surface, side, tool, tip, spread, range, .. } = *self;
         let mut foot = surface.foot(place);
         let (mut center, mut ball) = (*place, 0.0);
@@ -214,11 +213,15 @@ impl Within<'_> {
         if distance - spread > highest || distance + spread < lowest {
             return None;
         }
-        match surface.bend(side, &foot, &Region { center, radius: spread, lowest, highest }, tool.patience) {
-            Bend::AtMost(bend) => Some(bend),
-            Bend::Unbounded => None,
-        }
+        let region = Region { center, radius: spread, lowest, highest };
+        Some(surface.bend(side, &foot, &region, tool.patience))
     }
+}
+
+/// Places of a convex tool, and those half way from each to the next: contact goes from one to the other, if it does not jump.
+fn with_middles(places: &[Vec3]) -> Vec<Vec3> {
+    let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5);
+    places.iter().copied().chain(middles).collect()
 }
 
 /// The balls of a round corner, if they are all in the tool and hold what of it is neither above the corner nor nearer to the

@@ -180,9 +180,6 @@ impl Ledger {
         let nearby = if gauge.surface.has_charts() { FORESIGHT_BY_CHART } else { FORESIGHT_BY_QUADRIC };
         let ample = (FORESIGHT * spread).max((nearby * spread).min(tool.radius()));
         let mut found = Some(Bend::Unbounded);
-        // What a surface of lines in one direction says of a place is told without a search of its parts.
-        let is_told_at_once = gauge.surface.generator().is_some();
-        let likely = if is_told_at_once { &place.likely[..] } else { &[] };
         let is_cramped = self.cramped.get().is_some_and(|last| (tip - last).norm() <= CRAMPED * ample);
         let wide = (!is_cramped).then_some((ample, ample));
         for (spread, more) in wide.into_iter().chain([(spread, 0.0)]) {
@@ -191,7 +188,7 @@ impl Ledger {
             if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
                 continue;
             }
-            found = upward_bend(gauge, tool, (tip, likely), spread, range, is_of_use);
+            found = upward_bend(gauge, tool, (tip, &place.likely), spread, range, is_of_use);
             match found {
                 // One that reaches farther may hold a place that bends much more.
                 Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}
