@@ -28,8 +28,9 @@ const CLOSE: f64 = 1e-12;
 const ROUGHLY: f64 = 1e-2;
 /// Length of the difference of two unit directions that is rounding: that of Newton's method at an edge.
 const SQUARE: f64 = 1e-5;
-/// Bound of the parts of a surface that one proof looks at.
-const MOST_LOOKS: u32 = 4_000;
+/// Bound of the parts of a surface that one proof looks at: a look takes up to a microsecond, and beside the vertex of a cone of rulings all of its
+/// strips come near.
+const MOST_LOOKS: u32 = 32_000;
 
 /// A place of a line.
 #[derive(Debug, Clone, Copy)]

@@ -132,7 +132,7 @@ pub(super) fn lies_above(
     let contact = Contact { clearance, gradient: foot.normal * side, tool: *point, surface: foot.point };
     let best = Best { value: clearance, contact: Some(contact), piece: 0 };
     let search = Search { tool, surface, side, tip, best, piece: 0 };
-    search.certified_along_axis(level, &memory.courses) == Certificate::Holds
+    search.certified_along_axis(level, &memory.courses, Effort::All) == Certificate::Holds
 }
 
 /// The contact that the search finds everywhere; nothing is proven of it. At an edge of the surface it is exactly there.
@@ -224,7 +224,9 @@ impl Search<'_> {
             if self.is_on_crease(slack) {
                 return (Shown::Within(slack), by_parts);
             }
-            let lying = self.certified_along_axis(level, courses);
+            // Parts of the surface that showed the last contact take less than many patches.
+            let effort = if by_parts.showed() { Effort::Few } else { Effort::All };
+            let lying = self.certified_along_axis(level, courses, effort);
             let is_asked = lying == Certificate::Undecided && by_parts.showed();
             if is_asked && self.is_clear(level) {
                 return (Shown::Within(slack), by_parts);
