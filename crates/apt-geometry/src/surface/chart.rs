@@ -206,6 +206,15 @@ impl Surface {
         hollow.is_finite().then_some(Steady { hollow, round, depth, stock, beyond })
     }
 
+    /// How far the line of the chord between the places of a ruled surface that are nearest to two points is from a curve on it at most: beside each
+    /// place of the chord is one of the surface. Along a ruling it is on the surface. `None` for other kinds of surface, and where there is a corner
+    /// between both.
+    pub fn strays_between(&self, ends: [&Vec3; 2]) -> Option<f64> {
+        let Self::Ruled(sheet) = self else { return None };
+        let [from, to] = ends.map(|end| sheet.place_near(end));
+        sheet.strays([&from, &to])
+    }
+
     /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of
     /// surface, and where it ends or has an edge or no tangent plane there.
     pub fn forms(&self, side: f64, center: &Vec3, reach: f64, patience: Patience<'_>) -> Option<Vec<Form>> {

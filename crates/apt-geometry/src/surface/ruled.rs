@@ -7,6 +7,7 @@
 use std::sync::{Arc, OnceLock};
 
 mod bounds;
+mod chord;
 mod ends;
 mod rays;
 mod strip;

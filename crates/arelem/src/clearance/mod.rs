@@ -414,6 +414,32 @@ impl Gauge {
         })
     }
 
+    /// The same by a curve on the surface between the places of both contacts, also where the tool cuts in. The signed distance of a place from
+    /// the tool, which is convex, is a convex function of the place from its end: along the chord of the curve it is nowhere above its own chord, and beside
+    /// the chord greater by no more than the curve strays from it. A tool is no farther from the surface than from a place of it, and one that
+    /// has a place of it within is not clear.
+    pub(crate) fn at_most_along_surface(&self, tool: &Tool, contacts: [(&Vec3, &Contact); 2]) -> Option<f64> {
+        if self.on {
+            return None;
+        }
+        let stray = self.surface.strays_between(contacts.map(|(_, contact)| &contact.surface))?;
+        let ends = contacts.map(|(tip, contact)| {
+            let (tool, tip) = self.body(tool, tip);
+            let (along, across, _) = tool.split(&(contact.surface - tip));
+            // Over the open top of the tool it is farther from that than from the disc.
+            let below_top = tool.profile.top.height.max(tool.profile.lower.height) - along;
+            (below_top >= stray || tool.radius() <= 0.0).then(|| tool.profile.distance(across, along).0)
+        });
+        let (start, end) = (ends[0]?, ends[1]?);
+        let turn = end - start;
+        let most = if turn.abs() < 4.0 * stray {
+            0.5 * (start + end) + stray + turn * turn / (16.0 * stray)
+        } else {
+            start.max(end)
+        };
+        Some(most.max(0.0) - self.thickness)
+    }
+
     /// Whether a tool touches with the edge of its top what is above it: nothing touches the disc there.
     pub(crate) fn touches_from_below(&self, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
         let (tool, tip) = self.body(tool, tip);

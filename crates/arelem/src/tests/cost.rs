@@ -212,6 +212,31 @@ fn a_flank_along_rulings_takes_few_patches() {
     }
 }
 
+/// Clearances that may be computed for the motion below.
+const CLEARANCES_ALONG_A_RULING: u64 = 200;
+
+/// A flank goes along a ruling of a cone that leans, towards its vertex: contact goes up the flank, nothing turns, and the clearance stays what it is. The
+/// ruling shows that it is nowhere greater, and the cone that it is nowhere less, on all of a vector at once.
+#[test]
+fn a_flank_along_a_leaning_ruling_takes_few_clearances() {
+    let tube = cylinder(Vec3::zeros(), Vec3::x(), 3.0);
+    let [first, last, vertex] =
+        [v(0.0, -2.4, -1.8), v(0.0, -2.4, 1.8), v(8.0, 0.0, 1.0)].map(Geometry::Point);
+    let parts = vec![tube, first, last, Geometry::Vector(-Vec3::y()), vertex];
+    let wall = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let floor = plane(0.0, 0.0, 1.0, -1.0);
+    let mut p = Program::new();
+    p.tolerance(5e-4, 1e-4).cutter(&[0.34, 0.17]).from(0.5, -4.0, 2.0);
+    p.go(&[(Relation::To, &wall), (Relation::To, &floor), (Relation::On, &x(0.5))]);
+    p.indirv(1.0, 0.0, 0.0).side(DriveSide::Right);
+    let before = EVALUATIONS.get();
+    p.drive(Turn::Forward, &wall, Relation::On, &x(7.8));
+    let count = EVALUATIONS.get() - before;
+    assert_eq!(p.last().points.len(), 1);
+    assert!(count <= CLEARANCES_ALONG_A_RULING, "{count} clearances");
+    assert!(verify(p.last(), &|| false).expect("evidence").verified);
+}
+
 /// Distances of points and parts of surfaces that the verifier may look at before it asks again. One takes up to a microsecond
 /// in a release build.
 const WORK_BETWEEN_QUESTIONS: u64 = 1000;

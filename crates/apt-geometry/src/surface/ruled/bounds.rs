@@ -44,9 +44,9 @@ pub(super) fn ranges(
 }
 
 /// One piece of the curves with the rulings between them.
-struct Stretch<'a> {
-    sheet: &'a RuledSheet,
-    piece: usize,
+pub(super) struct Stretch<'a> {
+    pub(super) sheet: &'a RuledSheet,
+    pub(super) piece: usize,
 }
 
 impl Enclose for Stretch<'_> {

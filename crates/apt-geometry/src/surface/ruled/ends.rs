@@ -78,7 +78,7 @@ impl RuledSheet {
     }
 
     /// The piece of the curves with a parameter.
-    fn piece_at(&self, t: f64) -> usize {
+    pub(super) fn piece_at(&self, t: f64) -> usize {
         self.pieces
             .partition_point(|piece| piece.from + piece.width < t)
             .min(self.pieces.len().saturating_sub(1))

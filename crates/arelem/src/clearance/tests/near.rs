@@ -259,3 +259,34 @@ fn contact_inside_a_tool_that_is_a_line_is_followed() {
         assert!(proven * 10 >= seen * 5, "{proven} of {seen}");
     }
 }
+
+/// Between two contacts the clearance is nowhere above what the chord between their places tells, where the surface is straight, twisted or round.
+#[test]
+fn places_of_the_surface_between_two_contacts_bound_the_clearance_from_above() {
+    let tool = tool(&[0.5, 0.1]);
+    let mut seen = 0;
+    for geometry in [lofts::roof(), lofts::vault()] {
+        let surface = Surface::from_geometry(&geometry).expect("surface");
+        let gauge = gauge(&geometry, upper(&surface));
+        for (from, way) in [(v(-0.8, -0.5, 0.0), v(0.6, 0.2, 0.0)), (v(0.2, -0.6, 0.0), v(0.0, 0.7, 0.0))] {
+            for sink in [-0.02, 0.03] {
+                let over = |tip: Vec3| {
+                    let contact = gauge.contact(&tool, &tip);
+                    tip - tool.axis * ((contact.clearance - sink) / contact.gradient.dot(&tool.axis))
+                };
+                let (from, to) = (over(from), over(from + way));
+                let [first, last] = [from, to].map(|tip| gauge.contact(&tool, &tip));
+                let Some(most) = gauge.at_most_along_surface(&tool, [(&from, &first), (&to, &last)]) else {
+                    continue;
+                };
+                seen += 1;
+                for k in 0..=40 {
+                    let tip = from + (to - from) * (f64::from(k) / 40.0);
+                    let clearance = gauge.contact(&tool, &tip).clearance;
+                    assert!(clearance <= most + 1e-9, "{clearance} above {most}");
+                }
+            }
+        }
+    }
+    assert!(seen >= 4, "{seen}");
+}

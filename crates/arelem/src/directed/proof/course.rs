@@ -48,6 +48,10 @@ const MOST_CUTS: usize = 3;
 /// The same where shorter stretches should do: beside a straight piece of the tool that rubs along a surface at the limit of the band they
 /// do not.
 const MANY_CUTS: usize = 12;
+/// Misfit between slopes and values, as a share of the band, up to which a clearance counts as straight, and share of the band that it then is
+/// to be above its lower limit for the parts of the surface to be looked at first: few of them tell it where no bend of all distances does.
+const STRAIGHT: f64 = 2e-2;
+const CLEAR: f64 = 0.1;
 /// Share of a stretch for which a bound is known without a search where none is searched for all of it.
 const SHORTER: f64 = 0.25;
 /// How often what of a turning tool may come into contact is looked for: the less of it, the shorter its way.
@@ -217,7 +221,7 @@ impl Course<'_, '_> {
                     );
                 }
             }
-            let x = cut(&a, &b);
+            let x = cut(&a, &b, ENOUGH * self.line.role.band());
             count += 1;
             if count > MAX_SAMPLES
                 || unbounded > MAX_UNBOUNDED
@@ -267,6 +271,11 @@ impl Course<'_, '_> {
         let mut bend = ledger.known_bend(&role.gauge, &about, asked.range).map(Bend::AtMost);
         let shorter = || Ledger::bend_of_shorter(&role.gauge, &about, asked.range, SHORTER);
         let known = bend.or_else(|| shorter().map(Bend::AtMost));
+        // What is straight without a bend of use that is known is told by places and parts of the surface, not by bends of all distances.
+        let is_clear = !serves(known) && self.is_straight(a, b) && self.is_clear_between(a, b);
+        if is_clear && self.is_held_from_both(a, b, false) {
+            return Stretch::Held;
+        }
         let mut is_asked = known.is_some();
         if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
             (bend, is_asked) = (found(&is_of_use), true);
@@ -278,7 +287,7 @@ impl Course<'_, '_> {
         let (held, kept) = bend.map_or((false, false), bounded);
         // Where shorter stretches will do, two more feet on the surface cost more than a contact.
         let high = held || self.is_held_from_both(a, b, !serves(bend));
-        let low = kept || high && by_contacts && self.is_kept_from_both(a, b);
+        let low = is_clear || kept || high && by_contacts && self.is_kept_from_both(a, b);
         if high && low {
             return Stretch::Held;
         }
@@ -300,6 +309,14 @@ impl Course<'_, '_> {
             || !high && by_contacts && self.is_kept_from_both(a, b)
             || by_parts && self.is_clear_between(a, b);
         if is_high && is_low { Stretch::Held } else { Stretch::Open(bend) }
+    }
+
+    /// Whether the clearance hardly leaves its chord between two samples, as far as these tell, and that keeps off the lower limit of the band.
+    fn is_straight(&self, a: &Sample, b: &Sample) -> bool {
+        let Line { role, limits, .. } = self.line;
+        let (rise, length, band) = (b.value - a.value, b.x - a.x, role.band());
+        let is_along = |end: &Sample| (end.slope * length - rise).abs() <= STRAIGHT * band;
+        is_along(a) && is_along(b) && a.value.min(b.value) - limits[0] >= CLEAR * band
     }
 
     /// For which places a bound of the bend is needed on the stretch between two samples.
@@ -368,7 +385,10 @@ impl Course<'_, '_> {
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
         let contacts = [(&from, &a.contact), (&to, &b.contact)];
-        role.gauge.at_most_between(&sweep.at(a.x).1, contacts).is_some_and(|most| most <= limits[1])
+        let tool = sweep.at(a.x).1;
+        let allows = |most: Option<f64>| most.is_some_and(|most| most <= limits[1]);
+        allows(role.gauge.at_most_between(&tool, contacts))
+            || allows(role.gauge.at_most_along_surface(&tool, contacts))
             || self.is_held_by_witness(a, b)
             || by_contacts
                 && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
@@ -485,9 +505,11 @@ fn middle(a: &Sample, b: &Sample) -> f64 {
 
 /// Where a stretch is cut that is not proven. Next to an extreme at the limit of the band only short ones are, while slopes
 /// carry far elsewhere.
-fn cut(a: &Sample, b: &Sample) -> f64 {
+fn cut(a: &Sample, b: &Sample, enough: f64) -> f64 {
     let (here, there) = (a.slope.abs(), b.slope.abs());
-    let share = if here <= LEVEL * there {
+    let share = if here.max(there) * (b.x - a.x) <= enough {
+        0.5
+    } else if here <= LEVEL * there {
         BESIDE_EXTREME
     } else if there <= LEVEL * here {
         1.0 - BESIDE_EXTREME
