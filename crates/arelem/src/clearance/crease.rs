@@ -28,6 +28,8 @@ const CLOSE: f64 = 1e-12;
 const ROUGHLY: f64 = 1e-2;
 /// Length of the difference of two unit directions that is rounding: that of Newton's method at an edge.
 const SQUARE: f64 = 1e-5;
+/// How far off, in reaches of the tool, a line must be: what goes through it is no nearer than nothing. Half of what is left open of a contact.
+const NOT_THROUGH: f64 = 0.5 * MISSED;
 /// Bound of the parts of a surface that one proof looks at: a look takes up to a microsecond, and beside the vertex of a cone of rulings all of its
 /// strips come near.
 const MOST_LOOKS: u32 = 32_000;
@@ -165,7 +167,7 @@ impl Beside<'_> {
     }
 
     /// Whether a tool that is a line, behind an end by a contact, is in the surface with one of its own ends alone: that comes out by less.
-    fn has_shorter_way(&self, contact: &Contact, slack: f64) -> bool {
+    pub(super) fn has_shorter_way(&self, contact: &Contact, slack: f64) -> bool {
         let Self { tool, surface, side, tip } = *self;
         if tool.radius() > 0.0 || contact.clearance >= 0.0 {
             return false;
@@ -261,7 +263,12 @@ pub(super) fn clears(
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
     let limit = Limit { looks: MOST_LOOKS, patience: tool.patience };
-    surface.keeps_off_body(body, level.max(0.0), limit).is_some()
+    surface.keeps_off_body(body, level.max(least_off(tool)), limit).is_some()
+}
+
+/// The distance from which on a place of a surface is out of a tool for certain: a line has no inside.
+fn least_off(tool: &Tool) -> f64 {
+    if tool.radius() > 0.0 { 0.0 } else { NOT_THROUGH * tool.reach() }
 }
 
 /// The half-space across a unit direction that holds a tool in some places of its end.
@@ -291,7 +298,7 @@ pub(super) fn clears_turning(
         tips: [first.1 + out, last.1 + out],
         close: CLOSE * (reach + (last.1 - first.1).norm()),
     };
-    let wanted = level.max(0.0) + angle * angle * reach / 8.0;
+    let wanted = level.max(least_off(first.0)) + angle * angle * reach / 8.0;
     let body = Body { away: &|place: &Vec3| hull.away(place), within: None };
     let limit = Limit { looks: MOST_LOOKS, patience: first.0.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
@@ -404,7 +411,28 @@ mod tests {
     use apt_geometry::cutter::Cutter;
 
     use super::*;
-    use crate::{attitude::Sweep, tests::v};
+    use crate::{
+        attitude::Sweep,
+        tests::{level, sheets::ruled, v},
+    };
+
+    /// No place of a sheet is inside of a line that goes through it, which is as deep in the sheet as its end is under it.
+    #[test]
+    fn a_line_is_not_clear_of_a_sheet_that_it_goes_through() {
+        let edge = |z: f64| (level(z), v(0.0, 0.0, z), v(2.0, 0.0, z), Vec3::z());
+        let sheet = Surface::from_geometry(&ruled([edge(0.0), edge(1.0)])).expect("a sheet");
+        let cutter = Cutter::from_numbers(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0], 1.0).expect("a cutter");
+        let out = Vec3::y();
+        let depth = 0.3;
+        for axis in [out, v(0.4, 1.0, 0.1).normalize()] {
+            let tool = Tool::new(cutter, axis);
+            let tip = v(1.0, -depth, 0.5);
+            let is_clear = |level: f64| clears(&sheet, &tool, [&tip, &tip], [&out, &out], level);
+            assert!(is_clear(-depth - 1e-6));
+            assert!(!is_clear(-depth + 1e-6));
+            assert!(!is_clear(-0.1));
+        }
+    }
 
     /// A tool that turns is nowhere nearer to a place than the hull of its ends, less how far it swings out; and no distance from the hull is below
     /// its tangent.

@@ -60,6 +60,10 @@ impl Search<'_> {
         if away > ABOUT * self.tool.radius() && (touch.clearance - self.best.value).abs() <= slack {
             return Taken::AsOneOfTwo;
         }
+        if let Some(behind) = self.behind_end(touch, slack) {
+            self.best = Best { value: behind.clearance, contact: Some(behind), piece: self.best.piece };
+            return Taken::AsFreed;
+        }
         if touch.clearance <= self.best.value + slack {
             self.best.take(self.best.piece, touch.clearance, || touch);
             return Taken::AsNearest;
@@ -80,6 +84,17 @@ impl Search<'_> {
         let is_freed =
             self.surface.edge_at(&out.surface).is_some() && self.beside().clears(&out, out.clearance - slack);
         is_freed.then_some(out)
+    }
+
+    /// For a line that passes the end of the surface behind it, deeper there than any place of it is that has been found, that contact, if
+    /// it is shown: on the other side of the end distances of the line's places tell nothing of how deep it is.
+    fn behind_end(&self, touch: Contact, slack: f64) -> Option<Contact> {
+        if self.tool.radius() > 0.0 || self.best.value >= 0.0 {
+            return None;
+        }
+        let is_deeper = |out: &Contact| out.clearance < self.best.value - slack;
+        let out = self.freed(touch, slack).filter(is_deeper)?;
+        (!self.beside().has_shorter_way(&out, slack)).then_some(out)
     }
 
     /// Takes the way past the end of the surface for a line in it whose depth is not shown: just before the end places of the line are as
