@@ -127,7 +127,7 @@ impl Law {
     }
 }
 
-/// Derivatives of the two vectors of [`Law::frame`], along the line of motion and towards the other normal, by both normals.
+/// Derivatives of the two vectors of [`frame`](super::frame), along the line of motion and towards the other normal, by both normals.
 fn frame_rates(normal: &Vec3, other: &Vec3) -> Option<[Rates; 2]> {
     let (tangent, along) = unit(&normal.cross(other))?;
     let tangent_rates = Rates { first: -along * other.cross_matrix(), second: along * normal.cross_matrix() };
