@@ -79,8 +79,11 @@ impl DirectrixCurve {
         self.axes[0] * v.x + self.axes[1] * v.y
     }
 
-    /// The interval with the nearest point and its parameter there.
+    /// The interval with the nearest point and its parameter there; that is no number for a place without coordinates.
     fn nearest(&self, flat: Vec2) -> (usize, f64) {
+        if !flat.iter().all(|x| x.is_finite()) {
+            return (0, f64::NAN);
+        }
         let mut best = (0, 0.0, f64::INFINITY);
         self.boxes.visit(flat, |k, nearest| {
             let Some(interval) = self.intervals.get(k) else { return nearest };

@@ -91,6 +91,13 @@ fn w10_w11_normals() {
 }
 
 #[test]
+fn a_tabulated_cylinder_has_no_foot_for_a_place_without_coordinates_and_says_so() {
+    for place in [[f64::NAN, 0.0, 0.0], [0.0, f64::NAN, 0.0], [f64::INFINITY, f64::NEG_INFINITY, 0.0]] {
+        assert!(!tabulated().foot(&Vec3::from(place)).distance.is_finite(), "{place:?}");
+    }
+}
+
+#[test]
 fn w12_w13_tabulated_cylinder() {
     let cylinder = tabulated();
     let up = cylinder.directed_distance(&v(1.0, -3.0, 7.0), &Vec3::y(), RootSelection::Nearest);
