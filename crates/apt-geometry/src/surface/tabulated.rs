@@ -106,7 +106,7 @@ impl DirectrixCurve {
         let (k, s) = self.nearest(flat);
         let interval = &self.intervals[k];
         let [h, h1, h2] = interval.height(s);
-        let norm = h1.hypot(1.0);
+        let norm = (1.0 + h1 * h1).sqrt();
         let normal = (interval.normal_axis() - interval.along * h1) / norm;
         let point = interval.start + interval.along * s + interval.normal_axis() * h;
         let offset = flat - point;

@@ -27,6 +27,11 @@ const CLOSE: f64 = 1.25;
 /// The same for surfaces whose bounds over large boxes are near enough.
 const CLOSE_BY_CHART: f64 = 1.5;
 
+/// Bound of the cuts about a place that told last that there is no bound: to a part in thirty thousand along each edge.
+const MOST_CUTS: u32 = 45;
+/// Half of the edge of a box that is not halved any more, relative to how far the points of the tool stray.
+const SMALL: f64 = 0.5;
+
 /// Angle, radians, and share of a length that are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -38,6 +43,9 @@ struct Cell {
     /// Radius of balls about the points, which then count in place of them.
     ball: f64,
 }
+
+/// The middle of the box that told last that there is no bound, or none of use, in the frame of the tool: mostly it does so again.
+pub(crate) type Witness = std::cell::Cell<Option<[f64; 3]>>;
 
 /// The bound of [`upward_bend`] where the tool is in a ball in which nearest places do not jump: that takes no search.
 pub(crate) fn steady_bend(
@@ -74,11 +82,11 @@ fn disc_bend(gauge: &Gauge, tool: &Tool, tip: &Vec3, spread: f64, range: [f64; 2
 /// `range` (lowest, highest distance from the surface on the gauge's side, THICK included) while no point of the tool
 /// strays farther than `spread` from its place for the given tool end. There is none once the tool's patience is over, asked once in
 /// [`BOXES_A_QUESTION`] boxes; `None` where it is greater than what `is_of_use` takes, as places of the tool that are likely to be in
-/// contact mostly tell at once.
+/// contact mostly tell at once. Boxes about the witness are looked at first, then those about these places.
 pub(crate) fn upward_bend(
     gauge: &Gauge,
     tool: &Tool,
-    (tip, likely): (&Vec3, &[Vec3]),
+    (tip, likely, witness): (&Vec3, &[Vec3], &Witness),
     spread: f64,
     range: [f64; 2],
     is_of_use: &dyn Fn(f64) -> bool,
@@ -113,6 +121,10 @@ pub(crate) fn upward_bend(
     {
         return None;
     }
+    let in_frame: Vec<[f64; 3]> = likely.iter().map(|place| frame_of(tool, &(place - tip))).collect();
+    if let Some(place) = witness.take() {
+        cut_down(&mut cells, &place, spread);
+    }
     let mut is_probed = false;
     while let Some(cell) = cells.pop() {
         seen += 1;
@@ -139,7 +151,7 @@ pub(crate) fn upward_bend(
             continue;
         }
         let found = surface.bend(gauge.side, &foot, &region(center, reach), tool.patience);
-        let small = cell.half.iter().all(|h| *h <= 0.5 * spread);
+        let small = cell.is_small(spread);
         if let Bend::AtMost(bound) = found
             && (small || bound <= greatest.max(close * needed))
         {
@@ -150,9 +162,15 @@ pub(crate) fn upward_bend(
         // Every box about a place in contact has it within its reach, and no better bound.
         let is_met = distance - spread <= range[1] && distance + spread >= range[0];
         match at_best {
-            Bend::AtMost(least) if is_met && !is_of_use(least) => return None,
+            Bend::AtMost(least) if is_met && !is_of_use(least) => {
+                witness.set(Some(cell.middle));
+                return None;
+            }
             Bend::AtMost(least) => needed = needed.max(least),
-            Bend::Unbounded if is_met => return Some(at_best),
+            Bend::Unbounded if is_met => {
+                witness.set(Some(cell.middle));
+                return Some(at_best);
+            }
             Bend::Unbounded => {}
         }
         // Where the surface ends within reach of a place in contact no box helps.
@@ -175,10 +193,13 @@ pub(crate) fn upward_bend(
         if enough || small || seen >= limit {
             match found {
                 Bend::AtMost(bound) => greatest = greatest.max(bound),
-                other => return Some(other),
+                other => {
+                    witness.set(Some(cell.middle));
+                    return Some(other);
+                }
             }
         } else {
-            cells.extend(cell.halves());
+            cells.extend(cell.halves_towards(&in_frame));
         }
     }
     Some(Bend::AtMost(greatest))
@@ -216,6 +237,11 @@ impl Within<'_> {
         let region = Region { center, radius: spread, lowest, highest };
         Some(surface.bend(side, &foot, &region, tool.patience))
     }
+}
+
+/// A place, from the tool end, in the frame of the tool.
+fn frame_of(tool: &Tool, place: &Vec3) -> [f64; 3] {
+    [tool.across[0].dot(place), tool.across[1].dot(place), tool.axis.dot(place)]
 }
 
 /// Places of a convex tool, and those half way from each to the next: contact goes from one to the other, if it does not jump.
@@ -272,6 +298,21 @@ fn boxes(tool: &Tool, corner: Option<&Circle>, [low, height]: [f64; 2]) -> Vec<C
     cells
 }
 
+/// Cuts the box that holds a place into one about it that is halved no more, which is looked at first, and those left over.
+fn cut_down(cells: &mut Vec<Cell>, place: &[f64; 3], spread: f64) {
+    let Some(index) = cells.iter().position(|cell| cell.square_from(place) == 0.0) else { return };
+    let mut cell = cells.remove(index);
+    for _ in 0..MOST_CUTS {
+        if cell.is_small(spread) {
+            break;
+        }
+        let [other, near] = cell.halves_towards(&[*place]);
+        cells.push(other);
+        cell = near;
+    }
+    cells.push(cell);
+}
+
 impl Cell {
     /// Whether no place of the box counts: none of the circle of centres, or the balls of the corner hold what of the tool is in it.
     fn is_held(&self, tool: &Tool, corner: &Circle) -> bool {
@@ -288,6 +329,25 @@ impl Cell {
     fn beside(&self, radius: f64) -> bool {
         let near = |k: usize| (self.middle[k].abs() - self.half[k]).max(0.0);
         near(0).hypot(near(1)) > radius
+    }
+
+    /// Whether it is halved no more where places stray so far.
+    fn is_small(&self, spread: f64) -> bool {
+        self.half.iter().all(|half| *half <= SMALL * spread)
+    }
+
+    /// Both halves along the longest edge, last that which is nearer to one of these places: it is looked at first. What touches bends the
+    /// clearance most, or has no bound.
+    fn halves_towards(&self, places: &[[f64; 3]]) -> [Self; 2] {
+        let halves = self.halves();
+        let [low, high] = halves
+            .map(|half| places.iter().map(|place| half.square_from(place)).fold(f64::INFINITY, f64::min));
+        if low < high { [halves[1], halves[0]] } else { halves }
+    }
+
+    /// The squared distance from a place; zero from one inside.
+    fn square_from(&self, place: &[f64; 3]) -> f64 {
+        (0..3).map(|k| ((place[k] - self.middle[k]).abs() - self.half[k]).max(0.0).powi(2)).sum()
     }
 
     /// Both halves along the longest edge.

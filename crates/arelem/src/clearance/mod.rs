@@ -38,7 +38,7 @@ use self::{
 };
 pub(crate) use self::{
     certify::{Certificate, Face},
-    cover::{steady_bend, upward_bend},
+    cover::{Witness, steady_bend, upward_bend},
 };
 pub use self::{memory::Memory, tool::Tool};
 

@@ -15,7 +15,7 @@ use apt_geometry::{
 use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
-    clearance::{Gauge, Memory, Tool, separation, upward_bend},
+    clearance::{Gauge, Memory, Tool, Witness, separation, upward_bend},
     role::Working,
 };
 
@@ -271,7 +271,7 @@ impl<'a> Watcher<'a> {
         }
         let reach = working.gauge.reach(&self.prepared.tool);
         let (band, stretch) = (working.inside.max(working.outside), sweep.stretch(reach));
-        let mut end = sweep.length;
+        let (mut end, witness) = (sweep.length, Witness::default());
         for _ in 0..HALVINGS {
             let step = end - x;
             if step <= 2.0 * (plain - x) {
@@ -290,7 +290,7 @@ impl<'a> Watcher<'a> {
                 let (low, high) = (value.abs().min(next.abs()), value.abs().max(next.abs()));
                 let range = [low - way + base, high + 2.0 * way + base];
                 if let Some(Bend::AtMost(bend)) =
-                    upward_bend(&gauge, &tool, (&middle, &[]), 0.5 * way, range, &|_| true)
+                    upward_bend(&gauge, &tool, (&middle, &[], &witness), 0.5 * way, range, &|_| true)
                 {
                     let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
                     let clear = lowest((value.abs(), next.abs()), bend, step) > band;

@@ -4,7 +4,9 @@ use std::cell::Cell;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use crate::clearance::{Certificate, Contact, Gauge, Shape, Tool, has_closed_form, steady_bend, upward_bend};
+use crate::clearance::{
+    Certificate, Contact, Gauge, Shape, Tool, Witness, has_closed_form, steady_bend, upward_bend,
+};
 
 /// How much farther a bound reaches than the stretch it is made for, so that the next ones need no new one.
 const FORESIGHT: f64 = 3.0;
@@ -103,6 +105,8 @@ pub(crate) struct Ledger {
     cramped: Cell<Option<Vec3>>,
     /// Where a bound for all of the tool was of no use when one was last asked for.
     useless: Cell<Option<Vec3>>,
+    /// What of the tool told last that there is none.
+    witness: [Witness; 2],
     /// What of the tool was near by when that was last asked.
     reach: Cell<Option<Reach>>,
     /// The last two: where a vector begins and where it ends.
@@ -188,7 +192,14 @@ impl Ledger {
             if self.gap.get().is_some_and(|known| known.lies_in(&About { spread, ..*place }, range)) {
                 continue;
             }
-            found = upward_bend(gauge, tool, (tip, &place.likely), spread, range, is_of_use);
+            found = upward_bend(
+                gauge,
+                tool,
+                (tip, &place.likely, &self.witness[usize::from(more > 0.0)]),
+                spread,
+                range,
+                is_of_use,
+            );
             match found {
                 // One that reaches farther may hold a place that bends much more.
                 Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}
