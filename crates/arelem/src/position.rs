@@ -18,6 +18,8 @@ use crate::{
 const MAX_ITERATIONS: u32 = 60;
 /// How often a correction that makes things worse is halved.
 const MAX_HALVINGS: u32 = 10;
+/// The same for one of many tries: one that is to help less leads nowhere soon.
+const FEW_HALVINGS: u32 = 3;
 /// Residual, relative to the size of the coordinates, at which the iteration ends.
 const RESOLUTION: f64 = 1e-13;
 /// Residual, relative to the size of the coordinates, that is good enough when rounding stops further progress.
@@ -134,7 +136,7 @@ pub(crate) fn solve_within(
     start: &Vec3,
     corrections: u32,
 ) -> Result<Solution, Unsolved> {
-    let effort = Effort { corrections, halvings: MAX_HALVINGS, is_one_of_many: false };
+    let effort = Effort { corrections, halvings: MAX_HALVINGS, turns: 1, is_one_of_many: false };
     solve_unless(attitude, conditions, start, effort, &|_| false)
 }
 
@@ -146,7 +148,7 @@ pub(crate) fn try_within(
     start: &Vec3,
     corrections: u32,
 ) -> Result<Solution, Unsolved> {
-    let effort = Effort { corrections, halvings: MAX_HALVINGS, is_one_of_many: true };
+    let effort = Effort { corrections, halvings: FEW_HALVINGS, turns: 1, is_one_of_many: true };
     solve_unless(attitude, conditions, start, effort, &|_| false)
 }
 
@@ -156,6 +158,8 @@ pub(crate) struct Effort {
     pub(crate) corrections: u32,
     /// How often one that makes things worse is halved.
     pub(crate) halvings: u32,
+    /// How often contacts are followed, each time from where the last ones have led, before it is proven on the way that they are the nearest.
+    pub(crate) turns: u32,
     /// Whether it may end where the nearest contacts may not have led.
     pub(crate) is_one_of_many: bool,
 }
@@ -172,18 +176,33 @@ pub(crate) fn solve_unless(
     is_in_vain: &dyn Fn(&Vec3) -> bool,
 ) -> Result<Solution, Unsolved> {
     let search = Search { attitude, conditions, effort, is_in_vain, is_proven: Cell::new(true) };
-    let (found, is_proven) = search.newton(start, Manner::Followed);
-    if is_proven {
-        return found;
-    }
-    match found {
-        Ok(Solution { tip, corrections, .. }) => {
-            if let (Ok(proven), _) = search.newton(&tip, Manner::Proven) {
-                return Ok(Solution { corrections: corrections + proven.corrections, ..proven });
+    let (mut from, mut made) = (*start, 0);
+    for turn in 1..=effort.turns.max(1) {
+        let (found, is_proven) = search.newton(&from, Manner::Followed);
+        let solution = match found {
+            // A failure is one of the way from the start.
+            _ if is_proven && turn == 1 => return found,
+            Ok(solution) => solution,
+            Err(unsolved) if turn == 1 && effort.is_one_of_many && search.is_known_at(&unsolved) => {
+                return found;
             }
+            Err(_) => break,
+        };
+        made += solution.corrections;
+        if is_proven {
+            return Ok(Solution { corrections: made, ..solution });
         }
-        Err(unsolved) if effort.is_one_of_many && search.is_known_at(&unsolved) => return found,
-        Err(_) => {}
+        from = solution.tip;
+        let nearest = search.evaluate(&from, Manner::Proven);
+        let is_another = nearest.greatest().0 > ACCEPTABLE * size(attitude.tool(), &from);
+        // What is nearer there is followed in turn.
+        if is_another && turn < effort.turns {
+            continue;
+        }
+        if let (Ok(proven), _) = search.newton_with(&from, nearest, Manner::Proven) {
+            return Ok(Solution { corrections: made + proven.corrections, ..proven });
+        }
+        break;
     }
     search.newton(start, Manner::Proven).0
 }
@@ -201,10 +220,19 @@ struct Search<'a> {
 impl Search<'_> {
     /// What Newton's method finds, and whether contacts that need not be the nearest have no part in it.
     fn newton(&self, start: &Vec3, manner: Manner) -> (Result<Solution, Unsolved>, bool) {
+        self.newton_with(start, self.evaluate(start, manner), manner)
+    }
+
+    /// The same from what the start is like.
+    fn newton_with(
+        &self,
+        start: &Vec3,
+        mut rows: Rows,
+        manner: Manner,
+    ) -> (Result<Solution, Unsolved>, bool) {
         let Self { attitude, effort: Effort { corrections, halvings, .. }, is_in_vain, .. } = *self;
         let unsolved = |unsolved: Unsolved| (Err(unsolved), manner == Manner::Proven || self.is_proven.get());
         let mut tip = *start;
-        let mut rows = self.evaluate(&tip, manner);
         for iteration in 0..corrections {
             let (worst, row) = rows.greatest();
             let scale = size(attitude.tool(), &tip);

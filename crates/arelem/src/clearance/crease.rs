@@ -166,6 +166,11 @@ impl Beside<'_> {
         shown.map(|contact| (contact, slack))
     }
 
+    /// The contact at an edge, found from a place of it near by, if the tool comes off the surface over it: another may be nearer.
+    pub(super) fn along(&self, spot: &Spot) -> Option<Contact> {
+        self.leading_off(self.touch(spot)?.1)
+    }
+
     /// Whether a tool that is a line, behind an end by a contact, is in the surface with one of its own ends alone: that comes out by less.
     pub(super) fn has_shorter_way(&self, contact: &Contact, slack: f64) -> bool {
         let Self { tool, surface, side, tip } = *self;

@@ -123,6 +123,8 @@ pub struct Memory {
     pub(super) near: RefCell<Contacts>,
     /// The place of an edge of the surface that contact was at last, if it was at one, and the side.
     crease: Cell<Option<(f64, Spot)>>,
+    /// The same of places that are only passed through, where nothing is proven.
+    crease_passed: Cell<Option<(f64, Spot)>>,
     /// What parts of the surface showed of the last contact.
     by_parts: Cell<ByParts>,
     /// How distances bend in balls about the axis of a tool whose flank was in contact.
@@ -218,6 +220,16 @@ impl Memory {
     /// Keeps whether contact is at an edge of the surface, and where.
     pub(super) fn remember_crease(&self, side: f64, spot: Option<Spot>) {
         self.crease.set(spot.map(|spot| (side, spot)));
+    }
+
+    /// The place of an edge that contact was at where it was only passed through last, on a side, if it was at one.
+    pub(super) fn crease_passed(&self, side: f64) -> Option<Spot> {
+        self.crease_passed.get().filter(|(seen, _)| *seen == side).map(|(_, spot)| spot)
+    }
+
+    /// Keeps whether a contact that is only passed through is at an edge of the surface, and where.
+    pub(super) fn pass_crease(&self, side: f64, spot: Option<Spot>) {
+        self.crease_passed.set(spot.map(|spot| (side, spot)));
     }
 
     /// What parts of the surface showed of the last contact.

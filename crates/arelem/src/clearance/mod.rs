@@ -137,13 +137,21 @@ impl Gauge {
         if let Some(contact) = closed_form::contact(&tool, surface, *side, &tip) {
             return (level(contact), true);
         }
+        let beside = Beside { tool: &tool, surface, side: *side, tip: &tip };
+        if follows && let Some(contact) = memory.crease_passed(*side).and_then(|spot| beside.along(&spot)) {
+            return (level(contact), false);
+        }
         match near::contact(&tool, surface, *side, &tip, memory) {
-            Followed::Proven(contact, _) => return (level(contact), true),
+            Followed::Proven(contact, _) => {
+                memory.pass_crease(*side, None);
+                return (level(contact), true);
+            }
             Followed::Likely(_, contact) if follows => return (level(contact), false),
             Followed::Likely(..) | Followed::Lost => {}
         }
         let found = search::found(&tool, Face { surface, side: *side }, &tip);
         near::remember(&tool, surface, *side, &tip, memory, &found);
+        memory.pass_crease(*side, beside.spot(&found.surface));
         (level(found), true)
     }
 
@@ -161,8 +169,7 @@ impl Gauge {
             return (level(contact), true);
         }
         let beside = Beside { tool, surface, side, tip };
-        let touch = memory.crease(side).and_then(|spot| beside.touch(&spot));
-        if let Some(contact) = touch.and_then(|(_, touch)| beside.leading_off(touch)) {
+        if let Some(contact) = memory.crease(side).and_then(|spot| beside.along(&spot)) {
             return (level(contact), false);
         }
         match near::contact(tool, surface, side, tip, memory) {
@@ -500,7 +507,7 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
 }
 
 #[cfg(test)]
-pub(crate) use self::{certify::JUDGED, quadric::FLOORS};
+pub(crate) use self::{certify::JUDGED, quadric::FLOORS, search::LOOKS_EVERYWHERE};
 
 #[cfg(test)]
 thread_local! {

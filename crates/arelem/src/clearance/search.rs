@@ -42,6 +42,12 @@ const WORK_OF_FOOT: u32 = 16;
 /// Slack of the fan of contact normals of the corner torus, radians.
 pub(super) const FAN_SLACK: f64 = 1e-9;
 
+#[cfg(test)]
+thread_local! {
+    /// How often this thread has looked everywhere for a contact of which nothing is proven.
+    pub(crate) static LOOKS_EVERYWHERE: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// The best contact so far.
 struct Best {
     value: f64,
@@ -137,6 +143,8 @@ pub(super) fn lies_above(
 
 /// The contact that the search finds everywhere; nothing is proven of it. At an edge of the surface it is exactly there.
 pub(super) fn found(tool: &Tool, face: Face<'_>, tip: &Vec3) -> Contact {
+    #[cfg(test)]
+    LOOKS_EVERYWHERE.set(LOOKS_EVERYWHERE.get() + 1);
     let Face { surface, side } = face;
     let best = Best { value: f64::INFINITY, contact: None, piece: 0 };
     let mut search = Search { tool, surface, side, tip, best, piece: 0 };

@@ -17,7 +17,7 @@ use super::{
     stop::{Event, Watcher},
 };
 use crate::{
-    attitude::Sweep,
+    attitude::{Attitude, Sweep},
     clearance::{Contact, Shape},
     error::{Course, Iteration, MotionFailure},
     position::{self, Condition, Solution},
@@ -59,8 +59,12 @@ impl Vertex {
         let Prepared { attitude, part, drive, .. } = prepared;
         let conditions =
             [Condition::Passing(&part.gauge, from_part), Condition::Passing(&drive.gauge, from_drive)];
-        let Solution { tip, contacts, .. } = position::solve(attitude, &conditions, place).ok()?;
-        let [Some(part), Some(drive), _] = contacts else { return None };
+        Self::found(attitude, position::solve(attitude, &conditions, place).ok()?, sense)
+    }
+
+    /// What was found, in the same sense.
+    fn found(attitude: &Attitude, solution: Solution, sense: &Vec3) -> Option<Self> {
+        let Solution { tip, contacts: [Some(part), Some(drive), _], .. } = solution else { return None };
         let axis = attitude.tool_at(&tip).ok()?.axis;
         Some(Self { tip, axis, part, drive, tangent: tangent(&part, &drive, sense) })
     }

@@ -8,8 +8,9 @@ use apt_geometry::{
 use super::{Condition, solve};
 use crate::{
     attitude::Attitude,
-    clearance::{Gauge, Memory, Tool},
+    clearance::{Gauge, LOOKS_EVERYWHERE, Memory, Tool},
     tests::plane,
+    verify::tests::lofts,
 };
 
 fn gauge(geometry: &Geometry, on: bool) -> Gauge {
@@ -40,4 +41,29 @@ fn a_tool_between_two_walls_is_led_to_both_at_once() {
     // A contact may be nearer by 1e-9 of the tool's size than the one that is found.
     assert!(away < 1e-8, "{away} away, {:?}", solution.tip);
     assert!(solution.corrections <= 12, "{} corrections", solution.corrections);
+}
+
+/// Past the end of a ruled surface a ball touches that end, where it is followed; all is looked at where the corrections begin and where they have led.
+#[test]
+fn a_contact_at_the_end_of_a_surface_is_followed() {
+    let roof = gauge(&lofts::roof(), false);
+    // The end is at x = 18.
+    let (past, across) = (plane(1.0, 0.0, 0.0, 18.1), plane(0.0, 1.0, 0.0, 0.4));
+    let [past, across] = [past, across].map(|plane| gauge(&plane, true));
+    let (radius, tool) =
+        (0.25, Tool::new(Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("cutter"), Vec3::z()));
+    let end = roof.surface.foot(&Vec3::new(18.0, 0.4, 6.0)).point;
+    let start = Vec3::new(18.1, 0.4, end.z + 0.1);
+    let conditions = [
+        Condition::Passing(&roof, 0.0),
+        Condition::Clearance(&past, 0.0),
+        Condition::Clearance(&across, 0.0),
+    ];
+    let before = LOOKS_EVERYWHERE.get();
+    let solution = solve(&Attitude::fixed(tool), &conditions, &start).expect("a position");
+    let looks = LOOKS_EVERYWHERE.get() - before;
+    let middle = solution.tip + Vec3::z() * radius;
+    let away = roof.surface.foot(&middle).distance.abs();
+    assert!((away - radius).abs() < 1e-9, "{away}");
+    assert!(solution.corrections >= 2 && looks <= 2, "{looks} looks, {} corrections", solution.corrections);
 }

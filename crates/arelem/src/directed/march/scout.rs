@@ -11,7 +11,7 @@ use super::{Vertex, surface_end::SurfaceEnd, tangency};
 use crate::{
     directed::{Prepared, is_tangent, stop::Watcher},
     error::{Course, MotionFailure},
-    position::{self, Condition},
+    position::{self, Condition, Effort},
 };
 
 /// Bound of the steps of one look ahead.
@@ -20,6 +20,12 @@ const MAX_STEPS: u32 = 3000;
 const FIRST: f64 = 0.01;
 /// Turn of the path, radians, that steps aim at, and the greatest allowed.
 const TURN: [f64; 2] = [0.06, 0.12];
+/// How far away at most a step may lead, in its own length.
+const FARTHEST: f64 = 2.0;
+/// How many times as far corrections may lead before the step is in vain.
+const STRAYS: f64 = 2.0;
+/// What the corrections of a step may take: a shorter one needs fewer.
+const STEP: Effort = Effort { corrections: 20, halvings: 2, turns: 3, is_one_of_many: true };
 /// Greatest growth from one step to the next.
 const GROWTH: f64 = 3.0;
 /// How many times its sag a step must stay away from the check surfaces.
@@ -153,26 +159,36 @@ impl Scout<'_> {
     /// The next place and the turn of the path on the way; shortens the step until the path is followed.
     fn leg(&self, here: &Vertex, step: &mut f64) -> Option<Leg> {
         while *step > LEAST * self.prepared.size {
-            if let Some(to) =
-                Vertex::settled(self.prepared, &(here.tip + here.tangent * *step), &here.tangent)
-            {
+            let farthest = FARTHEST * *step;
+            if let Some(to) = self.settled_after(here, *step) {
                 let chord = to.tip - here.tip;
                 let length = chord.norm();
                 // Not one where the tool has fallen off the end.
-                if length <= 2.0 * *step
+                if length <= farthest
                     && let Some(end) = SurfaceEnd::at(self.prepared, &to)
                 {
                     return Some(Leg::Over((to, end)));
                 }
                 let turn = here.tangent.cross(&to.tangent).norm().atan2(here.tangent.dot(&to.tangent));
                 let ahead = chord.dot(&here.tangent) > (1.0 - TURN[1]) * length;
-                if length > 0.0 && ahead && turn <= TURN[1] && length <= 2.0 * *step {
+                if length > 0.0 && ahead && turn <= TURN[1] && length <= farthest {
                     return Some(Leg::Along(to, turn));
                 }
             }
             *step *= 0.5;
         }
         None
+    }
+
+    /// The position to which a step leads; `None` where that is not found soon, or is too far away: a step that leads there is shorter.
+    fn settled_after(&self, here: &Vertex, step: f64) -> Option<Vertex> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let conditions =
+            [Condition::Passing(&part.gauge, part.rest()), Condition::Passing(&drive.gauge, drive.rest())];
+        let strays = |tip: &Vec3| (tip - here.tip).norm() > STRAYS * FARTHEST * step;
+        let place = here.tip + here.tangent * step;
+        let found = position::solve_unless(attitude, &conditions, &place, STEP, &strays).ok()?;
+        Vertex::found(attitude, found, &here.tangent)
     }
 
     /// Where a surface ends, between a place that has it below and one that does not.
