@@ -1,9 +1,20 @@
 //! Lower bounds for the number of cut vectors (arelem reference 5.6): chords of a ring, where the configuration confines
-//! the tool end to one; elsewhere what the integral of √(κ/8τ) along the path fills, κ being how the clearance bends.
+//! the tool end to one; elsewhere the longest stretches of the path that a straight line keeps the bands along, which on a steady bend
+//! is the integral of √(κ/8τ), κ being how the clearance bends.
+
+mod filled;
+mod readings;
 
 use apt_geometry::{Vec3, surface::Surface};
 
-use crate::{clearance::Shape, directed::Prepared, role::Working, sequence::CutSequence};
+use self::filled::{Filled, Limits};
+pub(crate) use self::readings::{Reading, Readings};
+use crate::{
+    clearance::{Shape, Tool},
+    directed::Prepared,
+    role::Working,
+    sequence::CutSequence,
+};
 
 /// Sine below which directions are parallel or a plane contains one.
 const PARALLEL: f64 = 1e-9;
@@ -65,62 +76,11 @@ impl Ring {
     }
 }
 
-/// How many vectors a path fills, each as long as both bands and MAXDP allow: none can be longer, whatever was before it, so that no
-/// sequence has fewer.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Filled {
-    /// Vectors that are full.
-    vectors: f64,
-    /// Since then the integrals of √(κ/8τ) for part and drive surface, and the length in that of the longest vector; where one of
-    /// these is one, a vector is full.
-    since: Shares,
-}
-
-/// Share of a vector from which on one more is needed to come to a corner: the others may go beyond it by a tenth of their length, and the next
-/// one may begin as much before it (`directed::march::step::at_corner`).
-const NO_REST: f64 = 0.25;
-
-/// What a stretch of a path fills of a vector, as [`Filled`] has it.
-type Shares = [f64; 3];
-
-impl Filled {
-    /// Adds a stretch, which fills evenly along it, and no more than a vector.
-    fn add(&mut self, shares: Shares) {
-        let mut ahead = 1.0;
-        loop {
-            let all = self.since.iter().zip(shares);
-            // What does not fill leaves room for ever; 0/0 is no number that a minimum takes.
-            let room = all.map(|(since, share)| (1.0 - since) / share).fold(f64::INFINITY, f64::min);
-            if room >= ahead {
-                self.since.iter_mut().zip(shares).for_each(|(since, share)| *since += share * ahead);
-                return;
-            }
-            self.vectors += 1.0;
-            self.since = Shares::default();
-            ahead -= room;
-        }
-    }
-
-    /// Ends a stretch at a corner of the path, next to which every sequence has a vertex: the vector that leads there is full if it is no
-    /// rest that another one could have taken along.
-    fn end_at_corner(&mut self) {
-        if self.since.into_iter().fold(0.0, f64::max) >= NO_REST {
-            self.vectors += 1.0;
-            self.since = Shares::default();
-        }
-    }
-
-    /// All vectors, the last of which need not be full.
-    fn count(&self) -> f64 {
-        self.vectors + self.since.into_iter().fold(0.0, f64::max)
-    }
-}
-
 /// What is known of the bend along the beginning of a path from how its vectors were proven.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Bent {
     /// The position that the path has come to.
-    pub(crate) to: Vec3,
+    to: Vec3,
     /// What is filled until there.
     filled: Filled,
 }
@@ -132,69 +92,60 @@ impl Bent {
     }
 }
 
+/// A vector of a path, and how the clearances from part and drive surface run along it.
+#[derive(Debug)]
+struct Vector {
+    to: Vec3,
+    readings: [Readings; 2],
+}
+
 /// The bend along a path that grows vector by vector, the last of which may be taken back.
 #[derive(Debug)]
 pub(crate) struct Record {
-    /// The last positions, the latest at the end.
-    last: Vec<Bent>,
-    /// MAXDP.
-    maximum_step: f64,
+    /// What is not taken back any more.
+    settled: Bent,
+    /// The vectors since then.
+    recent: Vec<Vector>,
+    limits: Limits,
 }
 
-/// How many of the last positions are kept.
-const KEPT: usize = 4;
+/// How many of the last vectors may be taken back.
+const KEPT: usize = 3;
 
 impl Record {
     /// A path that begins at a position, and MAXDP.
-    pub(crate) fn new(from: &Vec3, maximum_step: f64) -> Self {
-        Self { last: vec![Bent::none(from)], maximum_step }
+    pub(crate) fn new(from: &Vec3, roles: [&Working; 2], maximum_step: f64) -> Self {
+        let limits = Limits::new(roles, maximum_step);
+        Self { settled: Bent::none(from), recent: Vec::with_capacity(KEPT), limits }
     }
 
-    /// A vector from one position to the next, along which the slopes of both clearances have this [`turning`], and whether it ends where
-    /// the path turns on the spot.
-    pub(crate) fn add(
-        &mut self,
-        (from, to): (&Vec3, &Vec3),
-        roles: [&Working; 2],
-        turning: [f64; 2],
-        is_at_corner: bool,
-    ) {
-        if let Some(known) = self.last.iter().rposition(|bent| bent.to == *from) {
+    /// A vector from one position to the next, and what has been read of both clearances along it.
+    pub(crate) fn add(&mut self, (from, to): (&Vec3, &Vec3), readings: [Readings; 2]) {
+        if let Some(known) = self.recent.iter().rposition(|vector| vector.to == *from) {
             // What led on from there has been taken back.
-            self.last.truncate(known + 1);
+            self.recent.truncate(known + 1);
+        } else if self.settled.to == *from {
+            self.recent.clear();
         }
-        let mut filled = self.last.last().map_or(Filled::default(), |bent| bent.filled);
-        filled.add(shares(roles, turning, (to - from).norm(), self.maximum_step));
-        if is_at_corner {
-            filled.end_at_corner();
+        if self.recent.len() >= KEPT {
+            let Vector { to, readings: [part, drive] } = self.recent.remove(0);
+            self.settled.filled.add([&part, &drive], &self.limits);
+            self.settled.to = to;
         }
-        if self.last.len() >= KEPT {
-            self.last.remove(0);
-        }
-        self.last.push(Bent { to: *to, filled });
+        self.recent.push(Vector { to: *to, readings });
     }
 
     /// What is known of a path with these positions.
-    pub(crate) fn along(&self, from: &Vec3, points: &[Vec3]) -> Bent {
-        let known = |tip: &Vec3| self.last.iter().find(|bent| bent.to == *tip);
-        let latest = points.iter().rev().take(KEPT).find_map(known).or(self.last.first());
-        latest.copied().unwrap_or(Bent::none(from))
+    pub(crate) fn along(&self, points: &[Vec3]) -> Bent {
+        let mut bent = self.settled.clone();
+        let is_known = |tip: &Vec3| self.recent.iter().rposition(|vector| vector.to == *tip);
+        let latest = points.iter().rev().take(KEPT + 1).find_map(is_known);
+        for Vector { to, readings: [part, drive] } in self.recent.iter().take(latest.map_or(0, |k| k + 1)) {
+            bent.filled.add([part, drive], &self.limits);
+            bent.to = *to;
+        }
+        bent
     }
-}
-
-/// Integral of √|κ| over a stretch of a length over which a slope changes.
-pub(crate) fn turning(length: f64, slopes: [f64; 2]) -> f64 {
-    ((slopes[1] - slopes[0]).abs() * length).sqrt()
-}
-
-/// What a vector of a length fills. It keeps the bands, so that it counts for one at most: where contact jumps the slope turns
-/// without need of another vector.
-fn shares(roles: [&Working; 2], turning: [f64; 2], length: f64, maximum_step: f64) -> Shares {
-    let bands = roles.map(Working::band);
-    let [part, drive] = [0, 1].map(|k: usize| (turning[k] / (8.0 * bands[k]).sqrt()).min(1.0));
-    // The way beside one vector, from its one end to the other within the bands, may be longer by that.
-    let longest = maximum_step + 2.0 * (bands[0] + bands[1]);
-    [part, drive, (length / longest).min(1.0)]
 }
 
 /// The number of cut vectors that no sequence within tolerance can beat.
@@ -220,32 +171,35 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
 
 /// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position.
 fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent, maximum_step: f64) -> u32 {
-    let mut filled = bent.filled;
+    let mut filled = bent.filled.clone();
+    let roles = [&prepared.part, &prepared.drive];
+    let limits = Limits::new(roles, maximum_step);
     // The end of a motion may leave out that position, or come before it.
     let met = path.iter().rposition(|tip| *tip == bent.to).unwrap_or(path.len().saturating_sub(2));
     let rest = std::iter::once(&bent.to).chain(&path[met + 1..]);
-    for (from, to) in rest.clone().zip(rest.skip(1)) {
-        let roles = [&prepared.part, &prepared.drive];
-        let turning = roles.map(|role| turn(prepared, role, from, to));
-        filled.add(shares(roles, turning, (to - from).norm(), maximum_step));
+    for (from, to) in rest.clone().zip(rest.skip(1)).filter(|(from, to)| from != to) {
+        let [part, drive] = roles.map(|role| read(&prepared.tool, role, [from, to]));
+        filled.add([&part, &drive], &limits);
     }
-    whole(filled.count() * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+    whole(filled.count(&limits) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
 }
 
-/// Part of the integral that sampling the bend at the ends and in the middle of each vector may add.
+/// Part of what is filled that reading the clearances at few places of each vector may add.
 const SAMPLED: f64 = 0.01;
 
-/// The turning of the slope along a vector.
-fn turn(prepared: &Prepared, role: &Working, from: &Vec3, to: &Vec3) -> f64 {
+/// The clearance of a role along a vector, at its ends and in its middle.
+pub(crate) fn read(tool: &Tool<'_>, role: &Working, [from, to]: [&Vec3; 2]) -> Readings {
     let length = (to - from).norm();
-    if length <= 0.0 || role.shape == Shape::Flat {
-        return 0.0;
-    }
     let direction = (to - from) / length;
-    let slope = |tip: &Vec3| role.gauge.contact(&prepared.tool, tip).gradient.dot(&direction);
-    let half = 0.5 * length;
-    let slopes = [from, &(0.5 * (from + to)), to].map(slope);
-    turning(half, [slopes[0], slopes[1]]) + turning(half, [slopes[1], slopes[2]])
+    let reading = |x: f64| {
+        let contact = role.gauge.contact(tool, &(from + direction * x));
+        Reading { x, value: contact.clearance, slope: contact.gradient.dot(&direction) }
+    };
+    if role.shape == Shape::Flat {
+        let level = |x: f64| Reading { x, ..Reading::default() };
+        return Readings::at_ends(level(0.0), level(length));
+    }
+    Readings::at_ends(reading(0.0), reading(length)).with(reading(0.5 * length))
 }
 
 /// The next whole number.
@@ -340,53 +294,6 @@ mod tests {
         let band = ring(2.5, 2.501);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.501, 2.501), 28);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.5009, 2.5009), 28);
-    }
-
-    fn filled(shares: &[Shares]) -> Filled {
-        let mut filled = Filled::default();
-        shares.iter().for_each(|share| filled.add(*share));
-        filled
-    }
-
-    /// What one role alone fills is the integral, in pieces of whatever size.
-    #[test]
-    fn one_bend_fills_its_integral() {
-        for pieces in [1, 3, 7, 64] {
-            let share = 0.7 / f64::from(pieces);
-            let along: Vec<_> = (0..10 * pieces).map(|_| [0.0, share, 0.0]).collect();
-            assert!((filled(&along).count() - 7.0).abs() < 1e-9, "{pieces}: {}", filled(&along).count());
-        }
-        assert_eq!(filled(&[Shares::default(); 5]).count(), 0.0);
-    }
-
-    /// Where the surfaces bend in turn a vector is full before the greater of both integrals is.
-    #[test]
-    fn bends_in_turn_fill_more_vectors_than_either_alone() {
-        let along: Vec<_> = (0..40).flat_map(|_| [[0.6, 0.0, 0.0], [0.0, 0.0, 0.6]]).collect();
-        let count = filled(&along).count();
-        assert!(count > 1.1 * 24.0 && count < 48.0, "{count}");
-        let alike: Vec<_> = (0..40).map(|_| [0.5, 0.75, 0.2]).collect();
-        assert!((filled(&alike).count() - 30.0).abs() < 1e-9);
-    }
-
-    /// Before a corner and beyond it there are whole vectors, but for what those to it may be longer.
-    #[test]
-    fn a_corner_ends_a_vector() {
-        let mut filled = Filled::default();
-        for (share, count) in [(2.4, 3.0), (1.2, 4.2), (0.0, 4.2), (0.1, 5.0), (0.1, 5.1)] {
-            (0..24).for_each(|_| filled.add([share / 24.0, 0.0, 0.0]));
-            filled.end_at_corner();
-            assert!((filled.count() - count).abs() < 1e-9, "{share}: {}", filled.count());
-        }
-    }
-
-    /// Each piece keeps both bands, so that there cannot be a need for more than the pieces are.
-    #[test]
-    fn no_more_vectors_are_filled_than_there_are() {
-        let along: Vec<_> = (0..200).map(|k| [37, 61, 83].map(|x| f64::from(k * x % 100) / 99.0)).collect();
-        for pieces in 1..along.len() {
-            assert!(filled(&along[..pieces]).count() <= pieces as f64 + 1e-9);
-        }
     }
 
     #[test]

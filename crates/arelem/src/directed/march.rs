@@ -405,7 +405,7 @@ impl<'a> March<'a> {
 
     fn path(&mut self, end: &finish::End) -> Path {
         let points = std::mem::take(&mut self.points);
-        let bent = self.stepper.record.along(&self.prepared.tip, &points);
+        let bent = self.stepper.record.along(&points);
         Path { points, check: end.check, check_side: end.side, bent }
     }
 

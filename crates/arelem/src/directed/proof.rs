@@ -12,7 +12,7 @@ pub(super) use self::course::lowest;
 pub(crate) use self::ledger::Ledger;
 use crate::{
     attitude::Sweep,
-    bound,
+    bound::{Reading, Readings},
     clearance::{Contact, Shape},
     role::{ROUNDING, Working},
 };
@@ -33,8 +33,8 @@ pub(crate) struct Extremes {
     pub(crate) least: f64,
     pub(crate) greatest: f64,
     pub(crate) proven: bool,
-    /// Integral of the root of how much the slope changes, by the distance, as far as samples tell: see [`crate::bound`].
-    pub(crate) turning: f64,
+    /// What has been read of the clearance along the vector: see [`crate::bound`].
+    pub(crate) readings: Readings,
 }
 
 /// Clearance and its derivative at a place along the vector.
@@ -85,6 +85,16 @@ impl Line<'_> {
         Sample { missed, ..self.known(x, &contact, &tip) }
     }
 
+    /// Readings of the clearance with samples between them, which may be of it turned about.
+    fn read(&self, readings: Readings, samples: &[Option<Sample>]) -> Readings {
+        let turned = |sample: &Sample| Reading {
+            x: sample.x,
+            value: self.sign * sample.value,
+            slope: self.sign * sample.slope,
+        };
+        samples.iter().flatten().map(turned).fold(readings, Readings::with)
+    }
+
     fn allows(&self, clearance: f64) -> bool {
         clearance >= self.limits[0] && clearance <= self.limits[1]
     }
@@ -117,8 +127,9 @@ pub(crate) fn extremes(
     let length = sweep.length;
     let proven = role.holds(least, size) && role.holds(greatest, size);
     let slope = |contact: &Contact| sweep.direction.dot(&contact.gradient);
-    let turning = bound::turning(length, [slope(from.1), slope(to.1)]);
-    let ends = Extremes { least, greatest, proven, turning };
+    let reading = |x, contact: &Contact| Reading { x, value: contact.clearance, slope: slope(contact) };
+    let readings = Readings::at_ends(reading(0.0, from.1), reading(length, to.1));
+    let ends = Extremes { least, greatest, proven, readings };
     let turns = sweep.turns() && !role.gauge.on;
     let shape = match role.shape {
         Shape::Convex if !turns => role.gauge.shape_along(&sweep.at(0.0).1, [from.0, to.0]),
@@ -150,46 +161,37 @@ pub(crate) fn extremes(
     match shape {
         Shape::Flat => ends,
         Shape::Convex => {
-            let Minimum { value, bound, turning } = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let Minimum { value, bound, at } = convex_minimum(&line, a, b, ENOUGH * role.band());
             let proven = ends.proven && bound >= limits[0];
-            Extremes { least: value.min(least), greatest, proven, turning }
+            Extremes { least: value.min(least), greatest, proven, readings: line.read(readings, &at) }
         }
         Shape::Concave => {
-            let Minimum { value, bound, turning } = convex_minimum(&line, a, b, ENOUGH * role.band());
+            let Minimum { value, bound, at } = convex_minimum(&line, a, b, ENOUGH * role.band());
             // The least values are those of the ends, if no other part of the tool is deeper there.
             let deepest = |x| line.certified(x, -role.inside - ROUNDING * size, None);
             let proven = ends.proven && -bound <= limits[1] && deepest(0.0) && deepest(length);
-            Extremes { least, greatest: (-value).max(greatest), proven, turning }
+            Extremes { least, greatest: (-value).max(greatest), proven, readings: line.read(readings, &at) }
         }
         Shape::General => course::extremes(&line, a, b, ends),
     }
 }
 
-/// The minimum of a convex function: its least value found, a lower bound from tangents, and how the slope turns.
+/// The minimum of a convex function: its least value found, a lower bound from tangents, and the last places looked at for it.
 struct Minimum {
     value: f64,
     bound: f64,
-    turning: f64,
+    at: [Option<Sample>; 2],
 }
 
 /// Minimum of a convex function between two samples.
 fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> Minimum {
-    let turning = |a: Sample, b: Sample| bound::turning(b.x - a.x, [a.slope, b.slope]);
-    let whole = [a, b];
     let mut value = a.value.min(b.value);
-    let found = |value: f64, bound: f64, between: Option<Sample>| Minimum {
-        value,
-        bound,
-        turning: match between {
-            Some(middle) => turning(whole[0], middle) + turning(middle, whole[1]),
-            None => turning(whole[0], whole[1]),
-        },
-    };
+    let found = |value: f64, bound: f64, at: [Option<Sample>; 2]| Minimum { value, bound, at };
     if a.slope >= 0.0 || b.slope <= 0.0 {
-        return found(value, value, None);
+        return found(value, value, [None; 2]);
     }
     let (mut a, mut b) = (a, b);
-    let mut last = None;
+    let mut last = [None; 2];
     for iteration in 0..MAX_ITERATIONS {
         if line.patience.is_over() {
             return found(value, f64::NEG_INFINITY, last);
@@ -201,7 +203,7 @@ fn convex_minimum(line: &Line<'_>, a: Sample, b: Sample, enough: f64) -> Minimum
         // Where contact jumps the tangents meet at the minimum, elsewhere it is that of the cubic.
         let x = if iteration % TANGENTS_EVERY == TANGENTS_EVERY - 1 { meeting } else { cubic_minimum(a, b) };
         let middle = line.sample(x);
-        last = Some(middle);
+        last = [last[1], Some(middle)];
         value = value.min(middle.value);
         // With the new tangent both sides are bounded.
         let left = tangents_meet(a, middle).1;

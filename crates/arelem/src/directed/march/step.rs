@@ -18,7 +18,7 @@ use apt_geometry::{Vec3, patience::Patience};
 use self::{overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex};
 use crate::{
-    bound::Record,
+    bound::{Readings, Record},
     clearance::{Contact, Shape},
     directed::{
         prepare::UNDETERMINED,
@@ -117,8 +117,8 @@ struct Trial {
     /// It ends where the path turns on the spot: what is to be expected of the next vector is not known.
     is_at_corner: bool,
     proven: bool,
-    /// How the slopes of both clearances turn along the vector.
-    turning: [f64; 2],
+    /// What has been read of both clearances along the vector.
+    readings: [Readings; 2],
     culprit: usize,
     worst: f64,
 }
@@ -143,7 +143,7 @@ impl<'a> Stepper<'a> {
             arrived: None,
             ledgers: Default::default(),
             longest: 0.0,
-            record: Record::new(&prepared.tip, maximum),
+            record: Record::new(&prepared.tip, [&prepared.part, &prepared.drive], maximum),
         }
     }
 
@@ -273,8 +273,14 @@ impl<'a> Stepper<'a> {
             self.trend.forget();
         }
         self.longest = self.longest.max(found.length);
-        let roles = [&self.prepared.part, &self.prepared.drive];
-        self.record.add((from, &found.vertex.tip), roles, found.turning, found.is_at_corner);
+        self.note_bend(from, &found.vertex.tip, found.readings);
+    }
+
+    /// Notes what has been read along a vector; the least number of vectors is told while the axis keeps its direction.
+    fn note_bend(&mut self, from: &Vec3, to: &Vec3, readings: [Readings; 2]) {
+        if !self.prepared.attitude.turns() {
+            self.record.add((from, to), readings);
+        }
     }
 
     /// A trial that was refused, and how far the clearance for which that is was out of its band.

@@ -11,10 +11,7 @@ use super::{
     ENOUGH, Extremes, LEAST_OPEN, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About,
     tangents_meet,
 };
-use crate::{
-    bound,
-    clearance::{Contact, Tool},
-};
+use crate::clearance::{Contact, Tool};
 
 /// Share of a vector at its ends in which it is not cut first.
 const END: f64 = 0.05;
@@ -65,17 +62,17 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     let mut course = Course { line, samples: vec![a], least, greatest, is_exhausted: false };
     let middle = line.sample(middle(&a, &b));
     course.note(middle.value);
-    let turning = bound::turning(middle.x - a.x, [a.slope, middle.slope])
-        + bound::turning(b.x - middle.x, [middle.slope, b.slope]);
+    let readings = line.read(ends.readings, &[Some(middle)]);
     if course.beyond() > FAR_OUT * line.role.band() {
-        return Extremes { least: course.least, greatest: course.greatest, proven: false, turning };
+        return Extremes { least: course.least, greatest: course.greatest, proven: false, readings };
     }
     course.between(a, middle, 0);
     course.samples.push(middle);
     course.between(middle, b, 0);
     course.samples.push(b);
+    let readings = course.samples.iter().fold(readings, |known, sample| line.read(known, &[Some(*sample)]));
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
-    Extremes { least: course.least, greatest: course.greatest, proven, turning }
+    Extremes { least: course.least, greatest: course.greatest, proven, readings }
 }
 
 /// What is known of the clearance between two samples.

@@ -107,7 +107,7 @@ pub(super) fn extremes(sweep: &Sweep<'_>, role: &Working, ends: Extremes, size: 
 
 impl Turning<'_> {
     fn extremes(&self, ends: Extremes) -> Option<Extremes> {
-        let Extremes { mut least, mut greatest, turning, .. } = ends;
+        let Extremes { mut least, mut greatest, readings, .. } = ends;
         let mut open = Vec::with_capacity(PIECES);
         let mut from = self.sample(0.0)?;
         for k in 1..=PIECES {
@@ -120,7 +120,7 @@ impl Turning<'_> {
         let mut count = PIECES + 1;
         while let Some((a, b)) = open.pop() {
             if !self.role.holds(least, self.size) || !self.role.holds(greatest, self.size) {
-                return Some(Extremes { least, greatest, proven: false, turning });
+                return Some(Extremes { least, greatest, proven: false, readings });
             }
             if self.holds_between(&a, &b) {
                 continue;
@@ -135,7 +135,7 @@ impl Turning<'_> {
             open.push((a, middle));
             open.push((middle, b));
         }
-        Some(Extremes { least, greatest, proven: ends.proven, turning })
+        Some(Extremes { least, greatest, proven: ends.proven, readings })
     }
 
     fn sample(&self, x: f64) -> Option<Sample> {

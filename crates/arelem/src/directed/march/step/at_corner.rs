@@ -98,9 +98,7 @@ impl Stepper<'_> {
                 if trial.proven && self.leads_on(&trial.vertex, WAY_ON * room, cap, (targets, bends)) =>
             {
                 corners.is_met = onward > until;
-                // What it turns by in the corner needs no vector.
-                let turning = proven.map_or([0.0; 2], |proven| proven.turning);
-                Some(if corners.is_met { Trial { turning, ..trial } } else { trial })
+                Some(trial)
             }
             refused => {
                 corners.note(here, vertex, refused.is_none());

@@ -151,7 +151,7 @@ impl Stepper<'_> {
             growth: GREATEST_GROWTH,
             is_at_corner: false,
             proven: extremes.iter().all(|e| e.proven),
-            turning: [extremes[0].turning, extremes[1].turning],
+            readings: extremes.map(|extremes| extremes.readings),
             culprit: 0,
             worst: 0.0,
         };

@@ -144,13 +144,8 @@ impl Stepper<'_> {
 
     /// Notes the bend along a vector that has come to end at another vertex.
     fn record_shortened(&mut self, from: &Vertex, to: &Vertex) {
-        let way = to.tip - from.tip;
-        let turning = |a: &Contact, b: &Contact| {
-            let length = way.norm();
-            bound::turning(length, [a, b].map(|contact| contact.gradient.dot(&way) / length))
-        };
-        let both = [turning(&from.part, &to.part), turning(&from.drive, &to.drive)];
-        self.record.add((&from.tip, &to.tip), [&self.prepared.part, &self.prepared.drive], both, false);
+        let readings = self.roles().map(|role| bound::read(&self.prepared.tool, role, [&from.tip, &to.tip]));
+        self.note_bend(&from.tip, &to.tip, readings);
     }
 
     /// A vector from the vertex before that leads past the last vertex to the other limits: that vertex can be spared.
