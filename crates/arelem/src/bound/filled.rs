@@ -3,7 +3,7 @@
 //! surface both, and if the stretch is no longer than MAXDP. A stretch within one that a vector may cover is such a one, too. So no
 //! sequence comes farther with any number of vectors than by the longest such stretches, one after the other.
 
-use super::readings::Readings;
+use super::readings::{Piece, Readings};
 use crate::role::Working;
 
 /// Pieces into which what fills a vector is divided: a parabola's sag between them is then a hundredth of that over all.
@@ -15,6 +15,14 @@ const MOST_POINTS: usize = 64;
 /// Bound of the places that are looked at for where a vector is full, and the share of one by which it need not be found.
 const MOST_LOOKS: u32 = 8;
 const CLOSELY: f64 = 1e-3;
+/// Ratio of bends up to which they are steady: the integral is then less than a hundredth from what points tell. Share of a vector that one
+/// fills up to which it is straight.
+const STEADY: f64 = 1.5;
+const STRAIGHT: f64 = 1e-3;
+/// Share of a vector up to which the slopes at the ends of a piece of it tell the bend, and its values too little of it.
+const SHORT: f64 = 0.05;
+/// Vectors of a stretch that are kept for the points they have: of more points are made.
+const MOST_STEADILY: usize = 8;
 /// Share of a vector by which one is more than full by rounding alone.
 const ROUNDING: f64 = 1e-9;
 
@@ -55,15 +63,16 @@ impl Filled {
     pub(super) fn add(&mut self, readings: [&Readings; 2], limits: &Limits) {
         let length = readings[0].length();
         let mut full = (self.length + length > limits.longest).then_some(limits.longest - self.length);
-        for (k, strand) in self.bent.iter().enumerate() {
-            let ahead = Ahead { strand, readings: readings[k], band: limits.bands[k] };
-            if let Some(x) = ahead.full(full.unwrap_or(length)) {
+        for (k, strand) in self.bent.iter_mut().enumerate() {
+            if let Some(x) = strand.full(readings[k], limits.bands[k], full.unwrap_or(length)) {
                 full = Some(x);
             }
         }
         let begin = full.map_or(0.0, |x| x.max(0.0));
         if full.is_some() {
-            *self = Self { vectors: self.vectors + 1.0, ..Self::default() };
+            self.vectors += 1.0;
+            self.length = 0.0;
+            self.bent.iter_mut().for_each(Strand::begin);
         }
         self.length += length - begin;
         for (k, strand) in self.bent.iter_mut().enumerate() {
@@ -73,14 +82,18 @@ impl Filled {
 
     /// All vectors, the last of which need not be full.
     pub(super) fn count(&self, limits: &Limits) -> f64 {
-        let shares = [0, 1].map(|k: usize| share(&self.bent[k].points, limits.bands[k]));
+        let shares = [0, 1].map(|k: usize| self.bent[k].filled(limits.bands[k]));
         self.vectors + shares.into_iter().fold(self.length / limits.longest, f64::max)
     }
 }
 
-/// How one clearance bends along a stretch.
-#[derive(Debug, Clone, Default)]
+/// How one clearance bends along a stretch: steadily, or as points tell.
+#[derive(Debug, Clone)]
 struct Strand {
+    /// What is filled while it bends steadily.
+    steady: Option<Steady>,
+    /// The vectors since it began while it does, and the place of each from which on.
+    steadily: Vec<(Readings, f64)>,
     points: Vec<Point>,
     /// The last of them.
     end: Point,
@@ -88,7 +101,95 @@ struct Strand {
     slope: f64,
 }
 
+impl Default for Strand {
+    fn default() -> Self {
+        Self {
+            steady: Some(Steady::default()),
+            steadily: Vec::new(),
+            points: Vec::new(),
+            end: Point::default(),
+            slope: 0.0,
+        }
+    }
+}
+
 impl Strand {
+    /// Another stretch begins.
+    fn begin(&mut self) {
+        self.steady = Some(Steady::default());
+        self.steadily.clear();
+        self.points.clear();
+        (self.end, self.slope) = (Point::default(), 0.0);
+    }
+
+    /// What is filled.
+    fn filled(&self, band: [f64; 2]) -> f64 {
+        self.steady.map_or_else(|| share(&self.points, band), |steady| steady.share)
+    }
+
+    /// The same with the next vector until a place of it.
+    fn filled_until(&self, readings: &Readings, band: [f64; 2], x: f64) -> f64 {
+        if let Some(with) = self.steady.and_then(|steady| steady.with(readings, band, [0.0, x])) {
+            return with.share;
+        }
+        let mut points = self.points.clone();
+        points.extend(self.ahead(readings, band, [0.0, x]));
+        share(&points, band)
+    }
+
+    /// The place of the next vector before another one at which the stretch is full.
+    fn full(&mut self, readings: &Readings, band: [f64; 2], until: f64) -> Option<f64> {
+        let with = self.steady.and_then(|steady| steady.with(readings, band, [0.0, until]));
+        let reached = with.map_or_else(
+            || {
+                self.settle(band);
+                self.filled_until(readings, band, until)
+            },
+            |with| with.share,
+        );
+        let (mut low, mut high) = ([0.0, self.filled(band)], [until, reached]);
+        if high[1] <= 1.0 + ROUNDING {
+            return None;
+        }
+        for _ in 0..MOST_LOOKS {
+            let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
+            let x = low[0] + (high[0] - low[0]) * part;
+            let found = [x, self.filled_until(readings, band, x)];
+            if (found[1] - 1.0).abs() <= CLOSELY {
+                return Some(x);
+            }
+            if found[1] > 1.0 {
+                high = found;
+            } else {
+                low = found;
+            }
+        }
+        Some(high[0])
+    }
+
+    /// Goes on along a vector from one of its places to its end.
+    fn extend(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
+        let is_room = self.steadily.len() < MOST_STEADILY;
+        let length = readings.length();
+        let with =
+            self.steady.filter(|_| is_room).and_then(|steady| steady.with(readings, band, [begin, length]));
+        if with.is_some() {
+            self.steady = with;
+            self.steadily.push((*readings, begin));
+        } else {
+            self.settle(band);
+            self.follow(readings, band, begin);
+        }
+    }
+
+    /// From here on points tell how it bends.
+    fn settle(&mut self, band: [f64; 2]) {
+        self.steady = None;
+        for (readings, begin) in std::mem::take(&mut self.steadily) {
+            self.follow(&readings, band, begin);
+        }
+    }
+
     /// What the bend is steeper than the clearance along a vector that begins here with a slope.
     fn tilt(&self, slope: f64) -> f64 {
         // At its beginning a stretch has the slope of its first vector: which line it is told from is all the same.
@@ -108,8 +209,7 @@ impl Strand {
         let mut points = Vec::with_capacity(MOST_POINTS);
         points.push(point(begin));
         for piece in readings.pieces().filter(|piece| piece.to.x > begin && piece.from.x < end) {
-            let share = piece.turning() / (8.0 * (band[1] - band[0])).sqrt();
-            let count = (PIECES * share).ceil().clamp(1.0, MOST_PIECES);
+            let count = (PIECES * share_of(&piece, band)).ceil().clamp(1.0, MOST_PIECES);
             let (from, length) = (piece.from.x, piece.to.x - piece.from.x);
             let places = (1..=count as u32).map(|k| from + length * f64::from(k) / count);
             points.extend(places.filter(|x| *x > begin && *x < end).map(point));
@@ -121,8 +221,8 @@ impl Strand {
         points
     }
 
-    /// Goes on along a vector from one of its places to its end.
-    fn extend(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
+    /// Adds the points along a vector from one of its places to its end.
+    fn follow(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
         let (start, end) = (readings.at(begin), readings.at(readings.length()));
         let points = self.ahead(readings, band, [begin, end.x]);
         self.slope = end.slope + self.tilt(start.slope);
@@ -138,48 +238,53 @@ impl Strand {
     }
 }
 
-/// A stretch with the next vector.
-struct Ahead<'a> {
-    strand: &'a Strand,
-    readings: &'a Readings,
-    band: [f64; 2],
+/// What is filled by a bend that changes little and is to one side: by the integral of √(κ/8τ), than which the points tell hardly more.
+#[derive(Debug, Clone, Copy, Default)]
+struct Steady {
+    share: f64,
+    /// The least and the greatest bend.
+    bends: Option<[f64; 2]>,
 }
 
-impl Ahead<'_> {
-    /// What is filled with the vector until a place of it.
-    fn share(&self, x: f64) -> f64 {
-        let mut points = self.strand.points.clone();
-        points.extend(self.strand.ahead(self.readings, self.band, [0.0, x]));
-        share(&points, self.band)
+impl Steady {
+    /// The same with a vector between two of its places; `None` if it bends otherwise there.
+    fn with(self, readings: &Readings, band: [f64; 2], [begin, end]: [f64; 2]) -> Option<Self> {
+        let Self { mut share, bends } = self;
+        let [mut least, mut greatest] = bends.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+        for piece in readings.pieces() {
+            let (from, to) = (piece.from.x.max(begin), piece.to.x.min(end));
+            if to <= from {
+                continue;
+            }
+            let full = share_of(&piece, band);
+            let whole = piece.to.x - piece.from.x;
+            share += if to - from < whole { full * (to - from) / whole } else { full };
+            let part = whole / readings.length();
+            // What the whole vector would fill with the bend of this piece.
+            let as_whole = full / part;
+            let bends = match part {
+                _ if as_whole <= STRAIGHT => [0.0; 2],
+                _ if part <= SHORT => [(piece.to.slope - piece.from.slope) / whole; 2],
+                _ => piece.bends(),
+            };
+            least = least.min(bends[0].min(bends[1]));
+            greatest = greatest.max(bends[0].max(bends[1]));
+        }
+        let (small, great) = (least.abs().min(greatest.abs()), least.abs().max(greatest.abs()));
+        let is_steady = least * greatest >= 0.0 && great <= STEADY * small;
+        is_steady.then_some(Self { share, bends: Some([least, greatest]) })
     }
+}
 
-    /// The place of the vector before another one at which the stretch is full.
-    fn full(&self, until: f64) -> Option<f64> {
-        let (mut low, mut high) = ([0.0, share(&self.strand.points, self.band)], [until, self.share(until)]);
-        if high[1] <= 1.0 + ROUNDING {
-            return None;
-        }
-        for _ in 0..MOST_LOOKS {
-            let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
-            let x = low[0] + (high[0] - low[0]) * part;
-            let found = [x, self.share(x)];
-            if (found[1] - 1.0).abs() <= CLOSELY {
-                return Some(x);
-            }
-            if found[1] > 1.0 {
-                high = found;
-            } else {
-                low = found;
-            }
-        }
-        Some(high[0])
-    }
+/// What a piece fills if its bend is steady.
+fn share_of(piece: &Piece, [low, high]: [f64; 2]) -> f64 {
+    // A band without width belongs to what does not bend, or no vector would have been proven.
+    if high <= low { 0.0 } else { (piece.turning() / (8.0 * (high - low))).sqrt() }
 }
 
 /// What points fill of a vector, which covers all that some straight line is near to: by the square of its length on a parabola, so that this
 /// is the integral of √(κ/8τ) there.
 fn share(points: &[Point], [low, high]: [f64; 2]) -> f64 {
-    // A band without width belongs to what does not bend, or no vector would have been proven.
     if high <= low { 0.0 } else { (height(points) / (high - low)).sqrt() }
 }
 

@@ -11,7 +11,7 @@ pub(crate) struct Reading {
 }
 
 /// How many readings of a vector are kept: its ends, its extreme, and what is about a place where contact jumps.
-const MOST: usize = 6;
+const MOST: usize = 5;
 
 /// Readings of one vector in the order of their places, between which the clearance is taken to be the cubic through both.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,9 +100,18 @@ impl Piece {
         Reading { x, value: from.value + rise * (x - from.x) + bow, slope: rise + turn }
     }
 
-    /// Integral of √|κ| over it if κ, how the clearance bends, is steady.
+    /// Second derivatives of the cubic at both ends.
+    pub(super) fn bends(&self) -> [f64; 2] {
+        let Self { from, to } = self;
+        let length = to.x - from.x;
+        let rise = (to.value - from.value) / length;
+        [6.0 * rise - 4.0 * from.slope - 2.0 * to.slope, 2.0 * from.slope + 4.0 * to.slope - 6.0 * rise]
+            .map(|turn| turn / length)
+    }
+
+    /// The square of the integral of √|κ| over it if κ, how the clearance bends, is steady.
     pub(super) fn turning(&self) -> f64 {
-        ((self.to.slope - self.from.slope).abs() * (self.to.x - self.from.x)).sqrt()
+        (self.to.slope - self.from.slope).abs() * (self.to.x - self.from.x)
     }
 }
 
