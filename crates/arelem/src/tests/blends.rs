@@ -6,10 +6,10 @@ use std::sync::Arc;
 use DriveSide::{Left, Right};
 use Relation::{On, TangentToDrive as Tanto, TangentToPart as Pstan, To};
 use Turn::{Back, Forward};
-use apt_geometry::canonical::{Interval, TabulatedCylinder};
+use apt_geometry::canonical::{Interval, Matrix, Remembering, TabulatedCylinder, matrix::CoordinatePlane};
 
-use super::*;
-use crate::error::MotionFailure;
+use super::{sheets::ruled, *};
+use crate::{error::MotionFailure, verify::verify};
 
 /// Where the tabulated cylinder ends, and its last extension.
 const END: [f64; 2] = [4.0, 1.5];
@@ -147,5 +147,99 @@ fn a_motion_stops_where_a_ramp_leaves_the_ground_and_comes_into_a_plane() {
         let top = base + END[1];
         p.drive(Forward, &axis(), Pstan, &level(top)).ends(4.0 - rim, -0.25, top, 2e-3).verified();
         assert!(p.last().points.len() > 1);
+    }
+}
+
+/// Radius of the arc of a sheet, and where on the x axis it begins; it ends in the origin.
+const ARC: f64 = 6.0;
+const FOOT: f64 = -3.0;
+
+/// A polyconic surface along y in an arc that ends level in the origin, hollow on its upper side or not, and straight from there: an extension.
+fn arc(up: f64) -> Geometry {
+    let below = (ARC * ARC - FOOT * FOOT).sqrt();
+    let (rise, slope) = (up * (ARC - below), up * FOOT / below);
+    // Both tangents meet on the x axis.
+    let meet = FOOT - rise / slope;
+    let weight = (0.5 * (FOOT / ARC).asin()).cos();
+    let fullness = (2.0 * weight + 1.0) / (2.0 * weight + 2.0);
+    let mut values = vec![1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    values.extend([0.0, -4.0, 8.0]);
+    for constant in [-meet, -rise, meet - FOOT, 0.0, FOOT, rise, fullness] {
+        values.push(constant);
+        values.extend([0.0; 7]);
+    }
+    values.extend([0.0; 7]);
+    Geometry::PolyConic(Remembering::new(values))
+}
+
+/// The same as a wall.
+fn wall(up: f64) -> Geometry {
+    arc(up).transform(&Matrix::rotation(CoordinatePlane::Yz, -90.0)).expect("a rotation")
+}
+
+/// The last sequence is what the verifier accepts, too.
+fn accepted(p: &mut Program) {
+    p.verified();
+    let evidence = verify(p.last(), &|| false).expect("evidence");
+    assert!(evidence.verified, "{:?}", evidence.violations);
+}
+
+const SHEET_CUTTERS: [(&[f64], f64); 3] = [(&[0.5, 0.25], 0.0), (&[0.5], 0.25), (&[0.5, 0.1], 0.15)];
+
+/// How far a sheet goes on straight along a plane is chance: the motion stops where the sheet comes into the plane, or leaves it, and not in the
+/// middle of what is straight, nor is it led on to its end. A hollow one is left where the rim of the flat bottom comes to it.
+#[test]
+fn a_motion_stops_where_a_sheet_that_ends_comes_into_a_plane_or_leaves_it() {
+    for (up, (cutter, rim)) in [1.0, -1.0].into_iter().flat_map(|up| SHEET_CUTTERS.map(|cutter| (up, cutter)))
+    {
+        for drive in [y(-0.5), line(0.0, -1.0, 2.0, 0.0), circle(0.0, 3.0, 4.0)] {
+            let is_oblique = !matches!(drive, Geometry::Plane(_));
+            if is_oblique && rim > 0.0 {
+                continue;
+            }
+            for (from, ahead, part, check) in [(-2.0, 1.0, arc(up), ground()), (2.0, -1.0, ground(), arc(up))]
+            {
+                let mut p = Program::new();
+                p.tolerance(5e-4, 5e-4).cutter(cutter).from(from, -1.0, 3.0);
+                p.go(&[(On, &drive), (To, &part), (On, &x(from))])
+                    .indirv(ahead, 0.0, 0.0)
+                    .side(DriveSide::On);
+                p.drive(Forward, &drive, Pstan, &check);
+                let y = if is_oblique { -1.0 } else { -0.5 };
+                p.ends(up * rim, y, 0.0, 2e-3);
+                accepted(&mut p);
+            }
+        }
+    }
+}
+
+/// The same beside a wall, on a plane and over a cylinder, on which the path bends where wall and line are one.
+#[test]
+fn a_motion_stops_where_a_wall_that_ends_comes_into_a_line_or_leaves_it() {
+    for (up, floor) in [1.0, -1.0]
+        .into_iter()
+        .flat_map(|up| [level(1.0), cylinder(v(0.0, 0.0, -9.0), Vec3::y(), 10.0)].map(|floor| (up, floor)))
+    {
+        for (from, ahead, drive, check) in [(-2.0, 1.0, wall(up), axis()), (2.0, -1.0, axis(), wall(up))] {
+            let mut p = Program::new();
+            p.tolerance(5e-4, 5e-4).cutter(&[0.5, 0.25]).from(from, 3.0, 3.0);
+            p.go(&[(To, &drive), (To, &floor), (On, &x(from))]).indirv(ahead, 0.0, 0.0);
+            p.side(if ahead > 0.0 { Left } else { Right });
+            p.drive(Forward, &drive, Tanto, &check).ends(0.0, 0.25, 1.0, 1e-3);
+            accepted(&mut p);
+        }
+    }
+}
+
+/// A ruled surface on the curve of a tabulated cylinder that is level beyond both its ends.
+#[test]
+fn a_ruled_ramp_comes_into_its_planes_where_its_curve_does() {
+    let sheet = ruled([-4.0, 4.0].map(|y| (ramp(0.0), v(0.0, y, 0.0), v(END[0], y, END[1]), Vec3::z())));
+    for (ahead, check, end) in [(-1.0, ground(), [0.0, 0.0]), (1.0, level(END[1]), END)] {
+        let mut p = Program::new();
+        p.tolerance(5e-4, 5e-4).cutter(&[0.5, 0.25]).from(2.0, -0.5, 4.0);
+        p.go(&[(On, &y(-0.5)), (To, &sheet), (On, &x(2.0))]).indirv(ahead, 0.0, 0.0).side(DriveSide::On);
+        p.drive(Forward, &y(-0.5), Pstan, &check).ends(end[0], -0.5, end[1], 1e-3);
+        accepted(&mut p);
     }
 }

@@ -57,7 +57,7 @@ impl SurfaceEnd {
 
     /// The same a little ahead of a position.
     pub(super) fn just_ahead(prepared: &Prepared, vertex: &Vertex) -> Option<Self> {
-        Self::ahead(prepared, vertex, AHEAD * (prepared.part.band() + prepared.drive.band()))
+        Self::ahead(prepared, vertex, just_ahead(prepared))
     }
 
     fn ahead(prepared: &Prepared, vertex: &Vertex, reach: f64) -> Option<Self> {
@@ -93,7 +93,7 @@ impl SurfaceEnd {
         if tool.radius() > 0.0 {
             return false;
         }
-        let reach = AHEAD * (part.band() + drive.band());
+        let reach = just_ahead(prepared);
         let outside = [part, drive].map(|role| if role.outside > 0.0 { role.outside } else { role.rest() });
         let ahead = |from: &Vec3| Vertex::settled_at(prepared, outside, &(from + tangent * reach), tangent);
         let Some(turned) = ahead(&self.tip) else { return false };
@@ -114,6 +114,12 @@ impl SurfaceEnd {
     }
 }
 
+/// How far ahead of a place the end of a surface is just ahead of it: a tool that touches the end is told to only where that is beyond what its
+/// bands leave of the direction of contact.
+pub(super) fn just_ahead(prepared: &Prepared) -> f64 {
+    AHEAD * (prepared.part.band() + prepared.drive.band())
+}
+
 /// A place on the tool's side of a contact, and how far from it that is; that of a tool that is a little inside would be beside the end of a
 /// surface that ends there.
 fn above(role: &Working, contact: &Contact) -> (Vec3, f64) {
@@ -130,6 +136,12 @@ fn ends_below(role: &Working, contact: &Contact) -> bool {
 /// Whether the tool touches the end of a role's surface.
 pub(super) fn is_at_end(role: &Working, contact: &Contact) -> bool {
     ends_below(role, contact) || is_pushed_back(role, contact)
+}
+
+/// Whether the tool touches the end of a role's surface, and that alone.
+pub(super) fn is_beyond_end(role: &Working, tool: &Tool, tip: &Vec3) -> bool {
+    let contact = role.gauge.contact(tool, tip);
+    is_at_end(role, &contact) && !is_touched_inside(role, tool, tip, &contact)
 }
 
 /// Whether a tool that is a little inside a role's surface is so beyond the end of that, which pushes it back along the surface: the

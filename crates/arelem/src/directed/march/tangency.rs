@@ -8,11 +8,7 @@ use apt_geometry::{
     patience::Patience,
 };
 
-use super::{
-    Vertex,
-    parallel_way::{ParallelWay, Reach},
-    surface_end::is_at_end,
-};
+use super::{Vertex, parallel_way::ParallelWay, surface_end::is_at_end};
 use crate::{
     clearance::{Contact, Gauge},
     directed::{
@@ -114,7 +110,7 @@ struct Approach {
     on_way: Option<OnWay>,
 }
 
-/// A straight way on which the path is parallel to a check surface.
+/// A way on which the path is parallel to a check surface.
 #[derive(Clone)]
 struct OnWay {
     slope: f64,
@@ -124,9 +120,13 @@ struct OnWay {
 
 impl OnWay {
     /// The tangency on it, if that lies before a distance on a cut vector.
-    fn stop_before(&mut self, [from, to]: [&Vertex; 2], x: f64) -> Option<(Vertex, f64)> {
+    fn stop_before(&mut self, [from, to]: [&Vertex; 2], x: f64, reach: f64) -> Option<(Vertex, f64)> {
         let along = (to.tip - from.tip).try_normalize(0.0)?;
-        self.stop.take_if(|(vertex, _)| (vertex.tip - from.tip).dot(&along) <= x)
+        self.stop.take_if(|(vertex, _)| {
+            let way = vertex.tip - from.tip;
+            let aside = (way - along * way.dot(&along)).norm();
+            way.dot(&along) <= x && aside <= x.max(reach)
+        })
     }
 
     /// Whether a place is on it.
@@ -260,7 +260,7 @@ impl<'a> Watch<'a> {
                 approach.on_way = self.way(index, &next, false)?;
             }
             let tangency = match &mut approach.on_way {
-                Some(way) => way.stop_before(vector, next.x),
+                Some(way) => way.stop_before(vector, next.x, reach),
                 None => self.touch_before(index, &approach, [&here, &next], reach + step)?,
             };
             if let Some(tangency) = tangency {
@@ -281,26 +281,18 @@ impl<'a> Watch<'a> {
         Ok(None)
     }
 
-    /// The way parallel to a check surface that leads on from a place, if there is one, with its tangency: in its middle, or where
-    /// the motion begins on it at its end, and where it has no end at its beginning.
+    /// The way parallel to a check surface that leads on from a place, if there is one, with its tangency.
     fn way(&mut self, index: usize, place: &Reading, is_first: bool) -> Result<Option<OnWay>, MotionFailure> {
         let sides = self.sides.clone();
         let start = (&place.vertex, place.slope);
-        let Some(way) = ParallelWay::from(self.prepared, &sides[index], start, self.patience)? else {
+        let check = (&self.prepared.checks[index], &sides[index]);
+        let Some(way) = ParallelWay::from(self.prepared, check, start, self.patience)? else {
             return Ok(None);
         };
-        let Reach { back, ahead } = way.reach()?;
-        let back = if is_first { None } else { back };
-        let place = match (back, ahead) {
-            (Some(back), Some(ahead)) => 0.5 * (ahead - back),
-            (None, Some(ahead)) => ahead,
-            (Some(back), None) => -back,
-            (None, None) => 0.0,
-        };
-        let vertex = way.at(place)?;
-        let stretch = Stretch { index, from: &vertex, to: &vertex, slope: Slope::Stays };
+        let Some(found) = way.stop(is_first)? else { return Ok(None) };
+        let stretch = Stretch { index, from: &found.vertex, to: &found.vertex, slope: Slope::Stays };
         let stop = match self.touching(&stretch)? {
-            Gap::Closed(..) if back.or(ahead).is_none() => {
+            Gap::Closed(..) if found.is_endless => {
                 self.along = Some(index);
                 None
             }
@@ -570,7 +562,11 @@ impl Sides {
         if *on {
             return Ok((contact(1.0), 1.0));
         }
-        let first = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
+        // A tool that ends on the surface is on the side of the rest of it.
+        let height =
+            Some(surface.signed_distance(tip)).filter(|height| height.abs() > PARALLEL * prepared.size);
+        let height = height.unwrap_or_else(|| posture.tool.observed(surface, tip));
+        let first = if height < 0.0 { -1.0 } else { 1.0 };
         let here = contact(first);
         // Where it has come off on this side the middle of a ball that it holds is as far from the surface as the ball is large, and on the
         // other side it is as deep.
