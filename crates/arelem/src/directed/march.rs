@@ -1,6 +1,7 @@
 //! The general route (ARLM3, ADELTA, CENTR2): from vertex to vertex along the common tangent of part and drive surface,
 //! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
 
+mod creeping;
 mod finish;
 mod parallel_way;
 mod scout;
@@ -11,7 +12,7 @@ mod tangency;
 
 use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
-use self::{scout::Outlook, step::Stepper};
+use self::{creeping::Creeping, scout::Outlook, step::Stepper};
 use super::{
     Path, Prepared,
     stop::{Event, Watcher},
@@ -133,10 +134,6 @@ const MAX_FINALS: u32 = 60;
 const PATIENT_FINALS: u32 = 12;
 /// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
 const WITHOUT_AXIS: f64 = 0.25;
-/// Length of a vector, as a share of the narrower band and of MAXDP, that hardly leads on: a path that bends so tightly turns back within it.
-const CREEPING: f64 = 0.02;
-/// How many such vectors may follow each other.
-const MOST_CREEPING: u32 = 6;
 /// Cut vectors after which it is first looked whether a check surface lies ahead.
 const FIRST_LOOK: usize = 25;
 /// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
@@ -171,7 +168,7 @@ pub(super) fn run(
         look: FIRST_LOOK,
         ahead: 0.0,
         look_for_end: 1,
-        creeping: 0,
+        creeping: Creeping::default(),
         revolutions: 0,
         before: None,
     };
@@ -200,8 +197,7 @@ struct March<'a> {
     ahead: f64,
     /// The same number for the end of a surface, where vectors become shorter.
     look_for_end: usize,
-    /// Vectors since the last one that led on.
-    creeping: u32,
+    creeping: Creeping,
     revolutions: u32,
     before: Option<Before<'a>>,
 }
@@ -331,13 +327,11 @@ impl<'a> March<'a> {
     /// Where one vector after the other hardly leads on, though none has to: that.
     fn count_creeping(&mut self, here: &Vertex, next: &Vertex, cap: f64) -> Result<(), MotionFailure> {
         let Prepared { part, drive, .. } = self.prepared;
-        let length = CREEPING * cap.min(part.band()).min(drive.band());
-        let creeps = (next.tip - here.tip).norm() <= length;
-        self.creeping = if creeps { self.creeping + 1 } else { 0 };
-        if self.creeping < MOST_CREEPING {
+        let vector = (next.tip - here.tip).norm();
+        let Some((vectors, length)) = self.creeping.count(vector, cap, part.band().min(drive.band())) else {
             return Ok(());
-        }
-        let failure = MotionFailure::NoProgress { vectors: self.creeping, length, tip: next.tip };
+        };
+        let failure = MotionFailure::NoProgress { vectors, length, tip: next.tip };
         Err(self.explained(next, failure))
     }
 
