@@ -206,3 +206,31 @@ fn an_edge_under_a_surface_is_measured_in_few_looks() {
         }
     }
 }
+
+/// What leads the rim of a flat tool out where it is deepest in a slope leaves another place of it a little in: it must be moved by some
+/// thousandths more, which are told as closely as that, and not as the first longer way tried that frees it.
+#[test]
+fn a_rim_that_must_be_moved_a_little_farther_than_it_is_deep_is_not_told_to_be_much_deeper() {
+    let axes = [
+        Vec3::new(0.7055810531607777, 0.5693120190786929, -0.42194691888088226),
+        Vec3::new(0.3283818745943668, 0.264961406229208, 0.9066205367445248),
+        Vec3::new(0.6279496172929938, -0.7782539933348126, 0.0),
+    ];
+    let nodes = [
+        [-1.1098573062753856, 0.6932076328304493, -0.20251370535022767],
+        [-0.6098573062753856, 0.6502871704721032, 0.03442355331760414],
+        [-0.10985730627538537, 0.7262146940103751, 0.2629327255698933],
+        [0.39014269372461474, 0.9024004976181377, 0.4270667965032868],
+        [0.8901426937246149, 1.1357081518774947, 0.48664002117744426],
+        [1.390142693724615, 1.3690158061368518, 0.4270667965032866],
+        [1.890142693724615, 1.5452016097446144, 0.26293272556989344],
+    ];
+    let surface = Surface::of(&tabulated(axes, &nodes)).unwrap();
+    let Surface::Ruled(slope) = &surface else { panic!("{surface:?}") };
+    let profile = Profile::of(&cutter(&[0.8639665251625519, 0.0])).unwrap();
+    let tool = Tool::new(&profile, Vec3::z());
+    let tip = Vec3::new(-0.1383974178039228, 1.8798373433853528, 0.6573351911792578);
+    let found = searched(slope, 1.0, &tip, &tool).expect("a clearance");
+    assert!((found.value + 1.9015e-5).abs() < 2e-8, "{found:?}");
+    assert!(found.error < 1.5e-6, "{found:?}");
+}
