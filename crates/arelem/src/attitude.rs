@@ -62,6 +62,11 @@ impl<'a> Attitude<'a> {
         Self { run_in: Some(RunIn::new(&self.tool.axis, origin, length)), ..self.clone() }
     }
 
+    /// How far a vector from a position may lead while the axis turns to its law on the way; infinite where it follows the law.
+    pub(crate) fn way_to_law(&self, tip: &Vec3) -> f64 {
+        self.run_in.as_ref().map_or(f64::INFINITY, |run_in| run_in.way_left(tip))
+    }
+
     /// The cutter, whatever its axis.
     pub(crate) fn tool(&self) -> &Tool<'a> {
         &self.tool

@@ -32,6 +32,7 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
         Kind::OperandRange { statement, value, .. } => {
             let hint = match statement.as_str() {
                 "SMIL" => "a pass starts inside the range that SCON/DS gives the guide",
+                "TLAXIS" if *value == 0.0 => "a tool axis is a direction: not all of its components are zero",
                 _ => "check the sign and the unit of the value",
             };
             say("APT0322", format!("{statement} cannot take the value {}", number(*value))).hint(hint)

@@ -36,7 +36,7 @@ fn jump(kind: &Kind) -> Option<Text> {
         }
         Kind::Control(ControlFinding::UnknownLabel { name, similar: names }) => {
             say("APT0403", format!("there is no label {name} here"))
-                .hint("a jump stays inside its loop or macro")
+                .hint("write it, with a closing parenthesis, before the statement to go on with; a jump stays inside its loop or macro")
                 .maybe(similar(names))
         }
         Kind::Control(ControlFinding::JumpOutsideRegion) => {

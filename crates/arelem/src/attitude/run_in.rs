@@ -11,6 +11,9 @@ use crate::error::AxisFailure;
 /// Sine between opposite axes below which there is no telling about which vector to turn.
 const OPPOSITE: f64 = 1e-6;
 
+/// Least way, as a share of the run-in, that a vector goes towards its end: what is left of the turn by then is a thousandth.
+const LEAST_WAY: f64 = 0.02;
+
 /// A place about which the axis turns evenly with the distance, but for its ends, where it sets out and arrives level.
 #[derive(Debug, Clone)]
 pub(super) struct RunIn {
@@ -24,6 +27,12 @@ impl RunIn {
     /// From an axis at a place, over a distance from there.
     pub(super) fn new(from: &Vec3, origin: &Vec3, length: f64) -> Self {
         Self { from: *from, origin: *origin, length }
+    }
+
+    /// How far a vector from a place may lead so that one ends about where the axis comes to follow its law; infinite from there on.
+    pub(super) fn way_left(&self, tip: &Vec3) -> f64 {
+        let away = (tip - self.origin).norm();
+        if away >= self.length { f64::INFINITY } else { self.length - away + LEAST_WAY * self.length }
     }
 
     /// The axis at a place where the law has one.
@@ -63,6 +72,14 @@ mod tests {
         let (first, last) = (at(0.01), at(0.49));
         assert!(first.dot(&from) > middle.dot(&from) && last.dot(&to) > middle.dot(&to));
         assert!((first.norm() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn vectors_lead_to_its_end_and_are_not_bound_beyond() {
+        let run_in = RunIn::new(&Vec3::z(), &v(1.0, 2.0, 3.0), 0.5);
+        let left = |x: f64| run_in.way_left(&v(x, 2.0, 3.0));
+        assert!((left(1.0) - 0.51).abs() < 1e-15 && (left(1.3) - 0.21).abs() < 1e-15);
+        assert!((left(1.499) - 0.011).abs() < 1e-15 && left(1.5) == f64::INFINITY);
     }
 
     #[test]

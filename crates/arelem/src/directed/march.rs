@@ -492,7 +492,9 @@ impl<'a> March<'a> {
             };
             let from = vertex(between.checked_sub(1))?;
             let (way, until_now) = (end.tip - from.tip, self.points[between] - from.tip);
-            let long = way.norm() > self.state.maximum_step * (1.0 + 1e-9);
+            // Nor may one vector turn the tool beyond where it comes to its law.
+            let most = self.state.maximum_step.min(self.prepared.attitude.way_to_law(&from.tip));
+            let long = way.norm() > most * (1.0 + 1e-9);
             // In a tight bend the way to the end leads back from where the path goes.
             let is_forward = tangent(&from.part, &from.drive, &until_now).dot(&way) > 0.0;
             if !long && is_forward && self.stepper.proven(&from, &end) {

@@ -1,12 +1,14 @@
 //! Start-ups with more than one answer: several positions that are equally near to where the tool stands. Which of them a
 //! search finds is chance, so none is taken.
 
+use std::f64::consts::TAU;
+
 use apt_geometry::Vec3;
 
 use super::StartUp;
 use crate::{
     attitude::Attitude,
-    position::{self, Condition},
+    position::{self, Condition, Solution},
 };
 
 /// Two ways differ if their lengths do by more than this, relative to the size of the coordinates.
@@ -19,8 +21,16 @@ const APART: f64 = 1e-2;
 /// Corrections from one place.
 const CORRECTIONS: u32 = 20;
 
+/// Directions about the tool axis, in parts of a turn, in which another answer is looked for besides.
+const TURNS: u32 = 8;
+/// Bound of the steps towards the position that is the nearest about another one.
+const STEPS: u32 = 20;
+/// How many times what of the way to a position leads along that may come nearer to the start at most: the shares of a step that is made at once.
+const STEPS_AHEAD: f64 = 4.0;
+const SHARES: [f64; 2] = [0.02, 4.0];
+
 /// Another position with every relation, as far from the start as the one that was found: its mirror images at the start, at
-/// the normals there and at the tool axis lead to it where there is one.
+/// the normals there and at the tool axis lead to it where there is one, or the nearest position about another direction from the start.
 pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
     let StartUp { tip, attitude, tool, .. } = work;
     let conditions: Vec<Condition<'_>> =
@@ -34,15 +44,82 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
     let normals = work.roles.iter().map(|role| posture.contact(&role.gauge, tip).gradient);
     let about = normals.chain([tool.axis]).filter_map(|direction| direction.try_normalize(0.0));
     let images = about.map(|direction| direction * (2.0 * way.dot(&direction)) - way).chain([-way]);
-    images
+    let is_twin = |other: &Vec3| {
+        (other - found).norm() > APART * length
+            && ((other - tip).norm() - length).abs() <= SAME_LENGTH * size
+            && !is_nearer_between(attitude, &conditions, [found, other], tip)
+    };
+    let imaged = images
         .filter(|image| (image - way).norm() > SAME_PLACE * size)
         .filter_map(|image| position::solve_within(attitude, &conditions, &(tip + image), CORRECTIONS).ok())
         .map(|solution| solution.tip)
-        .find(|other| {
-            (other - found).norm() > APART * length
-                && ((other - tip).norm() - length).abs() <= SAME_LENGTH * size
-                && !is_nearer_between(attitude, &conditions, [found, other], tip)
-        })
+        .find(is_twin);
+    imaged.or_else(|| {
+        let search = Beside { attitude, conditions: &conditions, start: tip, nearest: length, size };
+        (1..TURNS)
+            .filter_map(|k| search.nearest_about(&turned(&way, &tool.axis, f64::from(k) / f64::from(TURNS))))
+            .find(is_twin)
+    })
+}
+
+/// A way turned about an axis by a part of a turn.
+fn turned(way: &Vec3, axis: &Vec3, part: f64) -> Vec3 {
+    let along = axis * way.dot(axis);
+    let (sin, cos) = (TAU * part).sin_cos();
+    along + (way - along) * cos + axis.cross(way) * sin
+}
+
+/// A search for positions that are the nearest to the start of all about them.
+struct Beside<'a> {
+    attitude: &'a Attitude<'a>,
+    conditions: &'a [Condition<'a>],
+    start: &'a Vec3,
+    /// The way to the nearest position that is known.
+    nearest: f64,
+    size: f64,
+}
+
+impl Beside<'_> {
+    /// The position that is the nearest about the one that a way leads to, unless it is plainly not as near as the nearest known. There the way
+    /// leads along the gradients of the clearances. What of it does not is left out, by a share that the last step tells, and the
+    /// position is corrected, until nothing is left.
+    fn nearest_about(&self, way: &Vec3) -> Option<Vec3> {
+        let Self { attitude, conditions, start, nearest, size } = *self;
+        let (mut place, mut share, mut last) = (start + way, 1.0_f64, None::<Vec3>);
+        for _ in 0..STEPS {
+            let Solution { tip, contacts, .. } =
+                position::solve_within(attitude, conditions, &place, CORRECTIONS).ok()?;
+            let way = tip - start;
+            let along = across_all(&way, contacts.iter().flatten().map(|contact| contact.gradient));
+            let left = along.norm();
+            if left <= SAME_LENGTH * size {
+                return Some(tip);
+            }
+            if way.norm() - nearest > STEPS_AHEAD * left {
+                return None;
+            }
+            let ratio = last.map_or(0.0, |last| along.dot(&last) / last.norm_squared());
+            if ratio < 1.0 {
+                share = (share / (1.0 - ratio)).clamp(SHARES[0], SHARES[1]);
+            }
+            (place, last) = (tip - along * share, Some(along));
+        }
+        None
+    }
+}
+
+/// What of a vector leads across all of these directions.
+fn across_all(vector: &Vec3, directions: impl Iterator<Item = Vec3>) -> Vec3 {
+    let (mut left, mut frame) = (*vector, Vec::new());
+    for direction in directions {
+        let own = frame.iter().fold(direction, |own, axis: &Vec3| own - axis * own.dot(axis));
+        // Of what is nearly among the others rounding alone would tell.
+        if let Some(axis) = own.try_normalize(SAME_PLACE * direction.norm()) {
+            left -= axis * left.dot(&axis);
+            frame.push(axis);
+        }
+    }
+    left
 }
 
 /// Whether there is a position between two that is nearer to the start than both: they are then two sides of one answer,

@@ -9,7 +9,7 @@ use apt_geometry::{
 use crate::{
     MotionFailure,
     section2::StartUpRule,
-    tests::{Program, circle, cylinder, line, plane, quadric, sphere, start, v},
+    tests::{Program, circle, cylinder, ground, line, plane, quadric, sphere, start, v},
 };
 
 /// The peers print seven digits.
@@ -129,6 +129,23 @@ fn two_sides_of_the_nearest_position_are_one_answer() {
     });
     p.run(&MotionCommand::PartSurface(NamedSurface { name: String::new(), geometry: part }));
     p.go(&[(To, &drive)]).verified();
+}
+
+/// Above a parabola, on its axis, neither a mirror image at a normal nor one at the tool axis leads from one side to the other.
+#[test]
+fn two_answers_that_are_equally_near_are_told_wherever_they_lie() {
+    let parabola = quadric([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0]);
+    let from = |x: f64, y: f64| {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(x, y, 1.0);
+        p.attempt(&start(&[(To, &parabola), (To, &ground())])).map(|_| p.tip())
+    };
+    let failure = from(0.0, 8.0).expect_err("two answers");
+    let MotionFailure::StartUpAmbiguous { places: [one, other] } = failure else { panic!("{failure:?}") };
+    assert!((one.x + other.x).abs() < 1e-6 && one.x.abs() > 1.0, "{one:?} {other:?}");
+    // Nearer to the vertex than its radius of curvature there is one, and beside the axis one is the nearer.
+    assert!(from(0.0, 4.0).is_ok_and(|tip| tip.x.abs() < 1e-6));
+    assert!(from(0.5, 8.0).is_ok_and(|tip| tip.x > 1.0));
 }
 
 /// A needle that is longer than the hole is wide by less than the band: at its best it lies deeper in the wall than motions

@@ -269,6 +269,24 @@ proptest! {
     }
 }
 
+/// Round a corner the tool leads on in another direction, to which several vectors turn it. The long one behind them sets out as the law wants.
+#[test]
+fn a_tool_that_turns_on_the_way_follows_its_law_from_there_on() {
+    let [first, second, third] = [(0.0, 0.0, 5.0, 0.0), (5.0, 0.0, 5.0, 5.0), (0.0, 5.0, 5.0, 5.0)]
+        .map(|(x, y, to_x, to_y)| line(x, y, to_x, to_y));
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-1.0, -1.0, 2.0);
+    p.run(&MotionCommand::ToolAxis(axis_mode(true, 3, 10.0, 0.5, Vec3::zeros())));
+    p.go(&[(Relation::On, &first), (Relation::To, &ground()), (Relation::On, &line(0.0, 0.0, 0.0, 1.0))]);
+    p.side(DriveSide::On).drive(Turn::Right, &first, Relation::On, &second);
+    p.drive(Turn::Left, &second, Relation::On, &third);
+    proven(&p).expect("its bands");
+    let points = &p.last().points;
+    let [.., from, to] = &points[..] else { panic!("{points:?}") };
+    assert!((to.tip - from.tip).norm() > 4.0, "{points:?}");
+    assert!((to.axis - from.axis).norm() <= EXACT, "{points:?}");
+}
+
 /// A line has no rim that a turn would move, and a point has nothing.
 #[test]
 fn tools_without_a_rim_follow_a_lead_angle_whose_sense_changes() {

@@ -28,6 +28,8 @@ const ENDLESS: f64 = 1e5;
 const MOST_PLACES: usize = 1000;
 /// Cosine of the angle by which a path turns within one step of more than the least length, at most (17°).
 const AHEAD: f64 = 0.956;
+/// How far aside of its tangent a path is at most at the end of such a step, in its length.
+const FARTHEST_ASIDE: f64 = 0.5;
 /// Bound of the bisection of the last step.
 const MAX_HALVINGS: u32 = 60;
 
@@ -127,7 +129,10 @@ impl Course<'_> {
         if !self.way.may_bend() || shifts.into_iter().all(|shift| shift <= rounding) {
             return Some(straight);
         }
-        Vertex::settled(prepared, &straight.tip, &last.tangent)
+        // Over the end of a sheet corrections may lead far along it, to where the way is parallel as well.
+        let most = FARTHEST_ASIDE * (x - from) + LEAST * prepared.size;
+        let settled = Vertex::settled(prepared, &straight.tip, &last.tangent)?;
+        ((settled.tip - straight.tip).norm() <= most).then_some(settled)
     }
 
     /// The place at a distance, if the way leads there.

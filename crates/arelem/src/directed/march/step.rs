@@ -32,7 +32,7 @@ use crate::{
 /// reader of the path takes two positions for one.
 const LEAST_VECTOR: f64 = 1e-8;
 /// A vector whose length could grow by less than this share is long enough.
-const LONG_ENOUGH: f64 = 2e-4;
+const LONG_ENOUGH: f64 = 1e-3;
 /// Share of the band that the sag leaves: the less of it, the more places its proof takes.
 const SPARED: f64 = 0.25 * GUARD;
 /// Share of the predicted length that is tried.
@@ -222,7 +222,8 @@ impl<'a> Stepper<'a> {
 
     /// The next vertex along the tangent, at most `cap` away.
     fn onward(&mut self, here: &Vertex, cap: f64, places: Places) -> Result<Vertex, MotionFailure> {
-        let cap = cap.min(self.maximum);
+        // Beyond where the tool has turned to its law no vector turns it evenly any more.
+        let cap = cap.min(self.maximum).min(self.prepared.attitude.way_to_law(&here.tip));
         let curvature = match self.trend.curvature() {
             Some(known) => known,
             None => self.probe(here)?,
