@@ -8,7 +8,7 @@ use apt_geometry::Vec3;
 use super::StartUp;
 use crate::{
     attitude::Attitude,
-    position::{self, Condition, Solution},
+    position::{self, Condition, Effort, Solution},
 };
 
 /// Two ways differ if their lengths do by more than this, relative to the size of the coordinates.
@@ -55,12 +55,20 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
         .map(|solution| solution.tip)
         .find(is_twin);
     imaged.or_else(|| {
-        let search = Beside { attitude, conditions: &conditions, start: tip, nearest: length, size };
+        let passing: Vec<Condition<'_>> =
+            work.roles.iter().map(|role| Condition::Passing(&role.gauge, role.rest())).collect();
+        let search = Beside { attitude, conditions: &passing, start: tip, nearest: length, size };
         (1..TURNS)
             .filter_map(|k| search.nearest_about(&turned(&way, &tool.axis, f64::from(k) / f64::from(TURNS))))
+            .filter(|place| ((place - tip).norm() - length).abs() <= SAME_LENGTH * size)
+            .filter_map(|place| position::solve_within(attitude, &conditions, &place, CORRECTIONS).ok())
+            .map(|solution| solution.tip)
             .find(is_twin)
     })
 }
+
+/// What is tried from one place, where contacts are followed and not proven.
+const TRY: Effort = Effort { corrections: 15, halvings: 3, turns: 1, is_one_of_many: true };
 
 /// A way turned about an axis by a part of a turn.
 fn turned(way: &Vec3, axis: &Vec3, part: f64) -> Vec3 {
@@ -87,8 +95,8 @@ impl Beside<'_> {
         let Self { attitude, conditions, start, nearest, size } = *self;
         let (mut place, mut share, mut last) = (start + way, 1.0_f64, None::<Vec3>);
         for _ in 0..STEPS {
-            let Solution { tip, contacts, .. } =
-                position::solve_within(attitude, conditions, &place, CORRECTIONS).ok()?;
+            let solved = position::solve_unless(attitude, conditions, &place, TRY, &|_| false);
+            let Solution { tip, contacts, .. } = solved.ok()?;
             let way = tip - start;
             let along = across_all(&way, contacts.iter().flatten().map(|contact| contact.gradient));
             let left = along.norm();
