@@ -366,3 +366,41 @@ impl Cell {
         [low, high]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn volume(cell: &Cell) -> f64 {
+        cell.half.iter().product()
+    }
+
+    /// What is cut about a place is cut into boxes that hold all that was there, and the one about the place is looked at first.
+    #[test]
+    fn a_small_box_about_a_place_is_cut_out_and_nothing_is_lost() {
+        let whole = Cell { middle: [0.0, 0.0, 1.5], half: [0.5, 0.5, 1.5], ball: 0.0 };
+        let aside = Cell { middle: [0.0, 0.0, 3.5], half: [0.5; 3], ball: 0.1 };
+        let (place, spread) = ([0.31, -0.2, 2.9], 0.01);
+        let mut cells = vec![whole, aside];
+        cut_down(&mut cells, &place, spread);
+        let first = cells.last().expect("boxes");
+        assert!(first.square_from(&place) == 0.0 && first.is_small(spread), "{first:?}");
+        assert!(!cells.iter().rev().skip(1).any(|cell| cell.square_from(&place) == 0.0), "{cells:?}");
+        assert!((cells.iter().map(volume).sum::<f64>() - volume(&whole) - volume(&aside)).abs() < 1e-12);
+        // Of what is in no box nothing is cut, and points that do not stray end it, too.
+        let mut same = vec![whole];
+        cut_down(&mut same, &[2.0, 0.0, 0.0], spread);
+        assert_eq!(same.len(), 1);
+        cut_down(&mut same, &place, 0.0);
+        assert_eq!(same.len(), 1 + MOST_CUTS as usize);
+    }
+
+    #[test]
+    fn the_half_that_is_nearer_to_a_place_is_looked_at_first() {
+        let whole = Cell { middle: [0.0; 3], half: [1.0, 2.0, 1.0], ball: 0.0 };
+        for (y, expected) in [(-3.0, -1.0), (0.4, 1.0)] {
+            let [_, first] = whole.halves_towards(&[[0.0, y, 0.0], [0.0, 9.0, 0.0]]);
+            assert_eq!(first.middle[1], expected);
+        }
+    }
+}

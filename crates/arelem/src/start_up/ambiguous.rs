@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 
 use apt_geometry::Vec3;
 
-use super::StartUp;
+use super::{StartUp, around::TRY};
 use crate::{
     attitude::Attitude,
-    position::{self, Condition, Effort, Solution},
+    position::{self, Condition, Solution},
 };
 
 /// Two ways differ if their lengths do by more than this, relative to the size of the coordinates.
@@ -66,9 +66,6 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
             .find(is_twin)
     })
 }
-
-/// What is tried from one place, where contacts are followed and not proven.
-const TRY: Effort = Effort { corrections: 15, halvings: 3, turns: 1, is_one_of_many: true };
 
 /// A way turned about an axis by a part of a turn.
 fn turned(way: &Vec3, axis: &Vec3, part: f64) -> Vec3 {

@@ -15,7 +15,7 @@ const SHELLS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 /// Steps of the lattice whose outer points are the directions.
 const LATTICE: i8 = 1;
 /// What is tried from one place: a way that winds more leads nowhere, for there are others.
-const TRY: Effort = Effort { corrections: 15, halvings: 3, turns: 1, is_one_of_many: true };
+pub(super) const TRY: Effort = Effort { corrections: 15, halvings: 3, turns: 1, is_one_of_many: true };
 /// Corrections of what a try came to.
 const CORRECTIONS: u32 = 15;
 /// How near to the end of a vain try, relative to what was wrong there, another is in vain: clearances change by no more than the
