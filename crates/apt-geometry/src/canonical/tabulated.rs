@@ -27,6 +27,10 @@ impl TabulatedCylinder {
             .collect();
         let joint = |(index, pair): (usize, &[(&Interval, f64)])| {
             let [(before, heading_before), (after, heading_after)] = pair else { return None };
+            // An extension of no length, of a curve that ends where it begins, has no direction.
+            if before.length <= 0.0 || after.length <= 0.0 {
+                return None;
+            }
             let (ending, starting) = (before.slope(before.length), after.slope(0.0));
             let turn = (heading_after + starting.atan()) - (heading_before + ending.atan());
             Some(Joint {
@@ -81,5 +85,9 @@ mod tests {
         assert_eq!((joints[0].chord, joints[1].chord), (2.0, 3.0));
         assert!((joints[1].corner - 45.0).abs() < 1e-12);
         assert!((joints[1].curvature_jump - 0.5 / 2f64.powf(1.5)).abs() < 1e-12);
+        let mut with_no_extension = curve;
+        with_no_extension.intervals.insert(0, interval(0.0, 0.0, 0.0, 0.0));
+        let joints = with_no_extension.joints();
+        assert_eq!(joints.iter().map(|joint| joint.point).collect::<Vec<_>>(), [2, 3]);
     }
 }

@@ -57,7 +57,8 @@ pub enum Surface {
     Cone(ConeForm),
     /// Quadric in principal axes: ellipse, hyperbola and conic cylinders too.
     Quadric(Box<PrincipalQuadric>),
-    /// Tabulated cylinder; the straight extensions go on for ever.
+    /// Tabulated cylinder; the straight extensions go on for ever, up to where they meet, or no farther than they are defined where they
+    /// would come back to the curve.
     Tabulated(Box<DirectrixCurve>),
     /// Ruled surface with its extensions.
     Ruled(Arc<RuledSheet>),
@@ -175,15 +176,20 @@ impl Surface {
         }
     }
 
-    /// True if the surface ends somewhere and does not go on. Planes, quadrics and tabulated cylinders go on for ever or
-    /// close; the vertex of a cone is no end.
+    /// True if the surface ends somewhere and does not go on. Planes and quadrics go on for ever or close, and so do most tabulated
+    /// cylinders; the vertex of a cone is no end.
     pub fn has_ends(&self) -> bool {
-        matches!(self, Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_))
+        match self {
+            Self::Ruled(_) | Self::PolyConic(_) | Self::Sculptured(_) => true,
+            Self::Tabulated(curve) => curve.has_ends(),
+            _ => false,
+        }
     }
 
     /// True if the place nearest to a point lies where the surface ends.
     pub fn ends_at(&self, p: &Vec3) -> bool {
         match self {
+            Self::Tabulated(curve) => curve.has_ends() && curve.ends_at(p),
             Self::Ruled(sheet) => sheet.ends_at(p),
             Self::PolyConic(sheet) => sheet.ends_at(p),
             Self::Sculptured(sheet) => sheet.ends_at(p),

@@ -2,6 +2,7 @@
 
 mod boxes;
 mod cubic;
+mod extensions;
 mod forms;
 
 use nalgebra::{Matrix3, Vector2};
@@ -9,6 +10,7 @@ use nalgebra::{Matrix3, Vector2};
 use self::{
     boxes::Boxes,
     cubic::{Cubic, SPANS},
+    extensions::Beyond,
 };
 use super::{Chart, Foot, Place, chart::Facing, part::LEAST_COSINE, sheet::Jet};
 use crate::{Vec3, canonical::TabulatedCylinder};
@@ -21,6 +23,8 @@ const CORNER: f64 = 1e-9;
 const ON_CURVE: f64 = 1e-12;
 /// Sine of a turn between intervals below which they join smoothly.
 const SMOOTH: f64 = 1e-7;
+/// How near the end of an interval, in lengths of it, a nearest place is the joint with its neighbour.
+const JOINT: f64 = 1e-9;
 /// Curvature of a corner: large enough to be infinite for any tool, small enough to compute with.
 const CORNER_CURVATURE: f64 = 1e12;
 
@@ -30,6 +34,10 @@ pub struct DirectrixCurve {
     axes: [Vec3; 3],
     intervals: Vec<Cubic>,
     boxes: Boxes,
+    /// Whether its extensions meet, so that the last interval is followed by the first.
+    closed: bool,
+    /// Ends beyond which it does not go on.
+    tips: Vec<Vec2>,
 }
 
 impl DirectrixCurve {
@@ -38,27 +46,76 @@ impl DirectrixCurve {
         for axis in &mut axes {
             *axis = super::unit(axis)?;
         }
-        let count = cylinder.intervals.len();
-        let mut intervals: Vec<Cubic> = Vec::with_capacity(count);
+        let mut intervals: Vec<Cubic> = Vec::with_capacity(cylinder.intervals.len());
         for (k, interval) in cylinder.intervals.iter().enumerate() {
             let start = Vec2::new(interval.u, interval.v);
             let end = match cylinder.intervals.get(k + 1) {
                 Some(next) => Vec2::new(next.u, next.v),
                 None => Vec2::from(cylinder.last),
             };
-            let mut cubic = Cubic::new(start, end, interval.a, interval.b)?;
-            cubic.open = [k == 0, k + 1 == count];
-            if let Some(before) = intervals.last() {
-                let (end, start) = (Cubic::direction(before, before.length), cubic.direction(0.0));
-                cubic.turn = end.y * start.x - end.x * start.y;
+            // Extensions that meet at once have no length.
+            if start != end {
+                intervals.push(Cubic::new(start, end, interval.a, interval.b)?);
             }
-            intervals.push(cubic);
         }
-        if intervals.is_empty() {
-            return None;
+        let (mut intervals, mut closed) = extensions::without_extensions(intervals);
+        let mut tips = Vec::new();
+        match Beyond::of(&intervals) {
+            _ if closed => {}
+            Beyond::Meeting(meeting) => {
+                intervals = extensions::closed_at(meeting, intervals)?;
+                closed = true;
+            }
+            Beyond::Apart([before, after]) => {
+                let (first, last) = (intervals.first_mut()?.start, Vec2::from(cylinder.last));
+                intervals.first_mut()?.open[0] = before;
+                intervals.last_mut()?.open[1] = after;
+                tips.extend(
+                    [(before, first), (after, last)].into_iter().filter(|end| !end.0).map(|end| end.1),
+                );
+            }
         }
         let boxes = Boxes::of(intervals.iter().map(Cubic::upright_box));
-        Some(Self { axes, intervals, boxes })
+        let mut curve = Self { axes, intervals, boxes, closed, tips };
+        for k in 0..curve.intervals.len() {
+            if let Some(before) = curve.neighbour(k, false) {
+                let (end, start) = (before.direction(before.length), curve.intervals[k].direction(0.0));
+                curve.intervals[k].turn = end.y * start.x - end.x * start.y;
+            }
+        }
+        Some(curve)
+    }
+
+    /// The interval before or after one; none at an end of the curve.
+    fn neighbour(&self, k: usize, after: bool) -> Option<&Cubic> {
+        self.intervals.get(self.number_beside(k, after)?)
+    }
+
+    fn number_beside(&self, k: usize, after: bool) -> Option<usize> {
+        let count = self.intervals.len();
+        let inner = if after { k + 1 < count } else { k > 0 };
+        (inner || self.closed).then(|| if after { (k + 1) % count } else { (k + count - 1) % count })
+    }
+
+    /// Whether it ends somewhere.
+    pub(super) fn has_ends(&self) -> bool {
+        !self.tips.is_empty()
+    }
+
+    /// Whether the place nearest to a point is one where it ends.
+    pub(super) fn ends_at(&self, p: &Vec3) -> bool {
+        let place = self.flat(&self.foot(p).0.point);
+        self.tips.iter().any(|tip| (tip - place).norm() <= ON_CURVE * (tip.norm() + self.size()))
+    }
+
+    /// Length of the chords of its intervals.
+    fn size(&self) -> f64 {
+        self.intervals.iter().map(|interval| interval.length).sum()
+    }
+
+    /// Whether it ends within reach of a point.
+    fn ends_within(&self, flat: Vec2, reach: f64) -> bool {
+        self.tips.iter().any(|tip| (tip - flat).norm() <= reach)
     }
 
     /// Unit direction of the generators.
@@ -68,7 +125,8 @@ impl DirectrixCurve {
 
     /// The points between intervals, in the plane through the origin.
     pub(super) fn joints(&self) -> Vec<Vec3> {
-        self.intervals.iter().skip(1).map(|interval| self.lift(interval.start)).collect()
+        let first = if self.closed { 0 } else { 1 };
+        self.intervals.iter().skip(first).map(|interval| self.lift(interval.start)).collect()
     }
 
     fn flat(&self, p: &Vec3) -> Vec2 {
@@ -115,10 +173,24 @@ impl DirectrixCurve {
         // rounding and says nothing.
         let corner =
             height.abs() < length * (1.0 - CORNER) && length > ON_CURVE * (interval.length + flat.norm());
+        let height = if corner { offset.dot(&(normal + self.normal_beside(k, s))) } else { height };
         let distance = if corner { length.copysign(height) } else { height };
         let curvature = if corner { CORNER_CURVATURE.copysign(height) } else { -h2 / (norm * norm * norm) };
         let normal = self.lift(if corner { offset / distance } else { normal });
         (Foot { distance, point: p - normal * distance, normal }, curvature)
+    }
+
+    /// The natural normal on the other side of a joint, of an interval that a corner of the curve is at an end of; no direction
+    /// elsewhere. Between both normals lie those of the side that the corner stands out to, however sharp it is.
+    fn normal_beside(&self, k: usize, s: f64) -> Vec2 {
+        let length = self.intervals[k].length;
+        let is_after = s > 0.5 * length;
+        let is_joint = s.min(length - s).abs() <= JOINT * length;
+        let beside = if is_joint { self.neighbour(k, is_after) } else { None };
+        beside.map_or_else(Vec2::zeros, |beside| {
+            let direction = beside.direction(if is_after { 0.0 } else { beside.length });
+            Vec2::new(-direction.y, direction.x)
+        })
     }
 
     /// The first parameter is the distance along the generators from the plane through the origin.
@@ -153,11 +225,21 @@ impl DirectrixCurve {
             return s.is_finite().then_some(Place { piece: place.piece, at: [z, s] });
         }
         // On from the end of the neighbour, over the same chord.
-        let piece = if before { place.piece.checked_sub(1)? } else { place.piece + 1 };
+        let piece = self.number_beside(place.piece, after)?;
         let next = self.intervals.get(piece)?;
         let s = if before { next.length + s } else { s - interval.length };
         let within = (next.open[0] || s >= 0.0) && (next.open[1] || s <= next.length);
         within.then_some(Place { piece, at: [z, s] })
+    }
+
+    /// The interval that a walk along the curve about a point begins with: of a closed one that which is farthest away.
+    fn beginning(&self, flat: Vec2) -> usize {
+        if !self.closed {
+            return 0;
+        }
+        let square = |interval: &Cubic| interval.least_square(interval.to_local(flat));
+        let farthest = self.intervals.iter().enumerate().max_by(|a, b| square(a.1).total_cmp(&square(b.1)));
+        farthest.map_or(0, |one| one.0)
     }
 
     /// Curvatures and normals of the directrix between the first and the last of its spans within reach of a point, unless
@@ -176,10 +258,16 @@ impl DirectrixCurve {
         };
         let place =
             |(i, interval): (usize, &Cubic), sense: bool| Some(i * SPANS as usize + within(interval, sense)?);
-        let first = self.intervals.iter().enumerate().find_map(|one| place(one, true))?;
-        let last = self.intervals.iter().enumerate().rev().find_map(|one| place(one, false))?;
-        let spans =
-            self.intervals.iter().flat_map(|interval| (0..SPANS as usize).map(move |k| (interval, k)));
+        if self.ends_within(flat, reach) {
+            return None;
+        }
+        let (rest, begun) = self.intervals.split_at(self.beginning(flat));
+        let intervals = || begun.iter().chain(rest);
+        let first = intervals().enumerate().find_map(|one| place(one, true))?;
+        let count = self.intervals.len();
+        let last =
+            intervals().rev().zip(1..).find_map(|(interval, k)| place((count - k, interval), false))?;
+        let spans = intervals().flat_map(|interval| (0..SPANS as usize).map(move |k| (interval, k)));
         let count = (last + 1).saturating_sub(first);
         for (number, (interval, k)) in spans.skip(first).take(count).enumerate() {
             let bends = if interval.straight() { [0.0; 2] } else { *interval.bends.get(k)? };
@@ -219,7 +307,7 @@ impl DirectrixCurve {
     /// positive where the curve turns away from that side, infinite at a corner that does.
     pub(super) fn greatest_curvature(&self, side: f64, center: &Vec3, reach: f64) -> f64 {
         let flat = self.flat(center);
-        let mut greatest = f64::NEG_INFINITY;
+        let mut greatest = if self.ends_within(flat, reach) { f64::INFINITY } else { f64::NEG_INFINITY };
         for interval in &self.intervals {
             let local = interval.to_local(flat);
             // Turning to the right is turning away from the natural normal.
@@ -282,3 +370,6 @@ pub(super) fn bracketed_root(f: &impl Fn(f64) -> f64, low: f64, high: f64) -> Op
     }
     Some(0.5 * (low + high))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,12 @@
 //! Paths that close on themselves: every relation and count over several turns, several check surfaces at once, and check
 //! surfaces that are never met.
 
-use apt_geometry::motion::DriveSide;
+use std::sync::Arc;
+
+use apt_geometry::{
+    canonical::{Interval, TabulatedCylinder},
+    motion::DriveSide,
+};
 
 use super::*;
 use crate::{clearance::EVALUATIONS, error::Course};
@@ -22,6 +27,54 @@ struct Loop {
     side: DriveSide,
     /// 3DCALC.
     iterate: bool,
+}
+
+/// An upright tabulated cylinder through places with a heading in degrees each, with straight extensions of a length.
+pub(super) fn table_through(nodes: &[[f64; 3]], extension: f64) -> Geometry {
+    let row = |u: f64, v: f64, [a, b]: [f64; 2], length: f64| Interval {
+        u,
+        v,
+        a,
+        b,
+        length,
+        maximum: 0.0,
+        minimum: 0.0,
+    };
+    let ahead = |[u, v, heading]: [f64; 3], way: f64| {
+        let (sine, cosine) = heading.to_radians().sin_cos();
+        [u + way * cosine, v + way * sine]
+    };
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    let [u, v] = ahead(first, -extension);
+    let mut intervals = vec![row(u, v, [0.0; 2], extension)];
+    for pair in nodes.windows(2) {
+        let ([u, v, before], [u2, v2, after]) = (pair[0], pair[1]);
+        let (length, chord) = ((u2 - u).hypot(v2 - v), (v2 - v).atan2(u2 - u));
+        let [s1, s2] = [before, after].map(|heading| (heading.to_radians() - chord).tan());
+        intervals.push(row(u, v, [(s1 + s2) / (length * length), -(2.0 * s1 + s2) / length], length));
+    }
+    intervals.push(row(last[0], last[1], [0.0; 2], extension));
+    Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
+        axes: [Vec3::x(), Vec3::y(), Vec3::z()],
+        kind: 0.0,
+        intervals,
+        last: ahead(last, extension),
+    }))
+}
+
+/// Round to the left and drawn out to a tip at the right, where the extensions would meet a hundredth farther on.
+fn drop_shape() -> Geometry {
+    let to_tip = 0.8 / 10f64.to_radians().sin();
+    table_through(&[[1.0, 0.8, 170.0], [-2.0, 0.0, 270.0], [1.0, -0.8, 10.0]], 0.99 * to_tip)
+}
+
+/// All but a circle, that ends where it begins.
+fn ring() -> Geometry {
+    let quarter = |k: f64| {
+        let (sine, cosine) = (90.0 * k).to_radians().sin_cos();
+        [2.0 * cosine, 2.0 * sine, 90.0 * (k + 1.0)]
+    };
+    table_through(&[0.0, 1.0, 2.0, 3.0, 4.0].map(quarter), 10.0)
 }
 
 fn loops() -> Vec<Loop> {
@@ -59,6 +112,9 @@ fn loops() -> Vec<Loop> {
             DriveSide::Left,
             false,
         ),
+        new("drop", drop_shape(), floor(), outside, DriveSide::Left, false),
+        new("ring", ring(), floor(), outside, DriveSide::Left, false),
+        new("inside a ring", ring(), floor(), inside, DriveSide::Right, false),
     ]
 }
 

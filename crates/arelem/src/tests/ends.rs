@@ -6,6 +6,7 @@ use Turn::Forward;
 use apt_geometry::canonical::Remembering;
 
 use super::{
+    closed_paths::table_through,
     sculptured::{hill, made},
     sheets::{round_wall, ruled},
     *,
@@ -254,4 +255,28 @@ fn vectors_beside_the_end_are_proven_by_parts_of_the_surface() {
     let failure = execution.failure.expect("no way there");
     assert!(matches!(failure, MotionFailure::SurfaceEnds { role: RoleName::Part, .. }), "{failure:?}");
     assert!(taken <= FEWER, "{taken} clearances");
+}
+
+/// A hook whose end points back to its long side. The extension would divide what is inside the hook.
+#[test]
+fn an_extension_that_would_come_back_to_its_curve_ends() {
+    let hook = table_through(
+        &[[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [8.0, 2.0, 90.0], [6.0, 4.0, 180.0], [5.0, 3.5, 240.0]],
+        1.0,
+    );
+    let begun = || {
+        let mut p = Program::new();
+        p.tolerance(0.0, 0.001).cutter(&[0.5]).from(1.0, 2.0, 0.0);
+        p.go(&[(To, &hook), (On, &ground()), (On, &x(1.0))]).side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
+        p
+    };
+    let mut p = begun();
+    p.drive(Forward, &hook, On, &y(2.0)).ends(7.75, 2.0, 0.0, 0.01).verified();
+    p.drive(Forward, &hook, On, &x(6.0)).ends(6.0, 3.75, 0.0, 0.01).verified();
+    let failure = begun().attempt(&motion(Forward, &hook, &[(On, 1, &y(9.0))])).expect_err("no way there");
+    let MotionFailure::SurfaceEnds { role: RoleName::Drive, place, .. } = failure else {
+        panic!("{failure:?}");
+    };
+    let (sine, cosine) = 240f64.to_radians().sin_cos();
+    assert!((place - v(5.0 + cosine, 3.5 + sine, place.z)).norm() < 1e-4, "{place}");
 }

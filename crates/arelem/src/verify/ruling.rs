@@ -1,7 +1,10 @@
 //! Surfaces ruled by straight lines over piecewise cubic curves: the tabulated cylinder.
 
+mod beyond;
+
 use apt_geometry::{Vec3, canonical::TabulatedCylinder};
 
+use self::beyond::{Beyond, closing};
 use super::{
     bow::{Bow, Passing, bows},
     directrix::{self, Piece},
@@ -28,18 +31,16 @@ pub(super) struct Ruling {
     bows: Vec<Bow>,
     /// Unit direction of the rulings.
     pub(super) axis: Vec3,
-    /// Whether the end tangents meet when drawn out; then the curve ends where the definition ends it.
+    /// Whether the end tangents meet when drawn out; then the curve closes there.
     closed: bool,
+    /// Whether the curve goes on for ever along its end tangents.
+    endless: [bool; 2],
     /// Greatest distance of the curve from the origin.
     pub(super) size: f64,
 }
 
 fn flat(frame: &[Vec3; 2], x: &Vec3) -> Flat {
     Flat::new(frame[0].dot(x), frame[1].dot(x))
-}
-
-fn cross(a: &Vec3, b: &Vec3, axis: &Vec3) -> f64 {
-    axis.dot(&a.cross(b))
 }
 
 impl Ruling {
@@ -57,21 +58,38 @@ impl Ruling {
         let mut curve = Vec::with_capacity(surface.intervals.len() + 2);
         for (k, interval) in surface.intervals.iter().enumerate() {
             let end = surface.intervals.get(k + 1).map_or(surface.last, |next| [next.u, next.v]);
-            curve.push(cubic(&frame, [interval.u, interval.v], end, interval.a, interval.b)?);
+            // Nothing is between places that are the same: extensions that meet at once.
+            if end != [interval.u, interval.v] {
+                curve.push(cubic(&frame, [interval.u, interval.v], end, interval.a, interval.b)?);
+            }
         }
-        let (first, last) = (curve.first()?, curve.last()?);
-        let (start, end) = (first[0], last[3]);
-        let (back, ahead) = (first[0] - first[1], last[3] - last[2]);
-        // Where start + x·back and end + y·ahead meet.
-        let turn = cross(&back, &ahead, &axis);
-        let x = cross(&(end - start), &ahead, &axis) / turn;
-        let y = cross(&(end - start), &back, &axis) / turn;
-        let closed = x.is_finite() && y.is_finite() && x > 0.0 && y > 0.0;
+        let in_plane = |curve: &[Cubic]| -> Vec<Piece> {
+            let pieces = curve.iter().enumerate();
+            pieces.map(|(k, c)| Piece::new(c.map(|p| flat(&frame, &p)), k)).collect()
+        };
+        if let Some(inner) = beyond::loop_within(&in_plane(&curve)) {
+            curve = curve.drain(inner).collect();
+        }
+        let defined = in_plane(&curve);
+        let (closed, endless) = match Beyond::of(&defined)? {
+            Beyond::Nothing => (true, [false; 2]),
+            Beyond::Tangents(endless) => (false, endless),
+            Beyond::Meeting(meeting) => {
+                let straight = |[from, to]: [Flat; 2]| -> Cubic {
+                    [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|t| {
+                        let x = from + (to - from) * t;
+                        frame[0] * x.x + frame[1] * x.y
+                    })
+                };
+                let [before, after] = closing(meeting, &defined)?.map(|leg| leg.map(straight));
+                curve = before.into_iter().chain(curve).chain(after).collect();
+                (true, [false; 2])
+            }
+        };
         let size = curve.iter().flatten().map(|p| p.norm()).fold(0.0, f64::max);
-        let pieces = curve.iter().enumerate();
-        let flat: Vec<Piece> = pieces.map(|(k, c)| Piece::new(c.map(|p| flat(&frame, &p)), k)).collect();
+        let flat = in_plane(&curve);
         let bows = flat.iter().flat_map(|piece| bows(piece.control())).collect();
-        Some(Self { curve, flat, frame, bows, axis, closed, size })
+        Some(Self { curve, flat, frame, bows, axis, closed, endless, size })
     }
 
     /// The pieces of the directrix in the plane through the origin.
@@ -82,7 +100,7 @@ impl Ruling {
     /// The place of the surface nearest to a tool, to within `resolution`; one deeper in it than `deep` ends the search.
     pub(super) fn nearest(&self, tip: &Vec3, tool: &Tool<'_>, resolution: f64, deep: f64) -> Option<Touch> {
         let shadow = Shadow::new(tool, &self.frame, tip);
-        let rays = if self.closed { Vec::new() } else { self.rays(&shadow)?.to_vec() };
+        let rays: Vec<Piece> = self.rays(&shadow)?.into_iter().flatten().collect();
         let found = directrix::nearest([&self.flat, &rays], &shadow, resolution, deep)?;
         let [outward, place] = [found.level.normal, found.place].map(|x| self.lifted(&x));
         let height = self.axis.dot(&(tip + tool.support(&outward).1));
@@ -107,7 +125,7 @@ impl Ruling {
         [depth, resolution]: [f64; 2],
     ) -> Option<bool> {
         let shadow = Shadow::new(tool, &self.frame, tip);
-        let rays = if self.closed { Vec::new() } else { self.rays(&shadow)?.to_vec() };
+        let rays: Vec<Piece> = self.rays(&shadow)?.into_iter().flatten().collect();
         let mut open: Vec<_> = self.flat.iter().chain(&rays).map(|piece| (piece.clone(), HALVINGS)).collect();
         while let Some((piece, halvings)) = open.pop() {
             let pieces = [std::slice::from_ref(&piece), &[]];
@@ -153,14 +171,13 @@ impl Ruling {
         let natural = flat(&self.frame, &(normal * side)).try_normalize(0.0)?;
         let run = Flat::new(natural.y, -natural.x);
         let passing = Passing { shadow: &shadow, run, left: side > 0.0, length, values };
-        let bend = if self.closed {
-            let ends = [self.bows.first()?.start(), self.bows.last()?.end()];
-            passing.bend(&self.bows, &ends)?
-        } else {
-            let [before, after] = self.rays(&shadow)?.map(Bow::straight);
-            let before = before.turned_round();
-            passing.bend(std::iter::once(&before).chain(&self.bows).chain([&after]), &[])?
-        };
+        // Where the curve does not go on, it turns to any direction.
+        let ends = [self.bows.first()?.start(), self.bows.last()?.end()];
+        let stops: Vec<Flat> =
+            ends.into_iter().zip(self.endless).filter(|end| !end.1).map(|end| end.0).collect();
+        let [before, after] = self.rays(&shadow)?.map(|ray| ray.map(Bow::straight));
+        let before = before.map(Bow::turned_round);
+        let bend = passing.bend(before.iter().chain(&self.bows).chain(&after), &stops)?;
         Some(Bend { rate: bend.rate * share * share, jumps: bend.jumps * share })
     }
 
@@ -168,8 +185,8 @@ impl Ruling {
         self.frame[0] * x.x + self.frame[1] * x.y
     }
 
-    /// What the tangents at both ends go on with, farther than the tool can be concerned.
-    fn rays(&self, shadow: &Shadow<'_>) -> Option<[Piece; 2]> {
+    /// What the tangents at both ends go on with, farther than the tool can be concerned; none where the curve does not go on.
+    fn rays(&self, shadow: &Shadow<'_>) -> Option<[Option<Piece>; 2]> {
         let (count, first, last) = (self.curve.len(), self.curve.first()?, self.curve.last()?);
         let ray = |from: Vec3, inner: Vec3, index: usize| {
             let [from, out] = [from, from - inner].map(|x| flat(&self.frame, &x));
@@ -177,7 +194,11 @@ impl Ruling {
             let step = out * (length / (3.0 * out.norm()));
             Piece::new([from, from + step, from + step * 2.0, from + step * 3.0], index)
         };
-        Some([ray(first[0], first[1], count), ray(last[3], last[2], count + 1)])
+        let [before, after] = self.endless;
+        Some([
+            before.then(|| ray(first[0], first[1], count)),
+            after.then(|| ray(last[3], last[2], count + 1)),
+        ])
     }
 
     fn normal_at(&self, piece: usize, along: f64) -> Vec3 {
@@ -200,14 +221,16 @@ impl Ruling {
         if touch.piece > last || !(at_start || at_end) {
             return Some(here);
         }
-        let ends = (at_start && touch.piece == 0) || (at_end && touch.piece == last);
-        if ends {
-            return (!self.closed).then_some(here);
+        let (is_first, is_last) = (at_start && touch.piece == 0, at_end && touch.piece == last);
+        if !self.closed && (is_first || is_last) {
+            let [before, after] = self.endless;
+            return (if is_first { before } else { after }).then_some(here);
         }
+        let count = self.curve.len();
         let beside = if at_start {
-            self.normal_at(touch.piece - 1, 1.0)
+            self.normal_at((touch.piece + count - 1) % count, 1.0)
         } else {
-            self.normal_at(touch.piece + 1, 0.0)
+            self.normal_at((touch.piece + 1) % count, 0.0)
         };
         let sum = here + beside;
         let size = sum.norm();

@@ -16,13 +16,16 @@ impl DirectrixCurve {
     /// The forms of the spans within reach of a point, as bent towards a side; `None` at a corner.
     pub(in super::super) fn forms(&self, side: f64, center: &Vec3, reach: f64) -> Option<Vec<Form>> {
         let flat = self.flat(center);
+        if self.ends_within(flat, reach) {
+            return None;
+        }
         let mut forms = Vec::new();
-        for (number, interval) in self.intervals.iter().enumerate() {
+        for interval in &self.intervals {
             let local = interval.to_local(flat);
             if interval.least_square(local) > reach * reach {
                 continue;
             }
-            if number > 0 && interval.turn.abs() > SMOOTH && local.norm_squared() <= reach * reach {
+            if interval.turn.abs() > SMOOTH && local.norm_squared() <= reach * reach {
                 return None;
             }
             for k in (0..SPANS as usize).filter(|k| interval.is_near(*k, local, reach)) {
