@@ -4,6 +4,7 @@ mod boxes;
 mod cubic;
 mod extensions;
 mod forms;
+mod stretch;
 
 use nalgebra::{Matrix3, Vector2};
 

@@ -126,7 +126,7 @@ impl Cubic {
     }
 
     /// Half the derivative of the squared distance to the point of a parameter.
-    fn gradient(&self, local: Vec2, s: f64) -> f64 {
+    pub(super) fn gradient(&self, local: Vec2, s: f64) -> f64 {
         let [h, h1, _] = self.height(s);
         (s - local.x) + (h - local.y) * h1
     }
@@ -158,7 +158,7 @@ impl Cubic {
     }
 
     /// Parameter of the nearest point near a starting value, between limits.
-    fn nearest_from(&self, local: Vec2, from: f64, limits: [f64; 2]) -> f64 {
+    pub(super) fn nearest_from(&self, local: Vec2, from: f64, limits: [f64; 2]) -> f64 {
         let [mut low, mut high] = limits;
         let mut s = from;
         for _ in 0..MAX_ITERATIONS {
@@ -192,10 +192,6 @@ impl Cubic {
             let s = local.x.clamp(low, high);
             return (s, (s - local.x) * (s - local.x) + local.y * local.y);
         }
-        let distance = |s: f64| {
-            let (x, y) = (s - local.x, self.height(s)[0] - local.y);
-            x * x + y * y
-        };
         if self.has_one_nearest(local) {
             let s = if !self.open[0] && self.gradient(local, low) >= 0.0 {
                 low
@@ -204,14 +200,15 @@ impl Cubic {
             } else {
                 self.nearest_from(local, local.x.clamp(low, high), [low, high])
             };
-            return (s, distance(s));
+            return (s, self.square(local, s));
         }
-        let mut best = (low, distance(low));
+        let mut best = (low, self.square(local, low));
         let mut take = |s: f64| {
-            let d = distance(s);
-            if d < best.1 {
-                best = (s, d);
+            let square = self.square(local, s);
+            if square < best.1 {
+                best = (s, square);
             }
+            best.1
         };
         take(high);
         if self.open[0] {
@@ -220,17 +217,9 @@ impl Cubic {
         if self.open[1] {
             take(self.nearest_from(local, self.length.max(local.x), [self.length, high]));
         }
-        let mut left = (0.0, self.gradient(local, 0.0));
-        for k in 1..=SPANS {
-            let right = self.length * f64::from(k) / f64::from(SPANS);
-            let right = (right, self.gradient(local, right));
-            // A nearest point lies where the distance stops falling; elsewhere there is nothing to be found.
-            if left.1 <= 0.0 && right.1 >= 0.0 {
-                let share = if right.1 > left.1 { left.1 / (left.1 - right.1) } else { 0.5 };
-                let start = left.0 + (right.0 - left.0) * share;
-                take(self.nearest_from(local, start, [left.0, right.0]));
-            }
-            left = right;
+        for k in 0..SPANS {
+            let end = |k: u32| self.length * f64::from(k) / f64::from(SPANS);
+            self.nearest_places(local, [end(k), end(k + 1)], &mut take);
         }
         best
     }
@@ -282,7 +271,7 @@ impl Cubic {
     }
 
     /// Least and greatest slope over a span: at its ends, or where the slope turns.
-    fn slope_range(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn slope_range(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let [a, b, _] = self.coefficients;
         let turn = (-b / (3.0 * a)).clamp(from, to);
         let turn = if turn.is_nan() { from } else { turn };

@@ -136,3 +136,33 @@ fn an_extension_that_would_come_back_to_the_curve_ends_where_it_is_defined_to_en
     assert!(curve.forms(1.0, &Vec3::new(12.0, 6.5, 0.0), 1.0).is_none());
     assert_eq!(curve.greatest_curvature(1.0, &Vec3::new(12.0, 6.5, 0.0), 1.0), f64::INFINITY);
 }
+
+/// Two places of an interval all but next to each other are as near to a point, with one that is a little farther between them.
+#[test]
+fn of_two_nearest_places_in_one_span_the_nearer_is_found() {
+    // From (1, −.3) on, where the curve has just been turning by a radius of a sixth.
+    let points = [[0.0, 0.0], [1.0, -0.3], [3.0, -0.4]];
+    let row = |k: usize, a: f64, b: f64| Interval {
+        u: points[k][0],
+        v: points[k][1],
+        a,
+        b,
+        length: 0.0,
+        maximum: 0.0,
+        minimum: 0.0,
+    };
+    let cylinder = TabulatedCylinder {
+        axes: [Vec3::x(), Vec3::y(), Vec3::z()],
+        kind: 0.0,
+        intervals: vec![row(0, -2.545_304, 5.394_014), row(1, -0.024_41, 0.128_87)],
+        last: points[2],
+    };
+    let curve = made(&cylinder);
+    let all = places(&curve);
+    for k in 0..4000 {
+        let p = Vec2::new(0.7 + 0.5 * f64::from(k % 200) / 200.0, -0.5 - 0.1 * f64::from(k / 200) / 20.0);
+        let found = curve.foot(&Vec3::new(p.x, p.y, 0.0)).0.distance.abs();
+        let sampled = all.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
+        assert!(found <= sampled + 1e-12, "{p}: {found} {sampled}");
+    }
+}
