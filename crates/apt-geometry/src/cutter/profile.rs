@@ -44,6 +44,15 @@ pub struct Profile {
     pub fan: [f64; 2],
 }
 
+/// Of a corner arc that reaches the axis above the tip (APT III 415), the polar angle of its normal where the straight line from the
+/// tip touches it: the support function counts the tip, so that the body is the least convex one that has tip and arc. `None` where
+/// the tip is not outside of the circle.
+fn tangent_from_tip(center: ProfilePoint, arc: f64) -> Option<f64> {
+    // The line has the normal (sin θ, −cos θ) for which the circle goes as far as the tip: e sin θ − f cos θ + r = 0.
+    let away = center.radius.hypot(center.height);
+    (away > arc).then(|| (-center.radius).atan2(center.height) + (arc / away).acos())
+}
+
 impl Profile {
     pub(super) fn corner_lines(cutter: &Cutter) -> CornerLines {
         let (sa, ca) = cutter.alpha.sin_cos();
@@ -74,20 +83,51 @@ impl Profile {
             return Self { lower: knee, upper: knee, top, center: knee, arc: 0.0, fan: [normal, normal] };
         }
         let lines = Self::corner_lines(cutter);
-        let along_low = lines.lower_along.max(0.0);
         let along_up = lines.upper_along.max(0.0);
-        let lower = ProfilePoint { radius: along_low * ca, height: along_low * sa };
         let upper = ProfilePoint { radius: knee.radius + along_up * sb, height: knee.height + along_up * cb };
         let upper = if upper.height > top.height { top } else { upper };
         let polar = |p: ProfilePoint| (p.radius - e).atan2(f - p.height);
-        Self {
-            lower,
-            upper,
-            top,
-            center: ProfilePoint { radius: e, height: f },
-            arc: r,
-            fan: [polar(lower), polar(upper)],
+        let last = polar(upper);
+        let center = ProfilePoint { radius: e, height: f };
+        let reaches_axis = lines.lower_along < 0.0 && e < 0.0;
+        if reaches_axis && let Some(first) = tangent_from_tip(center, r) {
+            if first >= last {
+                let normal = upper.height.atan2(upper.radius);
+                return Self { lower: upper, upper, top, center: upper, arc: 0.0, fan: [normal, normal] };
+            }
+            let (sin, cos) = first.sin_cos();
+            let lower = ProfilePoint { radius: e + r * sin, height: f - r * cos };
+            return Self { lower, upper, top, center, arc: r, fan: [first, last] };
         }
+        let along_low = lines.lower_along.max(0.0);
+        let lower = ProfilePoint { radius: along_low * ca, height: along_low * sa };
+        Self { lower, upper, top, center, arc: r, fan: [polar(lower), last] }
+    }
+
+    /// Whether the centre of the corner arc is beyond the axis: a barrel or a lens. The corner is then no ring of balls that the body
+    /// holds. It is what all these balls have in common: each of them holds all of the corner.
+    pub fn is_barrel(&self) -> bool {
+        self.arc > 0.0 && self.center.radius < 0.0
+    }
+
+    /// Where the tangents at both ends of the corner arc meet: the arc lies in the triangle of that place and its ends. The centre where
+    /// there is no arc.
+    pub fn beyond_corner(&self) -> ProfilePoint {
+        let [first, last] = self.fan;
+        let (sin, cos) = (0.5 * (first + last)).sin_cos();
+        let away = self.arc / (0.5 * (last - first)).cos();
+        ProfilePoint { radius: self.center.radius + away * sin, height: self.center.height - away * cos }
+    }
+
+    /// About how high contact with the corner is seen from on the axis: as the centre of its arc, or as the arc of a barrel, whose
+    /// centre may be anywhere.
+    pub fn corner_height(&self) -> f64 {
+        if self.is_barrel() { 0.5 * (self.lower.height + self.upper.height) } else { self.center.height }
+    }
+
+    /// The angle of the lower line from the plane across the axis, radians: greater than that of the cutter where its arc reaches the axis.
+    pub fn bottom_angle(&self) -> f64 {
+        self.lower.height.atan2(self.lower.radius)
     }
 
     /// Support function `max (s ρ + c z)` over the profile, for `s ≥ 0`, and the point that attains it.

@@ -6,9 +6,12 @@
 //! shows it. For any other the multipliers do, of the contact's foot and of the circle: with them the squared distance has a
 //! lower bound that is the least value of one quadratic function, on a straight piece between two heights.
 
-use apt_geometry::Vec3;
-use nalgebra::{Matrix2, Matrix3, Vector2};
+mod piece;
 
+use apt_geometry::Vec3;
+use nalgebra::{Matrix2, Vector2};
+
+use self::piece::Part;
 use super::{
     clearance::{Reading, Shape},
     quadric::{Lower, PrincipalQuadric},
@@ -78,7 +81,11 @@ pub(super) fn at(
         across: [quadric.turned_in(&first), quadric.turned_in(&tool.axis.cross(&first))],
     };
     let size = tool.profile.reach();
-    let corner = tool.profile.corner();
+    let (corner, bulge) = match tool.profile.corner() {
+        // Beyond the axis the centres of the corner are no places that the tool is about.
+        Some((center, radius)) if center[0] < 0.0 => (None, Part::arc(tool.profile, center, radius)),
+        corner => (corner, None),
+    };
     let edges = tool.profile.edges().map(|p| (p, 0.0));
     let [lower, upper, top] = tool.profile.edges();
     let convex = shape == Shape::Convex;
@@ -97,6 +104,12 @@ pub(super) fn at(
     let mut done: Option<Meridian> = None;
     // The nearest of those circles that are not shown to be the nearest at once, with its distance.
     let mut nearest: Option<(f64, Touch, f64)> = None;
+    if let Some(touch) = bulge.and_then(|bulge| place.touch_piece(bulge)) {
+        if let Some(reading) = proven(&touch, 0.0) {
+            return Some(reading);
+        }
+        nearest = Some((touch.distance, touch, 0.0));
+    }
     for (p, ball) in corner.into_iter().chain(tip).chain(edges) {
         if done == Some(p) {
             continue;
@@ -125,7 +138,7 @@ pub(super) fn at(
         let straight =
             nearest.filter(|_| convex).and_then(|near| place.touch_straight([a, b], &-near.0.normal));
         let shown = straight.and_then(|touch| proven(&touch, 0.0));
-        shown.or_else(|| proven(&place.touch_piece([a, b])?, 0.0))
+        shown.or_else(|| proven(&place.touch_piece(Part::Line([a, b]))?, 0.0))
     })
 }
 
@@ -187,67 +200,6 @@ impl Place<'_> {
         None
     }
 
-    /// The contact within the piece between two circles: azimuth, place on the straight line and multiplier.
-    fn touch_piece(&self, [a, b]: [Meridian; 2]) -> Option<Touch> {
-        let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
-        let middle = self.tip + self.axis * (a[1] + 0.5 * rise);
-        let facing = self.quadric.slope(&middle) * -self.side;
-        let mut phi = facing.dot(&self.across[1]).atan2(facing.dot(&self.across[0]));
-        let mut t = 0.5;
-        let mut lambda = None;
-        for _ in 0..STEPS {
-            let [out, round] = self.on_circle(phi);
-            let rho = a[0] + t * spread;
-            let p = self.tip + self.axis * (a[1] + t * rise) + out * rho;
-            let multiplier = match lambda {
-                Some(known) => known,
-                None => self.quadric.first_multiplier(&p)?,
-            };
-            let k = self.quadric.shrink(multiplier);
-            if k.min() <= 0.0 {
-                return None;
-            }
-            let foot = self.quadric.foot(&p, multiplier);
-            let g = self.quadric.slope(&foot);
-            let (around, along) = (round * rho, out * spread + self.axis * rise);
-            let curved = self.quadric.squares().component_mul(&k);
-            let bend = |v: &Vec3, w: &Vec3| curved.component_mul(v).dot(w);
-            let kg = k.component_mul(&g);
-            let twist = bend(&around, &along) + spread * g.dot(&round);
-            let matrix = Matrix3::new(
-                bend(&around, &around) - rho * g.dot(&out),
-                twist,
-                -bend(&g, &around),
-                twist,
-                bend(&along, &along),
-                -bend(&g, &along),
-                2.0 * kg.dot(&around),
-                2.0 * kg.dot(&along),
-                -2.0 * kg.dot(&g),
-            );
-            let wrong = Vec3::new(-g.dot(&around), -g.dot(&along), -self.quadric.value(&foot));
-            let step = matrix.try_inverse()? * wrong;
-            if !step.iter().all(|x| x.is_finite()) {
-                return None;
-            }
-            phi += step.x.clamp(-0.5, 0.5);
-            t += step.y.clamp(-0.5, 0.5);
-            lambda = Some(multiplier + step.z);
-            if !(-1.0..=2.0).contains(&t) {
-                return None;
-            }
-            if step.x.abs().max(step.y.abs()).max(step.z.abs() * curved.amax()) <= LAST_STEP {
-                if !(0.0..=1.0).contains(&t) {
-                    return None;
-                }
-                let meridian = [a[0] + t * spread, a[1] + t * rise];
-                let p = self.tip + self.axis * meridian[1] + self.on_circle(phi)[0] * meridian[0];
-                return self.finished(meridian, &p, multiplier + step.z, 0.0);
-            }
-        }
-        None
-    }
-
     fn finished(&self, meridian: Meridian, p: &Vec3, multiplier: f64, ball: f64) -> Option<Touch> {
         if self.quadric.shrink(multiplier).min() <= 0.0 {
             return None;
@@ -285,11 +237,14 @@ impl Place<'_> {
         let Some(sharp) = self.demand(least, touch) else { return false };
         let [lower, upper, top] = profile.edges();
         let corner = match profile.corner() {
-            // The balls of the corner hold the ends of its arc.
+            // The balls of the corner hold the ends of its arc; of a barrel each one holds all of it.
             Some((center, radius)) => {
                 let balls = (least + radius > 0.0).then(|| self.demand(least + radius, touch)).flatten();
-                balls.is_some_and(|demand| self.circle(&demand, center, touch) >= demand.least)
-                    || self.arcs(&sharp, touch)
+                let keeps = |demand: &Demand| match center[0] < 0.0 {
+                    true => demand.lower.at(&self.facing_place(demand, center, touch)) >= demand.least,
+                    false => self.circle(demand, center, touch) >= demand.least,
+                };
+                balls.as_ref().is_some_and(keeps) || self.arcs(&sharp, touch)
             }
             None => self.circle(&sharp, lower, touch) >= sharp.least,
         };
@@ -348,6 +303,12 @@ impl Place<'_> {
     fn facing(&self, touch: &Touch) -> Vector2<f64> {
         let n = Vector2::new(-touch.normal.dot(&self.across[0]), -touch.normal.dot(&self.across[1]));
         n.try_normalize(0.0).unwrap_or_else(Vector2::x)
+    }
+
+    /// The place of the meridian, or of its other half beyond the axis, at that azimuth.
+    fn facing_place(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> Vec3 {
+        let facing = self.facing(touch) * rho;
+        demand.tip + self.axis * height + self.across[0] * facing.x + self.across[1] * facing.y
     }
 
     /// The quadratic form across the axis.

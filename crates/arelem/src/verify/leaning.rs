@@ -19,7 +19,8 @@ const SHARE_OF_LEAN: f64 = 0.5;
 /// How much wider than the reach of a part, relative to it, the piece of the tool is that is looked at, for rounding.
 const WIDER: f64 = 1e-9;
 
-/// A circle of the tool about its axis, or a ring whose section is a circle about such a place of the meridian.
+/// A circle of the tool about its axis, or a ring whose section is a circle about such a place of the meridian; if that is beyond the axis,
+/// as for a barrel, the one ball about it at the azimuth of the contact, which holds all of the corner.
 #[derive(Debug, Clone, Copy)]
 struct Knot {
     at: Meridian,
@@ -197,15 +198,21 @@ mod tests {
     use proptest::prelude::*;
 
     use super::{super::patch::jet, *};
-    use crate::verify::{tests::cutter, tool::Profile};
+    use crate::verify::{
+        tests::{BARRELS, cutter},
+        tool::Profile,
+    };
 
-    const TOOLS: [&[f64]; 6] = [
+    const TOOLS: [&[f64]; 9] = [
         &[0.5, 0.25],
         &[0.5, 0.0],
         &[0.5, 0.1],
         &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0],
         &[0.5, 0.0, 0.25, 0.0, 20.0, 0.0, 3.0],
         &[0.5, 0.0, 0.25, 0.0, 0.0, 10.0, 2.0],
+        &BARRELS[0],
+        &BARRELS[1],
+        &BARRELS[3],
     ];
 
     /// A patch about the origin with bends along x and y, and its place, its derivatives and its normal there.

@@ -326,12 +326,21 @@ impl Family<'_> {
         let least = leans[0].abs().min(leans[1].abs()) - 0.125 * swing * width * width;
         let least = if leans[0] * leans[1] > 0.0 { least.max(0.0) } else { 0.0 };
         let widest = (1.0 - least * least).max(0.0).sqrt();
-        let along = pencil.axis.dot(&tool.axis);
         let edges = tool.profile.edges().map(|edge| (edge, 0.0));
         let circles = edges.into_iter().chain([([0.0; 2], 0.0)]).chain(tool.profile.corner());
+        // One ball of a barrel's corner holds all of it: one at the azimuth to which the planes lead.
+        let facing = normals[0] + normals[1];
+        let facing = (facing - tool.axis * tool.axis.dot(&facing)).try_normalize(0.0);
         let bound = |([radius, height], ball): ([f64; 2], f64)| {
-            let middles = normals.map(|n| n.dot(w) + height * n.dot(&tool.axis));
-            arc_bound(middles[0], middles[1], width, self.ahead(along * height)) + radius * widest + ball
+            let (aside, radius) = match facing {
+                Some(facing) if radius < 0.0 => (facing * radius, 0.0),
+                _ => (Vec3::zeros(), radius.abs()),
+            };
+            let middle = aside + tool.axis * height;
+            let middles = normals.map(|n| n.dot(&(w + middle)));
+            arc_bound(middles[0], middles[1], width, self.ahead(pencil.axis.dot(&middle)))
+                + radius * widest
+                + ball
         };
         circles.map(bound).fold(f64::NEG_INFINITY, f64::max)
     }

@@ -5,8 +5,11 @@
 //! plane at the contact proves the minimum at once (distance is a convex function); inside a convex hollow distance is
 //! concave, so only edges matter and the corners of a circumscribed polygon bound what lies between samples.
 
+mod bulge;
+
 use apt_geometry::Vec3;
 
+use self::bulge::Bulge;
 use super::{
     circle_contact,
     clearance::{Reading, Shape},
@@ -165,11 +168,16 @@ impl Search<'_> {
 
     fn run(&mut self) -> Option<()> {
         self.gap = 0.0;
-        if let Some((center, radius)) = self.tool.profile.corner() {
+        let bulge = Bulge::of(self.tool.profile);
+        let corner = self.tool.profile.corner().filter(|_| bulge.is_none());
+        if let Some((center, radius)) = corner {
             self.circle(center, radius)?;
-            if self.proven() {
-                return Some(());
-            }
+        }
+        if let Some(bulge) = &bulge {
+            self.bulge(bulge)?;
+        }
+        if self.proven() {
+            return Some(());
         }
         let mut done: Vec<Meridian> = Vec::with_capacity(4);
         for edge in std::iter::once([0.0; 2]).chain(self.tool.profile.edges()) {
@@ -183,8 +191,11 @@ impl Search<'_> {
             }
         }
         if self.shape == Shape::Concave {
-            if let Some((center, radius)) = self.tool.profile.corner() {
+            if let Some((center, radius)) = corner {
                 self.prove_circle(center, radius)?;
+            }
+            if let Some(bulge) = &bulge {
+                self.prove_bulge(bulge)?;
             }
             for edge in done {
                 self.prove_circle(edge, 0.0)?;
@@ -307,12 +318,22 @@ impl Search<'_> {
         Some(())
     }
 
-    /// Inside a convex hollow: the arc between two samples lies in the triangle with the meeting point of its tangents, and
-    /// a concave function is least at a corner of it.
+    /// Takes into account how much nearer than the best candidate a circle could be for all that is known inside a convex hollow.
     fn prove_circle(&mut self, p: Meridian, radius: f64) -> Option<()> {
+        let lowest = self.lowest_on_circle(p, radius)?;
+        self.gap = self.gap.max(self.best_value() - lowest);
+        Some(())
+    }
+
+    /// Inside a convex hollow no place of a circle is nearer than the best candidate or than this: the arc between two samples lies
+    /// in the triangle with the meeting point of its tangents, and a concave function is least at a corner of it.
+    fn lowest_on_circle(&mut self, p: Meridian, radius: f64) -> Option<f64> {
         let (at_axis, _) = self.distance(&self.place([0.0, p[1]], 0.0))?;
-        if p[0] <= 0.0 || at_axis - p[0] - radius >= self.best_value() {
-            return Some(());
+        if p[0] <= 0.0 {
+            return Some(at_axis - radius);
+        }
+        if at_axis - p[0] - radius >= self.best_value() {
+            return Some(f64::INFINITY);
         }
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
         let slack = 1e-12 * self.tool.profile.reach();
@@ -345,8 +366,7 @@ impl Search<'_> {
             arcs.push((phi, first, half, middle));
             arcs.push((phi + half, middle, half, last));
         }
-        self.gap = self.gap.max(self.best_value() - lowest);
-        Some(())
+        Some(lowest)
     }
 
     /// Whether a ball contact with about this normal could be on the corner arc.

@@ -36,7 +36,12 @@ impl Profile {
     /// Greatest curvature of the body between its edges; none where it has no bound.
     fn roundness(&self) -> Option<f64> {
         let [(_, lower), (upper, top)] = self.lines();
-        let corner = self.corner().map_or(0.0, |(_, radius)| 1.0 / radius);
+        // Round the axis the corner bends by the sine of its normal over the distance from the axis: where its centre is beyond that more
+        // than along the meridian, and most where it is narrowest.
+        let corner = self.corner().map_or(0.0, |(center, radius)| {
+            let round = if center[0] < 0.0 { (lower[0] - center[0]) / (radius * lower[0]) } else { 0.0 };
+            round.max(1.0 / radius)
+        });
         let flank = 1.0 / upper[0].min(top[0]);
         let found = corner.max(flank);
         // A slanted bottom ends in a tip.

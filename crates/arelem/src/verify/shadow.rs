@@ -176,10 +176,7 @@ impl<'a> Shadow<'a> {
             if gap <= tolerance {
                 let height = self.tip.dot(&normal) + value;
                 let level = Level { normal, height, support: center + normal * ball };
-                let value = level.above(x);
-                // Inside, the point may be nearer to what cuts the ball.
-                let is_held = ball <= 0.0 || value >= 0.0 || self.tool.profile.holds_corner();
-                return is_held.then_some(Distance { value, gap: gap.max(0.0), level });
+                return Some(Distance { value: level.above(x), gap: gap.max(0.0), level });
             }
             let turn = across.dot(&away) / (ahead + swing - ball);
             // Where the height of the point is no concave function of the direction: straight away from the ball.
@@ -239,6 +236,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::{super::tool::Profile, *};
+    use crate::verify::tests::BARRELS;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(512))]
@@ -263,7 +261,8 @@ mod tests {
                 beta,
                 height,
             };
-            let Ok(profile) = Profile::of(&cutter) else { return Ok(()) };
+            let barrel = (share < 0.2).then(|| crate::verify::tests::cutter(&BARRELS[(share * 25.0) as usize]));
+            let Ok(profile) = Profile::of(&barrel.unwrap_or(cutter)) else { return Ok(()) };
             let tool = Tool::new(&profile, Vec3::new(lean[0], lean[1], 1.0).normalize());
             // Upright on what it is seen on it is a disc.
             let turned = tool.axis.cross(&Vec3::x()).normalize();

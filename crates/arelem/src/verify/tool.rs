@@ -16,6 +16,8 @@ const TANGENCY_SLACK: f64 = 1e-5;
 /// the axis, and where it leaves something of the axis in it.
 const ON_AXIS: f64 = 1e-14;
 const NEAR_AXIS: f64 = 1e-3;
+/// Share of the cutter's size that is rounding of where its lines are.
+const ROUNDING: f64 = 1e-14;
 
 /// A point of the meridian half-plane: distance from the axis, height above the tool end.
 pub(super) type Meridian = [f64; 2];
@@ -63,9 +65,11 @@ impl Profile {
     pub(super) fn of(cutter: &Cutter) -> Result<Self, VerifyError> {
         let Cutter { diameter, corner_radius: r, corner_offset: e, corner_height: f, alpha, beta, height } =
             *cutter;
-        let numbers = [diameter, r, e, f, alpha, beta, height];
+        // The centre of the corner may be beyond the axis, and then it is as high as one likes.
+        let (sizes, middle) = ([diameter, r, alpha, beta, height], [e, f]);
         let half = std::f64::consts::FRAC_PI_2;
-        if !numbers.iter().all(|x| x.is_finite() && *x >= 0.0) || alpha + beta >= half {
+        let are_finite = sizes.iter().chain(&middle).all(|x| x.is_finite());
+        if !are_finite || sizes.iter().any(|x| *x < 0.0) || alpha + beta >= half {
             return Err(VerifyError::Cutter);
         }
         let slack = TANGENCY_SLACK * diameter.max(height).max(r);
@@ -84,11 +88,30 @@ impl Profile {
         if lower_half < -2.0 * r * slack || upper_half < -2.0 * r * slack {
             return Err(VerifyError::Cutter);
         }
-        let s = (dot(center, along_lower) + lower_half.max(0.0).sqrt()).max(0.0);
+        let s = dot(center, along_lower) + lower_half.max(0.0).sqrt();
         let t = dot(from_knee, along_upper) - upper_half.max(0.0).sqrt();
-        let lower = [s * along_lower[0], s * along_lower[1]];
         let upper = [knee[0] + t * along_upper[0], knee[1] + t * along_upper[1]];
+        let lower = match Self::touched_from_tip(center, r).filter(|_| s < 0.0 && e < 0.0) {
+            Some(touched) if cross(sub(touched, center), sub(upper, center)) > 0.0 => touched,
+            // The tip sees none of the arc before its end.
+            Some(_) => return Ok(Self { lower: upper, upper, top, center: upper, radius: 0.0 }),
+            None => [s.max(0.0) * along_lower[0], s.max(0.0) * along_lower[1]],
+        };
+        let is_in_order = cross(sub(lower, center), sub(upper, center)) >= -r * slack;
+        let is_between = s <= knee[0] / alpha.cos() + slack && t >= -slack;
+        if !(is_in_order && is_between && f >= knee[1] - slack && upper[1] <= top[1] + slack) {
+            return Err(VerifyError::Cutter);
+        }
         Ok(Self { lower, upper, top, center, radius: r })
+    }
+
+    /// Where the straight line from the tip touches a corner circle that passes over it: an arc that reaches the axis above the tip has
+    /// that line below it in the least convex body that has both. None where the tip is not outside of the circle.
+    fn touched_from_tip(center: Meridian, radius: f64) -> Option<Meridian> {
+        let away = dot(center, center);
+        let length = (away - radius * radius).sqrt();
+        let [e, f] = center;
+        (length > 0.0).then(|| [length * e + radius * f, length * f - radius * e].map(|x| x * length / away))
     }
 
     /// The tool end alone, for ON relations.
@@ -159,7 +182,9 @@ impl Profile {
         (self.top[1] > 0.0 && self.top[0] > 0.0).then_some(self.top[0])
     }
 
-    /// Centre and radius of the corner arc, if there is one.
+    /// Centre and radius of the corner arc, if there is one. In front of the axis the body holds the balls about the ring of such centres, or
+    /// as much of them as its lines leave, and they hold the arc all round. Beyond the axis, of a barrel, the arc all round is what
+    /// those balls have in common: each single one holds all of it.
     pub(super) fn corner(&self) -> Option<(Meridian, f64)> {
         (self.radius > 0.0).then_some((self.center, self.radius))
     }
@@ -174,30 +199,44 @@ impl Profile {
 
     /// Support: greatest `direction·p` over the meridian for a direction with ρ-part ≥ 0, and the point that has it.
     pub(super) fn support(&self, direction: Meridian) -> (f64, Meridian) {
-        let (value, center, ball) = self.support_ball(direction);
-        if ball <= 0.0 {
-            return (value, center);
-        }
-        let k = ball / dot(direction, direction).sqrt();
-        (value, [center[0] + k * direction[0], center[1] + k * direction[1]])
+        let (value, place, _) = self.support_on(direction);
+        (value, place)
     }
 
-    /// The same with the centre and the radius of the circle that the point is on: of the corner arc, or of none for a vertex.
-    fn support_ball(&self, direction: Meridian) -> (f64, Meridian, f64) {
-        let mut best = (0.0, [0.0; 2], 0.0);
+    /// The same with whether the place is on the corner arc.
+    fn support_on(&self, direction: Meridian) -> (f64, Meridian, bool) {
+        let mut best = (0.0, [0.0; 2], false);
         for vertex in self.edges() {
             let value = dot(direction, vertex);
             if value > best.0 {
-                best = (value, vertex, 0.0);
+                best = (value, vertex, false);
             }
         }
         if self.fan_holds(direction) {
-            let value = dot(direction, self.center) + self.radius * dot(direction, direction).sqrt();
+            let size = dot(direction, direction).sqrt();
+            let value = dot(direction, self.center) + self.radius * size;
             if value > best.0 {
-                best = (value, self.center, self.radius);
+                let k = self.radius / size;
+                let place = [self.center[0] + k * direction[0], self.center[1] + k * direction[1]];
+                best = (value, place, true);
             }
         }
         best
+    }
+
+    /// Radius of a ball that the body holds and that touches it at a place of the corner arc with this unit normal: no greater than that of
+    /// the arc, nor, as the body bends round its axis, than what is between the place and the axis along the normal, and no farther
+    /// out than the straight parts allow.
+    fn ball_within(&self, place: Meridian, normal: Meridian) -> f64 {
+        let round = if self.center[0] < 0.0 { place[0] / normal[0] } else { self.radius };
+        let [lower, upper] = self.lines().map(|(a, b)| (a, [b[1] - a[1], a[0] - b[0]]));
+        [lower, upper, (self.top, [0.0, 1.0])].into_iter().fold(round, |ball, (at, face)| {
+            let size = dot(face, face).sqrt();
+            let room = dot(face, sub(at, place)) / size + ROUNDING * (self.radius + self.top[1]);
+            // From the place inward by the ball, and from there outward by it.
+            let reach = 1.0 - dot(face, normal) / size;
+            if size > 0.0 && reach * ball > room { (room / reach).max(0.0) } else { ball }
+        })
     }
 
     /// Signed distance of a point of the half-plane (ρ ≥ 0) to the body, negative inside, and the nearest boundary point.
@@ -247,12 +286,6 @@ impl Profile {
         let [lower, upper] = self.lines().map(|(a, b)| Some([b[1] - a[1], a[0] - b[0]]));
         let from = sub(p, self.center);
         [lower, upper, self.fan_holds(from).then_some(from)]
-    }
-
-    /// Whether the body holds the whole ball of the corner: lines that cut its circle leave some of it outside.
-    pub(super) fn holds_corner(&self) -> bool {
-        let slack = TANGENCY_SLACK * self.radius;
-        self.signed_distance(self.center).0 <= slack - self.radius
     }
 
     /// Greatest distance from a point at azimuth 0 (ρ ≥ 0) to a point of the body, and that body point with ρ counted
@@ -380,10 +413,18 @@ impl<'a> Tool<'a> {
     /// Where the body goes farthest in a unit direction `n`, and how that changes as it turns along a unit vector across.
     pub(super) fn turning_support(&self, n: &Vec3, along: &Vec3) -> TurningSupport {
         let (direction, out) = self.split(n);
-        let (value, [rho, height], ball) = self.profile.support_ball(direction);
+        let (value, place, is_round) = self.profile.support_on(direction);
         let round = self.axis.cross(&out).dot(along);
-        let swing = if rho > 0.0 { rho * round * round / direction[0] } else { 0.0 };
-        TurningSupport { value, center: out * rho + self.axis * height, ball, swing: swing + ball }
+        // The place that is touched goes round the axis with the radius of its circle, on the corner with that of the ring of centres, beyond
+        // the axis the other way, and on the arc besides.
+        let (rho, arc, ball) = if is_round {
+            (self.profile.center[0], self.profile.radius, self.profile.ball_within(place, direction))
+        } else {
+            (place[0], 0.0, 0.0)
+        };
+        let swing = if rho != 0.0 && direction[0] > 0.0 { rho * round * round / direction[0] } else { 0.0 };
+        let center = out * place[0] + self.axis * place[1] - n * ball;
+        TurningSupport { value, center, ball, swing: swing + arc }
     }
 
     /// Signed distance of a point to the body (negative inside) and the nearest boundary point.
@@ -429,7 +470,10 @@ impl<'a> Tool<'a> {
         let straight = self.profile.closed_lines().map(|(a, b)| [b[1] - a[1], a[0] - b[0]]);
         let round = self.knots().map(|q| sub(p, q));
         let ends = [[0.0, 1.0], [0.0, -1.0]];
-        self.directions(straight.into_iter().chain(round).chain(ends), out)
+        // The corner of a barrel faces a place from behind the axis, too: its centre there is on this side.
+        let [e, f] = self.profile.center;
+        let behind = (e < 0.0).then_some([p[0] + e, p[1] - f]);
+        self.directions(straight.into_iter().chain(round).chain(ends).chain(behind), out)
     }
 
     /// The outward normals of the body's faces before and behind a point (from the tool end), seen from the axis, and of its top: those

@@ -187,10 +187,22 @@ pub(super) fn is_within_of_line(tool: &Tool<'_>, center: &Vec3, along: &Vec3, li
     };
     let [lower, upper, top] = tool.profile.edges();
     let both_ends = || is_within(lower, limit) && is_within(upper, limit);
+    // One ball of a barrel's corner holds all of it: the one whose centre is nearest to the line.
+    let is_within_ball = |[rho, height]: Meridian, limit: f64| {
+        let middle = across(tool.axis * height - center);
+        let towards = -(middle - tool.axis * tool.axis.dot(&middle));
+        let aside = towards.try_normalize(0.0).unwrap_or(first) * rho.abs();
+        limit >= 0.0 && (middle + across(aside)).norm() <= limit
+    };
     let corner = || match tool.profile.corner() {
         // The balls of the corner hold its arc, and so do its ends with where its tangents there meet.
         Some((center, radius)) => {
-            is_within(center, limit - radius)
+            let limit_of_centers = limit - radius;
+            let balls = match center[0] < 0.0 {
+                true => is_within_ball(center, limit_of_centers),
+                false => is_within(center, limit_of_centers),
+            };
+            balls
                 || both_ends() && meeting([lower, upper], center, radius).is_some_and(|p| is_within(p, limit))
         }
         None => both_ends(),
@@ -232,7 +244,7 @@ mod tests {
 
     use super::{super::patch::jet, *};
     use crate::verify::{
-        tests::{clearances::samples, cutter},
+        tests::{BARRELS, clearances::samples, cutter},
         tool::Profile,
     };
 
@@ -297,7 +309,7 @@ mod tests {
 
         #[test]
         fn no_place_of_a_tool_is_farther_from_a_line_than_it_is_within_and_one_is_as_far(
-            tool in 0usize..4, center in prop::array::uniform3(-6.0..6.0f64), along in prop::array::uniform3(-1.0..1.0f64),
+            tool in 0usize..6, center in prop::array::uniform3(-6.0..6.0f64), along in prop::array::uniform3(-1.0..1.0f64),
             lean in prop::array::uniform2(-0.5..0.5f64), share in 0.0..1.0f64,
         ) {
             prop_assume!(Vec3::from(along).norm() > 0.1);
@@ -318,8 +330,14 @@ mod tests {
         lean: [f64; 2],
     ) -> (f64, impl Fn(f64) -> bool) {
         let (center, along) = (Vec3::from(center), Vec3::from(along).normalize());
-        let tools: [&[f64]; 4] =
-            [&[0.5, 0.25], &[0.5, 0.0], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+        let tools: [&[f64]; 6] = [
+            &[0.5, 0.25],
+            &[0.5, 0.0],
+            &[0.5, 0.1],
+            &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0],
+            &BARRELS[0],
+            &BARRELS[1],
+        ];
         let cutter = cutter(tools[tool]);
         let profile = Profile::of(&cutter).unwrap();
         let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();

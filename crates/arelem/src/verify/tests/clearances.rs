@@ -10,7 +10,7 @@ use super::{
         quadric::PrincipalQuadric,
         tool::Profile,
     },
-    cone, cutter, cylinder, plane, quadric, sphere,
+    BARRELS, cone, cutter, cylinder, plane, quadric, sphere,
 };
 
 pub(super) fn clearance(
@@ -95,8 +95,10 @@ pub(crate) fn samples(tool: &Cutter, tip: Vec3, axis: Vec3) -> Vec<Vec3> {
         }
     }
     if let Some((c, r)) = profile.corner() {
-        for k in 0..=720 {
-            let (s, co) = (f64::from(k) / 720.0 * std::f64::consts::TAU).sin_cos();
+        // Large arcs are narrow.
+        let count = if r > 4.0 { 7200 } else { 720 };
+        for k in 0..=count {
+            let (s, co) = (f64::from(k) / f64::from(count) * std::f64::consts::TAU).sin_cos();
             if profile.fan_holds([co, s]) && co >= 0.0 {
                 meridian.push([c[0] + r * co, c[1] + r * s]);
             }
@@ -121,6 +123,7 @@ pub(super) fn tools() -> impl Strategy<Value = Cutter> {
         Just(cutter(&[1.0, 0.125])),
         Just(cutter(&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0])),
         Just(cutter(&[0.8, 0.0, 0.4, 0.0, 20.0, 8.0, 3.0])),
+        proptest::sample::select(BARRELS.to_vec()).prop_map(|numbers| cutter(&numbers)),
     ]
 }
 

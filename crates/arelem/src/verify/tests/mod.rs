@@ -1,5 +1,6 @@
 //! Tests of the verifier against closed forms, dense sampling and deliberately broken sequences.
 
+mod barrels;
 mod branches;
 pub(crate) mod clearances;
 mod depths;
@@ -63,6 +64,16 @@ pub(super) fn cutter(numbers: &[f64]) -> Cutter {
         _ => panic!("two or seven numbers"),
     }
 }
+
+/// Cutters whose corner has its centre beyond the axis: a barrel that joins its flank smoothly, one with edges at both ends of its arc and
+/// slanted lines, a lens, one whose arc reaches the axis above the tip (APT III 415), and a drill point with a bulge.
+pub(crate) const BARRELS: [[f64; 7]; 5] = [
+    [1.0, 3.0, -2.5, 1.5, 0.0, 0.0, 3.0],
+    [1.0, 1.82, -1.2, 0.9, 10.0, 5.0, 2.5],
+    [2.0, 20.0, -0.5, 19.98, 0.0, 0.0, 1.5],
+    [1.0, 3.0, -2.5, 2.9, 0.0, 0.0, 4.0],
+    [1.0, 2.2, -1.5, 1.6, 30.0, 0.0, 2.5],
+];
 
 pub(super) fn plane(normal: [f64; 3], distance: f64) -> Geometry {
     let normal = Vec3::from(normal);
