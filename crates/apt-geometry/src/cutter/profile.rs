@@ -337,6 +337,26 @@ mod tests {
         }
     }
 
+    /// A corner with its centre beyond the axis, and one whose arc reaches the axis above the tip.
+    const BARREL: [f64; 7] = [1.0, 3.0, -2.5, 1.5, 0.0, 0.0, 3.0];
+    const TO_THE_AXIS: [f64; 7] = [1.0, 3.0, -2.5, 2.9, 0.0, 0.0, 4.0];
+
+    #[test]
+    fn an_arc_that_reaches_the_axis_is_touched_from_the_tip() {
+        let profile = cutter(&TO_THE_AXIS).profile();
+        // Square to the radius there, and on the circle.
+        let ProfilePoint { radius, height } = profile.lower;
+        near(radius * (radius + 2.5) + height * (height - 2.9), 0.0);
+        near((radius + 2.5).hypot(height - 2.9), 3.0);
+        assert!(profile.is_barrel() && (profile.bottom_angle() - profile.fan[0]).abs() < 1e-12);
+        // Where the flank begins before that the tip sees none of the arc.
+        let hidden = cutter(&[1.0, 3.0, -2.4, 5.0, 0.0, 0.0, 6.0]).profile();
+        assert!(
+            hidden.arc == 0.0 && hidden.lower == hidden.upper && hidden.lower.radius == 0.5,
+            "{hidden:?}"
+        );
+    }
+
     fn dense(profile: &Profile) -> Vec<ProfilePoint> {
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         let mut points = vec![tip, profile.lower, profile.upper, profile.top];
@@ -361,9 +381,15 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn support_bounds_the_dense_profile(polar in 0.0..std::f64::consts::PI, which in 0usize..4) {
-            let shapes: [&[f64]; 4] =
-                [&[1.0], &[1.0, 0.125], &[1.0, 0.5], &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]];
+        fn support_bounds_the_dense_profile(polar in 0.0..std::f64::consts::PI, which in 0usize..6) {
+            let shapes: [&[f64]; 6] = [
+                &[1.0],
+                &[1.0, 0.125],
+                &[1.0, 0.5],
+                &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0],
+                &BARREL,
+                &TO_THE_AXIS,
+            ];
             let profile = cutter(shapes[which]).profile();
             let (s, c) = (polar.sin(), -polar.cos());
             let (value, point) = profile.support(s, c);
@@ -373,9 +399,14 @@ mod tests {
         }
 
         #[test]
-        fn distances_match_the_dense_profile(radius in 0.0..3.0, height in -1.5..1.9, which in 0usize..3) {
-            let shapes: [&[f64]; 3] =
-                [&[1.0, 0.125, 0.375, 0.125, 0.0, 0.0, 2.0], &[1.0, 0.5], &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0]];
+        fn distances_match_the_dense_profile(radius in 0.0..3.0, height in -1.5..1.9, which in 0usize..5) {
+            let shapes: [&[f64]; 5] = [
+                &[1.0, 0.125, 0.375, 0.125, 0.0, 0.0, 2.0],
+                &[1.0, 0.5],
+                &[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0],
+                &BARREL,
+                &TO_THE_AXIS,
+            ];
             let profile = cutter(shapes[which]).profile();
             let (value, _) = profile.distance(radius, height);
             let points = dense(&profile);

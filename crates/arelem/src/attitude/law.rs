@@ -2,6 +2,7 @@
 
 use apt_geometry::{
     Vec3,
+    cutter::ProfilePoint,
     motion::{AxisAngle, AxisTangency, ToolAxis},
     surface::{Surface, perpendicular},
 };
@@ -474,9 +475,36 @@ fn in_plane(normal: &Vec3, vector: &Vec3) -> Result<Vec3, AxisFailure> {
     (normal - vector * normal.dot(vector)).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::NoPlane)
 }
 
+/// A circle of the tool about its axis, and how far beyond it along the normal contact is.
+struct Touched {
+    circle: ProfilePoint,
+    arc: f64,
+}
+
+/// Where a surface with a normal touches a tool: about the centre of its corner, where contact lies on the same normal. That of a barrel is
+/// beyond the axis, perhaps farther than the surface has one nearest place: there it is the place itself of its arc, or the end of
+/// that, or the tip.
+fn touched(tool: &Tool, axis: &Vec3, normal: &Vec3) -> Touched {
+    let profile = &tool.profile;
+    if !profile.is_barrel() {
+        return Touched { circle: profile.center, arc: 0.0 };
+    }
+    let along = normal.dot(axis);
+    let polar = (normal - axis * along).norm().atan2(along);
+    let [first, last] = profile.fan;
+    let is_arc = polar >= first && polar <= last;
+    let circle = match polar {
+        _ if is_arc => profile.center,
+        polar if polar > last => profile.upper,
+        polar if polar >= profile.bottom_angle() => profile.lower,
+        _ => ProfilePoint { radius: 0.0, height: 0.0 },
+    };
+    Touched { circle, arc: if is_arc { profile.arc } else { 0.0 } }
+}
+
 /// The point of the corner circle that faces a surface with this normal: contact lies on the same normal.
 fn corner(tool: &Tool, tip: &Vec3, axis: &Vec3, normal: &Vec3) -> Vec3 {
-    let center = tool.profile.center;
+    let Touched { circle, arc } = touched(tool, axis, normal);
     let radial = (normal - axis * normal.dot(axis)).try_normalize(SAME_DIRECTION).unwrap_or_else(Vec3::zeros);
-    tip + axis * center.height - radial * center.radius.max(0.0)
+    tip + axis * circle.height - radial * circle.radius - normal * arc
 }

@@ -262,7 +262,7 @@ fn corner(tool: &Tool) -> Option<Circle> {
     let inside = center.height + ball <= profile.top.height * (1.0 + ROUNDING);
     let within = profile.lower.radius - center.radius;
     let holds = within.hypot(profile.upper.height - center.height) <= ball * (1.0 + ROUNDING);
-    (ball > 0.0 && touches && inside && holds).then_some(Circle {
+    (ball > 0.0 && !profile.is_barrel() && touches && inside && holds).then_some(Circle {
         radius: center.radius,
         height: center.height,
         ball,

@@ -114,7 +114,7 @@ pub(super) fn about_vertex(tool: &Tool, cone: &ConeForm, tip: &Vec3, side: Conta
     if best.clearance < 0.0 {
         // The tool cuts the vertex off: the way out through each face counts, not only the shortest.
         let toward = tool.split(&(cone.vertex - tip)).2;
-        let (sa, ca) = tool.cutter.alpha.sin_cos();
+        let (sa, ca) = tool.profile.bottom_angle().max(tool.cutter.alpha).sin_cos();
         let (sb, cb) = tool.cutter.beta.sin_cos();
         let corner = tip + tool.axis * tool.profile.center.height + toward * tool.profile.center.radius;
         let through_corner = (corner - cone.vertex).try_normalize(0.0).unwrap_or(tool.axis);

@@ -110,7 +110,8 @@ pub(super) struct Bases {
 impl Bases {
     /// About a point of the tool.
     pub(super) fn about(tool: &Tool, tip: &Vec3, (surface, side): (&Surface, f64), point: &Vec3) -> Self {
-        let core = (tool.profile.arc > 0.0).then(|| {
+        let has_balls = tool.profile.arc > 0.0 && !tool.profile.is_barrel();
+        let core = has_balls.then(|| {
             let radial = tool.split(&(point - tip)).2;
             let center = &tool.profile.center;
             Base::at(surface, side, tip + tool.axis * center.height + radial * center.radius)

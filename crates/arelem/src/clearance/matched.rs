@@ -22,11 +22,16 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3) -> 
     let convex =
         matches!((surface.convexity(), side > 0.0), (Convexity::Convex, true) | (Convexity::Hollow, false));
     let profile = &tool.profile;
-    if !convex || profile.center.radius < 0.0 {
+    // A barrel holds no ball of its corner.
+    if !convex || profile.is_barrel() {
         return None;
     }
     let sharp = profile.arc <= 0.0;
-    let fan = if sharp { [tool.cutter.alpha, FRAC_PI_2 - tool.cutter.beta] } else { profile.fan };
+    let fan = if sharp {
+        [profile.bottom_angle().max(tool.cutter.alpha), FRAC_PI_2 - tool.cutter.beta]
+    } else {
+        profile.fan
+    };
     let middle = tip + tool.axis * profile.center.height;
     let (point, foot, radial) = if profile.center.radius == 0.0 {
         (middle, surface.foot(&middle), None)

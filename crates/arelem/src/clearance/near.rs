@@ -594,11 +594,11 @@ impl Pose<'_> {
 
     /// Where contact may be, seen from the corner of the tool.
     fn first(&self) -> Option<Near> {
-        let middle = self.tip + self.tool.axis * self.tool.profile.center.height;
+        let middle = self.tip + self.tool.axis * self.tool.profile.corner_height();
         let foot = self.surface.foot(&middle);
         let gradient = foot.normal * self.side;
-        let (piece, place) = (Some(self.circle_towards(&gradient)?), self.surface.place(&middle)?);
-        let start = Start { piece, direction: self.facing(&gradient), rise: 0.0, place };
+        let ((piece, rise), place) = (self.piece_towards(&gradient)?, self.surface.place(&middle)?);
+        let start = Start { piece: Some(piece), direction: self.facing(&gradient), rise, place };
         Some(Near::new(self, start, foot.point))
     }
 }

@@ -116,7 +116,11 @@ pub(super) fn boundary(tool: &Tool) -> Vec<Patch> {
     line(ProfilePoint { radius: 0.0, height: 0.0 }, lower);
     if round {
         let center = [profile.center.radius, profile.center.height];
-        patches.push(whole(Stretch::Ball { center, arc: profile.arc, fan: profile.fan }));
+        let (arc, fan) = (profile.arc, profile.fan);
+        patches.push(whole(match profile.is_barrel() {
+            true => Stretch::Arc { center, arc, polar: fan },
+            false => Stretch::Ball { center, arc, fan },
+        }));
     }
     patches
 }

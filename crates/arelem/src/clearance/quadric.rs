@@ -132,7 +132,7 @@ pub(super) fn contact_anywhere(
     memory: Option<&Memory>,
 ) -> Option<(Contact, f64)> {
     let scene = Scene::new(tool, surface, side, tip)?;
-    let foot = surface.foot(&(tip + tool.axis * tool.profile.center.height));
+    let foot = surface.foot(&(tip + tool.axis * tool.profile.corner_height()));
     let radial = tool.split(&(foot.normal * -side)).2;
     let direction = [radial.dot(&tool.across[0]), radial.dot(&tool.across[1])];
     let start = Start { direction, multiplier: None };
@@ -407,8 +407,11 @@ impl<'a> Posed<'a> {
             let balls = (level + profile.arc > 0.0)
                 .then(|| self.bound(level + profile.arc, steepness, &towards))
                 .flatten();
-            balls.is_some_and(|bound| self.floor(&bound, &profile.center, &towards) >= bound.target)
-                || self.arcs(&sharp, ends, &towards)
+            let keeps = |bound: &Bound| match profile.is_barrel() {
+                true => self.floor_at_ball(bound, &towards) >= bound.target,
+                false => self.floor(bound, &profile.center, &towards) >= bound.target,
+            };
+            balls.as_ref().is_some_and(keeps) || self.arcs(&sharp, ends, &towards)
         } else {
             ends[0].1 >= sharp.target
         };
@@ -491,6 +494,17 @@ impl<'a> Posed<'a> {
             }
             _ => here,
         }
+    }
+
+    /// The value of a function at the centre of the ball of a barrel's corner that is at the azimuth of the contact, the least of both ends of
+    /// the way: that one ball holds all of the corner.
+    fn floor_at_ball(&self, bound: &Bound, towards: &Vec3) -> f64 {
+        let ProfilePoint { radius, height } = self.tool.profile.center;
+        let facing = -(towards - self.axis * self.axis.dot(towards));
+        let facing = facing.try_normalize(0.0).unwrap_or(self.across[0]);
+        let center = bound.tip + self.axis * height + facing * radius;
+        let here = bound.function.at(&center);
+        self.way.map_or(here, |way| here.min(bound.function.at(&(center + way))))
     }
 
     fn floor_at(&self, tip: &Vec3, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {

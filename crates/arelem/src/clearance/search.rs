@@ -4,6 +4,7 @@
 
 mod along_axis;
 mod on_edge;
+mod patches;
 
 pub(super) use self::along_axis::Courses;
 
@@ -22,7 +23,7 @@ use super::{
     open_top::is_entered,
     quadric::Posed,
     shape,
-    tool::Piece,
+    tool::{Curve, Piece, Spot},
 };
 
 /// Scan points on a circle.
@@ -181,6 +182,7 @@ impl Search<'_> {
                 Piece::Ring { radius, height, ball, fan } => self.ring(radius, height, ball, fan),
                 Piece::Disc { radius } => self.disc(radius),
                 Piece::Frustum { radius, height } => self.frustum(radius, height),
+                Piece::Bulge { center, arc, fan } => self.bulge(&Curve::Arc { center, arc, fan }),
             }
         }
     }
@@ -323,10 +325,11 @@ impl Search<'_> {
                     let start = Vector2::new(point.dot(&tool.across[0]), point.dot(&tool.across[1]));
                     self.inside_disc(radius, start * (radius / across.max(radius)));
                 }
-                Piece::Frustum { radius, height } => {
-                    let rise = height[1] - height[0];
-                    let t = if rise > 0.0 { (along - height[0]) / rise } else { 0.0 };
-                    self.inside_frustum(radius, height, Vector2::new(t.clamp(0.0, 1.0), azimuth));
+                Piece::Frustum { .. } | Piece::Bulge { .. } => {
+                    if let Some(curve) = piece.curve() {
+                        let share = curve.share_at([across, along]);
+                        self.inside_patch(&curve, Vector2::new(share, azimuth));
+                    }
                 }
             }
         }
@@ -489,74 +492,25 @@ impl Search<'_> {
         }
     }
 
-    /// A conical patch: contact in its interior where the distance falls from both edges inward, looked for at the
-    /// azimuth that faces the surface and at the lowest point of the circle half way.
-    fn frustum(&mut self, radius: [f64; 2], height: [f64; 2]) {
-        let Some(contact) = self.best.contact else { return };
-        let (_, _, facing) = self.tool.split(&-contact.gradient);
-        let facing = facing.dot(&self.tool.across[1]).atan2(facing.dot(&self.tool.across[0]));
-        let step = std::f64::consts::TAU / SCAN as f64;
-        let middle = |k: usize| {
-            let p = self.point(0.5 * (radius[0] + radius[1]), 0.5 * (height[0] + height[1]), step * k as f64);
-            self.side * self.surface.signed_distance(&p)
-        };
-        let mut lowest = (f64::INFINITY, 0);
-        for k in 0..SCAN {
-            if self.is_given_up() {
-                return;
-            }
-            let value = middle(k);
-            if value < lowest.0 {
-                lowest = (value, k);
-            }
-        }
-        let across = step * lowest.1 as f64;
-        for azimuth in [facing, across] {
-            for t in self.valleys(radius, height, azimuth).into_iter().flatten() {
-                self.inside_frustum(radius, height, Vector2::new(t, azimuth));
-            }
-        }
-        if lowest.0 < self.best.value {
-            self.inside_frustum(radius, height, Vector2::new(0.5, across));
-        }
-    }
-
-    /// Where along a line of the patch to look for least distances inside.
-    fn valleys(&self, radius: [f64; 2], height: [f64; 2], azimuth: f64) -> [Option<f64>; 2] {
-        let line =
-            self.tool.axis * (height[1] - height[0]) + self.direction(azimuth) * (radius[1] - radius[0]);
-        let at = |t: f64| {
-            let rho = radius[0] + t * (radius[1] - radius[0]);
-            let p = self.point(rho, height[0] + t * (height[1] - height[0]), azimuth);
-            let foot = self.surface.foot(&p);
-            (self.side * foot.distance, self.side * foot.normal.dot(&line))
-        };
-        let ((v0, s0), (v1, s1)) = (at(0.0), at(1.0));
-        if s0 < 0.0 && s1 > 0.0 {
-            // The tangents at both ends meet near the valley.
-            return [Some(((v1 - v0 - s1) / (s0 - s1)).clamp(0.0, 1.0)), None];
-        }
-        // Otherwise there may be one behind a ridge, downhill from an end.
-        [(s0 < 0.0).then_some(0.0), (s1 > 0.0).then_some(1.0)]
-    }
-
-    fn inside_frustum(&mut self, radius: [f64; 2], height: [f64; 2], start: Vector2<f64>) {
+    /// Contact in the interior of what a piece of the profile sweeps about the axis, from a share along that and an azimuth.
+    fn inside_patch(&mut self, curve: &Curve, start: Vector2<f64>) {
         let mut q = start;
         let mut last = (f64::INFINITY, q);
         for _ in 0..MAX_ITERATIONS {
             if self.is_given_up() {
                 return;
             }
-            let rho = radius[0] + q.x * (radius[1] - radius[0]);
+            let Spot { place: [rho, height], way: [spread, rise], bend: [widening, climbing] } =
+                curve.at(q.x);
             if rho <= 0.0 {
                 // The tip has every azimuth: the one that faces the surface leads down, if any does.
-                let tip = self.point(0.0, height[0] + q.x * (height[1] - height[0]), 0.0);
+                let tip = self.point(0.0, height, 0.0);
                 let towards = self.surface.foot(&tip).normal * -self.side;
                 q.y = towards.dot(&self.tool.across[1]).atan2(towards.dot(&self.tool.across[0]));
             }
             let radial = self.direction(q.y);
             let tangent = self.tool.axis.cross(&radial);
-            let p = self.tip + self.tool.axis * (height[0] + q.x * (height[1] - height[0])) + radial * rho;
+            let p = self.tip + self.tool.axis * height + radial * rho;
             let (foot, hessian) = self.surface.foot_and_hessian(&p);
             let value = self.side * foot.distance;
             if value > last.0 && (q - last.1).norm() > ANGLE_RESOLUTION {
@@ -565,14 +519,15 @@ impl Search<'_> {
             }
             last = (value, q);
             self.take(&p, &foot, 0.0);
-            let line = self.tool.axis * (height[1] - height[0]) + radial * (radius[1] - radius[0]);
+            let line = self.tool.axis * rise + radial * spread;
             let around = tangent * rho;
             let n = foot.normal * self.side;
             let gradient = Vector2::new(n.dot(&line), n.dot(&around));
-            let mixed = n.dot(&tangent) * (radius[1] - radius[0]);
+            let mixed = n.dot(&tangent) * spread;
             let turned = -n.dot(&radial) * rho;
+            let curving = n.dot(&(radial * widening + self.tool.axis * climbing));
             let bend =
-                reduced(&hessian, &line, &around) * self.side + Matrix2::new(0.0, mixed, mixed, turned);
+                reduced(&hessian, &line, &around) * self.side + Matrix2::new(curving, mixed, mixed, turned);
             let step = descent(&bend, &gradient, 1.0);
             let next = Vector2::new((q.x + step.x).clamp(0.0, 1.0), q.y + step.y.clamp(-0.5, 0.5));
             if (next - q).norm() <= ANGLE_RESOLUTION {

@@ -5,6 +5,7 @@ use apt_geometry::{
 use proptest::prelude::*;
 
 use super::*;
+use crate::verify::tests::BARRELS;
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
@@ -85,6 +86,11 @@ fn tools() -> Vec<Tool<'static>> {
         tool(&[1.0, 0.1, 0.4, 0.210707, 15.0, 0.0, 3.0]),
         Tool::new(cutter(&[0.6, 0.1]), tilted),
         Tool::new(cutter(&[0.5]), tilted),
+        Tool::new(cutter(&BARRELS[0]), tilted),
+        tool(&BARRELS[1]),
+        tool(&BARRELS[2]),
+        Tool::new(cutter(&BARRELS[3]), tilted),
+        tool(&BARRELS[4]),
     ]
 }
 
@@ -122,7 +128,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
     #[test]
     fn clearance_is_the_least_distance_of_the_body(
-        which in 0usize..8, shape in 0usize..7, inside in any::<bool>(),
+        which in 0usize..8, shape in 0usize..12, inside in any::<bool>(),
         x in -2.5..2.5, y in -2.5..2.5, z in -1.0..2.5,
     ) {
         let side = if inside { -1.0 } else { 1.0 };
@@ -142,7 +148,7 @@ proptest! {
 
     #[test]
     fn the_gradient_is_the_derivative(
-        which in 0usize..8, shape in 0usize..7, x in -2.5..2.5, y in -2.5..2.5, z in -1.0..2.5,
+        which in 0usize..8, shape in 0usize..12, x in -2.5..2.5, y in -2.5..2.5, z in -1.0..2.5,
     ) {
         let (gauge, tool) = (gauge(&surfaces()[which], 1.0), &tools()[shape]);
         let (tip, direction, h) = (v(x, y, z), v(0.6, -0.3, 0.5).normalize(), 1e-5);

@@ -25,6 +25,79 @@ pub(crate) enum Piece {
     Disc { radius: f64 },
     /// A conical or cylindrical patch between two circles.
     Frustum { radius: [f64; 2], height: [f64; 2] },
+    /// The corner of a barrel: the arc about a centre (radius, height) beyond the axis, turned about that, between two polar angles of its
+    /// normals from straight down. It is no circle of balls that the tool holds.
+    Bulge { center: [f64; 2], arc: f64, fan: [f64; 2] },
+}
+
+/// A piece of the profile that is turned about the axis, followed upwards by a share of its length.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Curve {
+    /// Straight, by the radii and heights of its ends.
+    Line { radius: [f64; 2], height: [f64; 2] },
+    /// An arc about a centre, between two polar angles of its normals.
+    Arc { center: [f64; 2], arc: f64, fan: [f64; 2] },
+}
+
+/// A place of such a piece (radius, height), and its first and second derivatives by the share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    pub(crate) place: [f64; 2],
+    pub(crate) way: [f64; 2],
+    pub(crate) bend: [f64; 2],
+}
+
+impl Piece {
+    /// What is turned about the axis for a patch with two sides.
+    pub(crate) fn curve(&self) -> Option<Curve> {
+        match *self {
+            Self::Frustum { radius, height } => Some(Curve::Line { radius, height }),
+            Self::Bulge { center, arc, fan } => Some(Curve::Arc { center, arc, fan }),
+            Self::Ring { .. } | Self::Disc { .. } => None,
+        }
+    }
+}
+
+impl Curve {
+    /// The place at a share of its length, which may be beyond its ends.
+    pub(crate) fn at(&self, share: f64) -> Spot {
+        match *self {
+            Self::Line { radius, height } => {
+                let way = [radius[1] - radius[0], height[1] - height[0]];
+                Spot { place: [radius[0] + share * way[0], height[0] + share * way[1]], way, bend: [0.0; 2] }
+            }
+            Self::Arc { center, arc, fan: [first, last] } => {
+                let turn = last - first;
+                let (sin, cos) = (first + share * turn).sin_cos();
+                let (speed, bend) = (arc * turn, arc * turn * turn);
+                Spot {
+                    place: [center[0] + arc * sin, center[1] - arc * cos],
+                    way: [speed * cos, speed * sin],
+                    bend: [-bend * sin, bend * cos],
+                }
+            }
+        }
+    }
+
+    /// Its length.
+    pub(crate) fn length(&self) -> f64 {
+        match *self {
+            Self::Line { radius, height } => (radius[1] - radius[0]).hypot(height[1] - height[0]),
+            Self::Arc { arc, fan, .. } => arc * (fan[1] - fan[0]),
+        }
+    }
+
+    /// The share at which it is seen from a place (radius, height): at its height of a straight one, from the centre of an arc.
+    pub(crate) fn share_at(&self, [across, along]: [f64; 2]) -> f64 {
+        let share = match *self {
+            Self::Line { height: [low, high], .. } if high > low => (along - low) / (high - low),
+            Self::Line { .. } => 0.0,
+            Self::Arc { center, fan: [first, last], .. } => {
+                ((across - center[0]).atan2(center[1] - along) - first) / (last - first)
+            }
+        };
+        share.clamp(0.0, 1.0)
+    }
 }
 
 /// A circle about the axis carrying balls; without radius one ball about a point of the axis.
@@ -145,11 +218,13 @@ fn pieces(profile: &Profile) -> Vec<Piece> {
         }
     }
     if profile.arc > 0.0 {
-        pieces.push(Piece::Ring {
-            radius: profile.center.radius,
-            height: profile.center.height,
-            ball: profile.arc,
-            fan: Some(profile.fan),
+        let center = profile.center;
+        pieces.push(if profile.is_barrel() {
+            let center = [center.radius, center.height];
+            Piece::Bulge { center, arc: profile.arc, fan: profile.fan }
+        } else {
+            let fan = Some(profile.fan);
+            Piece::Ring { radius: center.radius, height: center.height, ball: profile.arc, fan }
         });
         pieces.push(edge(upper.radius, upper.height));
     }

@@ -1,6 +1,7 @@
 //! Motion programs as hand-built commands: worked cases, the shapes of the oracle corpus, and properties.
 
 mod axis_modes;
+mod barrels;
 mod bends;
 mod beside_ends;
 mod beyond_ends;

@@ -170,7 +170,7 @@ impl Case {
         random: &mut Random,
     ) -> Option<Self> {
         let wish = asked.copied().unwrap_or_default();
-        let (shape, numbers) = tools::draw(random);
+        let (shape, numbers) = tools::wished(wish.shape, random);
         if wish.shape.is_some_and(|wished| wished != shape) || wish.is_wide && numbers[0] == 0.0 {
             return None;
         }

@@ -19,7 +19,8 @@ const DRAWS: u64 = 12;
 /// No stock, stock that is left, and a cut beyond the surface.
 const STOCK: [f64; 3] = [0.0, 0.07, -0.03];
 /// Shapes of tools by their names; the last two have no width.
-const SHAPES: [&str; 9] = ["ball", "flat", "bull nose", "tapered", "bell", "lens", "drill", "line", "needle"];
+const SHAPES: [&str; 10] =
+    ["ball", "flat", "bull nose", "barrel", "tapered", "bell", "lens", "drill", "line", "needle"];
 
 /// What is combined.
 struct Row {

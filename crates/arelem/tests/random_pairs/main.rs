@@ -7,7 +7,7 @@
 //! `APT_CASES` sets the number of motions of each pair, `APT_SEED` the seed, `APT_PAIR` (`sphere/cone`, `*/ruled`) looks at
 //! one pair, and `APT_CASE` at one motion of it; `APT_PAIRS` (`2/5`) looks at the second of five parts of the pairs.
 //! `APT_SHARE` says of how many motions one is looked at in pairs with surfaces to which distances are searched for, and
-//! `APT_SURFACES=searched` looks at such pairs alone. `APT_BUDGET` is how many times the budget of the tests may be spent on a motion.
+//! `APT_SURFACES=searched` looks at such pairs alone, `APT_TOOLS=barrel` at barrels alone. `APT_BUDGET` is how many times the budget of the tests may be spent on a motion.
 
 mod case;
 mod combinations;

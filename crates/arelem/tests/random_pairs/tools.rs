@@ -21,6 +21,26 @@ pub(crate) fn draw(random: &mut Random) -> (&'static str, Vec<f64>) {
     }
 }
 
+/// What is drawn where a shape is wished for, `barrel` among them, which no draw of any shape gives; `APT_TOOLS=barrel` draws nothing else.
+pub(crate) fn wished(shape: Option<&str>, random: &mut Random) -> (&'static str, Vec<f64>) {
+    let is_barrel = |shape: &str| shape == "barrel";
+    if shape.is_some_and(is_barrel) || std::env::var("APT_TOOLS").is_ok_and(|shape| is_barrel(&shape)) {
+        return barrel(random);
+    }
+    draw(random)
+}
+
+/// A cutter whose corner has its centre beyond the axis: it begins somewhere on the bottom and joins the flank smoothly.
+fn barrel(random: &mut Random) -> (&'static str, Vec<f64>) {
+    let d = random.between(0.2, 1.2);
+    let beyond = d * random.between(0.05, 2.0);
+    let bottom = 0.5 * d * random.between(0.1, 0.9);
+    let radius = 0.5 * d + beyond;
+    let height = (radius * radius - (beyond + bottom).powi(2)).sqrt();
+    let above = random.between(0.3, 2.0);
+    ("barrel", vec![d, radius, -beyond, height, 0.0, 0.0, height + above])
+}
+
 /// The point of the whole tool that lies farthest in a direction, seen from the tool end (arelem reference 1.3).
 pub(crate) fn support(cutter: &Cutter, axis: &Vec3, direction: &Vec3) -> Vec3 {
     let profile = cutter.profile();

@@ -101,7 +101,8 @@ impl<'a> Around<'a> {
         };
         let Tool { axis, profile, .. } = self.pose.tool;
         let polar = contact.gradient.dot(axis).clamp(-1.0, 1.0).acos();
-        let on_corner = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
+        let has_balls = profile.arc > 0.0 && !profile.is_barrel();
+        let on_corner = has_balls && polar >= profile.fan[0] && polar <= profile.fan[1];
         let ball = if on_corner { profile.arc } else { 0.0 };
         let held_ball = zone.held.ball(ball);
         let place = contact.tool + contact.gradient * held_ball;

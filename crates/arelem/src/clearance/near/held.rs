@@ -128,7 +128,8 @@ impl Pose<'_> {
             (radii[0].max(radii[1]), top)
         } else {
             let flank = if end.height > upper.height { radii[1] } else { 0.0 };
-            let [beside, above] = if *arc > 0.0 { [center.radius + arc, center.height] } else { [0.0; 2] };
+            let has_balls = *arc > 0.0 && center.radius >= 0.0;
+            let [beside, above] = if has_balls { [center.radius + arc, center.height] } else { [0.0; 2] };
             let width = lower.radius.max(upper.radius).max(flank).max(beside).min(self.tool.radius());
             (width.max(center.radius), top.max(above))
         };

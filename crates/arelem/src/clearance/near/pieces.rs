@@ -3,7 +3,12 @@
 use apt_geometry::Vec3;
 
 use super::{Circle, Pose, Start, Touch};
-use crate::clearance::{Contact, search::FAN_SLACK, tool::Piece, waves::length};
+use crate::clearance::{
+    Contact,
+    search::FAN_SLACK,
+    tool::{Curve, Piece},
+    waves::length,
+};
 
 /// Sine of the angle with a slanted piece that counts as none.
 const LEVEL: f64 = 1e-7;
@@ -21,22 +26,24 @@ impl Pose<'_> {
         }
     }
 
-    /// The circle of the tool that a surface with a normal touches first.
-    pub(super) fn circle_towards(&self, gradient: &Vec3) -> Option<usize> {
+    /// The circle of the tool, or the corner of a barrel, that a surface with a normal touches first, and how far along that.
+    pub(super) fn piece_towards(&self, gradient: &Vec3) -> Option<(usize, f64)> {
         let profile = &self.tool.profile;
         let (along, across, _) = self.tool.split(gradient);
         let polar = across.atan2(along);
         let point = profile.support(across, -along).1;
-        let round = profile.arc > 0.0 && polar >= profile.fan[0] && polar <= profile.fan[1];
-        if round {
-            return self.corner();
+        let [first, last] = profile.fan;
+        if profile.arc > 0.0 && polar >= first && polar <= last {
+            return Some((self.corner()?, ((polar - first) / (last - first)).clamp(0.0, 1.0)));
         }
-        self.edge(point.radius, point.height)
+        Some((self.edge(point.radius, point.height)?, 0.0))
     }
 
     /// The corner of the tool, if it is round.
     fn corner(&self) -> Option<usize> {
-        self.tool.pieces.iter().position(|piece| matches!(piece, Piece::Ring { fan: Some(_), .. }))
+        let is_corner =
+            |piece: &Piece| matches!(piece, Piece::Ring { fan: Some(_), .. } | Piece::Bulge { .. });
+        self.tool.pieces.iter().position(is_corner)
     }
 
     /// The edge of the tool with a radius and a height.
@@ -59,7 +66,8 @@ impl Pose<'_> {
         let Contact { gradient, tool, .. } = contact;
         let direction = self.facing(gradient);
         let (along, ..) = self.tool.split(&(tool - self.tip));
-        let on_slant = self.slants().find_map(|(piece, _, height)| {
+        let on_slant = self.slants().find_map(|(piece, curve)| {
+            let Curve::Line { height, .. } = curve else { return None };
             let rise = (along - height[0]) / (height[1] - height[0]);
             let inside = rise > NEAR_END && rise < 1.0 - NEAR_END;
             inside.then_some((piece, rise))
@@ -67,38 +75,47 @@ impl Pose<'_> {
         let (piece, rise, ball) = match on_slant {
             Some((piece, rise)) => (piece, rise, 0.0),
             None => {
-                let piece = self.circle_towards(gradient)?;
-                (piece, 0.0, self.circle(Some(piece))?.ball)
+                let (piece, rise) = self.piece_towards(gradient)?;
+                (piece, rise, self.circle(Some(piece)).map_or(0.0, |circle| circle.ball))
             }
         };
         let place = self.surface.place(&(tool + gradient * ball))?;
         Some(Start { piece: Some(piece), direction, rise, place })
     }
 
-    /// The slanted pieces of the tool by their number, radii and heights.
-    fn slants(&self) -> impl Iterator<Item = (usize, [f64; 2], [f64; 2])> {
-        self.tool.pieces.iter().enumerate().filter_map(|(k, piece)| match *piece {
-            Piece::Frustum { radius, height } => Some((k, radius, height)),
-            _ => None,
-        })
+    /// The slanted pieces of the tool, and the corner of a barrel, by their number.
+    fn slants(&self) -> impl Iterator<Item = (usize, Curve)> {
+        self.tool.pieces.iter().enumerate().filter_map(|(k, piece)| Some((k, piece.curve()?)))
+    }
+
+    /// Both ends of a slanted piece, or of the corner of a barrel, as the edges there have them.
+    fn ends_of(&self, curve: &Curve) -> [[f64; 2]; 2] {
+        match *curve {
+            Curve::Line { radius: [r, q], height: [h, g] } => [[r, h], [q, g]],
+            Curve::Arc { .. } => {
+                [self.tool.profile.lower, self.tool.profile.upper].map(|end| [end.radius, end.height])
+            }
+        }
     }
 
     /// The slanted piece along which the distance falls from a contact on the edge at its end, and from which side to look at
     /// it.
     fn slant_beyond(&self, touch: &Touch) -> Option<(usize, f64)> {
-        let at = |radius: f64, height: f64| touch.circle.radius == radius && touch.circle.height == height;
+        let at = |[radius, height]: [f64; 2]| touch.circle.radius == radius && touch.circle.height == height;
         let gradient = &touch.contact.gradient;
         let [c, s] = if touch.circle.radius > 0.0 { touch.start.direction } else { self.facing(gradient) };
         let radial = self.tool.across[0] * c + self.tool.across[1] * s;
-        self.slants().find_map(|(piece, [r, q], [h, g])| {
-            let (sense, rise) = if at(r, h) {
-                (1.0, FROM_END)
-            } else if at(q, g) {
-                (-1.0, 1.0 - FROM_END)
+        self.slants().find_map(|(piece, curve)| {
+            let ends = self.ends_of(&curve);
+            let (sense, rise, end) = if at(ends[0]) {
+                (1.0, FROM_END, 0.0)
+            } else if at(ends[1]) {
+                (-1.0, 1.0 - FROM_END, 1.0)
             } else {
                 return None;
             };
-            let way = (radial * (q - r) + self.tool.axis * (g - h)) * sense;
+            let [wider, higher] = curve.at(end).way;
+            let way = (radial * wider + self.tool.axis * higher) * sense;
             (way.dot(gradient) < -LEVEL * way.norm()).then_some((piece, rise))
         })
     }
@@ -116,7 +133,9 @@ impl Pose<'_> {
                     && (fan.is_some() || self.slant_beyond(touch).is_none())
             }
             Some(Piece::Disc { radius }) => length(touch.start.direction) <= *radius,
-            Some(Piece::Frustum { .. }) => (0.0..=1.0).contains(&touch.start.rise) && self.faces(touch),
+            Some(Piece::Frustum { .. } | Piece::Bulge { .. }) => {
+                (0.0..=1.0).contains(&touch.start.rise) && self.faces(touch)
+            }
             None => true,
         }
     }
@@ -138,10 +157,11 @@ impl Pose<'_> {
         let pieces = &self.tool.pieces;
         let lower = self.tool.profile.lower;
         let last = found.map_or(*start, |found| found.start);
-        if let Piece::Frustum { radius, height } = pieces.get(start.piece?)? {
+        if let Some(curve) = pieces.get(start.piece?)?.curve() {
             // Where the distance bends downward along it contact is at the other end.
             let end = usize::from(found.map_or(start.rise < 0.5, |found| found.start.rise >= 0.5));
-            let piece = self.edge(radius[end], height[end]);
+            let [radius, height] = self.ends_of(&curve)[end];
+            let piece = self.edge(radius, height);
             return Some(Start { piece: Some(piece?), ..last });
         }
         if let Some((piece, rise)) = found.and_then(|found| self.slant_beyond(found)) {
@@ -153,7 +173,8 @@ impl Pose<'_> {
         }
         if let Piece::Disc { .. } = pieces.get(start.piece?)? {
             let reach = length(last.direction);
-            let round = self.tool.profile.arc > 0.0;
+            // The corner of a barrel is not begun on from the bottom: it has its edge there.
+            let round = self.tool.profile.arc > 0.0 && !self.tool.profile.is_barrel();
             let piece = if round { self.corner() } else { self.edge(lower.radius, lower.height) };
             return (reach > 0.0).then(|| Start {
                 piece,
@@ -164,8 +185,8 @@ impl Pose<'_> {
         match found {
             Some(found) if self.faces(found) => {
                 let gradient = &found.contact.gradient;
-                let piece = Some(self.circle_towards(gradient)?);
-                Some(Start { piece, direction: self.facing(gradient), ..last })
+                let (piece, rise) = self.piece_towards(gradient)?;
+                Some(Start { piece: Some(piece), direction: self.facing(gradient), rise, ..last })
             }
             _ => {
                 let disc = pieces.iter().position(|piece| matches!(piece, Piece::Disc { .. }))?;

@@ -5,7 +5,7 @@ use apt_geometry::{Vec3, surface::Chart};
 use super::{Circle, Pose, Start, Touch};
 use crate::clearance::{
     Contact, Tool,
-    tool::Piece,
+    tool::{Curve, Piece, Spot},
     waves::{length, turned},
 };
 
@@ -79,10 +79,12 @@ fn valley([xx, xy, yy]: [f64; 3], slope: [f64; 2], scale: f64) -> Option<[f64; 2
 impl Pose<'_> {
     /// The stationary distance of a piece of the tool near a start.
     pub(super) fn touch(&self, start: &Start) -> Option<Touch> {
-        match start.piece.and_then(|piece| self.tool.pieces.get(piece)) {
-            Some(Piece::Disc { radius }) => return self.touch_bottom(start, *radius),
-            Some(Piece::Frustum { radius, height }) => return self.touch_slant(start, *radius, *height),
-            _ => {}
+        let piece = start.piece.and_then(|piece| self.tool.pieces.get(piece));
+        if let Some(Piece::Disc { radius }) = piece {
+            return self.touch_bottom(start, *radius);
+        }
+        if let Some(curve) = piece.and_then(Piece::curve) {
+            return self.touch_slant(start, &curve);
         }
         let circle = self.circle(start.piece)?;
         let Tool { axis, across, .. } = self.tool;
@@ -170,22 +172,23 @@ impl Pose<'_> {
         None
     }
 
-    /// The place of a slanted piece between two circles, or of its cone beyond them, where the distance is stationary.
-    fn touch_slant(&self, start: &Start, radius: [f64; 2], height: [f64; 2]) -> Option<Touch> {
+    /// The place of a slanted piece between two circles, or of its cone beyond them, or of the corner of a barrel, where the distance is
+    /// stationary.
+    fn touch_slant(&self, start: &Start, curve: &Curve) -> Option<Touch> {
         let Tool { axis, across, .. } = self.tool;
-        let (wider, higher) = (radius[1] - radius[0], height[1] - height[0]);
-        let length_of_slant = length([wider, higher]);
-        let (widening, climb) = (wider / length_of_slant, higher / length_of_slant);
+        let length_of_slant = curve.length();
         let radial = |[c, s]: [f64; 2]| across[0] * c + across[1] * s;
         let Start { mut direction, mut place, mut rise, .. } = *start;
         // A tool without width has no sides to go around.
-        let is_line = radius == [0.0; 2];
+        let is_line = matches!(curve, Curve::Line { radius, .. } if *radius == [0.0; 2]);
         let resolution = NEARLY * self.scale();
         for _ in 0..MAX_ITERATIONS {
             let (outward, onward) = (radial(direction), radial([-direction[1], direction[0]]));
+            let Spot { place: [wide, high], way, bend } = curve.at(rise);
+            let [widening, climb] = way.map(|x| x / length_of_slant);
             let upward = axis * climb + outward * widening;
-            let wide = radius[0] + rise * wider;
-            let center = self.tip + axis * (height[0] + rise * higher) + outward * wide;
+            let curving = outward * bend[0] + axis * bend[1];
+            let center = self.tip + axis * high + outward * wide;
             let chart = self.surface.chart(&place)?;
             let offset = center - chart.point;
             let follow = Follow::new(&chart, &offset)?;
@@ -197,7 +200,8 @@ impl Pose<'_> {
             let along = |way: &Vec3, by: [f64; 2]| change[0].dot(way) * by[0] + change[1].dot(way) * by[1];
             let slope = ways.map(|way| normal.dot(&way) + along(&way, rest));
             let scale = normal.norm() / length_of_slant;
-            let rising = along(&upward, drift[0]);
+            let rising =
+                along(&upward, drift[0]) + normal.dot(&curving) / (length_of_slant * length_of_slant);
             let step = if is_line {
                 valley([rising, 0.0, scale], [slope[0], 0.0], scale)?
             } else {
@@ -218,13 +222,13 @@ impl Pose<'_> {
             place = self.surface.shifted(&last, by)?;
             let moved = (chart.first[0] * by[0] + chart.first[1] * by[1]).norm() + length(step);
             let beyond =
-                !(-BEYOND..=1.0 + BEYOND).contains(&rise) || !is_line && radius[0] + rise * wider <= 0.0;
+                !(-BEYOND..=1.0 + BEYOND).contains(&rise) || !is_line && curve.at(rise).place[0] <= 0.0;
             if moved <= resolution || beyond {
                 let start = Start { piece: start.piece, direction, rise, place };
                 let chart = self.surface.chart_beside(&place, (&last, &chart), by)?;
                 let end = rise.clamp(-BEYOND, 1.0 + BEYOND);
-                let wide = (radius[0] + end * wider).max(0.0);
-                let center = self.tip + axis * (height[0] + end * higher) + radial(direction) * wide;
+                let [wide, high] = curve.at(end).place;
+                let center = self.tip + axis * high + radial(direction) * wide.max(0.0);
                 return self.made(Circle::POINT, center, start, &chart);
             }
             if moved.is_nan() {

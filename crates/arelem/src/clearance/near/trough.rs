@@ -153,18 +153,25 @@ impl Bends {
 }
 
 impl Pose<'_> {
-    /// The circles of balls that hold the bottom of the tool and its corner, or what of the tool is held about a contact on its flank.
+    /// The circles, or circles of balls, that hold the bottom of the tool and its corner, or what of the tool is held about a contact on its flank.
     pub(super) fn rims(&self, held: Option<Held>) -> impl Iterator<Item = Circle> + use<> {
         let profile = &self.tool.profile;
         let circle = |radius: f64, height: f64| Circle { radius, height, ball: 0.0 };
+        let upper = circle(profile.upper.radius, profile.upper.height);
+        // The arc of a barrel is held by its ends and the place where the tangents there meet.
         let corner = match profile.arc > 0.0 {
-            true => Circle { ball: profile.arc, ..circle(profile.center.radius, profile.center.height) },
-            false => circle(profile.upper.radius, profile.upper.height),
+            true if profile.is_barrel() => {
+                let beyond = profile.beyond_corner();
+                [circle(beyond.radius, beyond.height), upper]
+            }
+            true => [Circle { ball: profile.arc, ..circle(profile.center.radius, profile.center.height) }; 2],
+            false => [upper; 2],
         };
-        let bottom = [circle(0.0, 0.0), circle(profile.lower.radius, profile.lower.height), corner];
+        let lower = circle(profile.lower.radius, profile.lower.height);
+        let bottom = [circle(0.0, 0.0), lower, corner[0], corner[1]];
         let on_flank = |height: f64| circle(self.flank_radius(height), height);
         let low = held.map(|held| held.heights()[0]).filter(|low| *low > profile.upper.height);
-        let bottom = if low.is_some() { [None; 3] } else { bottom.map(Some) };
+        let bottom = if low.is_some() { [None; 4] } else { bottom.map(Some) };
         let flank =
             [low.map(on_flank), held.map(|held| on_flank(held.heights()[1].max(profile.upper.height)))];
         bottom.into_iter().chain(flank).flatten()

@@ -167,6 +167,9 @@ impl Pose<'_> {
         let corner =
             Circle { radius: profile.center.radius, height: profile.center.height, ball: profile.arc };
         let corner = || {
+            if profile.is_barrel() {
+                return self.barrel_floor(contact, zone) >= level || self.arcs_keep(&edge);
+            }
             self.corner_floor(contact, ball, zone, corner) >= level
                 || corner_stands_out(profile) && self.arcs_keep(&edge)
         };
@@ -206,6 +209,20 @@ impl Pose<'_> {
         let rise = self.rise((*point, *clearance), gradient, zone, corner);
         let slope = (1.0 - 2.0 * bend * rise).max(0.0).sqrt();
         clearance + rise - corner.ball * (slope + 0.5 * bend * corner.ball)
+    }
+
+    /// The same of the corner of a barrel, by the one ball at the azimuth of the contact, which holds all of it: as of a ball of a corner
+    /// that is seen from the contact itself.
+    fn barrel_floor(&self, contact: &Contact, zone: &Zone) -> f64 {
+        let Contact { clearance, tool: point, gradient, .. } = contact;
+        let (center, ball) = (self.tool.profile.center, self.tool.profile.arc);
+        let [c, s] = self.facing(gradient);
+        let aside = (self.tool.across[0] * c + self.tool.across[1] * s) * center.radius;
+        let w = self.tip + self.tool.axis * center.height + aside - point;
+        let bend = zone.steady.bend(*clearance);
+        let rise = gradient.dot(&w) - 0.5 * bend * w.norm_squared();
+        let slope = (1.0 - 2.0 * bend * rise).max(0.0).sqrt();
+        clearance + rise - ball * (slope + 0.5 * bend * ball)
     }
 
     /// Whether the corner keeps what its circles keep, also where its whole balls stand out from the tool: stretches of its arc lie in the

@@ -30,7 +30,8 @@ impl Half {
     }
 
     /// No point of a circle about the tool's axis, nor of the disc in it, is nearer to the other half than this, here and on the
-    /// way.
+    /// way. Of the circle of centres of a barrel's corner, beyond the axis, it is the point that is farthest: the ball there holds all of
+    /// the corner.
     fn room(&self, posed: &Posed<'_>, circle: &ProfilePoint) -> f64 {
         let center = posed.tip + posed.axis * circle.height;
         let aside = posed.across.map(|u| u.dot(&self.inward));

@@ -1,10 +1,13 @@
-//! Contact inside the flat bottom or a flank of the tool: Newton's method for the two coordinates on the patch and the
+//! Contact inside the flat bottom, a flank, or the corner of a barrel: Newton's method for the two coordinates on the patch and the
 //! multiplier of the nearest point at once.
 
 use apt_geometry::Vec3;
 
 use super::{Posed, ROUNDING, Start, Touch};
-use crate::clearance::{tool::Piece, waves::turned};
+use crate::clearance::{
+    tool::{self, Piece},
+    waves::turned,
+};
 
 /// Bound of Newton's method: without convergence the general search takes over.
 const MAX_ITERATIONS: u32 = 16;
@@ -26,6 +29,8 @@ struct Spot {
     along: [Vec3; 2],
     /// Derivatives of these by the first coordinate.
     turning: [Vec3; 2],
+    /// Derivative of the second one by the second coordinate.
+    curving: Vec3,
 }
 
 /// Coordinates on a patch.
@@ -33,7 +38,7 @@ struct Spot {
 enum Coordinates {
     /// On the flat bottom, from its middle, in radii of it.
     Flat([f64; 2]),
-    /// Cosine and sine of the azimuth, and share of the straight line from its lower end.
+    /// Cosine and sine of the azimuth, and share of the straight line, or of the arc of a barrel, from its lower end.
     Line([f64; 2], f64),
 }
 
@@ -43,11 +48,11 @@ impl Posed<'_> {
         let [x, y] = [0, 1].map(|k| last.dot(&self.tool.across[k]));
         let mut at = match *piece {
             Piece::Disc { radius } if radius > 0.0 => Coordinates::Flat([x / radius, y / radius]),
-            Piece::Frustum { height: [low, high], .. } if high > low => {
-                let share = (last.dot(&self.tool.axis) - low) / (high - low);
-                Coordinates::Line(start.direction, share.clamp(0.0, 1.0))
+            Piece::Frustum { height: [low, high], .. } if high <= low => return None,
+            _ => {
+                let share = piece.curve()?.share_at([x.hypot(y), last.dot(&self.tool.axis)]);
+                Coordinates::Line(start.direction, share)
             }
-            _ => return None,
         };
         let squares = *self.form.squares();
         let mut multiplier = match start.multiplier {
@@ -69,7 +74,8 @@ impl Posed<'_> {
             let row = |i: usize| {
                 let by = |j: usize| bent.component_mul(&spot.by[j]).dot(&spot.along[i]);
                 let turning = g.dot(&spot.turning[i]);
-                Vec3::new(by(0) + turning, by(1), -bent.component_mul(&g).dot(&spot.along[i]))
+                let curving = if i == 1 { g.dot(&spot.curving) } else { 0.0 };
+                Vec3::new(by(0) + turning, by(1) + curving, -bent.component_mul(&g).dot(&spot.along[i]))
             };
             let kg = k.component_mul(&g);
             let rows =
@@ -113,16 +119,18 @@ impl Posed<'_> {
             (Piece::Disc { radius }, Coordinates::Flat([x, y])) => {
                 let [u, v] = self.across.map(|w| w * *radius);
                 let place = self.tip + u * x + v * y;
-                Some(Spot { place, by: [u, v], along: self.across, turning: [Vec3::zeros(); 2] })
+                let (along, turning) = (self.across, [Vec3::zeros(); 2]);
+                Some(Spot { place, by: [u, v], along, turning, curving: Vec3::zeros() })
             }
-            (Piece::Frustum { radius, height }, Coordinates::Line(direction, share)) => {
-                let (rise, spread) = (height[1] - height[0], radius[1] - radius[0]);
+            (piece, Coordinates::Line(direction, share)) => {
+                let tool::Spot { place: [rho, height], way: [spread, rise], bend: [widening, climbing] } =
+                    piece.curve()?.at(share);
                 let (radial, tangent) = (self.radial(direction), self.radial([-direction[1], direction[0]]));
-                let rho = radius[0] + share * spread;
                 let line = self.axis * rise + radial * spread;
-                let place = self.tip + self.axis * (height[0] + share * rise) + radial * rho;
-                let by = [tangent * rho, line];
-                Some(Spot { place, by, along: [tangent, line], turning: [-radial, tangent * spread] })
+                let place = self.tip + self.axis * height + radial * rho;
+                let (by, along) = ([tangent * rho, line], [tangent, line]);
+                let curving = radial * widening + self.axis * climbing;
+                Some(Spot { place, by, along, turning: [-radial, tangent * spread], curving })
             }
             _ => None,
         }

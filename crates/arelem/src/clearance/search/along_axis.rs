@@ -75,11 +75,15 @@ impl Core {
         let range = [height, top.height + top.radius * sine / cosine];
         let away = |radius: f64, at: f64| radius.hypot(at - height);
         let (lower, center) = (profile.lower, profile.center);
-        let below = [
-            away(0.0, 0.0),
-            away(lower.radius, lower.height),
-            if profile.arc > 0.0 { away(center.radius, center.height) + profile.arc } else { 0.0 },
-        ];
+        let corner = if profile.is_barrel() {
+            let beyond = profile.beyond_corner();
+            away(beyond.radius, beyond.height)
+        } else if profile.arc > 0.0 {
+            away(center.radius, center.height) + profile.arc
+        } else {
+            0.0
+        };
+        let below = [away(0.0, 0.0), away(lower.radius, lower.height), corner];
         let holds_end = below.into_iter().all(|reach| reach <= radius * (1.0 + ROUNDING));
         Some(Self { lean: [sine, cosine], height, radius, range, holds_end })
     }

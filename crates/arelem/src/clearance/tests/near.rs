@@ -12,7 +12,7 @@ use crate::{
         floor::Bases,
         search,
     },
-    verify::tests::lofts,
+    verify::tests::{BARRELS, lofts},
 };
 
 /// A wave of three cubics along a direction, its joints without corners.
@@ -34,6 +34,9 @@ fn charted() -> Vec<Geometry> {
         lofts::vault(),
     ]
 }
+
+/// A lens, over which contact wanders on its arc.
+const LENS: [f64; 7] = [0.5, 0.6, -0.02, 0.595, 0.0, 0.0, 2.0];
 
 /// The side of a surface that its upper side is.
 fn upper(surface: &Surface) -> f64 {
@@ -71,12 +74,15 @@ fn pass(geometry: &Geometry, on: bool, tool: &Tool, from: &Vec3, step: &Vec3, co
 fn passes_over_sheets_find_what_a_complete_search_finds() {
     // With the tenths of the positions that are to be proven without a search: less where a flat tool jumps from one side of its
     // edge to the other, none where a tool is so large that the surface turns away or ends beside it.
-    let cutters: [(&[f64], u32); 5] = [
+    let cutters: [(&[f64], u32); 8] = [
         (&[0.5, 0.25], 7),
         (&[0.5, 0.1], 7),
         (&[0.6], 4),
         (&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 7),
         (&[1.0, 0.1875, 0.33, 0.22, 10.0, 5.0, 2.0], 0),
+        (&LENS, 7),
+        (&BARRELS[0], 0),
+        (&BARRELS[1], 0),
     ];
     let mut few = Vec::new();
     for (which, geometry) in charted().iter().enumerate() {

@@ -66,13 +66,15 @@ pub(super) fn cutter(numbers: &[f64]) -> Cutter {
 }
 
 /// Cutters whose corner has its centre beyond the axis: a barrel that joins its flank smoothly, one with edges at both ends of its arc and
-/// slanted lines, a lens, one whose arc reaches the axis above the tip (APT III 415), and a drill point with a bulge.
-pub(crate) const BARRELS: [[f64; 7]; 5] = [
+/// slanted lines, a flat lens, one whose arc reaches the axis above the tip (APT III 415), a drill point with a bulge, and a lens that leans
+/// on its arc.
+pub(crate) const BARRELS: [[f64; 7]; 6] = [
     [1.0, 3.0, -2.5, 1.5, 0.0, 0.0, 3.0],
     [1.0, 1.82, -1.2, 0.9, 10.0, 5.0, 2.5],
     [2.0, 20.0, -0.5, 19.98, 0.0, 0.0, 1.5],
     [1.0, 3.0, -2.5, 2.9, 0.0, 0.0, 4.0],
     [1.0, 2.2, -1.5, 1.6, 30.0, 0.0, 2.5],
+    [1.0, 2.0, -0.1, 1.98, 0.0, 0.0, 2.5],
 ];
 
 pub(super) fn plane(normal: [f64; 3], distance: f64) -> Geometry {
@@ -101,7 +103,7 @@ pub(super) fn quadric(coefficients: [f64; 10]) -> Geometry {
 }
 
 /// A tabulated cylinder through points with slopes dv/du, extensions of length 10 at both ends.
-pub(super) fn tabulated(axes: [Vec3; 3], nodes: &[[f64; 3]]) -> Geometry {
+pub(crate) fn tabulated(axes: [Vec3; 3], nodes: &[[f64; 3]]) -> Geometry {
     let mut intervals = Vec::new();
     let reach = |slope: f64| 10.0 / slope.hypot(1.0);
     let straight =
