@@ -126,23 +126,33 @@ impl<'a> Apart<'a> {
         most
     }
 
-    /// What a part of a surface keeps, and how far its middle is.
-    fn part(&mut self, part: &Part) -> [f64; 2] {
+    /// How far the distance is above its tangent at a place, at that end of a way to both sides of it which the tangent says is nearer.
+    pub(super) fn above_tangent(&self, place: &Vec3, (distance, outward): (f64, Vec3), way: &Vec3) -> f64 {
+        let rise = outward.dot(way);
+        (self.away)(&(place - way * rise.signum())).0 - (distance - rise.abs())
+    }
+
+    /// What a part of a surface keeps, and how far its middle is, with the direction to it.
+    fn part(&mut self, part: &Part) -> (f64, (f64, Vec3)) {
         self.look();
         let (distance, outward) = (self.away)(part.center());
         let by_point = distance - part.reach_along(&outward);
         let by_plane = self.within.filter(|_| by_point < self.wanted).map(|HalfSpace { outward, level }| {
             outward.dot(part.center()) - level - part.reach_along(&outward)
         });
-        [by_plane.map_or(by_point, |least| least.max(by_point)), distance]
+        (by_plane.map_or(by_point, |least| least.max(by_point)), (distance, outward))
     }
 
-    /// Whether a part keeps what is wanted; its halves where need be.
-    pub(super) fn takes_part(&mut self, part: &Part, halves: &mut dyn FnMut(&mut Self) -> bool) -> bool {
-        let [least, middle] = self.part(part);
+    /// Whether a part keeps what is wanted; its halves where need be, by the tangent of the distance in the middle.
+    pub(super) fn takes_part(
+        &mut self,
+        part: &Part,
+        halves: &mut dyn FnMut(&mut Self, (f64, Vec3)) -> bool,
+    ) -> bool {
+        let (least, middle) = self.part(part);
         self.is_settled(least)
             || self.takes(least)
-            || middle >= self.wanted && self.may_look() && halves(self)
+            || middle.0 >= self.wanted && self.may_look() && halves(self, middle)
     }
 }
 

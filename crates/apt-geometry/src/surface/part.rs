@@ -156,6 +156,8 @@ pub(super) struct Part {
     radius: f64,
     /// No place is farther from the tangent plane in the middle.
     sag: f64,
+    /// By how much less that is for the halves of each side.
+    eased: [f64; 2],
     /// The part lies between two pairs of planes: their unit normals, in the tangent plane, and how far they are from the centre.
     strips: [(Vec3, f64); 2],
     /// Greatest curvature seen from the natural side (positive where the surface curves away from it), and from the other.
@@ -173,8 +175,8 @@ pub(super) struct Part {
     /// The side to halve, if that is not a matter of trial.
     halved: Option<usize>,
     halves: Later<Box<[Part; 2]>>,
-    /// Those of the longer side, where that counts and not how the surface bends.
-    shorter: Later<Box<[Part; 2]>>,
+    /// Those of each side, where it counts how far they are from a body and not how the surface bends.
+    shorter: [Later<Box<[Part; 2]>>; 2],
     /// The forms of all its places, where it is smooth and does not end.
     form: Later<Option<Box<Bent>>>,
 }
@@ -502,10 +504,14 @@ impl Part {
         if let Some(Cap { curvature, spread }) = sheet.cap(&rectangle) {
             bounds = Bounds { curvature, least: curvature, spread, ..bounds };
         }
-        let sag = bounds.normal.map_or(radius, |normal| {
+        let (sag, eased) = bounds.normal.map_or((radius, [0.0; 2]), |normal| {
             let off = |bend: &Box3| bend.dot(&normal).magnitude();
-            let sag = 0.5 * (off(duu) * hu * hu + off(dvv) * hv * hv) + off(duv) * hu * hv;
-            if sag.is_nan() || *split { radius } else { sag.min(radius) }
+            let [by_u, by_v] = [0.5 * off(duu) * hu * hu, 0.5 * off(dvv) * hv * hv];
+            let by_both = off(duv) * hu * hv;
+            let sag = by_u + by_v + by_both;
+            let is_told = sag.is_finite() && !split;
+            let eased = [by_u, by_v].map(|own| 0.75 * own + 0.5 * by_both);
+            if is_told { (sag.min(radius), eased) } else { (radius, [0.0; 2]) }
         });
         let strips = strips(bounds.normal.filter(|_| !split), [&u, &v], bent);
         for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
@@ -524,6 +530,7 @@ impl Part {
             center: jet.point,
             radius,
             sag,
+            eased,
             strips,
             curvature: bounds.curvature,
             least: bounds.least,
@@ -533,7 +540,7 @@ impl Part {
             ends: *ends,
             halved: (!tried).then_some(usize::from(sizes[1] > sizes[0])),
             halves: Later::new(),
-            shorter: Later::new(),
+            shorter: [Later::new(), Later::new()],
             form: Later::new(),
         }
     }

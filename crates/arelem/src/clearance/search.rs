@@ -139,7 +139,7 @@ pub(super) fn lies_above(
     let contact = Contact { clearance, gradient: foot.normal * side, tool: *point, surface: foot.point };
     let best = Best { value: clearance, contact: Some(contact), piece: 0 };
     let search = Search { tool, surface, side, tip, best, piece: 0 };
-    search.certified_along_axis(level, &memory.courses, Effort::All) == Certificate::Holds
+    search.certified_along_axis(level, &memory.courses) == Certificate::Holds
 }
 
 /// The contact that the search finds everywhere; nothing is proven of it. At an edge of the surface it is exactly there.
@@ -234,15 +234,14 @@ impl Search<'_> {
             if self.is_on_crease(slack) {
                 return (Shown::Within(slack), by_parts);
             }
-            // Parts of the surface that showed the last contact take less than many patches.
-            let effort = if by_parts.showed() { Effort::Few } else { Effort::All };
-            let lying = self.certified_along_axis(level, courses, effort);
-            let is_asked = lying == Certificate::Undecided && by_parts.showed();
+            // Parts of the surface that showed the last contact mostly show the next one, with hardly any that are new.
+            let is_asked = by_parts.showed();
             if is_asked && self.is_clear(level) {
                 return (Shown::Within(slack), by_parts);
             }
-            let (found, known) = match lying {
+            let (found, known) = match self.certified_along_axis(level, courses) {
                 Certificate::Undecided => self.certified(level, proof, by_parts, is_asked),
+                Certificate::Holds if is_asked => (Certificate::Holds, by_parts.in_vain()),
                 found => (found, by_parts),
             };
             by_parts = known;

@@ -100,17 +100,17 @@ impl Core {
 
 impl Search<'_> {
     /// What balls about the axis, and patches where these do not, show of a level for a contact on the flank; they are not asked for some
-    /// contacts after they have been in vain. With little effort few of these patches are looked at.
-    pub(super) fn certified_along_axis(&self, level: f64, courses: &Courses, effort: Effort) -> Certificate {
+    /// contacts after they have been in vain.
+    pub(super) fn certified_along_axis(&self, level: f64, courses: &Courses) -> Certificate {
         if !self.surface.has_charts() || !courses.is_worthwhile() {
             return Certificate::Undecided;
         }
-        let found = self.by_balls(level, courses, effort);
+        let found = self.by_balls(level, courses);
         courses.note(found != Certificate::Undecided);
         found
     }
 
-    fn by_balls(&self, level: f64, courses: &Courses, effort: Effort) -> Certificate {
+    fn by_balls(&self, level: f64, courses: &Courses) -> Certificate {
         let (Some(core), Some(contact)) = (Core::of(self.tool), self.best.contact) else {
             return Certificate::Undecided;
         };
@@ -141,7 +141,7 @@ impl Search<'_> {
         let Self { tool, surface, side, tip, .. } = *self;
         let bases = Bases::about(tool, tip, (surface, side), &contact.tool);
         let face = Face { surface, side };
-        certify(face, tool, tip, level, &mut Proof::of(patches), Some(&bases), effort)
+        certify(face, tool, tip, level, &mut Proof::of(patches), Some(&bases), Effort::All)
     }
 
     /// The pieces of the axis of whose balls a level is not shown, none longer than `least`.
@@ -403,7 +403,7 @@ mod tests {
                 let least = least_of_flank(&search);
                 for (level, is_level) in [(contact.clearance - 1e-7, true), (contact.clearance + 1e-3, false)]
                 {
-                    match search.certified_along_axis(level, &Courses::default(), Effort::All) {
+                    match search.certified_along_axis(level, &Courses::default()) {
                         Certificate::Holds => {
                             assert!(is_level && least >= level, "{k}, {numbers:?}: {least} below {level}");
                             shown += 1;
