@@ -218,3 +218,33 @@ fn a_barrel_that_follows_a_ball_has_its_angle_at_the_contact() {
         }
     }
 }
+
+/// Inside an ellipsoid that the top of a barrel and its arc touch at once no bound of one contact shows all, and circles about the arc do. Places
+/// of these, which are outside of the tool, are none of its.
+#[test]
+fn a_barrel_that_touches_a_hollow_at_two_places_is_read_closely() {
+    let hollow = quadric([
+        0.06614692768663992,
+        0.0008863881793618935,
+        0.13829445350677125,
+        1.4633751965988875,
+        -0.002639682580704473,
+        0.01746953577405721,
+        -0.007644685435752386,
+        0.1500487509904771,
+        -0.014867742736422149,
+        -0.49310482664104327,
+    ]);
+    let numbers =
+        [0.8467886636148241, 1.0210002007888628, -0.5976058689814507, 0.6968801654050862, 0.0, 0.0, 2.345];
+    let cutter = Cutter::from_numbers(&numbers, 1.0).expect("cutter");
+    let axis = v(0.6680636576480471, 0.3239511822090283, 0.6698854983318313).normalize();
+    let tool = Tool::new(cutter, axis);
+    let role = Role { side: -1.0, ..touched(&hollow) };
+    for share in [0.9, 0.95, 0.99, 1.0, 1.01] {
+        let tip = v(-1.31384, -0.51094, 1.64015) + v(-0.00907, -0.02922, -0.01743) * share;
+        let found = gauge(&role).contact(&tool, &tip).clearance;
+        let read = read_by_verifier(&role, cutter, ToolPosition { tip, axis });
+        assert!((read - found).abs() < 1e-9, "{share}: {read} and {found}");
+    }
+}

@@ -320,14 +320,15 @@ impl Search<'_> {
 
     /// Takes into account how much nearer than the best candidate a circle could be for all that is known inside a convex hollow.
     fn prove_circle(&mut self, p: Meridian, radius: f64) -> Option<()> {
-        let lowest = self.lowest_on_circle(p, radius)?;
+        let lowest = self.lowest_on_circle(p, radius, true)?;
         self.gap = self.gap.max(self.best_value() - lowest);
         Some(())
     }
 
     /// Inside a convex hollow no place of a circle is nearer than the best candidate or than this: the arc between two samples lies
-    /// in the triangle with the meeting point of its tangents, and a concave function is least at a corner of it.
-    fn lowest_on_circle(&mut self, p: Meridian, radius: f64) -> Option<f64> {
+    /// in the triangle with the meeting point of its tangents, and a concave function is least at a corner of it. Places of a circle of the
+    /// tool are candidates.
+    fn lowest_on_circle(&mut self, p: Meridian, radius: f64, is_of_tool: bool) -> Option<f64> {
         let (at_axis, _) = self.distance(&self.place([0.0, p[1]], 0.0))?;
         if p[0] <= 0.0 {
             return Some(at_axis - radius);
@@ -342,6 +343,7 @@ impl Search<'_> {
             let phi = step * k as f64;
             arcs.push((phi, self.on_circle(p, phi)?.0, step, self.on_circle(p, phi + step)?.0));
         }
+        let mut least = arcs.iter().map(|arc| arc.1 - radius).fold(f64::INFINITY, f64::min);
         let mut lowest = f64::INFINITY;
         let mut budget = ARC_BUDGET;
         while let Some((phi, first, width, last)) = arcs.pop() {
@@ -349,18 +351,19 @@ impl Search<'_> {
             let corner = [p[0] / half.cos(), p[1]];
             let (at_corner, normal) = self.distance(&self.place(corner, phi + half))?;
             let bound = first.min(last).min(at_corner) - radius;
-            if self.best_value() - bound <= slack
-                || (radius > 0.0 && !self.fan_near(&normal, phi + half, half))
-            {
+            let is_no_nearer = self.best_value() - bound <= slack;
+            if is_no_nearer || (radius > 0.0 && !self.fan_near(&normal, phi + half, half)) {
                 continue;
             }
-            if budget == 0 {
+            // Of a circle that is nearer no more is told than how near it is.
+            if budget == 0 || least - bound <= slack {
                 lowest = lowest.min(bound);
                 continue;
             }
             budget -= 1;
             let (middle, _) = self.on_circle(p, phi + half)?;
-            if middle - radius < self.best_value() {
+            least = least.min(middle - radius);
+            if is_of_tool && middle - radius < self.best_value() {
                 self.accept(p, phi + half, radius)?;
             }
             arcs.push((phi, first, half, middle));

@@ -13,8 +13,8 @@ const CIRCLES: u32 = 6;
 const CIRCLES_OF_SADDLE: u32 = 16;
 /// Golden sections of what is between two circles: the distance is off by the square of what is left, a ten-millionth.
 const SECTIONS: u32 = 34;
-/// Stretches of the arc that are looked at for a proof; what is left then is error.
-const STRETCHES: u32 = 60;
+/// Stretches of the arc that are halved for a proof; what is left then is error.
+const STRETCHES: u32 = 80;
 
 /// The arc of a corner whose centre is beyond the axis.
 #[derive(Debug, Clone, Copy)]
@@ -92,30 +92,32 @@ impl Search<'_> {
     }
 
     /// Inside a convex hollow: a stretch of the arc lies in the triangle of its ends and the place where its tangents meet, and so do the
-    /// circles of its places between theirs, on which a concave function is least.
+    /// circles of its places between theirs, on which a concave function is least. The stretch that could be nearest is halved.
     pub(super) fn prove_bulge(&mut self, bulge: &Bulge) -> Option<()> {
         let slack = 1e-12 * self.tool.profile.reach();
-        let mut open = vec![bulge.ends];
-        let mut looks = 0;
-        while let Some([from, to]) = open.pop() {
-            let ends = [from, to].map(|angle| bulge.at(angle));
-            let corner = meeting(ends, bulge.center, bulge.radius);
-            let lowest = match corner {
-                Some(corner) => self.lowest_on_circle(corner, 0.0)?,
-                None => f64::NEG_INFINITY,
-            };
-            looks += 1;
-            if self.best_value() - lowest <= slack {
-                continue;
+        let mut open = vec![(bulge.ends, self.lowest_beyond(bulge, bulge.ends)?)];
+        for _ in 0..STRETCHES {
+            let Some(worst) = (0..open.len()).min_by(|a, b| open[*a].1.total_cmp(&open[*b].1)) else { break };
+            if self.best_value() - open[worst].1 <= slack {
+                break;
             }
-            if looks > STRETCHES {
-                self.gap = self.gap.max(self.best_value() - lowest);
-                continue;
-            }
+            let ([from, to], _) = open.swap_remove(worst);
             let middle = 0.5 * (from + to);
             self.prove_circle(bulge.at(middle), 0.0)?;
-            open.extend([[middle, to], [from, middle]]);
+            for ends in [[from, middle], [middle, to]] {
+                open.push((ends, self.lowest_beyond(bulge, ends)?));
+            }
         }
+        let lowest = open.iter().map(|stretch| stretch.1).fold(f64::INFINITY, f64::min);
+        self.gap = self.gap.max(self.best_value() - lowest);
         Some(())
+    }
+
+    /// No place of the circle where the tangents at both ends of a stretch meet is nearer than this, or than the best candidate.
+    fn lowest_beyond(&mut self, bulge: &Bulge, ends: [f64; 2]) -> Option<f64> {
+        match meeting(ends.map(|angle| bulge.at(angle)), bulge.center, bulge.radius) {
+            Some(corner) => self.lowest_on_circle(corner, 0.0, false),
+            None => Some(f64::NEG_INFINITY),
+        }
     }
 }
