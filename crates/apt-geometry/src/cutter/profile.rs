@@ -350,7 +350,7 @@ mod tests {
         near((radius + 2.5).hypot(height - 2.9), 3.0);
         assert!(profile.is_barrel() && (profile.bottom_angle() - profile.fan[0]).abs() < 1e-12);
         // Where the flank begins before that the tip sees none of the arc.
-        let hidden = cutter(&[1.0, 3.0, -2.4, 5.0, 0.0, 0.0, 6.0]).profile();
+        let hidden = cutter(&[1.0, 3.0, -2.4, 2.9, 0.0, 0.0, 6.0]).profile();
         assert!(
             hidden.arc == 0.0 && hidden.lower == hidden.upper && hidden.lower.radius == 0.5,
             "{hidden:?}"
