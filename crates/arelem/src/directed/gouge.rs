@@ -217,17 +217,19 @@ mod tests {
 
     use crate::{
         error::{MotionWarning, RoleName},
-        tests::{Program, cylinder, line, motion, plane, quadric, v},
+        tests::{Program, cylinder, line, motion, named, plane, quadric, v},
     };
 
-    /// A tool of radius .75 inside the ellipse x²/16 + y² = 1, whose ends have a radius of curvature of .25.
+    /// A tool of radius .75 inside the ellipse x²/16 + y² = 1, whose ends have a radius of curvature of .25. The ellipse
+    /// is the part surface: in a corner of that the path ends.
     fn into_the_narrow_end(check: bool) -> (Program, u16) {
         let ellipse = quadric([1.0 / 16.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let floor = plane(0.0, 0.0, 1.0, 0.0);
         let mut p = Program::new();
         p.tolerance(0.001, 0.001).cutter(&[1.5]).from(0.0, 0.0, 0.0).run(&MotionCommand::GougeCheck(check));
-        p.indirv(0.0, -1.0, 0.0).go(&[(Relation::To, &ellipse), (Relation::To, &plane(0.0, 0.0, 1.0, 0.0))]);
-        let command = motion(Turn::Left, &ellipse, &[(Relation::On, 1, &line(3.9, 0.0, 3.9, 1.0))]);
-        p.side(DriveSide::Left);
+        p.indirv(0.0, -1.0, 0.0).go(&[(Relation::To, &ellipse), (Relation::To, &floor)]);
+        let command = motion(Turn::Left, &floor, &[(Relation::On, 1, &line(3.9, 0.0, 3.9, 1.0))]);
+        p.run(&MotionCommand::PartSurface(named(&ellipse))).part_side(PartSide::Offset).side(DriveSide::On);
         let failure = p.attempt(&command).expect_err("the end is narrower than the tool");
         (p, failure.apt3().expect("a number"))
     }
@@ -240,7 +242,7 @@ mod tests {
             .warnings
             .iter()
             .filter_map(|warning| match warning {
-                MotionWarning::Gouge { role: RoleName::Drive, depth, contact, ahead: true } => {
+                MotionWarning::Gouge { role: RoleName::Part, depth, contact, ahead: true } => {
                     Some((*depth, *contact))
                 }
                 _ => None,

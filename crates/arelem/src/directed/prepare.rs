@@ -25,8 +25,6 @@ const ALONG_AXIS_COSINE: f64 = 0.997;
 const SAME_AXIS: f64 = 1e-12;
 /// How many times the width of the bands ahead of the start it is looked for another contact.
 const CORNER_AHEAD: f64 = 0.25;
-/// Share of the band by which the clearances at two places may differ that the tool touches at once.
-const SAME_CLEARANCE: f64 = 0.01;
 /// Sine between the normals of two contacts above which they are not the same one.
 const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Sine below which the side of the drive surface is not judged.
@@ -89,7 +87,16 @@ pub(super) fn prepare<'a>(
     let mut drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn)?;
-    let mut tangent = line_of_motion(&part_contact, &drive_contact, &wanted, &tip)?;
+    let mut tangent = match line_of_motion(&part_contact, &drive_contact, &wanted, &tip) {
+        Err(failure) => {
+            let contacts = [part_contact, drive_contact];
+            let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
+            let (along, contact) = place.decided(&wanted, failure)?;
+            drive_contact = contact;
+            along
+        }
+        Ok(tangent) => tangent,
+    };
     checked?;
     // Where the tool is in tolerance on both sides, TLLFT and TLRGT tell which.
     if misplaced(state.drive_side, &tool, &drive_contact, &tangent).is_some()
@@ -99,7 +106,8 @@ pub(super) fn prepare<'a>(
     {
         (drive, drive_contact, tangent) = (other, contact, along);
     }
-    let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts: [part_contact, drive_contact] };
+    let place =
+        Corner { tool: &tool, tip, roles: [&part, &drive], contacts: [part_contact, drive_contact], size };
     if let Some((along, contact)) = place.way_out(&tangent, &wanted) {
         (tangent, drive_contact) = (along, contact);
     }
@@ -275,9 +283,16 @@ struct Corner<'a> {
     tip: Vec3,
     roles: [&'a Working; 2],
     contacts: [Contact; 2],
+    size: f64,
 }
 
 impl Corner<'_> {
+    /// Where the direction asked for is square to the line of motion that is measured: the one along another contact, which it decides.
+    fn decided(&self, wanted: &Vec3, failure: MotionFailure) -> Result<(Vec3, Contact), MotionFailure> {
+        let MotionFailure::DirectionUndetermined { tangent, .. } = failure else { return Err(failure) };
+        [tangent, -tangent].iter().find_map(|along| self.way_out(along, wanted)).ok_or(failure)
+    }
+
     /// Where the tool touches a surface at two places: the line of motion along the other one than that which is measured, if this
     /// one leads it against the other, or less than the other in the direction asked for; and the contact with the drive surface
     /// there. The line of motion must lead away from the one that is measured.
@@ -296,9 +311,10 @@ impl Corner<'_> {
         let is_other =
             |k: usize| self.contacts[k].gradient.cross(&others[k].gradient).norm() > OTHER_CONTACT_SINE;
         let is_blocked = |k: usize| others[k].gradient.dot(tangent) < 0.0;
+        // Another place whose clearance is in the band is touched, too.
         let touches_both = |k: usize| {
             let there = others[k].clearance - others[k].gradient.dot(&step);
-            (there - self.contacts[k].clearance).abs() <= SAME_CLEARANCE * self.roles[k].band()
+            self.roles[k].holds(there, self.size)
         };
         [[true, false], [false, true], [true, true]].into_iter().find_map(|turns| {
             let turning = || (0..2).filter(|k| turns[*k]);

@@ -45,6 +45,47 @@ fn a_motion_out_of_a_corner_goes_along_the_wall_that_leads_in_its_direction() {
     }
 }
 
+/// Slope of the legs of a corner y = s·|x| into which a path goes, and in which it turns by 127°, more than a right angle.
+const STEEP: f64 = 2.0;
+
+/// A tool of radius 0.5 in such a corner or on its left leg, going along the walls in a direction, to where x is a half.
+fn along_steep_walls(in_corner: bool, ahead: [f64; 2]) -> Program {
+    let walls = quadric([-STEEP * STEEP, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let length = STEEP.hypot(1.0);
+    let along_normal = 0.5 / length;
+    let from = if in_corner {
+        v(0.0, 0.5 * length, 0.0)
+    } else {
+        v(-1.0 + along_normal * STEEP, STEEP + along_normal, 0.0)
+    };
+    let mut program = Program::new();
+    program.cutter(&[1.0]).tolerance(0.001, 0.001).from(from.x, from.y, 0.0);
+    program.run(&MotionCommand::PartSurface(named(&ground())));
+    program.side(DriveSide::Left).indirv(ahead[0], ahead[1], 0.0);
+    program.drive(Turn::Forward, &walls, Relation::On, &plane(1.0, 0.0, 0.0, 0.5)).verified();
+    let foot = 0.5 + along_normal * STEEP;
+    program.ends(0.5, foot * STEEP + along_normal, 0.0, 0.005);
+    program
+}
+
+/// The path goes on along the other leg, though that leads back rather than on: the tool keeps to its side of both.
+#[test]
+fn a_path_goes_on_along_the_other_leg_of_a_corner_that_turns_it_by_more_than_a_right_angle() {
+    let program = along_steep_walls(false, [1.0, -STEEP]);
+    let points = &program.last().points;
+    let lowest = points.iter().map(|point| point.tip.y).fold(f64::INFINITY, f64::min);
+    assert!((lowest - 0.5 * STEEP.hypot(1.0)).abs() < 0.005, "{lowest}");
+    assert!(points.len() <= 4, "{} vectors", points.len());
+}
+
+/// The direction asked for is square to one leg, or against its way into the corner: the other leg is meant.
+#[test]
+fn a_direction_that_leads_out_of_a_steep_corner_is_followed() {
+    for ahead in [[1.0, 1.0], [STEEP, 1.0], [1.0, 0.45], [0.2, 1.0], [1.0, STEEP]] {
+        along_steep_walls(true, ahead);
+    }
+}
+
 /// It stands in the hollow of its drive surface and touches it with its corner and its top.
 #[test]
 fn a_bull_nose_leaves_a_corner_of_a_hollow_cylinder_along_its_other_side() {

@@ -96,7 +96,7 @@ pub(crate) fn quadric(coefficients: [f64; 10]) -> Geometry {
     Geometry::Quadric(Quadric { coefficients })
 }
 
-fn named(geometry: &Geometry) -> NamedSurface {
+pub(crate) fn named(geometry: &Geometry) -> NamedSurface {
     NamedSurface { name: String::new(), geometry: geometry.clone() }
 }
 

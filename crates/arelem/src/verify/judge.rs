@@ -13,6 +13,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
     clearance::{Clearance, Reading, Surface},
+    hand::Hand,
     span::{Extremes, Readings, Span, between},
     stop,
     tool::Profile,
@@ -481,6 +482,7 @@ impl Judge<'_> {
         let mut heading = self.sequence.forward;
         // The direction in which the path comes to the vertex, if it runs along an arc over the vector that leads there.
         let mut arriving = heading;
+        let mut hand = Hand::default();
         let single = self.positions.len() == 2;
         for vector in 0..self.positions.len() - 1 {
             let (from, to) = (self.positions[vector], self.positions[vector + 1]);
@@ -510,6 +512,15 @@ impl Judge<'_> {
                     // The path of a turning tool is no line across both normals: the axis leads it aside.
                     let turns = from.axis != to.axis;
                     sine = direction.dot(&along).max(if turns || leaves { sine } else { f64::NEG_INFINITY });
+                    let at_end = [part.normal_at(vector + 1)?, drive.normal_at(vector + 1)?];
+                    let mut followed = normals;
+                    if sine <= 0.0
+                        && !turns
+                        && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end)
+                    {
+                        (sine, begins, followed) = (direction.dot(&along), along, normals);
+                    }
+                    hand.follow(followed, &begins);
                 }
             }
             if sine <= 0.0 {

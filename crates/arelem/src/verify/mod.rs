@@ -11,6 +11,7 @@ mod clearance;
 mod directrix;
 mod followed;
 mod halves;
+mod hand;
 mod judge;
 mod leaning;
 mod models;

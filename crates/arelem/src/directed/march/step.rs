@@ -6,6 +6,7 @@ mod at_corner;
 mod attempt;
 mod corner;
 mod exhaustive;
+mod hand;
 mod longest;
 mod of_use;
 mod overlong;
@@ -15,7 +16,7 @@ mod window;
 
 use apt_geometry::{Vec3, patience::Patience};
 
-use self::{overlong::Overlong, trend::Trend};
+use self::{hand::Hand, overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex};
 use crate::{
     bound::{Readings, Record},
@@ -77,6 +78,12 @@ pub(super) struct Stepper<'a> {
     latest: Option<Trial>,
     /// Where the path last turned on the spot, and its direction until then.
     turned: Option<(Vec3, Vec3)>,
+    /// On which hand the path keeps both surfaces.
+    hand: Hand,
+    /// The hand that the next vector has to keep, out of such a corner.
+    kept_hand: Option<Hand>,
+    /// Where the path last turned by more than a right angle.
+    turned_sharply: Option<Vec3>,
     /// The last vector; zero before the first.
     last: Vec3,
     /// Where the path came from farther off than it may turn on the spot.
@@ -139,6 +146,9 @@ impl<'a> Stepper<'a> {
             trend: Trend::default(),
             latest: None,
             turned: None,
+            hand: Hand::default(),
+            kept_hand: None,
+            turned_sharply: None,
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
@@ -162,16 +172,18 @@ impl<'a> Stepper<'a> {
         if let Some(next) = self.around(&corner, here, cap) {
             return self.noted(here, Ok(next));
         }
+        if let Some(next) = self.around_sharply(&corner, here, cap)? {
+            return self.noted(here, Ok(next));
+        }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
         self.trend.forget();
         let level = self.onward(here, cap, Places::Level);
         if matches!(level, Ok(_) | Err(MotionFailure::Cancelled)) {
             return self.noted(here, level);
         }
-        match self.anywhere_onward(&corner, here, cap)? {
-            Some(next) => self.noted(here, Ok(next)),
-            None => Err(corner.explained(self.prepared, here, failure)),
-        }
+        let next = self.anywhere_onward(&corner, here, cap)?;
+        let found = next.ok_or_else(|| corner.explained(self.prepared, here, failure));
+        self.noted(here, found)
     }
 
     /// Remembers the direction of a vector.
@@ -181,6 +193,7 @@ impl<'a> Stepper<'a> {
         found: Result<Vertex, MotionFailure>,
     ) -> Result<Vertex, MotionFailure> {
         if let Ok(next) = &found {
+            self.hand.follow(here, next);
             self.last = next.tip - here.tip;
             if !self.is_where_it_arrived(&next.tip) {
                 let (vector, tangent) = (self.last, arrival(here, next));
@@ -192,6 +205,11 @@ impl<'a> Stepper<'a> {
 
     fn bands(&self) -> f64 {
         self.prepared.part.band() + self.prepared.drive.band()
+    }
+
+    /// How long a vector may be to round a corner of the path.
+    fn rounding(&self) -> f64 {
+        CORNER_BANDS * self.bands()
     }
 
     /// True if all that the path has done since it arrived is to turn on the spot.
@@ -212,7 +230,7 @@ impl<'a> Stepper<'a> {
     /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
     /// the spot, against its direction before that.
     fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
-        let near = CORNER_BANDS * self.bands();
+        let near = self.rounding();
         tangent.dot(&self.last) < 0.0
             || self.kinks_back(here, tangent)
             || self

@@ -118,6 +118,7 @@ impl Stepper<'_> {
         let forward = chord.dot(&here.tangent) > 0.5 * reached;
         if !forward
             || self.kinks_back(here, &chord)
+            || self.changes_hand(&chord, &vertex)
             || reached <= LEAST_VECTOR * self.prepared.size
             || vertex.tangent.dot(&here.tangent) < least_cosine
         {

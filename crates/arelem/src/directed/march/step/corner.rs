@@ -18,20 +18,20 @@ const PROBES: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
 /// Sine between the normals of two contacts above which they are not the same one.
 const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Cosine between two directions above which both need not be tried.
-const SAME_TANGENT_COSINE: f64 = 0.999;
+pub(super) const SAME_TANGENT_COSINE: f64 = 0.999;
 
 /// What is seen from a place without a way on.
 pub(super) struct Corner {
-    places: Vec<SecondPlace>,
+    pub(super) places: Vec<SecondPlace>,
     /// Directions in which the path may go on: straight, then along a second contact.
     directions: Vec<Vec3>,
 }
 
 /// A place ahead at which the tool touches a surface elsewhere.
-struct SecondPlace {
-    ahead: Vertex,
+pub(super) struct SecondPlace {
+    pub(super) ahead: Vertex,
     /// Whether the contacts with part and drive surface are others.
-    others: [bool; 2],
+    pub(super) others: [bool; 2],
 }
 
 impl Corner {

@@ -1,0 +1,133 @@
+//! On which hand a path keeps part and drive surface, through corners that turn it by more than a right angle, too.
+
+use apt_geometry::Vec3;
+
+use super::{
+    Places, Stepper,
+    corner::{Corner, SAME_TANGENT_COSINE},
+};
+use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
+
+/// Sine between the gradients of both clearances below which they do not tell a hand: where surfaces are nearly tangent paths cross, and what
+/// goes straight on there changes it.
+const TELLING_SINE: f64 = 0.1;
+/// Cosine between the gradients at both ends of a vector above which the tool touches at the same place (30°).
+const SAME_CONTACT_COSINE: f64 = 0.87;
+
+/// The sign of the triple product of the gradients of both clearances and the direction of the path. The tool keeps to one side of each
+/// surface, so its path is an edge of what it may reach, and along an edge this sign stays: where the gradient a of one clearance gives
+/// way to b at a second place of contact, and p is that of the other one, the path comes along s·p×a and goes on along s·p×b. It comes to b,
+/// b·(s·p×a) < 0, which says the same as a·(s·p×b) > 0: it leads away from a, by whatever angle it turns.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Hand {
+    sign: Option<f64>,
+    /// Whether the tool has come to touch the drive surface at another place on the last vector, where the tangent leads back.
+    is_beyond_corner: bool,
+}
+
+impl Hand {
+    /// The hand at a vertex, by its tangent.
+    fn at(vertex: &Vertex) -> Self {
+        let across = vertex.part.gradient.cross(&vertex.drive.gradient);
+        let is_told = across.norm() >= TELLING_SINE;
+        Self { sign: is_told.then(|| across.dot(&vertex.tangent).signum()), is_beyond_corner: false }
+    }
+
+    /// Goes on along a vector. Where the tool touches at another place at its end the tangent there, which only goes on within a right angle,
+    /// does not tell.
+    pub(super) fn follow(&mut self, from: &Vertex, to: &Vertex) {
+        let before = self.or_at(from);
+        let is_same = |a: &Contact, b: &Contact| a.gradient.dot(&b.gradient) >= SAME_CONTACT_COSINE;
+        let same = [is_same(&from.part, &to.part), is_same(&from.drive, &to.drive)];
+        let now = Self::at(to);
+        let is_kept = same.contains(&false) && before.sign.is_some() && now.sign.is_some();
+        let is_beyond_corner = is_kept && before.sign != now.sign && same == [true, false];
+        *self = Self { is_beyond_corner, ..if is_kept { before } else { now } };
+    }
+
+    fn or_at(self, vertex: &Vertex) -> Self {
+        if self.sign.is_some() { self } else { Self::at(vertex) }
+    }
+
+    /// The direction of the path along two contacts.
+    fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
+        let across = part.gradient.cross(&drive.gradient);
+        (across.norm() >= TELLING_SINE).then(|| across.normalize() * self.sign.unwrap_or_default())
+    }
+}
+
+impl Stepper<'_> {
+    /// The next vertex along the second contact of a corner of the drive surface that turns the path by more than a right angle: where it goes on on the same hand.
+    /// Two such corners are not as near as the tool may round one. Errors: cancelled.
+    pub(super) fn around_sharply(
+        &mut self,
+        corner: &Corner,
+        here: &mut Vertex,
+        cap: f64,
+    ) -> Result<Option<Vertex>, MotionFailure> {
+        let is_near = |at: Vec3| (here.tip - at).norm() <= self.rounding();
+        if self.prepared.attitude.turns() || self.turned_sharply.is_some_and(is_near) {
+            return Ok(None);
+        }
+        for direction in self.sharp_directions(corner, here) {
+            let known = (self.last, self.arrived, self.turned);
+            (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
+            let turned = Vertex { tangent: direction, ..*here };
+            self.kept_hand = Some(self.hand.or_at(here));
+            let found = self.in_any_place(&turned, cap);
+            self.kept_hand = None;
+            if let Some(next) = found? {
+                (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
+                *here = turned;
+                return Ok(Some(next));
+            }
+            (self.last, self.arrived, self.turned) = known;
+        }
+        Ok(None)
+    }
+
+    /// True if a vector would leave the hand that is to be kept on it: it leads back along where the path came from.
+    pub(super) fn changes_hand(&self, chord: &Vec3, to: &Vertex) -> bool {
+        let along = self.kept_hand.and_then(|hand| hand.along(&to.part, &to.drive));
+        along.is_some_and(|along| along.dot(chord) <= 0.0)
+    }
+
+    /// Directions on the same hand against that of the path: along what is measured here, if the vector that led here ended beyond the corner,
+    /// and along each second contact with the drive surface.
+    fn sharp_directions(&self, corner: &Corner, here: &Vertex) -> Vec<Vec3> {
+        let hand = self.hand.or_at(here);
+        let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
+        let seconds =
+            corner.places.iter().filter(|place| place.others == [false, true]).filter_map(|place| {
+                let along = hand.along(&here.part, &place.ahead.drive)?;
+                (here.drive.gradient.dot(&along) >= 0.0).then_some(along)
+            });
+        let mut found: Vec<Vec3> = Vec::new();
+        for along in own.into_iter().chain(seconds) {
+            let is_known = found.iter().any(|known| known.dot(&along) > SAME_TANGENT_COSINE);
+            if along.dot(&here.tangent) < 0.0 && !is_known {
+                found.push(along);
+            }
+        }
+        found
+    }
+
+    /// A vector that goes on along the tangent of a vertex, wherever in the bands it ends. Errors: cancelled.
+    fn in_any_place(&mut self, here: &Vertex, cap: f64) -> Result<Option<Vertex>, MotionFailure> {
+        for places in [Places::Limits, Places::Level] {
+            self.trend.forget();
+            match self.onward(here, cap, places) {
+                Ok(next) if next.tangent.dot(&here.tangent) >= 0.0 => return Ok(Some(next)),
+                Err(MotionFailure::Cancelled) => return Err(MotionFailure::Cancelled),
+                _ => {}
+            }
+        }
+        self.trend.forget();
+        let Some((_, found)) = self.longest_of_all(here, &[here.tangent], cap)? else { return Ok(None) };
+        self.follow(&here.tip, &found);
+        self.trend.forget();
+        let next = found.vertex;
+        self.latest = Some(found);
+        Ok(Some(next))
+    }
+}

@@ -1,0 +1,57 @@
+//! On which hand a path keeps part and drive surface: what tells forward from back in a corner that turns it by more than a right angle.
+
+use apt_geometry::Vec3;
+
+/// Sine between part and drive normal below which they do not tell a hand: where surfaces are nearly tangent paths cross, and what goes
+/// straight on there changes it.
+const TELLING_SINE: f64 = 0.1;
+/// Cosine between normals at both ends of a vector above which the tool touches at the same place (30°).
+const SAME_CONTACT_COSINE: f64 = 0.87;
+
+/// The sign of part normal × drive normal · direction. The tool keeps to one side of each surface, so that its path is an edge of what it may
+/// reach, and the sign stays along an edge. Where a normal a gives way to b at a second place of contact the path comes along s·p×a to b,
+/// b·(s·p×a) < 0, which says the same as a·(s·p×b) > 0: along s·p×b it leaves the first place, whatever angle that turns it by.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Hand {
+    sign: Option<f64>,
+    /// Part and drive normal where the path was seen last.
+    normals: Option<[Vec3; 2]>,
+}
+
+/// Part normal × drive normal, if it tells.
+fn across(normals: &[Vec3; 2]) -> Option<Vec3> {
+    Some(normals[0].cross(&normals[1])).filter(|across| across.norm() >= TELLING_SINE)
+}
+
+/// Whether both are normals at one place of contact, or at places next to each other.
+fn is_same(a: &[Vec3; 2], b: &[Vec3; 2]) -> bool {
+    (0..2).all(|k| a[k].dot(&b[k]) >= SAME_CONTACT_COSINE)
+}
+
+impl Hand {
+    /// Goes on to a vertex, where the path is taken to go on along a direction.
+    pub(super) fn follow(&mut self, normals: [Vec3; 2], along: &Vec3) {
+        let now = across(&normals).map(|across| across.dot(along).signum());
+        let is_continued = self.normals.is_none_or(|before| is_same(&before, &normals));
+        if is_continued || now.is_none() || self.sign.is_none() {
+            self.sign = now;
+        }
+        self.normals = Some(normals);
+    }
+
+    /// The direction of the path on the same hand along normals.
+    fn along(&self, normals: &[Vec3; 2]) -> Option<Vec3> {
+        Some(across(normals)?.normalize() * self.sign?)
+    }
+
+    /// The direction in which the path goes on from a corner, with the normals of what it follows. The tool touches with the normals `there`,
+    /// and another contact is read at the vertex before, `self`, or at the end of the vector that leads on. `None` where there is no other one.
+    pub(super) fn beyond_corner(&self, there: &[Vec3; 2], at_end: &[Vec3; 2]) -> Option<(Vec3, [Vec3; 2])> {
+        let followed = if self.normals.is_some_and(|before| !is_same(&before, there)) {
+            there
+        } else {
+            Some(at_end).filter(|at_end| !is_same(there, at_end))?
+        };
+        Some((self.along(followed)?, *followed))
+    }
+}
