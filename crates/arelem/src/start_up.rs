@@ -250,6 +250,9 @@ fn in_space(work: &mut StartUp<'_>) -> Result<Vec3, MotionFailure> {
         tip = settle(work, guide, &tip)?;
     }
     let directed = work.state.directions.iter().any(Option::is_some);
+    if !directed && work.roles.len() == 1 {
+        tip = ambiguous::nearest_of_all(work, tip);
+    }
     let other = if directed { None } else { ambiguous::twin(work, &tip) };
     match other {
         Some(other) => Err(MotionFailure::StartUpAmbiguous { places: [tip, other] }),

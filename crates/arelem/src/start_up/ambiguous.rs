@@ -5,7 +5,10 @@ use std::f64::consts::TAU;
 
 use apt_geometry::Vec3;
 
-use super::{StartUp, around::TRY};
+use super::{
+    StartUp,
+    around::{TRY, directions},
+};
 use crate::{
     attitude::Attitude,
     position::{self, Condition, Solution},
@@ -65,6 +68,26 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
             .map(|solution| solution.tip)
             .find(is_twin)
     })
+}
+
+/// The position at the one surface of a start-up that is the nearest to the start of those about all directions from there, the found one among
+/// them. A search goes where the clearance tells at the start, and in the middle of a sphere, or on the axis of a cylinder, it tells nothing: in
+/// the way that is the shortest the tool may well go along its axis.
+pub(super) fn nearest_of_all(work: &StartUp<'_>, found: Vec3) -> Vec3 {
+    let StartUp { tip, attitude, tool, .. } = work;
+    let proven: Vec<Condition<'_>> =
+        work.roles.iter().map(|role| Condition::Clearance(&role.gauge, role.rest())).collect();
+    let passing: Vec<Condition<'_>> = proven.iter().map(Condition::passing).collect();
+    let nearest = (found - tip).norm();
+    let size = position::size(tool, tip) + nearest;
+    let search = Beside { attitude, conditions: &passing, start: tip, nearest, size };
+    let others = directions()
+        .chain([tool.axis, -tool.axis])
+        .filter_map(|direction| search.nearest_about(&(direction * nearest)))
+        .filter(|place| nearest - (place - tip).norm() > SAME_LENGTH * size)
+        .filter_map(|place| position::solve_within(attitude, &proven, &place, CORRECTIONS).ok())
+        .map(|solution| solution.tip);
+    others.fold(found, |best, other| if (other - tip).norm() < (best - tip).norm() { other } else { best })
 }
 
 /// A way turned about an axis by a part of a turn.

@@ -83,7 +83,7 @@ pub(super) fn solve(
 }
 
 /// Unit vectors to the points on the faces of a cube.
-fn directions() -> impl Iterator<Item = Vec3> {
+pub(super) fn directions() -> impl Iterator<Item = Vec3> {
     let range = || -LATTICE..=LATTICE;
     range()
         .flat_map(move |x| range().flat_map(move |y| range().map(move |z| [x, y, z])))

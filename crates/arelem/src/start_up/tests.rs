@@ -100,6 +100,25 @@ fn without_part_surface_the_move_is_made_along_the_direction() {
     assert!(matches!(failure, MotionFailure::NotReachedAlong { .. }), "{failure:?}");
 }
 
+/// In the middle of a sphere no direction is plainly the nearest: along its axis the tool comes out first, for its tip is all that has to.
+#[test]
+fn without_part_surface_the_move_is_the_shortest_one_from_a_centre_too() {
+    let ball = sphere(0.0, 0.0, 0.0, 2.0);
+    let same = quadric([1.0, 1.0, 1.0, -4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    for (cutter, surface) in
+        [(&[0.5, 0.25][..], &ball), (&[0.5], &ball), (&[0.5, 0.25], &same), (&[0.5], &same)]
+    {
+        let mut p = program(StartUpRule::Apt3);
+        p.cutter(cutter).from(0.0, 0.0, 0.0).run(&MotionCommand::NoPartSurface);
+        p.go(&[(To, surface)]).verified().ends(0.0, 0.0, 2.0, 1e-3);
+    }
+    // On the axis of an upright cylinder all directions are alike.
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[0.5]).from(0.0, 0.0, 0.0).run(&MotionCommand::NoPartSurface);
+    let failure = p.attempt(&start(&[(To, &cylinder(v(0.0, 0.0, 0.0), v(0.0, 0.0, 1.0), 2.0))]));
+    assert!(matches!(failure, Err(MotionFailure::StartUpAmbiguous { .. })), "{failure:?}");
+}
+
 #[test]
 fn the_move_of_apt4_stops_at_the_first_of_the_surfaces() {
     // On the way to the far wall the near wall is met first; the tool must not cross it before the sides are settled.
