@@ -101,7 +101,8 @@ const MOST: usize = 3;
 /// A tolerance is not offered that is wider than the one in force by more than this factor.
 const WIDEST: f64 = 20.0;
 /// Factor by which NUMPTS is raised, and the greatest count that is tried.
-const MORE_POINTS: (u32, u32) = (8, 20_000);
+const MORE_POINTS: u32 = 8;
+const MOST_POINTS: u32 = 20_000;
 
 /// How much may be spent on trying the cures of a failed motion: whoever made a mistake waits for them. It is counted in questions
 /// whether to go on, so that what is offered does not depend on the machine.
@@ -134,9 +135,17 @@ pub fn remedies(
     cancel: &dyn Fn() -> bool,
 ) -> Vec<Remedy> {
     let mut attempts = Attempts::new(state, command, cancel);
+    if let (MotionFailure::StartUpAmbiguous { places }, MotionCommand::Start(_)) = (failure, command) {
+        attempts.settle(places);
+        return attempts.found;
+    }
     for cure in candidates(state, command, failure) {
         if attempts.found.len() >= MOST || cancel() {
             break;
+        }
+        let is_count = |cure: &Cure| matches!(cure, Cure::Points(_));
+        if is_count(&cure) && attempts.found.iter().any(|found| is_count(&found.cure)) {
+            continue;
         }
         attempts.attempt(cure);
     }
@@ -155,9 +164,9 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             MotionCommand::Drive { turn, checks, .. },
         ) => stops(*check, *turn, checks.get(*check).map(|check| (check.relation, check.occurrence))),
         (MotionFailure::TooManyPoints { limit, .. }, MotionCommand::Drive { turn, .. }) => {
-            let more = limit.saturating_mul(MORE_POINTS.0).min(MORE_POINTS.1);
-            let points = (more > *limit).then_some(Cure::Points(more));
-            points.into_iter().chain([Cure::Turn(opposite(*turn))]).collect()
+            let more = limit.saturating_mul(MORE_POINTS).min(MOST_POINTS);
+            let counts = [more, MOST_POINTS].into_iter().filter(|count| count > limit);
+            counts.map(Cure::Points).chain([Cure::Turn(opposite(*turn))]).collect()
         }
         (MotionFailure::SurfaceEnds { .. }, MotionCommand::Drive { turn, .. }) => {
             vec![Cure::Turn(opposite(*turn))]
@@ -190,10 +199,6 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
                 .into_iter()
                 .map(|vector| Cure::SurfaceVector { role: *role, vector })
                 .collect()
-        }
-        (MotionFailure::StartUpAmbiguous { places }, MotionCommand::Start(_)) => {
-            let towards = |place: &Vec3| state.tip.and_then(|tip| (place - tip).try_normalize(0.0));
-            places.iter().filter_map(towards).map(Cure::Direction).collect()
         }
         (
             MotionFailure::NotReachedAlong { .. }

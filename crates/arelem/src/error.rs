@@ -357,6 +357,8 @@ pub enum MotionFailure {
     TooManyPoints {
         /// NUMPTS.
         limit: u32,
+        /// MAXDP.
+        maximum_step: f64,
         /// Distance of the check surface at the last point.
         remaining: f64,
         /// The last point.

@@ -326,7 +326,7 @@ fn path(failure: &Failure) -> Text {
                 number(*circle)
             ),
         ),
-        Failure::TooManyPoints { limit, remaining, at } => say(
+        Failure::TooManyPoints { limit, maximum_step, remaining, at } => say(
             "APT0646",
             format!(
                 "after {limit} cut vectors the check surface is still {} away, at {}",
@@ -334,7 +334,14 @@ fn path(failure: &Failure) -> Text {
                 place(at)
             ),
         )
-        .hint("the check surface may lie the other way; NUMPTS/n allows more cut vectors"),
+        .hint(match f64::from(*limit) * maximum_step {
+            farthest if farthest < *remaining => format!(
+                "MAXDP {} lets that many lead no farther than {}: MAXDP/n allows longer ones, NUMPTS/n more",
+                number(*maximum_step),
+                number(farthest)
+            ),
+            _ => "the check surface may lie the other way; NUMPTS/n allows more cut vectors".to_owned(),
+        }),
         Failure::IterationLimit { iteration, limit, tip } => say(
             "APT0647",
             format!(

@@ -6,7 +6,7 @@ use apt_geometry::{
     motion::{Direction, DriveSide, MotionCommand, NamedSurface, PartSide, Relation, StartSurface, Turn},
 };
 
-use super::{Cure, Remedy};
+use super::{Cure, MOST_POINTS, Remedy};
 use crate::{
     attitude::Attitude,
     clearance::Tool,
@@ -16,6 +16,10 @@ use crate::{
     section2::{Output, State, execute},
 };
 
+/// Share of the way to one of several answers of a start-up from where it is the nearest one.
+const NEARER: f64 = 1.0 / 32.0;
+/// Share of the distance between two answers within which an end is one of them, wherever in the bands.
+const SAME_ANSWER: f64 = 0.05;
 /// Decimals of the coordinates that a cure writes.
 const DECIMALS: f64 = 1e7;
 /// Decimals of the components of a direction that a cure writes.
@@ -38,15 +42,38 @@ impl<'a> Attempts<'a> {
 
     /// Carries the command out with the cure; notes it if that works.
     pub(super) fn attempt(&mut self, cure: Cure) {
+        let found = self.tried(cure);
+        self.found.extend(found);
+    }
+
+    /// The cure, if the command can be carried out with it.
+    fn tried(&self, cure: Cure) -> Option<Remedy> {
         let cure = written(cure);
-        let Some((state, command)) = applied(self.state, self.command, &cure) else { return };
+        let (state, command) = applied(self.state, self.command, &cure)?;
         let execution = execute(&state, &command, self.cancel);
-        if execution.failure.is_none()
-            && execution.warnings.is_empty()
-            && let Some(Output::Sequence(sequence)) = &execution.output
-            && let Some(end) = sequence.points.last()
-        {
-            self.found.push(Remedy { cure, end: end.tip });
+        if execution.failure.is_some() || !execution.warnings.is_empty() {
+            return None;
+        }
+        let Some(Output::Sequence(sequence)) = &execution.output else { return None };
+        let end = sequence.points.last()?.tip;
+        Some(Remedy { cure: enough(cure, sequence.points.len()), end })
+    }
+
+    /// Notes for each of the answers of a start-up what leads to it: the direction to it, that across the tool axis, or a beginning nearer
+    /// to it. A direction may lead elsewhere, for along it the tool is to meet the drive surface first.
+    pub(super) fn settle(&mut self, places: &[Vec3; 2]) {
+        let Some(tip) = self.state.tip else { return };
+        let apart = (places[0] - places[1]).norm();
+        for place in places {
+            let way = place - tip;
+            let across = way - self.state.axis * way.dot(&self.state.axis);
+            let directions = [way, across].into_iter().filter_map(|way| way.try_normalize(0.0));
+            let forward = way.try_normalize(0.0).or(self.state.forward);
+            let nearer = Cure::MoveTo { position: tip + way * NEARER, by: way.norm() * NEARER, forward };
+            let settled = directions.map(Cure::Direction).chain([nearer]).find_map(|cure| {
+                self.tried(cure).filter(|remedy| (remedy.end - place).norm() <= SAME_ANSWER * apart)
+            });
+            self.found.extend(settled);
         }
     }
 }
@@ -64,6 +91,20 @@ fn written(cure: Cure) -> Cure {
             by,
             forward: forward.map(|v| rounded(v, DIRECTION_DECIMALS)),
         },
+        other => other,
+    }
+}
+
+/// The cure with a count of cut vectors that is enough for so many, where it has been tried with the greatest one.
+fn enough(cure: Cure, vectors: usize) -> Cure {
+    match cure {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a count"
+        )]
+        Cure::Points(MOST_POINTS) => Cure::Points(MOST_POINTS.min(rounded_up(vectors as f64) as u32)),
         other => other,
     }
 }

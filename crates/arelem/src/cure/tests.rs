@@ -152,12 +152,18 @@ fn a_start_up_that_misses_is_turned_to_the_surface() {
 
 #[test]
 fn more_points_are_offered_only_if_they_suffice() {
-    let mut p = Program::new();
-    p.cutter(&[0.5]).from(5.0, 0.0, 1.0).go(&[(To, &circle(0.0, 0.0, 2.0))]).side(DriveSide::Left);
-    p.run(&MotionCommand::MaximumPoints(20));
     let command = motion(GoLft, &circle(0.0, 0.0, 2.0), &[(Past, 1, &line(0.0, -9.0, 0.0, 9.0))]);
-    let found = offered(&mut p, &command, 803);
-    assert!(cures(&found).contains(&Cure::Points(160)), "{found:?}");
+    let found = |most: u32| {
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(5.0, 0.0, 1.0).go(&[(To, &circle(0.0, 0.0, 2.0))]).side(DriveSide::Left);
+        p.run(&MotionCommand::MaximumPoints(most));
+        offered(&mut p, &command, 803)
+    };
+    assert!(cures(&found(20)).contains(&Cure::Points(160)), "{:?}", found(20));
+    // Where eight times as many are not enough: as many as it takes, in two digits.
+    let found = found(2);
+    let [Cure::Points(count), ..] = cures(&found)[..] else { panic!("{found:?}") };
+    assert!(count > 20 && count < 160, "{count}");
 }
 
 #[test]
@@ -253,6 +259,31 @@ fn a_start_up_with_several_answers_is_named_and_a_direction_settles_it() {
         let mut p = Program::new();
         p.cutter(&[0.5]).from(nearer.x, nearer.y, nearer.z).run(&command);
         assert!((p.tip() - places[1]).norm() < 0.05, "{:?}", p.tip());
+    }
+}
+
+/// The direction to an answer leads elsewhere, for along it the tool meets the drive surface at another place.
+#[test]
+fn each_answer_of_a_start_up_gets_a_remedy_that_leads_to_it() {
+    let floor = plane(0.0, 0.0, 1.0, 0.0);
+    let (axis, ring) = (line(0.0, 0.0, 10.0, 0.0), circle(0.0, 0.0, 2.0));
+    let peak = crate::tests::cone(v(0.0, 0.0, 3.0), v(0.0, 0.0, -1.0), 30.0);
+    for (cutter, from, surfaces) in [
+        (&[0.5][..], v(0.0, 1.0, 3.0), vec![(To, &axis), (To, &floor), (To, &ring)]),
+        (&[0.5, 0.25], v(0.0, 0.0, 6.0), vec![(To, &peak), (To, &floor)]),
+    ] {
+        let mut p = Program::new();
+        p.cutter(cutter).from(from.x, from.y, from.z);
+        let (state, command) = (p.state.clone(), start(&surfaces));
+        let failure = p.attempt(&command).expect_err("several answers");
+        let crate::error::MotionFailure::StartUpAmbiguous { places } = failure else {
+            panic!("{surfaces:?}: {failure:?}")
+        };
+        let found = remedies(&state, &command, &failure, &|| false);
+        assert_eq!(found.len(), 2, "{surfaces:?}: {found:?}");
+        for (remedy, place) in found.iter().zip(places) {
+            assert!((remedy.end - place).norm() < 0.05, "{surfaces:?}: {remedy:?}, not {place:?}");
+        }
     }
 }
 

@@ -275,6 +275,7 @@ impl<'a> March<'a> {
         self.judge_outlook(&here, patience)?;
         Err(MotionFailure::TooManyPoints {
             limit: self.state.maximum_points,
+            maximum_step: self.state.maximum_step,
             remaining: self.watcher.remaining(&here.tip, &here.axis).min(self.tangency.nearest.abs()),
             at: here.tip,
         })

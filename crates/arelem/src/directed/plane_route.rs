@@ -415,6 +415,7 @@ fn chords(
     if inside + 1.0 > f64::from(state.maximum_points) {
         return Err(MotionFailure::TooManyPoints {
             limit: state.maximum_points,
+            maximum_step: state.maximum_step,
             remaining: angle * radius,
             at: prepared.tip,
         });
