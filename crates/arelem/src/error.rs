@@ -190,6 +190,16 @@ pub enum MotionFailure {
         /// OUTTOL.
         outside: f64,
     },
+    /// THICK leaves less than nothing of a check surface, by more than the tool is wide: TO and PAST would be exchanged.
+    #[error("THICK {thickness} for the {role:?} surface, with a tool of radius {radius}")]
+    UndercutTooDeep {
+        /// Which role.
+        role: RoleName,
+        /// THICK, below zero.
+        thickness: f64,
+        /// Greatest radius of the tool.
+        radius: f64,
+    },
     /// The tool stands on the surface, so that the side is not known (40).
     #[error("tool on the surface, side unknown")]
     SideUnknown {
@@ -400,9 +410,11 @@ impl MotionFailure {
     /// The APT III diagnostic number.
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
-            Self::Cancelled | Self::NotFinite | Self::NoTolerance { .. } | Self::StartUpAmbiguous { .. } => {
-                return None;
-            }
+            Self::Cancelled
+            | Self::NotFinite
+            | Self::NoTolerance { .. }
+            | Self::UndercutTooDeep { .. }
+            | Self::StartUpAmbiguous { .. } => return None,
             Self::NoPosition => 307,
             Self::Cutter(error) => return error.apt3(),
             Self::AxisUndetermined { cause, .. } => cause.apt3(),
@@ -481,6 +493,11 @@ pub enum MotionWarning {
         /// The place of its end next to the tool axis.
         place: Vec3,
     },
+    /// A directed motion names one surface in two roles.
+    SurfaceTwice {
+        /// Both of them.
+        roles: [RoleName; 2],
+    },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {
         /// The value.
@@ -495,7 +512,10 @@ impl MotionWarning {
             Self::WrongSideOfDrive { .. } => Some(1601),
             Self::Cutter(warning) => warning.apt3(),
             Self::AutomaticPartWithTiltedAxis { .. } => Some(3520),
-            Self::Gouge { .. } | Self::EndsBesideTool { .. } | Self::NegativeTolerance { .. } => None,
+            Self::Gouge { .. }
+            | Self::EndsBesideTool { .. }
+            | Self::SurfaceTwice { .. }
+            | Self::NegativeTolerance { .. } => None,
         }
     }
 }

@@ -81,6 +81,17 @@ pub(crate) enum Bend {
     Concave,
 }
 
+/// An error where a negative THICK of a check surface is more than the tool is wide (language reference 6.8): a tool that is to stop TO the surface would
+/// be past where it stops PAST it. A surface that the tool keeps to has one such place.
+fn undercut(state: &State, role: RoleName, thickness: f64) -> Result<(), MotionFailure> {
+    let Some(cutter) = state.cutter.filter(|_| state.disk.is_none()) else { return Ok(()) };
+    let radius = cutter.profile().greatest_radius();
+    if -thickness > radius {
+        return Err(MotionFailure::UndercutTooDeep { role, thickness, radius });
+    }
+    Ok(())
+}
+
 impl Working {
     /// A role from the modal state; the side is set later. ON is the only relation that measures the tool end.
     pub(crate) fn new(
@@ -100,6 +111,9 @@ impl Working {
             return Err(MotionFailure::NoTolerance { role: name, inside, outside });
         }
         let stock = pick(&state.thickness);
+        if let (RoleName::Check(_), false) = (name, on) {
+            undercut(state, name, stock)?;
+        }
         // In APT4 stock counts for ON, too.
         let named = match state.start_up {
             StartUpRule::Apt4 if on && stock != 0.0 => moved(named, stock, state.tip.as_ref()),

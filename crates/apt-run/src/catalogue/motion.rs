@@ -169,6 +169,16 @@ fn setting(failure: &Failure) -> Option<Text> {
             ),
         )
         .hint("at least one of INTOL and OUTTOL must be positive"),
+        Failure::UndercutTooDeep { role: name, thickness, radius } => say(
+            "APT0613",
+            format!(
+                "THICK {} for the {} is more than the radius of the cutter, {}: TO and PAST would be exchanged",
+                number(*thickness),
+                role(*name),
+                number(*radius)
+            ),
+        )
+        .hint("values of THICK are for part, drive and check surface in this order, and the last one is repeated"),
         _ => return None,
     })
 }
@@ -490,6 +500,14 @@ fn warning_text(warning: &Warning) -> Text {
         .hint(
             "beyond its end a surface has no sides: one that reaches farther, or a shorter tool, settles it",
         ),
+        Warning::SurfaceTwice { roles: [one, other] } => say(
+            "APT0667",
+            format!("one surface is the {} and the {} of this motion", role(*one), role(*other)),
+        )
+        .hint(match other {
+            RoleName::Check(_) => "a surface that the tool follows stops it nowhere: name another one to stop at",
+            _ => "only the direction asked for leads the tool then: name another drive surface, or another part surface by PSIS",
+        }),
         Warning::NegativeTolerance { value } => {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
         }

@@ -30,6 +30,9 @@ const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Sine below which the side of the drive surface is not judged.
 const SIDE_SINE: f64 = 0.05;
 
+/// Part, drive and the first check surface: others are ways to go on.
+const TOLD_ROLES: usize = 3;
+
 /// A directed motion ready to go.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared<'a> {
@@ -121,6 +124,7 @@ pub(super) fn prepare<'a>(
             check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
         working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
     }
+    warn_of_surface_twice([&part, &drive].into_iter().chain(&working), warnings);
     if attitude.turns() {
         part.turn_freely(&tip);
         drive.turn_freely(&tip);
@@ -327,6 +331,15 @@ impl Corner<'_> {
             let leaves = turning().all(|k| self.contacts[k].gradient.dot(&along) >= 0.0);
             (leaves && (turning().all(is_blocked) || is_better())).then_some((along, *drive))
         })
+    }
+}
+
+/// A surface that is followed leads along no other one where it is both, and along itself a tool meets no surface.
+fn warn_of_surface_twice<'a>(roles: impl Iterator<Item = &'a Working>, warnings: &mut Vec<MotionWarning>) {
+    let roles: Vec<&Working> = roles.take(TOLD_ROLES).collect();
+    for (index, role) in roles.iter().enumerate() {
+        let first = roles.iter().take(index).find(|first| first.named.geometry == role.named.geometry);
+        warnings.extend(first.map(|first| MotionWarning::SurfaceTwice { roles: [first.name, role.name] }));
     }
 }
 

@@ -499,3 +499,44 @@ fn a_position_far_along_the_path_is_not_next_to_a_place_of_it() {
     let end = sequences[0].points.last().expect("an end").tip;
     assert!((end - motion.from).dot(&motion.forward) > 0.0, "the motion led back, to {end:?}");
 }
+
+/// A tool that goes deeper into its check surface than its radius would stop TO it beyond where it stops PAST it: that is told before anything
+/// moves. Of the surfaces that it keeps to it may be deeper.
+#[test]
+fn an_undercut_of_a_check_surface_deeper_than_the_radius_is_told() {
+    let (wall, floor, stop) =
+        (plane(0.0, 1.0, 0.0, 0.0), plane(0.0, 0.0, 1.0, 0.0), plane(1.0, 0.0, 0.0, 5.0));
+    let outcome = |relation, others: f64, check: f64| {
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(0.0, -2.0, 3.0);
+        p.run(&MotionCommand::Thickness(PerRole { part: others, drive: others, check: [check; 2] }));
+        p.go(&[(Relation::To, &wall), (Relation::To, &floor)]);
+        p.part_side(PartSide::Offset).side(DriveSide::Right);
+        p.attempt(&motion(Turn::Right, &wall, &[(relation, 1, &stop)])).map(|_| p.tip().x)
+    };
+    let told = MotionFailure::UndercutTooDeep { role: RoleName::Check(0), thickness: -0.3, radius: 0.25 };
+    for (relation, radius) in [(Relation::To, -0.25), (Relation::Past, 0.25)] {
+        assert_eq!(outcome(relation, 0.0, -0.3), Err(told.clone()), "{relation:?}");
+        let stopped = outcome(relation, -0.2, -0.2).expect("a path");
+        let undercut = 0.2_f64.copysign(radius);
+        assert!((stopped - 5.0 - radius + undercut).abs() < 1e-3, "{relation:?} {stopped}");
+    }
+}
+
+/// Where one surface is both drive and part surface, or is followed and to stop at.
+#[test]
+fn a_surface_in_two_roles_is_told() {
+    let (ring, floor, across) = (circle(0.0, 0.0, 2.0), plane(0.0, 0.0, 1.0, 0.0), plane(1.0, 0.0, 0.0, 0.0));
+    let warnings = |part: &Geometry, check: &Geometry| {
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(5.0, 0.0, 0.0);
+        p.go(&[(Relation::To, &ring), (Relation::To, &floor)]);
+        p.run(&MotionCommand::PartSurface(named(part))).part_side(PartSide::Offset).side(DriveSide::Right);
+        let _ = p.attempt(&motion(Turn::Right, &ring, &[(Relation::On, 1, check)]));
+        p.warnings
+    };
+    let twice = |roles| [MotionWarning::SurfaceTwice { roles }];
+    assert_eq!(warnings(&floor, &across), []);
+    assert_eq!(warnings(&ring, &across), twice([RoleName::Part, RoleName::Drive]));
+    assert_eq!(warnings(&floor, &ring), twice([RoleName::Drive, RoleName::Check(0)]));
+}
