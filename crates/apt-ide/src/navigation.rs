@@ -311,7 +311,7 @@ fn is_label(parsed: &ParsedStatement, index: usize) -> bool {
     };
     statement.label.as_ref().is_some_and(|label| label.range == range)
         || statement.parts.iter().any(|part| match &part.body {
-            Body::LogicalIf { then, .. } => target(&then.body),
+            Body::LogicalIf { then, .. } => then.iter().any(|part| target(&part.body)),
             body => target(body),
         })
 }

@@ -394,3 +394,17 @@ fn an_endless_program_is_no_program_without_fini() {
     );
     assert!(unended.findings().any(|finding| finding.kind == FindingKind::EndMissing));
 }
+
+/// TLRGT and its kin join the statement of a logical IF as they join any other.
+#[test]
+fn a_logical_if_takes_the_words_before_its_statement() {
+    let run = |begin: &str| {
+        let text =
+            format!("L=LINE/XAXIS\nM=LINE/YAXIS\nFROM/3,-3,0\nGO/TO,L\n{begin}TLRGT,GORGT/L,PAST,M\nFINI");
+        let program = run(&text);
+        assert_eq!(problems(&program), [], "{begin}");
+        program.records().map(|record| format!("{:?}", record.kind)).collect::<Vec<_>>()
+    };
+    assert_eq!(run("IF(1.LT.2)"), run(""));
+    assert_eq!(run("IF(2.LT.1)").len() + 2, run("").len());
+}

@@ -46,6 +46,16 @@ pub struct Part {
     pub body: Body,
 }
 
+impl Part {
+    /// Whether another part may follow after a comma: a word such as TLRGT, without parameters.
+    pub(crate) fn joins_another(&self) -> bool {
+        match &self.body {
+            Body::Major { word, slash: false, .. } => word.word.class.joins_statements(),
+            _ => false,
+        }
+    }
+}
+
 /// What a statement part says.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Body {
@@ -107,8 +117,8 @@ pub enum Body {
         word: WordUse,
         /// The condition.
         condition: Condition,
-        /// What is done if it holds.
-        then: Box<Part>,
+        /// What is done if it holds: the parts of one statement.
+        then: Vec<Part>,
     },
     /// A statement of an IF over several statements (dialects that have it).
     Clause {

@@ -137,7 +137,7 @@ fn names_of_part(part: &Part, names: &mut Vec<SmolStr>) {
         Body::ArithmeticIf { condition, .. } => names_of_expression(condition, names),
         Body::LogicalIf { condition, then, .. } => {
             names_of_condition(condition, names);
-            names_of_part(then, names);
+            then.iter().for_each(|part| names_of_part(part, names));
         }
         Body::Clause { clause: Clause::If(condition) | Clause::ElseIf(condition), .. } => {
             names_of_condition(condition, names);

@@ -141,7 +141,7 @@ fn labels_named(body: &Body) -> &[Name] {
     match body {
         Body::ArithmeticIf { labels, .. } => labels,
         Body::Jump { word, label } if word.word.spelling == "JUMPTO" => std::slice::from_ref(label),
-        Body::LogicalIf { then, .. } => labels_named(&then.body),
+        Body::LogicalIf { then, .. } => then.last().map_or(&[], |part| labels_named(&part.body)),
         _ => &[],
     }
 }

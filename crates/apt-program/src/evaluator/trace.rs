@@ -159,10 +159,16 @@ impl Evaluator<'_> {
         self.trace_body(part, label);
     }
 
-    /// Notes what a logical IF lets happen.
-    pub(crate) fn trace_conditional(&mut self, part: &Part) {
+    /// The elements of the part that is noted.
+    pub(crate) fn traced_elements(&self) -> Vec<Element> {
+        self.trace.as_ref().map(|trace| trace.elements.clone()).unwrap_or_default()
+    }
+
+    /// Notes a part, with these elements among others, that a logical IF lets happen.
+    pub(crate) fn trace_conditional(&mut self, part: &Part, elements: &[Element]) {
         let Some(trace) = &mut self.trace else { return };
-        trace.elements.retain(|element| part.range.contains_range(element.range));
+        let is_of_part = |element: &&Element| part.range.contains_range(element.range);
+        trace.elements = elements.iter().filter(is_of_part).cloned().collect();
         self.trace_body(part, None);
     }
 

@@ -106,14 +106,11 @@ impl Evaluator<'_> {
             }
             Body::LogicalIf { condition, then, .. } => {
                 return match self.condition(condition) {
-                    Some(true) => {
-                        self.trace_conditional(then);
-                        self.execute_part(then)
-                    }
+                    Some(true) => self.conditional_parts(then),
                     Some(false) => Flow::Next,
                     None => {
-                        if matches!(&then.body, Body::Major { word, .. } if leaves_motion(word.word.spelling))
-                        {
+                        let moves = |part: &Part| matches!(&part.body, Body::Major { word, .. } if leaves_motion(word.word.spelling));
+                        if then.iter().any(moves) {
                             self.gap(part.range);
                         }
                         Flow::Next
@@ -138,6 +135,19 @@ impl Evaluator<'_> {
             Body::UnknownMajor { name, arguments, .. } => self.unknown_word(name, arguments, part.range),
             Body::Obtain { kind, arguments, word } => self.obtain(word, kind, arguments, part.range),
             Body::Error => {}
+        }
+        Flow::Next
+    }
+
+    /// What a logical IF lets happen.
+    fn conditional_parts(&mut self, parts: &[Part]) -> Flow {
+        let elements = self.traced_elements();
+        for part in parts {
+            self.trace_conditional(part, &elements);
+            match self.execute_part(part) {
+                Flow::Next => {}
+                other => return other,
+            }
         }
         Flow::Next
     }

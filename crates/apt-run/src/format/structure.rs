@@ -70,7 +70,7 @@ impl Survey {
         match &part.body {
             Body::Macro { .. } => self.open.push(Open::Macro(index)),
             Body::Do { label, .. } => self.open.push(Open::Do(index, label.label())),
-            Body::LogicalIf { then, .. } => self.part(index, then),
+            Body::LogicalIf { then, .. } => then.iter().for_each(|part| self.part(index, part)),
             Body::Clause { clause, .. } => self.clause(index, clause),
             Body::Major { word, .. } => match word.word.spelling {
                 "LOOPST" => self.open.push(Open::Loop(index)),

@@ -7,7 +7,7 @@ use super::{Parsed, Parser};
 use crate::error::SyntaxErrorKind;
 use crate::kind::SyntaxKind;
 use crate::statement::{
-    Body, Clause, Condition, Element, ElementKind, Expression, MacroParameter, Name, RelationOperator,
+    Body, Clause, Condition, Element, ElementKind, Expression, MacroParameter, Name, Part, RelationOperator,
 };
 
 type Production = (Body, SyntaxKind);
@@ -230,16 +230,30 @@ impl Parser<'_> {
                 // The statements of the loop would stand outside of the condition.
                 return self.fail(SyntaxErrorKind::ConditionalDo);
             }
-            let then = self.nested(Self::part)?;
-            if !self.at_end() {
-                return self.fail(SyntaxErrorKind::LogicalIfStatement);
-            }
-            return Ok((Body::LogicalIf { word, condition, then: Box::new(then) }, SyntaxKind::If));
+            let then = self.nested(Self::conditional_parts)?;
+            return Ok((Body::LogicalIf { word, condition, then }, SyntaxKind::If));
         }
         let condition = self.expression()?;
         self.close()?;
         let labels = self.three_labels()?;
         Ok((Body::ArithmeticIf { word, condition, labels }, SyntaxKind::If))
+    }
+
+    /// The statement of a logical IF, with the words that it may begin with as any statement may: `TLRGT,GORGT/L1,PAST,L2`.
+    fn conditional_parts(&mut self) -> Parsed<Vec<Part>> {
+        let mut parts = Vec::new();
+        loop {
+            let part = self.part()?;
+            let joins = part.joins_another();
+            parts.push(part);
+            if self.at_end() {
+                return Ok(parts);
+            }
+            let follows = joins && self.eat(ElementKind::Comma);
+            if !follows || (self.word_at(0).is_none() && !self.soft_major_follows()) {
+                return self.fail(SyntaxErrorKind::LogicalIfStatement);
+            }
+        }
     }
 
     /// An IF over several statements cannot be the statement of a logical IF.

@@ -165,11 +165,7 @@ impl Parser<'_> {
         if self.at_end() {
             return Ok((part, false));
         }
-        let joins = match &part.body {
-            Body::Major { word, slash: false, .. } => word.word.class.joins_statements(),
-            _ => false,
-        };
-        if !(joins && self.at(ElementKind::Comma)) {
+        if !(part.joins_another() && self.at(ElementKind::Comma)) {
             return self.fail_after_part(&part.body);
         }
         self.bump();
@@ -412,7 +408,7 @@ impl Parser<'_> {
     }
 
     /// Whether the name here is a major word of later systems, such as UNITS, in a place where no name can stand.
-    fn soft_major_follows(&self) -> bool {
+    pub(super) fn soft_major_follows(&self) -> bool {
         self.kind(0) == Some(ElementKind::Name)
             && matches!(self.kind(1), None | Some(ElementKind::Slash | ElementKind::Comma))
             && self.soft_major_word().is_some()

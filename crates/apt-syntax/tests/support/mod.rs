@@ -48,7 +48,8 @@ fn part(part: &Part) -> String {
             format!("(if {} {})", expression(condition), labels.join(" "))
         }
         Body::LogicalIf { condition: when, then, .. } => {
-            format!("(when {} {})", condition(when), self::part(then))
+            let then: Vec<String> = then.iter().map(self::part).collect();
+            format!("(when {} {})", condition(when), then.join(" ; "))
         }
         Body::Clause { word, clause } => match clause {
             Clause::If(when) | Clause::ElseIf(when) => {
