@@ -469,6 +469,29 @@ fn similar_names_are_offered() {
 }
 
 #[test]
+fn a_word_that_a_statement_does_not_take_is_told_with_those_that_it_takes() {
+    for (text, statement, name, similar) in [
+        ("TLAXIS/FOO\nFINI\n", "TLAXIS", "FOO", ""),
+        ("TLAXIS/NORMSP\nFINI\n", "TLAXIS", "NORMSP", "NORMPS"),
+        ("UP1=VECTOR/0,0,1\nTLAXIS/UP2\nFINI\n", "TLAXIS", "UP2", "UP1"),
+        ("GOUGCK/MAYBE\nFINI\n", "GOUGCK", "MAYBE", ""),
+        ("MULTAX/YES\nFINI\n", "MULTAX", "YES", ""),
+        ("DNTCUT/NOLIST\nFINI\n", "DNTCUT", "NOLIST", ""),
+    ] {
+        let program = run(text);
+        let found: Vec<_> = program.findings().collect();
+        let told = found.iter().find_map(|finding| match &finding.kind {
+            apt_program::FindingKind::UndefinedOption { statement, name, similar } => {
+                Some((statement.as_str(), name.as_str(), similar.first().map_or("", |word| word.as_str())))
+            }
+            _ => None,
+        });
+        assert_eq!(told, Some((statement, name, similar)), "{text}: {found:?}");
+        assert!(found.iter().any(|finding| finding.number == Some(101)), "{text}: {found:?}");
+    }
+}
+
+#[test]
 fn cancelled_work_is_not_complete() {
     let tree = SyntaxTree::parse("A=1\nFINI\n", Dialect::named(DialectName::Free));
     let program = evaluate(&tree, &Options::default(), &|| true);

@@ -180,15 +180,24 @@ impl Evaluator<'_> {
         symbol.map(|symbol| (RelatedKind::Definition, symbol.origin.clone())).into_iter().collect()
     }
 
+    /// Words among some and defined names that are spelt like a name, best first.
+    pub(crate) fn names_like<'a>(
+        &'a mut self,
+        name: &str,
+        words: impl Iterator<Item = &'a str>,
+    ) -> Vec<SmolStr> {
+        self.output.looked_at_all = true;
+        let names = self.state.symbols.keys().map(|key| key.trim_end_matches(ARRAY_KEY_SUFFIX));
+        similar_names(name, words.chain(names))
+    }
+
     /// Reports an undefined name with names like it; once for each place.
     fn report_undefined(&mut self, name: SmolStr, reference: &Reference, apt4_number: u16) {
         if self.output.has_name_finding_at(self.here.isn, reference.range) {
             self.errors += 1;
             return;
         }
-        self.output.looked_at_all = true;
-        let names = self.state.symbols.keys().map(|key| key.trim_end_matches(ARRAY_KEY_SUFFIX));
-        let similar = similar_names(&name, names);
+        let similar = self.names_like(&name, std::iter::empty());
         let mut finding = self.finding(FindingKind::Undefined { name, similar }, reference.range);
         if self.is_apt4() {
             let in_definition = self.definition_depth > 0 && apt4_number == APT4_UNDEFINED;

@@ -26,6 +26,16 @@ pub enum FindingKind {
         /// Defined names of similar spelling, best first.
         similar: Vec<SmolStr>,
     },
+    /// A name without a value where a statement takes words, one of which may be meant.
+    #[error("{name} is not defined, and no word of {statement}")]
+    UndefinedOption {
+        /// The word of the statement.
+        statement: SmolStr,
+        /// The name.
+        name: SmolStr,
+        /// Words of the statement of similar spelling, best first.
+        similar: Vec<SmolStr>,
+    },
     /// A label where a value is needed.
     #[error("{name} is a label")]
     LabelAsValue {

@@ -16,7 +16,7 @@ impl FindingKind {
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
             Self::Syntax(kind) => return kind.apt3(),
-            Self::Undefined { .. } => 101,
+            Self::Undefined { .. } | Self::UndefinedOption { .. } => 101,
             Self::LabelAsValue { .. } => 251,
             Self::MacroAsValue { .. } => 211,
             Self::GeometryAsScalar { .. } => 83,
@@ -155,6 +155,7 @@ impl FindingKind {
         Some(match self {
             Self::Syntax(kind) => return syntax_number(kind),
             Self::Undefined { .. }
+            | Self::UndefinedOption { .. }
             | Self::LabelAsValue { .. }
             | Self::MacroAsValue { .. }
             | Self::GeometryAsScalar { .. }

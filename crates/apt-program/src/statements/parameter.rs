@@ -4,6 +4,10 @@ use apt_geometry::{
     cutter::Disk,
     motion::{MotionCommand, PerRole, RoleDisk},
 };
+use apt_syntax::{
+    statement::{Argument, Expression},
+    vocabulary,
+};
 use smol_str::SmolStr;
 
 use super::Major;
@@ -97,6 +101,9 @@ impl Evaluator<'_> {
 
     /// CUT, DNTCUT, 2DCALC, 3DCALC, NDTEST, AUTOPS, NOPS, MULTAX and GOUGCK.
     pub(crate) fn path_control(&mut self, major: Major<'_>) {
+        if matches!(major.spelling(), "DNTCUT" | "GOUGCK" | "MULTAX") && self.refuse_undefined_option(major) {
+            return;
+        }
         let Some(items) = self.operands(major.arguments) else { return };
         let words: Option<Vec<&str>> = items.iter().map(|item| item.word()).collect();
         let command = match (major.spelling(), words.as_deref()) {
@@ -126,6 +133,21 @@ impl Evaluator<'_> {
             _ => return self.report(FindingKind::PostBare { word: major.name() }, major.range),
         };
         self.motion(command, major.range);
+    }
+
+    /// Where the first operand is a name without a value, and no array's, in a statement that takes words: tells so.
+    pub(crate) fn refuse_undefined_option(&mut self, major: Major<'_>) -> bool {
+        let Some(Argument::Expression(Expression::Reference(reference))) = major.arguments.first() else {
+            return false;
+        };
+        if reference.subscript.is_some() || !matches!(self.found_name(&reference.name.text), Found::Nothing) {
+            return false;
+        }
+        let words = vocabulary::words().iter().filter(|word| word.used_in.contains(&major.spelling()));
+        let similar = self.names_like(&reference.name.text, words.map(|word| word.spelling));
+        let (statement, name) = (major.name(), reference.name.text.clone());
+        self.report(FindingKind::UndefinedOption { statement, name, similar }, reference.range);
+        true
     }
 
     /// DMILL and BEVELS: the translator takes one word and makes a record, to which the motion phase of APT III gives no

@@ -18,6 +18,9 @@ const LARGEST_ANGLE: f64 = 90.0;
 impl Evaluator<'_> {
     /// TLAXIS.
     pub(crate) fn tool_axis(&mut self, major: Major<'_>) {
+        if self.refuse_undefined_option(major) {
+            return;
+        }
         let Some(items) = self.operands_of(major, "an axis", 129) else { return };
         let axis = match (items.first().map(|item| &item.operand), items.len()) {
             (Some(Operand::Word(word)), _) => self.axis_by_word(major, word.spelling, &items[1..]),

@@ -2,6 +2,8 @@
 
 use apt_program::finding::{ControlFinding, FindingKind as Kind, Found};
 
+use apt_syntax::vocabulary;
+
 use super::{Text, a_kind, number, say, similar};
 
 pub(super) fn word(kind: &Kind) -> Option<Text> {
@@ -27,6 +29,12 @@ fn name(kind: &Kind) -> Option<Text> {
         Kind::Undefined { name, similar: names } => say("APT0101", format!("{name} is not defined"))
             .hint("a name must be given a value before it is used, in the order of execution")
             .maybe(similar(names)),
+        Kind::UndefinedOption { statement, name, similar: words } => {
+            let forms = vocabulary::lookup(statement).map_or(&[][..], |word| word.forms);
+            say("APT0101", format!("{name} is not defined, and no word of {statement}"))
+                .hint(format!("the forms are {}", forms.join(", ")))
+                .maybe(similar(words))
+        }
         Kind::LabelAsValue { name } => say("APT0102", format!("{name} is a label and has no value")),
         Kind::MacroAsValue { name } => say("APT0103", format!("{name} is a macro and has no value"))
             .hint(format!("a macro is run by CALL/{name}")),
