@@ -427,3 +427,38 @@ fn a_motion_that_sets_out_beside_an_end_is_on_its_side() {
     };
     assert_eq!(motion.run_from_there(AMPLE).expect("a path").len(), 1);
 }
+
+/// A surface between two arcs that a line crosses far from where it ends.
+fn between_arcs() -> Geometry {
+    let axis = v(0.5624568783050846, -0.5604645610397418, -0.6078829952102862);
+    let across = v(-0.5797670680194672, -0.7915137580756433, 0.19332903976661864);
+    ruled([
+        (
+            cylinder(v(7.8439486919853145, 13.346994726352623, -6.2077037082516675), axis, 16.26354261023611),
+            v(-5.340861179663028, 3.5257527381268616, -4.41694613332383),
+            v(-0.6248465443173941, 1.576222389014002, 1.7441038889608187),
+            across,
+        ),
+        (
+            cylinder(
+                v(-3.8284596700087103, -2.5884944002654398, -2.315424162093687),
+                axis,
+                5.923493140985826,
+            ),
+            v(-1.9661199098325208, 0.16296537188841054, -8.064244104585548),
+            v(2.7498947255131134, -1.7865649772244492, -1.903194082300899),
+            -across,
+        ),
+    ])
+}
+
+/// The way past the end of the surface is no depth where it is longer than the tool, which comes out by its own length.
+#[test]
+fn no_tool_is_deeper_than_it_is_long() {
+    let height = 3.733023160776108;
+    let line = Cutter::from_numbers(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height], 1.0).expect("a cutter");
+    let role = Role { side: -1.0, ..touched(&between_arcs()) };
+    let tip = v(-3.9957529145737833, 2.439610777961711, -0.40912511299533777);
+    let contact = gauge(&role).contact(&Tool::new(line, Vec3::z()), &tip);
+    assert!(contact.clearance < 0.0 && contact.clearance >= -height, "{contact:?}");
+}
