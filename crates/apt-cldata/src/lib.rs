@@ -2,11 +2,12 @@
 //!
 //! [`record`] is the one shape that everything above works with. [`text`] reads and writes APT CL text, [`cltape`]
 //! the binary CLTAPE of APT III, [`edit`] executes TRACUT, INDEX and COPY, [`tilt`] VTLAXS
-//! and WCORN, and [`totals`] sums a path up.
+//! and WCORN, [`totals`] sums a path up, and [`difference`] compares two.
 
 pub mod cltape;
 pub mod codes;
 mod corner;
+pub mod difference;
 pub mod edit;
 pub mod geometry;
 pub mod record;

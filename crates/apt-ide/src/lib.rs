@@ -8,6 +8,7 @@ mod carry;
 pub mod completion;
 mod context;
 pub mod dialect;
+pub mod difference;
 pub mod expansion;
 pub mod files;
 pub mod folding;

@@ -88,10 +88,10 @@ pub fn punch(tape: &Tape, code: TapeCode) -> Result<Vec<u8>, PunchError> {
 }
 
 /// The records that a tape is made of, with their origins.
-struct Source {
-    records: Vec<ClRecord>,
-    origins: Vec<Origin>,
-    diagnostics: Vec<Diagnostic>,
+pub(crate) struct Source {
+    pub(crate) records: Vec<ClRecord>,
+    pub(crate) origins: Vec<Origin>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
 impl Analysis {
@@ -174,7 +174,8 @@ impl Analysis {
         Ok(ControlTape { tape, diagnostics })
     }
 
-    fn run_to_cutter_locations(
+    /// Runs the program to its CL records.
+    pub(crate) fn run_to_cutter_locations(
         &self,
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
@@ -185,7 +186,7 @@ impl Analysis {
     }
 
     /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
-    fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
+    pub(crate) fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
         let text = self.text();
         let (mut records, errors) = read_text(&text);
         if cancel() {

@@ -44,6 +44,12 @@ fn exit_codes_tell_clean_findings_and_unusable() {
         (&["expand", "good.apt", "--at", "99"], 2),
         (&["view", "good.apt", "-o", "picture.gif"], 2),
         (&["explain", "APT9999"], 2),
+        (&["diff", "good.apt", "good.apt"], 0),
+        (&["diff", "good.apt", "bad.apt"], 1),
+        (&["diff", "bad.apt", "bad.apt"], 1),
+        (&["diff", "good.apt"], 2),
+        (&["diff", "good.apt", "no-such-file.apt"], 2),
+        (&["diff", "good.apt", "good.apt", "--tolerance", "0"], 2),
         (&["--help"], 0),
         (&["--version"], 0),
     ] {
@@ -339,4 +345,64 @@ fn lints_are_set_per_code_per_line_and_per_file() {
     assert_eq!(told(&folder, &[]), (vec![level(3, "warning")], 0));
     folder.write("a.apt", format!("{twice}$$ apt-lsp: allow-file APT0952\n"));
     assert_eq!(told(&folder, &[]), (Vec::new(), 0));
+}
+
+/// A program, its CL text, its binary tape and the same with other vectors are one path; a place that is moved is told with its lines.
+#[test]
+fn paths_are_compared_whatever_they_are_written_in() {
+    let folder = Folder::new("diff");
+    folder.write(
+        "old.apt",
+        "PARTNO OLD\nUNITS/MM\nFROM/0,0,1\nRAPID,GOTO/0,0,0\nGOTO/10,0,0\nGOTO/10,10,0\nFINI\n",
+    );
+    folder.write(
+        "new.apt",
+        "PARTNO NEW\nUNITS/MM\n$$ in two\nFROM/0,0,1\nRAPID,GOTO/0,0,0\nGOTO/4,0,0\nGOTO/10,0,0\nGOTO/10,10,0\nFINI\n",
+    );
+    folder.write(
+        "inches.cl",
+        "UNITS/INCHES\nFROM/0,0,.0393700787\nRAPID\nGOTO/0,0,0\nGOTO/.393700787,0,0\nGOTO/.393700787,.4,0\n",
+    );
+    folder.write("good.apt", GOOD);
+    for (program, output) in [("old.apt", "old.cl"), ("good.apt", "good.cltape")] {
+        let ran = folder.run(&["run", program, "-o", output]);
+        assert_eq!(ran.code, 0, "{ran:?}");
+    }
+    for (one, other) in
+        [("old.apt", "old.apt"), ("old.apt", "new.apt"), ("old.cl", "new.apt"), ("good.cltape", "good.apt")]
+    {
+        let ran = folder.run(&["diff", one, other]);
+        assert_eq!(ran.code, 0, "{one} {other}: {ran:?}");
+        assert!(ran.stdout.contains("no difference"), "{ran:?}");
+    }
+    let ran = folder.run(&["diff", "old.apt", "inches.cl", "--tolerance", ".01"]);
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert_eq!(
+        ran.stdout,
+        "A old.apt: 4 places, 21 long\nB inches.cl: 4 places, 21.16 long\n\n1. up to 0.16 apart, at (10, 10.16, 0)\n   \
+         A stays at (10, 10, 0) (line 6)\n   \
+         B from (10, 10.01, 0) (line 6) to (10, 10.16, 0) (line 6), 0.15 long\n\n\
+         1 stretch differs, by up to 0.16 (tolerance 0.01)\n"
+    );
+    assert!(ran.stderr.contains("inches.cl is in inches; compared in mm"), "{ran:?}");
+    let ran = folder.run(&["diff", "old.apt", "inches.cl", "--tolerance", ".01", "--format", "json"]);
+    let told: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!((ran.code, &told["same"], &told["a"]["units"]), (1, &Value::Bool(false), &Value::from("mm")));
+    let difference = &told["differences"][0];
+    assert_eq!(difference["kind"], "places");
+    assert!((difference["apart"].as_f64().expect("a number") - 0.16).abs() < 1e-3, "{difference}");
+    assert_eq!(difference["b"]["to"]["range"]["start"]["line"], 5, "{difference}");
+    assert_eq!(difference["a"]["to"]["isn"], 6, "{difference}");
+    let ran = folder.run(&["diff", "old.apt", "inches.cl", "--tolerance", ".2"]);
+    assert_eq!(ran.code, 0, "{ran:?}");
+}
+
+/// What a CL file has and the reader does not know leaves a gap, which is no agreement.
+#[test]
+fn what_is_not_read_of_a_path_is_told() {
+    let folder = Folder::new("diff-gap");
+    folder.write("a.cl", "FROM/0,0,0\nGOTO/1,0,0\nGOFWD/(CIRCLE/0,0,1),ON,(LINE/0,0,0,1)\nFINI\n");
+    let ran = folder.run(&["diff", "a.cl", "a.cl", "--dialect", "cl"]);
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.stdout.contains("no difference") && ran.stderr.contains("GOFWD"), "{ran:?}");
 }

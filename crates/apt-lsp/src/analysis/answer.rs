@@ -8,6 +8,9 @@ use std::sync::Arc;
 
 pub(crate) use apt_ide::action::ActionKind;
 pub(crate) use apt_ide::completion::{Completion, CompletionKind};
+pub(crate) use apt_ide::difference::{
+    Allowance, DifferentStretch, PathDifference, Statement, StretchKind, StretchSide, ToolPath, Units,
+};
 pub(crate) use apt_ide::files::Inclusion;
 pub(crate) use apt_ide::folding::{Fold, FoldKind};
 pub(crate) use apt_ide::hover::{CanonicalForm, Hover};

@@ -56,6 +56,15 @@ impl Language for Engine {
         Some(apt_ide::tape::text_of_cl_tape(bytes)?.map_err(|error| error.to_string()))
     }
 
+    fn difference(
+        &self,
+        paths: [&ToolPath; 2],
+        allowance: Allowance,
+        control: &Control,
+    ) -> Answer<PathDifference> {
+        Ok(apt_ide::difference::difference(paths, allowance, &|| control.is_cancelled())?)
+    }
+
     fn explain(&self, code: &str) -> Option<String> {
         let page = apt_ide::explain(code)?;
         let sample =
@@ -379,6 +388,11 @@ impl Document for Program {
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
         let made = self.control_tape(machine, control)?;
         Ok(made.diagnostics.into_iter().map(|one| self.diagnostic(one)).collect())
+    }
+
+    fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)> {
+        let (path, found) = with(control, "running", |cancel, progress| self.0.tool_path(cancel, progress))?;
+        Ok((path, found.into_iter().map(|one| self.diagnostic(one)).collect()))
     }
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {

@@ -47,6 +47,10 @@ impl Language for FakeLanguage {
         None
     }
 
+    fn difference(&self, paths: [&ToolPath; 2], _: Allowance, control: &Control) -> Answer<PathDifference> {
+        Engine.difference(paths, Allowance::default(), control)
+    }
+
     fn explain(&self, code: &str) -> Option<String> {
         (code == "APT0001").then(|| "# APT0001\n\nThe word BAD stands in the program.\n".to_owned())
     }
@@ -313,6 +317,10 @@ impl Document for FakeDocument {
 
     fn tape_diagnostics(&self, _: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
         Ok(self.diagnostics(Level::Section1, control)?)
+    }
+
+    fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)> {
+        Ok((ToolPath::default(), self.diagnostics(Level::Section1, control)?))
     }
 
     fn product(&self, _: &Product, _: &Control) -> Result<Vec<u8>, Refusal> {

@@ -40,6 +40,14 @@ pub(crate) trait Language: Send + Sync + 'static {
     /// that is known.
     fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>>;
 
+    /// Where two paths differ.
+    fn difference(
+        &self,
+        paths: [&ToolPath; 2],
+        allowance: Allowance,
+        control: &Control,
+    ) -> Answer<PathDifference>;
+
     /// The page of a diagnostic code, as Markdown.
     fn explain(&self, code: &str) -> Option<String>;
 
@@ -153,6 +161,9 @@ pub(crate) trait Document: Send + Sync {
 
     /// Everything found on the way to the tape of a machine: in the program, and by the post-processor.
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal>;
+
+    /// The way of the tool, with everything found up to it.
+    fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)>;
 
     /// What the run produces, in a form that is written to a file.
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal>;

@@ -57,6 +57,8 @@ pub(super) enum Command {
     Fmt(FmtCall),
     /// The path as a stand-alone page or picture
     View(ViewCall),
+    /// Where the paths of two programs or CL files differ
+    Diff(DiffCall),
     /// What a diagnostic means, with a wrong and a right sample
     Explain(ExplainCall),
     /// The syntax tree of a program
@@ -268,6 +270,44 @@ pub(super) struct ViewCall {
     /// The page or picture; its name ends with .html, .svg or .png
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+}
+
+/// `diff`.
+#[derive(Debug, Args)]
+pub(super) struct DiffCall {
+    /// A program or CL file; `-` is standard input
+    #[arg(value_name = "A")]
+    pub first: PathBuf,
+    /// Another one
+    #[arg(value_name = "B")]
+    pub second: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingOptions,
+    /// How far tools on the same path may be from each other, in the unit of A (default: a millionth of the extent)
+    #[arg(long, value_name = "T", value_parser = above_zero)]
+    pub tolerance: Option<f64>,
+    /// How far their axes may be turned from each other, in degrees (default: .00018)
+    #[arg(long, value_name = "DEGREES", value_parser = above_zero)]
+    pub axis_tolerance: Option<f64>,
+    /// How to tell the differences
+    #[arg(long, value_enum, default_value_t = DiffFormat::Human)]
+    pub format: DiffFormat,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("not a number above zero".to_owned()),
+    }
+}
+
+/// Formats of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DiffFormat {
+    /// For people
+    Human,
+    /// JSON
+    Json,
 }
 
 /// `explain`.
