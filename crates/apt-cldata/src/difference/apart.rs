@@ -41,67 +41,85 @@ fn tree_of(chain: &Chain) -> RTree<Chord> {
 }
 
 /// A piece of a chain with the most that one of its places can be from the other chain.
-struct Piece {
+struct Piece<'a> {
     most: f64,
     ends: [Vec3; 2],
+    /// The chords of the other chain nearest to both ends.
+    nearest: [&'a Chord; 2],
 }
 
-impl Piece {
+impl<'a> Piece<'a> {
     /// The distance from one chord is a convex function along a straight way, nowhere above its ends; and a distance grows no faster than the way.
-    fn bound(ends: &[Vec3; 2], nearest: [&Chord; 2]) -> f64 {
+    fn new(ends: [Vec3; 2], nearest: [&'a Chord; 2]) -> Self {
         let distances = |chord: &Chord| ends.map(|end| chord.distance(&end));
         let [[start, far], [near, end]] = nearest.map(distances);
         let by_length = (start + end + (ends[1] - ends[0]).norm()) / 2.0;
-        by_length.min(start.max(far)).min(near.max(end))
+        let most = by_length.min(start.max(far)).min(near.max(end));
+        Self { most, ends, nearest }
+    }
+
+    /// Where to divide it: where both chords are as near, so that one of them bounds either part closely; else in the middle.
+    fn divide(&self) -> Option<Vec3> {
+        let [from, to] = self.ends;
+        let at = |part: f64| from + (to - from) * part;
+        let first_is_nearer =
+            |part: f64| self.nearest[0].distance(&at(part)) <= self.nearest[1].distance(&at(part));
+        let mut within = [0.0, 1.0];
+        if first_is_nearer(0.0) && !first_is_nearer(1.0) {
+            for _ in 0..HALVINGS {
+                let middle = f64::midpoint(within[0], within[1]);
+                within[usize::from(!first_is_nearer(middle))] = middle;
+            }
+        }
+        let place = at(f64::midpoint(within[0], within[1]));
+        (place != from && place != to).then_some(place)
     }
 }
 
-impl PartialEq for Piece {
+/// Halvings that tell a place of a piece to a millionth.
+const HALVINGS: usize = 20;
+
+impl PartialEq for Piece<'_> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Piece {}
+impl Eq for Piece<'_> {}
 
-impl PartialOrd for Piece {
+impl PartialOrd for Piece<'_> {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Piece {
+impl Ord for Piece<'_> {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.most.total_cmp(&other.most)
     }
 }
 
-/// The place of a chain that is farthest from another one. The piece that may be farthest is halved until none may be so by more than is told.
+/// The place of a chain that is farthest from another one. The piece that may be farthest is divided until none may be so by more than is told.
 fn farthest(own: &Chain, other: &RTree<Chord>, close: f64) -> (f64, Vec3) {
-    let nearest = |place: Vec3| other.nearest_neighbor(place.into());
-    let mut best = (0.0, own.first().map_or_else(Vec3::zeros, |first| first[0]));
-    let mut waiting = BinaryHeap::new();
-    let mut pieces: Vec<[Vec3; 2]> = own.windows(2).map(|ends| [ends[0][0], ends[1][0]]).collect();
-    loop {
-        for ends in pieces.drain(..) {
-            let [Some(from), Some(to)] = ends.map(nearest) else { return best };
-            for (chord, end) in [(from, ends[0]), (to, ends[1])] {
-                let distance = chord.distance(&end);
-                if distance > best.0 {
-                    best = (distance, end);
-                }
-            }
-            waiting.push(Piece { most: Piece::bound(&ends, [from, to]), ends });
-        }
-        let Some(widest) = waiting.pop() else { return best };
+    let nearest = |place: &Vec3| other.nearest_neighbor((*place).into()).map(|chord| (*place, chord));
+    let places: Vec<(Vec3, &Chord)> = own.iter().filter_map(|[position, _]| nearest(position)).collect();
+    let first = (0.0, own.first().map_or_else(Vec3::zeros, |first| first[0]));
+    let farther = |best: (f64, Vec3), (place, chord): &(Vec3, &Chord)| {
+        let distance = chord.distance(place);
+        if distance > best.0 { (distance, *place) } else { best }
+    };
+    let mut best = places.iter().fold(first, farther);
+    let pieces = places.windows(2).map(|ends| Piece::new([ends[0].0, ends[1].0], [ends[0].1, ends[1].1]));
+    let mut waiting: BinaryHeap<Piece<'_>> = pieces.collect();
+    while let Some(widest) = waiting.pop() {
         let is_told = widest.most <= best.0 + close.max(best.0 * PRECISION);
-        let [from, to] = widest.ends;
-        let middle = (from + to) / 2.0;
-        if is_told || middle == from || middle == to {
-            return best;
-        }
-        pieces.extend([[from, middle], [middle, to]]);
+        let divided = widest.divide().filter(|_| !is_told).and_then(|place| nearest(&place));
+        let Some((place, chord)) = divided else { return best };
+        best = farther(best, &(place, chord));
+        waiting.push(Piece::new([widest.ends[0], place], [widest.nearest[0], chord]));
+        waiting.push(Piece::new([place, widest.ends[1]], [chord, widest.nearest[1]]));
     }
+    best
 }
 
 /// The greatest angle between the axis at a place of a chain and that at the nearest place of another one.
