@@ -183,6 +183,39 @@ fn long_paths_are_compared_in_little_work() {
     assert!(asked.get() <= 40_000, "{}", asked.get());
 }
 
+/// The greatest distance between neighbouring places of [`densely`].
+const SPACING: f64 = 0.05;
+
+/// The places of a path, and others between them.
+fn densely(path: &Path) -> Vec<Vec3> {
+    let mut dense = vec![path.places[0].position];
+    for pair in path.places.windows(2) {
+        let along = pair[1].position - pair[0].position;
+        let count = (along.norm() / SPACING).ceil().max(1.0);
+        dense.extend((1..=count as u32).map(|step| pair[0].position + along * (f64::from(step) / count)));
+    }
+    dense
+}
+
+/// The Fréchet distance of two rows of places, by the table of all pairs.
+fn discrete_frechet(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let mut row: Vec<f64> = Vec::new();
+    for (i, here) in a.iter().enumerate() {
+        let mut next: Vec<f64> = Vec::with_capacity(b.len());
+        for (j, there) in b.iter().enumerate() {
+            let before = match (i, j) {
+                (0, 0) => 0.0,
+                (0, _) => next[j - 1],
+                (_, 0) => row[0],
+                _ => row[j - 1].min(row[j]).min(next[j - 1]),
+            };
+            next.push(before.max((here - there).norm()));
+        }
+        row = next;
+    }
+    row.last().copied().unwrap_or_default()
+}
+
 fn chains() -> impl Strategy<Value = Vec<[f64; 3]>> {
     prop::collection::vec([-10.0..10.0, -10.0..10.0, -1.0..1.0], 2..20)
 }
@@ -213,6 +246,24 @@ proptest! {
         let [a, b, c] = [&chain, &divided, &moved].map(|chain| path(&text_of(chain)));
         prop_assert_eq!(difference(&a, &b, 1e-9).stretches, vec![]);
         prop_assert_eq!(difference(&a, &c, 0.01).stretches, vec![]);
+    }
+
+    /// Two paths are the same from their Fréchet distance on, which places close together tell to what is between them.
+    #[test]
+    fn paths_are_the_same_from_their_frechet_distance_on(
+        chain in prop::collection::vec([-3.0..3.0, -3.0..3.0, -1.0..1.0], 2..6),
+        by in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 2..6),
+    ) {
+        let other: Vec<[f64; 3]> =
+            by.iter().enumerate().map(|(at, by)| [0, 1, 2].map(|k| chain[at % chain.len()][k] + by[k])).collect();
+        let [a, b] = [&chain, &other].map(|chain| path(&text_of(chain)));
+        let [dense_a, dense_b] = [&a, &b].map(|path| densely(path));
+        let between = 2.0 * SPACING;
+        let frechet = discrete_frechet(&dense_a, &dense_b);
+        prop_assert_eq!(difference(&a, &b, frechet + between).stretches, vec![]);
+        if frechet > 2.0 * between {
+            prop_assert_ne!(difference(&a, &b, frechet - between).stretches, vec![]);
+        }
     }
 
     /// A place that is moved away by more than the tolerance is told, as far as it was moved.
