@@ -8,6 +8,7 @@
 
 mod around;
 mod held;
+mod last;
 mod pieces;
 mod touch;
 mod trough;
@@ -22,6 +23,7 @@ use apt_geometry::{
 
 pub(super) use self::around::Around;
 use self::held::{Cap, Held, Rest};
+use self::last::Last;
 use self::trough::{Acrosses, Bends, Grounds};
 use super::{
     Contact, Tool,
@@ -108,6 +110,8 @@ pub(crate) struct Near {
     start: Start,
     /// The surface's point at the last contact.
     surface: Vec3,
+    /// How near the tool was there.
+    last: Option<Last>,
     zone: Result<Zone, Vec3>,
     /// How the flank was last shown to be far.
     flank: Option<Flank>,
@@ -267,8 +271,11 @@ pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3, mem
     let Some(found) = known.touch(&pose) else { return Followed::Lost };
     let slack = pose.slack();
     if known.proves(&pose, &found, slack, far) {
-        (known.start, known.surface) = (found.start, found.contact.surface);
+        known.note(&pose, found.start, &found.contact);
         return Followed::Proven(found.contact, slack);
+    }
+    if !known.may_be_nearest(&pose, &found.contact) {
+        return Followed::Lost;
     }
     found.start.piece.map_or(Followed::Lost, |piece| Followed::Likely(piece, found.contact))
 }
@@ -287,7 +294,7 @@ pub(super) fn remember(
     let Some(start) = pose.start_at(contact) else { return };
     let first = || Some(Near::new(&pose, start, contact.surface));
     if let Some((known, _)) = memory.about(&pose, first) {
-        (known.start, known.surface) = (start, contact.surface);
+        known.note(&pose, start, contact);
     }
 }
 
@@ -381,6 +388,7 @@ impl Near {
             tip,
             start,
             surface,
+            last: None,
             zone: Err(nowhere),
             flank: None,
             doubts: [Doubts::default(); 3],
@@ -555,12 +563,7 @@ impl Far {
     /// What the end of the tool keeps in another position: its points move no farther than the end does and the turn of the axis takes the
     /// farthest of them.
     fn left(&self, pose: &Pose<'_>) -> f64 {
-        let moved = (pose.tip - self.tip).norm();
-        if pose.tool.axis == self.axis {
-            return self.level - moved;
-        }
-        let reach = pose.tool.profile.top.height.hypot(pose.tool.radius());
-        self.level - moved - reach * (pose.tool.axis - self.axis).norm()
+        self.level - pose.moved_from(&self.tip, &self.axis)
     }
 
     /// Whether more than a level is left, unless the tool has hardly moved since: moves are bounded by what is left.

@@ -462,3 +462,52 @@ fn no_tool_is_deeper_than_it_is_long() {
     let contact = gauge(&role).contact(&Tool::new(line, Vec3::z()), &tip);
     assert!(contact.clearance < 0.0 && contact.clearance >= -height, "{contact:?}");
 }
+
+/// A wall whose end, which leans, comes to be beside the flank of a ball-ended tool: contact leaves the wall for the end, and what is found
+/// from the contact before is not far from there.
+#[test]
+fn contact_that_leaves_a_surface_over_its_end_is_not_followed_far_away() {
+    let round = 1.5488995304303261;
+    let wall = poly_conic(
+        &[
+            1.0,
+            0.008786561050093128,
+            0.5064150028134305,
+            0.8622451166984858,
+            3.1062984857391793,
+            0.1381790580872694,
+            -0.8546210471621286,
+            0.5005291336711793,
+            -1.2922755395616086,
+            0.9903682871795865,
+            0.1147462882753924,
+            -0.07748512809560626,
+            3.9140498645279296,
+            0.0,
+            0.0,
+            5.999999999999998,
+        ],
+        [
+            [round, 0.1731712184014962],
+            [round, -0.00819668105456106],
+            [round, 0.2694457094123509],
+            [-round, 0.12250877261644308],
+            [-round, -0.19116937741550954],
+            [round, -0.0032046258205974945],
+            [FRAC_1_SQRT_2, -0.04015146312149453],
+        ],
+    );
+    let cutter = Cutter::from_numbers(&[0.8535051011690147, 0.42675255058450734], 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let known = gauge(&Role { side: -1.0, ..touched(&wall) });
+    let way = v(0.01596, 0.97584, 0.21789);
+    let before = v(-1.0494, 0.1128, 0.25555);
+    for back in [0.06, 0.02, 1e-3, 0.0] {
+        known.contact(&tool, &(before - way * back));
+    }
+    let step = 3e-4;
+    let (followed, _) = known.contact_followed(&tool, &(before + way * step));
+    let fresh = gauge(&Role { side: -1.0, ..touched(&wall) }).contact(&tool, &(before + way * step));
+    assert!(known.surface.ends_at(&fresh.tool), "{fresh:?}");
+    assert!((followed.clearance - fresh.clearance).abs() < step, "{followed:?}, not {fresh:?}");
+}
