@@ -3,6 +3,7 @@
 use apt_geometry::{
     Vec3,
     cutter::Cutter,
+    motion::Relation,
     surface::{Crease, Surface, SurfaceEdge},
 };
 use arelem::{MotionFailure, error::RoleName};
@@ -31,7 +32,7 @@ impl ToldEnd {
 }
 
 /// Whether a tool touches the end of a surface, which is no farther than a distance from it, and a path leads out over that end or down
-/// behind it, and not along it; where all rulings meet nothing leads along it. Surfaces of which the end is not known have none.
+/// behind it, and not along it; where all rulings meet nothing leads along it, nor does anything where the tool is ON the surface. Surfaces of which the end is not known have none.
 pub(crate) fn is_over(
     placed: &Placed,
     (cutter, axis): (&Cutter, &Vec3),
@@ -45,7 +46,8 @@ pub(crate) fn is_over(
     let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
     let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
     let Some((distance, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
-    let leads_over = surface.edge_at(&place).is_none_or(|SurfaceEdge { outward, normal, along }| {
+    let edge = surface.edge_at(&place).filter(|_| placed.relation != Relation::On);
+    let leads_over = edge.is_none_or(|SurfaceEdge { outward, normal, along }| {
         let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
         out.hypot(behind) > along.dot(path).abs()
     });

@@ -295,7 +295,13 @@ impl<'a> Reader<'a> {
         let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
         let clearance = if told.role == RoleName::Part { on_part } else { on_drive };
         let near = clearance.abs() + placed.thickness + AT_END * (inside + outside);
-        placed.relation != Relation::On && ends::is_over(placed, (&self.cutter, &axis), tip, near, sense)
+        // A tool that is ON a surface leaves it with its end, where that is: from beside it, it is as far as it is thick.
+        if placed.relation == Relation::On && sense.dot(&(told.tip - tip)) > inside + outside {
+            return false;
+        }
+        let point = Cutter::from_numbers(&[0.0], 0.0).expect("a point");
+        let guided = if placed.relation == Relation::On { &point } else { &self.cutter };
+        ends::is_over(placed, (guided, &axis), tip, near, sense)
     }
 
     /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of
@@ -368,6 +374,8 @@ impl<'a> Reader<'a> {
                 (tip, sense) = (next, next_sense);
                 continue;
             }
+            // What any point of the tool has moved by since the check surface was read.
+            let way = last.map_or(0.0, |(at, _)| (tip - at).norm() + self.swung(&at, &tip));
             let value = match last {
                 Some((at, value)) if (tip - at).norm() + band < value.abs() => value,
                 _ => {
@@ -376,7 +384,7 @@ impl<'a> Reader<'a> {
                     value
                 }
             };
-            if let Some(at) = events.note(value, length) {
+            if let Some(at) = events.note(value, length, way) {
                 return Found::Path(at);
             }
             if is_over {
@@ -389,6 +397,12 @@ impl<'a> Reader<'a> {
             (tip, sense) = (next, next_sense);
         }
         Found::NotMet
+    }
+
+    /// How far the top of the tool swings out where its axis turns between two places.
+    fn swung(&self, from: &Vec3, to: &Vec3) -> f64 {
+        let turn = self.axis(from).zip(self.axis(to)).map_or(0.0, |(a, b)| (a - b).norm());
+        turn * self.cutter.height
     }
 
     fn step(&self, tip: &Vec3, sense: &Vec3, long: f64) -> Option<(Vec3, Vec3)> {
@@ -423,15 +437,22 @@ struct Events<'a> {
     met: u32,
     /// Where the path has come to the other state, which is not beyond doubt yet: it may only brush the band.
     brushed: Option<f64>,
+    /// The last clearance.
+    last: Option<f64>,
 }
 
 impl<'a> Events<'a> {
     fn new(case: &'a Case, band: f64) -> Self {
-        Self { case, band, is_clear: None, met: 0, brushed: None }
+        Self { case, band, is_clear: None, met: 0, brushed: None, last: None }
     }
 
-    /// Takes a clearance after a length of path; that of the position asked for, once it is known to be one.
-    fn note(&mut self, value: f64, length: f64) -> Option<f64> {
+    /// Takes a clearance after a length of path, since the last of which no point of the tool has moved farther than a way; the length
+    /// at the position asked for, once it is known to be one.
+    ///
+    /// No clearance changes by more than the tool moves. One that does leaps where the check surface ends beside the tool, beyond which its
+    /// sign says nothing: that is no position.
+    fn note(&mut self, value: f64, length: f64, way: f64) -> Option<f64> {
+        let leaps = self.last.replace(value).is_some_and(|last| (value - last).abs() > way + self.band);
         let (now, is_certain) = (value > 0.0, value.abs() > self.band);
         let Some(before) = self.is_clear else {
             self.is_clear = is_certain.then_some(now);
@@ -439,6 +460,10 @@ impl<'a> Events<'a> {
         };
         if before == now {
             self.brushed = None;
+            return None;
+        }
+        if leaps {
+            (self.is_clear, self.brushed) = (is_certain.then_some(now), None);
             return None;
         }
         let at = *self.brushed.get_or_insert(length);
