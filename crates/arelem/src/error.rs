@@ -493,10 +493,12 @@ pub enum MotionWarning {
         /// The place of its end next to the tool axis.
         place: Vec3,
     },
-    /// A directed motion names one surface in two roles.
+    /// A directed motion or a start-up names one surface in two roles.
     SurfaceTwice {
         /// Both of them.
         roles: [RoleName; 2],
+        /// True for a start-up.
+        start_up: bool,
     },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {

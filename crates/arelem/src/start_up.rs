@@ -8,6 +8,7 @@ mod side;
 mod tangent;
 #[cfg(test)]
 mod tests;
+pub(crate) mod twice;
 
 use apt_geometry::{
     Vec3,
@@ -27,6 +28,9 @@ use crate::{
     sequence::{CutSequence, Stop, ToolPosition},
     story::Route,
 };
+
+/// The roles of the surfaces that a start-up names, in their order.
+const NAMES: [RoleName; 3] = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
 
 /// What a start-up works with.
 pub(crate) struct StartUp<'a> {
@@ -183,9 +187,8 @@ impl<'a> StartUp<'a> {
     ) -> Result<Self, MotionFailure> {
         let cutter = state.cutter.ok_or(MotionFailure::NoCutter { start_up: true })?;
         let ToolPosition { tip, axis } = required_position(state)?;
-        let names = [RoleName::Drive, RoleName::Part, RoleName::Check(0)];
         let mut roles = Vec::with_capacity(3);
-        for (start, name) in surfaces.iter().zip(names) {
+        for (start, name) in surfaces.iter().zip(NAMES) {
             let stands_as = match start.relation {
                 Relation::TangentToDrive => surfaces.first(),
                 Relation::TangentToPart => surfaces.get(1),

@@ -500,11 +500,14 @@ fn warning_text(warning: &Warning) -> Text {
         .hint(
             "beyond its end a surface has no sides: one that reaches farther, or a shorter tool, settles it",
         ),
-        Warning::SurfaceTwice { roles: [one, other] } => say(
+        Warning::SurfaceTwice { roles: [one, other], start_up } => say(
             "APT0667",
             format!("one surface is the {} and the {} of this motion", role(*one), role(*other)),
         )
         .hint(match other {
+            _ if *start_up => {
+                "the tool is as free as if it were named once, or asked for two things that exclude each other: name another surface, or leave it out"
+            }
             RoleName::Check(_) => "a surface that the tool follows stops it nowhere: name another one to stop at",
             _ => "only the direction asked for leads the tool then: name another drive surface, or another part surface by PSIS",
         }),

@@ -216,28 +216,35 @@ mod tests {
     use apt_geometry::motion::{DriveSide, MotionCommand, PartSide, Relation, Turn};
 
     use crate::{
-        error::{MotionWarning, RoleName},
+        error::{MotionFailure, MotionWarning, RoleName},
         tests::{Program, cylinder, line, motion, named, plane, quadric, v},
     };
 
-    /// A tool of radius .75 inside the ellipse x²/16 + y² = 1, whose ends have a radius of curvature of .25. The ellipse
-    /// is the part surface: in a corner of that the path ends.
-    fn into_the_narrow_end(check: bool) -> (Program, u16) {
-        let ellipse = quadric([1.0 / 16.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    const TOLERANCE: f64 = 0.006;
+
+    /// A tool of radius .75 inside the ellipse x² + y²/.64 = 1, whose ends have a radius of curvature of .64: the part surface. In both ends the
+    /// path turns by 120°, and these are .42 apart, nearer than one turn on the spot may be to another one in bands as wide: the second one
+    /// ends it.
+    fn into_narrow_ends(check: bool) -> (Program, MotionFailure) {
+        let ellipse = quadric([1.0, 1.0 / 0.64, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let floor = plane(0.0, 0.0, 1.0, 0.0);
         let mut p = Program::new();
-        p.tolerance(0.001, 0.001).cutter(&[1.5]).from(0.0, 0.0, 0.0).run(&MotionCommand::GougeCheck(check));
+        p.tolerance(TOLERANCE, TOLERANCE).cutter(&[1.5]).from(0.0, 0.0, 0.0);
+        p.run(&MotionCommand::GougeCheck(check));
         p.indirv(0.0, -1.0, 0.0).go(&[(Relation::To, &ellipse), (Relation::To, &floor)]);
-        let command = motion(Turn::Left, &floor, &[(Relation::On, 1, &line(3.9, 0.0, 3.9, 1.0))]);
+        let command = motion(Turn::Left, &floor, &[(Relation::On, 1, &line(0.9, 0.0, 0.9, 1.0))]);
         p.run(&MotionCommand::PartSurface(named(&ellipse))).part_side(PartSide::Offset).side(DriveSide::On);
-        let failure = p.attempt(&command).expect_err("the end is narrower than the tool");
-        (p, failure.apt3().expect("a number"))
+        let failure = p.attempt(&command).expect_err("both ends are narrower than the tool");
+        (p, failure)
     }
 
     #[test]
     fn a_corner_narrower_than_the_tool_is_told_with_place_and_depth() {
-        let (p, number) = into_the_narrow_end(true);
-        assert_eq!(number, 801);
+        let (p, failure) = into_narrow_ends(true);
+        let MotionFailure::NoAdmissibleVector { role: RoleName::Part, clearance, .. } = failure else {
+            panic!("{failure:?}")
+        };
+        assert!(clearance < -TOLERANCE, "{clearance}");
         let gouges: Vec<_> = p
             .warnings
             .iter()
@@ -250,10 +257,10 @@ mod tests {
             .collect();
         assert!(!gouges.is_empty(), "{:?}", p.warnings);
         for (depth, contact) in gouges {
-            assert!(depth > 0.001 && depth < 0.1, "{depth}");
+            assert!(depth > TOLERANCE && depth < 0.1, "{depth}");
             assert!(
-                contact.surface.y.abs() > 0.5 && contact.tip.x > 0.0,
-                "at a wall of the end: {contact:?}"
+                contact.surface.y.abs() > 0.5 && contact.tip.x < 0.0,
+                "at a wall of the second end: {contact:?}"
             );
             assert!(contact.tool.y.abs() > contact.surface.y.abs(), "the tool is beyond it: {contact:?}");
         }
@@ -261,8 +268,8 @@ mod tests {
 
     #[test]
     fn nothing_is_told_unless_it_is_asked_for() {
-        let (p, number) = into_the_narrow_end(false);
-        assert_eq!((number, p.warnings.len()), (801, 0));
+        let (p, failure) = into_narrow_ends(false);
+        assert_eq!((failure.apt3(), p.warnings.len()), (Some(801), 0));
     }
 
     /// A flat tool whose end is ON the bottom of a hollow cylinder of radius 5.

@@ -339,7 +339,10 @@ fn warn_of_surface_twice<'a>(roles: impl Iterator<Item = &'a Working>, warnings:
     let roles: Vec<&Working> = roles.take(TOLD_ROLES).collect();
     for (index, role) in roles.iter().enumerate() {
         let first = roles.iter().take(index).find(|first| first.named.geometry == role.named.geometry);
-        warnings.extend(first.map(|first| MotionWarning::SurfaceTwice { roles: [first.name, role.name] }));
+        warnings.extend(
+            first
+                .map(|first| MotionWarning::SurfaceTwice { roles: [first.name, role.name], start_up: false }),
+        );
     }
 }
 

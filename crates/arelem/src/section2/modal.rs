@@ -63,6 +63,7 @@ pub(super) fn apply(
             Ok(None)
         }
         MotionCommand::Start(surfaces) => {
+            warnings.extend(start_up::twice::named(surfaces));
             let sequence = start_up::start(state, surfaces, patience)?;
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
@@ -70,6 +71,7 @@ pub(super) fn apply(
             Ok(Some(finish(state, sequence)))
         }
         MotionCommand::Offset(surfaces) => {
+            warnings.extend(start_up::twice::named(surfaces));
             let sequence = start_up::offset(state, surfaces, patience)?;
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();

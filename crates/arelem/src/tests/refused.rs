@@ -1,4 +1,4 @@
-//! Random motions that end where the path does, and what is told about it.
+//! Random motions that end where the path does, or turn there, and what is told about it.
 
 use apt_geometry::{
     canonical::{Remembering, RuledSurface},
@@ -78,18 +78,18 @@ impl Found {
 /// More clearances than any of these motions needs.
 pub(super) const AMPLE: u64 = 50_000;
 
-fn is_stopped_by_its_part_surface(motion: &Found) {
-    match motion.run(AMPLE) {
-        Err(MotionFailure::NoAdmissibleVector { role: RoleName::Part, clearance, .. }) => {
-            assert!(clearance < -motion.band[0] || clearance > motion.band[1], "{clearance}");
-        }
-        other => panic!("{other:?}"),
-    }
+/// The motion goes on from a corner of its part surface by more than a right angle.
+pub(super) fn turns_sharply(motion: &Found) {
+    let sequences = motion.run(AMPLE).expect("a path");
+    let path = &sequences[1];
+    let tips: Vec<Vec3> = [path.start.tip].into_iter().chain(path.points.iter().map(|p| p.tip)).collect();
+    let turns = tips.windows(3).any(|at| (at[1] - at[0]).dot(&(at[2] - at[1])) < 0.0);
+    assert!(turns, "{tips:?}");
 }
 
-/// Its end touches one wall, then its shank the other, and the way along that wall leads back.
+/// Its end touches one wall, then its shank the other, and the way along that wall leads away from the first one, against the way until then.
 #[test]
-fn a_ball_cutter_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
+fn a_ball_cutter_that_lies_across_a_hollow_cylinder_goes_on_along_its_other_wall() {
     let part = Geometry::Ellipse(Quadric {
         coefficients: [
             0.08993875338833873,
@@ -143,12 +143,12 @@ fn a_ball_cutter_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
             }),
         ),
     };
-    is_stopped_by_its_part_surface(&motion);
+    turns_sharply(&motion);
 }
 
 /// The same with a flat cutter along a hollow cone.
 #[test]
-fn a_flat_cutter_that_leans_in_a_hollow_cylinder_is_told_what_stops_it() {
+fn a_flat_cutter_that_leans_in_a_hollow_cylinder_goes_on_along_its_other_wall() {
     let part = Geometry::Circle(Cylinder {
         point: v(1.6691746439091308, 1.0544464952541002, -0.786633375219504),
         axis: v(0.0, 0.0, 1.0),
@@ -185,12 +185,12 @@ fn a_flat_cutter_that_leans_in_a_hollow_cylinder_is_told_what_stops_it() {
             }),
         ),
     };
-    is_stopped_by_its_part_surface(&motion);
+    turns_sharply(&motion);
 }
 
 /// The same with a tapered one whose end is on the drive surface.
 #[test]
-fn a_tapered_tool_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
+fn a_tapered_tool_that_lies_across_a_hollow_cylinder_goes_on_along_its_other_wall() {
     let part = Geometry::Circle(Cylinder {
         point: v(1.5561240421288838, 0.2714733427062874, -2.026735291973663),
         axis: v(0.0, 0.0, 1.0),
@@ -234,7 +234,7 @@ fn a_tapered_tool_that_lies_across_a_hollow_cylinder_is_told_what_stops_it() {
             }),
         ),
     };
-    is_stopped_by_its_part_surface(&motion);
+    turns_sharply(&motion);
 }
 
 /// MAXDP far below the band on a saddle: the end at rest in the band lies farther across the path than one vector may go.
@@ -535,8 +535,32 @@ fn a_surface_in_two_roles_is_told() {
         let _ = p.attempt(&motion(Turn::Right, &ring, &[(Relation::On, 1, check)]));
         p.warnings
     };
-    let twice = |roles| [MotionWarning::SurfaceTwice { roles }];
+    let twice = |roles| [MotionWarning::SurfaceTwice { roles, start_up: false }];
     assert_eq!(warnings(&floor, &across), []);
     assert_eq!(warnings(&ring, &across), twice([RoleName::Part, RoleName::Drive]));
     assert_eq!(warnings(&floor, &ring), twice([RoleName::Drive, RoleName::Check(0)]));
+}
+
+/// A start-up that names one surface twice tells the tool no more than the other surfaces do.
+#[test]
+fn a_surface_named_twice_by_a_start_up_is_told() {
+    let [ring, floor, across] = [circle(0.0, 0.0, 2.0), plane(0.0, 0.0, 1.0, 0.0), plane(1.0, 0.0, 0.0, 0.0)];
+    let warnings = |surfaces: &[(Relation, &Geometry)]| {
+        let mut p = Program::new();
+        p.cutter(&[0.5]).from(5.0, 0.5, 1.0).indirv(-1.0, 0.0, 0.0);
+        let _ = p.attempt(&start(surfaces));
+        p.warnings
+    };
+    let twice = |one, other| [MotionWarning::SurfaceTwice { roles: [one, other], start_up: true }];
+    let [to, on] = [Relation::To, Relation::On];
+    assert_eq!(warnings(&[(to, &ring), (to, &floor), (on, &across)]), []);
+    assert_eq!(warnings(&[(to, &ring), (to, &ring)]), twice(RoleName::Drive, RoleName::Part));
+    assert_eq!(
+        warnings(&[(to, &ring), (on, &floor), (to, &ring)]),
+        twice(RoleName::Drive, RoleName::Check(0))
+    );
+    assert_eq!(
+        warnings(&[(to, &ring), (to, &floor), (on, &floor)]),
+        twice(RoleName::Part, RoleName::Check(0))
+    );
 }

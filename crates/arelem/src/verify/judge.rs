@@ -515,7 +515,6 @@ impl Judge<'_> {
                     let at_end = [part.normal_at(vector + 1)?, drive.normal_at(vector + 1)?];
                     let mut followed = normals;
                     if sine <= 0.0
-                        && !turns
                         && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end)
                     {
                         (sine, begins, followed) = (direction.dot(&along), along, normals);

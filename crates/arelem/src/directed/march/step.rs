@@ -84,6 +84,8 @@ pub(super) struct Stepper<'a> {
     kept_hand: Option<Hand>,
     /// Where the path last turned by more than a right angle.
     turned_sharply: Option<Vec3>,
+    /// The end of the longest vector that leads straight on from there in the bands.
+    straight: Option<Vertex>,
     /// The last vector; zero before the first.
     last: Vec3,
     /// Where the path came from farther off than it may turn on the spot.
@@ -149,6 +151,7 @@ impl<'a> Stepper<'a> {
             hand: Hand::default(),
             kept_hand: None,
             turned_sharply: None,
+            straight: None,
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
@@ -164,6 +167,11 @@ impl<'a> Stepper<'a> {
     /// The next vertex, at most `cap` away. Where the path turns sharply because the tool comes to touch a surface at a second
     /// place, the tangent of the vertex becomes that of the path beyond.
     pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+        self.straight = None;
+        self.hand.arrive(here);
+        if let Some(next) = self.beyond_sharply(here, cap)? {
+            return self.noted(here, Ok(next));
+        }
         let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
             found => return self.noted(here, found),
@@ -184,6 +192,11 @@ impl<'a> Stepper<'a> {
         let next = self.anywhere_onward(&corner, here, cap)?;
         let found = next.ok_or_else(|| corner.explained(self.prepared, here, failure));
         self.noted(here, found)
+    }
+
+    /// Where the path has just turned by more than a right angle: the end of a vector straight on, as far as the bands allow.
+    pub(super) fn straight_on(&self) -> Option<Vertex> {
+        self.straight
     }
 
     /// Remembers the direction of a vector.

@@ -4,7 +4,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Places, Stepper,
-    corner::{Corner, SAME_TANGENT_COSINE},
+    corner::{Corner, SAME_TANGENT_COSINE, SecondPlace},
 };
 use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
 
@@ -21,32 +21,44 @@ const SAME_CONTACT_COSINE: f64 = 0.87;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hand {
     sign: Option<f64>,
-    /// Whether the tool has come to touch the drive surface at another place on the last vector, where the tangent leads back.
+    /// Whether the tool has come to touch one of both surfaces at another place on the last vector, where the tangent leads back.
     is_beyond_corner: bool,
+    /// Where the last vector begins: the sign there, and the gradients of both clearances.
+    before: Option<(Option<f64>, [Vec3; 2])>,
+}
+
+fn gradients(vertex: &Vertex) -> [Vec3; 2] {
+    [vertex.part.gradient, vertex.drive.gradient]
 }
 
 impl Hand {
-    /// The hand at a vertex, by its tangent.
-    fn at(vertex: &Vertex) -> Self {
+    /// The sign at a vertex, by its tangent.
+    fn sign_at(vertex: &Vertex) -> Option<f64> {
         let across = vertex.part.gradient.cross(&vertex.drive.gradient);
         let is_told = across.norm() >= TELLING_SINE;
-        Self { sign: is_told.then(|| across.dot(&vertex.tangent).signum()), is_beyond_corner: false }
+        is_told.then(|| across.dot(&vertex.tangent).signum())
     }
 
-    /// Goes on along a vector. Where the tool touches at another place at its end the tangent there, which only goes on within a right angle,
-    /// does not tell.
+    /// Goes on along a vector.
     pub(super) fn follow(&mut self, from: &Vertex, to: &Vertex) {
-        let before = self.or_at(from);
-        let is_same = |a: &Contact, b: &Contact| a.gradient.dot(&b.gradient) >= SAME_CONTACT_COSINE;
-        let same = [is_same(&from.part, &to.part), is_same(&from.drive, &to.drive)];
-        let now = Self::at(to);
-        let is_kept = same.contains(&false) && before.sign.is_some() && now.sign.is_some();
-        let is_beyond_corner = is_kept && before.sign != now.sign && same == [true, false];
-        *self = Self { is_beyond_corner, ..if is_kept { before } else { now } };
+        self.before = Some((self.or_at(from).sign, gradients(from)));
+        self.arrive(to);
+    }
+
+    /// Comes to the end of the last vector, which may have been moved since. Where the tool touches at another place there the tangent, which only
+    /// goes on within a right angle, does not tell.
+    pub(super) fn arrive(&mut self, to: &Vertex) {
+        let Some((before, from)) = self.before else { return };
+        let there = gradients(to);
+        let same = [0, 1].map(|k: usize| from[k].dot(&there[k]) >= SAME_CONTACT_COSINE);
+        let now = Self::sign_at(to);
+        let is_kept = same.contains(&false) && before.is_some() && now.is_some();
+        self.is_beyond_corner = is_kept && before != now && same.contains(&true);
+        self.sign = if is_kept { before } else { now };
     }
 
     fn or_at(self, vertex: &Vertex) -> Self {
-        if self.sign.is_some() { self } else { Self::at(vertex) }
+        if self.sign.is_some() { self } else { Self { sign: Self::sign_at(vertex), ..self } }
     }
 
     /// The direction of the path along two contacts.
@@ -57,7 +69,7 @@ impl Hand {
 }
 
 impl Stepper<'_> {
-    /// The next vertex along the second contact of a corner of the drive surface that turns the path by more than a right angle: where it goes on on the same hand.
+    /// The next vertex along the second contact of a corner of one of both surfaces that turns it by more than a right angle: where it goes on on the same hand.
     /// Two such corners are not as near as the tool may round one. Errors: cancelled.
     pub(super) fn around_sharply(
         &mut self,
@@ -66,24 +78,42 @@ impl Stepper<'_> {
         cap: f64,
     ) -> Result<Option<Vertex>, MotionFailure> {
         let is_near = |at: Vec3| (here.tip - at).norm() <= self.rounding();
-        if self.prepared.attitude.turns() || self.turned_sharply.is_some_and(is_near) {
+        if self.turned_sharply.is_some_and(is_near) {
             return Ok(None);
         }
-        for direction in self.sharp_directions(corner, here) {
+        let directions = self.sharp_directions(corner, here);
+        let is_reached = !directions.is_empty() && !corner.places.is_empty();
+        let straight = if is_reached { self.longest_of_all(here, &[here.tangent], cap)? } else { None };
+        for direction in directions {
             let known = (self.last, self.arrived, self.turned);
             (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
             let turned = Vertex { tangent: direction, ..*here };
             self.kept_hand = Some(self.hand.or_at(here));
             let found = self.in_any_place(&turned, cap);
             self.kept_hand = None;
-            if let Some(next) = found? {
+            let found = found?;
+            if let Some(next) = found {
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
+                self.straight = straight.map(|(_, trial)| trial.vertex);
                 *here = turned;
                 return Ok(Some(next));
             }
             (self.last, self.arrived, self.turned) = known;
         }
         Ok(None)
+    }
+
+    /// The next vertex from where the last vector has ended beyond a corner: its tangent there goes on within a right angle, and leads back into the
+    /// place that it has left. Errors: cancelled.
+    pub(super) fn beyond_sharply(
+        &mut self,
+        here: &mut Vertex,
+        cap: f64,
+    ) -> Result<Option<Vertex>, MotionFailure> {
+        if !self.hand.is_beyond_corner {
+            return Ok(None);
+        }
+        self.around_sharply(&Corner { places: Vec::new(), directions: Vec::new() }, here, cap)
     }
 
     /// True if a vector would leave the hand that is to be kept on it: it leads back along where the path came from.
@@ -93,15 +123,18 @@ impl Stepper<'_> {
     }
 
     /// Directions on the same hand against that of the path: along what is measured here, if the vector that led here ended beyond the corner,
-    /// and along each second contact with the drive surface.
+    /// and along each second contact with one of both surfaces.
     fn sharp_directions(&self, corner: &Corner, here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
-        let seconds =
-            corner.places.iter().filter(|place| place.others == [false, true]).filter_map(|place| {
-                let along = hand.along(&here.part, &place.ahead.drive)?;
-                (here.drive.gradient.dot(&along) >= 0.0).then_some(along)
-            });
+        let seconds = corner.places.iter().filter_map(|SecondPlace { ahead, others }| {
+            let (left, part, drive) = match others {
+                [true, false] => (&here.part, &ahead.part, &here.drive),
+                [false, true] => (&here.drive, &here.part, &ahead.drive),
+                _ => return None,
+            };
+            hand.along(part, drive).filter(|along| left.gradient.dot(along) >= 0.0)
+        });
         let mut found: Vec<Vec3> = Vec::new();
         for along in own.into_iter().chain(seconds) {
             let is_known = found.iter().any(|known| known.dot(&along) > SAME_TANGENT_COSINE);

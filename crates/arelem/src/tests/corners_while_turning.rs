@@ -1,0 +1,71 @@
+//! Corners that turn the path by more than a right angle while the axis follows a surface.
+
+use apt_geometry::motion::{AxisAngle, AxisTangency, ToolAxis};
+
+use super::*;
+
+/// Slope of the legs of both corners, in which a path turns by 127°.
+const STEEP: f64 = 2.0;
+/// Where motions begin and end, by x.
+const AWAY: f64 = 1.0;
+
+fn is_proven(program: &Program) {
+    for sequence in &program.sequences {
+        let evidence = crate::verify::verify(sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{evidence:?}");
+    }
+}
+
+/// Along the walls y = s·|x| on a dome, with the axis normal to that or at angles to it across a vector: the walls do not tell it, so that it does not
+/// jump in their corner.
+#[test]
+fn a_tool_normal_to_its_part_surface_goes_on_along_the_other_leg_of_a_corner() {
+    let walls = quadric([-STEEP * STEEP, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let dome = sphere(0.0, 0.0, -20.0, 20.0);
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let tilt = 8f64.to_radians();
+    for mode in [
+        ToolAxis::Normal { part: true },
+        ToolAxis::AtAngle { part: true, angle: tilt, mode: AxisAngle::PerpendicularTo(Vec3::x()) },
+    ] {
+        for cutter in [&[1.0, 0.5][..], &[1.0], &[1.0, 0.2]] {
+            let mut program = Program::new();
+            program.cutter(cutter).tolerance(0.001, 0.001).from(-2.0, 6.0, 3.0);
+            program.run(&MotionCommand::ToolAxis(mode));
+            program.go(&[(Relation::To, &walls), (Relation::To, &dome), (Relation::On, &x(-AWAY))]);
+            program.side(DriveSide::Left).indirv(1.0, -STEEP, 0.0);
+            program.drive(Turn::Forward, &walls, Relation::On, &x(AWAY));
+            let path = program.last();
+            let turns = path.points.windows(3).any(|at| {
+                let [before, beyond] = [at[1].tip - at[0].tip, at[2].tip - at[1].tip];
+                before.dot(&beyond) < -0.2 * before.norm() * beyond.norm()
+            });
+            assert!(turns && program.tip().y > 1.0);
+            is_proven(&program);
+        }
+    }
+}
+
+/// How far the bottom of the trough is above the edge of a sharp one: less than the band, as a tool end ON an edge has no normal.
+const ROUNDED: f64 = 0.0008;
+
+/// Through the trough z² = s²x² + h² with the flank along a cone.
+#[test]
+fn a_tool_along_its_drive_surface_goes_down_one_face_of_a_trough_and_up_the_other() {
+    let trough = quadric([-STEEP * STEEP, 0.0, 1.0, -ROUNDED * ROUNDED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let wall = cone(v(0.0, 0.0, 40.0), v(0.0, 0.0, -1.0), 20.0);
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    for part_side in [PartSide::Offset, PartSide::On] {
+        let mut program = Program::new();
+        program.cutter(&[1.0, 0.5]).tolerance(0.001, 0.001).from(-AWAY, -16.0, 6.0);
+        let mode = AxisTangency::PerpendicularTo(Vec3::x());
+        program.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height: 0.0, mode })).part_side(part_side);
+        let relation = if part_side == PartSide::On { Relation::On } else { Relation::To };
+        program.go(&[(Relation::To, &wall), (relation, &trough), (Relation::On, &x(-AWAY))]);
+        program.side(DriveSide::Right).indirv(1.0, 0.0, -STEEP);
+        program.drive(Turn::Forward, &wall, Relation::On, &x(AWAY));
+        let lowest = program.last().points.iter().map(|p| p.tip.z).fold(f64::INFINITY, f64::min);
+        assert!(program.tip().z > lowest + 1.0);
+        is_proven(&program);
+    }
+}
