@@ -3,6 +3,7 @@
 use apt_geometry::motion::{AxisAngle, AxisTangency, ToolAxis};
 
 use super::*;
+use crate::verify::Rule;
 
 /// Slope of the legs of both corners, in which a path turns by 127°.
 const STEEP: f64 = 2.0;
@@ -35,13 +36,23 @@ fn a_tool_normal_to_its_part_surface_goes_on_along_the_other_leg_of_a_corner() {
             program.go(&[(Relation::To, &walls), (Relation::To, &dome), (Relation::On, &x(-AWAY))]);
             program.side(DriveSide::Left).indirv(1.0, -STEEP, 0.0);
             program.drive(Turn::Forward, &walls, Relation::On, &x(AWAY));
-            let path = program.last();
-            let turns = path.points.windows(3).any(|at| {
+            let mut path = program.last().clone();
+            let sharp = path.points.windows(3).position(|at| {
                 let [before, beyond] = [at[1].tip - at[0].tip, at[2].tip - at[1].tip];
                 before.dot(&beyond) < -0.2 * before.norm() * beyond.norm()
             });
-            assert!(turns && program.tip().y > 1.0);
+            assert!(program.tip().y > 1.0);
             is_proven(&program);
+            // Back along the leg that it came along is another hand.
+            let corner = sharp.expect("a corner") + 1;
+            let back: Vec<_> = path.points[..corner].iter().rev().copied().collect();
+            path.points.truncate(corner + 1);
+            path.points.extend(back);
+            let evidence = crate::verify::verify(&path, &|| false).expect("evidence");
+            assert!(
+                evidence.violations.iter().any(|violation| violation.rule == Rule::Progress),
+                "{evidence:?}"
+            );
         }
     }
 }
@@ -68,4 +79,21 @@ fn a_tool_along_its_drive_surface_goes_down_one_face_of_a_trough_and_up_the_othe
         assert!(program.tip().z > lowest + 1.0);
         is_proven(&program);
     }
+}
+
+/// An angle to the part surface is told in the plane of the normals of both surfaces, which jumps in a corner of the walls: on the spot the tool
+/// cannot turn.
+#[test]
+fn an_axis_that_a_corner_tells_ends_the_motion_there() {
+    let walls = quadric([-STEEP * STEEP, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let dome = sphere(0.0, 0.0, -20.0, 20.0);
+    let x = |d: f64| plane(1.0, 0.0, 0.0, d);
+    let angle = 8f64.to_radians();
+    let mut program = Program::new();
+    program.cutter(&[1.0, 0.5]).tolerance(0.001, 0.001).from(-2.0, 6.0, 3.0);
+    program.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle, mode: AxisAngle::Plain }));
+    program.go(&[(Relation::To, &walls), (Relation::To, &dome), (Relation::On, &x(-AWAY))]);
+    program.side(DriveSide::Left).indirv(1.0, -STEEP, 0.0);
+    let failure = program.attempt(&motion(Turn::Forward, &walls, &[(Relation::On, 1, &x(AWAY))]));
+    assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
 }

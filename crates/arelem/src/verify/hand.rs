@@ -47,11 +47,11 @@ impl Hand {
     /// The direction in which the path goes on from a corner, with the normals of what it follows. The tool touches with the normals `there`,
     /// and another contact is read at the vertex before, `self`, or at the end of the vector that leads on. `None` where there is no other one.
     pub(super) fn beyond_corner(&self, there: &[Vec3; 2], at_end: &[Vec3; 2]) -> Option<(Vec3, [Vec3; 2])> {
-        let followed = if self.normals.is_some_and(|before| !is_same(&before, there)) {
-            there
-        } else {
-            Some(at_end).filter(|at_end| !is_same(there, at_end))?
-        };
+        let followed = match self.normals {
+            // What ends where the tool touches as before the corner leads back from it.
+            Some(before) if !is_same(&before, there) => Some(there).filter(|_| !is_same(&before, at_end)),
+            _ => Some(at_end).filter(|at_end| !is_same(there, at_end)),
+        }?;
         Some((self.along(followed)?, *followed))
     }
 }

@@ -81,24 +81,23 @@ impl Stepper<'_> {
         if self.turned_sharply.is_some_and(is_near) {
             return Ok(None);
         }
-        let directions = self.sharp_directions(corner, here);
-        let is_reached = !directions.is_empty() && !corner.places.is_empty();
-        let straight = if is_reached { self.longest_of_all(here, &[here.tangent], cap)? } else { None };
-        for direction in directions {
+        for direction in self.sharp_directions(corner, here) {
             let known = (self.last, self.arrived, self.turned);
             (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
             let turned = Vertex { tangent: direction, ..*here };
             self.kept_hand = Some(self.hand.or_at(here));
             let found = self.in_any_place(&turned, cap);
             self.kept_hand = None;
-            let found = found?;
-            if let Some(next) = found {
+            let next = found?;
+            let onward = (self.last, self.arrived);
+            (self.last, self.arrived, self.turned) = known;
+            if let Some(next) = next {
+                self.straight = self.straight_from(here, corner, cap)?;
+                (self.last, self.arrived) = onward;
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
-                self.straight = straight.map(|(_, trial)| trial.vertex);
                 *here = turned;
                 return Ok(Some(next));
             }
-            (self.last, self.arrived, self.turned) = known;
         }
         Ok(None)
     }
@@ -114,6 +113,21 @@ impl Stepper<'_> {
             return Ok(None);
         }
         self.around_sharply(&Corner { places: Vec::new(), directions: Vec::new() }, here, cap)
+    }
+
+    /// The end of the longest vector straight on into a corner, wherever in the bands it ends. Errors: cancelled.
+    fn straight_from(
+        &self,
+        here: &Vertex,
+        corner: &Corner,
+        cap: f64,
+    ) -> Result<Option<Vertex>, MotionFailure> {
+        // Beyond the corner the tangent does not lead into it.
+        if corner.places.is_empty() {
+            return Ok(None);
+        }
+        let found = self.longest_of_all(here, &[here.tangent], cap)?;
+        Ok(found.map(|(_, trial)| trial.vertex))
     }
 
     /// True if a vector would leave the hand that is to be kept on it: it leads back along where the path came from.
