@@ -166,7 +166,7 @@ fn a_drill_passes_the_vertex_of_a_cone() {
 }
 
 /// A tapered tool along a quadric that it touches at many places in turn: a vector that leaves the band is refused without
-/// a look at each of them.
+/// a look at each of them. In a corner of the part surface the path goes on, by more than a right angle.
 #[test]
 fn a_refused_vector_is_not_looked_at_in_full() {
     let part = cylinder(
@@ -210,7 +210,7 @@ fn a_refused_vector_is_not_looked_at_in_full() {
     let before = EVALUATIONS.get();
     let outcome = program.attempt(&motion(Turn::Forward, &drive, &[(Relation::To, 1, &stop)]));
     let count = EVALUATIONS.get() - before;
-    assert!(count < 5_000, "{count} clearances: {outcome:?}");
+    assert!(outcome.is_ok() && count < 7_500, "{count} clearances: {outcome:?}");
     for sequence in &program.sequences {
         assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
     }
