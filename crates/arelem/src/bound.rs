@@ -171,17 +171,26 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
 
 /// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position.
 fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent, maximum_step: f64) -> u32 {
-    let mut filled = bent.filled.clone();
+    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step);
+    let filled = to_end(prepared, path, bent.clone(), maximum_step).filled;
+    whole(filled.count(&limits) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+}
+
+/// What is known of the bend along all of a path, of whose beginning it is known: vertices that are moved later do not change how the
+/// path bends.
+pub(crate) fn to_end(prepared: &Prepared, path: &[Vec3], mut bent: Bent, maximum_step: f64) -> Bent {
     let roles = [&prepared.part, &prepared.drive];
     let limits = Limits::new(roles, maximum_step);
     // The end of a motion may leave out that position, or come before it.
     let met = path.iter().rposition(|tip| *tip == bent.to).unwrap_or(path.len().saturating_sub(2));
-    let rest = std::iter::once(&bent.to).chain(&path[met + 1..]);
+    let begin = bent.to;
+    let rest = std::iter::once(&begin).chain(path.get(met + 1..).unwrap_or_default());
     for (from, to) in rest.clone().zip(rest.skip(1)).filter(|(from, to)| from != to) {
         let [part, drive] = roles.map(|role| read(&prepared.tool, role, [from, to]));
-        filled.add([&part, &drive], &limits);
+        bent.filled.add([&part, &drive], &limits);
+        bent.to = *to;
     }
-    whole(filled.count(&limits) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+    bent
 }
 
 /// Part of what is filled that reading the clearances at few places of each vector may add.

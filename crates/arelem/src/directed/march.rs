@@ -5,6 +5,7 @@ mod creeping;
 mod finish;
 mod parallel_way;
 mod scout;
+mod spared;
 mod step;
 mod straight;
 mod surface_end;
@@ -19,6 +20,7 @@ use super::{
 };
 use crate::{
     attitude::{Attitude, Sweep},
+    bound,
     clearance::{Contact, Shape},
     error::{Course, Iteration, MotionFailure},
     position::{self, Condition, Solution},
@@ -250,13 +252,11 @@ impl<'a> March<'a> {
             }
             if !is_passed_by && self.accept(&here, &end.tip)? {
                 self.points.push(end.tip);
-                self.straighten_end(&start)?;
-                return Ok(self.path(&end));
+                return self.finished(&start, &end);
             }
             if self.bend_towards(&here, &next, &end.tip)? {
                 self.points.push(end.tip);
-                self.straighten_end(&start)?;
-                return Ok(self.path(&end));
+                return self.finished(&start, &end);
             }
             finals += 1;
             if finals > MAX_FINALS {
@@ -410,6 +410,19 @@ impl<'a> March<'a> {
         }
         (*here, *next) = (moved.from, moved.next);
         Ok(true)
+    }
+
+    /// The path to an end, without what it can do without.
+    fn finished(&mut self, start: &Vertex, end: &finish::End) -> Result<Path, MotionFailure> {
+        self.straighten_end(start)?;
+        let along = self.points.clone();
+        let bent = self.stepper.record.along(&along);
+        self.spare_vertices(start)?;
+        if self.points.len() == along.len() {
+            return Ok(self.path(end));
+        }
+        let bent = bound::to_end(self.prepared, &along, bent, self.state.maximum_step);
+        Ok(Path { bent, ..self.path(end) })
     }
 
     fn path(&mut self, end: &finish::End) -> Path {

@@ -23,6 +23,7 @@ mod properties;
 mod refused;
 mod sculptured;
 pub(crate) mod sheets;
+mod spared;
 mod tangencies;
 mod troughs;
 mod turning;

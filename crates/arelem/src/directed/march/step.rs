@@ -392,7 +392,10 @@ impl<'a> Stepper<'a> {
     /// The clearances that a vector is to end with.
     fn targets(&self, here: &Vertex, bends: &[Bend; 2], places: Places) -> [f64; 2] {
         match places {
-            Places::Limits => [self.prepared.part.vertex(bends[0]), self.prepared.drive.vertex(bends[1])],
+            Places::Limits => {
+                let [part, drive] = self.roles();
+                [limit(part, bends[0], here.part.clearance), limit(drive, bends[1], here.drive.clearance)]
+            }
             Places::Level => [here.part.clearance, here.drive.clearance],
             Places::Inward(share) => {
                 let inward = |role: &Working, clearance: f64| {
@@ -402,6 +405,17 @@ impl<'a> Stepper<'a> {
                 [inward(part, here.part.clearance), inward(drive, here.drive.clearance)]
             }
         }
+    }
+}
+
+/// The clearance at which a vector ends that bends so and begins with a clearance. Where a surface that bends one way alone is straight along
+/// the path a vertex at its limit stays there: how far it sees along what bends beyond depends on that, and no sag needs the room.
+fn limit(role: &Working, bend: Bend, clearance: f64) -> f64 {
+    let usual = role.vertex(bend);
+    match (bend, role.shape) {
+        (Bend::Straight, Shape::Convex) => clearance.min(role.vertex(Bend::Convex)).max(usual),
+        (Bend::Straight, Shape::Concave) => clearance.max(role.vertex(Bend::Concave)).min(usual),
+        _ => usual,
     }
 }
 

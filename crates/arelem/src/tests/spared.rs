@@ -1,0 +1,157 @@
+//! Motions that took vectors which they could do without, where a path bends this way and that; both are of random pairs.
+
+use Relation::{On, Past, To};
+use apt_geometry::canonical::{Remembering, RuledSurface};
+
+use super::*;
+
+/// A polyconic between these ends of its rail, by its axes and constants and the first two of each of its polynomials.
+fn sheet(frame: [f64; 12], coefficients: [[f64; 2]; 7]) -> Geometry {
+    let mut values = vec![1.0];
+    values.extend(frame);
+    values.extend([0.0, 0.0, 6.0]);
+    for pair in coefficients {
+        values.extend(pair);
+        values.extend([0.0; 6]);
+    }
+    values.extend([0.0; 7]);
+    Geometry::PolyConic(Remembering::new(values))
+}
+
+/// A tool with an axis at a place.
+fn standing(cutter: &[f64], tolerances: [f64; 2], from: Vec3, axis: Vec3) -> Program {
+    let mut p = Program::new();
+    p.cutter(cutter).tolerance(tolerances[0], tolerances[1]);
+    p.run(&MotionCommand::MaximumStep(10.0));
+    p.run(&MotionCommand::From { position: from, axis: Some(axis), name: String::new() });
+    p
+}
+
+/// A ball turns in a corner of its path and comes to a stop just beyond another one: a vector of a thousandth of the others was left
+/// before the first.
+#[test]
+fn a_short_vector_between_two_long_ones_is_spared() {
+    let part = sheet(
+        [
+            -0.194_628_544_155_893_34,
+            -0.661_267_914_682_490_1,
+            -0.724_461_506_783_644_2,
+            6.310_819_529_085_298,
+            0.051_583_111_123_865_245,
+            0.730_663_234_813_925_4,
+            -0.680_786_618_506_880_6,
+            0.770_281_529_969_076_8,
+            0.979_519_735_608_497_3,
+            -0.169_870_486_850_191_35,
+            -0.108_097_665_334_356_5,
+            3.424_387_545_288_954,
+        ],
+        [
+            [3.539_664_742_141_992, 0.074_676_224_500_604_46],
+            [3.539_664_742_141_992, 0.090_151_903_595_855_87],
+            [3.539_664_742_141_992, -0.092_961_563_994_078_15],
+            [-3.539_664_742_141_992, -0.044_571_419_621_589_24],
+            [-3.539_664_742_141_992, 0.022_314_578_931_493_05],
+            [3.539_664_742_141_992, -0.044_842_654_760_377_854],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.005_029_824_995_709_697],
+        ],
+    );
+    let axis = v(-0.205_254_614_577_985_8, 0.962_380_838_726_688_9, 0.178_027_145_250_822_75);
+    let across = v(0.963_936_136_072_666_1, 0.167_299_664_137_360_28, 0.206_970_973_860_850_55);
+    let parts = [
+        cylinder(
+            v(-30.528_991_104_070_78, -4.439_781_615_910_485, -6.323_900_523_867_897),
+            axis,
+            32.637_178_696_961_705,
+        ),
+        Geometry::Point(v(0.632_167_502_845_363_4, -2.764_253_164_724_104_6, 3.694_094_883_462_471_4)),
+        Geometry::Point(v(1.987_375_645_237_787_5, -1.051_544_084_809_811_7, -4.002_010_527_612_172)),
+        Geometry::Vector(across),
+        cylinder(
+            v(-7.674_390_199_288_654, -0.473_165_022_812_794_16, -1.416_691_036_003_876_2),
+            axis,
+            9.558_667_189_912_203,
+        ),
+        Geometry::Point(v(-0.599_360_184_622_551, 3.010_031_867_636_028_5, 4.762_257_754_967_408_6)),
+        Geometry::Point(v(0.755_847_957_769_873, 4.722_740_947_550_322, -2.933_847_656_107_235_7)),
+        Geometry::Vector(across),
+    ];
+    let drive = Geometry::RuledSurface(Remembering::new(RuledSurface { parts: parts.to_vec() }));
+    let normal = v(0.094_463_988_914_961_86, -0.988_771_344_332_572_9, -0.115_791_983_422_993_67);
+    let first = plane(normal.x, normal.y, normal.z, -1.489_381_427_712_207_3);
+    let mut p = standing(
+        &[0.719_918_417_962_757_8, 0.359_959_208_981_378_9],
+        [0.001; 2],
+        v(1.546_246_473_586_558_4, 1.325_936_009_475_471_7, 0.293_352_343_865_413_37),
+        v(-0.136_453_334_624_330_32, -0.107_955_840_651_734_18, 0.984_746_680_085_329_4),
+    );
+    p.go(&[(On, &drive), (To, &part), (On, &first)]);
+    p.side(DriveSide::On).indirv(normal.x, normal.y, normal.z);
+    let stop = circle(0.482_367_504_509_596_03, 2.345_103_643_029_515_4, 4.060_661_409_306_251);
+    p.drive(Turn::Forward, &drive, To, &stop).verified();
+    // There were 26.
+    let sequence = p.last();
+    assert!(sequence.points.len() <= 25, "{} vectors", sequence.points.len());
+    assert!(sequence.minimum.is_some_and(|minimum| minimum as usize <= sequence.points.len()));
+    // None is left over in a corner.
+    let mut tips = vec![sequence.start.tip];
+    tips.extend(sequence.points.iter().map(|point| point.tip));
+    let shortest = tips.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(f64::INFINITY, f64::min);
+    assert!(shortest > 1e-3, "{shortest}");
+}
+
+/// A bull nose on the outside of a cone goes straight along that, then bends about it: the vertices stay at the outer limit of the band, from which
+/// the next vector sees farther than from the place of ends.
+#[test]
+fn vertices_stay_at_the_limit_where_a_convex_surface_is_straight() {
+    let part = Geometry::Cone(Cone {
+        vertex: v(1.273_384_014_246_326_9, 0.967_780_745_490_072, -1.330_813_226_534_707_7),
+        axis: v(-0.310_123_077_596_747_57, 0.719_079_015_369_571_3, -0.621_891_506_934_328_2),
+        cosine: 0.912_369_292_991_531_6,
+    });
+    let drive = sheet(
+        [
+            0.969_967_635_583_264_4,
+            0.134_531_210_274_810_71,
+            -0.202_642_886_337_039_45,
+            2.571_922_248_965_355_7,
+            0.010_955_091_297_633_682,
+            -0.856_436_416_736_509_5,
+            -0.516_136_270_826_017_8,
+            0.412_847_140_787_257_4,
+            -0.242_987_184_632_589_45,
+            0.498_415_506_931_237_54,
+            -0.832_189_407_860_257,
+            2.144_073_198_235_305,
+        ],
+        [
+            [2.999_791_557_228_801, 0.031_112_447_443_548_963],
+            [2.999_791_557_228_801, 0.113_697_942_869_583_51],
+            [2.999_791_557_228_801, -0.021_855_390_990_427_825],
+            [-2.999_791_557_228_801, 0.070_051_677_630_851_3],
+            [-2.999_791_557_228_801, 0.241_171_808_883_093_1],
+            [2.999_791_557_228_801, -0.126_776_192_996_152],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.026_496_777_496_954_962],
+        ],
+    );
+    let normal = v(0.907_029_550_841_754_5, 0.402_131_075_087_026_1, 0.124_851_881_640_437_59);
+    let first = plane(normal.x, normal.y, normal.z, 0.772_515_298_954_242);
+    let stop = cylinder(
+        v(-0.193_403_034_415_099_65, 1.574_512_802_412_262_5, -0.956_562_564_080_273_7),
+        v(0.105_009_752_784_147_51, -0.939_030_008_581_984, 0.327_407_383_549_503_16),
+        1.088_710_579_946_695_4,
+    );
+    let mut p = standing(
+        &[0.501_954_955_308_884_2, 0.081_424_689_549_649_54],
+        [0.01, 0.005],
+        v(-0.217_680_047_790_152_5, 2.440_606_428_104_499_2, -0.646_908_100_817_149_3),
+        v(-0.366_761_356_111_554_14, 0.545_373_025_994_206_1, 0.753_693_817_263_440_6),
+    );
+    let stock = 0.135_807_489_242_593_2;
+    p.run(&MotionCommand::Thickness(PerRole { part: stock, drive: stock, check: [stock; 2] }));
+    p.go(&[(Past, &drive), (To, &part), (Past, &first)]);
+    p.side(DriveSide::Left).indirv(-normal.x, -normal.y, -normal.z);
+    p.drive(Turn::Forward, &drive, To, &stop).verified();
+    // There were 12, and 11 with vertices at the place of ends.
+    assert!(p.last().points.len() <= 10, "{} vectors", p.last().points.len());
+}
