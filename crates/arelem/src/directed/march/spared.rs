@@ -21,6 +21,8 @@ const PLACES: [f64; 3] = [0.5, 0.0, 1.0];
 const MOVED: f64 = 0.1;
 /// Cosine between a vector and the one in its place below which that leads another way (60°).
 const LEAST_ONWARD: f64 = 0.5;
+/// Share of MAXDP that its length may be above it by rounding.
+const ROUNDING: f64 = 1e-9;
 /// Sine between two vectors below which their lines do not tell where they meet.
 const LEAST_SINE: f64 = 1e-6;
 
@@ -41,7 +43,7 @@ impl March<'_> {
             return Ok(());
         }
         let mut k = 1;
-        while k + 2 < self.points.len() + 1 {
+        while k + 1 < self.points.len() {
             let is_short = {
                 let length = |k: usize| (self.at(start, k + 1) - self.at(start, k)).norm();
                 length(k) < SHORT * length(k - 1).min(length(k + 1))
@@ -105,7 +107,7 @@ impl March<'_> {
         }
         choices[level].places[k].1 = false;
         let (from, old) = (choices[level].places[k].0, choices[level + 1].old - choices[level].old);
-        let most = self.state.maximum_step * (1.0 + 1e-9);
+        let most = self.state.maximum_step * (1.0 + ROUNDING);
         for next in 0..choices[level + 1].places.len() {
             let (to, may_lead_on) = choices[level + 1].places[next];
             let way = to.tip - from.tip;
