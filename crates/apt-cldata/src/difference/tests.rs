@@ -257,7 +257,7 @@ proptest! {
         let other: Vec<[f64; 3]> =
             by.iter().enumerate().map(|(at, by)| [0, 1, 2].map(|k| chain[at % chain.len()][k] + by[k])).collect();
         let [a, b] = [&chain, &other].map(|chain| path(&text_of(chain)));
-        let [dense_a, dense_b] = [&a, &b].map(|path| densely(path));
+        let [dense_a, dense_b] = [&a, &b].map(densely);
         let between = 2.0 * SPACING;
         let frechet = discrete_frechet(&dense_a, &dense_b);
         prop_assert_eq!(difference(&a, &b, frechet + between).stretches, vec![]);

@@ -210,7 +210,7 @@ fn a_refused_vector_is_not_looked_at_in_full() {
     let before = EVALUATIONS.get();
     let outcome = program.attempt(&motion(Turn::Forward, &drive, &[(Relation::To, 1, &stop)]));
     let count = EVALUATIONS.get() - before;
-    assert!(outcome.is_ok() && count < 7_500, "{count} clearances: {outcome:?}");
+    assert!(outcome.is_ok() && count < 6_500, "{count} clearances: {outcome:?}");
     for sequence in &program.sequences {
         assert!(verify(sequence, &|| false).is_ok_and(|evidence| evidence.verified));
     }
