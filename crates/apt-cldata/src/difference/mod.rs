@@ -1,8 +1,8 @@
 //! Where two paths differ, whatever records and vectors they were written in.
 //!
 //! Two tools, one on each path, go on without turning back. As long as they can keep within the tolerance of each other, in the same
-//! manner (rapid or feed), the paths are the same ([`together`]). Where they part it is looked for where they come together again, with as little as
-//! can be left out ([`rejoin`]), and how far they are from each other between ([`apart`]).
+//! manner (rapid or feed), the paths are the same (`together`). Where they part it is looked for where they come together again, with as little as
+//! can be left out (`rejoin`), and how far they are from each other between (`apart`).
 
 mod apart;
 mod path;
