@@ -14,6 +14,17 @@ pub use apt_cldata::{difference::StretchKind, record::Units};
 
 use crate::{Analysis, Cancel, Cancelled};
 
+/// Why two paths cannot be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum DifferenceError {
+    /// Places so far away that no distance between them is a number.
+    #[error("a place of the path is too far away to be measured")]
+    TooFar,
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
 /// The way of the tool of a program, with the statements that lead it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ToolPath {
@@ -121,14 +132,17 @@ impl Analysis {
 ///
 /// # Errors
 ///
-/// [`Cancelled`] when `cancel` said so before the end.
+/// [`DifferenceError`] when `cancel` said so before the end, or a place is too far away.
 pub fn difference(
     [a, b]: [&ToolPath; 2],
     allowance: Allowance,
     cancel: Cancel<'_>,
-) -> Result<PathDifference, Cancelled> {
+) -> Result<PathDifference, DifferenceError> {
     let second = b.path.clone().in_units(a.path.units);
     let paths = [&a.path, &second];
+    if !paths.iter().all(|path| path.is_measurable()) {
+        return Err(DifferenceError::TooFar);
+    }
     let of_paths = Tolerance::of(paths);
     let tolerance = Tolerance {
         distance: allowance.distance.unwrap_or(of_paths.distance),

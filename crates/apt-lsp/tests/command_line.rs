@@ -406,3 +406,14 @@ fn what_is_not_read_of_a_path_is_told() {
     assert_eq!(ran.code, 1, "{ran:?}");
     assert!(ran.stdout.contains("no difference") && ran.stderr.contains("GOFWD"), "{ran:?}");
 }
+
+/// Places whose distances overflow are no agreement either.
+#[test]
+fn a_path_that_cannot_be_measured_is_told() {
+    let folder = Folder::new("diff-far");
+    folder.write("near.cl", "FROM/0,0,0\nGOTO/1,1,2\n");
+    folder.write("far.cl", "FROM/0,0,0\nGOTO/1E300,0,0\nGOTO/1,1,2\n");
+    let ran = folder.run(&["diff", "far.cl", "near.cl"]);
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{ran:?}");
+    assert!(ran.stderr.contains("too far away"), "{ran:?}");
+}

@@ -139,6 +139,12 @@ impl Path {
         self.lengths.last().copied().unwrap_or_default()
     }
 
+    /// Whether its places are near enough to each other, and to the origin, that distances between them are numbers.
+    pub fn is_measurable(&self) -> bool {
+        self.length().is_finite()
+            && self.places.iter().all(|place| (place.position * 4.0).norm_squared().is_finite())
+    }
+
     /// Number of vectors between places.
     pub fn vectors(&self) -> usize {
         self.places.len().saturating_sub(1)

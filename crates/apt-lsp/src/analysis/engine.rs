@@ -61,8 +61,12 @@ impl Language for Engine {
         paths: [&ToolPath; 2],
         allowance: Allowance,
         control: &Control,
-    ) -> Answer<PathDifference> {
-        Ok(apt_ide::difference::difference(paths, allowance, &|| control.is_cancelled())?)
+    ) -> Result<PathDifference, Refusal> {
+        use apt_ide::difference::{DifferenceError, difference};
+        difference(paths, allowance, &|| control.is_cancelled()).map_err(|error| match error {
+            DifferenceError::TooFar => Refusal::Impossible(error.to_string()),
+            DifferenceError::Cancelled(_) => Refusal::Interrupted,
+        })
     }
 
     fn explain(&self, code: &str) -> Option<String> {

@@ -47,8 +47,13 @@ impl Language for FakeLanguage {
         None
     }
 
-    fn difference(&self, paths: [&ToolPath; 2], _: Allowance, control: &Control) -> Answer<PathDifference> {
-        Engine.difference(paths, Allowance::default(), control)
+    fn difference(
+        &self,
+        paths: [&ToolPath; 2],
+        allowance: Allowance,
+        control: &Control,
+    ) -> Result<PathDifference, Refusal> {
+        Engine.difference(paths, allowance, control)
     }
 
     fn explain(&self, code: &str) -> Option<String> {

@@ -46,7 +46,7 @@ pub(crate) trait Language: Send + Sync + 'static {
         paths: [&ToolPath; 2],
         allowance: Allowance,
         control: &Control,
-    ) -> Answer<PathDifference>;
+    ) -> Result<PathDifference, Refusal>;
 
     /// The page of a diagnostic code, as Markdown.
     fn explain(&self, code: &str) -> Option<String>;

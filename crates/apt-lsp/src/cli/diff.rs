@@ -31,8 +31,8 @@ pub(super) fn diff(call: &DiffCall, console: &Console, language: &dyn Language) 
     let checked = [first, second];
     let found = match found {
         Ok(found) => found,
-        Err(interrupted) => {
-            console.error(&interrupted.to_string());
+        Err(refusal) => {
+            console.error(&refusal.to_string());
             return Outcome::Unusable;
         }
     };
