@@ -180,7 +180,7 @@ impl<'a> Stepper<'a> {
         if let Some(next) = self.around(&corner, here, cap) {
             return self.noted(here, Ok(next));
         }
-        if let Some(next) = self.around_sharply(&corner, here, cap)? {
+        if let Some(next) = self.around_sharply(&corner.places, here, cap)? {
             return self.noted(here, Ok(next));
         }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.

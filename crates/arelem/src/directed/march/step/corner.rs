@@ -24,7 +24,7 @@ pub(super) const SAME_TANGENT_COSINE: f64 = 0.999;
 pub(super) struct Corner {
     pub(super) places: Vec<SecondPlace>,
     /// Directions in which the path may go on: straight, then along a second contact.
-    pub(super) directions: Vec<Vec3>,
+    directions: Vec<Vec3>,
 }
 
 /// A place ahead at which the tool touches a surface elsewhere.

@@ -4,7 +4,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Places, Stepper,
-    corner::{Corner, SAME_TANGENT_COSINE, SecondPlace},
+    corner::{SAME_TANGENT_COSINE, SecondPlace},
 };
 use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
 
@@ -73,7 +73,7 @@ impl Stepper<'_> {
     /// Two such corners are not as near as the tool may round one. Errors: cancelled.
     pub(super) fn around_sharply(
         &mut self,
-        corner: &Corner,
+        seconds: &[SecondPlace],
         here: &mut Vertex,
         cap: f64,
     ) -> Result<Option<Vertex>, MotionFailure> {
@@ -81,7 +81,7 @@ impl Stepper<'_> {
         if self.turned_sharply.is_some_and(is_near) {
             return Ok(None);
         }
-        for direction in self.sharp_directions(corner, here) {
+        for direction in self.sharp_directions(seconds, here) {
             let known = (self.last, self.arrived, self.turned);
             (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
             let turned = Vertex { tangent: direction, ..*here };
@@ -92,7 +92,7 @@ impl Stepper<'_> {
             let onward = (self.last, self.arrived);
             (self.last, self.arrived, self.turned) = known;
             if let Some(next) = next {
-                self.straight = self.straight_from(here, corner, cap)?;
+                self.straight = self.straight_from(here, seconds, cap)?;
                 (self.last, self.arrived) = onward;
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
                 *here = turned;
@@ -112,18 +112,18 @@ impl Stepper<'_> {
         if !self.hand.is_beyond_corner {
             return Ok(None);
         }
-        self.around_sharply(&Corner { places: Vec::new(), directions: Vec::new() }, here, cap)
+        self.around_sharply(&[], here, cap)
     }
 
     /// The end of the longest vector straight on into a corner, wherever in the bands it ends. Errors: cancelled.
     fn straight_from(
         &self,
         here: &Vertex,
-        corner: &Corner,
+        seconds: &[SecondPlace],
         cap: f64,
     ) -> Result<Option<Vertex>, MotionFailure> {
         // Beyond the corner the tangent does not lead into it.
-        if corner.places.is_empty() {
+        if seconds.is_empty() {
             return Ok(None);
         }
         let found = self.longest_of_all(here, &[here.tangent], cap)?;
@@ -138,10 +138,10 @@ impl Stepper<'_> {
 
     /// Directions on the same hand against that of the path: along what is measured here, if the vector that led here ended beyond the corner,
     /// and along each second contact with one of both surfaces.
-    fn sharp_directions(&self, corner: &Corner, here: &Vertex) -> Vec<Vec3> {
+    fn sharp_directions(&self, seconds: &[SecondPlace], here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
-        let seconds = corner.places.iter().filter_map(|SecondPlace { ahead, others }| {
+        let onward = seconds.iter().filter_map(|SecondPlace { ahead, others }| {
             let (left, part, drive) = match others {
                 [true, false] => (&here.part, &ahead.part, &here.drive),
                 [false, true] => (&here.drive, &here.part, &ahead.drive),
@@ -150,7 +150,7 @@ impl Stepper<'_> {
             hand.along(part, drive).filter(|along| left.gradient.dot(along) >= 0.0)
         });
         let mut found: Vec<Vec3> = Vec::new();
-        for along in own.into_iter().chain(seconds) {
+        for along in own.into_iter().chain(onward) {
             let is_known = found.iter().any(|known| known.dot(&along) > SAME_TANGENT_COSINE);
             if along.dot(&here.tangent) < 0.0 && !is_known {
                 found.push(along);
