@@ -206,13 +206,21 @@ impl Surface {
         hollow.is_finite().then_some(Steady { hollow, round, depth, stock, beyond })
     }
 
-    /// How far the line of the chord between the places of a ruled surface that are nearest to two points is from a curve on it at most: beside each
-    /// place of the chord is one of the surface. Along a ruling it is on the surface. `None` for other kinds of surface, and where there is a corner
-    /// between both.
+    /// How far the line of the chord between the places of a ruled or polyconic surface that are nearest to two points is from a curve on it at most:
+    /// beside each place of the chord is one of the surface. Along a ruling it is on the surface. `None` for other kinds of surface, and where there is
+    /// a corner between both.
     pub fn strays_between(&self, ends: [&Vec3; 2]) -> Option<f64> {
-        let Self::Ruled(sheet) = self else { return None };
-        let [from, to] = ends.map(|end| sheet.place_near(end));
-        sheet.strays([&from, &to])
+        match self {
+            Self::Ruled(sheet) => {
+                let [from, to] = ends.map(|end| sheet.place_near(end));
+                sheet.strays([&from, &to])
+            }
+            Self::PolyConic(sheet) => {
+                let [from, to] = ends.map(|end| sheet.place_near(end));
+                sheet.strays([&from, &to])
+            }
+            _ => None,
+        }
     }
 
     /// How the surface of the charts bends towards a side at all places within reach of a point; `None` for other kinds of

@@ -102,6 +102,11 @@ pub(super) struct Enclosure {
 }
 
 impl Enclosure {
+    /// The second derivative of curves over the rectangle along which both parameters change evenly, by this from their beginning to their end.
+    pub(super) fn bent(&self, [u, v]: [f64; 2]) -> Box3 {
+        self.duu.scaled(u * u).plus(&self.duv.scaled(2.0 * u * v)).plus(&self.dvv.scaled(v * v))
+    }
+
     /// Where nothing is known but the middle.
     pub(super) fn unknown(jet: Jet) -> Self {
         let all = Box3([Interval::about(0.0, f64::INFINITY); 3]);

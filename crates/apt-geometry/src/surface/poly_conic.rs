@@ -6,6 +6,7 @@
 //! point is found over a tree of cells, each bounded by a ball.
 
 mod bounds;
+mod chord;
 mod ends;
 mod tree;
 

@@ -49,16 +49,18 @@ impl Gauge {
             return None;
         }
         let stray = self.surface.strays_between(contacts.map(|(_, contact)| &contact.surface))?;
-        let ends = contacts.map(|(tip, contact)| {
+        let [(tool, start), (_, end)] = contacts.map(|(tip, contact)| {
             let (tool, tip) = self.body(tool, tip);
-            let (along, across, _) = tool.split(&(contact.surface - tip));
-            // Over the open top of the tool it is farther from that than from the disc.
-            let below_top = tool.profile.top.height.max(tool.profile.lower.height) - along;
-            (below_top >= stray || tool.radius() <= 0.0).then(|| tool.profile.distance(across, along).0)
+            (tool, contact.surface - tip)
         });
+        let distance = |from_tip: &Vec3| {
+            let (along, across, _) = tool.split(from_tip);
+            tool.profile.distance(across, along).0
+        };
         // The place of the curve beside one of the chord may be the farthest off anywhere along it.
-        let most = ends[0]?.max(ends[1]?) + stray;
-        Some(most.max(0.0) - self.thickness)
+        let most = distance(&start).max(distance(&end)) + stray;
+        let over_top = open_top::at_most_over_top(&tool, [&start, &end], stray)?;
+        Some(most.max(over_top) - self.thickness)
     }
 
     /// The same by a line at which the surface ends, if both contacts are there.

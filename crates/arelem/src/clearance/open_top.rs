@@ -18,6 +18,27 @@ pub(super) fn is_above_top(tool: &Tool, from_tip: &Vec3) -> bool {
     top.height > 0.0 && top.radius > 0.0 && tool.axis.dot(from_tip) > top.height * (1.0 + AT_TOP)
 }
 
+/// How far places over the disc at the top of a tool, from the tool end and within a distance of a way, are at most from the tool without the disc: from
+/// the edge of the top, of which none is farther inward than the middle of the way is; zero if there are none. `None` for a tool that is a disc
+/// alone and may be entered from above.
+pub(super) fn at_most_over_top(tool: &Tool, ends: [&Vec3; 2], beside: f64) -> Option<f64> {
+    let (top, lower) = (tool.profile.top, tool.profile.lower);
+    let [from, to] = ends.map(|end| tool.split(end));
+    let above = from.0.max(to.0) + beside - top.height.max(lower.height);
+    if above <= 0.0 || tool.radius() <= 0.0 {
+        return Some(0.0);
+    }
+    if top.height <= 0.0 {
+        return None;
+    }
+    let [start, end] = [from, to].map(|(_, across, radial)| radial * across);
+    let way = end - start;
+    let share = if way == Vec3::zeros() { 0.0 } else { -start.dot(&way) / way.norm_squared() };
+    let nearest = (start + way * share.clamp(0.0, 1.0)).norm();
+    let inward = top.radius - nearest + beside;
+    Some(if inward > 0.0 { above.hypot(inward) } else { 0.0 })
+}
+
 /// Whether a tool with its end at a place touches with the edge of its top what is above it.
 pub(super) fn touches_from_below(tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
     let top = tool.profile.top;

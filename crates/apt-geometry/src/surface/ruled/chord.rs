@@ -42,8 +42,7 @@ impl RuledSheet {
             let sorted = |k: usize| [last[k].min(next[k]), last[k].max(next[k])];
             let rectangle = Rectangle::between(sorted(0), sorted(1));
             let bends = Stretch { sheet: self, piece: k }.enclose(&rectangle);
-            let bent = bends.duu.scaled(way * way).plus(&bends.duv.scaled(2.0 * way * rise));
-            greatest = greatest.max(bent.across(&chord));
+            greatest = greatest.max(bends.bent([way, rise]).across(&chord));
             if k < to.piece {
                 let [before, after] = [k, k + 1].map(|k| self.jet(k, next[0], next[1]).du);
                 if (before - after).norm() > SMOOTH * before.norm() {
