@@ -6,6 +6,8 @@ use apt_geometry::Vec3;
 
 /// Largest angle, in radians, between two points that stand for an arc that was written without inner points.
 const ARC_SAMPLE_ANGLE: f64 = 5.0 * std::f64::consts::PI / 180.0;
+/// What a number of steps may be above a whole number without one more being needed: one arc that is stated in two forms is sampled alike.
+const STEP_ROUNDING: f64 = 1e-6;
 
 /// A circle in space, as a CL file states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +48,16 @@ impl SpaceCircle {
         if angle <= 0.0 { angle + TAU } else { angle }
     }
 
+    /// How far the chords between the points of [`SpaceCircle::sample`] leave the circle at most.
+    pub fn sample_bulge(&self) -> f64 {
+        self.radius * (1.0 - (ARC_SAMPLE_ANGLE * (1.0 + STEP_ROUNDING) / 2.0).cos())
+    }
+
     /// Points of the arc (or helix) from `start`, which is left out, to exactly `end`, turning `sweep` radians about
     /// the axis. The part along the axis is linear in the angle.
     pub fn sample(&self, start: &Vec3, end: &Vec3, sweep: f64) -> Vec<Vec3> {
-        let steps = ((sweep.abs() / ARC_SAMPLE_ANGLE).ceil() as usize).clamp(1, MAXIMUM_SAMPLES);
+        let steps = (sweep.abs() / ARC_SAMPLE_ANGLE - STEP_ROUNDING).ceil() as usize;
+        let steps = steps.clamp(1, MAXIMUM_SAMPLES);
         let arm = self.in_plane(start);
         let side = self.axis.cross(&arm);
         let rise = self.axis.dot(&(end - start));

@@ -4,7 +4,7 @@
 
 use apt_cldata::{
     record::{ClKind, ClPoint, ClRecord, ClWord, Units},
-    text::{ClDialect, ReadErrorKind, TextOptions, detect, read_text, write_text},
+    text::{ClDialect, ReadErrorKind, detect, read_text, write_text},
 };
 use apt_geometry::Vec3;
 use proptest::prelude::*;
@@ -101,6 +101,72 @@ fn a_clockwise_arc_goes_the_other_way_round() {
     assert_eq!(points.len(), 72, "a full turn");
 }
 
+/// The forms of CATIA: in the plane of z, and about any axis; the direction tells the sense.
+#[test]
+fn circles_as_drive_surfaces_are_arcs() {
+    let flat = "GOTO/40,20,-3\nAUTOPS\nINDIRV/1,0,0\nTLON,GOFWD/ (CIRCLE/ 40,45,-3,$\n 25),ON,(LINE/ 40,45,-3,$\n 65,45,-3)\nGOTO/65,90,-3\n";
+    let towards = flat.replace("INDIRV/1,0,0", "INDIRP/50,20,-3");
+    let about = flat
+        .replace("(CIRCLE/ 40,45,-3,$\n 25)", "(CYLNDR/ 40,45,-3,$\n 0,0,1, 25)")
+        .replace("(LINE/ 40,45,-3,$\n 65,45,-3)", "(PLANE/PERPTO,(PLANE/(POINT/40,45,-3),$\nPERPTO,(VECTOR/0,0,1)),(POINT/40,45,-3),$\n(POINT/65,45,-3))");
+    for text in [flat, &towards, &about] {
+        let (records, errors) = read_text(text);
+        assert_eq!(errors, vec![], "{text}");
+        assert!(matches!(records[1].kind, ClKind::Arc { radius: 25.0, .. }), "{text}");
+        let ClKind::Motion { points, .. } = &records[2].kind else { panic!("{records:?}") };
+        assert_eq!((points.len(), points[17].position), (18, Vec3::new(65.0, 45.0, -3.0)), "{text}");
+        assert!(points.iter().all(|point| point.position.x > 40.0 && point.position.y < 45.0 + 1e-9));
+    }
+    // The other way round, three quarters of a turn.
+    let (records, errors) = read_text(&flat.replace("INDIRV/1,0,0", "INDIRV/-1,0,0"));
+    assert_eq!(errors, vec![]);
+    let ClKind::Motion { points, .. } = &records[2].kind else { panic!("{records:?}") };
+    assert_eq!(points.len(), 54);
+    // Without a direction there is no sense.
+    let (_, errors) = read_text(&flat.replace("INDIRV/1,0,0\n", ""));
+    assert_eq!(errors.len(), 1);
+}
+
+/// The circle of a drive surface and a tool beside it: the points keep their distance from its axis.
+#[test]
+fn points_about_the_axis_of_a_circle_are_its_own() {
+    let text =
+        "GOTO/25,0,0\nCIRCLE/0,0,0,0,0,1,20\nGOTO/20,15,0\nGOTO/15,20,0\nGOTO/15,20,50\nGOTO/15,-20,50\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    let lengths: Vec<usize> = records
+        .iter()
+        .filter_map(|record| match &record.kind {
+            ClKind::Motion { points, .. } => Some(points.len()),
+            _ => None,
+        })
+        .collect();
+    // The move along the axis ends the circle.
+    assert_eq!(lengths, [1, 2, 1, 1]);
+    let (_, errors) = read_text(&text.replace("GOTO/25,0,0", "GOTO/24,0,0"));
+    assert!(matches!(errors[0].kind, ReadErrorKind::OffCircle { .. }), "{errors:?}");
+}
+
+/// Words that begin with a digit are words, and say which calculation is meant without parameters.
+#[test]
+fn words_that_begin_with_a_digit() {
+    let text = "2DCALC\n3DCALC\nCUT\nDNTCUT\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    assert!(records.iter().all(|record| matches!(record.kind, ClKind::Control { .. })), "{records:?}");
+    assert_eq!(write_text(&records), text);
+}
+
+/// In NX files a CIRCLE has its end behind it, whatever lies on the circle after that.
+#[test]
+fn a_circle_of_nx_ends_at_one_position() {
+    let text = "TOOL PATH/A,TOOL,B\nGOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5,.03,.5,10,0\nGOTO/0,5,0\nGOTO/-5,0,0\nEND-OF-PATH\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    let ClKind::Motion { points, .. } = &records[4].kind else { panic!("{records:?}") };
+    assert_eq!((points.len(), points[0].position), (1, Vec3::new(-5.0, 0.0, 0.0)));
+}
+
 #[test]
 fn the_chords_of_a_nurbs_curve_are_its_path() {
     let text = "GOTO/0,0,0\nMOVNRB/ON,3,4,1,0,1\nMOVNRB/1,0,0,0,1,1,1\nMOVNRB/2,1,2,3\nMOVNRB/NEXT\nGOTO/1,1,0\nGOTO/2,0,0\nMOVNRB/OFF\n";
@@ -188,7 +254,7 @@ fn written_text() {
         MULTAX/ON
         FINI
     "#]]
-    .assert_eq(&write_text(&records, &TextOptions::default()));
+    .assert_eq(&write_text(&records));
 }
 
 fn any_number() -> impl Strategy<Value = f64> {
@@ -220,7 +286,7 @@ proptest! {
         let words: Vec<ClWord> = arguments.into_iter().map(ClWord::Number).collect();
         let kind = ClKind::Postprocessor { word: "ORIGIN".into(), code: None, arguments: words };
         records.push(ClRecord { isn: 0, source: 0, kind });
-        let text = write_text(&records, &TextOptions::default());
+        let text = write_text(&records);
         let (read, errors) = read_text(&text);
         prop_assert_eq!(errors, vec![]);
         let kinds: Vec<&ClKind> = read.iter().map(|record| &record.kind).collect();
@@ -231,7 +297,7 @@ proptest! {
     #[test]
     fn any_text_is_read_without_panic(text in "[A-Z0-9/,.$+\\-='() \n]{0,200}") {
         let (records, _) = read_text(&text);
-        let written = write_text(&records, &TextOptions::default());
+        let written = write_text(&records);
         prop_assert!(written.is_ascii());
         let _ = detect(&text);
     }

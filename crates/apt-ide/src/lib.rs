@@ -7,6 +7,7 @@ pub mod action;
 mod carry;
 pub mod completion;
 mod context;
+pub mod conversion;
 pub mod dialect;
 pub mod difference;
 pub mod expansion;

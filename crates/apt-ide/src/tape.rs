@@ -1,6 +1,10 @@
 //! The control tape: of a program, which is run first, or of the text of a CL file, which is read.
 
-use apt_cldata::{codes::CodeTable, record::ClRecord, text::read_text};
+use apt_cldata::{
+    codes::CodeTable,
+    record::ClRecord,
+    text::{ClText, Remark, read_with_remarks},
+};
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::Origin;
 use apt_run::{
@@ -90,6 +94,8 @@ pub fn punch(tape: &Tape, code: TapeCode) -> Result<Vec<u8>, PunchError> {
 /// The records that a tape is made of, with their origins.
 pub(crate) struct Source {
     pub(crate) records: Vec<ClRecord>,
+    /// What only people read in CL text.
+    pub(crate) remarks: Vec<Remark>,
     pub(crate) origins: Vec<Origin>,
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
@@ -140,6 +146,7 @@ impl Analysis {
                 let result = self.result(cancel, progress)?;
                 Source {
                     records: result.records.clone(),
+                    remarks: Vec::new(),
                     origins: result.origins.clone(),
                     diagnostics: Vec::new(),
                 }
@@ -182,13 +189,14 @@ impl Analysis {
     ) -> Result<Source, Cancelled> {
         let diagnostics = self.program_diagnostics(Level::Motion, cancel, progress)?;
         let result = self.result(cancel, progress)?;
-        Ok(Source { records: result.records.clone(), origins: result.origins.clone(), diagnostics })
+        let (records, origins) = (result.records.clone(), result.origins.clone());
+        Ok(Source { records, remarks: Vec::new(), origins, diagnostics })
     }
 
     /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
     pub(crate) fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
         let text = self.text();
-        let (mut records, errors) = read_text(&text);
+        let (ClText { mut records, remarks }, errors) = read_with_remarks(&text);
         if cancel() {
             return Err(Cancelled);
         }
@@ -199,7 +207,7 @@ impl Analysis {
             }
         }
         let diagnostics = catalogue::read_diagnostics(&errors, &origins, self.document().settings());
-        Ok(Source { records, origins, diagnostics })
+        Ok(Source { records, remarks, origins, diagnostics })
     }
 
     /// For every line of the text, the statement that it begins or goes on with.
@@ -228,7 +236,7 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<String, Cancelled> {
         let result = self.result(cancel, progress)?;
-        Ok(apt_cldata::text::write_text(&result.records, &apt_cldata::text::TextOptions::default()))
+        Ok(apt_cldata::text::write_text(&result.records))
     }
 
     /// The CL file as the binary CLTAPE of APT III.
@@ -255,6 +263,9 @@ fn options(settings: &Settings) -> PostOptions {
     PostOptions { default_units, ..PostOptions::default() }
 }
 
+/// The dialect of [`text_of_cl_tape`].
+pub const TAPE_DIALECT: &str = "cl";
+
 /// The text of a binary CLTAPE: a CL file that says the same. `None` for bytes that are none.
 ///
 /// # Errors
@@ -265,7 +276,7 @@ pub fn text_of_cl_tape(bytes: &[u8]) -> Option<Result<String, apt_cldata::cltape
     cltape::is_tape(bytes).then(|| {
         let contents = cltape::read_tape(bytes, &code_table())?;
         // What the tape has and CL text has not is told as remarks, so that nothing is lost in silence.
-        let mut out = text::write_text(&contents.records, &text::TextOptions::default());
+        let mut out = text::write_text(&contents.records);
         for note in &contents.notes {
             out.push_str(&format!("$$ NOT READ: {}\n", note_text(note)));
         }
@@ -283,7 +294,7 @@ fn note_text(note: &apt_cldata::cltape::TapeNote) -> String {
 }
 
 /// The codes of the vocabulary for binary CL records.
-fn code_table() -> CodeTable {
+pub(crate) fn code_table() -> CodeTable {
     let mut table = CodeTable::new();
     for word in vocabulary::words() {
         let Some(code) = word.code else { continue };

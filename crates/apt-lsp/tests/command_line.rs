@@ -50,6 +50,11 @@ fn exit_codes_tell_clean_findings_and_unusable() {
         (&["diff", "good.apt"], 2),
         (&["diff", "good.apt", "no-such-file.apt"], 2),
         (&["diff", "good.apt", "good.apt", "--tolerance", "0"], 2),
+        (&["convert", "good.apt", "--to", "cl"], 0),
+        (&["convert", "bad.apt", "--to", "cl"], 1),
+        (&["convert", "good.apt"], 2),
+        (&["convert", "good.apt", "--to", "nonsense"], 2),
+        (&["convert", "no-such-file.apt", "--to", "nx"], 2),
         (&["--help"], 0),
         (&["--version"], 0),
     ] {

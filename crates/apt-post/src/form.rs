@@ -25,7 +25,7 @@ const ON_TAPE: [&str; 44] = [
     "TURRET", "UNLOAD",
 ];
 /// Words of the processor, of listings, of plots and of the punch.
-const SILENT: [&str; 37] = [
+const SILENT: [&str; 38] = [
     "CALSUB",
     "CAMERA",
     "CLPRNT",
@@ -61,6 +61,8 @@ const SILENT: [&str; 37] = [
     "TITLES",
     "TLDATA",
     "TOOL",
+    // An operation of NX begins.
+    "TOOL PATH",
     "TRACUT",
     // Section 3 has carried them out.
     "VTLAXS",

@@ -87,8 +87,15 @@ pub fn is_tape(bytes: &[u8]) -> bool {
 /// # Errors
 /// Bytes that cannot be split into records.
 pub fn read_tape(bytes: &[u8], codes: &CodeTable) -> Result<TapeContents, TapeReadError> {
-    let mut reader =
-        Reader { codes, isn: 0, multax: false, serial: 0, records: Vec::new(), notes: Vec::new() };
+    let mut reader = Reader {
+        codes,
+        isn: 0,
+        multax: false,
+        axis: Vec3::z(),
+        serial: 0,
+        records: Vec::new(),
+        notes: Vec::new(),
+    };
     let mut offset = 0;
     // One filling byte may stand at the end.
     while bytes.len() - offset > 1 {
@@ -123,6 +130,8 @@ struct Reader<'a> {
     codes: &'a CodeTable,
     isn: u32,
     multax: bool,
+    /// The axis of the last position that has one: MULTAX/OFF leaves the tool as it stands.
+    axis: Vec3,
     serial: i32,
     records: Vec<ClRecord>,
     notes: Vec<TapeNote>,
@@ -212,10 +221,11 @@ impl Reader<'_> {
                 let at = |start: usize| {
                     Vec3::new(value(&words[start]), value(&words[start + 1]), value(&words[start + 2]))
                 };
-                let axis = if per_point == 6 { at(3) } else { Vec3::z() };
+                let axis = if per_point == 6 { at(3) } else { self.axis };
                 ClPoint { position: at(0), axis, with_axis: per_point == 6 }
             })
             .collect();
+        self.axis = points.last().map_or(self.axis, |point| point.axis);
         if subclass == MOTION_MORE
             && let Some(ClRecord { kind: ClKind::Motion { points: before, .. }, .. }) =
                 self.records.last_mut()

@@ -1,8 +1,12 @@
 //! Which CL dialect a text is written in.
 
+use std::str::FromStr;
+
 use serde::{Deserialize, Serialize};
 
 /// Dialects of CL files, and what is not CL text.
+///
+/// [`ClDialect::ALL`] is the one table of those that are read and written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClDialect {
@@ -18,10 +22,76 @@ pub enum ClDialect {
     Hsm,
     /// FROM, GOTO and post-processor words without a system's marks.
     Generic,
+    /// The binary CLTAPE of APT III: no text.
+    Cltape,
     /// Mastercam NCI: not APT.
     Nci,
     /// An APT part program: it defines geometry or moves along surfaces.
     PartProgram,
+}
+
+impl ClDialect {
+    /// Those that are read and written, in the order in which they are shown.
+    pub const ALL: [ClDialect; 7] = [
+        ClDialect::Generic,
+        ClDialect::Cltape,
+        ClDialect::Catia,
+        ClDialect::Creo,
+        ClDialect::Hsm,
+        ClDialect::Ncl,
+        ClDialect::Nx,
+    ];
+
+    /// The name on the command line.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            ClDialect::Generic => "cl",
+            ClDialect::Cltape => "cltape",
+            ClDialect::Catia => "catia",
+            ClDialect::Creo => "creo",
+            ClDialect::Hsm => "hsm",
+            ClDialect::Ncl => "ncl",
+            ClDialect::Nx => "nx",
+            ClDialect::Nci => "nci",
+            ClDialect::PartProgram => "apt",
+        }
+    }
+
+    /// What it is, for people.
+    pub fn title(self) -> &'static str {
+        match self {
+            ClDialect::Generic => "APT CL text without the marks of a system",
+            ClDialect::Cltape => "the binary CLTAPE of APT III",
+            ClDialect::Catia => "CATIA APT source",
+            ClDialect::Creo => "Creo and Pro/ENGINEER CL file",
+            ClDialect::Hsm => "Autodesk HSM and Fusion, ISO 4343",
+            ClDialect::Ncl => "NCL and PostWorks text",
+            ClDialect::Nx => "Siemens NX CLSF",
+            ClDialect::Nci => "Mastercam NCI",
+            ClDialect::PartProgram => "APT part program",
+        }
+    }
+}
+
+/// A dialect that is not written, or not known at all.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no CL dialect {name}; there are {}", known())]
+pub struct UnknownClDialect {
+    /// What was asked for.
+    pub name: String,
+}
+
+fn known() -> String {
+    ClDialect::ALL.map(ClDialect::as_str).join(", ")
+}
+
+impl FromStr for ClDialect {
+    type Err = UnknownClDialect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownClDialect> {
+        let named = |dialect: &ClDialect| dialect.as_str().eq_ignore_ascii_case(name.trim());
+        ClDialect::ALL.into_iter().find(named).ok_or_else(|| UnknownClDialect { name: name.to_owned() })
+    }
 }
 
 /// Non-blank lines that are looked at.
@@ -62,8 +132,21 @@ pub fn detect(text: &str) -> Option<ClDialect> {
     locations.then_some(ClDialect::Generic)
 }
 
+/// The dialect whose sign the text of a remark is.
+pub(crate) fn sign_of_remark(text: &str) -> Option<ClDialect> {
+    let line = format!("$${text}").trim_end().to_ascii_uppercase();
+    let candidates = [ClDialect::Catia, ClDialect::Creo];
+    decisive_mark(&line).or_else(|| candidates.into_iter().find(|dialect| mark(&line, *dialect)))
+}
+
+/// Whether a remark is a line by which a dialect is recognised at once.
+pub(crate) fn is_title(text: &str, dialect: ClDialect) -> bool {
+    decisive_mark(&format!("$${text}").to_ascii_uppercase()) == Some(dialect)
+}
+
 fn decisive_mark(line: &str) -> Option<ClDialect> {
-    if line.starts_with("$$*CATIA0") || line.contains("CATIA APT VERSION") {
+    let remark = line.strip_prefix("$$").map_or("", str::trim_start);
+    if line.starts_with("$$*CATIA0") || remark.starts_with("CATIA APT VERSION") {
         Some(ClDialect::Catia)
     } else if line.starts_with("$$*") && line.contains("CLFILE") {
         Some(ClDialect::Creo)
@@ -87,7 +170,7 @@ fn mark(line: &str, dialect: ClDialect) -> bool {
         ClDialect::Hsm => {
             line.starts_with("MOVARC/") || line.starts_with("PARTNO/'") || line.starts_with("PPRINT/'")
         }
-        ClDialect::Generic | ClDialect::Nci | ClDialect::PartProgram => false,
+        ClDialect::Generic | ClDialect::Cltape | ClDialect::Nci | ClDialect::PartProgram => false,
     }
 }
 

@@ -1,11 +1,15 @@
-//! APT CL text: the writer, a tolerant reader for generic files, and the recognition of dialects.
+//! CL text: the recognition of dialects, a tolerant reader for all of them, and a writer that follows the description of each (`dialects`).
 
 mod detect;
+pub(crate) mod dialects;
+mod number;
 mod reader;
+mod sheet;
 mod statements;
-mod words;
-mod writer;
+pub(crate) mod words;
+pub(crate) mod writer;
 
-pub use detect::{ClDialect, detect};
-pub use reader::{ReadError, ReadErrorKind, read_text};
-pub use writer::{TextOptions, write_text};
+pub(crate) use detect::sign_of_remark;
+pub use detect::{ClDialect, UnknownClDialect, detect};
+pub use reader::{ClText, ReadError, ReadErrorKind, Remark, read_text, read_with_remarks};
+pub use writer::write_text;

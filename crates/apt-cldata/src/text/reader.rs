@@ -1,25 +1,28 @@
-//! A tolerant reader for generic APT CL text.
+//! A tolerant reader for the CL text of all systems.
+
+mod arc;
+mod driven;
 
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
+use self::{
+    arc::{Direction, PendingArc},
+    driven::driven,
+};
 use super::{
+    detect::{ClDialect, detect},
     statements::{Statement, statements},
     words::{Shape, shape},
 };
 use crate::{
+    arc::Tolerance,
     geometry::SpaceCircle,
     record::{ClKind, ClPoint, ClRecord, ClWord, Units},
 };
 
 /// Deviation from unit length above which a tool axis is reported.
 const AXIS_LENGTH_TOLERANCE: f64 = 1e-4;
-/// Distance from a CIRCLE, relative to its radius, within which a point belongs to it.
-const ON_CIRCLE_FRACTION: f64 = 1e-3;
-/// Distance, relative to the radius, within which start and end of an arc are one point.
-const SAME_POINT_FRACTION: f64 = 1e-6;
-/// Arguments of `CIRCLE/` and `MOVARC/` up to the radius.
-const CIRCLE_ARGUMENTS: usize = 7;
 
 /// Something in CL text that could not be taken as it stands.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -108,14 +111,40 @@ pub enum ReadErrorKind {
 /// `source` the zero-based line. Arcs without inner points (`CIRCLE/` before a single GOTO, `MOVARC/`) become a
 /// circle record and points on the arc, the form in which APT III writes them; so do ARCMOV along the circle of ARCDAT, CW and CCW.
 /// MOVNRB passes through, and its chords are the path. Post-processor words have no code.
+/// A circle that CATIA states as the drive surface of one GOFWD, with INDIRV before it, becomes the same.
 pub fn read_text(text: &str) -> (Vec<ClRecord>, Vec<ReadError>) {
-    let mut reader = Reader::default();
+    let (read, errors) = read_with_remarks(text);
+    (read.records, errors)
+}
+
+/// The same with the remarks of the text.
+pub fn read_with_remarks(text: &str) -> (ClText, Vec<ReadError>) {
+    let circles_before_end = detect(text) == Some(ClDialect::Nx);
+    let mut reader = Reader { circles_before_end, ..Reader::default() };
     for statement in statements(text) {
         reader.statement(&statement);
     }
     reader.end_arc();
     reader.end_nurbs();
-    (reader.records, reader.errors)
+    (ClText { records: reader.records, remarks: reader.remarks }, reader.errors)
+}
+
+/// What CL text says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ClText {
+    /// The records; `source` is the zero-based line of each.
+    pub records: Vec<ClRecord>,
+    /// What only people read, in order of the lines.
+    pub remarks: Vec<Remark>,
+}
+
+/// A remark of CL text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// Zero-based line of the statement that it stands at.
+    pub line: u32,
+    /// What stands behind the `$$`, with the blanks at its beginning; rows that go on are joined.
+    pub text: String,
 }
 
 #[derive(Default)]
@@ -131,6 +160,12 @@ struct Reader {
     /// What ARCDAT said last.
     arc_data: Option<SpaceCircle>,
     nurbs: Option<NurbsCurve>,
+    /// What INDIRV or INDIRP said last.
+    direction: Option<Direction>,
+    /// A CIRCLE has one position behind it, its end.
+    circles_before_end: bool,
+    tolerance: Tolerance,
+    remarks: Vec<Remark>,
 }
 
 /// A MOVNRB that is not off yet.
@@ -141,23 +176,18 @@ struct NurbsCurve {
     moved: bool,
 }
 
-/// A circle whose points are still coming in.
-struct PendingArc {
-    circle: SpaceCircle,
-    start: Option<Vec3>,
-    /// Signed sweep, where the file says it.
-    sweep: Option<f64>,
-    points: Vec<ClPoint>,
-    isn: u32,
-    line: u32,
-}
-
 impl Reader {
     fn statement(&mut self, statement: &Statement) {
         (self.isn, self.line) = (statement.number, statement.line);
+        let remark = |text: &String| Remark { line: statement.line, text: text.clone() };
+        self.remarks.extend(statement.remarks.iter().map(remark));
         if let Some((word, text)) = &statement.free {
             self.end_arc();
             return self.push(ClKind::Text { word: (*word).into(), code: None, text: text.as_str().into() });
+        }
+        if let Some(driven) = driven(&statement.text) {
+            self.end_arc();
+            return self.driven_arc(driven);
         }
         match shape(&statement.text) {
             Shape::Blank => {}
@@ -197,12 +227,17 @@ impl Reader {
             "FINI" => self.push(ClKind::End),
             "CUT" => self.control(word, 1, vec![ClWord::Number(0.0)]),
             "DNTCUT" => self.control(word, 1, vec![ClWord::Number(1.0)]),
+            "2DCALC" => self.control(word, 2, vec![ClWord::Number(1.0)]),
+            "3DCALC" => self.control(word, 2, vec![ClWord::Number(0.0)]),
             "TOLER" => self.control(word, 3, arguments),
             "INTOL" => self.control(word, 4, arguments),
             "OUTTOL" => self.control(word, 5, arguments),
             "CUTTER" => self.control(word, 6, arguments),
-            "INDIRV" | "INDIRP" | "TLON" | "TLLFT" | "TLRGT" | "GOFWD" | "GOLFT" | "GORGT" | "GOBACK"
-            | "GOUP" | "GODOWN" | "GO" | "AUTOPS" | "PSIS" => {
+            "INDIRV" | "INDIRP" => self.indirection(word, &arguments),
+            // The part surface of a circle that stands in the statement itself says nothing more about it.
+            "AUTOPS" | "PSIS" => {}
+            "TLON" | "TLLFT" | "TLRGT" | "GOFWD" | "GOLFT" | "GORGT" | "GOBACK" | "GOUP" | "GODOWN"
+            | "GO" => {
                 self.error(ReadErrorKind::NotRead { word: word.clone() });
             }
             _ => self.push(ClKind::Postprocessor { word: word.clone(), code: None, arguments }),
@@ -210,7 +245,9 @@ impl Reader {
     }
 
     fn control(&mut self, word: &SmolStr, subclass: u16, arguments: Vec<ClWord>) {
-        self.push(ClKind::Control { word: word.clone(), code: [6000, subclass], arguments });
+        let kind = ClKind::Control { word: word.clone(), code: [6000, subclass], arguments };
+        self.tolerance.take(&kind);
+        self.push(kind);
     }
 
     fn units(&mut self, arguments: &[ClWord]) {
@@ -316,15 +353,9 @@ impl Reader {
         if let Some(curve) = &mut self.nurbs {
             curve.moved = true;
         }
-        if let Some(arc) = &mut self.arc {
-            let distance = arc.circle.deviation(&point.position);
-            let belongs = distance.abs() <= arc.circle.radius * ON_CIRCLE_FRACTION;
-            if belongs && (arc.sweep.is_none() || arc.points.is_empty()) {
-                arc.points.push(point);
+        if self.arc.is_some() {
+            if self.goes_on_arc(point) {
                 return;
-            }
-            if arc.points.is_empty() {
-                self.error(ReadErrorKind::OffCircle { distance });
             }
             self.end_arc();
         } else if !fresh
@@ -334,100 +365,6 @@ impl Reader {
             return points.push(point);
         }
         self.push(ClKind::Motion { from: false, surface: SmolStr::default(), points: vec![point] });
-    }
-
-    /// Centre, axis and radius at the head of a list of arguments.
-    fn circle_of(&mut self, word: &SmolStr, arguments: &[ClWord]) -> Option<SpaceCircle> {
-        let Some(head) = arguments.get(..CIRCLE_ARGUMENTS) else {
-            self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
-            return None;
-        };
-        let numbers = self.numbers(word, head)?;
-        let [x, y, z, i, j, k, radius] = numbers[..] else { return None };
-        self.circle_about(word, Vec3::new(x, y, z), Vec3::new(i, j, k), radius)
-    }
-
-    fn circle_about(&mut self, word: &SmolStr, center: Vec3, axis: Vec3, radius: f64) -> Option<SpaceCircle> {
-        let length = axis.norm();
-        if !(length > 0.0 && length.is_finite() && radius > 0.0) {
-            self.error(ReadErrorKind::NoCircle { word: word.clone() });
-            return None;
-        }
-        Some(SpaceCircle { center, axis: axis / length, radius })
-    }
-
-    fn circle(&mut self, word: &SmolStr, arguments: &[ClWord]) {
-        let Some(circle) = self.circle_of(word, arguments) else { return };
-        let mut sweep = None;
-        let mut rest = arguments.get(CIRCLE_ARGUMENTS..).unwrap_or_default().iter();
-        while let Some(argument) = rest.next() {
-            match argument {
-                ClWord::Word(name) if name == "ANGLE" => match rest.next() {
-                    Some(ClWord::Number(degrees)) => sweep = Some(degrees.to_radians()),
-                    _ => return self.error(ReadErrorKind::NotNumber { word: word.clone(), position: 9 }),
-                },
-                ClWord::Word(name) => self.error(ReadErrorKind::NotRead { word: name.clone() }),
-                // Tolerances and cutter of the long form.
-                ClWord::Number(_) => {}
-            }
-        }
-        self.begin_arc(circle, sweep);
-    }
-
-    fn begin_arc(&mut self, circle: SpaceCircle, sweep: Option<f64>) {
-        let (start, points) = (self.position, Vec::new());
-        self.arc = Some(PendingArc { circle, start, sweep, points, isn: self.isn, line: self.line });
-    }
-
-    /// `ARCMOV/CLW|CCLW,x,y,z[,a]`: from the present position to the point along the circle of ARCDAT, through `a` degrees
-    /// where that is said.
-    fn arc_move(&mut self, word: &SmolStr, arguments: &[ClWord]) {
-        let Some((ClWord::Word(direction), rest)) = arguments.split_first() else {
-            return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() });
-        };
-        let clockwise = match direction.as_str() {
-            "CLW" => true,
-            "CCLW" => false,
-            _ => return self.error(ReadErrorKind::NotRead { word: direction.clone() }),
-        };
-        let Some(numbers) = self.numbers(word, rest) else { return };
-        let (end, degrees) = match numbers[..] {
-            [x, y, z] => (Vec3::new(x, y, z), None),
-            [x, y, z, degrees] => (Vec3::new(x, y, z), Some(degrees)),
-            _ => return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: arguments.len() }),
-        };
-        let Some(circle) = self.arc_data else {
-            return self.error(ReadErrorKind::NoCircle { word: word.clone() });
-        };
-        self.turn(circle, clockwise, degrees, end);
-    }
-
-    /// `CW/` and `CCW/i,j,k,start,centre,end,radius`.
-    fn worded_arc(&mut self, word: &SmolStr, arguments: &[ClWord]) {
-        let Some(numbers) = self.numbers(word, arguments) else { return };
-        let [i, j, k, x, y, z, cx, cy, cz, ex, ey, ez, radius] = numbers[..] else {
-            return self.error(ReadErrorKind::WrongCount { word: word.clone(), count: numbers.len() });
-        };
-        let (center, axis) = (Vec3::new(cx, cy, cz), Vec3::new(i, j, k));
-        let Some(circle) = self.circle_about(word, center, axis, radius) else { return };
-        let start = Vec3::new(x, y, z);
-        let away = self.position.map_or(f64::INFINITY, |position| (position - start).norm());
-        if away > circle.radius * ON_CIRCLE_FRACTION {
-            let point = self.at(start, false);
-            self.position = Some(start);
-            self.goto(point, true);
-        }
-        self.turn(circle, word == "CW", None, Vec3::new(ex, ey, ez));
-    }
-
-    /// An arc to a point; clockwise as seen against the axis.
-    fn turn(&mut self, circle: SpaceCircle, clockwise: bool, degrees: Option<f64>, end: Vec3) {
-        let axis = if clockwise { -circle.axis } else { circle.axis };
-        self.begin_arc(SpaceCircle { axis, ..circle }, degrees.map(|degrees| degrees.abs().to_radians()));
-        let point = self.at(end, false);
-        self.position = Some(end);
-        self.goto(point, true);
-        self.end_arc();
     }
 
     /// MOVNRB: the curve is data for a control that knows it; the positions between ON and OFF are its chords, and those
@@ -455,37 +392,5 @@ impl Reader {
             let kind = ReadErrorKind::NotRead { word: SmolStr::new_static("MOVNRB") };
             self.errors.push(ReadError { isn: curve.isn, line: curve.line, kind });
         }
-    }
-
-    /// Turns a pending circle and its points into records.
-    fn end_arc(&mut self) {
-        let Some(mut arc) = self.arc.take() else { return };
-        let (isn, source) = (arc.isn, arc.line);
-        let Some(last) = arc.points.last().copied() else { return };
-        if arc.points.len() == 1 {
-            let off = arc.start.map(|start| arc.circle.deviation(&start));
-            match (arc.start, off) {
-                (Some(start), Some(off)) if off.abs() <= arc.circle.radius * ON_CIRCLE_FRACTION => {
-                    let same = arc.circle.radius * SAME_POINT_FRACTION;
-                    let sweep =
-                        arc.sweep.unwrap_or_else(|| arc.circle.positive_sweep(&start, &last.position, same));
-                    let positions = arc.circle.sample(&start, &last.position, sweep);
-                    arc.points = positions.into_iter().map(|position| ClPoint { position, ..last }).collect();
-                }
-                (_, off) => {
-                    let kind = off
-                        .map_or(ReadErrorKind::NoPosition, |distance| ReadErrorKind::OffCircle { distance });
-                    self.errors.push(ReadError { isn, line: source, kind });
-                    let kind =
-                        ClKind::Motion { from: false, surface: SmolStr::default(), points: arc.points };
-                    return self.records.push(ClRecord { isn, source, kind });
-                }
-            }
-        }
-        let SpaceCircle { center, axis, radius } = arc.circle;
-        let circle = ClKind::Arc { surface: SmolStr::default(), center, axis, radius };
-        self.records.push(ClRecord { isn, source, kind: circle });
-        let motion = ClKind::Motion { from: false, surface: SmolStr::default(), points: arc.points };
-        self.records.push(ClRecord { isn, source, kind: motion });
     }
 }

@@ -15,62 +15,85 @@ pub(super) struct Statement {
     pub(super) text: String,
     /// The word and the text after it, for a text statement.
     pub(super) free: Option<(&'static str, String)>,
+    /// What stands behind `$$`, or behind the `$` of a line that goes on.
+    pub(super) remarks: Vec<String>,
 }
 
 /// Splits a text; linear in its length.
 pub(super) fn statements(text: &str) -> Vec<Statement> {
     let mut found = Vec::new();
     let mut lines = text.lines().enumerate();
-    while let Some((at, line)) = lines.next() {
-        let line = without_row_prefix(line);
-        let number = saturated(found.len() + 1);
-        let start = saturated(at);
-        if let Some(free) = free_text(line) {
-            found.push(Statement { number, line: start, text: String::new(), free: Some(free) });
-            continue;
+    while let Some((at, whole)) = lines.next() {
+        let line = without_row_prefix(whole);
+        let mut statement = Statement {
+            number: saturated(found.len() + 1),
+            line: saturated(at),
+            text: String::new(),
+            free: None,
+            remarks: Vec::new(),
+        };
+        let mut next = || lines.next().map(|(_, next)| next);
+        if let Some((word, text)) = free_text(line) {
+            let text = if line.len() < whole.len() { rows_of_text(text, &mut next) } else { text };
+            statement.free = Some((word, text));
+        } else if let Some(remark) = line.trim_start().strip_prefix("$$") {
+            statement.remarks.push(remark_with_rows(remark, &mut next));
+        } else {
+            significant(line, &mut statement, &mut next);
         }
-        // Creo's pseudo statements are continued by `$`, and the rows below them are no positions.
-        if line.trim_start().starts_with("$$") {
-            let mut row = line;
-            while line.trim_start().starts_with("$$->") && row.trim_end().ends_with('$') {
-                match lines.next() {
-                    Some((_, next)) => row = next,
-                    None => break,
-                }
-            }
-            found.push(Statement { number, line: start, text: String::new(), free: None });
-            continue;
-        }
-        let mut text = String::new();
-        let mut rest = line;
-        loop {
-            match rest.find('$') {
-                None => {
-                    text.push_str(rest);
-                    break;
-                }
-                Some(mark) => {
-                    text.push_str(&rest[..mark]);
-                    if rest[mark..].starts_with("$$") {
-                        break;
-                    }
-                }
-            }
-            match lines.next() {
-                Some((_, next)) => rest = next,
-                None => break,
-            }
-        }
-        found.push(Statement { number, line: start, text, free: None });
+        found.push(statement);
     }
     found
+}
+
+/// PostWorks goes on with a text in the next row where one ends in `~`.
+fn rows_of_text<'a>(text: String, next: &mut impl FnMut() -> Option<&'a str>) -> String {
+    let mut joined = text;
+    while joined.ends_with('~') {
+        joined.pop();
+        let Some(row) = next() else { break };
+        joined.push_str(row.trim_end());
+    }
+    joined
+}
+
+/// Creo's pseudo statements are continued by `$`, and the rows below them are no positions.
+fn remark_with_rows<'a>(remark: &str, next: &mut impl FnMut() -> Option<&'a str>) -> String {
+    let mut joined = remark.trim_end().to_owned();
+    while remark.starts_with("->") && joined.ends_with('$') {
+        joined.truncate(joined.trim_end_matches('$').trim_end().len());
+        let Some(row) = next() else { break };
+        joined.push(' ');
+        joined.push_str(row.trim());
+    }
+    joined
+}
+
+fn significant<'a>(line: &'a str, statement: &mut Statement, next: &mut impl FnMut() -> Option<&'a str>) {
+    let mut rest = line;
+    loop {
+        let Some(mark) = rest.find('$') else { return statement.text.push_str(rest) };
+        statement.text.push_str(&rest[..mark]);
+        let (remark, ends) = match rest[mark..].strip_prefix("$$") {
+            Some(remark) => (remark, true),
+            None => (&rest[mark + 1..], false),
+        };
+        if !remark.trim().is_empty() {
+            statement.remarks.push(remark.trim_end().to_owned());
+        }
+        if ends {
+            return;
+        }
+        let Some(row) = next() else { return };
+        rest = row;
+    }
 }
 
 fn saturated(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
 
-/// Takes off the `N12   ,` and `C12   ,` of NCL listings.
+/// Takes off the `N12   ,` and `C12   ` of NCL listings.
 fn without_row_prefix(line: &str) -> &str {
     let inner = line.trim_start();
     let Some(rest) = inner.strip_prefix(['N', 'C', 'n', 'c']) else { return line };
@@ -78,7 +101,18 @@ fn without_row_prefix(line: &str) -> &str {
     if digits == 0 {
         return line;
     }
-    rest[digits..].trim_start().strip_prefix(',').unwrap_or(line)
+    let behind = &rest[digits..];
+    match behind.trim_start().strip_prefix(',') {
+        Some(statement) => statement,
+        // The row in which a long record goes on has no comma.
+        None if inner.starts_with(['C', 'c']) && is_word_row(behind) => behind,
+        None => line,
+    }
+}
+
+/// Blanks, and then a word.
+fn is_word_row(behind: &str) -> bool {
+    behind.starts_with(' ') && behind.trim_start().starts_with(|c: char| c.is_ascii_alphabetic())
 }
 
 /// The word and text of a text statement; quotes and the slash of the ISO 4343 form are taken off.
@@ -120,6 +154,32 @@ mod tests {
     fn rows_of_a_pseudo_statement_are_not_positions() {
         let source = "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\nGOTO / 1,2,3\n";
         assert_eq!(texts(source), vec![(1, 0, String::new()), (2, 3, "GOTO / 1,2,3".to_owned())]);
+    }
+
+    #[test]
+    fn remarks_are_kept_with_their_statement() {
+        let source = "$$ a $ b\nGOTO / 1, $ so\n 2,3 $$ far\n$$-> CSYS / 1, 0, $\n  0, 1\nRAPID\n";
+        let remarks: Vec<(u32, Vec<String>)> =
+            statements(source).into_iter().map(|found| (found.line, found.remarks)).collect();
+        let list = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect::<Vec<String>>();
+        assert_eq!(
+            remarks,
+            vec![
+                (0, list(&[" a $ b"])),
+                (1, list(&[" so", " far"])),
+                (3, list(&["-> CSYS / 1, 0, 0, 1"])),
+                (5, list(&[])),
+            ]
+        );
+    }
+
+    #[test]
+    fn rows_of_postworks() {
+        let source = "N5    , PPRINT CLAMP AT ENDS ~\nOF THE BAR\nC15     GOTO/ 1.,2.,3.\nC1 = POINT/1,2\n";
+        let found = statements(source);
+        assert_eq!(found[0].free, Some(("PPRINT", "CLAMP AT ENDS OF THE BAR".to_owned())));
+        assert_eq!(found[1].text, "     GOTO/ 1.,2.,3.");
+        assert_eq!(found[2].text, "C1 = POINT/1,2");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::record::ClWord;
 
 /// A statement as word and arguments.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// Nothing on the line.
     Blank,
     /// `WORD` or `WORD/arguments`.
@@ -24,7 +24,10 @@ pub(super) enum Shape {
     Unreadable,
 }
 
-pub(super) fn shape(text: &str) -> Shape {
+/// The statement that begins an operation of NX; its names are spelled as in the part file.
+pub(crate) const TOOL_PATH: &str = "TOOL PATH";
+
+pub(crate) fn shape(text: &str) -> Shape {
     let text = text.trim();
     if text.is_empty() {
         return Shape::Blank;
@@ -35,6 +38,9 @@ pub(super) fn shape(text: &str) -> Shape {
     };
     if let Some((name, _)) = head.split_once('=') {
         return Shape::Definition(name.trim().to_ascii_uppercase().into());
+    }
+    if head.split_whitespace().eq(TOOL_PATH.split(' ')) {
+        return Shape::Major { word: TOOL_PATH.into(), arguments: names(tail.unwrap_or_default()) };
     }
     if is_word(head) {
         let arguments = tail.map(arguments).unwrap_or_default();
@@ -49,13 +55,16 @@ pub(super) fn shape(text: &str) -> Shape {
     Shape::Unreadable
 }
 
+/// Letters, digits and what stands between them in names of later systems; 2DCALC begins with a digit and is no number.
 fn is_word(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_alphabetic())
+    text.starts_with(|c: char| c.is_ascii_alphanumeric())
+        && text.contains(|c: char| c.is_ascii_alphabetic())
+        && number(text).is_none()
         && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'))
 }
 
 /// The items between commas; a comma at the very end ends the last item and does not open another.
-fn list(text: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn list(text: &str) -> impl Iterator<Item = &str> {
     let text = text.trim();
     text.strip_suffix(',').unwrap_or(text).split(',').map(str::trim)
 }
@@ -72,6 +81,10 @@ fn arguments(text: &str) -> Vec<ClWord> {
         .collect()
 }
 
+fn names(text: &str) -> Vec<ClWord> {
+    list(text).map(|item| ClWord::Word(item.into())).collect()
+}
+
 /// A word in upper case, or quoted text without its quotes.
 fn spelled(item: &str) -> SmolStr {
     match item.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\'')) {
@@ -81,7 +94,7 @@ fn spelled(item: &str) -> SmolStr {
 }
 
 /// A finite number in the notations of CL files; spelled-out infinities and the like are words.
-fn number(item: &str) -> Option<f64> {
+pub(crate) fn number(item: &str) -> Option<f64> {
     let digits = item.trim_start_matches(['+', '-']);
     if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
         return None;
@@ -108,6 +121,16 @@ mod tests {
         assert_eq!(shape("1., -.5, 1.5E+00,"), Shape::Numbers(vec![1.0, -0.5, 1.5]));
         assert_eq!(shape("P1 = POINT/1,2,3"), Shape::Definition("P1".into()));
         assert_eq!(shape("1, x"), Shape::Unreadable);
+        assert_eq!(
+            shape("TOOL PATH/Mill_1,TOOL,D10"),
+            Shape::Major {
+                word: TOOL_PATH.into(),
+                arguments: vec![word("Mill_1"), word("TOOL"), word("D10")]
+            }
+        );
+        assert_eq!(shape("2DCALC"), Shape::Major { word: "2DCALC".into(), arguments: vec![] });
+        assert_eq!(shape("1.5E5"), Shape::Numbers(vec![1.5e5]));
+        assert_eq!(shape("15E5"), Shape::Numbers(vec![15e5]));
         assert_eq!(number("inf"), None);
         assert_eq!(number("1e999"), None);
     }

@@ -1,206 +1,358 @@
-//! Writes records as APT CL text.
+//! Writes CL text as the description of a system says it.
 
-use std::fmt::Write as _;
+use std::mem::take;
 
 use apt_geometry::Vec3;
 
-use crate::record::{ClKind, ClPoint, ClRecord, ClWord, Units};
+use super::{
+    detect::{ClDialect, is_title},
+    dialects::{Axes, COUNTING, Circles, Form, TextForm},
+    number::{Field, shortest},
+    sheet::Sheet,
+    words::{TOOL_PATH, number},
+};
+use crate::{
+    arc::{PathArc, Tolerance, path_arc, reads_as_circle},
+    cltape::INTEGER_PARAMETERS,
+    conversion::{ConversionNoteKind as Kind, Item, Notes, QUOTATION, What, same_axis, unit_word},
+    geometry::SpaceCircle,
+    record::{ClKind, ClPoint, ClRecord, ClWord},
+};
 
-/// How CL text is laid out.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TextOptions {
-    /// Last column that a statement may use; longer ones go on after `$`.
-    pub columns: usize,
-    /// Whether CIRCLE records are written before the points of a motion along a circle.
-    pub arcs: bool,
-    /// Fixed number of decimals, or full precision (the shortest text that reads back to the same bits).
-    pub decimals: Option<usize>,
-}
-
-impl Default for TextOptions {
-    fn default() -> Self {
-        TextOptions { columns: 72, arcs: true, decimals: None }
-    }
-}
-
-/// Longest fixed notation; longer numbers are written with an exponent.
-const LONGEST_FIXED: usize = 24;
-/// Smaller numbers are written with an exponent as well: their zeros would hide them.
-const SMALLEST_FIXED: f64 = 1e-6;
-/// Fewest columns a layout may have: a number, a comma and the continuation mark always fit.
-const FEWEST_COLUMNS: usize = 40;
-/// Indentation of continuation lines.
-const CONTINUATION_INDENT: &str = "       ";
+mod arc;
 
 /// Writes records as APT CL text, one statement or position per line, deterministic.
 ///
-/// The text reads back with [`super::read_text`] to records that say the same.
-pub fn write_text(records: &[ClRecord], options: &TextOptions) -> String {
-    let mut writer = Writer { options, text: String::new() };
-    for (at, record) in records.iter().enumerate() {
-        writer.record(record, records.get(at + 1));
+/// The text reads back with [`super::read_text`] to records that say the same. A circle that the tool does not go about (a drive surface
+/// that it only touches with a tilted axis) stands in a remark: in text, a CIRCLE is the way of the tool or one about the same axis.
+pub fn write_text(records: &[ClRecord]) -> String {
+    let item = |record: &ClRecord| Item {
+        isn: record.isn,
+        source: record.source,
+        what: What::Record(record.kind.clone()),
+    };
+    let items: Vec<Item> = records.iter().map(item).collect();
+    write(&items, Form::of(ClDialect::Generic), &mut Notes::default())
+}
+
+/// Writes items in a form.
+pub(crate) fn write(items: &[Item], form: &Form, notes: &mut Notes) -> String {
+    let mut writer = Writer {
+        form,
+        notes,
+        sheet: Sheet::new(form.layout),
+        place: (0, 0),
+        fresh: true,
+        circle: None,
+        at: None,
+        tolerance: Tolerance::default(),
+        multax: false,
+        source_multax: false,
+        axis: Vec3::z(),
+        axis_told: false,
+        rapid: false,
+    };
+    writer.title(items);
+    for item in items {
+        writer.item(item);
     }
-    writer.text
+    writer.sheet.text
+}
+
+/// A statement as one line of APT CL text.
+pub(crate) fn statement_text(word: &str, arguments: &[ClWord]) -> String {
+    let list: Vec<String> = arguments
+        .iter()
+        .map(|argument| match argument {
+            ClWord::Number(number) => shortest(*number),
+            ClWord::Word(text) => spelled(text, word == TOOL_PATH),
+        })
+        .collect();
+    if list.is_empty() { word.to_owned() } else { format!("{word}/{}", list.join(",")) }
+}
+
+/// A word; in quotation marks where it would not be read as it stands. Names of operations are not quoted.
+fn spelled(text: &str, name: bool) -> String {
+    let upper = text.to_ascii_uppercase() == text;
+    let plain = text.trim() == text && !text.contains([',', '$']) && upper && number(text).is_none();
+    if name || plain || text.contains('\'') { text.to_owned() } else { format!("'{text}'") }
+}
+
+impl Form {
+    /// A parameter of CUTTER and its kin.
+    pub(crate) fn size_text(&self, argument: &ClWord) -> String {
+        match argument {
+            ClWord::Number(value) => self.size.text(*value).trim().to_owned(),
+            ClWord::Word(text) => spelled(text, false),
+        }
+    }
 }
 
 struct Writer<'a> {
-    options: &'a TextOptions,
-    text: String,
+    form: &'a Form,
+    notes: &'a mut Notes,
+    sheet: Sheet,
+    /// Statement number and source of what is being written.
+    place: (u32, u32),
+    /// Nothing of it has been written yet.
+    fresh: bool,
+    /// The circle along which the next motion goes.
+    circle: Option<SpaceCircle>,
+    /// Where the tool is.
+    at: Option<ClPoint>,
+    tolerance: Tolerance,
+    /// MULTAX as it has been written.
+    multax: bool,
+    /// MULTAX as the source says it.
+    source_multax: bool,
+    /// The tool axis that a reader has; none has been written yet where it is the one that counts without words.
+    axis: Vec3,
+    axis_told: bool,
+    rapid: bool,
 }
 
 impl Writer<'_> {
-    fn record(&mut self, record: &ClRecord, next: Option<&ClRecord>) {
-        match &record.kind {
-            ClKind::Text { word, text, .. } => self.free_text(word, text),
-            ClKind::Postprocessor { word, arguments, .. } | ClKind::Control { word, arguments, .. } => {
-                let words: Vec<String> = arguments.iter().map(|argument| self.word(argument)).collect();
-                self.statement(word, &words);
+    /// The remark by which the system is recognised, if none of those that there are is one.
+    fn title(&mut self, items: &[Item]) {
+        let sign = |item: &Item| match &item.what {
+            What::Remark(text) => is_title(text, self.form.dialect),
+            What::Record(_) => false,
+        };
+        if let Some(title) = self.form.title
+            && !items.iter().take(TITLE_LINES).any(sign)
+        {
+            self.remark(title);
+        }
+    }
+
+    fn item(&mut self, item: &Item) {
+        self.place = (item.isn, item.source);
+        self.fresh = true;
+        match &item.what {
+            What::Remark(text) => self.remark(text),
+            What::Record(kind) => self.record(kind),
+        }
+    }
+
+    fn record(&mut self, kind: &ClKind) {
+        self.tolerance.take(kind);
+        match kind {
+            ClKind::Text { word, text, .. } => self.text(word, text),
+            ClKind::Postprocessor { word, arguments, .. } => {
+                if word == "RAPID" {
+                    let off = ClWord::Word("OFF".into());
+                    self.rapid = !arguments.contains(&off);
+                }
+                self.words(word, arguments, self.form.value);
             }
+            // On the tape a number says which of two words it is.
+            ClKind::Control { word, code: [_, subclass], .. }
+                if INTEGER_PARAMETERS.contains(&i32::from(*subclass)) =>
+            {
+                self.statement(word, &[]);
+            }
+            ClKind::Control { word, arguments, .. } => self.words(word, arguments, self.form.size),
             ClKind::Arc { center, axis, radius, .. } => {
-                // Before a single point, CIRCLE would mean an arc in the sense of the axis, which nobody promised.
-                let several = next.is_some_and(
-                    |record| matches!(&record.kind, ClKind::Motion { points, from: false, .. } if points.len() > 1),
-                );
-                if self.options.arcs && several {
-                    let mut words = self.numbers(center);
-                    words.extend(self.numbers(axis));
-                    words.push(self.number(*radius));
-                    self.statement("CIRCLE", &words);
-                }
+                self.circle = Some(SpaceCircle { center: *center, axis: *axis, radius: *radius });
             }
-            ClKind::Motion { from, points, .. } => {
-                for point in points {
-                    self.point(if *from { "FROM" } else { "GOTO" }, point);
-                }
-            }
+            ClKind::Motion { from, points, .. } => self.motion(*from, points),
             ClKind::MultipleAxes(on) => {
-                let state = if *on { "ON" } else { "OFF" };
-                self.statement("MULTAX", &[state.to_owned()]);
+                self.source_multax = *on;
+                self.multiple_axes(*on);
             }
-            ClKind::Units(units) => {
-                let name = match units {
-                    Units::Inches => "INCHES",
-                    Units::Millimeters => "MM",
-                };
-                self.statement("UNITS", &[name.to_owned()]);
-            }
+            ClKind::Units(units) => self.statement("UNITS", &[unit_word(*units).to_owned()]),
             ClKind::End => self.statement("FINI", &[]),
         }
     }
 
-    fn point(&mut self, word: &str, point: &ClPoint) {
-        let mut words = self.numbers(&point.position);
-        if point.with_axis {
-            words.extend(self.numbers(&point.axis));
-        }
-        self.statement(word, &words);
+    fn multiple_axes(&mut self, on: bool) {
+        self.multax = on;
+        let words = if on { self.form.multax } else { &["OFF"] };
+        let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+        self.statement("MULTAX", &words);
     }
 
-    /// Free text is never continued; line breaks in it would make statements of its tail and become blanks.
-    fn free_text(&mut self, word: &str, text: &str) {
-        let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let text = text.trim();
-        self.text.push_str(word);
-        if !text.is_empty() {
-            self.text.push(' ');
-            self.text.push_str(text);
+    fn motion(&mut self, from: bool, points: &[ClPoint]) {
+        let circle = self.circle.take();
+        let along = circle.is_some_and(|circle| !from && self.along(&circle, points));
+        if !along {
+            for (index, point) in points.iter().enumerate() {
+                if index > 0 && self.rapid && !from {
+                    // It counts for one position.
+                    self.statement("RAPID", &[]);
+                }
+                let bare = index > 0 && !self.rapid && !from;
+                self.position(if from { "FROM" } else { self.form.goto }, point, bare);
+            }
         }
-        self.text.push('\n');
+        self.at = points.last().copied().or(self.at);
+        self.rapid &= from;
+    }
+
+    /// MULTAX before positions whose tool axis would be lost.
+    fn prepare_axis(&mut self, points: &[ClPoint]) {
+        let lost = |point: &ClPoint| {
+            let told = point.with_axis && self.form.axes == Axes::WhereTold;
+            !told && !same_axis(&point.axis, &self.axis)
+        };
+        if self.form.axes != Axes::WhereChanged && !self.multax && points.iter().any(lost) {
+            self.notes.add(self.place, Kind::AxisTold);
+            self.multiple_axes(true);
+        }
+    }
+
+    /// One position: a statement, or numbers alone where it goes on with the record.
+    fn position(&mut self, word: &str, point: &ClPoint, goes_on: bool) {
+        self.prepare_axis(std::slice::from_ref(point));
+        let told = match self.form.axes {
+            Axes::UnderMultax => self.multax,
+            Axes::WhereTold => self.multax || point.with_axis,
+            Axes::WhereChanged => {
+                let again = point.with_axis && !(self.source_multax && self.axis_told);
+                again || !same_axis(&point.axis, &self.axis)
+            }
+        };
+        let mut words = self.fields(&point.position, self.form.position);
+        let mut row = None;
+        if told {
+            row = self.form.axis_row.then_some(words.len());
+            words.extend(self.fields(&point.axis, self.form.axis));
+            (self.axis, self.axis_told) = (point.axis, true);
+        }
+        if goes_on && self.form.bare_rows {
+            return self.sheet.numbers(&words, row);
+        }
+        let start = self.start(word);
+        self.sheet.statement(&start, &words, row);
+    }
+
+    fn fields(&self, vector: &Vec3, field: Field) -> Vec<String> {
+        vector.iter().map(|value| field.text(*value)).collect()
+    }
+
+    /// A word with the number of its statement, where the form has it; what goes on with a record has none.
+    fn start(&mut self, word: &str) -> String {
+        match (self.form.numbered, take(&mut self.fresh)) {
+            (false, _) => word.to_owned(),
+            (true, true) => format!("N{:<5}, {word}", self.place.0.max(1)),
+            (true, false) => format!("{}{word}", self.form.layout.indent),
+        }
     }
 
     fn statement(&mut self, word: &str, arguments: &[String]) {
-        let limit = self.options.columns.max(FEWEST_COLUMNS);
-        let mut line = word.to_owned();
-        for (at, argument) in arguments.iter().enumerate() {
-            let last = at + 1 == arguments.len();
-            let piece =
-                format!("{}{argument}{}", if at == 0 { "/" } else { "" }, if last { "" } else { "," });
-            // A line that goes on needs room for the `$`.
-            let room = if last { limit } else { limit - 1 };
-            if at > 0 && line.len() + piece.len() > room {
-                let _ = writeln!(self.text, "{line}$");
-                line = CONTINUATION_INDENT.to_owned();
-            }
-            line.push_str(&piece);
-        }
-        self.text.push_str(&line);
-        self.text.push('\n');
+        let start = self.start(word);
+        self.sheet.statement(&start, arguments, None);
+        // Whatever follows is a statement of its own.
+        self.fresh = true;
     }
 
-    fn word(&self, word: &ClWord) -> String {
-        match word {
-            ClWord::Number(number) => self.number(*number),
-            ClWord::Word(word) => word.to_string(),
-        }
+    fn words(&mut self, word: &str, arguments: &[ClWord], field: Field) {
+        let counts = self.form.counts && COUNTING.contains(&word);
+        let list: Vec<String> = arguments
+            .iter()
+            .map(|argument| match argument {
+                ClWord::Number(value) if counts && value.fract() == 0.0 => format!("{value:.0}"),
+                ClWord::Number(value) => field.text(*value),
+                ClWord::Word(text) => spelled(text, word == TOOL_PATH),
+            })
+            .collect();
+        self.statement(word, &list);
     }
 
-    fn numbers(&self, vector: &Vec3) -> Vec<String> {
-        vector.iter().map(|value| self.number(*value)).collect()
-    }
-
-    /// A number as APT reads it: always with a decimal point (an exponent needs one), never `-0.0`.
-    fn number(&self, value: f64) -> String {
-        let text = match self.options.decimals {
-            Some(decimals) => {
-                let fixed = format!("{value:.decimals$}");
-                if fixed.contains('.') || !value.is_finite() { fixed } else { format!("{fixed}.") }
-            }
-            None => shortest(value),
+    /// Free text is never continued by `$`, which would be part of it.
+    fn text(&mut self, word: &str, text: &str) {
+        let text = text.trim();
+        let known = self.form.texts.iter().find(|(known, _)| *known == word).map(|(_, form)| *form);
+        let quoted = text.len() > 1 && text.starts_with('\'') && text.ends_with('\'');
+        let behind = match known.unwrap_or(TextForm::Blank) {
+            TextForm::Quoted => format!("/'{text}'"),
+            // A reader takes one pair of quotation marks and one slash off.
+            _ if quoted => format!("/ '{text}'"),
+            TextForm::Blank if text.starts_with('/') => format!(" / {text}"),
+            TextForm::Blank => format!(" {text}"),
+            TextForm::Slash => format!("{}{text}", self.form.layout.slash),
         };
-        let zero = text.starts_with('-')
-            && !text.bytes().any(|byte| matches!(byte, b'1'..=b'9'))
-            && value.is_finite();
-        if zero { text.trim_start_matches('-').to_owned() } else { text }
+        let start = self.start(word);
+        let line = format!("{start}{behind}");
+        if self.form.numbered {
+            self.rows_of_text(&line)
+        } else {
+            self.sheet.line(&line)
+        }
+        self.fresh = true;
     }
-}
 
-fn shortest(value: f64) -> String {
-    if value == 0.0 || value.abs() >= SMALLEST_FIXED {
-        let fixed = format!("{value}");
-        let fixed = if fixed.contains('.') || !value.is_finite() { fixed } else { format!("{fixed}.0") };
-        if fixed.len() <= LONGEST_FIXED {
-            return fixed;
+    /// Rows of PostWorks: a text that is longer goes on in the next one after `~`.
+    fn rows_of_text(&mut self, line: &str) {
+        let room = self.form.layout.columns - 1;
+        let mut rest = line;
+        while rest.chars().count() > room {
+            let within = rest.char_indices().nth(room).map_or(rest.len(), |(at, _)| at);
+            // Blanks at the end of the row count, those at the beginning of the next one would, too.
+            let Some(blank) = rest[..within].rfind(' ').filter(|at| *at > 0) else { break };
+            self.sheet.line(&format!("{}~", &rest[..=blank]));
+            rest = &rest[blank + 1..];
+        }
+        self.sheet.line(rest);
+    }
+
+    /// A remark; the pseudo statements of Creo are lists and go on in the next line.
+    fn remark(&mut self, text: &str) {
+        match text.strip_prefix("->").and_then(|pseudo| pseudo.split_once('/')) {
+            Some((word, list)) if self.form.dialect == ClDialect::Creo && !list.trim().is_empty() => {
+                let list: Vec<String> = list.split(',').map(|one| one.trim().to_owned()).collect();
+                self.sheet.statement(&format!("$$->{}", word.trim_end()), &list, None);
+            }
+            _ => self.sheet.line(&format!("$${text}")),
         }
     }
-    let scientific = format!("{value:E}");
-    match scientific.split_once('E') {
-        Some((mantissa, exponent)) if !mantissa.contains('.') => format!("{mantissa}.0E{exponent}"),
-        _ => scientific,
+
+    /// A statement that the form has no use for here.
+    fn quoted(&mut self, text: &str) {
+        self.sheet.line(&format!("$${QUOTATION}{text}"));
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_carry_a_point_and_no_negative_zero() {
-        let cases = [
-            (1.0, "1.0"),
-            (-0.0, "0.0"),
-            (0.1, "0.1"),
-            (-12.5, "-12.5"),
-            (1e-17, "1.0E-17"),
-            (1.5e300, "1.5E300"),
-            (3.313708498984761, "3.313708498984761"),
-        ];
-        for (value, text) in cases {
-            assert_eq!(shortest(value).replace("-0.0", "0.0"), text, "{value}");
+    /// Writes a motion along a circle; whether the form could say it so.
+    fn along(&mut self, circle: &SpaceCircle, points: &[ClPoint]) -> bool {
+        let tolerance = self.tolerance.width();
+        let start = self.at;
+        let arc = start.and_then(|start| path_arc(circle, &start, points, tolerance));
+        let written = match (self.form.circles, arc, start) {
+            _ if self.rapid => false,
+            (Circles::AsRecorded, _, start) => {
+                let start = start.map(|start| start.position);
+                let told = reads_as_circle(circle, start.as_ref(), points, tolerance);
+                if told {
+                    self.circle_before(circle, points);
+                }
+                told
+            }
+            (Circles::BeforePositions, Some(arc), _) => {
+                self.circle_before(&arc.circle, points);
+                true
+            }
+            (_, Some(arc), Some(start)) => {
+                self.by_end(&arc, &start, points);
+                true
+            }
+            _ => false,
+        };
+        if !written {
+            self.notes.add(self.place, Kind::PositionsAlone);
+            let numbers = circle.center.iter().chain(circle.axis.iter()).chain([&circle.radius]);
+            let list: Vec<ClWord> = numbers.map(|number| ClWord::Number(*number)).collect();
+            self.quoted(&statement_text("CIRCLE", &list));
         }
-        let options = TextOptions { decimals: Some(4), ..TextOptions::default() };
-        let writer = Writer { options: &options, text: String::new() };
-        assert_eq!(writer.number(-0.00001), "0.0000");
-        assert_eq!(writer.number(-1.5), "-1.5000");
+        written
     }
 
-    #[test]
-    fn long_statements_are_continued_before_column_72() {
-        let value = 1.0 / 3.0;
-        let words: Vec<ClWord> = (0..9).map(|_| ClWord::Number(value)).collect();
-        let kind = ClKind::Postprocessor { word: "CLRSRF".into(), code: Some(1057), arguments: words };
-        let text = write_text(&[ClRecord { isn: 1, source: 0, kind }], &TextOptions::default());
-        assert!(text.lines().count() > 1);
-        assert!(text.lines().all(|line| line.len() <= 72));
-        assert_eq!(text.matches('$').count(), text.lines().count() - 1);
+    fn by_end(&mut self, arc: &PathArc, start: &ClPoint, points: &[ClPoint]) {
+        if let Some(misfit) = arc.misfit(start, points) {
+            self.notes.add(self.place, Kind::WithoutPositions { misfit });
+        }
+        self.arc_by_end(arc, start, points);
     }
 }
+
+/// Lines among which a title is looked for: detection looks at no more.
+const TITLE_LINES: usize = 50;

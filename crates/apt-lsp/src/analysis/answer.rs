@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 pub(crate) use apt_ide::action::ActionKind;
 pub(crate) use apt_ide::completion::{Completion, CompletionKind};
+pub(crate) use apt_ide::conversion::{ClDialect, ConvertedFile};
 pub(crate) use apt_ide::difference::{
     Allowance, DifferentStretch, PathDifference, Statement, StretchKind, StretchSide, ToolPath, Units,
 };
@@ -59,6 +60,17 @@ impl From<Interrupted> for Refusal {
     fn from(Interrupted: Interrupted) -> Self {
         Self::Interrupted
     }
+}
+
+/// A program or CL file in a CL dialect.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Conversion {
+    /// The file.
+    pub file: ConvertedFile,
+    /// What it was made of.
+    pub from: ClDialect,
+    /// What was found in the program or file, and what the dialect says otherwise.
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// How far the work has come.

@@ -56,6 +56,10 @@ impl Language for Engine {
         Some(apt_ide::tape::text_of_cl_tape(bytes)?.map_err(|error| error.to_string()))
     }
 
+    fn dialect_of_binary(&self) -> &'static str {
+        apt_ide::tape::TAPE_DIALECT
+    }
+
     fn difference(
         &self,
         paths: [&ToolPath; 2],
@@ -397,6 +401,17 @@ impl Document for Program {
     fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)> {
         let (path, found) = with(control, "running", |cancel, progress| self.0.tool_path(cancel, progress))?;
         Ok((path, found.into_iter().map(|one| self.diagnostic(one)).collect()))
+    }
+
+    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal> {
+        use apt_ide::conversion::ConversionError;
+        let made = with(control, "converting", |cancel, progress| self.0.convert(to, cancel, progress))
+            .map_err(|error| match error {
+                ConversionError::Cancelled(_) => Refusal::Interrupted,
+                other => Refusal::Impossible(other.to_string()),
+            })?;
+        let diagnostics = made.diagnostics.into_iter().map(|one| self.diagnostic(one)).collect();
+        Ok(Conversion { file: made.file, from: made.from, diagnostics })
     }
 
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal> {

@@ -47,6 +47,10 @@ impl Language for FakeLanguage {
         None
     }
 
+    fn dialect_of_binary(&self) -> &'static str {
+        Engine.dialect_of_binary()
+    }
+
     fn difference(
         &self,
         paths: [&ToolPath; 2],
@@ -322,6 +326,11 @@ impl Document for FakeDocument {
 
     fn tape_diagnostics(&self, _: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
         Ok(self.diagnostics(Level::Section1, control)?)
+    }
+
+    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal> {
+        let _ = (to, control);
+        Err(Refusal::Impossible("a fake has no cutter locations".to_owned()))
     }
 
     fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)> {

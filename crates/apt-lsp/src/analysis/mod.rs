@@ -40,6 +40,9 @@ pub(crate) trait Language: Send + Sync + 'static {
     /// that is known.
     fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>>;
 
+    /// The dialect of such a text.
+    fn dialect_of_binary(&self) -> &'static str;
+
     /// Where two paths differ.
     fn difference(
         &self,
@@ -164,6 +167,9 @@ pub(crate) trait Document: Send + Sync {
 
     /// The way of the tool, with everything found up to it.
     fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)>;
+
+    /// The cutter locations in a CL dialect.
+    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal>;
 
     /// What the run produces, in a form that is written to a file.
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal>;

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::analysis::ClDialect;
 
 /// Language server, motion engine and checks for APT part programs.
 ///
@@ -59,6 +62,8 @@ pub(super) enum Command {
     View(ViewCall),
     /// Where the paths of two programs or CL files differ
     Diff(DiffCall),
+    /// The cutter locations of a program or CL file in another CL dialect
+    Convert(ConvertCall),
     /// What a diagnostic means, with a wrong and a right sample
     Explain(ExplainCall),
     /// The syntax tree of a program
@@ -292,6 +297,28 @@ pub(super) struct DiffCall {
     /// How to tell the differences
     #[arg(long, value_enum, default_value_t = DiffFormat::Human)]
     pub format: DiffFormat,
+}
+
+/// `convert`.
+#[derive(Debug, Args)]
+pub(super) struct ConvertCall {
+    #[command(flatten)]
+    pub program: ProgramArgument,
+    /// The dialect to write; those that are written are read, too
+    #[arg(long, value_name = "DIALECT", value_parser = cl_dialects())]
+    pub to: ClDialect,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// The CL dialects, with what they are.
+fn cl_dialects() -> impl TypedValueParser<Value = ClDialect> {
+    let named = |dialect: ClDialect| PossibleValue::new(dialect.as_str()).help(dialect.title());
+    PossibleValuesParser::new(ClDialect::ALL.map(named)).try_map(|name| name.parse::<ClDialect>())
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {

@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod console;
+mod convert;
 mod diff;
 mod expand;
 mod explain;
@@ -109,6 +110,7 @@ fn dispatch(arguments: Arguments, console: &Console, language: &dyn Language) ->
         Some(Command::Fmt(call)) => fmt::fmt(&call, console, language),
         Some(Command::View(call)) => view::view(&call, console, language),
         Some(Command::Diff(call)) => diff::diff(&call, console, language),
+        Some(Command::Convert(call)) => convert::convert(&call, console, language),
         Some(Command::Explain(call)) => explain::explain(&call.code, console, language),
         Some(Command::Tree(call)) => tree::tree(&call, console, language),
         Some(Command::Machines) => post::list_machines(console, language),

@@ -76,6 +76,9 @@ impl Program {
         let mut typed = Values::new();
         if let Some(dialect) = &reading.dialect {
             typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
+        } else if binary {
+            // Whatever the programs beside it are written in.
+            typed.insert("dialect".to_owned(), Value::String(language.dialect_of_binary().to_owned()));
         }
         if !reading.severities.is_empty() {
             let one = |one: &SeverityOption| (one.code.clone(), Value::String(one.severity.clone()));

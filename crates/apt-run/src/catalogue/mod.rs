@@ -4,6 +4,7 @@
 //! 04xx labels, loops and macros, 05xx motion statements, 06xx the arithmetic element, 07xx path transformations,
 //! 08xx post-processor statements and tape, 09xx the program as a whole, with 095x and 096x for lints. A code is never given a new meaning.
 
+mod conversion;
 mod cutter_locations;
 mod definitions;
 mod lint;
@@ -22,7 +23,7 @@ mod tilt;
 
 use std::cmp::Reverse;
 
-use apt_cldata::text::ReadError;
+use apt_cldata::{conversion::ConversionNote, text::ReadError};
 use apt_geometry::canonical::GeometryKind;
 use apt_post::{PostFinding, Tape};
 use apt_program::{
@@ -243,10 +244,10 @@ pub(crate) fn idle_allowance(reason: Idle, code: &str, origin: Origin, fixes: Ve
     }
 }
 
-/// Whether a code is one of the post-processor, which only the making of a tape can find.
+/// Whether a code is one of a conversion or of the post-processor, which only the making of a file or tape can find.
 pub fn is_tape_code(code: &str) -> bool {
     let number = code.strip_prefix("APT").and_then(|digits| digits.parse::<u16>().ok());
-    number.is_some_and(|number| (820..900).contains(&number))
+    number.is_some_and(|number| (817..900).contains(&number))
 }
 
 fn of_run(tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
@@ -300,6 +301,30 @@ pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Set
         }
     };
     in_order(errors.iter().map(of_line).collect(), settings)
+}
+
+/// What a conversion to another CL dialect tells, with the severities of the settings. `origins` is the table that the records refer to.
+pub fn conversion_diagnostics(
+    tree: &SyntaxTree,
+    notes: &[ConversionNote],
+    origins: &[Origin],
+    settings: &Settings,
+) -> Vec<Diagnostic> {
+    let of_note = |note: &ConversionNote| {
+        let (text, severity) = conversion::word(note);
+        let unknown = || Origin::in_program(note.isn.max(1), TextRange::default());
+        Diagnostic {
+            wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
+            severity,
+            origin: origins.get(note.source as usize).cloned().unwrap_or_else(unknown),
+            related: Vec::new(),
+            unnecessary: false,
+            fixes: Vec::new(),
+        }
+    };
+    let mut list = notes.iter().map(of_note).collect();
+    Allowances::of(tree).filter(&mut list);
+    in_order(list, settings)
 }
 
 /// Applies the severities of the settings and sorts by place.
