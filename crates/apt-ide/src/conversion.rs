@@ -31,6 +31,9 @@ pub enum ConversionError {
     /// A file that is no APT at all.
     #[error("this is {}, which is not read", .0.title())]
     NotRead(ClDialect),
+    /// Bytes that are no tape.
+    #[error(transparent)]
+    TapeNotRead(#[from] apt_cldata::cltape::TapeReadError),
     /// The tape would be too long.
     #[error(transparent)]
     Tape(#[from] apt_cldata::cltape::TapeWriteError),
@@ -40,7 +43,8 @@ pub enum ConversionError {
 }
 
 impl Analysis {
-    /// The program or CL file in a CL dialect. The text of a CL file (dialect `cl`) is read as it stands; any other program is run.
+    /// The program or CL file in a CL dialect. The text of a CL file (dialect `cl`) is read as it stands, and so is the binary `tape` of which
+    /// this is the text form; any other program is run.
     ///
     /// # Errors
     ///
@@ -48,6 +52,7 @@ impl Analysis {
     pub fn convert(
         &self,
         to: ClDialect,
+        tape: Option<&[u8]>,
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Converted, ConversionError> {
@@ -55,12 +60,13 @@ impl Analysis {
         if detected == Some(ClDialect::Nci) {
             return Err(ConversionError::NotRead(ClDialect::Nci));
         }
-        let (source, from) = match self.document().dialect() {
-            DialectName::Cl => {
+        let (source, from) = match (tape, self.document().dialect()) {
+            (Some(bytes), _) => (self.read_tape(bytes, cancel)??, ClDialect::Cltape),
+            (None, DialectName::Cl) => {
                 let known = detected.filter(|dialect| ClDialect::ALL.contains(dialect));
                 (self.read_cutter_locations(cancel)?, known.unwrap_or(ClDialect::Generic))
             }
-            _ => (self.run_to_cutter_locations(cancel, progress)?, ClDialect::PartProgram),
+            (None, _) => (self.run_to_cutter_locations(cancel, progress)?, ClDialect::PartProgram),
         };
         let file = ClText { records: source.records, remarks: source.remarks };
         let made = convert(&file, from, to, &code_table())?;

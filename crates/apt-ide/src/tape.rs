@@ -1,9 +1,10 @@
 //! The control tape: of a program, which is run first, or of the text of a CL file, which is read.
 
 use apt_cldata::{
+    cltape::{TapeNote, TapeReadError},
     codes::CodeTable,
     record::ClRecord,
-    text::{ClText, Remark, read_with_remarks},
+    text::{ClText, Remark, read_with_remarks, write_text_with_lines},
 };
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::Origin;
@@ -210,6 +211,31 @@ impl Analysis {
         Ok(Source { records, remarks, origins, diagnostics })
     }
 
+    /// The records of a binary tape of which this is the text form ([`text_of_cl_tape`]): with their own statement numbers, surfaces and
+    /// records of many positions, and the places of the text.
+    pub(crate) fn read_tape(
+        &self,
+        bytes: &[u8],
+        cancel: Cancel<'_>,
+    ) -> Result<Result<Source, TapeReadError>, Cancelled> {
+        let contents = match apt_cldata::cltape::read_tape(bytes, &code_table()) {
+            Ok(contents) => contents,
+            Err(error) => return Ok(Err(error)),
+        };
+        if cancel() {
+            return Err(Cancelled);
+        }
+        let mut records = contents.records;
+        let (_, lines) = write_text_with_lines(&records);
+        for (record, line) in records.iter_mut().zip(lines) {
+            record.source = line;
+        }
+        let remark = |note: &TapeNote| Remark { line: u32::MAX, text: note_text(note) };
+        let remarks = contents.notes.iter().map(remark).collect();
+        let origins = self.origins_of_lines(&self.text());
+        Ok(Ok(Source { records, remarks, origins, diagnostics: Vec::new() }))
+    }
+
     /// For every line of the text, the statement that it begins or goes on with.
     fn origins_of_lines(&self, text: &str) -> Vec<Origin> {
         let tree = self.document().tree();
@@ -273,24 +299,26 @@ pub const TAPE_DIALECT: &str = "cl";
 /// Why bytes that begin like a tape cannot be read.
 pub fn text_of_cl_tape(bytes: &[u8]) -> Option<Result<String, apt_cldata::cltape::TapeReadError>> {
     use apt_cldata::{cltape, text};
-    cltape::is_tape(bytes).then(|| {
+    (cltape::is_tape(bytes) || cltape::is_ncl_file(bytes)).then(|| {
         let contents = cltape::read_tape(bytes, &code_table())?;
         // What the tape has and CL text has not is told as remarks, so that nothing is lost in silence.
         let mut out = text::write_text(&contents.records);
         for note in &contents.notes {
-            out.push_str(&format!("$$ NOT READ: {}\n", note_text(note)));
+            out.push_str(&format!("$${}\n", note_text(note)));
         }
         Ok(out)
     })
 }
 
+/// A remark about what of a tape was not read.
 fn note_text(note: &apt_cldata::cltape::TapeNote) -> String {
     use apt_cldata::cltape::TapeNote as Note;
-    match note {
+    let what = match note {
         Note::Skipped { serial, class, subclass } => format!("RECORD {serial} OF CLASS {class} {subclass}"),
         Note::UnknownCode { serial, code } => format!("CODE {code} IN RECORD {serial}"),
         Note::WrongCount { serial, count } => format!("RECORD {serial} WITH {count} WORDS"),
-    }
+    };
+    format!(" NOT READ: {what}")
 }
 
 /// The codes of the vocabulary for binary CL records.

@@ -196,3 +196,30 @@ fn the_machine_of_the_settings_is_asked_as_one_types() {
     let list: Vec<_> = list.iter().map(|one| (one.origin.isn, one.wording.code, one.severity)).collect();
     assert_eq!(list, [(3, "APT0850", apt_ide::Severity::Error)]);
 }
+
+/// What another dialect says otherwise stands at the statement of the program that leads there, macros and all.
+#[test]
+fn a_program_in_the_words_of_another_system() {
+    use apt_ide::conversion::{ClDialect, ConvertedFile};
+    let program = analysis("M1=MACRO/X\nFEDRAT/X,MMPM\nTERMAC\nFROM/0,0,1\nCALL/M1,X=80\nGOTO/1,2,3\nFINI\n");
+    let made = program.convert(ClDialect::Creo, None, &never, &mut silent).unwrap();
+    let ConvertedFile::Text(text) = &made.file else { panic!("{:?}", made.file) };
+    expect![[r#"
+        $$*         Pro/CLfile  Version
+        UNITS / MM
+        FROM / 0.0000000000, 0.0000000000, 1.0000000000
+        FEDRAT / 80.000000, MMPM
+        GOTO / 1.0000000000, 2.0000000000, 3.0000000000
+        FINI
+    "#]]
+    .assert_eq(text);
+    let told: Vec<(&str, u32)> =
+        made.diagnostics.iter().map(|one| (one.wording.code, one.origin.place_in_program().0)).collect();
+    assert_eq!(told, [("APT0819", 4)]);
+    assert_eq!(made.from, ClDialect::PartProgram);
+    let cancelled = program.convert(ClDialect::Nx, None, &|| true, &mut silent);
+    assert!(
+        matches!(cancelled, Err(apt_ide::conversion::ConversionError::Cancelled(Cancelled))),
+        "{cancelled:?}"
+    );
+}

@@ -172,6 +172,26 @@ fn what_cannot_be_read_is_told_with_its_place() {
     assert!(ran.stderr.contains("cut.tap") && ran.stderr.contains("byte"), "{}", ran.stderr);
 }
 
+/// A tape is read as it is: with its statement numbers and surfaces, which its text form does not have.
+#[test]
+fn a_tape_is_the_same_tape() {
+    let folder = Folder::new("convert-tape");
+    let tape = include_bytes!("../../apt-cldata/tests/data/cltape-01.tap");
+    folder.write("a.tap", tape);
+    let ran = folder.run(&["convert", "a.tap", "--to", "cltape", "-o", "b.tap"]);
+    assert_eq!(ran.code, 0, "{ran:?}");
+    // One filling byte stands at the end of the sample.
+    assert_eq!(std::fs::read(folder.0.join("b.tap")).unwrap(), tape[..tape.len() - 1]);
+    let rows = folder.run(&["convert", "a.tap", "--to", "ncl"]);
+    assert!(rows.stdout.contains("N16   , GOTO/"), "the statement number of the tape: {}", rows.stdout);
+    let mut other = vec![0; 288];
+    other[..4].copy_from_slice(&[35, 0, 0xe8, 0x1c]);
+    folder.write("c.cl", other);
+    let ran = folder.run(&["convert", "c.cl", "--to", "cl"]);
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
+    assert!(ran.stderr.contains("a binary CL file of NCL"), "{}", ran.stderr);
+}
+
 #[test]
 fn latin_1_stays_latin_1() {
     let folder = Folder::new("convert-latin");

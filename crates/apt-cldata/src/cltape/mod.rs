@@ -7,7 +7,7 @@ mod reader;
 mod word;
 mod writer;
 
-pub use reader::{TapeContents, TapeNote, TapeReadError, is_tape, read_tape};
+pub use reader::{TapeContents, TapeNote, TapeReadError, is_ncl_file, is_tape, read_tape};
 pub use writer::{TapeWriteError, write_tape};
 
 /// Record classes.

@@ -74,6 +74,9 @@ pub enum TapeReadError {
         /// Where the header begins.
         offset: usize,
     },
+    /// A binary CL file of another system.
+    #[error("a binary CL file of NCL, which is not read; let NCL or PostWorks write it as text (.as)")]
+    OfNcl,
 }
 
 /// Whether bytes begin like a tape: record 1, two data words, class 1000.
@@ -82,11 +85,21 @@ pub fn is_tape(bytes: &[u8]) -> bool {
     bytes.starts_with(&START)
 }
 
+/// Whether bytes begin like a binary CL file of NCL and PostWorks, which has the class of its header in the second half word.
+pub fn is_ncl_file(bytes: &[u8]) -> bool {
+    const CLASS_OF_HEADER: [u8; 2] = 7400_u16.to_le_bytes();
+    const BLOCK_BYTES: usize = 288;
+    bytes.len() >= BLOCK_BYTES && bytes[2..4] == CLASS_OF_HEADER
+}
+
 /// Reads a tape; records of unknown classes are skipped with a note.
 ///
 /// # Errors
 /// Bytes that cannot be split into records.
 pub fn read_tape(bytes: &[u8], codes: &CodeTable) -> Result<TapeContents, TapeReadError> {
+    if is_ncl_file(bytes) {
+        return Err(TapeReadError::OfNcl);
+    }
     let mut reader = Reader {
         codes,
         isn: 0,

@@ -39,7 +39,7 @@ pub(super) fn translate(arguments: &[ClWord], from: &Form, to: &Form) -> Option<
         return Some(arguments.to_vec());
     }
     let hole = read(list, &from.cycle)?;
-    Some([vec![name.clone()], write(hole, &to.cycle)?].concat())
+    Some([vec![name.clone()], write(&hole, &to.cycle)?].concat())
 }
 
 fn read(mut list: &[ClWord], form: &CycleForm) -> Option<Hole> {
@@ -98,7 +98,7 @@ fn numbers_at_head(list: &[ClWord]) -> usize {
     list.iter().take_while(|one| matches!(one, ClWord::Number(_))).count()
 }
 
-fn write(hole: Hole, form: &CycleForm) -> Option<Vec<ClWord>> {
+fn write(hole: &Hole, form: &CycleForm) -> Option<Vec<ClWord>> {
     let couple = |name: &str, value: f64| {
         let name = (!name.is_empty()).then(|| word(name));
         name.into_iter().chain([ClWord::Number(value)]).collect::<Vec<ClWord>>()

@@ -73,7 +73,7 @@ impl Translator<'_> {
         }
         match &record.kind {
             ClKind::Postprocessor { word, arguments, .. } => {
-                self.postprocessor(word, arguments, &record.kind)
+                self.postprocessor(word, arguments, &record.kind);
             }
             ClKind::Control { word, arguments, .. } if word == "CUTTER" => {
                 self.cutter(arguments, &record.kind);

@@ -26,32 +26,28 @@ mod arc;
 /// The text reads back with [`super::read_text`] to records that say the same. A circle that the tool does not go about (a drive surface
 /// that it only touches with a tilted axis) stands in a remark: in text, a CIRCLE is the way of the tool or one about the same axis.
 pub fn write_text(records: &[ClRecord]) -> String {
-    let item = |record: &ClRecord| Item {
-        isn: record.isn,
-        source: record.source,
-        what: What::Record(record.kind.clone()),
-    };
-    let items: Vec<Item> = records.iter().map(item).collect();
-    write(&items, Form::of(ClDialect::Generic), &mut Notes::default())
+    write_text_with_lines(records).0
+}
+
+/// The same, with the zero-based line on which each record begins.
+pub fn write_text_with_lines(records: &[ClRecord]) -> (String, Vec<u32>) {
+    let mut notes = Notes::default();
+    let mut writer = Writer::new(Form::of(ClDialect::Generic), &mut notes);
+    let mut lines = Vec::with_capacity(records.len());
+    let (mut line, mut counted) = (0, 0);
+    for record in records {
+        line += writer.sheet.text[counted..].matches('\n').count();
+        counted = writer.sheet.text.len();
+        lines.push(u32::try_from(line).unwrap_or(u32::MAX));
+        writer.begin((record.isn, record.source));
+        writer.record(&record.kind);
+    }
+    (writer.sheet.text, lines)
 }
 
 /// Writes items in a form.
 pub(crate) fn write(items: &[Item], form: &Form, notes: &mut Notes) -> String {
-    let mut writer = Writer {
-        form,
-        notes,
-        sheet: Sheet::new(form.layout),
-        place: (0, 0),
-        fresh: true,
-        circle: None,
-        at: None,
-        tolerance: Tolerance::default(),
-        multax: false,
-        source_multax: false,
-        axis: Vec3::z(),
-        axis_told: false,
-        rapid: false,
-    };
+    let mut writer = Writer::new(form, notes);
     writer.title(items);
     for item in items {
         writer.item(item);
@@ -111,7 +107,32 @@ struct Writer<'a> {
     rapid: bool,
 }
 
+impl<'a> Writer<'a> {
+    fn new(form: &'a Form, notes: &'a mut Notes) -> Self {
+        Writer {
+            form,
+            notes,
+            sheet: Sheet::new(form.layout),
+            place: (0, 0),
+            fresh: true,
+            circle: None,
+            at: None,
+            tolerance: Tolerance::default(),
+            multax: false,
+            source_multax: false,
+            axis: Vec3::z(),
+            axis_told: false,
+            rapid: false,
+        }
+    }
+}
+
 impl Writer<'_> {
+    fn begin(&mut self, place: (u32, u32)) {
+        self.place = place;
+        self.fresh = true;
+    }
+
     /// The remark by which the system is recognised, if none of those that there are is one.
     fn title(&mut self, items: &[Item]) {
         let sign = |item: &Item| match &item.what {
@@ -126,8 +147,7 @@ impl Writer<'_> {
     }
 
     fn item(&mut self, item: &Item) {
-        self.place = (item.isn, item.source);
-        self.fresh = true;
+        self.begin((item.isn, item.source));
         match &item.what {
             What::Remark(text) => self.remark(text),
             What::Record(kind) => self.record(kind),
@@ -275,9 +295,9 @@ impl Writer<'_> {
         let start = self.start(word);
         let line = format!("{start}{behind}");
         if self.form.numbered {
-            self.rows_of_text(&line)
+            self.rows_of_text(&line);
         } else {
-            self.sheet.line(&line)
+            self.sheet.line(&line);
         }
         self.fresh = true;
     }

@@ -403,9 +403,9 @@ impl Document for Program {
         Ok((path, found.into_iter().map(|one| self.diagnostic(one)).collect()))
     }
 
-    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal> {
+    fn convert(&self, to: ClDialect, tape: Option<&[u8]>, control: &Control) -> Result<Conversion, Refusal> {
         use apt_ide::conversion::ConversionError;
-        let made = with(control, "converting", |cancel, progress| self.0.convert(to, cancel, progress))
+        let made = with(control, "converting", |cancel, progress| self.0.convert(to, tape, cancel, progress))
             .map_err(|error| match error {
                 ConversionError::Cancelled(_) => Refusal::Interrupted,
                 other => Refusal::Impossible(other.to_string()),

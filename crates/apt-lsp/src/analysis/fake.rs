@@ -328,8 +328,8 @@ impl Document for FakeDocument {
         Ok(self.diagnostics(Level::Section1, control)?)
     }
 
-    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal> {
-        let _ = (to, control);
+    fn convert(&self, to: ClDialect, tape: Option<&[u8]>, control: &Control) -> Result<Conversion, Refusal> {
+        let _ = (to, tape, control);
         Err(Refusal::Impossible("a fake has no cutter locations".to_owned()))
     }
 

@@ -168,8 +168,8 @@ pub(crate) trait Document: Send + Sync {
     /// The way of the tool, with everything found up to it.
     fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)>;
 
-    /// The cutter locations in a CL dialect.
-    fn convert(&self, to: ClDialect, control: &Control) -> Result<Conversion, Refusal>;
+    /// The cutter locations in a CL dialect: of the binary tape of which this is the text, or of the document itself.
+    fn convert(&self, to: ClDialect, tape: Option<&[u8]>, control: &Control) -> Result<Conversion, Refusal>;
 
     /// What the run produces, in a form that is written to a file.
     fn product(&self, product: &Product, control: &Control) -> Result<Vec<u8>, Refusal>;

@@ -300,6 +300,9 @@ pub(super) struct DiffCall {
 }
 
 /// `convert`.
+///
+/// Numbers are written with as many digits as it takes to read the same ones back. What the dialect has no words for stands in remarks
+/// that begin with `$$ |`, and is told.
 #[derive(Debug, Args)]
 pub(super) struct ConvertCall {
     #[command(flatten)]

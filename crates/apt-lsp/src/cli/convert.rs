@@ -11,7 +11,7 @@ use crate::analysis::{ConvertedFile, Language};
 pub(super) fn convert(call: &ConvertCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
     let (control, bar) = console.control(&program.name);
-    let made = program.document.convert(call.to, &control);
+    let made = program.document.convert(call.to, program.tape.as_deref(), &control);
     bar.finish_and_clear();
     let made = match made {
         Ok(made) => made,

@@ -29,6 +29,8 @@ pub(super) struct Program {
     pub settings: Settings,
     /// The form of its bytes; none for a binary file.
     pub form: Option<TextForm>,
+    /// The bytes of a binary file.
+    pub tape: Option<Vec<u8>>,
 }
 
 impl Program {
@@ -54,20 +56,19 @@ impl Program {
         let name = if from_standard_input { "<stdin>".to_owned() } else { path.display().to_string() };
         let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
         let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
-            let binary = language.text_of_binary(&bytes).transpose()?;
-            Ok(binary.map_or_else(
-                || (source::decode(bytes), false),
-                |text| (Source { text, form: TextForm::Utf8 }, true),
-            ))
+            Ok(match language.text_of_binary(&bytes).transpose()? {
+                Some(text) => (Source { text, form: TextForm::Utf8 }, Some(bytes)),
+                None => (source::decode(bytes), None),
+            })
         });
-        let (source, binary) = match understood {
+        let (source, tape) = match understood {
             Ok(both) => both,
             Err(error) => {
                 console.error(&format!("{name}: {error}"));
                 return None;
             }
         };
-        if binary {
+        if tape.is_some() {
             console.note(&format!("{name}: a binary CLTAPE; places are those of its text form"));
         }
         if source.form == TextForm::Latin1 {
@@ -76,7 +77,7 @@ impl Program {
         let mut typed = Values::new();
         if let Some(dialect) = &reading.dialect {
             typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
-        } else if binary {
+        } else if tape.is_some() {
             // Whatever the programs beside it are written in.
             typed.insert("dialect".to_owned(), Value::String(language.dialect_of_binary().to_owned()));
         }
@@ -105,8 +106,8 @@ impl Program {
         let surroundings = Surroundings { path: beside, ..Surroundings::default() };
         let document = language.open(&source.text, Some(&name), &settings.program, surroundings);
         let index = TextIndex { rope: Rope::from_str(&source.text), encoding: Encoding::Utf16 };
-        let form = (!binary).then_some(source.form);
-        Some(Self { name, index, document, settings, form })
+        let form = tape.is_none().then_some(source.form);
+        Some(Self { name, index, document, settings, form, tape })
     }
 }
 

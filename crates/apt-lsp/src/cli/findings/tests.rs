@@ -22,6 +22,7 @@ fn checked(diagnostics: Vec<Diagnostic>) -> Vec<Checked> {
         document: FakeLanguage::default().open(TEXT, None, &Values::new(), Surroundings::default()),
         settings: Settings::default(),
         form: Some(TextForm::Utf8),
+        tape: None,
     };
     vec![Checked { program, diagnostics }]
 }
