@@ -269,6 +269,9 @@ pub struct SequenceEvidence {
     pub lines: u32,
     /// Lines whose columns 73-80 look like a sequence field.
     pub fields: u32,
+    /// Lines whose sequence field cannot be part of a statement: it begins in column 73, and what stands before it is
+    /// complete.
+    pub apart: u32,
     /// Lines with other text in or after these columns.
     pub others: u32,
 }
@@ -292,20 +295,23 @@ impl SequenceEvidence {
         SequenceEvidence {
             lines: self.lines.saturating_add(other.lines),
             fields: self.fields.saturating_add(other.fields),
+            apart: self.apart.saturating_add(other.apart),
             others: self.others.saturating_add(other.others),
         }
     }
 
     /// Whether the document carries sequence fields (language reference 1.11): at least half of its lines do, and
-    /// next to none has other text there.
+    /// next to none has other text there; or only few do, in a deck to which lines were added by hand, and then each of
+    /// them must be one beyond doubt and none may have other text there.
     pub fn decides(self, rule: SequenceFieldRule) -> bool {
         match rule {
             SequenceFieldRule::Always => true,
             SequenceFieldRule::Never => false,
             SequenceFieldRule::WhenPresent => {
-                self.fields > 0
-                    && self.fields.saturating_mul(2) >= self.lines
-                    && self.others.saturating_mul(FIELDS_PER_EXCEPTION) <= self.fields
+                let many = self.fields.saturating_mul(2) >= self.lines
+                    && self.others.saturating_mul(FIELDS_PER_EXCEPTION) <= self.fields;
+                let beyond_doubt = self.apart == self.fields && self.others == 0;
+                self.fields > 0 && (many || beyond_doubt)
             }
         }
     }
@@ -324,10 +330,21 @@ impl SequenceEvidence {
         let short = line.chars().count() <= LAST_CARD_COLUMN;
         if short && separated && looks_like_sequence_field(field) {
             self.fields += 1;
+            self.apart += u32::from(stands_apart(line, start));
         } else {
             self.others += 1;
         }
     }
+}
+
+/// Whether what follows `start` cannot go on with the statement before it: it begins in that column, and the statement
+/// stops short of it with something after which only punctuation could follow. A list that goes on to column 80 would
+/// have its comma before the last number.
+fn stands_apart(line: &str, start: usize) -> bool {
+    let begins_there = line.get(start..).is_some_and(|field| !field.starts_with([' ', '\t']));
+    let statement = line.get(..start).unwrap_or("").trim_end();
+    let complete = statement.ends_with(|last: char| last.is_ascii_alphanumeric() || matches!(last, ')' | '.'));
+    begins_there && complete && !statement.contains('$')
 }
 
 /// Digits, or letters and then digits.
@@ -419,5 +436,24 @@ mod tests {
         assert!(!deck_of(&long));
         let many: String = (0..40).map(|number| card("A=1", &format!("{number:05}"))).collect();
         assert!(deck_of(&(many + &long)), "one long line in a deck changes nothing");
+    }
+
+    #[test]
+    fn one_card_among_lines_written_by_hand_makes_a_deck() {
+        let deck_of = |text: &str| SequenceEvidence::of(text).decides(SequenceFieldRule::WhenPresent);
+        let lines = "PARTNO X\nA=1\nB=2\nC=3\n";
+        let with = |text: &str, field: &str| format!("{lines}{text:<72}{field}\n");
+        assert!(deck_of(&with("FINI", "TEST1470")));
+        assert!(deck_of(&with("L1=LINE/PARLEL,LY,XLARGE,(D/2)", "10000000")));
+        for (text, field, why) in [
+            ("GOTO/1,2,", "33", "the list goes on"),
+            ("A=B+", "12", "an operand is missing"),
+            ("GOTO/P $ goes on", "12", "the remark goes on"),
+            ("PPRINT NOTES $$", "12", "so does this one"),
+            ("FINI", " 1470", "it may be a number that was moved there"),
+        ] {
+            assert!(!deck_of(&with(text, field)), "{why}");
+        }
+        assert!(!deck_of(&format!("{}{:<74}X=1\n", with("FINI", "TEST1470"), "A=1")), "one line has other text");
     }
 }

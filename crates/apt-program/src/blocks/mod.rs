@@ -63,6 +63,13 @@ impl Block {
         is_new
     }
 
+    /// Lets the label of the LOOPST before the block stand for the block's first statement, unless a statement of the
+    /// block carries it: no jump from outside comes to a loop, so a label there can only be meant for jumps back to the
+    /// beginning.
+    pub(crate) fn name_beginning(&mut self, label: &str) {
+        self.labels.entry(normalised_label(label)).or_insert(0);
+    }
+
     /// The index of the statement that carries a label.
     pub(crate) fn label(&self, label: &str) -> Option<usize> {
         self.labels.get(&normalised_label(label)).copied()

@@ -123,7 +123,10 @@ impl Evaluator<'_> {
                     if word.word.spelling == "LOOPST" && !self.dialect.branch_anywhere =>
                 {
                     self.open_statement(&statement);
-                    let (block, next) = self.gather(top, index, "LOOPND", None, part.range);
+                    let (mut block, next) = self.gather(top, index, "LOOPND", None, part.range);
+                    if let Some(label) = &statement.statement.label {
+                        block.name_beginning(&label.text);
+                    }
                     self.report_missing_labels(&block, &|_| false);
                     self.trace_loop(&statement, &block);
                     self.cards.next = next;

@@ -38,7 +38,7 @@ const CL_EXTENSIONS: [&str; 10] =
     ["aptsource", "cls", "clsf", "ncl", "tph", "as", "cl", "cla", "cldata", "clf"];
 
 /// Starts of lines (upper case, blanks removed) that only the text of CAM systems has.
-const CL_MARKS: [&str; 11] = [
+const CL_MARKS: [&str; 9] = [
     "$$*PRO/CLFILE",
     "$$->",
     "$$*CATIA",
@@ -48,9 +48,11 @@ const CL_MARKS: [&str; 11] = [
     "END-OF-PATH",
     "TLDATA/",
     "MOVARC/",
-    "PARTNO/'",
-    "PPRINT/'",
 ];
+
+/// Texts in quotes behind a slash, as CAM systems write them. A part programmer may begin a text that way too, so that
+/// definitions speak louder.
+const QUOTED_TEXTS: [&str; 2] = ["PARTNO/'", "PPRINT/'"];
 
 /// Starts of statements (upper case, blanks removed) that only APT4 has.
 const APT4_STARTS: [&str; 6] = ["SCON/", "SMIL/", "DO/", "SSPRT/", "AVCTRL/", "CHKSRF/"];
@@ -98,6 +100,7 @@ fn lines_looked_at(text: &str) -> impl Iterator<Item = String> + '_ {
 }
 
 fn marked(text: &str) -> Option<(DialectName, &'static str)> {
+    let mut quoted = None;
     for line in lines_looked_at(text) {
         if let Some(mark) = CL_MARKS.into_iter().find(|mark| line.starts_with(mark)) {
             return Some((DialectName::Cl, mark));
@@ -105,6 +108,12 @@ fn marked(text: &str) -> Option<(DialectName, &'static str)> {
         if is_postworks_row(&line) {
             return Some((DialectName::Cl, "N1,"));
         }
+        quoted = quoted.or_else(|| QUOTED_TEXTS.into_iter().find(|mark| line.starts_with(mark)));
+    }
+    if let Some(mark) = quoted
+        && !is_part_program(text)
+    {
+        return Some((DialectName::Cl, mark));
     }
     // The statements of APT4 may come late in a program, and an IF over several statements later still.
     let mut apt4 = None;
@@ -195,6 +204,13 @@ mod tests {
             DialectName::Free
         );
         assert_eq!(name("PARTNO A\nPPRINT IF(X.EQ.1)THEN\nIF(X.EQ.1)THEN=1\n", "a.apt"), DialectName::Apt4);
+    }
+
+    #[test]
+    fn a_part_program_may_begin_its_name_with_a_quotation_mark() {
+        let program = "partno /'two plates \"4 in\" wide\npl = plane/0,0,1,2\nFINI\n";
+        assert_eq!(name(program, "a.apt"), DialectName::Free);
+        assert_eq!(name("PPRINT/'ROUGHING'\nGOTO/1,2,3\n", "a.apt"), DialectName::Cl);
     }
 
     #[test]
