@@ -2,16 +2,22 @@
 
 use apt_program::{Origin, expand};
 use apt_run::format::{FormatOptions, format_text};
+use apt_syntax::{
+    Dialect, StatementView, SyntaxTree, dialect::SequenceFieldRule, record::SEQUENCE_FIELD_COLUMN,
+};
 
 use crate::{Analysis, Cancel, Cancelled};
 
 /// An expansion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
-    /// The expanded statements, one per line.
+    /// The expanded statements. On cards a statement that is longer than a card goes on in the next lines; elsewhere
+    /// each has a line.
     pub text: String,
-    /// The origin of each line.
+    /// The origin of each statement.
     pub origins: Vec<Origin>,
+    /// The line, from 0, in which each statement begins.
+    pub lines: Vec<usize>,
 }
 
 impl Analysis {
@@ -40,11 +46,30 @@ impl Analysis {
             text.push('\n');
             origins.push(line.origin);
         }
-        // Statements are neither made nor removed, and with nothing wrapped each stays on its line.
+        // Statements are neither made nor removed. What stands past the statement field of a card would be lost.
         let dialect = self.document().tree().dialect();
-        let style = FormatOptions { wrap: None, ..FormatOptions::of(&dialect) };
+        let on_cards = dialect.sequence_field == SequenceFieldRule::Always;
+        let wrap = on_cards.then_some(SEQUENCE_FIELD_COLUMN - 1);
+        let style = FormatOptions { wrap, ..FormatOptions::of(&dialect) };
         let formatted = format_text(&text, dialect, &style);
-        let text = if formatted.lines().count() == origins.len() { formatted } else { text };
-        Ok(Expansion { text, origins })
+        let lines = first_lines(&formatted, dialect);
+        Ok(if lines.len() == origins.len() {
+            Expansion { text: formatted, origins, lines }
+        } else {
+            let lines = (0..origins.len()).collect();
+            Expansion { text, origins, lines }
+        })
     }
+}
+
+/// The line in which each statement of a text begins.
+fn first_lines(text: &str, dialect: Dialect) -> Vec<usize> {
+    let tree = SyntaxTree::parse(text, dialect);
+    let mut line = 0;
+    let line_of = |view: StatementView| {
+        let first = line;
+        line += view.text().lines().count();
+        first
+    };
+    tree.statements().map(line_of).collect()
 }

@@ -86,6 +86,29 @@ fn an_expansion_can_be_of_one_statement_and_of_some_levels() {
 }
 
 #[test]
+fn what_is_longer_than_a_card_goes_on_in_the_next() {
+    let points: Vec<String> = (0..16).map(|at| format!("{at}.125,{}.375", at % 3)).collect();
+    let text = format!(
+        "$$ apt-lsp: dialect=apt3\nA=1\nT=TABCYL/NOZ,SPLINE,{}$\n,{}\nGOTO/A,A,A\nFINI\n",
+        points[..7].join(","),
+        points[7..].join(",$\n"),
+    );
+    let expansion = analysis(&text).expand(None, None, &never).unwrap();
+    let lines: Vec<&str> = expansion.text.lines().collect();
+    assert!(lines.iter().all(|line| line.len() <= 72), "{}", expansion.text);
+    assert_eq!(expansion.lines.len(), expansion.origins.len());
+    let begins: Vec<String> = expansion.lines.iter().map(|at| lines[*at].chars().take(4).collect()).collect();
+    assert_eq!(begins, ["A=1", "T=TA", "GOTO", "FINI"]);
+    let symbols = |text: &str| {
+        let analysis = analysis(text);
+        analysis.run(None, &never, &mut silent).unwrap().symbols
+    };
+    let expanded = format!("$$ apt-lsp: dialect=apt3\n{}", expansion.text);
+    assert_eq!(symbols(&expanded), symbols(&text));
+    assert!(!symbols(&text).is_empty());
+}
+
+#[test]
 fn a_run_of_a_range_reports_its_statements() {
     let text = "PARTNO R\nFROM/0,0,0\nGOTO/1,0,0\nGOTO/2,0,0\nFINI\n";
     let program = analysis(text);

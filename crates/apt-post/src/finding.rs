@@ -56,8 +56,8 @@ pub enum PostFindingKind {
     DigitLimit { axis: SmolStr, value: f64 },
     #[error("a coordinate is not finite")]
     NotFinite,
-    #[error("the tool axis {i} {j} {k} is not the spindle's; the move is left out")]
-    ToolAxis { i: f64, j: f64, k: f64 },
+    #[error("the tool axis {i} {j} {k} is not the spindle's; {motions} motions are left out from here on")]
+    ToolAxis { i: f64, j: f64, k: f64, motions: u32 },
     #[error("{word} is not known here; it stands on the CL file and nothing is made of it")]
     UnknownWord { word: SmolStr },
     #[error("{word} is not supported by this machine; nothing is made of it")]

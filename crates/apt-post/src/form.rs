@@ -173,7 +173,9 @@ pub(crate) fn check(arguments: &Arguments<'_>) -> Vec<PostFindingKind> {
     }
     let Some(form) = FORMS.iter().find(|form| form.word == word.as_str()) else { return found };
     let unused = |argument: SmolStr| PostFindingKind::ArgumentNotUsed { word: word.clone(), argument };
-    if form.minors != ANY {
+    // Without a number to go by the statement is left out for the word that it cannot follow.
+    let followed = !matches!(word.as_str(), "CLEARP" | "CLRSRF") || arguments.number().is_some();
+    if form.minors != ANY && followed {
         let unknown = minors.iter().filter(|minor| !form.minors.contains(&minor.as_str()));
         found.extend(unknown.map(|minor| unused((*minor).clone())));
     }

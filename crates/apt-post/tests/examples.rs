@@ -320,7 +320,7 @@ fn every_block_knows_its_statement() {
 
 #[test]
 fn findings() {
-    let cases: [(&str, PostFindingKind); 22] = [
+    let cases: [(&str, PostFindingKind); 23] = [
         ("SPINDL/1000\nGOTO/1,0,0\n", PostFindingKind::NoFeed),
         ("FEDRAT/10\nGOTO/1,0,0\n", PostFindingKind::SpindleOff),
         ("FEDRAT/0\n", PostFindingKind::FeedNotPositive { value: 0.0 }),
@@ -355,7 +355,11 @@ fn findings() {
             "CYCLE/DEEP,DEPTH,1,STEP,2,CLEAR,.1,IPM,5\n",
             PostFindingKind::StepNotLessThanDepth { step: 2.0, depth: 1.0 },
         ),
-        ("GOTO/1,0,0,0,.6,.8\n", PostFindingKind::ToolAxis { i: 0.0, j: 0.6, k: 0.8 }),
+        ("GOTO/1,0,0,0,.6,.8\n", PostFindingKind::ToolAxis { i: 0.0, j: 0.6, k: 0.8, motions: 1 }),
+        (
+            "CLRSRF/HOME\n",
+            PostFindingKind::UnknownArgument { word: "CLRSRF".into(), argument: "HOME".into() },
+        ),
         ("END\nRAPID\nGOTO/1,0,0\n", PostFindingKind::MotionAfterEnd),
         (
             "RAPID\nGOTO/100,0,0\n",
@@ -377,6 +381,38 @@ fn findings() {
     let tape = tape_for(&mill, "FROM/0,0,0\n");
     assert_eq!(tape.findings[0].kind, PostFindingKind::NoFini);
     assert_eq!(tape.findings[0].kind.severity(), Severity::Warning);
+}
+
+#[test]
+fn motions_in_a_row_with_another_axis_are_one_finding() {
+    let mill = machine("linuxcnc-mill3").unwrap();
+    let text = "UNITS/INCHES\nFROM/0,0,0\nRAPID\nGOTO/1,0,0,0,.6,.8\nGOTO/2,0,0,0,.8,.6\nGOTO/3,0,0,1,0,0\n\
+                RAPID\nGOTO/4,0,0,0,0,1\nRAPID\nGOTO/5,0,0,0,1,0\nFINI\n";
+    let tape = tape_for(&mill, text);
+    let found: Vec<_> = tape
+        .findings
+        .iter()
+        .filter_map(|finding| match finding.kind {
+            PostFindingKind::ToolAxis { j, motions, .. } => Some((finding.isn, j, motions)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(found, [(4, 0.6, 3), (10, 1.0, 1)]);
+}
+
+#[test]
+fn one_finding_is_enough_for_a_clearance_without_its_plane() {
+    let mill = machine("linuxcnc-mill3").unwrap();
+    let about = |statement: &str| -> Vec<PostFindingKind> {
+        let tape = tape_for(&mill, &format!("UNITS/INCHES\nFROM/0,0,0\n{statement}\nFINI\n"));
+        tape.findings.into_iter().map(|finding| finding.kind).collect()
+    };
+    for word in ["CLEARP", "CLRSRF"] {
+        let unknown = PostFindingKind::UnknownArgument { word: word.into(), argument: "NOW".into() };
+        assert_eq!(about(&format!("{word}/NOW")), [unknown]);
+        let not_used = PostFindingKind::ArgumentNotUsed { word: word.into(), argument: "0.5".into() };
+        assert_eq!(about(&format!("{word}/0,0,1,.1,.5")), [not_used], "the plane is level");
+    }
 }
 
 #[test]

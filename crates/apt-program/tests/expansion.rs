@@ -1,6 +1,6 @@
 //! The unrolled program, and that it does the same as the program.
 
-use apt_program::{Expansion, Options, RecordKind, evaluate, expand};
+use apt_program::{Expansion, Options, RecordKind, Severity, evaluate, expand};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use expect_test::expect;
 
@@ -209,6 +209,30 @@ fn loops_of_jumps_and_of_do_show_their_values_too() {
         FINI
     "#]]
     .assert_eq(&unroll_apt4(text));
+}
+
+/// The positions of a program in APT III.
+fn positions_apt3(text: &str) -> Vec<RecordKind> {
+    let program =
+        evaluate(&SyntaxTree::parse(text, Dialect::named(DialectName::Apt3)), &Options::default(), &|| false);
+    let findings: Vec<_> = program.findings().filter(|finding| finding.severity > Severity::Hint).collect();
+    assert!(findings.is_empty(), "{text}: {findings:?}");
+    program.records().map(|record| record.kind.clone()).collect()
+}
+
+#[test]
+fn values_that_the_dialect_cannot_write_stay_names() {
+    // APT III reads sixteen digits, and some doubles take seventeen; the exponent of a small value needs a point.
+    let text = "I=-2\nD=.000001\nLOOPST\nA)GOTO/I,D,0\nI=I+.1\nD=D*3\nIF(I+1.5)A,B,B\nB)LOOPND\nFINI\n";
+    let tree = SyntaxTree::parse(text, Dialect::named(DialectName::Apt3));
+    let unrolled = expand(&tree, &Options::default(), None, None, &|| false).text();
+    assert_eq!(positions_apt3(&unrolled), positions_apt3(text));
+    assert!(unrolled.contains("GOTO/-2,1.E-6,0\n"), "{unrolled}");
+    assert!(unrolled.contains("GOTO/I,9.E-6,0\nI=I+.1\n"), "{unrolled}");
+    assert!(
+        unroll(text, None, None).text().contains("GOTO/-1.7999999999999998,"),
+        "free form reads all digits"
+    );
 }
 
 #[test]

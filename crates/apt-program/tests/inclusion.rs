@@ -82,13 +82,16 @@ fn library_macros_and_stored_segments_are_found_as_files_are() {
     let program =
         run("LIBRY/LIB\nREAD/2,SEG\nCALL/HOLE,X=B,DP=1\nFINI\n", &[("LIB", LIBRARY), ("SEG", "B=2\n")]);
     assert_eq!(program.findings().count(), 0, "{:?}", program.findings().collect::<Vec<_>>());
-    let program = run("LIBRY/NONE\nFINI\n", &[]);
+    let program = run("LIBRY/NONE\nCALL/NONE,X=1\nFINI\n", &[]);
     let kinds: Vec<_> = program.findings().map(|one| &one.kind).collect();
     let searched = vec!["shelf".into()];
     assert_eq!(
         kinds,
-        [&FindingKind::Control(ControlFinding::IncludeNotFound { name: "NONE".into(), searched })]
+        [&FindingKind::Control(ControlFinding::IncludeNotFound { name: "NONE".into(), searched })],
+        "that the macro is missing is told once"
     );
+    let program = run("LIBRY/LIB\nCALL/LIB\nFINI\n", &[("LIB", LIBRARY)]);
+    assert_eq!(program.findings().count(), 1, "the file holds another macro");
 }
 
 #[test]

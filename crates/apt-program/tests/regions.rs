@@ -41,7 +41,11 @@ const RULES: &[Rule] = &[
     ("the same labels in two loops", "LOOPST\nJUMPTO/A\nA)LOOPND\nLOOPST\nJUMPTO/A\nA)LOOPND", &[]),
     ("numeric labels by their value", "LOOPST\nJUMPTO/01\n1)LOOPND", &[]),
     ("back to LOOPST", "I=0\nA)LOOPST\nI=I+1\nIF(I-3)A,B,B\nB)LOOPND", &[]),
-    ("back to a statement with the label of LOOPST", "I=0\nA)LOOPST\nI=I+1\nIF(I-3)A,B,B\nA)I=3\nB)LOOPND", &[]),
+    (
+        "back to a statement with the label of LOOPST",
+        "I=0\nA)LOOPST\nI=I+1\nIF(I-3)A,B,B\nA)I=3\nB)LOOPND",
+        &[],
+    ),
     ("to LOOPST from another loop", "A)LOOPST\nI=1\nLOOPND\nLOOPST\nJUMPTO/A\nLOOPND", &[(5, Some(406))]),
     ("IF outside of loops", "A=1\nIF(A)B,B,B\nB)C=1", &[(2, Some(407))]),
     ("JUMPTO outside of loops", "JUMPTO/B\nB)C=1", &[(1, Some(407))]),

@@ -270,6 +270,9 @@ pub enum SyntaxErrorKind {
     /// OBTAIN without a type word.
     #[error("OBTAIN needs a type word")]
     ObtainTypeExpected,
+    /// A comma before the surface of OBTAIN.
+    #[error("a slash stands between {0} and the surface of OBTAIN")]
+    ObtainComma(SmolStr),
     /// DO whose form is not `DO/label,i=first,last[,step]`.
     #[error("the form is DO/label,i=first,last,step")]
     DoForm,
@@ -310,7 +313,7 @@ impl SyntaxErrorKind {
             Kind::BadInclusiveSubscript => 109,
             Kind::MissingParameters => 129,
             Kind::ObtainTypeExpected => 153,
-            Kind::NoSlash(_) => 155,
+            Kind::NoSlash(_) | Kind::ObtainComma(_) => 155,
             Kind::MacroForm => 203,
             Kind::MacroVariableNotName => 207,
             Kind::CallNameExpected => 226,
@@ -362,6 +365,7 @@ impl SyntaxErrorKind {
                 | SyntaxErrorKind::NumberTooLong { .. }
                 | SyntaxErrorKind::TooManyElements { .. }
                 | SyntaxErrorKind::TooManyNests { .. }
+                | SyntaxErrorKind::ObtainComma(_)
         )
     }
 }

@@ -331,7 +331,8 @@ impl SequenceEvidence {
         if short && separated && looks_like_sequence_field(field) {
             self.fields += 1;
             self.apart += u32::from(stands_apart(line, start));
-        } else {
+        } else if !line.get(..start).is_some_and(|statement| statement.contains("$$")) {
+            // A comment loses nothing by its end, and tells nothing.
             self.others += 1;
         }
     }
@@ -343,7 +344,8 @@ impl SequenceEvidence {
 fn stands_apart(line: &str, start: usize) -> bool {
     let begins_there = line.get(start..).is_some_and(|field| !field.starts_with([' ', '\t']));
     let statement = line.get(..start).unwrap_or("").trim_end();
-    let complete = statement.ends_with(|last: char| last.is_ascii_alphanumeric() || matches!(last, ')' | '.'));
+    let complete =
+        statement.ends_with(|last: char| last.is_ascii_alphanumeric() || matches!(last, ')' | '.'));
     begins_there && complete && !statement.contains('$')
 }
 
@@ -454,6 +456,8 @@ mod tests {
         ] {
             assert!(!deck_of(&with(text, field)), "{why}");
         }
-        assert!(!deck_of(&format!("{}{:<74}X=1\n", with("FINI", "TEST1470"), "A=1")), "one line has other text");
+        let and_line = |line: &str| with("FINI", "TEST1470") + line + "\n";
+        assert!(!deck_of(&and_line(&format!("{:<74}X=1", "A=1"))), "one line has other text");
+        assert!(deck_of(&and_line(&"$$**".repeat(30))), "a comment may be long");
     }
 }

@@ -219,7 +219,7 @@ fn giving_a_deck_its_sequence_fields_rereads_it() {
     let deck: String = (0..30).map(card).collect();
     let tree = SyntaxTree::parse(&deck, Dialect::default());
     assert!(tree.sequence_field());
-    let plain = "X=1\n".repeat(100);
+    let plain = format!("{:<80}X\n", "A=1").repeat(100);
     let (mixed, change) = tree.edit(TextRange::empty(TextSize::new(0)), &plain);
     assert!(!mixed.sequence_field());
     assert_eq!((change.first, change.removed, change.inserted), (0, 30, 130));

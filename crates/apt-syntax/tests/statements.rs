@@ -50,7 +50,8 @@ fn numbers_and_names() {
             ("2DCALC", "(2DCALC)"),
             ("X=1.2.3", "(error) !MisplacedDecimalPoint"),
             ("X=A.5", "(error) !MisplacedDecimalPoint"),
-            ("X=12345678901234567", "(let X 12345678901234568) !NumberTooLong { digits: 17, limit: 16 }"),
+            ("X=12345678901234567", "(let X 12345678901234568)"),
+            ("X=123456789012345678", "(let X 123456789012345680) !NumberTooLong { digits: 18, limit: 17 }"),
             ("X=000000000000000001", "(let X 1)"),
             ("LONGNAME=3", "(let LONGNAME 3)"),
             (

@@ -338,8 +338,9 @@ impl Document for Program {
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion> {
         let expansion = with(control, "expanding", |cancel, _| self.0.expand(at, depth, cancel))?;
         let tree = self.0.document().tree();
-        let lines = (0..).zip(&expansion.origins).map(|(line, origin)| ExpandedLine {
-            line,
+        let placed = expansion.lines.iter().zip(&expansion.origins);
+        let lines = placed.map(|(line, origin)| ExpandedLine {
+            line: u32::try_from(*line).unwrap_or(u32::MAX),
             isn: origin.isn,
             range: found::absolute_range(tree, origin),
             stack: frames(found::frame_places(tree, origin)),

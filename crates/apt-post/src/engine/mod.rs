@@ -151,6 +151,8 @@ struct Engine<'a> {
     retracted_from: Option<f64>,
     shift: Vec3,
     moved: bool,
+    /// The finding about the motions that are left out for the tool's axis, until one can be carried out again.
+    tilted: Option<usize>,
     /// Whether a FROM has been seen.
     started: bool,
     ended: bool,
@@ -204,6 +206,7 @@ impl<'a> Engine<'a> {
             retracted_from: None,
             shift: Vec3::zeros(),
             moved: false,
+            tilted: None,
             started: false,
             ended: false,
             closed: false,
@@ -341,8 +344,8 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The positions of a motion on the tape, as far as the tool stands as the spindle does; one finding for all that
-    /// it does not.
+    /// The positions of a motion on the tape, as far as the tool stands as the spindle does; one finding for all
+    /// motions in a row that it does not.
     fn tape_positions(&mut self, points: &[ClPoint]) -> Vec<Vec3> {
         let mut positions = Vec::with_capacity(points.len());
         let (mut tilted, mut infinite) = (None, false);
@@ -357,12 +360,25 @@ impl<'a> Engine<'a> {
                 infinite = true;
             }
         }
-        if let Some(axis) = tilted {
-            self.find(PostFindingKind::ToolAxis { i: axis.x, j: axis.y, k: axis.z });
-        }
+        self.left_out(tilted);
         if infinite {
             self.find(PostFindingKind::NotFinite);
         }
         positions
+    }
+
+    /// Counts a motion that is left out because of the tool axis there, or notes that this one is not.
+    fn left_out(&mut self, axis: Option<Vec3>) {
+        let Some(axis) = axis else {
+            self.tilted = None;
+            return;
+        };
+        let before = self.tilted.and_then(|finding| self.control.findings.get_mut(finding));
+        if let Some(PostFindingKind::ToolAxis { motions, .. }) = before.map(|finding| &mut finding.kind) {
+            *motions = motions.saturating_add(1);
+        } else {
+            self.tilted = Some(self.control.findings.len());
+            self.find(PostFindingKind::ToolAxis { i: axis.x, j: axis.y, k: axis.z, motions: 1 });
+        }
     }
 }

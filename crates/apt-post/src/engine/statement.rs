@@ -308,10 +308,14 @@ impl Engine<'_> {
             return self.find(PostFindingKind::UnknownArgument { word, argument: argument.into() });
         }
         let numbers: Vec<f64> = arguments.numbers().collect();
+        let known = ["XYPLAN", "NORMAL"];
+        if let Some(unknown) = arguments.unknown(&known).filter(|_| numbers.is_empty()) {
+            return self.find(unknown);
+        }
         let height = match numbers[..] {
             [height] => Some(height),
-            // A plane's canonical form that is level.
-            [i, j, k, distance] if i == 0.0 && j == 0.0 && k != 0.0 => Some(distance / k),
+            // A plane's canonical form that is level; what stands behind it has been told of.
+            [i, j, k, distance, ..] if i == 0.0 && j == 0.0 && k != 0.0 => Some(distance / k),
             _ => None,
         };
         match height {

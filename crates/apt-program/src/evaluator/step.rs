@@ -435,7 +435,14 @@ impl Evaluator<'_> {
 
     /// Executes the statements of the file with this name. `range` is the statement part that asks for them.
     pub(crate) fn include_file(&mut self, name: &SmolStr, range: TextRange) -> Flow {
-        let Some(source) = self.included_source(name, range) else { return Flow::Next };
+        match self.included_source(name, range) {
+            Some(source) => self.execute_file(source, name, range),
+            None => Flow::Next,
+        }
+    }
+
+    /// Executes the statements of a file that has been found under a name.
+    pub(crate) fn execute_file(&mut self, source: Arc<SourceFile>, name: &SmolStr, range: TextRange) -> Flow {
         let limit = self.options.macro_depth;
         if self.here.depth >= limit {
             self.report(
@@ -466,7 +473,7 @@ impl Evaluator<'_> {
     }
 
     /// The file with this name; nothing when it cannot be included, which has been reported.
-    fn included_source(&mut self, name: &SmolStr, range: TextRange) -> Option<Arc<SourceFile>> {
+    pub(crate) fn included_source(&mut self, name: &SmolStr, range: TextRange) -> Option<Arc<SourceFile>> {
         self.asked_for_files = true;
         let resolved = match &self.options.include {
             Some(resolver) => resolver.resolve(name),

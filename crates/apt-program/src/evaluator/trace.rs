@@ -274,7 +274,11 @@ impl Evaluator<'_> {
                 Some(Meaning::Scalar(value)) if is_value && value.is_finite() => {
                     let around = |index: Option<usize>| Some(elements.get(index?)?.kind);
                     let neighbours = (around(index.checked_sub(1)), around(index.checked_add(1)));
-                    splice(&mut shown, element, &number_elements(*value, element.range), neighbours, false);
+                    match number_elements(*value, element.range, self.dialect.number_digits) {
+                        Some(number) => splice(&mut shown, element, &number, neighbours, false),
+                        // The statement that gave it its value stands in the expansion too.
+                        None => shown.push(element.clone()),
+                    }
                 }
                 _ => shown.push(element.clone()),
             }
@@ -351,7 +355,8 @@ impl Evaluator<'_> {
         let placed = |kind, text: &str| Element { kind, text: SmolStr::new(text), range: index.range };
         let mut elements =
             vec![placed(ElementKind::Name, &index.name.text), placed(ElementKind::Equals, "=")];
-        elements.extend(number_elements(value, index.range));
+        // The loop's statements count with this line: it must stand, with as many digits as it takes.
+        elements.extend(number_elements(value, index.range, None).unwrap_or_default());
         let origin = self.origin(index.range);
         if let Some(trace) = &mut self.trace {
             trace.lines.push(TracedLine { elements, origin, definition_of: None });
@@ -389,17 +394,24 @@ fn assigned_names(statement: &ParsedStatement) -> Vec<SmolStr> {
     names
 }
 
-/// A number as elements, exactly.
-fn number_elements(value: f64, range: TextRange) -> Vec<Element> {
+/// A number as elements, exactly; nothing if that takes more significant digits than the dialect reads.
+fn number_elements(value: f64, range: TextRange, digits: Option<u16>) -> Option<Vec<Element>> {
     /// Magnitudes between which a number is written without exponent.
     const PLAIN: std::ops::Range<f64> = 1e-5..1e15;
     let magnitude = value.abs();
+    // An exponent is one behind a decimal point only (language reference 1.7).
     let text = if magnitude == 0.0 || PLAIN.contains(&magnitude) {
-        format_smolstr!("{}", magnitude)
+        format!("{magnitude}")
     } else {
-        format_smolstr!("{:E}", magnitude)
+        let text = format!("{magnitude:E}");
+        if text.contains('.') { text } else { text.replace('E', ".E") }
     };
-    let number = Element { kind: ElementKind::Number, text, range };
+    let mantissa = text.split('E').next().unwrap_or_default();
+    let written = mantissa.bytes().filter(u8::is_ascii_digit).skip_while(|digit| *digit == b'0').count();
+    if digits.is_some_and(|most| written > usize::from(most)) {
+        return None;
+    }
+    let number = Element { kind: ElementKind::Number, text: text.into(), range };
     let minus = Element { kind: ElementKind::Minus, text: SmolStr::new_static("-"), range };
-    if value < 0.0 { vec![minus, number] } else { vec![number] }
+    Some(if value < 0.0 { vec![minus, number] } else { vec![number] })
 }

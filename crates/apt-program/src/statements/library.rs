@@ -6,6 +6,7 @@ use super::Major;
 use crate::{
     evaluator::{Evaluator, Flow, Region},
     finding::{ControlFinding, Expected, FindingKind, Found},
+    symbols::Meaning,
 };
 
 /// The first number of a READ that puts in a segment of statements.
@@ -56,9 +57,16 @@ impl Evaluator<'_> {
         for argument in major.arguments {
             match argument {
                 Argument::Expression(Expression::Reference(reference)) if reference.subscript.is_none() => {
-                    match self.include_file(&reference.name.text, reference.range) {
-                        Flow::Next => {}
-                        other => return other,
+                    let name = &reference.name.text;
+                    if let Some(source) = self.included_source(name, reference.range) {
+                        match self.execute_file(source, name, reference.range) {
+                            Flow::Next => {}
+                            other => return other,
+                        }
+                    } else if self.look_up(name).is_none() {
+                        // That the macro is missing has been told here; its calls need not be.
+                        let origin = self.origin(reference.range);
+                        self.set_symbol(name.clone(), Meaning::Poisoned, origin);
                     }
                 }
                 other => self.wrong_operand(major, Expected::Name, Found::Nothing, 156, other.range()),

@@ -36,11 +36,15 @@ fn measured(kind: &Kind) -> Option<String> {
         Kind::DigitLimit { axis, value } => {
             format!("{axis} {} has more digits than the control takes", number(*value))
         }
-        Kind::ToolAxis { i, j, k } => format!(
-            "the tool axis ({}, {}, {}) is not that of the spindle; the move is left out",
+        Kind::ToolAxis { i, j, k, motions } => format!(
+            "the tool axis ({}, {}, {}) is not that of the spindle; {}",
             number(*i),
             number(*j),
-            number(*k)
+            number(*k),
+            match motions {
+                1 => "the motion is left out".to_owned(),
+                more => format!("{more} motions are left out, of which this is the first"),
+            }
         ),
         Kind::BadValue { word, argument, value } => {
             format!("{word}: {argument} {} is out of range; the statement is left out", number(*value))

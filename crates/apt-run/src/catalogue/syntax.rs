@@ -190,6 +190,10 @@ fn list(kind: &Kind) -> Text {
         }
         Kind::ObtainTypeExpected => say("APT0063", "OBTAIN is followed by the type of the surface")
             .hint("the form is OBTAIN,CIRCLE/C1,X,Y"),
+        Kind::ObtainComma(word) => {
+            say("APT0063", format!("a slash stands between {word} and the surface of OBTAIN"))
+                .hint(format!("the form is OBTAIN,{word}/name,first,second"))
+        }
         Kind::DoForm => say("APT0064", "the form is DO/label,index=first,last,step"),
         // The other groups have taken the rest.
         other => say("APT0099", format!("{other}")),

@@ -168,6 +168,7 @@ impl Here<'_> {
                 preferred: false,
             }],
             SyntaxErrorKind::MissingSeparator => one("Insert a comma", before, ",", false),
+            SyntaxErrorKind::ObtainComma(_) => one("Write a slash", here, "/", true),
             SyntaxErrorKind::UnopenedParenthesis => one("Remove the parenthesis", here, "", false),
             SyntaxErrorKind::UnclosedParenthesis => match self.parsed.elements.last() {
                 Some(last) => one(

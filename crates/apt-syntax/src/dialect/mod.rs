@@ -175,12 +175,16 @@ pub struct Dialect {
     pub bare_words_strict: bool,
 }
 
+/// The most significant digits that it takes to write a double so that it is read again as it was.
+const DIGITS_OF_A_DOUBLE: u16 = 17;
+
 impl Dialect {
     /// The switches of a named dialect.
     pub const fn named(name: DialectName) -> Dialect {
         match name {
             DialectName::Free => Dialect {
                 long_names: LongNames::Taken,
+                number_digits: Some(DIGITS_OF_A_DOUBLE),
                 later_functions: true,
                 text_words: TextWords::Indented,
                 semicolon_separates: true,

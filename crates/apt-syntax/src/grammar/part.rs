@@ -467,7 +467,16 @@ impl Parser<'_> {
             Some(_) | None => return self.fail(SyntaxErrorKind::ObtainTypeExpected),
         };
         if !self.eat(ElementKind::Slash) {
-            return self.fail(SyntaxErrorKind::NoSlash(kind.word.spelling.into()));
+            let spelling = SmolStr::from(kind.word.spelling);
+            match self.element(0) {
+                // Nothing else can be meant, and the names behind it get their values.
+                Some(comma) if comma.kind == ElementKind::Comma => {
+                    let kind = SyntaxErrorKind::ObtainComma(spelling);
+                    self.errors.push(SyntaxError { kind, range: comma.range });
+                    self.bump();
+                }
+                _ => return self.fail(SyntaxErrorKind::NoSlash(spelling)),
+            }
         }
         let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, units_of: None };
         let arguments = self.parameters(rules)?;
