@@ -46,12 +46,14 @@ impl Analysis {
             text.push('\n');
             origins.push(line.origin);
         }
-        // Statements are neither made nor removed. What stands past the statement field of a card would be lost.
+        // Statements are neither made nor removed. What stands past the statement field of a card is lost there, so that
+        // the statements are read without one until they are laid out for it.
         let dialect = self.document().tree().dialect();
         let on_cards = dialect.sequence_field == SequenceFieldRule::Always;
         let wrap = on_cards.then_some(SEQUENCE_FIELD_COLUMN - 1);
         let style = FormatOptions { wrap, ..FormatOptions::of(&dialect) };
-        let formatted = format_text(&text, dialect, &style);
+        let unbounded = Dialect { sequence_field: SequenceFieldRule::Never, ..dialect };
+        let formatted = format_text(&text, if on_cards { unbounded } else { dialect }, &style);
         let lines = first_lines(&formatted, dialect);
         Ok(if lines.len() == origins.len() {
             Expansion { text: formatted, origins, lines }
