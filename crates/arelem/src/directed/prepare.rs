@@ -19,8 +19,9 @@ use crate::{
 pub(super) const UNDETERMINED: f64 = 0.0349;
 /// Sine between part and drive normal below which there is no line of motion.
 const TANGENT_SINE: f64 = 1e-6;
-/// |cos| to the tool axis above which the last move says nothing about the forward direction.
-const ALONG_AXIS_COSINE: f64 = 0.997;
+/// Sine to the tool axis up to which the last move is parallel to it and says nothing about the forward direction. Positions
+/// are good to some 1e-9 of the size of what is machined, and moves are rarely shorter than a thousandth of that.
+const PARALLEL_SINE: f64 = 1e-6;
 /// Distance between unit axes below which they are the same.
 const SAME_AXIS: f64 = 1e-12;
 /// How many times the width of the bands ahead of the start it is looked for another contact.
@@ -231,7 +232,8 @@ fn turned(state: &State, tip: &Vec3, turn: Turn) -> Result<Vec3, MotionFailure> 
     }
     let last = (tip - state.previous).try_normalize(0.0);
     let forward = match last {
-        Some(direction) if direction.dot(&axis).abs() <= ALONG_AXIS_COSINE => direction,
+        // A steep one says it by what it moves sideways, as when the last vector is short and crosses the band.
+        Some(direction) if direction.cross(&axis).norm() > PARALLEL_SINE => direction,
         _ => state.forward.ok_or(MotionFailure::NoForwardDirection)?,
     };
     let right = forward.cross(&axis).try_normalize(1e-9).ok_or(MotionFailure::NoForwardDirection)?;

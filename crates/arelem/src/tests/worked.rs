@@ -278,3 +278,24 @@ fn cancelling_changes_nothing() {
     assert_eq!(execution.failure, Some(MotionFailure::Cancelled));
     assert_eq!(execution.state, p.state);
 }
+
+/// Operation 2 of AREPRE: the last move counts but where it is parallel to the axis, then the move before it.
+#[test]
+fn a_steep_move_says_which_way_is_left() {
+    let (rail, left_end, right_end) = (x(5.0), y(-3.0), y(3.0));
+    let steps = |steps: &[(f64, f64, f64)]| {
+        let mut p = Program::new();
+        p.cutter(&[0.0]).tolerance(0.0, 0.001).from(4.0, 0.5, 2.0);
+        for &(x, y, z) in steps {
+            p.run(&MotionCommand::GoTo { position: v(x, y, z), axis: None, name: String::new() });
+        }
+        p.run(&MotionCommand::PartSurface(named(&ground()))).side(DriveSide::On);
+        p
+    };
+    // Half a degree from the axis, towards smaller x: left is towards smaller y, though the move before went to larger x.
+    let mut steep = steps(&[(5.01, 0.0, 1.0), (5.0, 0.0, 0.0)]);
+    steep.drive(Turn::Left, &rail, Relation::On, &left_end).ends(5.0, -3.0, 0.0, 1e-9).verified();
+    // Along the axis: the move before it, towards larger x, and left is towards larger y.
+    let mut along = steps(&[(4.0, 0.0, 1.0), (5.0, 0.0, 1.0), (5.0, 0.0, 0.0)]);
+    along.drive(Turn::Left, &rail, Relation::On, &right_end).ends(5.0, 3.0, 0.0, 1e-9).verified();
+}
