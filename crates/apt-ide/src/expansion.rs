@@ -4,6 +4,7 @@ use apt_program::{Origin, expand};
 use apt_run::format::{FormatOptions, format_text};
 use apt_syntax::{
     Dialect, StatementView, SyntaxTree, dialect::SequenceFieldRule, record::SEQUENCE_FIELD_COLUMN,
+    statement::Body,
 };
 
 use crate::{Analysis, Cancel, Cancelled};
@@ -18,6 +19,8 @@ pub struct Expansion {
     pub origins: Vec<Origin>,
     /// The line, from 0, in which each statement begins.
     pub lines: Vec<usize>,
+    /// Whether a remark may stand behind each statement: it would be part of a free text, and the end of a statement that goes on.
+    pub room_behind: Vec<bool>,
 }
 
 impl Analysis {
@@ -54,24 +57,35 @@ impl Analysis {
         let style = FormatOptions { wrap, ..FormatOptions::of(&dialect) };
         let unbounded = Dialect { sequence_field: SequenceFieldRule::Never, ..dialect };
         let formatted = format_text(&text, if on_cards { unbounded } else { dialect }, &style);
-        let lines = first_lines(&formatted, dialect);
-        Ok(if lines.len() == origins.len() {
-            Expansion { text: formatted, origins, lines }
+        let formatted = if SyntaxTree::parse(&formatted, dialect).statements().count() == origins.len() {
+            formatted
         } else {
-            let lines = (0..origins.len()).collect();
-            Expansion { text, origins, lines }
-        })
+            text
+        };
+        let (lines, room_behind) = places(&formatted, dialect, on_cards);
+        Ok(Expansion { text: formatted, origins, lines, room_behind })
     }
 }
 
-/// The line in which each statement of a text begins.
-fn first_lines(text: &str, dialect: Dialect) -> Vec<usize> {
+/// The least that a remark takes behind a statement: a blank and its sign.
+const LEAST_REMARK: usize = 3;
+
+/// The line in which each statement of a text begins, and whether a remark may stand behind it.
+fn places(text: &str, dialect: Dialect, on_cards: bool) -> (Vec<usize>, Vec<bool>) {
     let tree = SyntaxTree::parse(text, dialect);
     let mut line = 0;
-    let line_of = |view: StatementView| {
-        let first = line;
-        line += view.text().lines().count();
-        first
+    let place = |view: StatementView| {
+        let (first, count) = (line, view.text().lines().count());
+        line += count;
+        let width = view.text().trim_end().chars().count();
+        let fits = !on_cards || width + LEAST_REMARK < SEQUENCE_FIELD_COLUMN;
+        (first, count <= 1 && fits && !ends_in_text(&view))
     };
-    tree.statements().map(line_of).collect()
+    tree.statements().map(place).unzip()
+}
+
+/// Whether what stands behind a statement belongs to its free text.
+fn ends_in_text(view: &StatementView) -> bool {
+    let parsed = view.parsed();
+    parsed.statement.parts.last().is_some_and(|part| matches!(part.body, Body::Text { .. }))
 }

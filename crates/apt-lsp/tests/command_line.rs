@@ -236,7 +236,10 @@ fn a_reader_who_has_seen_enough_is_no_fault() {
 fn tapes_trees_expansions_and_pictures_are_written() {
     let folder = Folder::new("products");
     folder.write("good.apt", GOOD);
-    folder.write("loop.apt", "PARTNO LOOP\nM1=MACRO/A\nGOTO/A,0,0\nTERMAC\nFROM/0,0,0\nCALL/M1,A=7\nFINI\n");
+    folder.write(
+        "loop.apt",
+        "PARTNO LOOP\nPPRINT TWICE AS FAR\nM1=MACRO/A\nGOTO/A,0,0\nTERMAC\nFROM/0,0,0\nCALL/M1,A=7\nFINI\n",
+    );
     let machines = folder.run(&["machines"]).stdout;
     let machine = machines.split_whitespace().next().unwrap();
     let ran = folder.run(&["post", "good.apt", "--machine", machine]);
@@ -245,6 +248,10 @@ fn tapes_trees_expansions_and_pictures_are_written() {
     assert!(ran.code == 0 && ran.stdout.contains("GOTO"), "{ran:?}");
     let ran = folder.run(&["expand", "loop.apt"]);
     assert!(ran.stdout.contains("GOTO/7,0,0") && ran.stdout.contains("in the macro M1"), "{ran:?}");
+    // What is printed says the same as the program, its free texts too.
+    folder.write("expanded.apt", &ran.stdout);
+    let locations = |name: &str| folder.run(&["run", name, "--format", "cl"]).stdout;
+    assert_eq!(locations("expanded.apt"), locations("loop.apt"));
     for (name, beginning) in [("out.svg", "<svg"), ("out.html", "<!")] {
         let ran = folder.run(&["view", "good.apt", "-o", name]);
         assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{ran:?}");

@@ -226,6 +226,8 @@ pub(crate) struct ExpandedLine {
     pub range: Range<usize>,
     /// Macro calls and loop turns around it, innermost first.
     pub stack: Vec<OriginFrame>,
+    /// Whether a remark may stand behind the statement and not be part of it.
+    pub room_behind: bool,
 }
 
 /// What is to be run.

@@ -338,8 +338,9 @@ impl Document for Program {
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion> {
         let expansion = with(control, "expanding", |cancel, _| self.0.expand(at, depth, cancel))?;
         let tree = self.0.document().tree();
-        let placed = expansion.lines.iter().zip(&expansion.origins);
-        let lines = placed.map(|(line, origin)| ExpandedLine {
+        let placed = expansion.lines.iter().zip(&expansion.room_behind).zip(&expansion.origins);
+        let lines = placed.map(|((line, room_behind), origin)| ExpandedLine {
+            room_behind: *room_behind,
             line: u32::try_from(*line).unwrap_or(u32::MAX),
             isn: origin.isn,
             range: found::absolute_range(tree, origin),

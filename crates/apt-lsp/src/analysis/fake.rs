@@ -295,7 +295,7 @@ impl Document for FakeDocument {
 
     fn expand(&self, _: Option<usize>, _: Option<u32>, _: &Control) -> Answer<Expansion> {
         let range = 0..self.text.lines().next().map_or(0, str::len);
-        let origins = vec![ExpandedLine { line: 0, isn: 1, range, stack: Vec::new() }];
+        let origins = vec![ExpandedLine { line: 0, isn: 1, range, stack: Vec::new(), room_behind: true }];
         Ok(Expansion { text: self.text.clone(), origins })
     }
 

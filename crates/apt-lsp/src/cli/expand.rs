@@ -13,7 +13,8 @@ use crate::convert::outgoing::frame_text;
 /// Column at which the origin of a line begins.
 const ORIGIN_COLUMN: usize = 40;
 
-/// Prints the expansion, the origin of each line in a remark behind it.
+/// Prints the expansion, the origin of each statement in a remark behind it, or before one that a remark behind would be part of: what is
+/// printed runs as the program does.
 pub(super) fn expand(call: &ExpandCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(mut program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
     let at = match call.at {
@@ -45,9 +46,10 @@ fn with_origins(expansion: &Expansion) -> String {
     let mut origins = expansion.origins.iter().peekable();
     for (number, line) in expansion.text.lines().enumerate() {
         match origins.next_if(|origin| origin.line as usize == number) {
-            Some(origin) => {
+            Some(origin) if origin.room_behind => {
                 text.push_str(&format!("{line:<ORIGIN_COLUMN$} $$ {}\n", origin_text(origin)));
             }
+            Some(origin) => text.push_str(&format!("$$ {}\n{line}\n", origin_text(origin))),
             None => text.push_str(&format!("{line}\n")),
         }
     }
@@ -65,19 +67,24 @@ mod tests {
     use crate::analysis::OriginFrame;
 
     #[test]
-    fn origins_stand_behind_their_lines() {
+    fn origins_stand_behind_their_statements_or_before_them() {
         let frame = OriginFrame { kind: "macro", name: "M".into(), isn: 9, turn: 1, range: None };
-        let line = |line, isn, stack| ExpandedLine { line, isn, range: 0..0, stack };
+        let line =
+            |line, isn, stack, room_behind| ExpandedLine { line, isn, range: 0..0, stack, room_behind };
         let expansion = Expansion {
-            text: "PARTNO\n  NOTHING\nGOLFT/L1\n".into(),
-            origins: vec![line(0, 1, Vec::new()), line(2, 4, vec![frame])],
+            text: "PARTNO A PLATE\nCIRCLE/0,$\n  0,1\nGOLFT/L1\n".into(),
+            origins: vec![
+                line(0, 1, Vec::new(), false),
+                line(1, 2, Vec::new(), false),
+                line(3, 4, vec![frame], true),
+            ],
         };
         let text = with_origins(&expansion);
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!(lines[0], format!("{:<40} $$ statement 1", "PARTNO"));
-        assert_eq!(lines[1], "  NOTHING");
+        assert_eq!(lines[..2], ["$$ statement 1", "PARTNO A PLATE"]);
+        assert_eq!(lines[2..5], ["$$ statement 2", "CIRCLE/0,$", "  0,1"]);
         assert_eq!(
-            lines[2],
+            lines[5],
             format!("{:<40} $$ statement 4, in the macro M called at statement 9", "GOLFT/L1")
         );
     }
