@@ -164,7 +164,10 @@ fn a_file_in_its_own_dialect_keeps_all_its_records_and_remarks() {
         assert_same_records(&file.records, &again.records, name);
         let remarks = |file: &ClText| file.remarks.iter().map(|one| one.text.clone()).collect::<Vec<_>>();
         assert_eq!(remarks(&again), remarks(&file), "{name}");
-        assert_eq!(notes, vec![], "{name}");
+        // The tolerances and the cutter behind a CIRCLE of NX have no place in the records, and that is told.
+        let shortened = ConversionNoteKind::Shortened { word: "CIRCLE".into() };
+        let told: Vec<&ConversionNoteKind> = notes.iter().map(|note| &note.kind).collect();
+        assert_eq!(told, if name == "nx-01" { vec![&shortened] } else { vec![] }, "{name}");
     }
 }
 
@@ -482,6 +485,18 @@ fn what_is_said_otherwise_is_told_once_with_its_place() {
     assert_eq!(notes.iter().map(|note| &note.kind).collect::<Vec<_>>(), [&ConversionNoteKind::NoUnits]);
 }
 
+/// DEEP withdraws the drill in one system and breaks chips in the other: the word stays, and that is told.
+#[test]
+fn a_cycle_that_does_something_else_elsewhere_is_told() {
+    let told = |(_, source, from): (&str, &str, ClDialect), to| {
+        let notes = made(&read(source), from, to).1;
+        notes.iter().any(|note| note.kind == ConversionNoteKind::OtherCycle { word: "DEEP".into() })
+    };
+    let (ncl, creo) = (FILES[12], FILES[7]);
+    assert!(told(ncl, ClDialect::Creo) && told(ncl, ClDialect::Hsm) && told(creo, ClDialect::Ncl));
+    assert!(!told(creo, ClDialect::Hsm) && !told(creo, ClDialect::Creo) && !told(ncl, ClDialect::Generic));
+}
+
 /// The axis of a surface that is touched with a tilted tool is none of the path.
 #[test]
 fn a_circle_that_is_none_of_the_path_stands_in_a_remark() {
@@ -492,7 +507,7 @@ fn a_circle_that_is_none_of_the_path_stands_in_a_remark() {
     let kinds =
         [go(vec![point(25.0, 0.0)]), circle, go(vec![point(24.0, 9.0), point(18.0, 20.0)]), ClKind::End];
     let records = kinds.into_iter().map(|kind| ClRecord { isn: 1, source: 0, kind }).collect();
-    let file = ClText { records, remarks: Vec::new() };
+    let file = ClText { records, ..ClText::default() };
     for to in ClDialect::ALL.into_iter().filter(|to| *to != ClDialect::Cltape) {
         let (converted, notes) = made(&file, ClDialect::PartProgram, to);
         let ConvertedFile::Text(text) = converted else { panic!("a tape") };
@@ -510,7 +525,7 @@ fn rapid_counts_for_all_positions_of_a_record() {
     let go = |points: Vec<ClPoint>| ClKind::Motion { from: false, surface: "".into(), points };
     let kinds = [go(vec![point(0.0)]), rapid, go(vec![point(1.0), point(2.0)]), go(vec![point(3.0)])];
     let records = kinds.into_iter().map(|kind| ClRecord { isn: 1, source: 0, kind }).collect();
-    let file = ClText { records, remarks: Vec::new() };
+    let file = ClText { records, ..ClText::default() };
     for to in ClDialect::ALL.into_iter().filter(|to| *to != ClDialect::Cltape) {
         let text = text(&file, ClDialect::PartProgram, to);
         assert_same_path(&file.records, &read(&text).records, &[], to.as_str());
@@ -557,7 +572,7 @@ proptest! {
             push(ClKind::Motion { from: false, surface: "".into(), points: vec![point] });
         }
         push(ClKind::End);
-        let file = ClText { records, remarks: Vec::new() };
+        let file = ClText { records, ..ClText::default() };
         for to in ClDialect::ALL.into_iter().filter(|to| *to != ClDialect::Cltape) {
             let text = text(&file, ClDialect::PartProgram, to);
             let (again, errors) = read_with_remarks(&text);

@@ -68,7 +68,7 @@ impl Analysis {
             }
             (None, _) => (self.run_to_cutter_locations(cancel, progress)?, ClDialect::PartProgram),
         };
-        let file = ClText { records: source.records, remarks: source.remarks };
+        let file = ClText { records: source.records, remarks: source.remarks, shortened: source.shortened };
         let made = convert(&file, from, to, &code_table())?;
         let mut diagnostics = source.diagnostics;
         let (tree, settings) = (self.document().tree(), self.document().settings());

@@ -4,7 +4,7 @@ use apt_cldata::{
     cltape::{TapeNote, TapeReadError},
     codes::CodeTable,
     record::ClRecord,
-    text::{ClText, Remark, read_with_remarks, write_text_with_lines},
+    text::{ClText, Remark, Shortened, read_with_remarks, write_text_with_lines},
 };
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::Origin;
@@ -97,6 +97,7 @@ pub(crate) struct Source {
     pub(crate) records: Vec<ClRecord>,
     /// What only people read in CL text.
     pub(crate) remarks: Vec<Remark>,
+    pub(crate) shortened: Vec<Shortened>,
     pub(crate) origins: Vec<Origin>,
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
@@ -148,6 +149,7 @@ impl Analysis {
                 Source {
                     records: result.records.clone(),
                     remarks: Vec::new(),
+                    shortened: Vec::new(),
                     origins: result.origins.clone(),
                     diagnostics: Vec::new(),
                 }
@@ -191,13 +193,13 @@ impl Analysis {
         let diagnostics = self.program_diagnostics(Level::Motion, cancel, progress)?;
         let result = self.result(cancel, progress)?;
         let (records, origins) = (result.records.clone(), result.origins.clone());
-        Ok(Source { records, remarks: Vec::new(), origins, diagnostics })
+        Ok(Source { records, remarks: Vec::new(), shortened: Vec::new(), origins, diagnostics })
     }
 
     /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
     pub(crate) fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
         let text = self.text();
-        let (ClText { mut records, remarks }, errors) = read_with_remarks(&text);
+        let (ClText { mut records, remarks, shortened }, errors) = read_with_remarks(&text);
         if cancel() {
             return Err(Cancelled);
         }
@@ -208,7 +210,7 @@ impl Analysis {
             }
         }
         let diagnostics = catalogue::read_diagnostics(&errors, &origins, self.document().settings());
-        Ok(Source { records, remarks, origins, diagnostics })
+        Ok(Source { records, remarks, shortened, origins, diagnostics })
     }
 
     /// The records of a binary tape of which this is the text form ([`text_of_cl_tape`]): with their own statement numbers, surfaces and
@@ -233,7 +235,7 @@ impl Analysis {
         let remark = |note: &TapeNote| Remark { line: u32::MAX, text: note_text(note) };
         let remarks = contents.notes.iter().map(remark).collect();
         let origins = self.origins_of_lines(&self.text());
-        Ok(Ok(Source { records, remarks, origins, diagnostics: Vec::new() }))
+        Ok(Ok(Source { records, remarks, shortened: Vec::new(), origins, diagnostics: Vec::new() }))
     }
 
     /// For every line of the text, the statement that it begins or goes on with.

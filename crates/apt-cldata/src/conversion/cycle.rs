@@ -1,7 +1,10 @@
 //! CYCLE in the words of another system.
 //!
 //! What a hole is – depth, clearance, feed rate, step and return – has a word of its own in one system, a synonym in the next, and no word but
-//! a place in the third. The name of the cycle stays: what DEEP and THRU do on a machine is in the hands of its post-processor.
+//! a place in the third. The name of the cycle stays: what DEEP and THRU do on a machine is in the hands of its post-processor, and where
+//! two systems are known to differ by it that is told.
+
+use smol_str::SmolStr;
 
 use crate::{
     record::ClWord,
@@ -12,6 +15,8 @@ use super::words::{is_word, word};
 
 /// Units of the feed rate, and the pitch that stands in its place.
 const FEEDS: [&str; 7] = ["IPM", "IPR", "MMPM", "MMPR", "PERMIN", "PERREV", "TPI"];
+/// Cycles that go in steps: withdrawn from the hole after each, or lifted a little so that the chip breaks.
+const STEPPED: [&str; 2] = ["DEEP", "THRU"];
 const DEPTHS: [&str; 2] = ["DEPTH", "FEDTO"];
 const CLEARANCES: [&str; 2] = ["CLEAR", "RAPTO"];
 const STEPS: [&str; 2] = ["INCR", "STEP"];
@@ -40,6 +45,15 @@ pub(super) fn translate(arguments: &[ClWord], from: &Form, to: &Form) -> Option<
     }
     let hole = read(list, &from.cycle)?;
     Some([vec![name.clone()], write(&hole, &to.cycle)?].concat())
+}
+
+/// The name of a cycle with steps that the two systems are known to drill otherwise.
+pub(super) fn other_meaning(arguments: &[ClWord], from: &Form, to: &Form) -> Option<SmolStr> {
+    let Some(ClWord::Word(name)) = arguments.first().filter(|name| is_word(name, &STEPPED)) else {
+        return None;
+    };
+    let differ = matches!((from.cycle.deep, to.cycle.deep), (Some(one), Some(other)) if one != other);
+    differ.then(|| name.clone())
 }
 
 fn read(mut list: &[ClWord], form: &CycleForm) -> Option<Hole> {

@@ -77,6 +77,18 @@ pub enum ConversionNoteKind {
         /// The word, with the part that is meant.
         word: SmolStr,
     },
+    /// A part of a statement that no record holds.
+    #[error("{word} is written without what stands behind its radius")]
+    Shortened {
+        /// The word.
+        word: SmolStr,
+    },
+    /// A cycle of a name that stands for another one in the target.
+    #[error("CYCLE/{word} keeps its name, and the target drills otherwise by it")]
+    OtherCycle {
+        /// The name of the cycle.
+        word: SmolStr,
+    },
     /// A circle that is no arc, or none that the target can say: the positions stand alone.
     #[error("a circle is written by its positions alone")]
     PositionsAlone,
@@ -119,6 +131,9 @@ pub fn convert(
     codes: &CodeTable,
 ) -> Result<Conversion, TapeWriteError> {
     let mut notes = Notes::default();
+    for shortened in &file.shortened {
+        notes.add((0, shortened.line), ConversionNoteKind::Shortened { word: shortened.word.clone() });
+    }
     let items = translate::translate(file, Form::of(from), Form::of(to), &mut notes);
     let file = match to {
         ClDialect::Cltape => ConvertedFile::Tape(tape::write(&items, codes, &mut notes)?),

@@ -97,7 +97,12 @@ impl Translator<'_> {
                 self.statement(name, ordered);
             }
             "CYCLE" => match cycle::translate(arguments, from, to) {
-                Some(translated) => self.statement(name, translated),
+                Some(translated) => {
+                    if let Some(word) = cycle::other_meaning(arguments, from, to) {
+                        self.notes.add(self.place, Kind::OtherCycle { word });
+                    }
+                    self.statement(name, translated);
+                }
                 None => {
                     self.notes.add(self.place, Kind::Untranslated { word: name.clone() });
                     self.push(What::Record(kind.clone()));

@@ -126,7 +126,8 @@ pub fn read_with_remarks(text: &str) -> (ClText, Vec<ReadError>) {
     }
     reader.end_arc();
     reader.end_nurbs();
-    (ClText { records: reader.records, remarks: reader.remarks }, reader.errors)
+    let Reader { records, remarks, shortened, errors, .. } = reader;
+    (ClText { records, remarks, shortened }, errors)
 }
 
 /// What CL text says.
@@ -136,6 +137,17 @@ pub struct ClText {
     pub records: Vec<ClRecord>,
     /// What only people read, in order of the lines.
     pub remarks: Vec<Remark>,
+    /// Statements of which the records do not hold all, in order of the lines.
+    pub shortened: Vec<Shortened>,
+}
+
+/// A statement of which a part is not kept: the tolerances and the cutter that NX writes behind the radius of a CIRCLE.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Shortened {
+    /// Zero-based line of the statement.
+    pub line: u32,
+    /// Its word.
+    pub word: SmolStr,
 }
 
 /// A remark of CL text.
@@ -166,6 +178,7 @@ struct Reader {
     circles_before_end: bool,
     tolerance: Tolerance,
     remarks: Vec<Remark>,
+    shortened: Vec<Shortened>,
 }
 
 /// A MOVNRB that is not off yet.

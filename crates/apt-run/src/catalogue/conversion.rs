@@ -26,9 +26,12 @@ pub(super) fn word(note: &ConversionNote) -> (Text, Severity) {
 
 fn code(kind: &Kind) -> &'static str {
     match kind {
-        Kind::AsRemark { .. } | Kind::LeftOut { .. } | Kind::RemarkLeftOut | Kind::Untranslated { .. } => {
-            "APT0817"
-        }
+        Kind::AsRemark { .. }
+        | Kind::LeftOut { .. }
+        | Kind::RemarkLeftOut
+        | Kind::Untranslated { .. }
+        | Kind::Shortened { .. }
+        | Kind::OtherCycle { .. } => "APT0817",
         Kind::PositionsAlone | Kind::WithoutPositions { .. } => "APT0818",
         Kind::AxisTold | Kind::UnitsAdded { .. } | Kind::NoUnits => "APT0819",
     }
@@ -36,10 +39,13 @@ fn code(kind: &Kind) -> &'static str {
 
 fn severity(kind: &Kind) -> Severity {
     match kind {
-        Kind::AsRemark { .. } | Kind::LeftOut { .. } | Kind::Untranslated { .. } | Kind::NoUnits => {
-            Severity::Warning
-        }
+        Kind::AsRemark { .. }
+        | Kind::LeftOut { .. }
+        | Kind::Untranslated { .. }
+        | Kind::OtherCycle { .. }
+        | Kind::NoUnits => Severity::Warning,
         Kind::RemarkLeftOut
+        | Kind::Shortened { .. }
         | Kind::PositionsAlone
         | Kind::WithoutPositions { .. }
         | Kind::AxisTold
@@ -54,6 +60,9 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         }
         Kind::LeftOut { .. } => "a text dialect, such as `cl`, keeps it",
         Kind::Untranslated { .. } => "compare its parameters with those that the post-processor takes",
+        Kind::OtherCycle { .. } => {
+            "in NCL, DEEP breaks chips and THRU withdraws the drill; in Creo and HSM, BRKCHP breaks chips and DEEP withdraws it"
+        }
         Kind::NoUnits => "put UNITS/MM or UNITS/INCHES into the source",
         Kind::PositionsAlone => {
             "its positions are not about one axis at one distance, or the tool axis turns on the way"

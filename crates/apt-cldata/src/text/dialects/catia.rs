@@ -28,6 +28,7 @@ pub(super) const FORM: Form = Form {
         step: "INCR",
         retract: "RETURN",
         feed_value_first: true,
+        deep: None,
         order: [
             CyclePart::Depth,
             CyclePart::Step,

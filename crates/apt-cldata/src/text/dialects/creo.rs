@@ -1,6 +1,6 @@
 //! Creo and Pro/ENGINEER: blanks about the slash, ten decimals, `$$->` pseudo statements, CIRCLE before the positions.
 
-use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Form, TextForm, ToolForm};
+use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Deep, Form, TextForm, ToolForm};
 use crate::text::{detect::ClDialect, number::Field, sheet::Layout};
 
 pub(super) const FORM: Form = Form {
@@ -28,6 +28,7 @@ pub(super) const FORM: Form = Form {
         step: "STEP",
         retract: "RETURN",
         feed_value_first: false,
+        deep: Some(Deep::Withdraws),
         order: [
             CyclePart::Depth,
             CyclePart::Step,

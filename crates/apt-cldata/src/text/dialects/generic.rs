@@ -31,6 +31,7 @@ pub(super) const FORM: Form = Form {
         step: "STEP",
         retract: "RTRCTO",
         feed_value_first: false,
+        deep: None,
         order: [
             CyclePart::Depth,
             CyclePart::Feed,

@@ -1,6 +1,6 @@
 //! Autodesk HSM and Fusion, "Common ISO 4343": quoted text, MOVARC with the angle, positional LOADTL.
 
-use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Form, TextForm, ToolForm};
+use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Deep, Form, TextForm, ToolForm};
 use crate::text::{detect::ClDialect, number::Field, sheet::Layout};
 
 pub(super) const FORM: Form = Form {
@@ -29,6 +29,7 @@ pub(super) const FORM: Form = Form {
         step: "INCR",
         retract: "RETURN",
         feed_value_first: false,
+        deep: Some(Deep::Withdraws),
         order: [
             CyclePart::Depth,
             CyclePart::Step,

@@ -125,8 +125,19 @@ pub(crate) struct CycleForm {
     pub(crate) retract: &'static str,
     /// Whether the feed rate stands before its unit.
     pub(crate) feed_value_first: bool,
+    /// What DEEP does between its steps, where that is known.
+    pub(crate) deep: Option<Deep>,
     /// The order in which they stand.
     pub(crate) order: [CyclePart; 6],
+}
+
+/// What a drill does between two steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Deep {
+    /// It is lifted a little, so that the chip breaks; THRU withdraws it.
+    BreaksChips,
+    /// It is withdrawn from the hole; BRKCHP breaks chips.
+    Withdraws,
 }
 
 /// A part of CYCLE.

@@ -1,6 +1,6 @@
 //! NCL and PostWorks text: numbered rows, eight decimals with blanks for zeros, CIRCLE before the positions.
 
-use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Form, ToolForm};
+use super::{Axes, Circles, CutterForm, CycleForm, CyclePart, Deep, Form, ToolForm};
 use crate::text::{detect::ClDialect, number::Field, sheet::Layout};
 
 pub(super) const FORM: Form = Form {
@@ -28,6 +28,7 @@ pub(super) const FORM: Form = Form {
         step: "STEP",
         retract: "RTRCTO",
         feed_value_first: false,
+        deep: Some(Deep::BreaksChips),
         order: [
             CyclePart::Depth,
             CyclePart::Feed,

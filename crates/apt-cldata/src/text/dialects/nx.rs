@@ -32,6 +32,7 @@ pub(super) const FORM: Form = Form {
         step: "STEP",
         retract: "RTRCTO",
         feed_value_first: false,
+        deep: None,
         order: [
             CyclePart::Clearance,
             CyclePart::Depth,

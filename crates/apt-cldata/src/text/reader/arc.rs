@@ -3,7 +3,7 @@
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
-use super::{ReadError, ReadErrorKind, Reader, driven::Driven};
+use super::{ReadError, ReadErrorKind, Reader, Shortened, driven::Driven};
 use crate::{
     arc::{ON_CIRCLE_FRACTION, slack},
     geometry::SpaceCircle,
@@ -101,7 +101,12 @@ impl Reader {
                 },
                 ClWord::Word(name) => self.error(ReadErrorKind::NotRead { word: name.clone() }),
                 // Tolerances and cutter of the long form.
-                ClWord::Number(_) => {}
+                ClWord::Number(_) => {
+                    let line = self.line;
+                    if self.shortened.last().is_none_or(|last| last.line != line) {
+                        self.shortened.push(Shortened { line, word: word.clone() });
+                    }
+                }
             }
         }
         self.begin_arc(circle, sweep);
