@@ -68,6 +68,9 @@ impl Analysis {
             }
             (None, _) => (self.run_to_cutter_locations(cancel, progress)?, ClDialect::PartProgram),
         };
+        if cancel() {
+            return Err(Cancelled.into());
+        }
         let file = ClText { records: source.records, remarks: source.remarks, shortened: source.shortened };
         let made = convert(&file, from, to, &code_table())?;
         let mut diagnostics = source.diagnostics;
