@@ -12,7 +12,7 @@ use super::{
 use crate::verify::tests::point_distance;
 
 /// A polyconic surface by its rigid motion and length, and by the first two coefficients of its polynomials.
-fn poly_conic(head: &[f64; 16], polynomials: [[f64; 2]; 7]) -> Geometry {
+pub(super) fn poly_conic(head: &[f64; 16], polynomials: [[f64; 2]; 7]) -> Geometry {
     let mut values = head.to_vec();
     for polynomial in polynomials {
         values.extend(polynomial);

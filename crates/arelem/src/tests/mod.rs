@@ -2,6 +2,7 @@
 
 mod axis_modes;
 mod barrels;
+mod behind_ends;
 mod bends;
 mod beside_ends;
 mod beyond_ends;

@@ -31,13 +31,14 @@ impl ToldEnd {
     }
 }
 
-/// Whether a tool touches the end of a surface, which is no farther than a distance from it, and a path leads out over that end or down
-/// behind it, and not along it; where all rulings meet nothing leads along it, nor does anything where the tool is ON the surface. Surfaces of which the end is not known have none.
+/// Whether a tool touches the end of a surface, which is no farther than the first distance from it, and a path leads out over that end or down
+/// behind it, and not along it, or touches it from behind, so that it is on no side of the surface, by more than contact
+/// turns on a tool that is led along the tangents of the end until it is the second distance, its band, off that; where all rulings meet nothing leads along it, nor does anything where the tool is ON the surface. Surfaces of which the end is not known have none.
 pub(crate) fn is_over(
     placed: &Placed,
     (cutter, axis): (&Cutter, &Vec3),
     tip: &Vec3,
-    near: f64,
+    [near, band]: [f64; 2],
     path: &Vec3,
 ) -> bool {
     let Ok(surface) = Surface::from_geometry(&case::surface(placed).geometry) else { return false };
@@ -45,29 +46,32 @@ pub(crate) fn is_over(
     let Some(start) = met.place(tip) else { return false };
     let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
     let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
-    let Some((distance, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    let Some((distance, off_tool, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    let turned = (2.0 * band / cutter.profile().greatest_radius()).sqrt();
     let edge = surface.edge_at(&place).filter(|_| placed.relation != Relation::On);
     let leads_over = edge.is_none_or(|SurfaceEdge { outward, normal, along }| {
         let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
-        out.hypot(behind) > along.dot(path).abs()
+        out.hypot(behind) > along.dot(path).abs() || placed.side * normal.dot(&off_tool) > turned
     });
     distance <= near && leads_over
 }
 
-/// The place of a line nearest to a tool, and how far that is.
+/// How far the place of a line nearest to a tool is from it, the direction out of the tool there, and the place.
 fn nearest_on(
     surface: &Surface,
     line: &Crease,
     (cutter, axis): (&Cutter, &Vec3),
     tip: &Vec3,
-) -> Option<(f64, Vec3)> {
+) -> Option<(f64, Vec3, Vec3)> {
     let profile = cutter.profile();
     let look = |at: f64| {
         let [place, _] = surface.on_crease(line, at)?;
         let from_tip = place - tip;
         let height = axis.dot(&from_tip);
-        let radius = (from_tip - axis * height).norm();
-        Some((profile.outward(radius, height).0, place))
+        let across = from_tip - axis * height;
+        let (distance, [wide, high]) = profile.outward(across.norm(), height);
+        let radial = across.try_normalize(0.0).unwrap_or_default();
+        Some((distance, radial * wide + axis * high, place))
     };
     let share = |k: u32| f64::from(k) / f64::from(PLACES);
     let distances: Option<Vec<f64>> = (0..=PLACES).map(|k| Some(look(share(k))?.0)).collect();

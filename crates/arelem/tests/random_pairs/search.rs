@@ -301,7 +301,7 @@ impl<'a> Reader<'a> {
         }
         let point = Cutter::from_numbers(&[0.0], 0.0).expect("a point");
         let guided = if placed.relation == Relation::On { &point } else { &self.cutter };
-        ends::is_over(placed, (guided, &axis), tip, near, sense)
+        ends::is_over(placed, (guided, &axis), tip, [near, inside + outside], sense)
     }
 
     /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of

@@ -47,7 +47,7 @@ impl SurfaceEnd {
         let Vertex { tip, axis, ref tangent, .. } = *vertex;
         let touches = [(&prepared.part, &vertex.part), (&prepared.drive, &vertex.drive)];
         let goes_over = |(role, contact): &(&Working, &Contact)| {
-            is_over(role, contact, tangent)
+            is_over(role, &prepared.tool, contact, tangent)
                 && !is_touched_inside(role, &prepared.tool.turned(axis), &tip, contact)
         };
         let (role, contact) = touches.into_iter().find(goes_over)?;
@@ -109,7 +109,7 @@ impl SurfaceEnd {
             // Below the bottom contact with an end that is parallel to it may be anywhere.
             let is_beside = !role.gauge.on && contact.gradient.dot(&turned.axis).abs() <= BESIDE;
             let goes_along = is_beside && (later.surface - contact.surface).norm() >= ALONG * way.norm();
-            is_led && (goes_along || !is_over(role, contact, &way.normalize()))
+            is_led && (goes_along || !is_over(role, tool, contact, &way.normalize()))
         })
     }
 }
@@ -151,8 +151,8 @@ fn is_pushed_back(role: &Working, contact: &Contact) -> bool {
 }
 
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
-/// end of it; but it goes along that, not out over it or down behind it.
-fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
+/// end of it; but it goes along that, not out over it or down behind it, and it touches it from the own side of the surface.
+fn is_over(role: &Working, tool: &Tool, contact: &Contact, path: &Vec3) -> bool {
     let place = if ends_below(role, contact) {
         above(role, contact).0
     } else if is_pushed_back(role, contact) {
@@ -161,9 +161,19 @@ fn is_over(role: &Working, contact: &Contact, path: &Vec3) -> bool {
         return false;
     };
     let edge = role.gauge.surface.edge_at(&place);
-    let Some(SurfaceEdge { outward, normal, along }) = edge else { return true };
+    let Some(edge) = edge else { return true };
+    let SurfaceEdge { outward, normal, along } = edge;
     let [out, behind] = [outward.dot(path), -role.gauge.side * normal.dot(path)].map(|way| way.max(0.0));
-    role.gauge.on || out.hypot(behind) > along.dot(path).abs()
+    role.gauge.on || out.hypot(behind) > along.dot(path).abs() || is_from_behind(role, tool, contact, &edge)
+}
+
+/// Whether the tool touches an end of a role's surface from the other side of that: led off the end it would come to be behind the surface, of
+/// which no clearance tells, so that it is no position on either side of it. Within its bands a tool of radius r may be led √(2rτ) along
+/// the end's tangents until it is τ off, which turns the direction of contact by √(2τ/r): by that much it may be square to the surface
+/// or behind. A line that is behind the end is told to be in the surface ([`crate::clearance`]) and has no such side.
+fn is_from_behind(role: &Working, tool: &Tool, contact: &Contact, edge: &SurfaceEdge) -> bool {
+    let turned = (2.0 * role.band() / tool.radius()).sqrt();
+    role.gauge.side * edge.normal.dot(&contact.gradient) < -turned
 }
 
 /// Whether a tool that touches the end of a surface touches it before the end, too, as along a straight piece: that guides it on.
@@ -275,24 +285,28 @@ impl March<'_> {
 mod tests {
     use apt_geometry::{
         Vec3,
+        cutter::Cutter,
         motion::{NamedSurface, Relation},
     };
 
     use super::{is_over, is_pushed_back};
     use crate::{
-        clearance::Contact,
+        clearance::{Contact, Tool},
         error::RoleName,
         role::Working,
         tests::{Program, level, sheets::ruled, v},
     };
 
-    /// A wall along x, and a tool on the side of y > 0 that is a little inside it just beyond its end, and pushed back.
-    #[test]
-    fn what_is_pushed_back_goes_over_the_end_unless_it_goes_along_it() {
+    /// Radius of the tool, and the band on either side, in the unit of the wall.
+    const RADIUS: f64 = 0.25;
+    const TOLERANCE: f64 = 0.001;
+
+    /// A wall along x that is met from the side of y > 0, and a place of its end, which lies along z, on the side of x > 0.
+    fn wall() -> (Working, Vec3) {
         let edge = |z: f64| (level(z), v(0.0, 0.0, z), v(2.0, 0.0, z), Vec3::z());
         let wall = NamedSurface { name: String::new(), geometry: ruled([edge(0.0), edge(1.0)]) };
         let mut p = Program::new();
-        p.tolerance(0.001, 0.001).cutter(&[0.5]);
+        p.tolerance(TOLERANCE, TOLERANCE).cutter(&[2.0 * RADIUS]);
         let mut role = Working::new(&p.state, RoleName::Drive, &wall, Relation::To, false).expect("a wall");
         role.set_side(role.gauge.surface.signed_distance(&v(1.0, 1.0, 0.5)).signum());
         // It goes on beyond what it is defined by.
@@ -302,11 +316,35 @@ mod tests {
             let ends = role.gauge.surface.ends_at(&v(middle, 0.0, 0.5));
             *(if ends { &mut beyond } else { &mut before }) = middle;
         }
-        let (end, gradient) = (v(before, 0.0, 0.5), v(-0.5, 1.0, 0.0).normalize());
+        (role, v(before, 0.0, 0.5))
+    }
+
+    fn tool() -> Tool<'static> {
+        Tool::new(Cutter::from_numbers(&[2.0 * RADIUS], 1.0).expect("a cutter"), Vec3::z())
+    }
+
+    /// A tool that is a little inside the wall just beyond its end, and pushed back.
+    #[test]
+    fn what_is_pushed_back_goes_over_the_end_unless_it_goes_along_it() {
+        let (role, end) = wall();
+        let gradient = v(-0.5, 1.0, 0.0).normalize();
         let contact = Contact { clearance: -1e-4, gradient, tool: end - gradient * 1e-4, surface: end };
         assert!(is_pushed_back(&role, &contact));
         for (path, goes_over) in [(Vec3::z(), false), (Vec3::x(), true), (v(2.0, 0.0, 1.0), true)] {
-            assert_eq!(is_over(&role, &contact, &path), goes_over, "{path:?}");
+            assert_eq!(is_over(&role, &tool(), &contact, &path), goes_over, "{path:?}");
+        }
+    }
+
+    /// Square to the wall it goes along its end, also by as much as contact turns within the bands, and from behind it does not.
+    #[test]
+    fn what_touches_an_end_from_behind_does_not_go_along_it() {
+        let (role, end) = wall();
+        let turned = (2.0 * (2.0 * TOLERANCE) / RADIUS).sqrt();
+        for (behind, goes_over) in [(-0.5, false), (0.0, false), (0.9 * turned, false), (1.1 * turned, true)]
+        {
+            let gradient = Vec3::x() * f64::sqrt(1.0 - behind * behind) - Vec3::y() * behind;
+            let contact = Contact { clearance: 0.0, gradient, tool: end, surface: end };
+            assert_eq!(is_over(&role, &tool(), &contact, &Vec3::z()), goes_over, "{behind} behind");
         }
     }
 }
