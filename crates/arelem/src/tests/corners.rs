@@ -48,41 +48,110 @@ fn a_motion_out_of_a_corner_goes_along_the_wall_that_leads_in_its_direction() {
 /// Slope of the legs of a corner y = s·|x| into which a path goes, and in which it turns by 127°, more than a right angle.
 const STEEP: f64 = 2.0;
 
-/// A tool of radius 0.5 in such a corner or on its left leg, going along the walls in a direction, to where x is a half.
-fn along_steep_walls(in_corner: bool, ahead: [f64; 2]) -> Program {
-    let walls = quadric([-STEEP * STEEP, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    let length = STEEP.hypot(1.0);
+/// A tool of radius 0.5 in a corner of walls as steep or on its left leg, going along them in a direction, to where x is a half.
+fn along_walls(steep: f64, in_corner: bool, ahead: [f64; 2]) -> Program {
+    let walls = quadric([-steep * steep, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let length = steep.hypot(1.0);
     let along_normal = 0.5 / length;
     let from = if in_corner {
         v(0.0, 0.5 * length, 0.0)
     } else {
-        v(-1.0 + along_normal * STEEP, STEEP + along_normal, 0.0)
+        v(-1.0 + along_normal * steep, steep + along_normal, 0.0)
     };
     let mut program = Program::new();
     program.cutter(&[1.0]).tolerance(0.001, 0.001).from(from.x, from.y, 0.0);
     program.run(&MotionCommand::PartSurface(named(&ground())));
     program.side(DriveSide::Left).indirv(ahead[0], ahead[1], 0.0);
     program.drive(Turn::Forward, &walls, Relation::On, &plane(1.0, 0.0, 0.0, 0.5)).verified();
-    let foot = 0.5 + along_normal * STEEP;
-    program.ends(0.5, foot * STEEP + along_normal, 0.0, 0.005);
+    let foot = 0.5 + along_normal * steep;
+    program.ends(0.5, foot * steep + along_normal, 0.0, 0.005);
     program
 }
 
 /// The path goes on along the other leg, though that leads back rather than on: the tool keeps to its side of both.
 #[test]
 fn a_path_goes_on_along_the_other_leg_of_a_corner_that_turns_it_by_more_than_a_right_angle() {
-    let program = along_steep_walls(false, [1.0, -STEEP]);
+    let program = along_walls(STEEP, false, [1.0, -STEEP]);
     let points = &program.last().points;
     let lowest = points.iter().map(|point| point.tip.y).fold(f64::INFINITY, f64::min);
     assert!((lowest - 0.5 * STEEP.hypot(1.0)).abs() < 0.005, "{lowest}");
     assert!(points.len() <= 4, "{} vectors", points.len());
 }
 
+/// Neither on nor back leads the other leg of a corner that turns the path by a right angle, or by some degrees more or less.
+#[test]
+fn a_path_turns_by_about_a_right_angle() {
+    for steep in [0.9, 0.93, 0.96, 0.98, 0.99, 0.999, 1.0, 1.001, 1.01, 1.02] {
+        let program = along_walls(steep, false, [1.0, -steep]);
+        let points = &program.last().points;
+        assert!(points.len() <= 4, "{steep}: {} vectors", points.len());
+    }
+}
+
+/// A drill between two leaning walls, the first of which it touches with its top, goes along that towards the other by so much, then turns.
+fn between_leaning_walls(back: f64, band: [f64; 2]) -> Result<CutSequence, MotionFailure> {
+    let drill = [0.34831118696644797, 0.0, 0.17415559348322399, 0.10464323770744212, 31.0, 0.0, 4.5];
+    let [part, first, second] =
+        [v(-0.0061, 0.8981, 0.4398), v(0.1117, 0.9509, -0.2885), v(0.8541, 0.3943, 0.3393)]
+            .map(|n| n.normalize());
+    // The surfaces touch a tool whose end is in the origin.
+    let corner = |normal: &Vec3, height: f64| {
+        let aside = v(-normal.x, -normal.y, 0.0).normalize() * (0.5 * drill[0]);
+        normal.dot(&(aside + Vec3::z() * height))
+    };
+    let [to_part, to_first, to_second] =
+        [corner(&part, drill[3]), corner(&first, drill[6]), corner(&second, drill[3])];
+    let product = |k: usize, l: usize| 0.5 * (first[k] * second[l] + first[l] * second[k]);
+    let along = |k: usize| -0.5 * (first[k] * to_second + second[k] * to_first);
+    let walls = quadric([
+        product(0, 0),
+        product(1, 1),
+        product(2, 2),
+        to_first * to_second,
+        product(1, 2),
+        product(0, 2),
+        product(0, 1),
+        along(0),
+        along(1),
+        along(2),
+    ]);
+    let way = first.cross(&part).normalize();
+    let way = -way * way.dot(&second).signum();
+    let onward = part.cross(&second).normalize();
+    let onward = onward * onward.dot(&first).signum();
+    let from = -way * back;
+    let mut program = Program::new();
+    program.cutter(&drill).tolerance(band[0], band[1]).from(from.x, from.y, from.z);
+    program.run(&MotionCommand::PartSurface(named(&plane(part.x, part.y, part.z, to_part))));
+    let side = if part.cross(&way).dot(&first) > 0.0 { DriveSide::Right } else { DriveSide::Left };
+    program.side(side).indirv(way.x, way.y, way.z);
+    let check = plane(onward.x, onward.y, onward.z, 0.7);
+    let command = motion(Turn::Forward, &walls, &[(Relation::On, 1, &check)]);
+    let execution = execute(&program.state, &command, &|| false);
+    match (execution.failure, execution.output) {
+        (Some(failure), _) => Err(failure),
+        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
+        _ => panic!("no sequence"),
+    }
+}
+
+/// The vector that leads into the corner goes from one limit of a wide band to the other, so that the other leg leads against it, though not
+/// against the way along the first wall.
+#[test]
+fn a_path_goes_on_from_a_corner_that_it_comes_to_across_its_band() {
+    for back in [0.43, 0.4645030883977572, 0.5] {
+        let sequence = between_leaning_walls(back, [0.01, 0.005]).expect("a path");
+        assert!(sequence.points.len() <= 3, "{back}: {} vectors", sequence.points.len());
+        let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{back}: {evidence:?}");
+    }
+}
+
 /// The direction asked for is square to one leg, or against its way into the corner: the other leg is meant.
 #[test]
 fn a_direction_that_leads_out_of_a_steep_corner_is_followed() {
     for ahead in [[1.0, 1.0], [STEEP, 1.0], [1.0, 0.45], [0.2, 1.0], [1.0, STEEP]] {
-        along_steep_walls(true, ahead);
+        along_walls(STEEP, true, ahead);
     }
 }
 

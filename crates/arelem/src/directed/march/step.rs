@@ -231,13 +231,15 @@ impl<'a> Stepper<'a> {
     }
 
     /// True if the path, bit by bit, has turned so far on the spot that it goes back from where it came: against the vector that
-    /// led there, and not plainly onward from how the path ended, from which a vector along a bend differs.
+    /// led there, not plainly onward from how the path ended, from which a vector along a bend differs, and not on the hand on which
+    /// the path keeps both surfaces.
     fn kinks_back(&self, here: &Vertex, direction: &Vec3) -> bool {
         self.is_where_it_arrived(&here.tip)
             && self.arrived.is_some_and(|Arrival { vector, tangent, .. }| {
                 let plainly = UNDETERMINED * direction.norm() * tangent.norm();
                 direction.dot(&vector) < 0.0 && direction.dot(&tangent) < plainly
             })
+            && !self.hand.leads_along(here, direction)
     }
 
     /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on

@@ -13,8 +13,9 @@ const SHORTER: f64 = 0.25;
 /// The longest and the shortest one, as shares of the bands: behind the turn vectors are as long as the path bends.
 const LONGEST: f64 = 20.0;
 const SHORTEST: f64 = 0.1;
-/// Cosine between such a vector and the path until then at least: up to nearly a right angle.
-const LEAST_ONWARD: f64 = 0.1;
+/// Cosine between such a vector and the path until then at least: up to nearly a right angle. What turns by more goes on on its hand
+/// ([`super::hand`]).
+pub(super) const LEAST_ONWARD: f64 = 0.1;
 
 impl Stepper<'_> {
     /// The longest of these vectors that is proven, with the vertex that it begins at: that one's tangent is the direction

@@ -1,10 +1,11 @@
-//! On which hand a path keeps part and drive surface, through corners that turn it by more than a right angle, too.
+//! On which hand a path keeps part and drive surface, through corners that turn it by about a right angle or more, too.
 
 use apt_geometry::Vec3;
 
 use super::{
     Places, Stepper,
     corner::{SAME_TANGENT_COSINE, SecondPlace},
+    exhaustive::LEAST_ONWARD,
 };
 use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
 
@@ -61,6 +62,12 @@ impl Hand {
         if self.sign.is_some() { self } else { Self { sign: Self::sign_at(vertex), ..self } }
     }
 
+    /// Whether a direction leads along the surfaces on this hand: onward then, whatever angle it makes with the vector that led there. In a wide
+    /// band that may lead from one limit to the other, across the path.
+    pub(super) fn leads_along(self, at: &Vertex, direction: &Vec3) -> bool {
+        self.sign.is_some() && self.along(&at.part, &at.drive).is_some_and(|along| along.dot(direction) > 0.0)
+    }
+
     /// The direction of the path along two contacts.
     fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
         let across = part.gradient.cross(&drive.gradient);
@@ -69,8 +76,8 @@ impl Hand {
 }
 
 impl Stepper<'_> {
-    /// The next vertex along the second contact of a corner of one of both surfaces that turns it by more than a right angle: where it goes on on the same hand.
-    /// Two such corners are not as near as the tool may round one. Errors: cancelled.
+    /// The next vertex along the second contact of a corner of one of both surfaces that turns it by about a right angle or more: where it goes on
+    /// on the same hand. Two such corners are not as near as the tool may round one. Errors: cancelled.
     pub(super) fn around_sharply(
         &mut self,
         seconds: &[SecondPlace],
@@ -136,8 +143,8 @@ impl Stepper<'_> {
         along.is_some_and(|along| along.dot(chord) <= 0.0)
     }
 
-    /// Directions on the same hand against that of the path: along what is measured here, if the vector that led here ended beyond the corner,
-    /// and along each second contact with one of both surfaces.
+    /// Directions on the same hand that are against that of the path, or so nearly square to it that no vector along them plainly leads onward:
+    /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces.
     fn sharp_directions(&self, seconds: &[SecondPlace], here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
@@ -152,7 +159,7 @@ impl Stepper<'_> {
         let mut found: Vec<Vec3> = Vec::new();
         for along in own.into_iter().chain(onward) {
             let is_known = found.iter().any(|known| known.dot(&along) > SAME_TANGENT_COSINE);
-            if along.dot(&here.tangent) < 0.0 && !is_known {
+            if along.dot(&here.tangent) < LEAST_ONWARD && !is_known {
                 found.push(along);
             }
         }
