@@ -58,7 +58,7 @@ pub(super) struct Beside<'a> {
 }
 
 /// Signed distance of a point from a tool, and a unit direction in which it grows at least as fast as straight on.
-fn outward(tool: &Tool, from_tip: &Vec3) -> (f64, Vec3) {
+pub(super) fn outward(tool: &Tool, from_tip: &Vec3) -> (f64, Vec3) {
     let (along, across, radial) = tool.split(from_tip);
     let (distance, [wide, high]) = tool.profile.outward(across, along);
     (distance, radial * wide + tool.axis * high)

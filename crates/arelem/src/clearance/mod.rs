@@ -387,6 +387,13 @@ impl Gauge {
         away.is_some_and(|away| crease::clears(surface, tool, [from, to], [&away, &normal], level))
     }
 
+    /// A bound from above of the clearance of a tool by one place of the surface, which is nowhere nearer to it than its nearest place, nor less
+    /// deep in it than it is deep in the surface: a way that frees the tool leads that place out of it.
+    pub(crate) fn at_most_by(&self, tool: &Tool, tip: &Vec3, place: &Vec3) -> f64 {
+        let (body, end) = self.body(tool, tip);
+        crease::outward(&body, &(place - end)).0 - self.thickness
+    }
+
     /// Whether a tool touches with the edge of its top what is above it: nothing touches the disc there.
     pub(crate) fn touches_from_below(&self, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
         let (tool, tip) = self.body(tool, tip);

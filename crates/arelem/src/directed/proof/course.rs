@@ -3,6 +3,8 @@
 //! clearance, the least of them, wherever contact jumps. It is then above every chord less K·s(h − s)/2, and below the
 //! parabolas of curvature K from both ends.
 
+mod by_place;
+
 use std::borrow::Cow;
 
 use apt_geometry::{Vec3, surface::Bend};
@@ -376,8 +378,9 @@ impl Course<'_, '_> {
             return true;
         }
         if sweep.turns() {
-            return by_contacts
-                && self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
+            return self.is_held_by_place(a, b)
+                || by_contacts
+                    && self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
         }
         let at = |x: f64| sweep.at(x).0;
         let (from, to) = (at(a.x), at(b.x));
