@@ -95,9 +95,14 @@ pub(super) fn prepare<'a>(
         Err(failure) => {
             let contacts = [part_contact, drive_contact];
             let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
-            let (along, contact) = place.decided(&wanted, failure)?;
-            drive_contact = contact;
-            along
+            let own = || own_line(state, &tool, (&part, &drive), (&tip, &wanted));
+            match place.decided(&wanted, failure) {
+                Ok((along, contact)) => {
+                    drive_contact = contact;
+                    along
+                }
+                Err(failure) => own().ok_or(failure)?,
+            }
         }
         Ok(tangent) => tangent,
     };
@@ -281,6 +286,19 @@ fn line_of_turning(
     let [asked, standing] = [wanted, standing].map(|direction| along.dot(direction));
     let sense = if asked.abs() > UNDETERMINED { asked } else { standing };
     Some(if sense < 0.0 { -along } else { along })
+}
+
+/// The line of motion of a tool that turns on its way, where the direction asked for tells its sense: that of a tool which keeps its axis may be
+/// square to this one. None where the tool does not turn, or has no line with a sense.
+fn own_line(
+    state: &State,
+    tool: &Tool<'_>,
+    (part, drive): (&Working, &Working),
+    (tip, wanted): (&Vec3, &Vec3),
+) -> Option<Vec3> {
+    let attitude = attitude(state, tool, (part, drive), tip, wanted).ok()?;
+    let line = line_of_turning(&attitude, [part, drive], tip, (&Vec3::zeros(), wanted))?;
+    (line.dot(wanted) > UNDETERMINED).then_some(line)
 }
 
 /// Where a motion begins.

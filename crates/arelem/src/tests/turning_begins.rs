@@ -342,3 +342,43 @@ fn a_tool_that_just_fits_before_a_plane_with_either_end_starts_up() {
     p.go(&[(Relation::On, &through), (Relation::To, &inside), (Relation::To, &before)]);
     proven(&p);
 }
+
+/// The direction asked for is square to the line of motion of a tool that keeps its axis, within two degrees, and plainly along that of the tool
+/// that turns, whose top moves the more the axis leans.
+#[test]
+fn a_direction_square_to_the_line_of_a_standing_tool_tells_the_way_of_one_that_turns() {
+    let under = plane(-0.2771449100529829, 0.12728297119717094, -0.9523600916013566, 0.03915432951576159);
+    let beside = Geometry::Cylinder(Cylinder {
+        point: v(3.9030569477006987, -2.5632506164079314, 1.520595151961117),
+        axis: v(-0.2854015661730676, -0.7025956508401342, 0.6518476029306914),
+        radius: 1.2009516657048602,
+    });
+    let first = plane(-0.5904749099084426, -0.8044893998514243, 0.06431318912409696, 0.054467903297393074);
+    let check = Geometry::Cylinder(Cylinder {
+        point: v(5.927721051428652, 4.233038936551539, -1.3960519106043248),
+        axis: v(0.028390882985061316, -0.23702368095432913, -0.9710889415651838),
+        radius: 5.03500704915614,
+    });
+    let across = v(0.5251227368305799, 0.7913505811425291, -0.31306607767202005);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[
+        0.8139832180798747,
+        0.0,
+        0.40699160903993736,
+        0.2445452301467596,
+        31.0,
+        0.0,
+        2.842937163597618,
+    ]);
+    from(
+        &mut p,
+        v(1.2475666744005245, -0.9520719013232368, 0.11736433076906887),
+        v(0.2771449100529829, -0.12728297119717089, 0.9523600916013565),
+    );
+    let mode = AxisTangency::PerpendicularTo(across);
+    along(&mut p, ToolAxis::Tangent { height: 0.0, mode });
+    p.go(&[(Relation::To, &beside), (Relation::To, &under), (Relation::On, &first)]);
+    p.side(DriveSide::Left).indirv(0.5904749099084425, 0.8044893998514242, -0.064313189124097);
+    p.drive(Turn::Forward, &beside, Relation::To, &check);
+    proven(&p);
+}
