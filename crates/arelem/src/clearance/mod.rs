@@ -388,10 +388,12 @@ impl Gauge {
     }
 
     /// A bound from above of the clearance of a tool by one place of the surface, which is nowhere nearer to it than its nearest place, nor less
-    /// deep in it than it is deep in the surface: a way that frees the tool leads that place out of it.
-    pub(crate) fn at_most_by(&self, tool: &Tool, tip: &Vec3, place: &Vec3) -> f64 {
+    /// deep in it than it is deep in the surface: a way that frees the tool leads that place out of it. `None` for a place over the open top.
+    pub(crate) fn at_most_by(&self, tool: &Tool, tip: &Vec3, place: &Vec3) -> Option<f64> {
         let (body, end) = self.body(tool, tip);
-        crease::outward(&body, &(place - end)).0 - self.thickness
+        let from_end = place - end;
+        let is_over = open_top::is_above_top(&body, &from_end);
+        (!is_over).then(|| crease::outward(&body, &from_end).0 - self.thickness)
     }
 
     /// Whether a tool touches with the edge of its top what is above it: nothing touches the disc there.

@@ -29,9 +29,11 @@ impl Course<'_, '_> {
         [a, b].into_iter().any(|touched| {
             let place = &touched.contact.surface;
             let arm = ends.iter().fold(0.0_f64, |arm, (tip, _)| arm.max((place - tip).norm()));
-            let most = ends.iter().map(|(tip, tool)| role.gauge.at_most_by(tool, tip, place));
             let off_chord = 0.125 * length * length * rate * (rate * arm + 2.0);
-            most.fold(f64::NEG_INFINITY, f64::max) + off_chord <= limits[1]
+            ends.iter().all(|(tip, tool)| {
+                let most = role.gauge.at_most_by(tool, tip, place);
+                most.is_some_and(|most| most + off_chord <= limits[1])
+            })
         })
     }
 }
