@@ -8,6 +8,7 @@ use apt_cldata::{
 };
 use apt_geometry::Vec3;
 use proptest::prelude::*;
+use smol_str::SmolStr;
 
 fn positions(records: &[ClRecord]) -> Vec<[f64; 3]> {
     let points = records.iter().filter_map(|record| match &record.kind {
@@ -301,4 +302,21 @@ proptest! {
         prop_assert!(written.is_ascii());
         let _ = detect(&text);
     }
+}
+
+/// COPY without MULTAX turns the tool axis of positions that do not tell it: the text is that of the records.
+#[test]
+fn an_axis_that_a_record_does_not_tell_is_not_written() {
+    let point =
+        |x: f64, axis: Vec3, with_axis: bool| ClPoint { position: Vec3::new(x, 0.0, 0.0), axis, with_axis };
+    let record = |points: Vec<ClPoint>| ClRecord {
+        isn: 1,
+        source: 0,
+        kind: ClKind::Motion { from: false, surface: SmolStr::default(), points },
+    };
+    let text = write_text(&[
+        record(vec![point(1.0, Vec3::z(), false), point(2.0, -Vec3::y(), false)]),
+        record(vec![point(3.0, Vec3::x(), true)]),
+    ]);
+    assert_eq!(text, "GOTO/1.0,0.0,0.0\nGOTO/2.0,0.0,0.0\nGOTO/3.0,0.0,0.0,1.0,0.0,0.0\n");
 }

@@ -23,7 +23,8 @@ mod arc;
 
 /// Writes records as APT CL text, one statement or position per line, deterministic.
 ///
-/// The text reads back with [`super::read_text`] to records that say the same. A circle that the tool does not go about (a drive surface
+/// The text reads back with [`super::read_text`] to records that say the same; a tool axis that a record does not tell, as that of a position
+/// which COPY has turned without MULTAX, is not told. A circle that the tool does not go about (a drive surface
 /// that it only touches with a tilted axis) stands in a remark: in text, a CIRCLE is the way of the tool or one about the same axis.
 pub fn write_text(records: &[ClRecord]) -> String {
     write_text_with_lines(records).0
@@ -32,7 +33,7 @@ pub fn write_text(records: &[ClRecord]) -> String {
 /// The same, with the zero-based line on which each record begins.
 pub fn write_text_with_lines(records: &[ClRecord]) -> (String, Vec<u32>) {
     let mut notes = Notes::default();
-    let mut writer = Writer::new(Form::of(ClDialect::Generic), &mut notes);
+    let mut writer = Writer { as_recorded: true, ..Writer::new(Form::of(ClDialect::Generic), &mut notes) };
     let mut lines = Vec::with_capacity(records.len());
     let (mut line, mut counted) = (0, 0);
     for record in records {
@@ -105,6 +106,8 @@ struct Writer<'a> {
     axis: Vec3,
     axis_told: bool,
     rapid: bool,
+    /// No tool axis is told but those that the records tell.
+    as_recorded: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -123,6 +126,7 @@ impl<'a> Writer<'a> {
             axis: Vec3::z(),
             axis_told: false,
             rapid: false,
+            as_recorded: false,
         }
     }
 }
@@ -211,6 +215,9 @@ impl Writer<'_> {
 
     /// MULTAX before positions whose tool axis would be lost.
     fn prepare_axis(&mut self, points: &[ClPoint]) {
+        if self.as_recorded {
+            return;
+        }
         let lost = |point: &ClPoint| {
             let told = point.with_axis && self.form.axes == Axes::WhereTold;
             !told && !same_axis(&point.axis, &self.axis)
@@ -225,6 +232,7 @@ impl Writer<'_> {
     fn position(&mut self, word: &str, point: &ClPoint, goes_on: bool) {
         self.prepare_axis(std::slice::from_ref(point));
         let told = match self.form.axes {
+            _ if self.as_recorded => point.with_axis,
             Axes::UnderMultax => self.multax,
             Axes::WhereTold => self.multax || point.with_axis,
             Axes::WhereChanged => {
