@@ -3,7 +3,7 @@
 //! The distance from a convex body is a convex function: nowhere is it below its tangent at a place. So what is known of how far
 //! a part of a surface reaches, in which directions, from a place tells how near to the body it comes at most.
 
-use super::{Surface, part::Part};
+use super::{Surface, part::Extent};
 use crate::{Vec3, patience::Patience};
 
 /// Bound of the nodes and parts that one question looks at: what takes more is too close.
@@ -37,6 +37,8 @@ pub struct Body<'a> {
 pub struct Limit<'a> {
     /// What takes more is too close.
     pub looks: u32,
+    /// A distance beyond which none is told: where a distance is to be decided on and not told, the one wanted.
+    pub enough: f64,
     /// Who waits for it.
     pub patience: Patience<'a>,
 }
@@ -57,7 +59,26 @@ pub(super) struct Apart<'a> {
 
 impl<'a> Apart<'a> {
     pub(super) fn new(Body { away, within }: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
-        Self { away, within, wanted, least: f64::INFINITY, looks: 0, limit, nearest: Vec3::zeros() }
+        Self {
+            away,
+            within,
+            wanted,
+            least: limit.enough.max(wanted),
+            looks: 0,
+            limit,
+            nearest: Vec3::zeros(),
+        }
+    }
+
+    /// The distance that is wanted.
+    pub(super) fn wanted(&self) -> f64 {
+        self.wanted
+    }
+
+    /// How far a place is from the body, and the direction in which that grows.
+    pub(super) fn at(&mut self, place: &Vec3) -> (f64, Vec3) {
+        self.look();
+        (self.away)(place)
     }
 
     /// Counts a look; a question that is given up has had all of them.
@@ -69,7 +90,7 @@ impl<'a> Apart<'a> {
     }
 
     /// Whether there may be more of them.
-    fn may_look(&self) -> bool {
+    pub(super) fn may_look(&self) -> bool {
         self.looks <= self.limit.looks
     }
 
@@ -133,7 +154,7 @@ impl<'a> Apart<'a> {
     }
 
     /// What a part of a surface keeps, and how far its middle is, with the direction to it.
-    fn part(&mut self, part: &Part) -> (f64, (f64, Vec3)) {
+    fn part(&mut self, part: &Extent) -> (f64, (f64, Vec3)) {
         self.look();
         let (distance, outward) = (self.away)(part.center());
         let by_point = distance - part.reach_along(&outward);
@@ -146,7 +167,7 @@ impl<'a> Apart<'a> {
     /// Whether a part keeps what is wanted; its halves where need be, by the tangent of the distance in the middle.
     pub(super) fn takes_part(
         &mut self,
-        part: &Part,
+        part: &Extent,
         halves: &mut dyn FnMut(&mut Self, (f64, Vec3)) -> bool,
     ) -> bool {
         let (least, middle) = self.part(part);
@@ -158,9 +179,14 @@ impl<'a> Apart<'a> {
 
 impl Surface {
     /// A distance from a convex body, not below the one wanted, that all of the surface is known to keep; `None` for surfaces
-    /// of which that is not known, and where some place may be nearer.
-    pub fn keeps_apart(&self, away: &Away<'_>, wanted: f64, patience: Patience<'_>) -> Option<f64> {
-        let limit = Limit { looks: MOST_LOOKS, patience };
+    /// of which that is not known, and where some place may be nearer. It is not told beyond one that is enough.
+    pub fn keeps_apart(
+        &self,
+        away: &Away<'_>,
+        [wanted, enough]: [f64; 2],
+        patience: Patience<'_>,
+    ) -> Option<f64> {
+        let limit = Limit { looks: MOST_LOOKS, enough, patience };
         self.keeps_off_body(Body { away, within: None }, wanted, limit)
     }
 
@@ -171,6 +197,7 @@ impl Surface {
             Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
             Self::PolyConic(sheet) => return sheet.keeps_apart(body, wanted, limit),
             Self::Sculptured(sheet) => sheet.keeps_apart(&mut asked),
+            Self::Tabulated(curve) => curve.keeps_apart(&mut asked),
             _ => false,
         };
         if keeps { asked.kept() } else { None }

@@ -3,6 +3,7 @@
 
 mod body;
 mod bounds;
+mod extent;
 mod form;
 mod kept;
 mod rulings;
@@ -10,15 +11,15 @@ mod rulings;
 use self::{
     bounds::{Bounds, CLOSE},
     form::Bent,
-    rulings::distance_from,
+};
+pub(super) use self::{
+    extent::Extent,
+    form::{Forms, leading},
+    kept::{Count, Later},
 };
 pub use self::{
     form::{Form, LENGTHWISE, Lengthwise},
     rulings::Lying,
-};
-pub(super) use self::{
-    form::{Forms, leading},
-    kept::{Count, Later},
 };
 use super::{
     bend::{Bend, parallel_bend},
@@ -127,6 +128,9 @@ impl Enclosure {
 pub(super) trait Enclose {
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure;
 
+    /// The place in the middle of a rectangle with its derivatives.
+    fn middle_of(&self, rectangle: &Rectangle) -> Jet;
+
     /// The number of parts that were made.
     fn parts(&self) -> &Count;
 
@@ -154,27 +158,19 @@ pub(super) struct Cap {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {
     rectangle: Rectangle,
-    center: Vec3,
-    /// No place is farther from the centre.
-    radius: f64,
-    /// No place is farther from the tangent plane in the middle.
-    sag: f64,
-    /// By how much less that is for the halves of each side.
-    eased: [f64; 2],
-    /// The part lies between two pairs of planes: their unit normals, in the tangent plane, and how far they are from the centre.
-    strips: [(Vec3, f64); 2],
+    extent: Extent,
     /// Greatest curvature seen from the natural side (positive where the surface curves away from it), and from the other.
     curvature: [f64; 2],
     /// The same in the middle.
     least: [f64; 2],
     /// Excess of the bounds that is close enough.
     close: f64,
-    /// Natural normal in the middle, if it has one.
-    normal: Option<Vec3>,
-    /// No natural normal differs from that by a longer vector.
+    /// No natural normal differs from that in the middle by a longer vector.
     spread: f64,
     /// Whether the surface ends here.
     ends: bool,
+    /// Whether no place bends much more than the middle, so that the bounds of how the part bends serve pieces that are cut from it.
+    is_even: bool,
     /// The side to halve, if that is not a matter of trial.
     halved: Option<usize>,
     halves: Later<Box<[Part; 2]>>,
@@ -200,8 +196,8 @@ pub(super) struct Summary {
 impl Summary {
     /// That of a part.
     pub(super) fn of(part: &Part) -> Self {
-        let Part { curvature, normal, spread, ends, .. } = part;
-        Self { curvature: *curvature, normal: *normal, spread: *spread, ends: *ends }
+        let Part { curvature, extent, spread, ends, .. } = part;
+        Self { curvature: *curvature, normal: extent.normal, spread: *spread, ends: *ends }
     }
 
     /// Those of two places as one.
@@ -400,45 +396,25 @@ impl<'a> Survey<'a> {
 
     /// Whether a part faces the ball, so that no point of it can be beyond that part.
     fn faced_by(&self, part: &Part) -> bool {
-        let height =
-            part.normal.map_or(f64::NEG_INFINITY, |n| self.side * n.dot(&(self.center - part.center)));
-        height > self.radius + part.sag + self.reach * part.spread
+        let height = part
+            .extent
+            .normal
+            .map_or(f64::NEG_INFINITY, |n| self.side * n.dot(&(self.center - part.extent.center)));
+        height > self.radius + part.extent.sag + self.reach * part.spread
     }
-}
-
-/// The planes that a part lies between which goes no farther from its centre than half its sides `u` and `v` and, beside
-/// these, a length. A part without tangent plane may lie anywhere.
-fn strips(normal: Option<Vec3>, [u, v]: [&Vec3; 2], bent: f64) -> [(Vec3, f64); 2] {
-    let strip = |along: &Vec3, other: &Vec3| {
-        let across = normal.and_then(|normal| normal.cross(along).try_normalize(0.0));
-        across.map_or((Vec3::zeros(), f64::INFINITY), |across| (across, other.dot(&across).abs() + bent))
-    };
-    [strip(u, v), strip(v, u)]
 }
 
 impl Part {
     pub(super) fn new(sheet: &impl Enclose, rectangle: Rectangle) -> Self {
         let enclosure = sheet.enclose(&rectangle);
         let [hu, hv] = rectangle.half;
-        let Enclosure { jet, duu, duv, dvv, reach, sharp, ends, split } = &enclosure;
-        let (u, v) = (jet.du * hu, jet.dv * hv);
-        let bent = 0.5 * (duu.length() * hu * hu + dvv.length() * hv * hv) + duv.length() * hu * hv;
-        let radius = (u + v).norm().max((u - v).norm()) + bent;
-        let radius = if radius.is_nan() { *reach } else { radius.min(*reach) };
+        let Enclosure { jet, sharp, ends, split, .. } = &enclosure;
         let mut bounds = Bounds::of(&enclosure, rectangle.half);
+        let extent = Extent::of_part(&enclosure, rectangle.half, bounds.normal);
+        let is_even = !split && bounds.is_even(FLAT / extent.radius);
         if let Some(Cap { curvature, spread }) = sheet.cap(&rectangle) {
             bounds = Bounds { curvature, least: curvature, spread, ..bounds };
         }
-        let (sag, eased) = bounds.normal.map_or((radius, [0.0; 2]), |normal| {
-            let off = |bend: &Box3| bend.dot(&normal).magnitude();
-            let [by_u, by_v] = [0.5 * off(duu) * hu * hu, 0.5 * off(dvv) * hv * hv];
-            let by_both = off(duv) * hu * hv;
-            let sag = by_u + by_v + by_both;
-            let is_told = sag.is_finite() && !split;
-            let eased = [by_u, by_v].map(|own| 0.75 * own + 0.5 * by_both);
-            if is_told { (sag.min(radius), eased) } else { (radius, [0.0; 2]) }
-        });
-        let strips = strips(bounds.normal.filter(|_| !split), [&u, &v], bent);
         for (curvature, sharp) in bounds.curvature.iter_mut().zip(sharp) {
             if *sharp || curvature.is_nan() {
                 *curvature = f64::INFINITY;
@@ -446,23 +422,19 @@ impl Part {
         }
         // What stands out sharply is told from the rest by its place; and about a pole narrow parts have no closer bounds than wide ones
         // that reach as far from it.
-        let lengths = [u.norm(), v.norm()];
+        let lengths = [jet.du.norm() * hu, jet.dv.norm() * hv];
         let by_place = sharp.contains(&true) || sheet.has_pole(&rectangle);
         let tried = !by_place && bounds.curvature.iter().all(|k| k.is_finite());
         let sizes = if by_place { lengths } else { bounds.loose };
         Self {
             rectangle,
-            center: jet.point,
-            radius,
-            sag,
-            eased,
-            strips,
+            extent,
             curvature: bounds.curvature,
             least: bounds.least,
-            close: bounds.close.max(FLAT / radius),
-            normal: bounds.normal,
+            close: bounds.close.max(FLAT / extent.radius),
             spread: bounds.spread,
             ends: *ends,
+            is_even,
             halved: (!tried).then_some(usize::from(sizes[1] > sizes[0])),
             halves: Later::new(),
             shorter: [Later::new(), Later::new()],
@@ -486,11 +458,11 @@ impl Part {
     }
 
     pub(super) fn center(&self) -> &Vec3 {
-        &self.center
+        &self.extent.center
     }
 
     pub(super) fn radius(&self) -> f64 {
-        self.radius
+        self.extent.radius
     }
 
     /// Whether no natural normal differs from that in the middle by a longer vector.
@@ -498,35 +470,15 @@ impl Part {
         self.spread <= chord
     }
 
-    /// No place of the part is nearer to a point than this: the part lies in a disc about its middle, as thick as it bends, and in
-    /// the parallelogram of its parameters there.
+    /// No place of the part is nearer to a point than this.
     pub(super) fn bound(&self, p: &Vec3) -> f64 {
-        let w = p - self.center;
-        let square = w.norm_squared();
-        let away = square.sqrt() - self.radius;
-        let Some(normal) = self.normal else { return away };
-        let height = w.dot(&normal);
-        let mut beside = (square - height * height).max(0.0).sqrt() - self.radius;
-        for (across, half) in &self.strips {
-            beside = beside.max(w.dot(across).abs() - half);
-        }
-        let (beside, above) = (beside.max(0.0), (height.abs() - self.sag).max(0.0));
-        away.max((beside * beside + above * above).sqrt())
+        self.extent.bound(p)
     }
 
     /// Whether it is known, from its size and the planes that it lies between, that no place of the part is within a distance of a straight
     /// piece.
     pub(super) fn is_off(&self, ends: &[Vec3; 2], distance: f64) -> bool {
-        if distance_from(ends, &self.center) > self.radius + distance {
-            return true;
-        }
-        // Both ends on one side of a pair of planes: so is all between.
-        let is_beyond = |across: &Vec3, half: f64| {
-            let [first, last] = ends.map(|end| (end - self.center).dot(across));
-            first * last > 0.0 && first.abs().min(last.abs()) > half + distance
-        };
-        self.strips.iter().any(|(across, half)| is_beyond(across, *half))
-            || self.normal.is_some_and(|normal| is_beyond(&normal, self.sag))
+        self.extent.is_off(ends, distance)
     }
 
     /// Adds what this part means for a question.
@@ -544,7 +496,7 @@ impl Part {
         if survey.is_given_up() {
             return;
         }
-        if (self.center - survey.center).norm() > survey.reach + self.radius {
+        if (self.extent.center - survey.center).norm() > survey.reach + self.extent.radius {
             return;
         }
         let [seen, behind] = if survey.side > 0.0 { [0, 1] } else { [1, 0] };
@@ -559,10 +511,11 @@ impl Part {
         let is_close = |side: usize, known: f64| {
             self.curvature[side] <= (self.least[side] + self.close).max(survey.enough).max(known)
         };
-        let upright = cosine >= survey.cosine.min(UPRIGHT) || self.radius <= SMALL * survey.reach;
+        let upright = cosine >= survey.cosine.min(UPRIGHT) || self.extent.radius <= SMALL * survey.reach;
         let whole = !survey.strict || upright && is_close(behind, survey.behind);
         let close = is_close(seen, f64::NEG_INFINITY) && !jumps && whole;
-        let fine = self.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        let fine =
+            self.extent.radius <= FINE * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
         if close || fine {
             survey.curvature = survey.curvature.max(bound);
             survey.behind = survey.behind.max(self.curvature[behind]);

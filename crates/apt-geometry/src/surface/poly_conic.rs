@@ -426,6 +426,7 @@ impl PolyConicSheet {
             HalfSpace { outward, level: level + outward.dot(&self.origin) }
         });
         let stock = self.form.thickness.abs();
+        let limit = Limit { enough: limit.enough + stock, ..limit };
         let mut asked = Apart::new(Body { away: &own, within }, wanted + stock, limit);
         let look = |asked: &mut Apart<'_>, node: usize| {
             let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;

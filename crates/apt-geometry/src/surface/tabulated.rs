@@ -1,5 +1,6 @@
 //! Tabulated cylinders: a piecewise cubic directrix ruled along a straight line.
 
+mod apart;
 mod boxes;
 mod cubic;
 mod extensions;

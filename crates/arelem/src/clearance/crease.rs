@@ -267,8 +267,9 @@ pub(super) fn clears(
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
-    let limit = Limit { looks: MOST_LOOKS, patience: tool.patience };
-    surface.keeps_off_body(body, level.max(least_off(tool)), limit).is_some()
+    let wanted = level.max(least_off(tool));
+    let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: tool.patience };
+    surface.keeps_off_body(body, wanted, limit).is_some()
 }
 
 /// The distance from which on a place of a surface is out of a tool for certain: a line has no inside.
@@ -305,7 +306,7 @@ pub(super) fn clears_turning(
     };
     let wanted = level.max(least_off(first.0)) + angle * angle * reach / 8.0;
     let body = Body { away: &|place: &Vec3| hull.away(place), within: None };
-    let limit = Limit { looks: MOST_LOOKS, patience: first.0.patience };
+    let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: first.0.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
 }
 

@@ -1,41 +1,23 @@
 //! How far parts of a surface keep off a convex body.
 
-use super::{super::apart::Apart, Enclose, MOST_KEPT, Part};
+use super::{super::apart::Apart, Box3, Enclose, Extent, MOST_KEPT, Part, Rectangle};
 use crate::Vec3;
 
 /// Bound of the halvings of a part beside a body: at a contact all about it they go on until rounding.
 const DEEPEST: u32 = 48;
 
-impl Part {
-    /// No place of the part is farther from its middle along a unit direction.
-    pub(in super::super) fn reach_along(&self, way: &Vec3) -> f64 {
-        let Some(normal) = self.normal else { return self.radius };
-        let [(a, u), (b, v)] = &self.strips;
-        let [x, y, lean] = [a.dot(way), b.dot(way), a.dot(b)];
-        let upright = 1.0 - lean * lean;
-        let beside = ((x - lean * y).abs() * u + (y - lean * x).abs() * v) / upright;
-        let above = normal.dot(way).abs() * self.sag;
-        // Strips without width or direction tell nothing.
-        if beside.is_finite() { (beside + above).min(self.radius) } else { self.radius }
-    }
-
-    /// The ways from the middle to the ends of each side, if the part lies in a plane: along both pairs of planes that it lies between.
-    fn sides(&self) -> Option<[Vec3; 2]> {
-        let normal = self.normal?;
-        let [(a, wide_a), (b, wide_b)] = &self.strips;
-        let upright = a.cross(b).norm();
-        let ways = [a.cross(&normal) * (wide_b / upright), b.cross(&normal) * (wide_a / upright)];
-        ways.iter().all(|way| way.iter().all(|x| x.is_finite())).then_some(ways)
-    }
-
+impl Extent {
     /// The side along which the distance from a body is least like its tangent in the middle, if the part lies in a plane: that is what halves
     /// of it tell more of. Along the other one the tangent tells all, however long it is, as along rulings that a tool lies on.
     fn side_to_halve(&self, asked: &Apart<'_>, tangent: (f64, Vec3)) -> Option<usize> {
         let off = self.normal?.dot(&tangent.1).abs();
         let [u, v] = self.sides()?.map(|way| asked.above_tangent(&self.center, tangent, &way));
-        Some(usize::from(v + off * self.eased[1] > u + off * self.eased[0]))
+        let eased = self.eased();
+        Some(usize::from(v + off * eased[1] > u + off * eased[0]))
     }
+}
 
+impl Part {
     /// Both halves of a side.
     fn for_shorter(&self, sheet: &impl Enclose, side: usize, look: impl FnMut(&Self)) {
         if self.halved == Some(side) {
@@ -61,8 +43,17 @@ impl Part {
         asked: &mut Apart<'_>,
         depth: u32,
     ) -> bool {
-        asked.takes_part(self, &mut |asked, tangent| {
-            let side = self.side_to_halve(asked, tangent);
+        asked.takes_part(&self.extent, &mut |asked, tangent| {
+            let side = self.extent.side_to_halve(asked, tangent);
+            if let Some(side) = side.filter(|_| self.is_even) {
+                let bends = sheet.enclose(&self.rectangle);
+                return Cuts { sheet, bends: [bends.duu, bends.duv, bends.dvv] }.keep_apart(
+                    &self.rectangle,
+                    side,
+                    asked,
+                    depth + 1,
+                );
+            }
             let mut keeps = depth < DEEPEST;
             let look = |half: &Self| keeps = keeps && half.keeps_apart(sheet, asked, depth + 1);
             match side {
@@ -70,6 +61,32 @@ impl Part {
                 None => self.for_halves(sheet, look),
             }
             keeps
+        })
+    }
+}
+
+/// Pieces that are cut from a part which bends evenly: the bounds of its second derivatives serve all of them, so that a piece costs no more than
+/// the place in its middle.
+struct Cuts<'a, S> {
+    sheet: &'a S,
+    bends: [Box3; 3],
+}
+
+impl<S: Enclose> Cuts<'_, S> {
+    /// Whether both halves of a side keep off a body.
+    fn keep_apart(&self, all: &Rectangle, side: usize, asked: &mut Apart<'_>, depth: u32) -> bool {
+        depth < DEEPEST && all.halves(side).iter().rev().all(|half| self.keeps_apart(half, asked, depth))
+    }
+
+    /// Whether a piece, cut as fine as need be, keeps off a body.
+    fn keeps_apart(&self, piece: &Rectangle, asked: &mut Apart<'_>, depth: u32) -> bool {
+        let jet = self.sheet.middle_of(piece);
+        let normal = jet.du.cross(&jet.dv).try_normalize(0.0);
+        let extent = Extent::of(&jet, self.bends.each_ref(), piece.half, normal);
+        asked.takes_part(&extent, &mut |asked, tangent| {
+            let side = extent.side_to_halve(asked, tangent);
+            let [u, v] = [jet.du.norm() * piece.half[0], jet.dv.norm() * piece.half[1]];
+            self.keep_apart(piece, side.unwrap_or(usize::from(v > u)), asked, depth + 1)
         })
     }
 }
@@ -96,9 +113,14 @@ mod tests {
             let way = place - from - along * share;
             (way.norm() - radius, way.normalize())
         };
-        let limit = Limit { looks: 3000, patience: Patience::default() };
-        let keeps =
-            |wanted: f64| cone.keeps_off_body(Body { away: &away, within: None }, wanted, limit).is_some();
+        let keeps = |wanted: f64| {
+            cone.keeps_off_body(
+                Body { away: &away, within: None },
+                wanted,
+                Limit { looks: 3000, enough: wanted, patience: Patience::default() },
+            )
+            .is_some()
+        };
         assert!(keeps(off - slack));
         assert!(!keeps(off + slack));
     }

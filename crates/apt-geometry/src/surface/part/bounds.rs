@@ -15,6 +15,9 @@ const STEADY: f64 = 0.4;
 /// Excess of a bound over the curvature in the middle, as a share of the greatest curvature there, that is close enough.
 pub(super) const CLOSE: f64 = 0.15;
 
+/// The same for bounds that serve pieces of all of it.
+const EVEN: f64 = 1.0;
+
 /// Greatest eigenvalue of a symmetric matrix.
 fn greatest(xx: f64, xy: f64, yy: f64) -> f64 {
     0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
@@ -33,6 +36,13 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
+    /// Whether the bound of the curvature is not far above that in the middle, or of no account.
+    pub(super) fn is_even(&self, of_no_account: f64) -> bool {
+        let greatest = self.least[0].abs().max(self.least[1].abs());
+        let excess = [0, 1].map(|k: usize| self.curvature[k] - self.least[k]);
+        self.normal.is_some() && excess.iter().all(|excess| *excess <= (EVEN * greatest).max(of_no_account))
+    }
+
     /// In an orthonormal frame of the tangent plane in the middle all other frames differ by little, and second derivatives
     /// become curvatures up to that.
     pub(super) fn of(enclosure: &Enclosure, half: [f64; 2]) -> Self {

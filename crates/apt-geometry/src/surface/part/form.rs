@@ -347,8 +347,9 @@ impl Part {
         }
         let form = self.form.get(|| self.form_of(sheet).map(Box::new));
         let fine = if matches!(survey.forms, Forms::Across(..)) { FINE_ACROSS } else { FINE };
-        let is_fine = self.radius <= fine * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
-        match survey.forms.take(form.as_deref(), &self.center, survey.side, is_fine) {
+        let is_fine =
+            self.extent.radius <= fine * survey.reach || depth >= MAX_DEPTH || survey.seen >= MAX_PARTS;
+        match survey.forms.take(form.as_deref(), &self.extent.center, survey.side, is_fine) {
             Taken::Whole => {}
             Taken::Halves => self.survey_halves(sheet, survey, depth),
             Taken::Nothing => survey.jumps = true,

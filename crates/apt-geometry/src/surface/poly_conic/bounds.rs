@@ -4,6 +4,7 @@ use super::{
     super::{
         interval::{Box3, Interval, shifted, taylor_ranges},
         part::{Count, Enclose, Enclosure, Form, Rectangle, Survey},
+        sheet::Jet,
     },
     Control, Course, Flat, GREATEST_FULLNESS, LEAST_FULLNESS, PolyConicSheet, controls, section, weight,
 };
@@ -53,9 +54,13 @@ impl Enclose for PolyConicSheet {
         &self.parts
     }
 
+    fn middle_of(&self, Rectangle { middle: [t, s], .. }: &Rectangle) -> Jet {
+        self.jet(*t, *s)
+    }
+
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let Rectangle { middle: [t, s], half: [along, across] } = *rectangle;
-        let jet = self.jet(t, s);
+        let jet = self.middle_of(rectangle);
         let range = [s, across];
         let (weight, bent) = self.weight_range(range);
         let mut courses: [Course<Interval>; 6] = std::array::from_fn(|k| self.course_range(k, range));

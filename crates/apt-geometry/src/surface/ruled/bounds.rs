@@ -5,6 +5,7 @@ use super::{
         apart::Apart,
         interval::{Box3, Interval, shifted, taylor_ranges},
         part::{Count, Enclose, Enclosure, Part, Rectangle, Summary, Survey},
+        sheet::Jet,
     },
     Piece, RuledSheet,
     strip::Strip,
@@ -54,9 +55,13 @@ impl Enclose for Stretch<'_> {
         &self.sheet.parts
     }
 
+    fn middle_of(&self, Rectangle { middle: [t, v], .. }: &Rectangle) -> Jet {
+        self.sheet.jet(self.piece, *t, *v)
+    }
+
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
         let Rectangle { middle: [t, v], half: [along, across] } = *rectangle;
-        let jet = self.sheet.jet(self.piece, t, v);
+        let jet = self.middle_of(rectangle);
         let Some(piece) = self.sheet.pieces.get(self.piece) else { return Enclosure::unknown(jet) };
         let [_, _, bent] = ranges(piece, t, along, |e, f| e + (f - e) * v);
         let [_, duv, turned] = ranges(piece, t, along, |e, f| f - e);
@@ -193,4 +198,31 @@ fn summary(nodes: &[Strip], node: usize) -> Option<&Summary> {
         Summary::of(strip.part.made()?)
     };
     Some(strip.summary.get(|| made))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Body, Limit, Surface, sheet_tests};
+    use crate::{Vec3, patience::Patience};
+
+    /// What is nearly in contact with a surface is shown to be off it by pieces as small as a thousandth of the gap; they are not kept, and of
+    /// few of them bounds are made.
+    #[test]
+    fn a_proof_beside_a_contact_makes_few_parts() {
+        let surface = sheet_tests::surface(&sheet_tests::half_pipe());
+        let Surface::Ruled(sheet) = &surface else { panic!("a ruled surface") };
+        let foot = surface.foot(&Vec3::new(0.6, 0.9, 1.7));
+        let side = foot.distance.signum();
+        let center = foot.point + foot.normal * (side * 0.2);
+        let away = |place: &Vec3| {
+            let way = place - center;
+            (way.norm() - 0.2, way.normalize())
+        };
+        let keeps = |wanted: f64| {
+            let limit = Limit { looks: 3000, enough: wanted, patience: Patience::default() };
+            surface.keeps_off_body(Body { away: &away, within: None }, wanted, limit).is_some()
+        };
+        assert!(keeps(-1e-9) && !keeps(1e-9));
+        assert!(sheet.parts.get() <= 60, "{} parts", sheet.parts.get());
+    }
 }

@@ -222,8 +222,12 @@ impl Enclose for Stretch<'_> {
         (cap.spread <= LEVEL && MARGIN * size * reach <= LEVEL).then_some(cap)
     }
 
+    fn middle_of(&self, rectangle: &Rectangle) -> Jet {
+        self.sheet.jet(self.piece, rectangle.middle)
+    }
+
     fn enclose(&self, rectangle: &Rectangle) -> Enclosure {
-        let jet = self.sheet.jet(self.piece, rectangle.middle);
+        let jet = self.middle_of(rectangle);
         let Some(piece) = self.sheet.pieces.get(self.piece) else { return Enclosure::unknown(jet) };
         let Derivatives { duu, duv, dvv, reach } = derivatives(&piece.patch, rectangle, &jet.point);
         let mut ends = false;

@@ -66,6 +66,19 @@ impl Boxes {
         Self { nodes }
     }
 
+    /// The number of the leaf at a node, if that is one.
+    pub(super) fn leaf(&self, node: usize) -> Option<usize> {
+        node.checked_sub(self.nodes.len() / 2)
+    }
+
+    /// The middle of the box of a node and half its sides, if it has ends; that of no place is infinitely far in.
+    pub(super) fn extent(&self, node: usize) -> Option<[Vec2; 2]> {
+        let UprightBox { least, greatest } = self.nodes.get(node)?;
+        let [middle, half] = [(greatest + least) * 0.5, (greatest - least) * 0.5];
+        let has_ends = middle.iter().chain(&half).all(|x| x.is_finite());
+        has_ends.then_some([middle, half])
+    }
+
     /// Tells of leaves by their number, those in nearer boxes first, while their boxes are not farther than the nearest known,
     /// of which the answer tells the squared distance.
     pub(super) fn visit(&self, p: Vec2, mut leaf: impl FnMut(usize, f64) -> f64) {

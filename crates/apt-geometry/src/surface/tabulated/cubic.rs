@@ -118,6 +118,21 @@ impl Cubic {
         [extension(self.open[0], 0.0, -1.0), extension(self.open[1], self.length, 1.0)]
     }
 
+    /// The straight extensions in the plane: where each begins, and the unit way that it goes.
+    pub(super) fn ways_on(&self) -> [Option<[Vec2; 2]>; 2] {
+        let turned = |local: Vec2| self.along * local.x + self.normal_axis() * local.y;
+        self.extensions().map(|extension| {
+            extension.map(|[begin, way]| [self.start + turned(begin), turned(way.normalize())])
+        })
+    }
+
+    /// The least second derivative of the height on a stretch, no greater than zero, and the greatest, no less: it changes evenly.
+    pub(super) fn bend_range(&self, ends: [f64; 2]) -> [f64; 2] {
+        let [a, b, _] = self.coefficients;
+        let [first, last] = ends.map(|s| 6.0 * a * s + 2.0 * b);
+        [first.min(last).min(0.0), first.max(last).max(0.0)]
+    }
+
     /// No point of the interval is nearer than the root of this.
     pub(super) fn least_square(&self, local: Vec2) -> f64 {
         let aside = (-local.x).max(local.x - self.length).max(0.0);

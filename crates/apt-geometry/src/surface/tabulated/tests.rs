@@ -6,7 +6,7 @@ use super::*;
 use crate::{canonical::Interval, patience::Patience, surface::Bend};
 
 /// A curve through points by cubics of a bulge each, `v = b u (u − L)` over its chords, with straight first and last intervals.
-fn curve(points: &[[f64; 2]], bulge: f64) -> TabulatedCylinder {
+pub(super) fn curve(points: &[[f64; 2]], bulge: f64) -> TabulatedCylinder {
     let count = points.len();
     let interval = |(k, [u, v]): (usize, &[f64; 2])| {
         let b = if k == 0 || k + 2 == count { 0.0 } else { bulge };
@@ -21,7 +21,7 @@ fn curve(points: &[[f64; 2]], bulge: f64) -> TabulatedCylinder {
 }
 
 /// A drop with its tip at (5, 0), round to the left, of which the extensions lead up to shortly before the tip.
-fn drop_shape() -> TabulatedCylinder {
+pub(super) fn drop_shape() -> TabulatedCylinder {
     let tip = |y: f64| [4.95, 0.01 * y];
     curve(&[tip(1.0), [0.0, 1.0], [-2.0, 0.0], [0.0, -1.0], tip(-1.0)], 0.1)
 }

@@ -248,11 +248,16 @@ impl Pose<'_> {
     pub(super) fn apart_of(&self, end: End, distance: f64) -> Option<f64> {
         let away = |place: &Vec3| self.away_from(end, &(place - self.tip));
         let body = Body { away: &away, within: None };
-        let few = Limit { looks: FEW_LOOKS, patience: self.tool.patience };
+        let enough = distance + self.scale();
+        let few = Limit { looks: FEW_LOOKS, enough, patience: self.tool.patience };
         self.surface.keeps_off_body(body, distance, few).or_else(|| {
             // What comes near cannot be told from what takes many looks but by the place that does.
             let is_near = self.comes_near(end, distance);
-            if is_near { None } else { self.surface.keeps_apart(&away, distance, self.tool.patience) }
+            if is_near {
+                None
+            } else {
+                self.surface.keeps_apart(&away, [distance, enough], self.tool.patience)
+            }
         })
     }
 
@@ -275,7 +280,7 @@ impl Pose<'_> {
         let (body, way) = (|place: &Vec3| self.away_from(end, place), to - self.tip);
         let close = CLOSE * distance.abs();
         let away = |place: &Vec3| nearest_on_way(&body, &(place - self.tip), &way, close);
-        self.surface.keeps_apart(&away, distance, self.tool.patience).is_some()
+        self.surface.keeps_apart(&away, [distance; 2], self.tool.patience).is_some()
     }
 
     /// No place of an end of the tool is nearer to one from the tool end than this, and the direction in which that grows. What is below a
