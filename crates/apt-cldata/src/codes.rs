@@ -35,6 +35,23 @@ impl CodeTable {
         self
     }
 
+    /// Adds the words and codes of another table that this one has not.
+    pub fn fill_up(&mut self, other: &Self) -> &mut Self {
+        for (word, code) in &other.major_codes {
+            self.major_codes.entry(word.clone()).or_insert(*code);
+        }
+        for (code, word) in &other.major_words {
+            self.major_words.entry(*code).or_insert_with(|| word.clone());
+        }
+        for (word, code) in &other.minor_codes {
+            self.minor_codes.entry(word.clone()).or_insert(*code);
+        }
+        for (code, word) in &other.minor_words {
+            self.minor_words.entry(*code).or_insert_with(|| word.clone());
+        }
+        self
+    }
+
     /// Subclass of a major word.
     pub fn major_code(&self, word: &str) -> Option<u16> {
         self.major_codes.get(word).copied()

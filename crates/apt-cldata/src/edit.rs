@@ -159,6 +159,14 @@ pub enum EditErrorKind {
         /// The budget.
         limit: usize,
     },
+    /// The copies would make the path longer than allowed.
+    #[error("COPY {number} would make more than {limit} positions")]
+    TooManyPoints {
+        /// Index number.
+        number: i64,
+        /// How many are allowed.
+        limit: u64,
+    },
     /// A transform squeezes a tool axis to nothing.
     #[error("the transformed tool axis has no direction")]
     AxisVanishes {
@@ -191,6 +199,7 @@ impl EditErrorKind {
             EditErrorKind::Tilt(error) => error.apt3(),
             EditErrorKind::ZeroCount { .. }
             | EditErrorKind::TooManyRecords { .. }
+            | EditErrorKind::TooManyPoints { .. }
             | EditErrorKind::NotFinite { .. } => None,
         }
     }
@@ -198,22 +207,67 @@ impl EditErrorKind {
 
 /// Executes the edit statements. The list comes back whole, also with errors: a faulty statement has no effect.
 pub fn edit(items: Vec<EditItem>) -> (Vec<ClRecord>, Vec<EditError>) {
-    edit_within(items, usize::MAX)
+    edit_within(items, &EditLimits::default())
 }
 
-/// Executes the edit statements of a program that may have so many INDEX statements and no more.
-pub fn edit_within(items: Vec<EditItem>, most_indexes: usize) -> (Vec<ClRecord>, Vec<EditError>) {
+/// What an edit may come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EditLimits {
+    /// Most INDEX statements of the program.
+    pub indexes: usize,
+    /// Most positions of the path, copies included.
+    pub points: u64,
+}
+
+impl Default for EditLimits {
+    /// No limits.
+    fn default() -> Self {
+        Self { indexes: usize::MAX, points: u64::MAX }
+    }
+}
+
+/// Executes the edit statements of a program within limits.
+pub fn edit_within(items: Vec<EditItem>, limits: &EditLimits) -> (Vec<ClRecord>, Vec<EditError>) {
     // VTLAXS changes the path itself; TRACUT and COPY transform what it makes.
     let (items, errors) = tilt(items);
     let spans = spans(&items);
     let (levels, indexes) = (vec![Level::base()], BTreeSet::new());
-    let mut editor = Editor { levels, errors, made: 0, indexes, most_indexes };
+    let points = items
+        .iter()
+        .map(|item| if let EditItem::Record(record) = item { points_of(record) } else { 0 })
+        .sum();
+    let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits };
     // Most programs copy nothing: then all items come there.
     editor.levels.iter_mut().for_each(|base| base.held.reserve(items.len()));
     for (at, item) in items.into_iter().enumerate() {
         editor.item(item, spans.get(&at).copied());
     }
     editor.finish()
+}
+
+/// The COPY statements of a CL file that no INDEX before them belongs to. In a CL file they only tell how its positions
+/// came about (CL and tape reference 3.5); so the same INDEX may stand there any number of times.
+pub fn copies_without_index(items: &[EditItem]) -> Vec<EditError> {
+    let mut indexes = BTreeSet::new();
+    let mut errors = Vec::new();
+    for item in items {
+        let EditItem::Record(record) = item else { continue };
+        let ClKind::Postprocessor { code: Some(code @ (INDEX_CODE | COPY_CODE)), arguments, .. } =
+            &record.kind
+        else {
+            continue;
+        };
+        let Some(ClWord::Number(number)) = arguments.first() else { continue };
+        #[expect(clippy::cast_possible_truncation, reason = "saturates; index numbers are small")]
+        let number = number.trunc() as i64;
+        if *code == INDEX_CODE {
+            indexes.insert(number);
+        } else if !indexes.contains(&number) {
+            let kind = EditErrorKind::CopyWithoutIndex { number };
+            errors.push(EditError { isn: record.isn, source: record.source, kind });
+        }
+    }
+    errors
 }
 
 /// What the whole stream says about the edit statement at a place in it.
@@ -292,9 +346,11 @@ struct Editor {
     levels: Vec<Level>,
     errors: Vec<EditError>,
     made: usize,
-    /// The numbers of all INDEX statements met, and how many there may be.
+    /// Positions of the path, with the copies made so far.
+    points: u64,
+    /// The numbers of all INDEX statements met.
     indexes: BTreeSet<i64>,
-    most_indexes: usize,
+    limits: EditLimits,
 }
 
 impl Editor {
@@ -337,8 +393,8 @@ impl Editor {
     }
 
     fn open_index(&mut self, number: i64, copied: bool, isn: u32, source: u32) {
-        if self.indexes.len() >= self.most_indexes {
-            let limit = self.most_indexes;
+        if self.indexes.len() >= self.limits.indexes {
+            let limit = self.limits.indexes;
             return self.error(isn, source, EditErrorKind::TooManyIndexes { limit });
         }
         // Also a number whose range has been copied is taken for the rest of the program.
@@ -413,7 +469,14 @@ impl Editor {
         if self.made.saturating_add(more) > MAXIMUM_RECORDS {
             return self.error(isn, source, EditErrorKind::TooManyRecords { number, limit: MAXIMUM_RECORDS });
         }
+        let copied = original.iter().map(|held| points_of(&held.record)).sum::<u64>();
+        let points = self.points.saturating_add(copied.saturating_mul(u64::from(count)));
+        if points > self.limits.points {
+            let limit = self.limits.points;
+            return self.error(isn, source, EditErrorKind::TooManyPoints { number, limit });
+        }
         self.made += more;
+        self.points = points;
         let mut power = Matrix::identity();
         for _ in 0..count {
             if let Some(step) = &matrix {
@@ -491,6 +554,14 @@ fn statement(word: &str, code: u16, arguments: Vec<ClWord>, isn: u32, source: u3
         isn,
         source,
         kind: ClKind::Postprocessor { word: SmolStr::new(word), code: Some(code), arguments },
+    }
+}
+
+/// How many positions a record holds.
+fn points_of(record: &ClRecord) -> u64 {
+    match &record.kind {
+        ClKind::Motion { points, .. } => points.len() as u64,
+        _ => 0,
     }
 }
 

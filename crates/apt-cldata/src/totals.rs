@@ -28,8 +28,15 @@ pub struct Totals {
 
 /// Sums up a list of CL records.
 pub fn totals(records: &[ClRecord]) -> Totals {
+    totals_where(records, |_| true)
+}
+
+/// Sums up those of a list of CL records that are counted. The others only set the scene: where the tool comes from, how
+/// fast it feeds, and in which unit.
+pub fn totals_where(records: &[ClRecord], mut is_counted: impl FnMut(&ClRecord) -> bool) -> Totals {
     let mut sum = Sum { time: Some(0.0), ..Sum::default() };
     for record in records {
+        sum.counts = is_counted(record);
         sum.record(&record.kind);
     }
     Totals {
@@ -53,6 +60,8 @@ enum Feed {
 
 #[derive(Default)]
 struct Sum {
+    /// Whether the record at hand is counted.
+    counts: bool,
     points: usize,
     cut_length: f64,
     rapid_length: f64,
@@ -81,10 +90,13 @@ impl Sum {
     }
 
     fn point(&mut self, position: Vec3, from: bool) {
+        let start = self.position.replace(position);
+        if !self.counts {
+            return;
+        }
         self.points += 1;
         let bounds = self.bounds.get_or_insert([position, position]);
         *bounds = [bounds[0].inf(&position), bounds[1].sup(&position)];
-        let start = self.position.replace(position);
         let (Some(start), false) = (start, from) else { return };
         let length = (position - start).norm();
         if self.rapid {
@@ -121,7 +133,7 @@ impl Sum {
             "SPINDL" if !has("SFM") && !has("SMM") && !has("MAXRPM") => {
                 self.revolutions = number.or(self.revolutions);
             }
-            "DELAY" | "DWELL" => {
+            "DELAY" | "DWELL" if self.counts => {
                 let minutes = match number {
                     Some(turns) if has("REV") => self.revolutions.map(|rate| turns / rate),
                     Some(seconds) => Some(seconds / SECONDS_PER_MINUTE),

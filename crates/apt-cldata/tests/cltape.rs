@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    cltape::{is_tape, read_tape, write_tape},
+    cltape::{is_ncl_file, is_tape, read_tape, write_tape},
     codes::CodeTable,
-    record::{ClKind, ClWord},
+    record::{ClKind, ClPoint, ClWord},
 };
 
 fn codes() -> CodeTable {
@@ -29,6 +29,7 @@ fn codes() -> CodeTable {
 }
 
 const SAMPLE: &[u8] = include_bytes!("data/cltape-01.tap");
+const NCL_SAMPLE: &[u8] = include_bytes!("data/ncl-03.cl");
 
 #[test]
 fn sample_is_read() {
@@ -105,4 +106,57 @@ fn any_prefix_or_garbage_ends_in_a_result() {
         let _ = read_tape(&broken, &codes());
     }
     assert!(read_tape(&[0xff; 64], &codes()).is_err());
+}
+
+#[test]
+fn a_file_of_ncl_is_read() {
+    assert!(is_ncl_file(NCL_SAMPLE) && !is_ncl_file(SAMPLE) && !is_tape(NCL_SAMPLE));
+    let mut table = codes();
+    table.major("MACHIN", 1015);
+    let contents = read_tape(NCL_SAMPLE, &table).unwrap();
+    assert_eq!(contents.notes, vec![]);
+    let told = contents.records.iter().map(|record| match &record.kind {
+        ClKind::Text { word, text, .. } => format!("{word} {text}"),
+        ClKind::Postprocessor { word, arguments, .. } | ClKind::Control { word, arguments, .. } => {
+            format!("{word} {arguments:?}")
+        }
+        ClKind::Motion { from, points, .. } => {
+            let axes = points.iter().all(|point| point.with_axis && point.axis.z == 1.0);
+            // The arc of the sample is a quarter of a circle about (0, 50).
+            let radius = |at: &ClPoint| at.position.x.hypot(at.position.y - 50.0);
+            let on_arc = points.iter().filter(|point| (radius(point) - 50.0).abs() < 1e-9).count();
+            format!("from {from}, {} points, axes {axes}, {on_arc} on the arc", points.len())
+        }
+        other => format!("{other:?}"),
+    });
+    let told: Vec<_> =
+        told.zip(&contents.records).map(|(what, record)| format!("{} {what}", record.isn)).collect();
+    expect_test::expect![[r#"
+        0 PARTNO SAMPLE
+        2 MACHIN [Word("PWORKS"), Number(12.0)]
+        3 MultipleAxes(true)
+        4 CUTTER [Number(12.0), Number(1.0), Number(50.0)]
+        5 from true, 1 points, axes true, 1 on the arc
+        6 FEDRAT [Number(1000.0)]
+        7 from false, 1 points, axes true, 1 on the arc
+        8 from false, 45 points, axes true, 45 on the arc
+        9 STOP []
+        10 End"#]]
+    .assert_eq(&told.join("\n"));
+}
+
+#[test]
+fn broken_files_of_ncl_end_in_a_result() {
+    for length in 0..NCL_SAMPLE.len() {
+        let _ = read_tape(&NCL_SAMPLE[..length], &codes());
+    }
+    let mut broken = NCL_SAMPLE.to_vec();
+    for at in 0..broken.len() {
+        broken[at] ^= 0xa5;
+        let _ = read_tape(&broken, &codes());
+    }
+    // A record that claims more words than there are.
+    let mut long = NCL_SAMPLE.to_vec();
+    long[0..2].copy_from_slice(&u16::MAX.to_le_bytes());
+    assert!(read_tape(&long, &codes()).is_err());
 }

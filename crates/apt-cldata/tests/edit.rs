@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{EditErrorKind, EditItem, MAXIMUM_INDEXES, edit, edit_within},
+    edit::{EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
     record::{ClKind, ClPoint, ClRecord, ClWord},
 };
 use apt_geometry::{
@@ -270,8 +270,9 @@ fn mistakes_have_their_numbers() {
 fn the_table_of_indexes_has_an_end_in_apt3() {
     let indexes = |count: u32| (1..=count).map(|number| index(number, i64::from(number), false)).collect();
     let most = MAXIMUM_INDEXES as u32;
-    assert_eq!(edit_within(indexes(most), MAXIMUM_INDEXES).1, vec![]);
-    let (records, errors) = edit_within(indexes(most + 1), MAXIMUM_INDEXES);
+    let limits = EditLimits { indexes: MAXIMUM_INDEXES, ..EditLimits::default() };
+    assert_eq!(edit_within(indexes(most), &limits).1, vec![]);
+    let (records, errors) = edit_within(indexes(most + 1), &limits);
     assert_eq!(records.len(), MAXIMUM_INDEXES + 1, "the records stay");
     assert_eq!(errors.len(), 1);
     assert_eq!((errors[0].isn, errors[0].apt3()), (most + 1, Some(4)));
@@ -332,4 +333,16 @@ proptest! {
         let (records, _) = edit(items);
         prop_assert!(positions(&records).len() >= motions);
     }
+}
+
+#[test]
+fn copies_keep_the_budget_of_positions() {
+    let items =
+        || vec![index(1, 1, false), motion(2, [1.0, 0.0, 0.0]), copy(3, 1, None, 4), motion(4, [0.0; 3])];
+    let within = |points| edit_within(items(), &EditLimits { points, ..EditLimits::default() });
+    assert_eq!(within(6).1, vec![], "one, its four copies and the last");
+    let (records, errors) = within(5);
+    assert_eq!(errors[0].kind, EditErrorKind::TooManyPoints { number: 1, limit: 5 });
+    let positions = records.iter().filter(|one| matches!(one.kind, ClKind::Motion { .. })).count();
+    assert_eq!(positions, 2, "nothing is copied");
 }

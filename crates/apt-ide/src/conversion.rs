@@ -61,7 +61,10 @@ impl Analysis {
             return Err(ConversionError::NotRead(ClDialect::Nci));
         }
         let (source, from) = match (tape, self.document().dialect()) {
-            (Some(bytes), _) => (self.read_tape(bytes, cancel)??, ClDialect::Cltape),
+            (Some(bytes), _) => {
+                let of_ncl = apt_cldata::cltape::is_ncl_file(bytes);
+                (self.read_tape(bytes, cancel)??, if of_ncl { ClDialect::Ncl } else { ClDialect::Cltape })
+            }
             (None, DialectName::Cl) => {
                 let known = detected.filter(|dialect| ClDialect::ALL.contains(dialect));
                 (self.read_cutter_locations(cancel)?, known.unwrap_or(ClDialect::Generic))

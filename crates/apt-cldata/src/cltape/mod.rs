@@ -1,13 +1,15 @@
-//! The binary CLTAPE of the public APT III port: `cl.tap`.
+//! The binary CLTAPE of the public APT III port, `cl.tap`, and the binary CL file of NCL and PostWorks, which is read only.
 //!
 //! Little-endian records without blocking, each with a header of four 32-bit integers (serial number, number of data
 //! words, class, subclass) and data words of eight bytes: a float, a small integer in the low half, or text.
 
+mod ncl;
 mod reader;
 mod word;
 mod writer;
 
-pub use reader::{TapeContents, TapeNote, TapeReadError, is_ncl_file, is_tape, read_tape};
+pub use ncl::is_ncl_file;
+pub use reader::{TapeContents, TapeNote, TapeReadError, is_tape, read_tape};
 pub use writer::{TapeWriteError, write_tape};
 
 /// Record classes.
@@ -18,6 +20,8 @@ pub(crate) const CLASS_MOTION: i32 = 5000;
 pub(crate) const CLASS_PARAMETER: i32 = 6000;
 pub(crate) const CLASS_MODE: i32 = 9000;
 pub(crate) const CLASS_END: i32 = 14000;
+/// Class of the first record of an NCL file.
+pub(crate) const HEADER_OF_NCL: u16 = 7400;
 
 /// Subclasses.
 pub(crate) const SURFACE_DRIVE: i32 = 2;

@@ -6,7 +6,7 @@ use smol_str::{SmolStr, format_smolstr};
 use super::{
     CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR, CLASS_SEQUENCE, CLASS_SURFACE,
     HEADER_BYTES, INTEGER_PARAMETERS, MODE_MULTAX, MODE_UNITS, MOTION_FROM, MOTION_GOTO, MOTION_MORE,
-    MOTION_NAME_WORDS, PARAMETER_WORDS, SURFACE_DRIVE, TEXT_CHARACTERS_PER_WORD, TEXT_CODES, WORD_BYTES,
+    MOTION_NAME_WORDS, PARAMETER_WORDS, SURFACE_DRIVE, TEXT_CODES, WORD_BYTES, ncl,
     word::{DataWord, classify, number},
 };
 use crate::{
@@ -74,9 +74,6 @@ pub enum TapeReadError {
         /// Where the header begins.
         offset: usize,
     },
-    /// A binary CL file of another system.
-    #[error("a binary CL file of NCL, which is not read; let NCL or PostWorks write it as text (.as)")]
-    OfNcl,
 }
 
 /// Whether bytes begin like a tape: record 1, two data words, class 1000.
@@ -85,30 +82,15 @@ pub fn is_tape(bytes: &[u8]) -> bool {
     bytes.starts_with(&START)
 }
 
-/// Whether bytes begin like a binary CL file of NCL and PostWorks, which has the class of its header in the second half word.
-pub fn is_ncl_file(bytes: &[u8]) -> bool {
-    const CLASS_OF_HEADER: [u8; 2] = 7400_u16.to_le_bytes();
-    const BLOCK_BYTES: usize = 288;
-    bytes.len() >= BLOCK_BYTES && bytes[2..4] == CLASS_OF_HEADER
-}
-
-/// Reads a tape; records of unknown classes are skipped with a note.
+/// Reads a tape of APT III, or a binary CL file of NCL; records of unknown classes are skipped with a note.
 ///
 /// # Errors
 /// Bytes that cannot be split into records.
 pub fn read_tape(bytes: &[u8], codes: &CodeTable) -> Result<TapeContents, TapeReadError> {
-    if is_ncl_file(bytes) {
-        return Err(TapeReadError::OfNcl);
+    if ncl::is_ncl_file(bytes) {
+        return ncl::read(bytes, codes);
     }
-    let mut reader = Reader {
-        codes,
-        isn: 0,
-        multax: false,
-        axis: Vec3::z(),
-        serial: 0,
-        records: Vec::new(),
-        notes: Vec::new(),
-    };
+    let mut reader = Reader::new(codes, MOTION_NAME_WORDS);
     let mut offset = 0;
     // One filling byte may stand at the end.
     while bytes.len() - offset > 1 {
@@ -132,15 +114,18 @@ pub fn read_tape(bytes: &[u8], codes: &CodeTable) -> Result<TapeContents, TapeRe
                 word
             })
             .collect();
-        reader.serial = serial;
+        reader.at(serial, reader.isn);
         reader.record(class, subclass, &words);
         offset = start + data.len();
     }
-    Ok(TapeContents { records: reader.records, notes: reader.notes })
+    Ok(reader.contents())
 }
 
-struct Reader<'a> {
+/// Makes records of the data words of a file.
+pub(super) struct Reader<'a> {
     codes: &'a CodeTable,
+    /// Data words before the coordinates of a motion record.
+    name_words: usize,
     isn: u32,
     multax: bool,
     /// The axis of the last position that has one: MULTAX/OFF leaves the tool as it stands.
@@ -150,8 +135,31 @@ struct Reader<'a> {
     notes: Vec<TapeNote>,
 }
 
-impl Reader<'_> {
-    fn record(&mut self, class: i32, subclass: i32, words: &[[u8; WORD_BYTES]]) {
+impl<'a> Reader<'a> {
+    pub(super) fn new(codes: &'a CodeTable, name_words: usize) -> Self {
+        Self {
+            codes,
+            name_words,
+            isn: 0,
+            multax: false,
+            axis: Vec3::z(),
+            serial: 0,
+            records: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The serial number and the statement number of the record that comes next.
+    pub(super) fn at(&mut self, serial: i32, isn: u32) {
+        (self.serial, self.isn) = (serial, isn);
+    }
+
+    /// What has been read.
+    pub(super) fn contents(self) -> TapeContents {
+        TapeContents { records: self.records, notes: self.notes }
+    }
+
+    pub(super) fn record(&mut self, class: i32, subclass: i32, words: &[[u8; WORD_BYTES]]) {
         match (class, subclass) {
             // The number of a CALL is negative.
             (CLASS_SEQUENCE, isn) => self.isn = isn.unsigned_abs(),
@@ -169,7 +177,7 @@ impl Reader<'_> {
         }
     }
 
-    fn push(&mut self, kind: ClKind) {
+    pub(super) fn push(&mut self, kind: ClKind) {
         self.records.push(ClRecord { isn: self.isn, source: u32::MAX, kind });
     }
 
@@ -180,9 +188,7 @@ impl Reader<'_> {
     fn postprocessor(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {
         let code = u16::try_from(subclass).ok();
         if let Some((_, word)) = TEXT_CODES.iter().find(|(known, _)| *known == subclass) {
-            let text: Vec<u8> =
-                words.iter().flat_map(|word| &word[..TEXT_CHARACTERS_PER_WORD]).copied().collect();
-            let text = String::from_utf8_lossy(&text).trim().into();
+            let text = String::from_utf8_lossy(&ncl::text_of(words)).trim().into();
             return self.push(ClKind::Text { word: (*word).into(), code, text });
         }
         let word = match code.and_then(|code| self.codes.major_word(code)) {
@@ -223,12 +229,12 @@ impl Reader<'_> {
 
     fn motion(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {
         let per_point = if self.multax { 6 } else { 3 };
-        let coordinates = words.len().saturating_sub(MOTION_NAME_WORDS);
-        if words.len() < MOTION_NAME_WORDS || !coordinates.is_multiple_of(per_point) {
+        let coordinates = words.len().saturating_sub(self.name_words);
+        if words.len() < self.name_words || !coordinates.is_multiple_of(per_point) {
             return self.wrong_count(words.len());
         }
         let value = |word: &[u8; WORD_BYTES]| f64::from_le_bytes(*word);
-        let mut points: Vec<ClPoint> = words[MOTION_NAME_WORDS..]
+        let mut points: Vec<ClPoint> = words[self.name_words..]
             .chunks_exact(per_point)
             .map(|words| {
                 let at = |start: usize| {
@@ -245,7 +251,11 @@ impl Reader<'_> {
         {
             return before.append(&mut points);
         }
-        self.push(ClKind::Motion { from: subclass == MOTION_FROM, surface: surface_name(words), points });
+        self.push(ClKind::Motion {
+            from: subclass == MOTION_FROM,
+            surface: surface_name(&words[..self.name_words]),
+            points,
+        });
     }
 
     fn parameter(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {

@@ -262,6 +262,8 @@ impl Evaluator<'_> {
             "CANON" => self.canon_switch(major),
             "RESERV" => self.reserve(major),
             "SYN" => self.synonyms(major),
+            // A CL file is what Section 3 has made: there they tell how its positions came about, and move nothing again.
+            "TRACUT" | "INDEX" | "COPY" if self.is_cl() => self.postprocessor(major),
             "TRACUT" => self.cut_transformation(major),
             "INDEX" => self.index(major),
             "COPY" => self.copy(major),

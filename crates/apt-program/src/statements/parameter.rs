@@ -26,10 +26,12 @@ impl Evaluator<'_> {
         if items.first().and_then(|item| item.word()) == Some("OPTION") {
             return self.disk(major, &items);
         }
-        // CL files of CAM systems give any number of values.
         let Some(values) = self.scalars_of(major, &items, 129) else { return };
-        if !matches!(values.len(), 1 | 2 | 7) && !self.is_cl() {
-            return self.wrong_count(major, values.len(), EXPECTED, 129);
+        match values.len() {
+            1 | 2 | 7 => {}
+            // CL files of CAM systems give any number of values; there is no profile of which they could be the numbers.
+            _ if self.is_cl() => return self.control(major, &items, [6000, 6]),
+            _ => return self.wrong_count(major, values.len(), EXPECTED, 129),
         }
         self.motion(MotionCommand::Cutter(values), major.range);
     }

@@ -67,7 +67,7 @@ fn takes_geometry(word: &str) -> TakesGeometry {
     match word {
         "CLEARP" => TakesGeometry::Only(GeometryKind::Plane),
         "CLRSRF" => TakesGeometry::AnySurface,
-        "TRANS" | "ORIGIN" => TakesGeometry::Only(GeometryKind::Matrix),
+        "TRANS" | "ORIGIN" | "TRACUT" | "COPY" => TakesGeometry::Only(GeometryKind::Matrix),
         _ => TakesGeometry::No,
     }
 }
