@@ -145,6 +145,7 @@ fn without_places(mut report: serde_json::Value) -> serde_json::Value {
         match value {
             serde_json::Value::Object(fields) => {
                 fields.remove("range");
+                fields.remove("line");
                 for edit in
                     fields.get_mut("edits").and_then(serde_json::Value::as_array_mut).into_iter().flatten()
                 {

@@ -8,7 +8,7 @@ use apt_program::record::RecordKind;
 use apt_run::{
     catalogue::story_lines,
     pipeline::{Motion, RunResult},
-    report::Report,
+    report::{Report, is_of},
 };
 use arelem::section2::Output;
 use rustc_hash::FxHashSet;
@@ -19,7 +19,7 @@ use crate::{
 };
 
 impl Analysis {
-    /// Runs the program and reports it, or only the statements that a byte range touches.
+    /// Runs the program and reports it, or only what the statements that a byte range touches do and call.
     ///
     /// # Errors
     ///
@@ -49,9 +49,7 @@ impl Analysis {
     ) -> Result<Vec<Vec<String>>, Cancelled> {
         let statements = range.and_then(|range| self.statements_of(range));
         let result = self.result(cancel, progress)?;
-        let wanted = |motion: &&Motion| {
-            statements.as_ref().is_none_or(|range| range.contains(&motion.origin.place_in_program().0))
-        };
+        let wanted = |motion: &&Motion| is_of(&motion.origin, statements.as_ref());
         let mut stories = Vec::new();
         for motion in result.motions.iter().filter(wanted) {
             let story = motion.computed.story(cancel);

@@ -35,6 +35,14 @@ impl Origin {
         let called = around.into_iter().find(|frame| frame.source.is_none());
         called.map_or((1, TextRange::default()), |frame| (frame.isn, frame.range))
     }
+
+    /// The numbers of all statements of the program by which this was done: the statement itself, and each CALL, INCLUD and
+    /// LOOPST around it.
+    pub fn statements_in_program(&self) -> impl Iterator<Item = u32> {
+        let around = std::iter::successors(self.frame.as_deref(), |frame| frame.parent.as_deref());
+        let around = around.filter(|frame| frame.source.is_none()).map(|frame| frame.isn);
+        std::iter::once(self.place_in_program().0).chain(around)
+    }
 }
 
 /// A file whose statements an INCLUD puts in.

@@ -38,6 +38,12 @@ impl LineIndex {
         Self { starts }
     }
 
+    /// The line on which an offset stands, from zero.
+    pub fn line_of(&self, offset: usize) -> u32 {
+        let line = self.starts.partition_point(|start| *start <= offset).saturating_sub(1);
+        u32::try_from(line).unwrap_or(u32::MAX)
+    }
+
     /// The position of a byte offset; offsets past the end or inside a character are moved back to the nearest place.
     pub fn position(&self, text: &str, offset: usize) -> Position {
         let mut offset = offset.min(text.len());

@@ -114,7 +114,7 @@ fn cl_records_have_their_types() {
     let types: BTreeSet<&str> = list.iter().map(|entry| entry["type"].as_str().unwrap()).collect();
     assert_eq!(types, ["postprocessor", "control", "mode", "from", "go", "other", "fini"].into());
     for entry in list {
-        let allowed = ["isn", "type", "surface", "words", "code", "points"].into();
+        let allowed = ["isn", "line", "type", "surface", "words", "code", "points"].into();
         assert!(keys(entry).is_subset(&allowed), "{entry}");
     }
     let spindle = list.iter().find(|entry| entry["words"][0] == "SPINDL").unwrap();
@@ -130,8 +130,18 @@ fn motions_are_proven_and_within_their_band() {
     let motions = value["motions"].as_array().unwrap();
     assert_eq!(motions.len(), 2, "GO and GOLFT");
     let motion = &motions[1];
-    let fields =
-        ["isn", "statement", "cut_vectors", "minimum", "part", "drive", "check", "verified", "seconds"];
+    let fields = [
+        "isn",
+        "line",
+        "statement",
+        "cut_vectors",
+        "minimum",
+        "part",
+        "drive",
+        "check",
+        "verified",
+        "seconds",
+    ];
     assert_eq!(keys(motion), fields.into());
     assert_eq!(motion["isn"], 15);
     assert_eq!(motion["statement"], "TLLFT,GOLFT/C1,ON,L1", "continued lines are joined");
@@ -190,4 +200,106 @@ fn a_range_of_statements_restricts_path_and_motions() {
     assert!(value["cl"].as_array().unwrap().iter().all(|entry| entry["isn"] == 14));
     assert!(!value["cl"].as_array().unwrap().is_empty());
     assert_eq!(keys(&value["symbols"]), keys(&report(PROGRAM, None)["symbols"]), "symbols stay");
+}
+
+#[test]
+fn a_range_of_statements_holds_what_they_call() {
+    let text = "PARTNO R\nM=MACRO/X\nRAPID,GOTO/X,0,0\nFEDRAT/10\nGOTO/X,5,0\nTERMAC\nFROM/0,0,0\nCALL/M,X=1\n\
+        LOOPST\nI=2\nA)CALL/M,X=I\nI=I+1\nIF(I-4)A,B,B\nB)LOOPND\nFINI\n";
+    let points = |from, to| {
+        let value = report(text, Some(from..=to));
+        let listed = value["cl"].as_array().unwrap().iter().filter_map(|entry| entry["points"].as_array());
+        let listed = listed.flatten().map(|point| (point[0].as_f64(), point[1].as_f64())).collect::<Vec<_>>();
+        assert_eq!(value["totals"]["points"], json!(listed.len()), "{from} to {to}");
+        (listed, value["totals"].clone())
+    };
+    let at = |x: f64, y: f64| (Some(x), Some(y));
+    // Its macro is written above it, the path is that of the CALL. It begins where the tool stood.
+    let (called, totals) = points(8, 8);
+    assert_eq!(called, [at(1.0, 0.0), at(1.0, 5.0)]);
+    assert_eq!((&totals["rapid_length"], &totals["cut_length"]), (&json!(1.0), &json!(5.0)));
+    assert_eq!((&totals["time_minutes"], &totals["box"][1]), (&json!(0.5), &json!([1.0, 5.0, 0.0])));
+    // The turns of a loop belong to it, to its statements, and to the statements of the macro.
+    let loops = [at(2.0, 0.0), at(2.0, 5.0), at(3.0, 0.0), at(3.0, 5.0)];
+    assert_eq!(points(9, 9).0, loops);
+    assert_eq!(points(11, 11).0, loops);
+    assert_eq!(points(5, 5).0, [at(1.0, 5.0), at(2.0, 5.0), at(3.0, 5.0)]);
+    assert_eq!(points(1, 6).1["points"], json!(6));
+    assert_eq!(points(12, 12).1["box"], Value::Null);
+}
+
+#[test]
+fn no_number_is_a_negative_zero() {
+    let text = "CUTTER/.5,.25\nINTOL/.0001\nOUTTOL/.0001\nS1=SPHERE/0,0,0,5\nDS=PLANE/0,1,0,1\nFROM/-3,0,7\n\
+        GO/ON,DS,TO,S1,ON,(PLANE/1,0,0,-2)\nTLON,GORGT/DS,ON,(PLANE/1,0,0,3)\nFINI\n";
+    let value = report(text, None);
+    assert_eq!(value["motions"].as_array().unwrap().len(), 2, "{value}");
+    assert!(value["motions"][0]["drive"]["min"].is_number(), "{value}");
+    assert!(!value.to_string().contains("-0.0,") && !value.to_string().contains("-0.0}"), "{value}");
+}
+
+#[test]
+fn a_cl_file_tells_copies_and_does_not_make_them_again() {
+    let run = |text: &str| {
+        let settings = Settings { dialect: Some("cl".to_owned()), ..Settings::default() };
+        let document = Document::new(text, Some("a.cl".to_owned()), &Arc::new(settings));
+        let report = document.report(&|| false, &mut |_, _| {}, None).unwrap();
+        serde_json::to_value(report).unwrap()
+    };
+    let value = run(
+        "PARTNO C\nFROM/0,0,0\nTRACUT/1,0,0,0,0,1,0,0,0,0,1,5\nINDEX/1\nGOTO/1,0,5\nINDEX/1\nGOTO/2,0,5\n\
+        COPY/1,MODIFY,1,0,0,1,0,1,0,0,0,0,1,0,1\nTRACUT/NOMORE\nGOTO/3,0,0\nFINI\n",
+    );
+    assert_eq!((&value["diagnostics"], &value["totals"]["points"]), (&json!([]), &json!(4)));
+    let words: Vec<_> = value["cl"].as_array().unwrap().iter().map(|one| &one["words"][0]).collect();
+    let edits = ["TRACUT", "INDEX", "INDEX", "COPY", "TRACUT"];
+    assert_eq!(words.into_iter().filter(|word| edits.iter().any(|edit| *word == edit)).count(), 5);
+    let value = run("FROM/0,0,0\nGOTO/1,0,5\nCOPY/1,SAME,2\nFINI\n");
+    assert_eq!((&value["diagnostics"][0]["isn"], &value["totals"]["points"]), (&json!(3), &json!(2)));
+}
+
+#[test]
+fn records_and_motions_tell_their_lines_calls_and_turns() {
+    let text = "PARTNO R\nM=MACRO/X\nGOTO/X,$\n0,0\nTERMAC\nFROM/0,0,0\nLOOPST\nI=2\nA)CALL/M,X=I\nI=I+1\nIF(I-4)A,B,B\n\
+        B)LOOPND\nFINI\n";
+    let value = report(text, None);
+    let moves: Vec<_> = value["cl"].as_array().unwrap().iter().filter(|one| one["type"] == "go").collect();
+    assert_eq!(moves.iter().map(|one| &one["line"]).collect::<Vec<_>>(), [2, 2], "{value}");
+    let called = json!({ "kind": "macro", "name": "M", "isn": 8, "turn": 1 });
+    let turned = |turn| json!({ "kind": "loop", "name": "", "isn": 6, "turn": turn });
+    assert_eq!(moves[0]["origin"], json!([called, turned(1)]));
+    assert_eq!(moves[1]["origin"], json!([called, turned(2)]));
+    let from = value["cl"].as_array().unwrap().iter().find(|one| one["type"] == "from").unwrap();
+    assert_eq!((&from["line"], from.get("origin"), from.get("file")), (&json!(5), None, None));
+    assert!(report(PROGRAM, None)["motions"].as_array().unwrap().iter().all(|one| one["line"].is_u64()));
+}
+
+#[test]
+fn a_path_keeps_the_budget_of_positions() {
+    let run = |text: &str, points: u64| {
+        let mut settings = Settings { dialect: Some("free".to_owned()), ..Settings::default() };
+        settings.budget.points = points;
+        let document = Document::new(text, Some("a.apt".to_owned()), &Arc::new(settings));
+        let report = document.report(&|| false, &mut |_, _| {}, None).unwrap();
+        let told: Vec<_> = report.diagnostics.iter().map(|one| (one.code.clone(), one.isn)).collect();
+        (told, report.totals.points)
+    };
+    let moves = "FROM/0,0,0\nGOTO/1,0,0\nGOTO/2,0,0\nGOTO/3,0,0\nFINI\n";
+    assert_eq!(run(moves, 4), (vec![], 4));
+    assert_eq!(run(moves, 2), (vec![("APT0717".to_owned(), 3)], 2), "told once, where it ends");
+    let copies = "FROM/0,0,0\nINDEX/1\nGOTO/1,0,0\nCOPY/1,TRANSL,1,0,0,3\nFINI\n";
+    assert_eq!(run(copies, 5), (vec![], 5));
+    assert_eq!(run(copies, 4), (vec![("APT0717".to_owned(), 4)], 2));
+}
+
+#[test]
+fn a_cl_file_has_cutters_of_any_number_of_values() {
+    let settings = Settings { dialect: Some("cl".to_owned()), ..Settings::default() };
+    let text = "CUTTER/12,1,50\nCUTTER/10,2,3,2\nFROM/0,0,0\nGOTO/1,0,0\nFINI\n";
+    let document = Document::new(text, Some("a.cl".to_owned()), &Arc::new(settings));
+    let report = document.report(&|| false, &mut |_, _| {}, None).unwrap();
+    let value = serde_json::to_value(report).unwrap();
+    assert_eq!(value["diagnostics"], json!([]));
+    assert_eq!(value["cl"][0]["words"], json!(["CUTTER", 12.0, 1.0, 50.0]));
+    assert_eq!((&value["cl"][1]["type"], &value["cl"][1]["code"]), (&json!("control"), &json!([6000, 6])));
 }

@@ -15,6 +15,9 @@ use arelem::{
 use super::{Text, a_kind, milling, number, pocket, remedy, say};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 
+/// Where the budget of positions is set.
+const MORE_POINTS: &str = "the setting budget.points allows more";
+
 /// The words, the severity and the APT III number of a finding of Sections 2 and 3.
 pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
     match kind {
@@ -39,6 +42,14 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
             let text = say("APT0690", format!("{what} not computed"))
                 .hint("after an error motion goes on at a FROM, or where GOTO is followed by a statement that gives a direction");
             (text, Severity::Information, None)
+        }
+        RunFindingKind::TooManyPoints { limit } => {
+            let text = say(
+                "APT0717",
+                format!("the path has more than {limit} positions; it ends before this statement"),
+            )
+            .hint(MORE_POINTS);
+            (text, Severity::Error, None)
         }
         RunFindingKind::TransferPending { label } => {
             let text = say(
@@ -593,6 +604,10 @@ fn edit(kind: &EditErrorKind) -> Text {
         EditErrorKind::ZeroCount { number } => say("APT0716", format!("COPY/{number} makes no copy")),
         EditErrorKind::TooManyRecords { number, limit } => {
             say("APT0717", format!("COPY/{number} would make more than {limit} records"))
+        }
+        EditErrorKind::TooManyPoints { number, limit } => {
+            say("APT0717", format!("COPY/{number} would give the path more than {limit} positions"))
+                .hint(MORE_POINTS)
         }
         EditErrorKind::AxisVanishes { .. } => {
             say("APT0718", "the transformation leaves the tool axis without direction")

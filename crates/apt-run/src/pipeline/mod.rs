@@ -106,6 +106,11 @@ pub enum RunFindingKind {
         /// The label.
         label: String,
     },
+    /// The path has more positions than the budget allows; it ends before this statement.
+    TooManyPoints {
+        /// How many are allowed.
+        limit: u64,
+    },
     /// TRACUT, INDEX or COPY.
     Edit(EditError),
     /// A SMIL ended before its end.
@@ -173,11 +178,17 @@ pub fn run(
         section2.record(record)?;
     }
     let output = section2.finish();
-    let most_indexes = match tree.dialect().name {
+    let indexes = match tree.dialect().name {
         DialectName::Apt3 => apt_cldata::edit::MAXIMUM_INDEXES,
         _ => usize::MAX,
     };
-    let (mut records, edit_errors) = apt_cldata::edit::edit_within(output.items, most_indexes);
+    let limits = apt_cldata::edit::EditLimits { indexes, points: settings.budget.points };
+    let unpaired = match tree.dialect().name {
+        DialectName::Cl => apt_cldata::edit::copies_without_index(&output.items),
+        _ => Vec::new(),
+    };
+    let (mut records, mut edit_errors) = apt_cldata::edit::edit_within(output.items, &limits);
+    edit_errors.extend(unpaired);
     let mut findings = output.findings;
     findings.extend(edit_errors.into_iter().map(|error| {
         let origin = output.origins.get(error.source as usize).cloned();

@@ -13,7 +13,7 @@ use apt_cldata::{
 };
 use apt_geometry::{
     canonical::Geometry,
-    motion::{MotionCommand, PerRole},
+    motion::{Delta, MotionCommand, PerRole},
 };
 use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
 use apt_syntax::dialect::DialectName;
@@ -72,6 +72,10 @@ pub(super) struct Section2<'a> {
     before: Option<Before>,
     output_on: bool,
     with_axis: bool,
+    /// Most positions of the path, how many there are, and whether a statement would have made more.
+    most_points: u64,
+    points: u64,
+    too_long: bool,
 }
 
 /// What would cure a failed command, and where the motion before it stands if that is one of the cures.
@@ -107,6 +111,9 @@ impl<'a> Section2<'a> {
             before: None,
             output_on: true,
             with_axis: false,
+            most_points: settings.budget.points,
+            points: 0,
+            too_long: false,
         }
     }
 
@@ -118,6 +125,10 @@ impl<'a> Section2<'a> {
             } else if !matches!(record.kind, RecordKind::End) {
                 return Ok(());
             }
+        }
+        // What would come is not known to follow from what there is.
+        if self.too_long && !matches!(record.kind, RecordKind::End) {
+            return Ok(());
         }
         let source = self.source(&record.origin);
         match &record.kind {
@@ -285,6 +296,8 @@ impl<'a> Section2<'a> {
                 let (from, name) = match command {
                     MotionCommand::From { name, .. } => (true, name.as_str()),
                     MotionCommand::GoTo { name, .. } => (false, name.as_str()),
+                    // What the tool was moved along stands where the name of a point stands.
+                    MotionCommand::GoDelta(Delta::AlongAxis(_)) => (false, "TLAXIS"),
                     _ => (false, ""),
                 };
                 self.tool = Some(position);
@@ -361,7 +374,15 @@ impl<'a> Section2<'a> {
     }
 
     fn positions(&mut self, isn: u32, source: u32, from: bool, name: &str, positions: &[ToolPosition]) {
-        if positions.is_empty() || !self.output_on {
+        if positions.is_empty() || !self.output_on || self.too_long {
+            return;
+        }
+        self.points += positions.len() as u64;
+        if self.points > self.most_points {
+            self.too_long = true;
+            let origin = self.output.origins.get(source as usize).cloned();
+            let kind = RunFindingKind::TooManyPoints { limit: self.most_points };
+            self.output.findings.extend(origin.map(|origin| RunFinding { kind, origin }));
             return;
         }
         let with_axis = self.with_axis;

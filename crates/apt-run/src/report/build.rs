@@ -1,18 +1,24 @@
 //! Builds a [`Report`] from the values of the sections.
 
-use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
+use std::{collections::BTreeMap, ops::RangeInclusive, path::PathBuf};
+
+use apt_cldata::{
+    record::{ClKind, ClRecord, ClWord, Units},
+    totals::{Totals, totals_where},
+};
 use apt_geometry::{canonical::Geometry, regional::LiftDirection};
-use apt_program::{Program, Value as SymbolValue};
+use apt_program::{Program, Value as SymbolValue, record::Origin};
 use apt_sculptured::mill::{Encounter, Remedy};
-use apt_syntax::SyntaxTree;
+use apt_syntax::{SyntaxTree, TextRange};
+use arelem::verify::Extent;
 use serde_json::{Map, Value, json};
 
 use super::{
     ClEntry, DiagnosticReport, EditReport, FixReport, InterferenceEntry, ListingReport, MotionEntry,
-    RelatedReport, RemedyEntry, Report, TotalsEntry,
+    RelatedReport, RemedyEntry, Report, SourceReport, TotalsEntry,
 };
 use crate::{
-    diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places},
+    diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places, statement_range},
     pipeline::{Motion, RunResult},
     position::LineIndex,
 };
@@ -31,14 +37,61 @@ pub struct ReportInput<'a> {
     pub result: &'a RunResult,
     /// All diagnostics of Sections 1 to 3.
     pub diagnostics: &'a [Diagnostic],
-    /// Only statements with these numbers are listed under `cl` and `motions`; everything without.
-    pub statements: Option<std::ops::RangeInclusive<u32>>,
+    /// Only what statements with these numbers do, and what they call, is listed under `listing`, `cl`, `motions` and
+    /// `interference` and summed up in `totals`; everything without. Diagnostics and symbols are those of the program, on
+    /// which the rest depends.
+    pub statements: Option<RangeInclusive<u32>>,
+}
+
+/// Whether something was done by statements with these numbers: by one of them itself, or by what one of them calls.
+pub fn is_of(origin: &Origin, statements: Option<&RangeInclusive<u32>>) -> bool {
+    statements.is_none_or(|range| origin.statements_in_program().any(|isn| range.contains(&isn)))
+}
+
+/// Finds where in the sources records come from; each included file is looked through once.
+pub struct Sources<'a> {
+    tree: &'a SyntaxTree,
+    lines: &'a LineIndex,
+    included: BTreeMap<PathBuf, LineIndex>,
+}
+
+impl<'a> Sources<'a> {
+    /// For a program with these lines.
+    pub fn new(tree: &'a SyntaxTree, lines: &'a LineIndex) -> Self {
+        Self { tree, lines, included: BTreeMap::new() }
+    }
+
+    /// Where something comes from.
+    pub fn of(&mut self, origin: &Origin) -> SourceReport {
+        let begins = |tree| statement_range(tree, origin.isn, TextRange::default()).start;
+        let (file, line) = match &origin.source {
+            None => (None, self.lines.line_of(begins(self.tree))),
+            Some(source) => {
+                let index = || LineIndex::new(&source.tree.text());
+                let lines = self.included.entry(source.path.clone()).or_insert_with(index);
+                (Some(source.path.display().to_string()), lines.line_of(begins(&source.tree)))
+            }
+        };
+        SourceReport { file, line: Some(line), origin: origin_steps(origin) }
+    }
+
+    /// Where a statement of the program stands that has left no more behind than its number.
+    fn of_statement(&mut self, isn: u32) -> SourceReport {
+        let known = (1..=self.tree.statement_count()).contains(&(isn as usize));
+        if known { self.of(&Origin::in_program(isn, TextRange::default())) } else { SourceReport::default() }
+    }
 }
 
 /// Builds the report.
 pub fn report(input: &ReportInput<'_>) -> Report {
     let lines = LineIndex::new(input.text);
-    let wanted = |isn: u32| input.statements.as_ref().is_none_or(|range| range.contains(&isn));
+    let statements = input.statements.as_ref();
+    let wanted = |origin: &Origin| is_of(origin, statements);
+    let mut sources = Sources::new(input.tree, &lines);
+    let wanted_record = |record: &ClRecord| match input.result.origins.get(record.source as usize) {
+        Some(origin) => wanted(origin),
+        None => statements.is_none_or(|range| range.contains(&record.isn)),
+    };
     Report {
         program: input.file.to_owned(),
         ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
@@ -50,25 +103,37 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .collect(),
         symbols: symbols(input.program),
         listing: listing(input.program, wanted),
-        cl: input.result.records.iter().filter(|record| wanted(record.isn)).map(cl_entry).collect(),
+        cl: input
+            .result
+            .records
+            .iter()
+            .filter(|record| wanted_record(record))
+            .map(|record| {
+                let source = match input.result.origins.get(record.source as usize) {
+                    Some(origin) => sources.of(origin),
+                    None => sources.of_statement(record.isn),
+                };
+                cl_entry(record, source)
+            })
+            .collect(),
         motions: input
             .result
             .motions
             .iter()
-            .filter(|motion| wanted(motion.origin.place_in_program().0))
-            .map(|motion| motion_entry(motion, input.tree))
+            .filter(|motion| wanted(&motion.origin))
+            .map(|motion| motion_entry(motion, input.tree, sources.of(&motion.origin)))
             .collect(),
         interference: interference(input.result, wanted),
-        totals: totals_entry(input.result),
+        totals: totals_entry(&totals_where(&input.result.records, wanted_record)),
     }
 }
 
 /// The interferences of the wanted statements.
-fn interference(result: &RunResult, wanted: impl Fn(u32) -> bool) -> Vec<InterferenceEntry> {
-    let numbered = result.milled.iter().map(|milling| (milling.origin.place_in_program().0, milling));
-    numbered
-        .filter(|(isn, _)| wanted(*isn))
-        .flat_map(|(isn, milling)| {
+fn interference(result: &RunResult, wanted: impl Fn(&Origin) -> bool) -> Vec<InterferenceEntry> {
+    let milled = result.milled.iter().filter(|milling| wanted(&milling.origin));
+    milled
+        .flat_map(|milling| {
+            let isn = milling.origin.place_in_program().0;
             milling.milled.encounters.iter().map(move |one| interference_entry(isn, one))
         })
         .collect()
@@ -101,11 +166,10 @@ fn interference_entry(isn: u32, encounter: &Encounter) -> InterferenceEntry {
 }
 
 /// What the wanted statements list.
-fn listing(program: &Program, wanted: impl Fn(u32) -> bool) -> Vec<ListingReport> {
-    let entries = program.listing().map(|entry| (entry.origin.place_in_program().0, entry));
+fn listing(program: &Program, wanted: impl Fn(&Origin) -> bool) -> Vec<ListingReport> {
+    let entries = program.listing().filter(|entry| wanted(&entry.origin));
     entries
-        .filter(|(isn, _)| wanted(*isn))
-        .map(|(isn, entry)| ListingReport { isn, lines: entry.lines() })
+        .map(|entry| ListingReport { isn: entry.origin.place_in_program().0, lines: entry.lines() })
         .collect()
 }
 
@@ -191,9 +255,16 @@ fn geometry_value(geometry: &Geometry) -> Value {
     }
 }
 
-fn cl_entry(record: &ClRecord) -> ClEntry {
-    let entry =
-        |kind| ClEntry { isn: record.isn, kind, surface: None, words: None, code: None, points: None };
+fn cl_entry(record: &ClRecord, source: SourceReport) -> ClEntry {
+    let entry = |kind| ClEntry {
+        isn: record.isn,
+        source,
+        kind,
+        surface: None,
+        words: None,
+        code: None,
+        points: None,
+    };
     match &record.kind {
         ClKind::Postprocessor { word, code, arguments } => ClEntry {
             words: Some(words(word, arguments)),
@@ -252,7 +323,7 @@ fn words(word: &str, arguments: &[ClWord]) -> Vec<Value> {
     std::iter::once(json!(word)).chain(arguments.iter().map(argument)).collect()
 }
 
-fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
+fn motion_entry(motion: &Motion, tree: &SyntaxTree, source: SourceReport) -> MotionEntry {
     let computed = &motion.computed;
     let (cut_vectors, minimum) = match &computed.execution.output {
         Some(arelem::section2::Output::Sequence(sequence)) => (sequence.points.len(), sequence.minimum),
@@ -262,15 +333,16 @@ fn motion_entry(motion: &Motion, tree: &SyntaxTree) -> MotionEntry {
     let evidence = computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
     MotionEntry {
         isn: motion.origin.place_in_program().0,
+        source,
         statement: statement_text(
             motion.origin.source.as_ref().map_or(tree, |source| &source.tree),
             motion.origin.isn,
         ),
         cut_vectors,
         minimum,
-        part: evidence.and_then(|evidence| evidence.part),
-        drive: evidence.and_then(|evidence| evidence.drive),
-        check: evidence.and_then(|evidence| evidence.check),
+        part: evidence.and_then(|evidence| evidence.part).map(clean_extent),
+        drive: evidence.and_then(|evidence| evidence.drive).map(clean_extent),
+        check: evidence.and_then(|evidence| evidence.check).map(clean_extent),
         verified: evidence.is_some_and(|evidence| evidence.verified),
         seconds: computed.seconds,
     }
@@ -302,8 +374,12 @@ fn statement_text(tree: &SyntaxTree, isn: u32) -> String {
     text
 }
 
-fn totals_entry(result: &RunResult) -> TotalsEntry {
-    let totals = result.totals();
+fn clean_extent(extent: Extent) -> Extent {
+    let Extent { min, max, intol, outtol } = extent;
+    Extent { min: clean(min), max: clean(max), intol: clean(intol), outtol: clean(outtol) }
+}
+
+fn totals_entry(totals: &Totals) -> TotalsEntry {
     TotalsEntry {
         points: totals.points,
         length: clean(totals.length),

@@ -10,7 +10,7 @@ use crate::{
     position::Range,
 };
 
-pub use build::{ReportInput, clean_number, diagnostic_report, report};
+pub use build::{ReportInput, Sources, clean_number, diagnostic_report, is_of, report};
 
 /// The result of a run.
 #[derive(Debug, Clone, Serialize)]
@@ -143,11 +143,28 @@ pub struct ListingReport {
     pub lines: Vec<String>,
 }
 
+/// Where in the sources something comes from, and by which calls and turns.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct SourceReport {
+    /// The included file in which the statement stands; left out for the program itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The line of that file on which the statement begins, from zero; left out where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<u32>,
+    /// Macro calls, loop turns and inclusions, innermost first; left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub origin: Vec<OriginStep>,
+}
+
 /// One CL record group.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClEntry {
     /// Statement number.
     pub isn: u32,
+    /// Where it comes from.
+    #[serde(flatten)]
+    pub source: SourceReport,
     /// `from`, `go`, `postprocessor`, `control`, `mode`, `fini` or `other`.
     #[serde(rename = "type")]
     pub kind: &'static str,
@@ -170,6 +187,9 @@ pub struct ClEntry {
 pub struct MotionEntry {
     /// Statement number.
     pub isn: u32,
+    /// Where it comes from.
+    #[serde(flatten)]
+    pub source: SourceReport,
     /// The statement as written, without comments.
     pub statement: String,
     /// How many cut vectors.
