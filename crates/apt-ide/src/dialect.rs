@@ -1,7 +1,7 @@
 //! The dialect in force and why, in words.
 
 use apt_run::document::{DialectReason, Document};
-use apt_syntax::dialect::DetectionReason;
+use apt_syntax::dialect::{DetectionReason, DialectName};
 
 /// The dialect in force with the reason, as in `cl (the file name ends with .cls)`.
 pub fn describe(document: &Document) -> String {
@@ -18,4 +18,9 @@ pub fn describe(document: &Document) -> String {
         DialectReason::Detected(DetectionReason::Default) => "the default".to_owned(),
     };
     format!("{} ({why})", document.dialect().as_str())
+}
+
+/// The names of all dialects, in the order in which they are shown.
+pub fn names() -> Vec<&'static str> {
+    DialectName::ALL.map(DialectName::as_str).to_vec()
 }

@@ -4,6 +4,7 @@
 //! own; the run report comes from `apt-run` as it is.
 
 pub mod action;
+pub mod calls;
 mod carry;
 pub mod completion;
 mod context;

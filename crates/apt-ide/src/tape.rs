@@ -7,7 +7,10 @@ use apt_cldata::{
     text::{ClText, Remark, Shortened, read_with_remarks, write_text_with_lines},
 };
 use apt_post::{MachineDefinition, PostOptions, Tape};
-use apt_program::Origin;
+use apt_program::{
+    Origin,
+    record::{PostArgument, RecordKind},
+};
 use apt_run::{
     catalogue,
     diagnostic::Diagnostic,
@@ -61,6 +64,15 @@ pub struct ControlTape {
     pub tape: Tape,
     /// What was found in the program or CL file, and then by the post-processor.
     pub diagnostics: Vec<Diagnostic>,
+    /// Where blocks come from.
+    origins: Vec<Origin>,
+}
+
+impl ControlTape {
+    /// Where each block comes from, with the calls and turns that led there; `None` for a block that no statement has made.
+    pub fn block_origins(&self) -> impl Iterator<Item = Option<&Origin>> {
+        self.tape.blocks.iter().map(|block| self.origins.get(block.source as usize))
+    }
 }
 
 /// Characters of text that a statement of a CL text file carries at most.
@@ -123,6 +135,23 @@ impl Analysis {
         Ok(self.tape_of(source, &machine, cancel)?)
     }
 
+    /// The machine that the first MACHIN of the program names, as it is written there; it may be one that is not known.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn machine_of_program(&self, cancel: Cancel<'_>) -> Result<Option<String>, Cancelled> {
+        let program = self.program(cancel)?;
+        let named = program.records().find_map(|record| match &record.kind {
+            RecordKind::Postprocessor { word, arguments, .. } if word == "MACHIN" => arguments.first(),
+            _ => None,
+        });
+        Ok(named.and_then(|name| match name {
+            PostArgument::Text(name) => Some(name.to_string()),
+            _ => None,
+        }))
+    }
+
     /// What the post-processor finds for the machine of the settings, if they name one.
     ///
     /// # Errors
@@ -181,7 +210,7 @@ impl Analysis {
             &source.origins,
             settings,
         ));
-        Ok(ControlTape { tape, diagnostics })
+        Ok(ControlTape { tape, diagnostics, origins: source.origins })
     }
 
     /// Runs the program to its CL records.

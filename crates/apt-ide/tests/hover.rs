@@ -403,3 +403,44 @@ fn curves_and_surfaces_tell_their_size() {
     ]]
     .assert_eq(&text("S1"));
 }
+
+#[test]
+fn a_name_without_a_value_tells_why() {
+    let told = |text: &str| {
+        let (analysis, offset) = marked(text);
+        analysis.hover(offset, &never).unwrap().map(|hover| hover.markdown)
+    };
+    let parallel = "L1=LINE/0,0,1,0\nL2=LINE/0,1,1,1\n$0P1=POINT/INTOF,L1,L2\nGOTO/P1\nFINI\n";
+    let why = told(parallel).unwrap();
+    assert!(why.starts_with("`P1` has no value:\n- statement 3: ") && why.ends_with(')'), "{why}");
+    assert_eq!(why.matches("(APT0").count(), 1, "hints are no reason: {why}");
+    assert_eq!(told(&parallel.replace("$0", "").replace("GOTO/", "GOTO/$0")), Some(why));
+    assert_eq!(told("GOTO/$0P2\nFINI\n").unwrap(), "`P2` has no value: no statement gives it one");
+    assert_eq!(told("RESERV/$0A,3\nFINI\n").unwrap(), "`A` has no value:\n- statement 1 gives it none");
+    assert_eq!(told("$$ apt-lsp: dialect=cl\nTOOL PATH/$0OP1,TOOL,T1\n"), None, "a text");
+}
+
+#[test]
+fn calls_and_loops_show_what_they_execute() {
+    let told = |text: &str| {
+        let (analysis, offset) = marked(text);
+        analysis.hover(offset, &never).unwrap().unwrap().markdown
+    };
+    let text = "M1=MACRO/X,Y=2\nGOTO/X,Y,0\nGODLTA/X\nTERMAC\nFROM/0,0,0\nCALL/M1,X=3\nLOOPST\nI=1\nA) GOTO/I,0,0\nI=I+1\n\
+        IF(I-20)A,B,B\nB) LOOPND\nFINI\n";
+    let body = "\n\nexecutes:\n```apt\nGOTO/3,2,0\nGODLTA/3\n```";
+    for place in ["$0CALL/M1", "CALL/$0M1"] {
+        let hover = told(&text.replace("CALL/M1", place));
+        assert!(hover.ends_with(body), "{place}: {hover}");
+    }
+    let hover = told(&text.replace("LOOPST", "$0LOOPST"));
+    assert!(
+        hover.contains("executes:\n```apt\nI=1\nGOTO/1,0,0\n") && hover.ends_with(" more lines"),
+        "{hover}"
+    );
+    assert!(
+        !told(&text.replace("M1=MACRO", "$0M1=MACRO")).contains("executes"),
+        "a definition executes nothing"
+    );
+    assert!(told("M1=MACRO/X\n$0CALL/M1,X=1\nTERMAC\nFINI\n").ends_with("executes nothing"));
+}

@@ -84,6 +84,9 @@ pub struct MachineDefinition {
     pub schema: u32,
     /// Name by which it is asked for.
     pub id: String,
+    /// Names by which the MACHIN of a program asks for it, in upper case; six letters where cards are to hold them.
+    #[serde(default)]
+    pub machin: Vec<String>,
     /// What it is.
     pub title: String,
     /// Its control.
@@ -487,7 +490,7 @@ pub fn machines() -> Vec<MachineInfo> {
 pub fn machine(name: &str) -> Result<MachineDefinition, MachineError> {
     for text in BUNDLED {
         let machine = MachineDefinition::from_toml(text)?;
-        if machine.id == name {
+        if machine.id == name || machine.machin.iter().any(|known| known.eq_ignore_ascii_case(name)) {
             return Ok(machine);
         }
     }
@@ -506,6 +509,10 @@ mod tests {
         }
         let names: Vec<String> = machines().into_iter().map(|info| info.name).collect();
         assert_eq!(names, ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
+        // The names of MACHIN lead to one machine each.
+        let of_programs: Vec<String> =
+            ["LINCNC", "LinuxCNC", "fanuc", "HAAS"].map(|name| super::machine(name).unwrap().id).into();
+        assert_eq!(of_programs, ["linuxcnc-mill3", "linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
         assert_eq!(super::machine("x"), Err(MachineError::UnknownMachine { name: "x".to_owned() }));
     }
 

@@ -1,15 +1,17 @@
 //! Hovers: a word's help, a name's value with the meaning of each number, a motion's result.
 
 mod canonical;
+mod expanded;
 mod label;
 mod motion;
 mod regional;
+mod valueless;
 
 use std::ops::Range;
 
 use apt_program::symbols::{DefinitionEvent, Value};
 use apt_syntax::{
-    TextSize,
+    ParsedStatement, TextSize,
     statement::{Body, Element, ElementKind},
     vocabulary::{Word, WordClass, lookup},
 };
@@ -68,6 +70,9 @@ impl Analysis {
                         .collect();
                     format!("{}{}", word_markdown(word), self.modifier_markdown(word, &before))
                 }
+                Some(word) if matches!(word.spelling, "CALL" | "LOOPST") && spot.file.is_none() => {
+                    format!("{}{}", word_markdown(word), self.expansion_markdown(spot.offset, cancel)?)
+                }
                 Some(word) => word_markdown(word),
                 None => return Ok(None),
             },
@@ -78,6 +83,9 @@ impl Analysis {
                 }
             }
             ElementKind::Name => match self.name_markdown(spot, view.isn(), cancel)? {
+                Some(markdown) if spot.file.is_none() && is_called(&parsed, element) => {
+                    markdown + &self.expansion_markdown(spot.offset, cancel)?
+                }
                 Some(markdown) => markdown,
                 None => return Ok(None),
             },
@@ -212,14 +220,15 @@ impl Analysis {
         let local = regions.iter().rfind(|region| {
             region.variables.contains(&at.name) && at.scope.statements == Some((region.first, region.last))
         });
-        Ok(local.map(|region| {
-            format!(
+        match local {
+            Some(region) => Ok(Some(format!(
                 "variable `{}` of macro `{}`{}",
                 at.name,
                 region.name,
                 self.calls_markdown(region, &at.name)
-            )
-        }))
+            ))),
+            None => self.valueless_markdown(spot, &at, cancel),
+        }
     }
 
     /// How a name changed, if its statement was executed several times in a loop or in calls of a macro.
@@ -283,6 +292,12 @@ pub(crate) fn element_at(elements: &[Element], offset: TextSize) -> Option<&Elem
     };
     let inside = elements.iter().find(|element| element.range.contains(offset)).filter(speaks);
     inside.or_else(|| elements.iter().filter(speaks).find(|element| element.range.contains_inclusive(offset)))
+}
+
+/// Whether a name is that of the macro which its statement calls.
+fn is_called(parsed: &ParsedStatement, element: &Element) -> bool {
+    let calls = |body: &Body| matches!(body, Body::Call { name, .. } if name.range == element.range);
+    parsed.statement.parts.iter().any(|part| calls(&part.body))
 }
 
 /// A word's page: forms and help.
