@@ -26,8 +26,11 @@ pub(crate) enum TextForm {
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Endings of files that are programs when a folder is walked.
-pub(crate) const ENDINGS: [&str; 9] =
-    ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf"];
+pub(crate) const ENDINGS: [&str; 11] =
+    ["apt", "aptsource", "ncl", "cl", "cla", "cldata", "clf", "cls", "clsf", "cltap", "cltape"];
+
+/// The ending behind which Creo counts the versions of a file: `op010.ncl.1`, `op010.ncl.2` …
+const VERSIONED_ENDING: &str = "ncl";
 
 impl TextForm {
     /// The bytes of a text; none if it has characters that the form cannot hold.
@@ -68,8 +71,14 @@ pub(crate) fn decode(bytes: Vec<u8>) -> Source {
 
 /// Whether the name of a file looks like that of a program.
 pub(crate) fn is_program(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+    let ending_of =
+        |path: &Path| path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let Some(ending) = ending_of(path) else { return false };
+    if !ending.is_empty() && ending.bytes().all(|byte| byte.is_ascii_digit()) {
+        let before = path.file_stem().map(Path::new).and_then(ending_of);
+        return before.is_some_and(|before| before == VERSIONED_ENDING);
+    }
+    ENDINGS.contains(&ending.as_str())
 }
 
 #[cfg(test)]
@@ -83,6 +92,16 @@ mod tests {
             assert_eq!(source.form.encode(&source.text).as_deref(), Some(bytes));
         }
         assert_eq!(TextForm::Latin1.encode("😀"), None);
+    }
+
+    #[test]
+    fn programs_are_known_by_their_names() {
+        for name in ["a.apt", "A.APT", "dir/b.cls", "x.ncl", "op010.ncl.1", "OP.NCL.12", "t.cltape"] {
+            assert!(is_program(Path::new(name)), "{name}");
+        }
+        for name in ["apt", "a.txt", "a.1", "ncl.1", "a.apt.1", "a.ncl.1a", "a.ncl.", ".apt", ""] {
+            assert!(!is_program(Path::new(name)), "{name}");
+        }
     }
 
     #[test]

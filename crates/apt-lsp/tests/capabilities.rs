@@ -47,7 +47,7 @@ fn lines(places: &Value) -> Vec<u64> {
 /// One question for each announced provider, with a check of its answer.
 type Probe = (&'static str, fn(&mut Server));
 
-const PROBES: [Probe; 22] = [
+const PROBES: [Probe; 24] = [
     ("textDocumentSync", |server| {
         server.change(URI, 2, 9, 5, 6, "7");
         assert!(server.tree(URI).contains("\"7\""));
@@ -72,6 +72,24 @@ const PROBES: [Probe; 22] = [
     }),
     ("definitionProvider", |server| {
         assert_eq!(lines(&server.ask("textDocument/definition", place(7, 6)).unwrap()), [3]);
+    }),
+    ("declarationProvider", |server| {
+        assert_eq!(lines(&server.ask("textDocument/declaration", place(7, 6)).unwrap()), [3]);
+    }),
+    ("callHierarchyProvider", |server| {
+        let items = server.ask("textDocument/prepareCallHierarchy", place(8, 6)).unwrap();
+        let macro_item = &items[0];
+        assert_eq!((&macro_item["name"], &macro_item["kind"]), (&json!("M1"), &json!(12)));
+        assert_eq!(macro_item["selectionRange"]["start"], json!({ "line": 4, "character": 0 }));
+        let item = json!({ "item": macro_item });
+        let callers = server.ask("callHierarchy/incomingCalls", item.clone()).unwrap();
+        assert_eq!(callers[0]["fromRanges"][0]["start"], json!({ "line": 8, "character": 5 }));
+        assert_eq!((&callers[0]["from"]["kind"], &callers[0]["from"]["uri"]), (&json!(2), &json!(URI)));
+        assert_eq!(server.ask("callHierarchy/outgoingCalls", item).unwrap(), json!([]));
+        let callees =
+            server.ask("callHierarchy/outgoingCalls", json!({ "item": callers[0]["from"] })).unwrap();
+        assert_eq!((&callees[0]["to"], callees.as_array().map(Vec::len)), (macro_item, Some(1)));
+        assert_eq!(server.ask("textDocument/prepareCallHierarchy", place(3, 1)).unwrap(), Value::Null);
     }),
     ("referencesProvider", |server| {
         let mut params = place(7, 6);

@@ -42,12 +42,15 @@ fn exit_codes_tell_clean_findings_and_unusable() {
         (&["post", "good.apt"], 2),
         (&["expand", "good.apt", "--at", "0"], 2),
         (&["expand", "good.apt", "--at", "99"], 2),
+        (&["expand", "bad.apt"], 1),
         (&["view", "good.apt", "-o", "picture.gif"], 2),
+        (&["view", "bad.apt", "-o", "picture.svg"], 1),
         (&["explain", "APT9999"], 2),
         (&["diff", "good.apt", "good.apt"], 0),
         (&["diff", "good.apt", "bad.apt"], 1),
         (&["diff", "bad.apt", "bad.apt"], 1),
         (&["diff", "good.apt"], 2),
+        (&["diff", "-", "-"], 2),
         (&["diff", "good.apt", "no-such-file.apt"], 2),
         (&["diff", "good.apt", "good.apt", "--tolerance", "0"], 2),
         (&["convert", "good.apt", "--to", "cl"], 0),
@@ -209,6 +212,14 @@ fn a_project_file_is_found_and_a_broken_one_is_told() {
     let ran = folder.run(&["check", "parts/good.apt"]);
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("apt-lsp.toml") && ran.stderr.contains("dialekt"), "{ran:?}");
+    for code in ["APT9999", "110", "unused"] {
+        folder.write("apt-lsp.toml", format!("[severity]\n{code} = \"off\"\n"));
+        let ran = folder.run(&["check", "parts/good.apt"]);
+        assert!(ran.code == 2 && ran.stderr.contains("severity: there is no diagnostic"), "{code}: {ran:?}");
+    }
+    folder.write("apt-lsp.toml", "[severity]\napt0101 = \"off\"\n[budget]\npoints = 2\n");
+    let ran = folder.run(&["check", "parts/good.apt"]);
+    assert!(ran.code == 1 && ran.stdout.contains("error[APT0717]"), "{ran:?}");
 }
 
 #[cfg(unix)]
@@ -284,7 +295,7 @@ fn cl_files_and_binary_tapes_are_posted_as_they_stand() {
     assert!(bad.code == 1 && bad.stderr.contains("APT0813") && bad.stderr.contains("bad.cls:6:"), "{bad:?}");
     assert_eq!(folder.run(&["run", "good.cls", "--format", "cltape", "-o", "good.tap"]).code, 0);
     let tape = folder.run(&["post", "good.tap", "--dialect", "cl", "--machine", "linuxcnc-mill3"]);
-    assert!(tape.stderr.contains("binary CLTAPE"), "{tape:?}");
+    assert!(tape.stderr.contains("a binary CL file"), "{tape:?}");
     assert_eq!((tape.code, tape.stdout), (0, ran.stdout));
 }
 
@@ -428,4 +439,84 @@ fn a_path_that_cannot_be_measured_is_told() {
     let ran = folder.run(&["diff", "far.cl", "near.cl"]);
     assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{ran:?}");
     assert!(ran.stderr.contains("too far away"), "{ran:?}");
+}
+
+/// A program of which a tape can be made.
+const FED: &str =
+    "PARTNO GOOD\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/10\nFROM/0,0,1\nGOTO/1,0,1\nGOTO/1,2,1\nFINI\n";
+
+#[test]
+fn every_call_that_reads_a_program_says_its_dialect() {
+    let folder = Folder::new("dialects");
+    folder.write("good.apt", FED);
+    for call in [
+        &["--check", "good.apt"][..],
+        &["run", "good.apt"],
+        &["post", "good.apt", "--machine", "fanuc-mill3"],
+        &["expand", "good.apt"],
+        &["fmt", "--check", "good.apt"],
+        &["fmt", "good.apt"],
+        &["view", "good.apt", "-o", "out.svg"],
+        &["diff", "good.apt", "good.apt"],
+        &["convert", "good.apt", "--to", "nx"],
+        &["tree", "good.apt"],
+    ] {
+        let ran = folder.run(call);
+        assert!(ran.code == 0 && ran.stderr.contains("good.apt: dialect free"), "{call:?}: {ran:?}");
+        let set = folder.run(&[call, &["--dialect", "apt4"]].concat());
+        assert!(set.stderr.contains("good.apt: dialect apt4 (as set)"), "{call:?}: {set:?}");
+        let unknown = folder.run(&[call, &["--dialect", "apt5"]].concat());
+        let told = "there is no dialect `apt5`; there are free, apt3, apt4, cl";
+        assert!(unknown.code == 2 && unknown.stderr.contains(told), "{call:?}: {unknown:?}");
+    }
+}
+
+#[test]
+fn folders_hold_files_of_every_system_and_none_is_checked_twice() {
+    let folder = Folder::new("endings");
+    for name in ["parts/a.apt", "parts/op.ncl.1", "parts/op.ncl.12", "parts/old.CLS"] {
+        folder.write(name, GOOD);
+    }
+    for name in ["parts/readme.txt", "parts/a.apt.1", "parts/libx.so.1"] {
+        folder.write(name, BAD);
+    }
+    let checked = folder.run(&["check", "parts", "--format", "json", "parts/a.apt"]);
+    let report: Value = serde_json::from_str(&checked.stdout).unwrap();
+    let files: Vec<_> =
+        report["files"].as_array().unwrap().iter().map(|one| one["file"].as_str().unwrap()).collect();
+    assert_eq!(files, ["parts/a.apt", "parts/old.CLS", "parts/op.ncl.1", "parts/op.ncl.12"], "{checked:?}");
+}
+
+#[test]
+fn a_program_names_its_machine() {
+    let folder = Folder::new("machin");
+    let named = |name: &str| FED.replace("FROM", &format!("MACHIN/{name},1\nFROM"));
+    folder.write("named.apt", named("FANUC"));
+    let made = folder.run(&["post", "named.apt"]);
+    assert!(made.code == 0 && made.stdout.starts_with("%\nO1\n"), "{made:?}");
+    // What is typed, and then what the project says, counts more.
+    let typed = folder.run(&["post", "named.apt", "--machine", "linuxcnc-mill3"]);
+    assert!(typed.code == 0 && !typed.stdout.contains("O1"), "{typed:?}");
+    folder.write("apt-lsp.toml", "machine = \"linuxcnc-mill3\"\n");
+    assert_eq!(folder.run(&["post", "named.apt"]).stdout, typed.stdout);
+    let other = Folder::new("machin-other");
+    other.write("other.apt", named("CINCY"));
+    let unknown = other.run(&["post", "other.apt"]);
+    assert!(unknown.code == 2 && unknown.stderr.contains("there is no machine named `CINCY`"), "{unknown:?}");
+    assert_eq!(other.run(&["--check", "other.apt"]).code, 0, "a tape is nobody's wish there");
+}
+
+#[test]
+fn a_binary_file_of_ncl_is_read() {
+    let folder = Folder::new("ncl-binary");
+    let bytes = include_bytes!("../../apt-cldata/tests/data/ncl-03.cl");
+    std::fs::write(folder.0.join("arc.cl"), bytes).unwrap();
+    assert_eq!(folder.run(&["--check", "."]).code, 0);
+    let text = folder.run(&["run", "arc.cl", "--format", "cl"]);
+    assert!(text.stdout.starts_with("PARTNO SAMPLE\nMACHIN/PWORKS,12.0\nMULTAX/ON\n"), "{text:?}");
+    assert!(text.code == 0 && text.stderr.contains("a binary CL file"), "{text:?}");
+    let tape = folder.run(&["post", "arc.cl", "--machine", "linuxcnc-mill3"]);
+    assert!(tape.code == 0 && tape.stdout.matches("\nN").count() > 40, "{tape:?}");
+    assert_eq!(folder.run(&["convert", "arc.cl", "--to", "ncl", "-o", "arc.as"]).code, 0);
+    assert_eq!(folder.run(&["diff", "arc.cl", "arc.as"]).code, 0);
 }

@@ -184,12 +184,13 @@ fn a_tape_is_the_same_tape() {
     assert_eq!(std::fs::read(folder.0.join("b.tap")).unwrap(), tape[..tape.len() - 1]);
     let rows = folder.run(&["convert", "a.tap", "--to", "ncl"]);
     assert!(rows.stdout.contains("N16   , GOTO/"), "the statement number of the tape: {}", rows.stdout);
+    // A binary file of NCL that ends inside its first record.
     let mut other = vec![0; 288];
-    other[..4].copy_from_slice(&[35, 0, 0xe8, 0x1c]);
+    other[..4].copy_from_slice(&[36, 0, 0xe8, 0x1c]);
     folder.write("c.cl", other);
     let ran = folder.run(&["convert", "c.cl", "--to", "cl"]);
     assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
-    assert!(ran.stderr.contains("a binary CL file of NCL"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("the record at byte 0 has 36 data words"), "{}", ran.stderr);
 }
 
 #[test]

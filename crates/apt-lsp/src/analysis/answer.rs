@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 pub(crate) use apt_ide::action::ActionKind;
+pub(crate) use apt_ide::calls::{Calls, Routine};
 pub(crate) use apt_ide::completion::{Completion, CompletionKind};
 pub(crate) use apt_ide::conversion::{ClDialect, ConvertedFile};
 pub(crate) use apt_ide::difference::{
@@ -49,7 +50,7 @@ pub(crate) enum Refusal {
         known: Vec<String>,
     },
     /// No machine was named, neither in the request nor in the settings.
-    #[error("no machine is named; give one or set `machine` in apt-lsp.toml")]
+    #[error("no machine is named; give one, set `machine` in apt-lsp.toml, or write MACHIN into the program")]
     NoMachine,
     /// The program gives nothing to write.
     #[error("{0}")]

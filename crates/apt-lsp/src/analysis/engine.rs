@@ -6,13 +6,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use apt_ide::dialect::describe;
+use apt_ide::dialect::{describe, names};
 use apt_ide::format::{FormatOptions, Kept, Plan, format_range, plan};
 use apt_ide::{Analysis, Cancelled};
 use apt_run::diagnostic as found;
 use apt_run::document::DialectReason;
 use apt_run::position::LineIndex;
-use apt_run::report::diagnostic_report;
+use apt_run::report::{Sources, diagnostic_report};
 use apt_run::settings::Settings;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -42,14 +42,25 @@ impl Language for Engine {
         let empty = Analysis::new("", None, &settings);
         match &settings.dialect {
             Some(name) if *empty.document().dialect_reason() != DialectReason::Setting => {
-                Err(format!("there is no dialect `{name}`"))
+                Err(format!("there is no dialect `{name}`; there are {}", names().join(", ")))
             }
-            _ => Ok(()),
+            _ => match settings
+                .severity
+                .keys()
+                .find(|code| apt_ide::explain(code).is_none_or(|page| page.code != **code))
+            {
+                Some(code) => Err(format!("severity: there is no diagnostic `{code}`")),
+                None => Ok(()),
+            },
         }
     }
 
     fn machines(&self) -> Vec<MachineInfo> {
         apt_ide::tape::machines()
+    }
+
+    fn has_machine(&self, name: &str) -> bool {
+        apt_ide::tape::machine(name).is_ok()
     }
 
     fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>> {
@@ -89,7 +100,11 @@ impl Language for Engine {
 }
 
 fn read_settings(values: &Values) -> Result<Settings, serde_json::Error> {
-    Settings::deserialize(&Value::Object(values.clone()))
+    let mut settings = Settings::deserialize(&Value::Object(values.clone()))?;
+    // Codes are known in capitals, however they are written.
+    settings.severity =
+        settings.severity.into_iter().map(|(code, one)| (code.to_ascii_uppercase(), one)).collect();
+    Ok(settings)
 }
 
 impl From<Cancelled> for Interrupted {
@@ -278,6 +293,18 @@ impl Document for Program {
         self.0.rename_everywhere(spot, new).map_err(|error| Refusal::Impossible(error.to_string()))
     }
 
+    fn routine(&self, spot: Spot<'_>) -> Option<Routine> {
+        self.0.routine_at(spot)
+    }
+
+    fn callers(&self, name: &str) -> Vec<Calls> {
+        self.0.callers(name)
+    }
+
+    fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls> {
+        self.0.callees(name, file)
+    }
+
     fn outline(&self) -> Vec<OutlineEntry> {
         self.0.outline()
     }
@@ -384,15 +411,32 @@ impl Document for Program {
         Ok(report)
     }
 
+    fn machine_of_program(&self, control: &Control) -> Answer<Option<String>> {
+        Ok(with(control, "reading", |cancel, _| self.0.machine_of_program(cancel))?)
+    }
+
     fn tape(&self, machine: &str, control: &Control) -> Result<Value, Refusal> {
         let made = self.control_tape(machine, control)?;
+        // Under its own name, whatever the program calls it.
+        let machine = apt_ide::tape::machine(machine).map_or_else(|_| machine.to_owned(), |known| known.id);
         let blocks: Vec<_> = made.tape.blocks.iter().map(|block| block.text.as_str()).collect();
         let origin: Vec<_> = made.tape.blocks.iter().map(|block| block.isn).collect();
         let (text, tree) = (self.0.text(), self.0.document().tree());
         let (file, lines) = (self.0.document().file().unwrap_or("-"), LineIndex::new(&text));
         let found: Vec<_> =
             made.diagnostics.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines)).collect();
-        Ok(json!({ "machine": machine, "blocks": blocks, "origin": origin, "diagnostics": to_json(&found)? }))
+        let mut sources = Sources::new(tree, &lines);
+        let sources: Vec<_> = made
+            .block_origins()
+            .map(|origin| origin.map(|origin| sources.of(origin)).unwrap_or_default())
+            .collect();
+        Ok(json!({
+            "machine": machine,
+            "blocks": blocks,
+            "origin": origin,
+            "sources": to_json(&sources)?,
+            "diagnostics": to_json(&found)?,
+        }))
     }
 
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {

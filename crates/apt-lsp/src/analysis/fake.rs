@@ -43,6 +43,10 @@ impl Language for FakeLanguage {
         vec![MachineInfo { name: "toy".into(), title: "A toy".into(), control: "none".into() }]
     }
 
+    fn has_machine(&self, name: &str) -> bool {
+        self.machines().iter().any(|machine| machine.name == name)
+    }
+
     fn text_of_binary(&self, _: &[u8]) -> Option<Result<String, String>> {
         None
     }
@@ -226,6 +230,22 @@ impl Document for FakeDocument {
             return Err(Refusal::Impossible("a name has letters".into()));
         }
         Ok(self.references(spot).into_iter().map(|one| (one, new.to_owned())).collect())
+    }
+
+    fn machine_of_program(&self, _: &Control) -> Answer<Option<String>> {
+        Ok(None)
+    }
+
+    fn routine(&self, _: Spot<'_>) -> Option<Routine> {
+        None
+    }
+
+    fn callers(&self, _: &str) -> Vec<Calls> {
+        Vec::new()
+    }
+
+    fn callees(&self, _: Option<&str>, _: Option<&std::path::Path>) -> Vec<Calls> {
+        Vec::new()
     }
 
     fn outline(&self) -> Vec<OutlineEntry> {

@@ -36,6 +36,9 @@ pub(crate) trait Language: Send + Sync + 'static {
     /// The machines a tape can be made for.
     fn machines(&self) -> Vec<MachineInfo>;
 
+    /// Whether there is a machine of this name, be it its own or one that programs give it.
+    fn has_machine(&self, name: &str) -> bool;
+
     /// The program that bytes in a binary form say as text, or why they cannot be read; nothing for bytes of no form
     /// that is known.
     fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>>;
@@ -122,6 +125,15 @@ pub(crate) trait Document: Send + Sync {
     /// The edits in all files that give the name at a place another spelling, all relative to this version.
     fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal>;
 
+    /// The macro that is named at a place, or the program at its PARTNO.
+    fn routine(&self, spot: Spot<'_>) -> Option<Routine>;
+
+    /// Who calls a macro.
+    fn callers(&self, name: &str) -> Vec<Calls>;
+
+    /// Whom a macro calls, or for none the statements outside of all macros of a file (none is the program itself).
+    fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls>;
+
     /// The outline.
     fn outline(&self) -> Vec<OutlineEntry>;
 
@@ -158,6 +170,9 @@ pub(crate) trait Document: Send + Sync {
 
     /// Runs the program, or the statements that touch a range, and gives the report as JSON.
     fn run(&self, request: &RunRequest, control: &Control) -> Result<serde_json::Value, Refusal>;
+
+    /// The machine that the program itself names by MACHIN; it may be one that is not known.
+    fn machine_of_program(&self, control: &Control) -> Answer<Option<String>>;
 
     /// The tape for a machine, as JSON.
     fn tape(&self, machine: &str, control: &Control) -> Result<serde_json::Value, Refusal>;

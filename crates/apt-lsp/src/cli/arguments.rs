@@ -196,7 +196,7 @@ pub(super) struct PostCall {
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// The machine (default: project file)
+    /// The machine (default: project file, then MACHIN of the program)
     #[arg(long, value_name = "NAME")]
     pub machine: Option<String>,
     /// Print the machines there are

@@ -6,7 +6,7 @@ use super::Outcome;
 use super::arguments::{CheckFormat, CheckOptions};
 use super::console::Console;
 use super::findings::{self, Checked};
-use super::program::{self, Program};
+use super::program::{self, Dialects, Program};
 use crate::analysis::{Language, Level};
 
 /// Checks programs and tells the findings.
@@ -20,13 +20,17 @@ pub(super) fn check(
     let mut worst = if unreadable > 0 { Outcome::Unusable } else { Outcome::Clean };
     let level = if options.no_motion { Level::Section1 } else { Level::Motion };
     let mut programs = Vec::new();
+    let mut dialects = Dialects::default();
     for file in &files {
         match Program::load(file, &options.reading, console, language) {
-            Some(program) => programs.push(program),
+            Some(program) => {
+                dialects.add(&program);
+                programs.push(program);
+            }
             None => worst = Outcome::Unusable,
         }
     }
-    program::note_dialects(&programs, console);
+    program::note_dialects(&dialects, console);
     let mut checked = Vec::new();
     for program in programs {
         let (control, bar) = console.control(&program.name);

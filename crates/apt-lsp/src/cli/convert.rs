@@ -29,10 +29,6 @@ pub(super) fn convert(call: &ConvertCall, console: &Console, language: &dyn Lang
         }
     };
     let written = console.write(&bytes, call.output.as_deref());
-    let checked = [Checked { program, diagnostics: made.diagnostics }];
-    let text = findings::human::text(&checked);
-    if !text.is_empty() {
-        console.tell(text.trim_end());
-    }
-    written.max(findings::outcome(&checked, call.deny_warnings))
+    let checked = Checked { program, diagnostics: made.diagnostics };
+    written.max(findings::tell(checked, call.deny_warnings, console))
 }

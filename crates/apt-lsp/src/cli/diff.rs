@@ -9,7 +9,7 @@ use super::arguments::{DiffCall, DiffFormat, ProgramArgument};
 use super::console::Console;
 use super::findings::{self, Checked};
 use super::listing::plain;
-use super::program::Program;
+use super::program::{Program, STANDARD_INPUT};
 use crate::analysis::{
     Allowance, DifferentStretch, Language, PathDifference, Statement, StretchKind, StretchSide, ToolPath,
     Units,
@@ -17,6 +17,10 @@ use crate::analysis::{
 
 /// Compares two paths. Differences are findings, and so are errors of the programs.
 pub(super) fn diff(call: &DiffCall, console: &Console, language: &dyn Language) -> Outcome {
+    if [&call.first, &call.second].iter().all(|file| file.as_os_str() == STANDARD_INPUT) {
+        console.error("standard input holds one program: A and B cannot both be `-`");
+        return Outcome::Unusable;
+    }
     let read = |file: &std::path::PathBuf| {
         let argument = ProgramArgument { file: file.clone(), reading: call.reading.clone() };
         path_of(Program::read(&argument, console, language)?, console)

@@ -5,8 +5,9 @@ use tower_lsp::ls_types::Position;
 use super::Outcome;
 use super::arguments::ExpandCall;
 use super::console::Console;
+use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{ExpandedLine, Expansion, Language};
+use crate::analysis::{ExpandedLine, Expansion, Language, Level};
 use crate::convert::Encoding;
 use crate::convert::outgoing::frame_text;
 
@@ -14,7 +15,7 @@ use crate::convert::outgoing::frame_text;
 const ORIGIN_COLUMN: usize = 40;
 
 /// Prints the expansion, the origin of each statement in a remark behind it, or before one that a remark behind would be part of: what is
-/// printed runs as the program does.
+/// printed runs as the program does. Mistakes, which leave statements out, are told.
 pub(super) fn expand(call: &ExpandCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(mut program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
     let at = match call.at {
@@ -31,14 +32,20 @@ pub(super) fn expand(call: &ExpandCall, console: &Console, language: &dyn Langua
     };
     let (control, bar) = console.control(&program.name);
     let expansion = program.document.expand(at, call.depth, &control);
+    let both =
+        expansion.and_then(|made| Ok((made, program.document.diagnostics(Level::Section1, &control)?)));
     bar.finish_and_clear();
-    match expansion {
-        Ok(expansion) => console.print(&with_origins(&expansion)),
+    let (expansion, diagnostics) = match both {
+        Ok(both) => both,
         Err(interrupted) => {
             console.error(&format!("{}: {interrupted}", program.name));
-            Outcome::Unusable
+            return Outcome::Unusable;
         }
-    }
+    };
+    let written = console.print(&with_origins(&expansion));
+    // Places are told as everywhere.
+    program.index.encoding = Encoding::Utf16;
+    written.max(findings::tell(Checked { program, diagnostics }, false, console))
 }
 
 fn with_origins(expansion: &Expansion) -> String {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Outcome;
 use super::arguments::FmtCall;
 use super::console::Console;
-use super::program::{self, Program, STANDARD_INPUT};
+use super::program::{self, Dialects, Program, STANDARD_INPUT};
 use crate::analysis::Language;
 
 /// Statements of one file that are named if they cannot be given the style.
@@ -16,19 +16,24 @@ const MOST_NAMED: usize = 5;
 pub(super) fn fmt(call: &FmtCall, console: &Console, language: &dyn Language) -> Outcome {
     let (files, unreadable) = program::find(&call.paths, console);
     let mut worst = if unreadable > 0 { Outcome::Unusable } else { Outcome::Clean };
+    let mut dialects = Dialects::default();
     for file in &files {
         let outcome = match Program::load(file, &call.reading, console, language) {
-            Some(program) => one(&program, file, call.check, console),
+            Some(program) => {
+                dialects.add(&program);
+                one(&program, file, call.check, console)
+            }
             None => Outcome::Unusable,
         };
         worst = worst.max(outcome);
     }
+    program::note_dialects(&dialects, console);
     worst
 }
 
 fn one(program: &Program, file: &Path, check: bool, console: &Console) -> Outcome {
     let Some(form) = program.form else {
-        console.note(&format!("{}: a binary CLTAPE has no style; it stays as it is", program.name));
+        console.note(&format!("{}: a binary CL file has no style; it stays as it is", program.name));
         return Outcome::Clean;
     };
     let formatting = program.document.format(None);

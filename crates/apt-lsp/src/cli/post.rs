@@ -18,14 +18,17 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
     let argument = ProgramArgument { file, reading: call.reading.clone() };
     let Some(program) = Program::read(&argument, console, language) else { return Outcome::Unusable };
     let of_settings = program.settings.program.get("machine").and_then(Value::as_str).map(str::to_owned);
-    let Some(machine) = call.machine.clone().or(of_settings) else {
-        console.error(&Refusal::NoMachine.to_string());
-        return Outcome::Unusable;
-    };
     let (control, bar) = console.control(&program.name);
-    let found = program.document.tape_diagnostics(&machine, &control);
-    let product = Product::Tape { machine, punch: call.punch.map(code) };
-    let both = found.and_then(|found| Ok((found, program.document.product(&product, &control)?)));
+    let both = match call.machine.clone().or(of_settings) {
+        Some(machine) => Ok(Some(machine)),
+        None => program.document.machine_of_program(&control).map_err(Refusal::from),
+    };
+    let both = both.and_then(|machine| {
+        let machine = machine.ok_or(Refusal::NoMachine)?;
+        let found = program.document.tape_diagnostics(&machine, &control)?;
+        let product = Product::Tape { machine, punch: call.punch.map(code) };
+        Ok((found, program.document.product(&product, &control)?))
+    });
     bar.finish_and_clear();
     let (diagnostics, tape) = match both {
         Ok(both) => both,
@@ -35,12 +38,8 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
         }
     };
     let written = console.write(&tape, call.output.as_deref());
-    let checked = [Checked { program, diagnostics }];
-    let text = findings::human::text(&checked);
-    if !text.is_empty() {
-        console.tell(text.trim_end());
-    }
-    written.max(findings::outcome(&checked, call.deny_warnings))
+    let checked = Checked { program, diagnostics };
+    written.max(findings::tell(checked, call.deny_warnings, console))
 }
 
 fn code(punch: Punch) -> TapeCode {

@@ -1,6 +1,6 @@
 //! Programs named on the command line: files, folders, standard input.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ impl Program {
             }
         };
         if tape.is_some() {
-            console.note(&format!("{name}: a binary CLTAPE; places are those of its text form"));
+            console.note(&format!("{name}: a binary CL file; places are those of its text form"));
         }
         if source.form == TextForm::Latin1 {
             console.note(&format!("{name}: not UTF-8; read as Latin-1"));
@@ -111,14 +111,21 @@ impl Program {
     }
 }
 
-/// Says which dialects are in force in many programs.
-pub(super) fn note_dialects(programs: &[Program], console: &Console) {
-    let mut by_dialect: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    for program in programs {
-        by_dialect.entry(program.document.dialect()).or_default().push(&program.name);
+/// The dialects in force in many programs, with the names of those.
+#[derive(Default)]
+pub(super) struct Dialects(BTreeMap<String, Vec<String>>);
+
+impl Dialects {
+    /// Adds a program.
+    pub(super) fn add(&mut self, program: &Program) {
+        self.0.entry(program.document.dialect()).or_default().push(program.name.clone());
     }
-    for (dialect, names) in by_dialect {
-        match names[..] {
+}
+
+/// Says which dialects are in force in many programs.
+pub(super) fn note_dialects(dialects: &Dialects, console: &Console) {
+    for (dialect, names) in &dialects.0 {
+        match &names[..] {
             [name] => console.note(&format!("{name}: dialect {dialect}")),
             _ => console.note(&format!("{} programs: dialect {dialect}", names.len())),
         }
@@ -126,7 +133,7 @@ pub(super) fn note_dialects(programs: &[Program], console: &Console) {
 }
 
 /// The programs that paths name: files as they are, folders with everything that looks like a program,
-/// in order of their names. The number tells how many paths could not be read.
+/// in order of their names; none of them twice. The number tells how many paths could not be read.
 pub(super) fn find(paths: &[PathBuf], console: &Console) -> (Vec<PathBuf>, usize) {
     let mut found = Vec::new();
     let mut unreadable = 0;
@@ -140,9 +147,8 @@ pub(super) fn find(paths: &[PathBuf], console: &Console) -> (Vec<PathBuf>, usize
         walk.require_git(false).sort_by_file_path(Path::cmp);
         for entry in walk.build() {
             match entry {
-                Ok(entry)
-                    if entry.file_type().is_some_and(|kind| kind.is_file()) && is_program(entry.path()) =>
-                {
+                // A link to a file is a file of the folder; links to folders may lead in circles.
+                Ok(entry) if is_program(entry.path()) && entry.path().is_file() => {
                     found.push(entry.into_path());
                 }
                 Ok(_) => {}
@@ -156,6 +162,7 @@ pub(super) fn find(paths: &[PathBuf], console: &Console) -> (Vec<PathBuf>, usize
             console.note(&format!("{}: no programs (.{})", path.display(), ENDINGS.join(", .")));
         }
     }
-    found.dedup();
+    let mut known = HashSet::new();
+    found.retain(|path| known.insert(path.clone()));
     (found, unreadable)
 }

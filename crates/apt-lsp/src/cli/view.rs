@@ -5,10 +5,11 @@ use std::path::Path;
 use super::Outcome;
 use super::arguments::ViewCall;
 use super::console::Console;
+use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{Language, PictureKind, Product};
+use crate::analysis::{Language, Level, PictureKind, Product, Refusal};
 
-/// Draws the path of a program.
+/// Draws the path of a program. What keeps it from being whole is told.
 pub(super) fn view(call: &ViewCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(kind) = kind_of(&call.output) else {
         console.error(&format!("{}: the name does not end with .html, .svg or .png", call.output.display()));
@@ -16,15 +17,19 @@ pub(super) fn view(call: &ViewCall, console: &Console, language: &dyn Language) 
     };
     let Some(program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
     let (control, bar) = console.control(&program.name);
-    let picture = program.document.product(&Product::Picture(kind), &control);
+    let found = program.document.diagnostics(Level::Motion, &control).map_err(Refusal::from);
+    let both =
+        found.and_then(|found| Ok((found, program.document.product(&Product::Picture(kind), &control)?)));
     bar.finish_and_clear();
-    match picture {
-        Ok(bytes) => console.write(&bytes, Some(&call.output)),
+    let (diagnostics, picture) = match both {
+        Ok(both) => both,
         Err(refusal) => {
             console.error(&format!("{}: {refusal}", program.name));
-            Outcome::Unusable
+            return Outcome::Unusable;
         }
-    }
+    };
+    let written = console.write(&picture, Some(&call.output));
+    written.max(findings::tell(Checked { program, diagnostics }, false, console))
 }
 
 fn kind_of(output: &Path) -> Option<PictureKind> {

@@ -1,5 +1,6 @@
 //! The handlers: each puts an event into the queue, or asks for a snapshot and has work done on it.
 
+mod calls;
 mod sent_tokens;
 mod whole;
 mod wishes;
@@ -305,6 +306,35 @@ impl LanguageServer for Backend {
             Ok((!places.is_empty()).then_some(lsp::GotoDefinitionResponse::Array(places)))
         })
         .await
+    }
+
+    async fn goto_declaration(
+        &self,
+        params: lsp::request::GotoDeclarationParams,
+    ) -> Result<Option<lsp::request::GotoDeclarationResponse>> {
+        // Names are declared where they get their value: there is no other place for it.
+        self.goto_definition(params).await
+    }
+
+    async fn prepare_call_hierarchy(
+        &self,
+        params: lsp::CallHierarchyPrepareParams,
+    ) -> Result<Option<Vec<lsp::CallHierarchyItem>>> {
+        self.routine_at(params.text_document_position_params).await
+    }
+
+    async fn incoming_calls(
+        &self,
+        params: lsp::CallHierarchyIncomingCallsParams,
+    ) -> Result<Option<Vec<lsp::CallHierarchyIncomingCall>>> {
+        self.callers_of(params.item).await
+    }
+
+    async fn outgoing_calls(
+        &self,
+        params: lsp::CallHierarchyOutgoingCallsParams,
+    ) -> Result<Option<Vec<lsp::CallHierarchyOutgoingCall>>> {
+        self.callees_of(params.item).await
     }
 
     async fn document_highlight(

@@ -106,6 +106,7 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
             retrigger_characters: None,
             work_done_progress_options: lsp::WorkDoneProgressOptions::default(),
         }),
+        declaration_provider: Some(lsp::DeclarationCapability::Simple(true)),
         definition_provider: Some(lsp::OneOf::Left(true)),
         references_provider: Some(lsp::OneOf::Left(true)),
         rename_provider: Some(if client.prepares_rename {
@@ -136,6 +137,7 @@ pub(super) fn server_capabilities(client: &ClientFeatures) -> ServerCapabilities
         }),
         document_formatting_provider: Some(lsp::OneOf::Left(true)),
         document_range_formatting_provider: Some(lsp::OneOf::Left(true)),
+        call_hierarchy_provider: Some(lsp::CallHierarchyServerCapability::Simple(true)),
         folding_range_provider: Some(lsp::FoldingRangeProviderCapability::Simple(true)),
         code_lens_provider: Some(lsp::CodeLensOptions { resolve_provider: None }),
         semantic_tokens_provider: Some(
@@ -212,6 +214,7 @@ mod tests {
               "renameProvider": true,
               "documentLinkProvider": {},
               "foldingRangeProvider": true,
+              "declarationProvider": true,
               "executeCommandProvider": {
                 "commands": [
                   "apt.runMotion",
@@ -223,6 +226,7 @@ mod tests {
                 ],
                 "workDoneProgress": true
               },
+              "callHierarchyProvider": true,
               "semanticTokensProvider": {
                 "legend": {
                   "tokenTypes": [

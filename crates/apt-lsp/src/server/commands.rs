@@ -79,8 +79,13 @@ fn read<T: DeserializeOwned>(argument: Value) -> Result<T> {
 async fn run_motion(server: &Backend, argument: RunArgument, token: Option<ProgressToken>) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
     let RunArgument { range, machine, scene, story, .. } = argument;
+    let language = Arc::clone(server.language());
     long(server, "Run motion", snapshot, token, move |snapshot, control| {
-        let machine = machine.or_else(|| default_machine(&snapshot.settings));
+        let machine = match machine.or_else(|| default_machine(&snapshot.settings)) {
+            Some(machine) => Some(machine),
+            // Nobody has asked for this one: if it is another's, there is a run without a tape.
+            None => snapshot.document.machine_of_program(control)?.filter(|name| language.has_machine(name)),
+        };
         let range = range.map(|range| snapshot.index.bytes(range));
         snapshot.document.run(&RunRequest { range, machine, scene, story }, control)
     })
@@ -113,8 +118,10 @@ async fn canonical_form(server: &Backend, argument: PlaceArgument) -> Result<Val
 async fn post(server: &Backend, argument: PostArgument, token: Option<ProgressToken>) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
     long(server, "Post", snapshot, token, move |snapshot, control| {
-        let machine =
-            argument.machine.or_else(|| default_machine(&snapshot.settings)).ok_or(Refusal::NoMachine)?;
+        let machine = match argument.machine.or_else(|| default_machine(&snapshot.settings)) {
+            Some(machine) => machine,
+            None => snapshot.document.machine_of_program(control)?.ok_or(Refusal::NoMachine)?,
+        };
         snapshot.document.tape(&machine, control)
     })
     .await

@@ -8,6 +8,7 @@ pub(super) mod sarif;
 mod tests;
 
 use super::Outcome;
+use super::console::Console;
 use super::program::Program;
 use crate::analysis::{Diagnostic, Severity};
 
@@ -46,4 +47,14 @@ pub(super) fn outcome(checked: &[Checked], deny_warnings: bool) -> Outcome {
     } else {
         Outcome::Clean
     }
+}
+
+/// Tells the findings of a program beside what was asked for, and what they mean for the exit code.
+pub(super) fn tell(checked: Checked, deny_warnings: bool, console: &Console) -> Outcome {
+    let checked = [checked];
+    let text = human::text(&checked);
+    if !text.is_empty() {
+        console.tell(text.trim_end());
+    }
+    outcome(&checked, deny_warnings)
 }
