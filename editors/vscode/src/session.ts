@@ -232,7 +232,7 @@ export class Session implements vscode.Disposable {
 }
 
 /** Settings of the section `apt` that are the server's business. */
-const SERVER_SETTINGS = ['dialect', 'units', 'include', 'motion', 'machine', 'severity', 'budget'];
+const SERVER_SETTINGS = ['dialect', 'units', 'include', 'motion', 'machine', 'severity', 'format', 'budget'];
 
 /** Values that stand for "not set": the project file or the server's own default decides. */
 function isUnset(value: unknown): boolean {

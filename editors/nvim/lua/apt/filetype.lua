@@ -4,7 +4,7 @@ local M = {}
 -- Endings that are ours whatever the file says.
 local CERTAIN = { 'apt', 'ncl', 'aptsource' }
 -- Endings shared with other languages (LaTeX classes, OpenCL ...).
-local SHARED = { 'cl', 'cls' }
+local SHARED = { 'cl', 'cls', 'clsf', 'cla' }
 -- Lines of a shared file that are looked at: CL files begin with remarks and a heading.
 local LINES_READ = 60
 
