@@ -170,6 +170,16 @@ impl Analysis {
         self.document.run(cancel, progress)
     }
 
+    /// The statements in the order of their numbers, which begin with one; bytes of the text.
+    pub fn statements(&self) -> Vec<std::ops::Range<usize>> {
+        let tree = self.document().tree();
+        let place = |view: StatementView| {
+            let start = absolute(&view, TextRange::default()).start;
+            start..start + view.text().len()
+        };
+        tree.statements().map(place).collect()
+    }
+
     /// The diagnostics up to a level, in order of their place. Where the settings name a machine, the motion level holds
     /// also what its post-processor finds, as far as the program itself is without errors.
     ///

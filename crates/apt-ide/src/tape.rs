@@ -25,7 +25,7 @@ use apt_syntax::{
 
 pub use apt_post::{
     MachineInfo,
-    punch::{Code as TapeCode, PunchError},
+    punch::{Code as TapeCode, PunchError, length_inches},
 };
 
 use crate::{Analysis, Cancel, Cancelled};

@@ -308,6 +308,9 @@ fn tapes_are_punched_and_pictures_are_images() {
         let ran = folder.run(&["post", "good.apt", "--machine", "fanuc-mill3", "--punch", code, "-o", &name]);
         assert!(ran.code < 2 && ran.stdout.is_empty(), "{ran:?}");
         let image = std::fs::read(folder.0.join(&name)).unwrap();
+        // Ten characters make an inch.
+        let feet = format!("{:.3} ft", image.len() as f64 / 120.0);
+        assert!(ran.stderr.contains(&format!("good.apt: {feet} (")), "{feet}: {ran:?}");
         let rows: Vec<u8> = image.into_iter().filter(|row| *row != 0).collect();
         assert!(rows.len() > 20, "{code}: {} rows", rows.len());
         assert!(rows.iter().all(|row| row.count_ones() % 2 == parity), "{code}");
@@ -519,4 +522,19 @@ fn a_binary_file_of_ncl_is_read() {
     assert!(tape.code == 0 && tape.stdout.matches("\nN").count() > 40, "{tape:?}");
     assert_eq!(folder.run(&["convert", "arc.cl", "--to", "ncl", "-o", "arc.as"]).code, 0);
     assert_eq!(folder.run(&["diff", "arc.cl", "arc.as"]).code, 0);
+}
+
+#[test]
+fn the_tape_of_a_program_is_that_of_apt_iii_byte_for_byte() {
+    let folder = Folder::new("cltape");
+    folder.write("sample.apt", include_bytes!("../../apt-cldata/tests/data/cltape-01.apt"));
+    assert_eq!(folder.run(&["run", "sample.apt", "--format", "cltape", "-o", "sample.tap"]).code, 0);
+    let sample = include_bytes!("../../apt-cldata/tests/data/cltape-01.tap");
+    // One filling byte stands at the end of the sample.
+    assert!(std::fs::read(folder.0.join("sample.tap")).unwrap() == sample[..sample.len() - 1]);
+    let listing = folder.run(&["run", "sample.apt"]).stdout;
+    let sections = ["PROGRAM", "STATEMENTS", "CANONICAL FORMS", "CUTTER LOCATIONS", "TOTALS"];
+    let found =
+        sections.map(|section| listing.find(section).unwrap_or_else(|| panic!("{section}: {listing}")));
+    assert!(found.is_sorted() && listing.contains("     15        GO/TO,C1,TO,P1\n"), "{listing}");
 }

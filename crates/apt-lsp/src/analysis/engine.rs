@@ -358,6 +358,10 @@ impl Document for Program {
         }
     }
 
+    fn statements(&self) -> Vec<Range<usize>> {
+        self.0.statements()
+    }
+
     fn syntax_tree(&self) -> String {
         self.0.syntax_tree()
     }

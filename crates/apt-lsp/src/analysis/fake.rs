@@ -309,6 +309,10 @@ impl Document for FakeDocument {
         }
     }
 
+    fn statements(&self) -> Vec<Range<usize>> {
+        Vec::new()
+    }
+
     fn syntax_tree(&self) -> String {
         self.text.clone()
     }

@@ -159,6 +159,9 @@ pub(crate) trait Document: Send + Sync {
     /// given.
     fn format(&self, range: Option<Range<usize>>) -> Formatting;
 
+    /// The statements in the order of their numbers, which begin with one; bytes of the text.
+    fn statements(&self) -> Vec<Range<usize>>;
+
     /// The syntax tree as indented text.
     fn syntax_tree(&self) -> String;
 

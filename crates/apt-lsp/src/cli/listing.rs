@@ -10,10 +10,12 @@ const DECIMALS: usize = 6;
 /// Width of a coordinate.
 const WIDTH: usize = 14;
 
-/// The listing. Writing to a string cannot fail, so results of `write!` are dropped.
-pub(super) fn text(report: &Value) -> String {
+/// The listing of a run, with the statements of its program as they are written, in the order of their numbers. Writing to a
+/// string cannot fail, so results of `write!` are dropped.
+pub(super) fn text(report: &Value, source: &[&str]) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "PROGRAM {}", words(&report["program"]));
+    statements(&mut text, source);
     printed(&mut text, report);
     symbols(&mut text, report);
     motions(&mut text, report);
@@ -44,6 +46,22 @@ pub(super) fn plain(number: f64) -> String {
 
 fn numbers(values: &Value) -> String {
     list(values).iter().map(words).collect::<Vec<_>>().join(", ")
+}
+
+/// The statements with their numbers, by which all that follows names them; blank lines have numbers, too.
+fn statements(text: &mut String, source: &[&str]) {
+    if source.iter().all(|statement| statement.trim().is_empty()) {
+        return;
+    }
+    text.push_str("\nSTATEMENTS\n");
+    for (statement, isn) in source.iter().zip(1_usize..) {
+        for (line, number) in statement.lines().zip([Some(isn)].into_iter().chain(std::iter::repeat(None))) {
+            let number = number.map_or_else(String::new, |isn| isn.to_string());
+            if !line.trim().is_empty() {
+                let _ = writeln!(text, "  {number:>5}  {}", line.trim_end());
+            }
+        }
+    }
 }
 
 /// What the program itself lists.
@@ -252,8 +270,15 @@ mod tests {
                 "box": [[-2.0, 0.0, 0.0], [1.25, 0.0, 1.0]],
             },
         });
+        let source = ["PARTNO A\n", "\n", "C1=CIRCLE/0,0,$ \r\n  2.5\r\n", "GOLFT/C1"];
         expect![[r#"
             PROGRAM A.apt
+
+            STATEMENTS
+                  1  PARTNO A
+                  3  C1=CIRCLE/0,0,$
+                       2.5
+                  4  GOLFT/C1
 
             LISTING OF THE PROGRAM
                   1  C1 CIRCLE 7
@@ -285,14 +310,13 @@ mod tests {
               rapid    0
               minutes  -
               box      -2, 0, 0 to 1.25, 0, 1
-        "#]].assert_eq(&super::text(&report));
+        "#]].assert_eq(&super::text(&report, &source));
     }
 
     #[test]
     fn a_report_with_holes_is_listed_too() {
-        assert!(super::text(&json!({})).contains("TOTALS"));
-        assert!(
-            super::text(&json!({ "cl": [{ "points": [[null]] }], "totals": { "box": [1] } })).contains("NaN")
-        );
+        assert!(super::text(&json!({}), &[]).contains("TOTALS"));
+        let holes = json!({ "cl": [{ "points": [[null]] }], "totals": { "box": [1] } });
+        assert!(super::text(&holes, &["\n"]).contains("NaN"));
     }
 }

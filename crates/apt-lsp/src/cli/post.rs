@@ -7,9 +7,13 @@ use super::arguments::{PostCall, ProgramArgument, Punch};
 use super::console::Console;
 use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{Language, Product, Refusal, TapeCode};
+use crate::analysis::{Language, Product, Refusal, TapeCode, length_inches};
 
-/// Makes the tape of a program.
+/// In which lengths of tape are told.
+const INCHES_PER_FOOT: f64 = 12.0;
+const METERS_PER_INCH: f64 = 0.0254;
+
+/// Makes the tape of a program. Of a punched one the length is told.
 pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) -> Outcome {
     if call.list_machines {
         return list_machines(console, language);
@@ -37,6 +41,12 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
             return Outcome::Unusable;
         }
     };
+    if call.punch.is_some() {
+        let inches = length_inches(&tape);
+        let (feet, meters) = (inches / INCHES_PER_FOOT, inches * METERS_PER_INCH);
+        let told = format!("{}: {feet:.3} ft ({meters:.3} m) of tape with leader and trailer", program.name);
+        console.note(&told);
+    }
     let written = console.write(&tape, call.output.as_deref());
     let checked = Checked { program, diagnostics };
     written.max(findings::tell(checked, call.deny_warnings, console))

@@ -64,7 +64,13 @@ fn product(
     control: &Control,
 ) -> Result<Option<Vec<u8>>, Refusal> {
     match format {
-        RunFormat::Human => Ok(Some(listing::text(&report(program, story, control)?).into_bytes())),
+        RunFormat::Human => {
+            let source = program.index.rope.to_string();
+            let statements = program.document.statements();
+            let statements: Vec<&str> =
+                statements.into_iter().filter_map(|range| source.get(range)).collect();
+            Ok(Some(listing::text(&report(program, story, control)?, &statements).into_bytes()))
+        }
         RunFormat::Json => Ok(Some(format!("{}\n", report(program, story, control)?).into_bytes())),
         RunFormat::Cl => program.document.product(&Product::ClText, control).map(Some),
         RunFormat::Cltape => program.document.product(&Product::Cltape, control).map(Some),

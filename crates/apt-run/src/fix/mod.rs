@@ -167,7 +167,25 @@ impl Here<'_> {
                 edits: vec![(0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()))],
                 preferred: false,
             }],
-            SyntaxErrorKind::MissingSeparator => one("Insert a comma", before, ",", false),
+            SyntaxErrorKind::MissingSeparator => {
+                // Parameters stand behind the slash of a word; elsewhere a comma separates nothing.
+                let pairs = self.parsed.elements.windows(2);
+                let mut pairs = pairs.take_while(|pair| pair[1].range.end() <= here.start());
+                let is_list =
+                    pairs.any(|pair| (pair[0].kind, pair[1].kind) == (ElementKind::Word, ElementKind::Slash));
+                let next = self.parsed.elements.iter().find(|element| element.range.start() >= here.start());
+                let (is_comma, is_word) = next.map_or((false, false), |next| {
+                    (next.kind == ElementKind::Comma, next.kind == ElementKind::Word)
+                });
+                let mut fixes = Vec::new();
+                if is_list && !is_comma {
+                    fixes.extend(one("Insert a comma", before, ",", false));
+                }
+                if !is_comma && !is_word {
+                    fixes.extend(one("Insert *", before, "*", false));
+                }
+                fixes
+            }
             SyntaxErrorKind::ObtainComma(_) => one("Write a slash", here, "/", true),
             SyntaxErrorKind::UnopenedParenthesis => one("Remove the parenthesis", here, "", false),
             SyntaxErrorKind::UnclosedParenthesis => match self.parsed.elements.last() {
