@@ -417,6 +417,8 @@ fn a_name_without_a_value_tells_why() {
     assert_eq!(told(&parallel.replace("$0", "").replace("GOTO/", "GOTO/$0")), Some(why));
     assert_eq!(told("GOTO/$0P2\nFINI\n").unwrap(), "`P2` has no value: no statement gives it one");
     assert_eq!(told("RESERV/$0A,3\nFINI\n").unwrap(), "`A` has no value:\n- statement 1 gives it none");
+    let word = told("$0INCLUD/SHARED\nFINI\n").unwrap();
+    assert!(word.contains("Insert the statements of another file"), "{word}");
     assert_eq!(told("$$ apt-lsp: dialect=cl\nTOOL PATH/$0OP1,TOOL,T1\n"), None, "a text");
 }
 

@@ -1,7 +1,8 @@
 //! Hovers of names without a value: who should give them one, and why nobody does.
 
-use apt_syntax::dialect::DialectName;
+use apt_syntax::{dialect::DialectName, vocabulary::lookup};
 
+use super::word_markdown;
 use crate::{
     Analysis, Cancel, Cancelled, Diagnostic, Level, Severity,
     navigation::{NameAt, Spot, statement_at},
@@ -33,6 +34,13 @@ impl Analysis {
             }
         }
         giving.dedup();
+        // A word that the dialect does not reserve, as INCLUD, is a name only where it is given a value.
+        if giving.is_empty()
+            && !elsewhere
+            && let Some(word) = lookup(&at.name)
+        {
+            return Ok(Some(word_markdown(word)));
+        }
         if giving.is_empty() {
             text.push_str(if elsewhere {
                 "; an included file should give it one"

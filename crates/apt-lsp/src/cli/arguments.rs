@@ -50,7 +50,7 @@ pub(super) enum Color {
 pub(super) enum Command {
     /// Diagnostics of files and folders
     Check(CheckCall),
-    /// Run a program: canonical forms, CL points, totals
+    /// Run a program: statements, canonical forms, CL points, totals
     Run(RunCall),
     /// Make the control tape of a program
     Post(PostCall),

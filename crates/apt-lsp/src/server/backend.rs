@@ -6,7 +6,7 @@ mod whole;
 mod wishes;
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use serde_json::{Value, json};
@@ -40,6 +40,8 @@ pub(super) struct Backend {
     parcels: Parcels,
     cancellations: Cancellations,
     offered: AtomicU64,
+    /// The client has told its settings with its introduction.
+    told_settings: AtomicBool,
     /// What was last sent, for differences.
     sent_tokens: Mutex<BTreeMap<Uri, SentTokens>>,
 }
@@ -68,6 +70,7 @@ impl Backend {
             parcels,
             cancellations: Cancellations::default(),
             offered: AtomicU64::new(0),
+            told_settings: AtomicBool::new(false),
             sent_tokens: Mutex::default(),
         }
     }
@@ -205,6 +208,7 @@ impl LanguageServer for Backend {
         });
         let _ = self.features.set(features);
         let options = params.initialization_options.unwrap_or_default();
+        self.told_settings.store(!options.is_null(), Ordering::Relaxed);
         self.happened(Event::Settings(settings::of_editor(&options)));
         if let Some(parent) = params.process_id.and_then(|id| i32::try_from(id).ok()) {
             lifetime::watch_parent(parent);
@@ -220,6 +224,10 @@ impl LanguageServer for Backend {
         let features = self.features();
         if features.watches_files {
             self.watch_project_files();
+        }
+        // Some clients tell their settings only when they are asked for them.
+        if features.configuration && !self.told_settings.load(Ordering::Relaxed) {
+            self.ask_for_settings();
         }
     }
 

@@ -256,9 +256,12 @@ fn geometry_value(geometry: &Geometry) -> Value {
 }
 
 fn cl_entry(record: &ClRecord, source: SourceReport) -> ClEntry {
+    let SourceReport { file, line, origin } = source;
     let entry = |kind| ClEntry {
         isn: record.isn,
-        source,
+        file,
+        line,
+        origin,
         kind,
         surface: None,
         words: None,
@@ -331,9 +334,12 @@ fn motion_entry(motion: &Motion, tree: &SyntaxTree, source: SourceReport) -> Mot
         _ => (0, None),
     };
     let evidence = computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
+    let SourceReport { file, line, origin } = source;
     MotionEntry {
         isn: motion.origin.place_in_program().0,
-        source,
+        file,
+        line,
+        origin,
         statement: statement_text(
             motion.origin.source.as_ref().map_or(tree, |source| &source.tree),
             motion.origin.isn,

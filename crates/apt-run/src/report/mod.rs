@@ -143,7 +143,8 @@ pub struct ListingReport {
     pub lines: Vec<String>,
 }
 
-/// Where in the sources something comes from, and by which calls and turns.
+/// Where in the sources something comes from, and by which calls and turns. Entries have these fields for themselves: a flattened
+/// field would make a map of unknown size of each, which takes half as much memory again.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct SourceReport {
     /// The included file in which the statement stands; left out for the program itself.
@@ -162,9 +163,15 @@ pub struct SourceReport {
 pub struct ClEntry {
     /// Statement number.
     pub isn: u32,
-    /// Where it comes from.
-    #[serde(flatten)]
-    pub source: SourceReport,
+    /// The included file in which the statement stands; left out for the program itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The line of that file on which the statement begins, from zero; left out where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<u32>,
+    /// Macro calls, loop turns and inclusions, innermost first; left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub origin: Vec<OriginStep>,
     /// `from`, `go`, `postprocessor`, `control`, `mode`, `fini` or `other`.
     #[serde(rename = "type")]
     pub kind: &'static str,
@@ -187,9 +194,15 @@ pub struct ClEntry {
 pub struct MotionEntry {
     /// Statement number.
     pub isn: u32,
-    /// Where it comes from.
-    #[serde(flatten)]
-    pub source: SourceReport,
+    /// The included file in which the statement stands; left out for the program itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The line of that file on which the statement begins, from zero; left out where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<u32>,
+    /// Macro calls, loop turns and inclusions, innermost first; left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub origin: Vec<OriginStep>,
     /// The statement as written, without comments.
     pub statement: String,
     /// How many cut vectors.

@@ -296,6 +296,10 @@ async fn wrong_settings_are_named_and_settings_can_be_asked_for() {
     }))
     .await;
     talk.open("BAD\n").await;
+    // Who has told no settings is asked for them at once, and again when they have changed.
+    let first = talk.wait_for("workspace/configuration").await;
+    let nothing = json!({ "jsonrpc": "2.0", "id": first["id"], "result": [null] });
+    talk.send(nothing).await;
     talk.tell("workspace/didChangeConfiguration", json!({ "settings": null })).await;
     let request = talk.wait_for("workspace/configuration").await;
     assert_eq!(request["params"]["items"][0]["section"], "apt");
