@@ -29,7 +29,7 @@ fn codes() -> CodeTable {
 }
 
 const SAMPLE: &[u8] = include_bytes!("data/cltape-01.tap");
-const NCL_SAMPLE: &[u8] = include_bytes!("data/ncl-03.cl");
+const NCL_SAMPLE: &[u8] = include_bytes!("data/ncl-03.tap");
 
 #[test]
 fn sample_is_read() {

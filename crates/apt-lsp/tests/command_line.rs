@@ -512,7 +512,7 @@ fn a_program_names_its_machine() {
 #[test]
 fn a_binary_file_of_ncl_is_read() {
     let folder = Folder::new("ncl-binary");
-    let bytes = include_bytes!("../../apt-cldata/tests/data/ncl-03.cl");
+    let bytes = include_bytes!("../../apt-cldata/tests/data/ncl-03.tap");
     std::fs::write(folder.0.join("arc.cl"), bytes).unwrap();
     assert_eq!(folder.run(&["--check", "."]).code, 0);
     let text = folder.run(&["run", "arc.cl", "--format", "cl"]);
