@@ -97,6 +97,46 @@ fn given_tangents_are_kept_and_normals_crossed() {
 }
 
 #[test]
+fn splines_run_along_their_tangents_however_these_point() {
+    // Across the chord, back from it, and back at both ends: the bending alone would make the derivative vanish or turn
+    // it about.
+    for (first, last) in [([0., 1., 0.], None), ([-1., 2., 1.], None), ([-3., 1., 0.5], Some([-1., -1., 2.]))]
+    {
+        let mut data = nodes(&[[0., 0., 0.], [4., 0., 0.], [8., 1., 0.]]);
+        data[0].tangent = Some(Vec3::from(first));
+        data[2].tangent = last.map(Vec3::from);
+        let made = curve(CurveShape::Spline { weight: None, limit: None, nodes: data });
+        near(
+            made.evaluate_global(0.0).expect("inside").frame().tangent,
+            Vec3::from(first).normalize().into(),
+            1e-12,
+        );
+        if let Some(last) = last {
+            let found = made.evaluate_global(2.0).expect("inside").frame().tangent;
+            near(found, Vec3::from(last).normalize().into(), 1e-12);
+        }
+    }
+    // Where a free direction points back from one of its chords, both arcs still have it: there is no cusp.
+    let sharp = spline(&[[0., 0., 0.], [1., 0., 0.], [-9., 1., 0.], [-10., 5., 1.]]);
+    let ways = |arc: usize, t: f64| sharp.arcs[arc].evaluate(t).first.normalize();
+    near(ways(0, 1.0), ways(1, 0.0).into(), 1e-12);
+}
+
+#[test]
+fn a_tangent_at_the_end_tells_the_sense_of_a_circle() {
+    // From (3,0) to (0,3): the quarter that arrives along −x, and the three quarters that arrive along +x.
+    for (way, middle) in [(-1.0, [1.0, 1.0]), (1.0, [-1.0, -1.0])] {
+        let mut data = nodes(&[[3., 0., 0.], [0., 3., 0.]]);
+        tangent(&mut data[1], way, 0., 0.);
+        let made = conic(data);
+        let end = made.arcs.len() as f64;
+        near(made.evaluate_global(end).expect("inside").frame().tangent, [way, 0.0, 0.0], 1e-12);
+        let half = 3.0 / 2f64.sqrt();
+        near(at(&made, 0.5 * end), [middle[0] * half, middle[1] * half, 0.0], 1e-9);
+    }
+}
+
+#[test]
 fn fairing_moves_points_by_their_limit_at_most() {
     let data = nodes(&[[0., 0., 0.], [1., 0.3, 0.], [2., -0.2, 0.], [3., 0.4, 0.], [4., 0., 0.]]);
     let made = curve(CurveShape::Spline { weight: Some(0.01), limit: Some(0.05), nodes: data });

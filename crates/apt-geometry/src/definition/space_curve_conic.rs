@@ -272,9 +272,14 @@ impl Piece {
         self.middle - self.first * self.weight
     }
 
+    /// The derivative at the end, up to its length.
+    fn last_way(&self) -> Place {
+        self.last * self.weight - self.middle
+    }
+
     /// Square root of the weight of the end that makes the end derivatives equally long.
     fn balance(&self) -> f64 {
-        ((self.middle - self.last * self.weight).norm() / self.way().norm()).sqrt()
+        (self.last_way().norm() / self.way().norm()).sqrt()
     }
 
     /// Whether one cubic with positive weights holds it.
@@ -314,15 +319,16 @@ fn pieces(conic: &Conic, data: &[Condition]) -> Result<Vec<Piece>, ParametricErr
     let inner = data.get(1..data.len() - 1).unwrap_or_default();
     let choices = Piece::both(conic, start.place, end.place)?
         .map(|piece| if piece.is_short() { Ok(vec![piece]) } else { piece.halved(conic).map(Vec::from) });
-    chosen(choices, start, inner)
+    chosen(choices, start, inner, end)
 }
 
-/// The first choice that takes the inner places in order; without such places the one that begins in the sense of the
-/// first tangent.
+/// The first choice that takes the inner places in order; without such places the one that runs in the sense of the first
+/// tangent, or where there is none of the last one.
 fn chosen(
     choices: [Result<Vec<Piece>, ParametricError>; 2],
     start: &Condition,
     inner: &[Condition],
+    end: &Condition,
 ) -> Result<Vec<Piece>, ParametricError> {
     for pieces in choices.into_iter().flatten() {
         let mut reached = 0.0;
@@ -335,13 +341,16 @@ fn chosen(
             reached = found.unwrap_or(f64::NEG_INFINITY);
             reached > before
         });
-        let sense = match (start.direction, pieces.first()) {
-            (Some(direction), Some(piece)) if start.sense && inner.is_empty() => {
-                direction.dot(&piece.way()) > 0.0
-            }
-            _ => true,
+        let along = |condition: &Condition, way: Option<Place>| match (condition.direction, way) {
+            (Some(direction), Some(way)) if condition.sense => Some(direction.dot(&way) > 0.0),
+            _ => None,
         };
-        if in_order && sense {
+        let sense = || {
+            along(start, pieces.first().map(Piece::way))
+                .or_else(|| along(end, pieces.last().map(Piece::last_way)))
+                .unwrap_or(true)
+        };
+        if in_order && (!inner.is_empty() || sense()) {
             return Ok(pieces);
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! What the public system does was found from its results: the directions are those of the cubic spline over the chord
 //! lengths whose end derivatives are unit vectors; each arc then takes the lengths of its end derivatives that make its
-//! bending `∫|r''|²` least; a free end has the direction of the parabola through the last three points whose axis is
+//! bending `∫|r''|²` least, but never turns a direction about; a free end has the direction of the parabola through the last three points whose axis is
 //! across their long chord.
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
@@ -10,6 +10,10 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use super::{parametric_error::ParametricError, space_curve::ParametricNode};
 use crate::{Vec3, parametric::CurveArc};
 
+/// Least length of an end derivative, as a share of the chord. The bending alone would make it vanish where the direction
+/// is across the chord, and turn it about where it points back: the curve would not run the way it is told. A quarter is
+/// what the least bending gives a symmetric arc whose ends are 85 degrees off the chord, so that no flatter one changes.
+const LEAST_LENGTH: f64 = 0.25;
 /// Distance of two points, as a share of the extent of all, below which they coincide.
 const COINCIDENT: f64 = 1e-12;
 
@@ -128,7 +132,7 @@ pub(super) fn bending_arc(start: &Vec3, end: &Vec3, from: &Vec3, to: &Vec3) -> C
     CurveArc::from_hermite(start, end, &first, &last)
 }
 
-/// The end derivatives of that arc.
+/// The end derivatives of that arc: of all that are at least a share of the chord long those that bend it least.
 pub(super) fn bending_lengths(chord: &Vec3, from: &Vec3, to: &Vec3) -> [Vec3; 2] {
     let (Some(from), Some(to)) = (from.try_normalize(f64::MIN_POSITIVE), to.try_normalize(f64::MIN_POSITIVE))
     else {
@@ -137,8 +141,18 @@ pub(super) fn bending_lengths(chord: &Vec3, from: &Vec3, to: &Vec3) -> [Vec3; 2]
     let cosine = from.dot(&to);
     let system = Matrix2::new(2.0, cosine, cosine, 2.0);
     let value = Vector2::new(chord.dot(&from), chord.dot(&to)) * 3.0;
+    let least = LEAST_LENGTH * chord.norm();
     // The determinant 4 − cos² is never below 3.
-    let lengths = system.try_inverse().map_or(Vector2::repeat(chord.norm()), |inverse| inverse * value);
+    let free = system.try_inverse().map_or(Vector2::repeat(chord.norm()), |inverse| inverse * value);
+    let lengths = if free.min() >= least {
+        free
+    } else {
+        // The bending is convex, so that the least of the admitted ones has one of the lengths at its bound.
+        let other = |value: f64| (0.5 * (value - cosine * least)).max(least);
+        let bounded = [Vector2::new(least, other(value.y)), Vector2::new(other(value.x), least)];
+        let bending = |lengths: &Vector2<f64>| 0.5 * lengths.dot(&(system * lengths)) - value.dot(lengths);
+        if bending(&bounded[0]) <= bending(&bounded[1]) { bounded[0] } else { bounded[1] }
+    };
     [from * lengths.x, to * lengths.y]
 }
 
