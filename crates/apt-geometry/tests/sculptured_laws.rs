@@ -345,58 +345,6 @@ fn lofts_of_arcs_and_of_lengths_are_close_to_exact() {
 }
 
 #[test]
-fn cross_curves_and_cross_directions_shape_the_sides() {
-    let line = |y: f64, z: f64| CurveShape::Spline {
-        weight: None,
-        limit: None,
-        nodes: nodes(&[[0., y, z], [6., y, z]]),
-    };
-    let low = flowing(line(0.0, 0.0), 1.0, SegmentMeasure::Param);
-    let high = flowing(line(4.0, 1.0), 1.0, SegmentMeasure::Param);
-    let side = |x: f64, z: f64| {
-        let shape = CurveShape::Spline {
-            weight: None,
-            limit: None,
-            nodes: nodes(&[[x, 0., 0.], [x, 2., z], [x, 4., 1.]]),
-        };
-        Arc::new(SpaceCurveDefinition::plain(shape).define().expect("a curve").geometry)
-    };
-    let (west, east) = (side(0.0, 2.0), side(6.0, -1.0));
-    let fault = loft(vec![low.clone(), high.clone()], vec![west.clone()]);
-    assert!(matches!(fault, Err(ParametricError::SegmentCount { .. })));
-    // Cross curves of two arcs do not fit one row of cubics; of one arc they do.
-    let one = |x: f64, z: f64| {
-        let mut data = nodes(&[[x, 0., 0.], [x, 4., 1.]]);
-        data[0].tangent = Some(Vec3::new(0.0, 1.0, z));
-        let shape = CurveShape::Spline { weight: None, limit: None, nodes: data };
-        Arc::new(SpaceCurveDefinition::plain(shape).define().expect("a curve").geometry)
-    };
-    let (west_arc, east_arc) = (one(0.0, 2.0), one(6.0, -1.0));
-    let made =
-        loft(vec![low.clone(), high.clone()], vec![west_arc.clone(), east_arc.clone()]).expect("a patch");
-    for index in 0..=10 {
-        let t = f64::from(index) / 10.0;
-        let at = |u: f64, v: f64| made.evaluate_global(u, v).expect("inside").position;
-        assert!((at(0.0, t) - west_arc.evaluate_global(t).expect("inside").position).norm() < 1e-7);
-        assert!((at(1.0, t) - east_arc.evaluate_global(t).expect("inside").position).norm() < 1e-7);
-        assert!((at(t, 0.0) - Vec3::new(6.0 * t, 0.0, 0.0)).norm() < 1e-7);
-        assert!((at(t, 1.0) - Vec3::new(6.0 * t, 4.0, 1.0)).norm() < 1e-7);
-    }
-    let apart = loft(vec![low.clone(), high.clone()], vec![one(0.5, 2.0), east_arc]);
-    assert!(matches!(apart, Err(ParametricError::CrossGap { curve: 1, .. })));
-    let bent = loft(vec![low, high], vec![west, east]);
-    assert!(matches!(bent, Err(ParametricError::CrossArcs { curve: 1, .. })), "{bent:?}");
-    let mut data = nodes(&[[0., 0., 0.], [6., 0., 0.]]);
-    data[0].cross = Some(Vec3::z());
-    let lifted =
-        flowing(CurveShape::Spline { weight: None, limit: None, nodes: data }, 1.0, SegmentMeasure::Param);
-    let high = flowing(line(4.0, 1.0), 1.0, SegmentMeasure::Param);
-    let made = loft(vec![lifted, high], vec![]).expect("a patch");
-    let way = made.evaluate_global(0.0, 0.0).expect("inside").dv.normalize();
-    assert!((way - Vec3::z()).norm() < 1e-9);
-}
-
-#[test]
 fn b_splines_are_taken_over_exactly() {
     let s = 0.5f64.sqrt();
     let circle = CurveShape::BSpline {

@@ -132,7 +132,20 @@ const CASES: &[Case] = &[
     ("the other order of SYN", "SYN/GOLFT,GL,GR,GORGT", &[(1, 355)]),
     ("pairs behind a wrong one", "SYN/A,B,P,POINT\nQ=P/1,2", &[(1, 356)]),
     ("a synonym as a name", "SYN/P,POINT\nP=3", &[(2, 155)]),
-    ("a synonym as a macro variable", "SYN/P,POINT\nM=MACRO/P\nTERMAC", &[(2, 207), (3, 209)]),
+    ("a synonym as a macro variable", "SYN/P,POINT\nM=MACRO/P\nTERMAC", &[(2, 207)]),
+    // The text of a macro whose header has a mistake is no part of the program, and calls of it are quiet.
+    (
+        "a number as a macro variable",
+        "M=MACRO/A,3\nB=A+1\nL1)GOTO/A,B,0\nTERMAC\nCALL/M,A=1\nC=4",
+        &[(1, 207)],
+    ),
+    ("an expression as a normal value", "M=MACRO/A=3+4\nB=A\nTERMAC\nCALL/M,A=2", &[(1, 235)]),
+    (
+        "an open parenthesis in a header",
+        "M=MACRO/A=(3\nB=A\nTERMAC\nCALL/M,A=2\nJUMPTO/L",
+        &[(1, 10), (5, 407)],
+    ),
+    ("a comma at the end of a header", "M=MACRO/A,\nB=A\nTERMAC\nCALL/M,A=2", &[(1, 11)]),
     ("check surfaces without labels", "L=LINE/XAXIS\nGOLFT/L,TO,L,TO,L", &[(2, 132)]),
     ("label of a statement without motion", "TRANTO/A\nA)B=1", &[(1, 456)]),
     ("label of a CONTIN", "TRANTO/A\nA)CONTIN", &[(1, 456)]),

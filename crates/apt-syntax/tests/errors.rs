@@ -12,7 +12,10 @@ fn check(dialect: DialectName, cases: &[(&str, &[u16])]) {
         .filter_map(|(text, expected)| {
             let parsed = parse(text, dialect);
             let numbers: Vec<u16> = parsed.errors.iter().filter_map(|error| error.apt3()).collect();
-            let broken = parsed.statement.parts.iter().any(|part| part.body == Body::Error);
+            // The header of a macro stays one whatever is wrong in it; its name is spoiled.
+            let spoiled = |body: &Body| parsed.spoiled.is_some() && matches!(body, Body::Macro { .. });
+            let says_nothing = |body: &Body| *body == Body::Error || spoiled(body);
+            let broken = parsed.statement.parts.iter().any(|part| says_nothing(&part.body));
             let fine = numbers == *expected && parsed.is_broken() == broken;
             (!fine).then(|| format!("{text:?}: expected {expected:?}, found {:?}", parsed.errors))
         })

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Numbers before the breaks and patches of a surface: patches, columns and rows of the grid (0 without one), side, splines
-/// and cross splines, breaks.
+/// and cross splines, breaks. Those of the rows follow those of the columns, which then are given too.
 const SURFACE_HEAD: usize = 7;
 /// Numbers of a patch: 16 control points of four coordinates, and four words of neighbours.
 const PATCH_VALUES: usize = 68;
@@ -37,8 +37,15 @@ pub(super) fn surface_values(surface: &SculpturedSurface) -> Vec<f64> {
     let mut values: Vec<f64> =
         [surface.patches.len(), columns, rows].iter().map(|&number| number as f64).collect();
     values.push(surface.side);
-    values.extend([splines as f64, cross_splines as f64, surface.breaks.len() as f64]);
-    values.extend(&surface.breaks);
+    let mut breaks = surface.breaks.clone();
+    if !surface.row_breaks.is_empty() {
+        if breaks.is_empty() {
+            breaks.extend((0..=columns).map(|column| column as f64));
+        }
+        breaks.extend(&surface.row_breaks);
+    }
+    values.extend([splines as f64, cross_splines as f64, breaks.len() as f64]);
+    values.extend(breaks);
     for (index, patch) in surface.patches.iter().enumerate() {
         values.extend(patch.control.iter().flatten().flat_map(|point| point.iter().copied()));
         let neighbours = surface.neighbours.get(index).copied().unwrap_or_default();
@@ -71,13 +78,15 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
         return Err(CanonicalError::Value { kind, position: 1, value: columns as f64 });
     }
     let whole = if columns > 0 { columns } else { patches };
-    let ends: Vec<f64> = (SURFACE_HEAD..patch_first).map(at).collect();
-    let grow =
-        ends.first().is_none_or(|first| *first == 0.0) && ends.windows(2).all(|pair| pair[0] < pair[1]);
-    let last = ends.last().copied().unwrap_or(0.0);
-    let ends_whole = last.fract() == 0.0 && last <= whole as f64;
-    if !(breaks == 0 || breaks == whole + 1 && grow && ends_whole) {
+    let mut ends: Vec<f64> = (SURFACE_HEAD..patch_first).map(at).collect();
+    let both = grid.is_some() && breaks == columns + rows + 2;
+    let row_ends = if both { ends.split_off(whole + 1) } else { Vec::new() };
+    let counted = ends.is_empty() || ends.len() == whole + 1;
+    if !(counted && are_breaks(&ends, whole) && are_breaks(&row_ends, rows)) {
         return Err(CanonicalError::Value { kind, position: 6, value: breaks as f64 });
+    }
+    if both && ends.iter().enumerate().all(|(column, end)| *end == column as f64) {
+        ends.clear();
     }
     finite(kind, values)?;
     if at(3).abs() != 1.0 {
@@ -111,10 +120,20 @@ pub(super) fn surface_from(values: &[f64]) -> Result<SculpturedSurface, Canonica
         patches: (0..patches).map(patch).collect(),
         grid,
         breaks: ends,
+        row_breaks: row_ends,
         neighbours,
         side: at(3),
         mesh,
     })
+}
+
+/// Whether values can be the ends of so many columns or rows: they grow from 0 to a whole number.
+fn are_breaks(ends: &[f64], count: usize) -> bool {
+    let last = ends.last().copied().unwrap_or(0.0);
+    ends.first().is_none_or(|first| *first == 0.0)
+        && ends.windows(2).all(|pair| pair[0] < pair[1])
+        && last.fract() == 0.0
+        && last <= count as f64
 }
 
 /// Every number of these forms is finite: what is made of them is measured and searched.

@@ -125,14 +125,6 @@ pub enum ParametricError {
         /// The gap in units of the program.
         gap: f64,
     },
-    /// A curve after CROSS that is not one cubic arc for each row of patches.
-    #[error("cross curve {curve} is not one cubic arc for each of {rows} rows")]
-    CrossArcs {
-        /// Number of the curve, from 1.
-        curve: usize,
-        /// The rows.
-        rows: usize,
-    },
     /// More than one patch of points on it (a warning: the patches are made).
     #[error("{patches} patches of points do not know of each other")]
     LoosePatches {

@@ -3,18 +3,21 @@
 //! Two curves without cross directions make a ruled surface. Otherwise the ends of the segments are joined by splines
 //! across, and between them the derivatives across have a direction and a length that blend from one spline to the next.
 //! Segments may hold several arcs and run with a flow: such strips are cut into columns of patches, each within a share of
-//! the size of the surface from the exact one; segments keep their whole parameters.
+//! the size of the surface from the exact one; segments keep their whole parameters. Cross curves of several arcs, conics
+//! and such with a flow cut what lies between two curves into rows of patches in the same way.
 
 use std::sync::Arc;
 
 use super::{
     parametric_error::ParametricError,
-    sculptured_strip::{Strand, Strip, blend},
+    sculptured_strip::{RowPart, Strand, Strip, blend, cut},
     spline::{self, Condition},
 };
 use crate::{
     Vec3,
-    parametric::{Flow, Mesh, SculpturedSurface, SegmentMeasure, SpaceCurve},
+    parametric::{
+        Flow, FlowKind, FlowRange, FlowSegment, Mesh, SculpturedSurface, SegmentMeasure, SpaceCurve,
+    },
 };
 
 /// Distance of a cross curve's end from the curve it should meet, as a share of the size of all curves.
@@ -45,12 +48,14 @@ pub(super) fn surface(
         + (strands[0].boundary(0) - strands[strands.len() - 1].boundary(0)).norm();
     let ties = Ties::of(&strands, segments)?;
     let rims = rims(cross, &strands, segments, size)?;
+    let parts = row_parts(rims.as_ref(), curves.len() - 1, size);
     let mut columns = Vec::new();
     for segment in 0..segments {
-        let strip = Strip { strands: &strands, segment, ties: &ties, rims: rims.as_ref(), segments };
+        let rows = parts.as_slice();
+        let strip = Strip { strands: &strands, segment, ties: &ties, rims: rims.as_ref(), segments, rows };
         columns.extend(strip.columns(size));
     }
-    let rows = curves.len() - 1;
+    let rows = parts.len();
     let mut breaks = vec![0.0];
     breaks.extend(columns.iter().map(|column| column.end));
     let patches = (0..rows).flat_map(|row| columns.iter().map(move |column| column.patches[row])).collect();
@@ -58,7 +63,31 @@ pub(super) fn surface(
     // Columns of whole segments need no list of their ends.
     let breaks = if columns.len() == segments { Vec::new() } else { breaks };
     let mesh = Mesh { splines: curves.len(), cross_splines: segments + 1 };
-    Ok(SculpturedSurface::assembled(patches, grid, breaks, 1.0, mesh))
+    let surface = SculpturedSurface::assembled(patches, grid, breaks, 1.0, mesh);
+    if rows == curves.len() - 1 {
+        return Ok(surface);
+    }
+    let mut row_breaks = vec![0.0];
+    row_breaks.extend(parts.iter().map(|part| part.row as f64 + part.to));
+    Ok(surface.with_row_breaks(row_breaks))
+}
+
+/// The rows of patches: all that lies between two curves, or where cross curves are not one cubic there, parts of it over
+/// which they are close to cubics.
+fn row_parts(rims: Option<&Rims>, rows: usize, size: f64) -> Vec<RowPart> {
+    let Some(Rims { rims }) = rims else {
+        return (0..rows).map(|row| RowPart { row, from: 0.0, to: 1.0 }).collect();
+    };
+    let strands: Vec<Strand<'_>> = rims.iter().map(|(curve, flow, _)| Strand { curve, flow }).collect();
+    let mut parts = Vec::with_capacity(rows);
+    for row in 0..rows {
+        cut(
+            strands.iter().flat_map(|strand| strand.joints(row)),
+            &mut |from, to| strands.iter().all(|strand| strand.is_close_to_cubic(row, [from, to], size)),
+            &mut |from, to| parts.push(RowPart { row, from, to }),
+        );
+    }
+    parts
 }
 
 /// The derivatives across at the ends of the segments: for each row of patches and each end, unit directions and lengths at
@@ -135,12 +164,10 @@ fn rims(
     for (index, (curve, end)) in cross.iter().zip(ends).enumerate() {
         let flow = match &curve.flow {
             Some(flow) if flow.segments.len() == rows => flow.clone(),
-            _ => Flow::even(curve, rows, SegmentMeasure::Param),
+            _ => by_joints(curve, strands, end, GAP * size)
+                .unwrap_or_else(|| Flow::even(curve, rows, SegmentMeasure::Param)),
         };
         let rim = Strand { curve, flow: &flow };
-        if !(0..rows).all(|row| rim.is_cubic(row)) {
-            return Err(ParametricError::CrossArcs { curve: index + 1, rows });
-        }
         for (row, strand) in strands.iter().enumerate() {
             let gap = (rim.boundary(row) - strand.boundary(end)).norm();
             if gap > GAP * size {
@@ -150,4 +177,27 @@ fn rims(
         rims.push((SpaceCurve::clone(curve), flow, end));
     }
     Ok(Some(Rims { rims }))
+}
+
+/// A flow along a cross curve whose segments end at the joints of its arcs that meet the curves in order; `None` where the
+/// curves meet it elsewhere.
+fn by_joints(curve: &SpaceCurve, strands: &[Strand<'_>], end: usize, gap: f64) -> Option<Flow> {
+    let mut joints = Vec::with_capacity(strands.len());
+    let mut next = 0;
+    for strand in strands {
+        let place = strand.boundary(end);
+        let joint = (next..=curve.arcs.len()).find(|joint| {
+            let at = curve.evaluate_global(*joint as f64);
+            at.is_some_and(|at| (at.position - place).norm() <= gap)
+        })?;
+        joints.push(joint);
+        next = joint + 1;
+    }
+    let segments = joints.windows(2).map(|pair| FlowSegment {
+        measure: SegmentMeasure::Param,
+        first: pair[0] as f64,
+        last: pair[1] as f64,
+    });
+    let ranges = vec![FlowRange { kind: FlowKind::Param, first: 0, last: curve.arcs.len() }];
+    Some(Flow { ranges, segments: segments.collect() })
 }

@@ -26,6 +26,14 @@ pub(super) struct Strand<'a> {
     pub(super) flow: &'a Flow,
 }
 
+/// What lies between two curves, or a part of it: the row and its local parameters along the cross curves.
+#[derive(Clone, Copy)]
+pub(super) struct RowPart {
+    pub(super) row: usize,
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
 /// A segment of all curves.
 pub(super) struct Strip<'a> {
     pub(super) strands: &'a [Strand<'a>],
@@ -33,6 +41,7 @@ pub(super) struct Strip<'a> {
     pub(super) ties: &'a Ties,
     pub(super) rims: Option<&'a Rims>,
     pub(super) segments: usize,
+    pub(super) rows: &'a [RowPart],
 }
 
 /// The patches of a column, from the first row to the last.
@@ -45,6 +54,51 @@ pub(super) struct Column {
 /// The share of the later end at a parameter between two ends, level at both.
 pub(super) fn blend(local: f64) -> f64 {
     local * local * (3.0 - 2.0 * local)
+}
+
+/// Cuts the parameters 0 to 1 at joints, then halves each piece until it is close; gives the pieces in order.
+pub(super) fn cut(
+    joints: impl Iterator<Item = f64>,
+    is_close: &mut dyn FnMut(f64, f64) -> bool,
+    piece: &mut dyn FnMut(f64, f64),
+) {
+    let mut ends = vec![0.0, 1.0];
+    ends.extend(joints);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup_by(|a, b| (*a - *b).abs() <= SAME_PARAMETER);
+    for pair in ends.windows(2) {
+        halved(pair[0], pair[1], 0, is_close, piece);
+    }
+}
+
+fn halved(
+    from: f64,
+    to: f64,
+    depth: u32,
+    is_close: &mut dyn FnMut(f64, f64) -> bool,
+    piece: &mut dyn FnMut(f64, f64),
+) {
+    if depth < MOST_HALVINGS && !is_close(from, to) {
+        let middle = 0.5 * (from + to);
+        halved(from, middle, depth + 1, is_close, piece);
+        halved(middle, to, depth + 1, is_close, piece);
+    } else {
+        piece(from, to);
+    }
+}
+
+/// The control points of a part of a cubic: the values of its polar form at the ends of the part.
+fn part_of(control: [Vec3; 4], from: f64, to: f64) -> [Vec3; 4] {
+    std::array::from_fn(|upper| {
+        let mut work = control;
+        for level in 0..3 {
+            let share = if level < upper { to } else { from };
+            for index in 0..3 - level {
+                work[index] = work[index] * (1.0 - share) + work[index + 1] * share;
+            }
+        }
+        work[0]
+    })
 }
 
 impl Strand<'_> {
@@ -71,14 +125,25 @@ impl Strand<'_> {
             .flatten()
     }
 
-    /// Whether a segment is one cubic without weights, by its own parameter.
-    pub(super) fn is_cubic(&self, segment: usize) -> bool {
-        let whole = self.exact(segment, 0.0, 1.0);
-        self.joints(segment).is_empty() && whole.is_some_and(|arc| arc.is_polynomial())
+    /// The cubic with the places and derivatives of a segment at two of its local parameters, which one arc joins.
+    fn cubic(&self, segment: usize, [from, to]: [f64; 2]) -> [Vec3; 4] {
+        let middle = 0.5 * (from + to);
+        let ((p, dp), (q, dq)) = (self.at(segment, from, middle), self.at(segment, to, middle));
+        let third = (to - from) / 3.0;
+        [p, p + dp * third, q - dq * third, q]
+    }
+
+    /// Whether a segment is close to that cubic.
+    pub(super) fn is_close_to_cubic(&self, segment: usize, [from, to]: [f64; 2], size: f64) -> bool {
+        let control = self.cubic(segment, [from, to]);
+        PROBES.iter().all(|&share| {
+            let exact = self.at(segment, from + (to - from) * share, 0.5 * (from + to)).0;
+            (exact - part_of(control, share, share)[0]).norm() <= CLOSE * size
+        })
     }
 
     /// Local parameters of a segment where arcs meet.
-    fn joints(&self, segment: usize) -> Vec<f64> {
+    pub(super) fn joints(&self, segment: usize) -> Vec<f64> {
         let Some(part) = self.flow.segments.get(segment) else { return Vec::new() };
         let first = part.first.floor() as usize + 1;
         (first..self.curve.arcs.len())
@@ -116,32 +181,21 @@ impl Strand<'_> {
 impl Strip<'_> {
     /// The columns of the segment.
     pub(super) fn columns(&self, size: f64) -> Vec<Column> {
-        let mut ends = vec![0.0, 1.0];
-        ends.extend(self.strands.iter().flat_map(|strand| strand.joints(self.segment)));
-        ends.sort_by(f64::total_cmp);
-        ends.dedup_by(|a, b| (*a - *b).abs() <= SAME_PARAMETER);
+        let joints = self.strands.iter().flat_map(|strand| strand.joints(self.segment));
         let mut columns = Vec::new();
-        for pair in ends.windows(2) {
-            self.fill(pair[0], pair[1], 0, size, &mut columns);
-        }
+        let all = |from: f64, to: f64| {
+            self.exact(from, to).unwrap_or_else(|| {
+                self.rows.iter().map(|part| self.fitted(part, from, to)).collect::<Vec<Patch>>()
+            })
+        };
+        cut(
+            joints,
+            &mut |from, to| self.exact(from, to).is_some() || self.is_close(&all(from, to), from, to, size),
+            &mut |from, to| {
+                columns.push(Column { patches: all(from, to), end: self.segment as f64 + to });
+            },
+        );
         columns
-    }
-
-    /// The columns between two local parameters, halved until they are close.
-    fn fill(&self, from: f64, to: f64, depth: u32, size: f64, columns: &mut Vec<Column>) {
-        let end = self.segment as f64 + to;
-        if let Some(patches) = self.exact(from, to) {
-            columns.push(Column { patches, end });
-            return;
-        }
-        let patches: Vec<Patch> = (0..self.strands.len() - 1).map(|row| self.fitted(row, from, to)).collect();
-        if depth < MOST_HALVINGS && !self.is_close(&patches, from, to, size) {
-            let middle = 0.5 * (from + to);
-            self.fill(from, middle, depth + 1, size, columns);
-            self.fill(middle, to, depth + 1, size, columns);
-        } else {
-            columns.push(Column { patches, end });
-        }
     }
 
     /// Exact rulings between arcs of the same weights.
@@ -164,8 +218,10 @@ impl Strip<'_> {
             .collect()
     }
 
-    /// The four functions of u that make a row cubic in v, as control points along v, with their derivatives by u.
-    fn across(&self, row: usize, local: f64, within: f64) -> [(Vec3, Vec3); 4] {
+    /// The four functions of u that make a row, or a part of one, cubic in v, as control points along v, with their
+    /// derivatives by u.
+    fn across(&self, part: &RowPart, local: f64, within: f64) -> [(Vec3, Vec3); 4] {
+        let row = part.row;
         let at = |index: usize| {
             self.strands
                 .get(index)
@@ -176,13 +232,11 @@ impl Strip<'_> {
         let third = 1.0 / 3.0;
         let [first, second] = ways.unwrap_or([high - low; 2]);
         let [first_du, second_du] = if ways.is_some() { ways_du } else { [high_du - low_du; 2] };
-        let mut control = [
-            (low, low_du),
-            (low + first * third, low_du + first_du * third),
-            (high - second * third, high_du - second_du * third),
-            (high, high_du),
-        ];
-        self.pull(row, local, &mut control);
+        let places = [low, low + first * third, high - second * third, high];
+        let slopes = [low_du, low_du + first_du * third, high_du - second_du * third, high_du];
+        let (places, slopes) = (part_of(places, part.from, part.to), part_of(slopes, part.from, part.to));
+        let mut control = std::array::from_fn(|index| (places[index], slopes[index]));
+        self.pull(part, local, &mut control);
         control
     }
 
@@ -202,36 +256,34 @@ impl Strip<'_> {
     }
 
     /// Pulls the row onto the cross curves: their distance from it, falling off linearly from one to the next.
-    fn pull(&self, row: usize, local: f64, control: &mut [(Vec3, Vec3); 4]) {
+    fn pull(&self, part: &RowPart, local: f64, control: &mut [(Vec3, Vec3); 4]) {
         let Some(rims) = self.rims else { return };
         let global = self.segment as f64 + local;
         let place = rims.rims.partition_point(|rim| (rim.2 as f64) <= global).clamp(1, rims.rims.len() - 1);
         let (before, after) = (&rims.rims[place - 1], &rims.rims[place]);
         let span = (after.2 - before.2) as f64;
         let share = (global - before.2 as f64) / span;
-        let (near, far) = (self.misfit(row, before), self.misfit(row, after));
+        let (near, far) = (self.misfit(part, before), self.misfit(part, after));
         for (index, (point, slope)) in control.iter_mut().enumerate() {
             *point += near[index] * (1.0 - share) + far[index] * share;
             *slope += (far[index] - near[index]) / span;
         }
     }
 
-    /// The control points of a cross curve over a row less those of the row at that end.
-    fn misfit(&self, row: usize, rim: &(SpaceCurve, Flow, usize)) -> [Vec3; 4] {
+    /// The control points of a cross curve over a part of a row less those of the row at that end.
+    fn misfit(&self, part: &RowPart, rim: &(SpaceCurve, Flow, usize)) -> [Vec3; 4] {
         let (curve, flow, end) = rim;
-        let strand = Strand { curve, flow };
-        let ((p, dp), (q, dq)) = (strand.at(row, 0.0, 0.5), strand.at(row, 1.0, 0.5));
+        let wanted = Strand { curve, flow }.cubic(part.row, [part.from, part.to]);
         let (segment, local) = if *end < self.segments { (*end, 0.0) } else { (end - 1, 1.0) };
         let plain = Strip { segment, rims: None, ..*self };
-        let own = plain.across(row, local, 0.5).map(|pair| pair.0);
-        let wanted = [p, p + dp / 3.0, q - dq / 3.0, q];
+        let own = plain.across(part, local, 0.5).map(|pair| pair.0);
         std::array::from_fn(|index| wanted[index] - own[index])
     }
 
     /// The bicubic patch with the exact values and derivatives at both ends of a column.
-    fn fitted(&self, row: usize, from: f64, to: f64) -> Patch {
+    fn fitted(&self, part: &RowPart, from: f64, to: f64) -> Patch {
         let middle = 0.5 * (from + to);
-        let (first, last) = (self.across(row, from, middle), self.across(row, to, middle));
+        let (first, last) = (self.across(part, from, middle), self.across(part, to, middle));
         let third = (to - from) / 3.0;
         let mut points = [[Vec3::zeros(); 4]; 4];
         for index in 0..4 {
@@ -246,9 +298,8 @@ impl Strip<'_> {
     fn is_close(&self, patches: &[Patch], from: f64, to: f64, size: f64) -> bool {
         let middle = 0.5 * (from + to);
         PROBES.iter().all(|&share| {
-            let exact = |row: usize| self.across(row, from + (to - from) * share, middle);
-            patches.iter().enumerate().all(|(row, patch)| {
-                let control = exact(row);
+            patches.iter().zip(self.rows).all(|(patch, part)| {
+                let control = self.across(part, from + (to - from) * share, middle);
                 let lines = patch.at_u(share);
                 control.iter().zip(&lines).all(|((point, _), found): (_, &Vector4<f64>)| {
                     (point - found.xyz() / found.w).norm() <= CLOSE * size

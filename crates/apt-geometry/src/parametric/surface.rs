@@ -31,6 +31,8 @@ pub struct SculpturedSurface {
     /// Global values of u where the columns end, beginning with 0; empty where each column is one unit long. Several
     /// columns may make one segment of a lofted surface: its patches are counted as one.
     pub breaks: Vec<f64>,
+    /// The same for v, where the rows end: several rows may lie between two curves of a lofted surface.
+    pub row_breaks: Vec<f64>,
     /// What lies beyond the edges of each patch, by the number of the edge.
     pub neighbours: Vec<[Option<Neighbour>; 4]>,
     /// The sign word of the definition: +1 where `∂u × ∂v` is the natural normal, −1 where it is turned over.
@@ -49,7 +51,12 @@ impl SculpturedSurface {
         mesh: Mesh,
     ) -> SculpturedSurface {
         let neighbours = topology::neighbours(&patches);
-        SculpturedSurface { patches, grid, breaks, neighbours, side, mesh }
+        SculpturedSurface { patches, grid, breaks, row_breaks: Vec::new(), neighbours, side, mesh }
+    }
+
+    /// The surface with rows that end at these global values of v.
+    pub fn with_row_breaks(self, row_breaks: Vec<f64>) -> SculpturedSurface {
+        SculpturedSurface { row_breaks, ..self }
     }
 
     fn columns_rows(&self) -> (usize, usize) {
@@ -59,24 +66,24 @@ impl SculpturedSurface {
     /// The greatest global parameters; they begin at 0.
     pub fn extent(&self) -> [f64; 2] {
         let (columns, rows) = self.columns_rows();
-        [self.breaks.last().copied().unwrap_or(columns as f64), rows as f64]
+        let last = |breaks: &[f64], count: usize| breaks.last().copied().unwrap_or(count as f64);
+        [last(&self.breaks, columns), last(&self.row_breaks, rows)]
     }
 
-    /// First and last global u of a column.
-    fn column_range(&self, column: usize) -> [f64; 2] {
-        match (self.breaks.get(column), self.breaks.get(column + 1)) {
-            (Some(first), Some(last)) => [*first, *last],
-            _ => [column as f64, column as f64 + 1.0],
-        }
+    /// First and last global parameters of a patch (index), along u and along v.
+    fn ranges(&self, patch: usize) -> [[f64; 2]; 2] {
+        let columns = self.columns_rows().0.max(1);
+        [range(&self.breaks, patch % columns), range(&self.row_breaks, patch / columns)]
     }
 
-    /// The global values of u where the patches end, one after the other in a single row.
+    /// The global values of u where the patches end, one after the other in a single row. Each row of patches counts as a
+    /// whole one.
     pub fn flat_breaks(&self) -> Vec<f64> {
         let (columns, rows) = self.columns_rows();
         let [width, _] = self.extent();
         let mut breaks = vec![0.0];
         for row in 0..rows {
-            breaks.extend((0..columns).map(|column| row as f64 * width + self.column_range(column)[1]));
+            breaks.extend((0..columns).map(|column| row as f64 * width + range(&self.breaks, column)[1]));
         }
         breaks
     }
@@ -84,28 +91,16 @@ impl SculpturedSurface {
     /// The patch (index) and its local parameters at global ones; `None` outside the surface.
     pub fn locate(&self, u: f64, v: f64) -> Option<(usize, f64, f64)> {
         let (columns, rows) = self.columns_rows();
-        let (row, v) = cell(v, rows)?;
-        let (column, u) = if self.breaks.is_empty() {
-            cell(u, columns)?
-        } else {
-            let [width, _] = self.extent();
-            if !(u >= -PARAMETER_SLACK && u <= width + PARAMETER_SLACK * width.max(1.0)) {
-                return None;
-            }
-            let inside = self.breaks.partition_point(|end| *end <= u);
-            let column = inside.clamp(1, columns) - 1;
-            let [first, last] = self.column_range(column);
-            (column, ((u - first) / (last - first)).clamp(0.0, 1.0))
-        };
+        let (column, u) = part(u, &self.breaks, columns)?;
+        let (row, v) = part(v, &self.row_breaks, rows)?;
         let index = row * columns + column;
         (index < self.patches.len()).then_some((index, u, v))
     }
 
     /// The global parameters of local ones of a patch (index).
     pub fn globally(&self, patch: usize, u: f64, v: f64) -> [f64; 2] {
-        let columns = self.columns_rows().0.max(1);
-        let [first, last] = self.column_range(patch % columns);
-        [first + (last - first) * u, (patch / columns) as f64 + v]
+        let [along, across] = self.ranges(patch);
+        [along[0] + (along[1] - along[0]) * u, across[0] + (across[1] - across[0]) * v]
     }
 
     /// How many patches the language counts: those of a segment are one.
@@ -117,7 +112,7 @@ impl SculpturedSurface {
     /// The number that the language gives a patch (from 1) and the local parameters there, from global parameters.
     pub fn numbered(&self, u: f64, v: f64) -> Option<(usize, [f64; 2])> {
         let [width, rows] = self.extent();
-        let (columns, rows) = (width.round() as usize, rows as usize);
+        let (columns, rows) = (width.round() as usize, rows.round() as usize);
         let ((column, u), (row, v)) = (cell(u, columns)?, cell(v, rows)?);
         Some((row * columns + column + 1, [u, v]))
     }
@@ -152,10 +147,12 @@ impl SculpturedSurface {
     pub fn evaluate_global(&self, u: f64, v: f64) -> Option<PatchPoint> {
         let (index, u, v) = self.locate(u, v)?;
         let mut at = self.patches.get(index)?.evaluate(u, v);
-        let [first, last] = self.column_range(index % self.columns_rows().0.max(1));
-        let pace = 1.0 / (last - first);
-        if pace != 1.0 {
-            (at.du, at.duv, at.duu) = (at.du * pace, at.duv * pace, at.duu * (pace * pace));
+        let [by_u, by_v] = self.ranges(index).map(|[first, last]| 1.0 / (last - first));
+        if by_u != 1.0 {
+            (at.du, at.duv, at.duu) = (at.du * by_u, at.duv * by_u, at.duu * (by_u * by_u));
+        }
+        if by_v != 1.0 {
+            (at.dv, at.duv, at.dvv) = (at.dv * by_v, at.duv * by_v, at.dvv * (by_v * by_v));
         }
         Some(at)
     }
@@ -173,6 +170,25 @@ impl SculpturedSurface {
             ..self.clone()
         }
     }
+}
+
+/// First and last global parameter of a column or a row: its breaks, or one unit.
+fn range(breaks: &[f64], index: usize) -> [f64; 2] {
+    match (breaks.get(index), breaks.get(index + 1)) {
+        (Some(first), Some(last)) => [*first, *last],
+        _ => [index as f64, index as f64 + 1.0],
+    }
+}
+
+/// The column or row of `count` at a global parameter, and the parameter in it.
+fn part(parameter: f64, breaks: &[f64], count: usize) -> Option<(usize, f64)> {
+    let Some(&end) = breaks.last() else { return cell(parameter, count) };
+    if !(parameter >= -PARAMETER_SLACK && parameter <= end + PARAMETER_SLACK * end.max(1.0)) {
+        return None;
+    }
+    let index = breaks.partition_point(|end| *end <= parameter).clamp(1, count.max(1)) - 1;
+    let [first, last] = range(breaks, index);
+    Some((index, ((parameter - first) / (last - first)).clamp(0.0, 1.0)))
 }
 
 /// The cell of a row of `count` and the parameter in it.

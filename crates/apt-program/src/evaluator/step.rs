@@ -112,6 +112,10 @@ impl Evaluator<'_> {
                 Body::Macro { name, parameters, .. } => {
                     self.open_statement(&statement);
                     let (body, next) = self.gather(top, index, "TERMAC", Some(name), part.range);
+                    // A header with a mistake does not tell the variables: nothing can be said of the text.
+                    if statement.is_broken() {
+                        return past(next);
+                    }
                     self.report_missing_labels(&body, &|text| {
                         parameters.iter().any(|parameter| parameter.name.text == text)
                     });

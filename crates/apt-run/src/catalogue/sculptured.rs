@@ -125,9 +125,6 @@ fn reason(error: &Error) -> String {
         Error::CrossGap { curve, gap } => {
             format!("cross curve {curve} ends {} from the boundary curves", number(*gap))
         }
-        Error::CrossArcs { curve, rows } => {
-            format!("cross curve {curve} is not one arc for each of {rows} rows of patches")
-        }
         Error::LoosePatches { patches } => format!("its {patches} patches do not know of each other"),
         Error::Knots { degree, points } => {
             format!("its knots are not those of {points} control points of degree {degree}")

@@ -8,7 +8,9 @@ use super::{MAXIMUM_DEPTH, Parsed, Parser};
 use crate::dialect::SequenceFieldRule;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
-use crate::statement::{Body, Clause, Definition, Element, ElementKind, Name, Part, Statement, WordUse};
+use crate::statement::{
+    Body, Clause, Definition, Element, ElementKind, MacroParameter, Name, Part, Statement, WordUse,
+};
 use crate::vocabulary::{self, Word, WordClass};
 
 /// A body and the kind of its node.
@@ -18,7 +20,8 @@ type Production = (Body, SyntaxKind);
 pub(super) const STRUCTURED_IF_WORDS: [&str; 4] = ["THEN", "ELSE", "ELSEIF", "ENDIF"];
 
 impl Parser<'_> {
-    /// The whole statement. Errors are noted; the statement part in which one lies becomes [`Body::Error`].
+    /// The whole statement. Errors are noted; the statement part in which one lies becomes [`Body::Error`], or
+    /// where it begins a macro a [`Body::Macro`] whose name is [spoiled](super::ParsedStatement::spoiled).
     pub(super) fn statement(&mut self) -> Statement {
         if self.elements.is_empty() {
             return Statement { label: None, parts: Vec::new() };
@@ -77,7 +80,30 @@ impl Parser<'_> {
         self.position = self.elements.len();
         self.nodes.retain(|node| node.end as usize <= self.elements.len());
         self.note(SyntaxKind::Error, first);
-        parts.push(Part { range: self.range_from(first), body: Body::Error });
+        let body = self.spoiled_header(first).unwrap_or(Body::Error);
+        parts.push(Part { range: self.range_from(first), body });
+    }
+
+    /// The header of a macro that begins at an element and has a mistake: what follows up to TERMAC is its text all the
+    /// same, and would make no sense where it stands.
+    fn spoiled_header(&self, first: usize) -> Option<Body> {
+        let name = self.defined_name(first)?;
+        let word = self.elements.get(first + 2).filter(|element| element.kind == ElementKind::Word)?;
+        let entry = self.dialect.word(&word.text).filter(|entry| entry.spelling == "MACRO")?;
+        let variable = |pair: &[Element]| match pair {
+            [before, name]
+                if matches!(before.kind, ElementKind::Slash | ElementKind::Comma)
+                    && name.kind == ElementKind::Name =>
+            {
+                let text = name.text.clone();
+                let name = Name { text, range: name.range };
+                Some(MacroParameter { range: name.range, name, value: None })
+            }
+            _ => None,
+        };
+        let rest = self.elements.get(first + 3..).unwrap_or_default();
+        let parameters = rest.windows(2).filter_map(variable).collect();
+        Some(Body::Macro { name, word: WordUse { word: entry, range: word.range }, parameters })
     }
 
     /// The name that a part beginning at an element assigns to.
