@@ -6,9 +6,9 @@ mod pass;
 mod pattern;
 mod station;
 mod step;
+mod way;
 
 use apt_geometry::{
-    Vec3,
     canonical::Geometry,
     cutter::Cutter,
     motion::NamedSurface,
@@ -210,7 +210,7 @@ pub(crate) struct Sink<'a> {
     milled: &'a mut Milled,
     locations: usize,
     length: f64,
-    last: Option<Vec3>,
+    last: Option<way::Stand>,
 }
 
 impl<'a> Sink<'a> {
@@ -225,10 +225,11 @@ impl<'a> Sink<'a> {
         }
     }
 
-    fn location(&mut self, job: &Job<'_>, pose: Pose) -> Result<(), MillingError> {
+    fn location(&mut self, job: &Job<'_>, stand: way::Stand) -> Result<(), MillingError> {
+        let pose = stand.pose;
         self.locations += 1;
-        self.length += self.last.map_or(0.0, |last| (pose.end - last).norm());
-        self.last = Some(pose.end);
+        self.length += self.last.map_or(0.0, |last| (pose.end - last.pose.end).norm());
+        self.last = Some(stand);
         if self.locations > MOST_LOCATIONS {
             return Err(MillingError::TooManyLocations { most: MOST_LOCATIONS });
         }

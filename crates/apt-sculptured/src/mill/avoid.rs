@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     Encounter, Job, Remedy, Sink,
     station::{Course, Station},
+    way::{OnTheWay, Stand},
 };
 use crate::{
-    check::{Hit, check},
+    check::Hit,
     error::MillingError,
     tool::{Pose, Tool, perpendicular},
 };
@@ -44,6 +45,13 @@ pub enum NotAvoided {
     },
 }
 
+/// Where a station is put out, and what was met there.
+#[derive(Clone, Copy)]
+pub(super) struct Freed {
+    pub(super) stand: Stand,
+    encounter: Option<(Hit, Remedy)>,
+}
+
 /// What a tilt gives.
 struct Tilted {
     angle: f64,
@@ -61,26 +69,55 @@ impl Job<'_> {
         sink: &mut Sink<'_>,
     ) -> Result<(), MillingError> {
         self.cancelled()?;
-        let mut pose = station.pose;
+        let found = self.freed(station, course, sink);
+        let way = self.on_the_way(&found.stand, sink);
+        self.put_freed(station, found, way, sink)
+    }
+
+    /// Where a station is put out, avoided if it has to be.
+    pub(super) fn freed(&self, station: &Station, course: &Course, sink: &mut Sink<'_>) -> Freed {
         let tool = self.tool.with_stock(self.thickness());
-        if let Some(hit) = self.worst(&tool, &pose, sink) {
-            let remedy = self.remedy(&tool, station, course, &hit, sink);
-            if let Remedy::Avoided { pose: freed, .. } = remedy {
-                pose = freed;
-            }
+        let Some(hit) = self.worst(&tool, &station.pose, sink) else {
+            return Freed { stand: Stand { pose: station.pose, clear: true }, encounter: None };
+        };
+        let remedy = self.remedy(&tool, station, course, &hit, sink);
+        let stand = match remedy {
+            Remedy::Avoided { pose, .. } => Stand { pose, clear: true },
+            Remedy::None | Remedy::Failed(_) => Stand { pose: station.pose, clear: false },
+        };
+        Freed { stand, encounter: Some((hit, remedy)) }
+    }
+
+    /// Puts a station out, and tells what was met there and on the way to it.
+    pub(super) fn put_freed(
+        &self,
+        station: &Station,
+        found: Freed,
+        way: Option<OnTheWay>,
+        sink: &mut Sink<'_>,
+    ) -> Result<(), MillingError> {
+        if let Some(way) = way {
+            self.tell(&way.pose, way.hit, Remedy::None, sink);
+        }
+        if let Some((hit, remedy)) = found.encounter {
             self.tell(&station.pose, hit, remedy, sink);
         }
-        sink.location(self, pose)
+        sink.location(self, found.stand)
     }
 
     /// Checks a location away from the part and puts it out as it is.
     pub(super) fn put_free(&self, pose: Pose, sink: &mut Sink<'_>) -> Result<(), MillingError> {
         self.cancelled()?;
         let tool = self.tool.with_stock(self.thickness());
-        if let Some(hit) = self.worst(&tool, &pose, sink) {
+        let hit = self.worst(&tool, &pose, sink);
+        let stand = Stand { pose, clear: hit.is_none() };
+        if let Some(way) = self.on_the_way(&stand, sink) {
+            self.tell(&way.pose, way.hit, Remedy::None, sink);
+        }
+        if let Some(hit) = hit {
             self.tell(&pose, hit, Remedy::None, sink);
         }
-        sink.location(self, pose)
+        sink.location(self, stand)
     }
 
     fn tell(&self, pose: &Pose, hit: Hit, remedy: Remedy, sink: &mut Sink<'_>) {
@@ -89,14 +126,7 @@ impl Job<'_> {
     }
 
     fn worst(&self, tool: &Tool, pose: &Pose, sink: &mut Sink<'_>) -> Option<Hit> {
-        if self.checked.is_empty() {
-            return None;
-        }
-        let report = check(tool, pose, &self.checked, &self.question());
-        sink.milled.unproved += u32::from(!report.proved);
-        sink.milled.cost.boxes += report.cost.boxes;
-        sink.milled.cost.cells += report.cost.cells;
-        report.worst
+        self.deepest(tool, pose, &self.question(), sink)
     }
 
     fn remedy(

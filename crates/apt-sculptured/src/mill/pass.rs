@@ -18,6 +18,8 @@ const SHRINK: [f64; 2] = [0.1, 0.75];
 const JUMP: f64 = 5.0;
 /// How much longer than the last one a step may be.
 const GROWTH: f64 = 5.0;
+/// How often a step is halved for what stands on the way to its end; what is left is told.
+const MOST_HALVINGS: usize = 16;
 /// Share of a step that is not worth a step of its own at the end of a pass.
 const REST: f64 = 1e-3;
 /// Excess of a move over what is allowed that is rounding.
@@ -38,6 +40,7 @@ impl Job<'_> {
         // All reductions since the last location, and those for want of a place since one was reached without: near the end
         // of what the tool can reach each location comes after some.
         let (mut reductions, mut dead_ends) = (0, 0);
+        let mut halvings = 0;
         loop {
             let running = last.running(course.direction);
             let left = (limit - running) * course.sign;
@@ -54,7 +57,19 @@ impl Job<'_> {
             let tried = (target - running).abs();
             match self.try_step(&last, parameters, course) {
                 Ok((next, moved)) => {
-                    self.put(&next, course, sink)?;
+                    let unproved = sink.milled.unproved;
+                    let found = self.freed(&next, course, sink);
+                    let way = self.on_the_way(&found.stand, sink);
+                    // What stands between two locations is met at one, where the tool can be avoided.
+                    let half = 0.5 * tried;
+                    if way.is_some() && halvings < MOST_HALVINGS && running + course.sign * half != running {
+                        sink.milled.unproved = unproved;
+                        halvings += 1;
+                        step = half;
+                        continue;
+                    }
+                    halvings = 0;
+                    self.put_freed(&next, found, way, sink)?;
                     let pace = moved / tried;
                     let intended = self.intended_move(&next, course.stock);
                     step = if pace > 0.0 { intended / pace } else { GROWTH * tried };
