@@ -186,6 +186,17 @@ const GOOD: &[&str] = &[
 ];
 
 #[test]
+fn weight_and_limit_before_a_row_of_a_mesh_are_those_of_all_its_points() {
+    let program = run("R=SSURF/SMESH,XYZ,SPLINE,WEIGHT,.3,LIMIT,.05,A1,A2,WEIGHT,.9,A3,SPLINE,B1,B2,B3\n\
+         S=SSURF/SMESH,XYZ,SPLINE,A1,WEIGHT,.3,LIMIT,.05,A2,WEIGHT,.9,LIMIT,.05,$\n\
+         A3,LIMIT,.05,WEIGHT,.3,SPLINE,B1,B2,B3\n\
+         T=SSURF/SMESH,XYZ,SPLINE,A1,A2,A3,SPLINE,B1,B2,B3");
+    assert_eq!(problems(&program), []);
+    assert!(geometry(&program, "R") == geometry(&program, "S"));
+    assert!(geometry(&program, "R") != geometry(&program, "T"));
+}
+
+#[test]
 fn good_statements_have_no_finding() {
     let mut faults = String::new();
     for text in GOOD {

@@ -37,6 +37,8 @@ impl FindingKind {
             Self::ReserveUsed { .. } => 256,
             Self::DivisionByZero => 63,
             Self::NegativePower { .. } => 68,
+            // The count of DOTF is checked with the kinds of its arguments.
+            Self::FunctionCount { function, .. } if function != "DOTF" => 65,
             Self::FunctionCount { .. } | Self::FunctionKind { .. } => 66,
             Self::FunctionMixed { .. } => 80,
             Self::FunctionDomain { .. } | Self::NotParallel { .. } | Self::AngleOfCenter => 66,

@@ -18,7 +18,7 @@ const SHRINK: [f64; 2] = [0.1, 0.75];
 const JUMP: f64 = 5.0;
 /// How much longer than the last one a step may be.
 const GROWTH: f64 = 5.0;
-/// How often a step is halved for what stands on the way to its end; what is left is told.
+/// How often a step is halved for what stands on the way to its end, where the tolerances do not end it before.
 const MOST_HALVINGS: usize = 16;
 /// Share of a step that is not worth a step of its own at the end of a pass.
 const REST: f64 = 1e-3;
@@ -60,9 +60,13 @@ impl Job<'_> {
                     let unproved = sink.milled.unproved;
                     let found = self.freed(&next, course, sink);
                     let way = self.on_the_way(&found.stand, sink);
-                    // What stands between two locations is met at one, where the tool can be avoided.
+                    // What stands between two locations is met at one, where the tool can be avoided. Closer ones than the
+                    // band would change no depth by more than it: what is left is told.
                     let half = 0.5 * tried;
-                    if way.is_some() && halvings < MOST_HALVINGS && running + course.sign * half != running {
+                    let can_halve = moved > self.setting.inside + self.setting.outside
+                        && halvings < MOST_HALVINGS
+                        && running + course.sign * half != running;
+                    if way.is_some() && can_halve {
                         sink.milled.unproved = unproved;
                         halvings += 1;
                         step = half;

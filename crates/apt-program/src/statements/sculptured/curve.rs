@@ -64,17 +64,34 @@ pub(super) fn transformation(reader: &mut Reader<'_>) -> Read<Option<Matrix>> {
 
 /// `[WEIGHT,w][,LIMIT,l],p1[,…],…`: before the first point for all points.
 fn spline(reader: &mut Reader<'_>) -> Read<CurveShape> {
+    let [weight, limit] = fairing(reader)?;
+    Ok(CurveShape::Spline { weight, limit, nodes: nodes(reader)? })
+}
+
+/// A row of a mesh, which is written like a spline.
+pub(super) fn row(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
+    let [weight, limit] = fairing(reader)?;
+    let mut nodes = nodes(reader)?;
+    for node in &mut nodes {
+        node.weight = node.weight.or(weight);
+        node.limit = node.limit.or(limit);
+    }
+    Ok(nodes)
+}
+
+/// `[WEIGHT,w][,LIMIT,l],` in any order: weight and limit of all points.
+fn fairing(reader: &mut Reader<'_>) -> Read<[Option<f64>; 2]> {
     let (mut weight, mut limit) = (None, None);
     while let Some(word @ ("WEIGHT" | "LIMIT")) = reader.peek_word() {
         reader.skip();
         let value = reader.scalar()?;
         *(if word == "WEIGHT" { &mut weight } else { &mut limit }) = Some(value);
     }
-    Ok(CurveShape::Spline { weight, limit, nodes: nodes(reader)? })
+    Ok([weight, limit])
 }
 
 /// Points with their qualifiers, at least one.
-pub(super) fn nodes(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
+fn nodes(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
     let mut nodes = vec![node(reader)?];
     while reader.peek().and_then(Item::point).is_some() {
         nodes.push(node(reader)?);

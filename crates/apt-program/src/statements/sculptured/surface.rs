@@ -11,7 +11,7 @@ use apt_geometry::{
 };
 
 use super::{
-    curve::{nodes, transformation, weights},
+    curve::{row, transformation, weights},
     reader::{Read, Reader, SENSES},
 };
 use crate::{expression::Item, finding::Expected};
@@ -100,7 +100,7 @@ fn mesh(reader: &mut Reader<'_>) -> Read<SurfaceShape> {
     let mut rows = Vec::new();
     reader.word(&["SPLINE"])?;
     loop {
-        rows.push(nodes(reader)?);
+        rows.push(row(reader)?);
         if !reader.eat("SPLINE") {
             return Ok(SurfaceShape::Mesh { restriction, rows });
         }
