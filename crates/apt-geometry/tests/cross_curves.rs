@@ -139,6 +139,26 @@ fn cross_curves_of_several_arcs_make_rows_of_patches() {
 }
 
 #[test]
+fn cross_curves_meet_curves_whose_segment_has_several_arcs() {
+    let bent = |y: f64, z: f64| {
+        let curve = spline(nodes(&[[0., y, 0.], [2., y, z], [6., y, 0.]]));
+        flowing(curve, FlowMeasure::Param, SegmentMeasure::Param, &[0.0, 2.0])
+    };
+    let curves = [bent(0.0, 1.0), bent(4.0, -0.5)];
+    let side = |x: f64, z: f64| made(&spline(nodes(&[[x, 0., 0.], [x, 2., z], [x, 4., 0.]])));
+    let (west, east) = (side(0.0, 2.0), side(6.0, -1.0));
+    let surface = loft(curves.to_vec(), vec![west.clone(), east.clone()]).expect("a surface");
+    for index in 0..=20 {
+        let t = f64::from(index) / 20.0;
+        assert!((on(&surface, 0.0, t) - at(&west, 2.0 * t)).norm() < CLOSE, "west at {t}");
+        assert!((on(&surface, 1.0, t) - at(&east, 2.0 * t)).norm() < CLOSE, "east at {t}");
+        for (row, curve) in curves.iter().enumerate() {
+            assert!((on(&surface, t, row as f64) - at(curve, 2.0 * t)).norm() < CLOSE, "curve {row} at {t}");
+        }
+    }
+}
+
+#[test]
 fn cross_curves_may_be_conics_and_run_by_their_lengths() {
     let curves = vec![along(0.0, 0.0), along(4.0, 0.0)];
     let arc = |x: f64, z: f64| {

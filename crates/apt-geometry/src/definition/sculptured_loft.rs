@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::{
     parametric_error::ParametricError,
-    sculptured_strip::{RowPart, Strand, Strip, blend, cut},
+    sculptured_strip::{Pull, RowPart, Strand, Strip, blend, cut},
     spline::{self, Condition},
 };
 use crate::{
@@ -48,12 +48,16 @@ pub(super) fn surface(
         + (strands[0].boundary(0) - strands[strands.len() - 1].boundary(0)).norm();
     let ties = Ties::of(&strands, segments)?;
     let rims = rims(cross, &strands, segments, size)?;
-    let parts = row_parts(rims.as_ref(), curves.len() - 1, size);
+    let parts = row_parts(rims.as_deref(), curves.len() - 1, size);
+    let strip = |segment| Strip { strands: &strands, segment, ties: &ties, rows: &parts, pulls: None };
+    let lack = |rim: &Rim| {
+        let (segment, local) = if rim.end < segments { (rim.end, 0.0) } else { (rim.end - 1, 1.0) };
+        strip(segment).lack(rim, local)
+    };
+    let pulls: Option<Vec<Pull>> = rims.map(|rims| rims.iter().map(lack).collect());
     let mut columns = Vec::new();
     for segment in 0..segments {
-        let rows = parts.as_slice();
-        let strip = Strip { strands: &strands, segment, ties: &ties, rims: rims.as_ref(), segments, rows };
-        columns.extend(strip.columns(size));
+        columns.extend(Strip { pulls: pulls.as_deref(), ..strip(segment) }.columns(size));
     }
     let rows = parts.len();
     let mut breaks = vec![0.0];
@@ -74,11 +78,12 @@ pub(super) fn surface(
 
 /// The rows of patches: all that lies between two curves, or where cross curves are not one cubic there, parts of it over
 /// which they are close to cubics.
-fn row_parts(rims: Option<&Rims>, rows: usize, size: f64) -> Vec<RowPart> {
-    let Some(Rims { rims }) = rims else {
+fn row_parts(rims: Option<&[Rim]>, rows: usize, size: f64) -> Vec<RowPart> {
+    let Some(rims) = rims else {
         return (0..rows).map(|row| RowPart { row, from: 0.0, to: 1.0 }).collect();
     };
-    let strands: Vec<Strand<'_>> = rims.iter().map(|(curve, flow, _)| Strand { curve, flow }).collect();
+    let strands: Vec<Strand<'_>> =
+        rims.iter().map(|rim| Strand { curve: &rim.curve, flow: &rim.flow }).collect();
     let mut parts = Vec::with_capacity(rows);
     for row in 0..rows {
         cut(
@@ -138,10 +143,13 @@ impl Ties {
     }
 }
 
-/// The curves after CROSS, each as a strand with a segment for each row.
-pub(super) struct Rims {
-    /// The curve with its flow, and the end of segments of the surface it belongs to.
-    pub(super) rims: Vec<(SpaceCurve, Flow, usize)>,
+/// A curve after CROSS.
+pub(super) struct Rim {
+    pub(super) curve: SpaceCurve,
+    /// A flow with a segment for each row.
+    pub(super) flow: Flow,
+    /// The end of segments of the surface that it belongs to.
+    pub(super) end: usize,
 }
 
 fn rims(
@@ -149,7 +157,7 @@ fn rims(
     strands: &[Strand<'_>],
     segments: usize,
     size: f64,
-) -> Result<Option<Rims>, ParametricError> {
+) -> Result<Option<Vec<Rim>>, ParametricError> {
     if cross.is_empty() {
         return Ok(None);
     }
@@ -174,9 +182,9 @@ fn rims(
                 return Err(ParametricError::CrossGap { curve: index + 1, gap });
             }
         }
-        rims.push((SpaceCurve::clone(curve), flow, end));
+        rims.push(Rim { curve: SpaceCurve::clone(curve), flow, end });
     }
-    Ok(Some(Rims { rims }))
+    Ok(Some(rims))
 }
 
 /// A flow along a cross curve whose segments end at the joints of its arcs that meet the curves in order; `None` where the

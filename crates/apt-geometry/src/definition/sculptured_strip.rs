@@ -2,7 +2,7 @@
 
 use nalgebra::Vector4;
 
-use super::sculptured_loft::{Rims, Ties};
+use super::sculptured_loft::{Rim, Ties};
 use crate::{
     Vec3,
     parametric::{ArcPoint, CurveArc, Flow, Patch, SegmentMeasure, SpaceCurve},
@@ -39,9 +39,19 @@ pub(super) struct Strip<'a> {
     pub(super) strands: &'a [Strand<'a>],
     pub(super) segment: usize,
     pub(super) ties: &'a Ties,
-    pub(super) rims: Option<&'a Rims>,
-    pub(super) segments: usize,
     pub(super) rows: &'a [RowPart],
+    pub(super) pulls: Option<&'a [Pull]>,
+}
+
+/// Control points along v of a row, or a part of one, with their derivatives by u.
+type Lines = [(Vec3, Vec3); 4];
+
+/// How far a cross curve is from the rows without it.
+pub(super) struct Pull {
+    /// The end of segments that it belongs to.
+    end: usize,
+    /// For each part of a row what its control points lack there.
+    misfits: Vec<[Vec3; 4]>,
 }
 
 /// The patches of a column, from the first row to the last.
@@ -183,11 +193,7 @@ impl Strip<'_> {
     pub(super) fn columns(&self, size: f64) -> Vec<Column> {
         let joints = self.strands.iter().flat_map(|strand| strand.joints(self.segment));
         let mut columns = Vec::new();
-        let all = |from: f64, to: f64| {
-            self.exact(from, to).unwrap_or_else(|| {
-                self.rows.iter().map(|part| self.fitted(part, from, to)).collect::<Vec<Patch>>()
-            })
-        };
+        let all = |from: f64, to: f64| self.exact(from, to).unwrap_or_else(|| self.fitted(from, to));
         cut(
             joints,
             &mut |from, to| self.exact(from, to).is_some() || self.is_close(&all(from, to), from, to, size),
@@ -200,7 +206,7 @@ impl Strip<'_> {
 
     /// Exact rulings between arcs of the same weights.
     fn exact(&self, from: f64, to: f64) -> Option<Vec<Patch>> {
-        if !self.ties.is_ruled() || self.rims.is_some() {
+        if !self.ties.is_ruled() || self.pulls.is_some() {
             return None;
         }
         let arcs: Vec<CurveArc> =
@@ -218,10 +224,26 @@ impl Strip<'_> {
             .collect()
     }
 
-    /// The four functions of u that make a row, or a part of one, cubic in v, as control points along v, with their
-    /// derivatives by u.
-    fn across(&self, part: &RowPart, local: f64, within: f64) -> [(Vec3, Vec3); 4] {
-        let row = part.row;
+    /// The four functions of u that make each row, or part of one, cubic in v.
+    fn across(&self, local: f64, within: f64) -> Vec<Lines> {
+        let mut whole: Option<(usize, Lines)> = None;
+        let part = |(index, part): (usize, &RowPart)| {
+            let lines = match whole {
+                Some((row, lines)) if row == part.row => lines,
+                _ => self.whole_row(part.row, local, within),
+            };
+            whole = Some((part.row, lines));
+            let places = part_of(lines.map(|line| line.0), part.from, part.to);
+            let slopes = part_of(lines.map(|line| line.1), part.from, part.to);
+            let mut control = std::array::from_fn(|line| (places[line], slopes[line]));
+            self.pull(index, local, &mut control);
+            control
+        };
+        self.rows.iter().enumerate().map(part).collect()
+    }
+
+    /// The functions of a whole row without cross curves.
+    fn whole_row(&self, row: usize, local: f64, within: f64) -> Lines {
         let at = |index: usize| {
             self.strands
                 .get(index)
@@ -232,12 +254,12 @@ impl Strip<'_> {
         let third = 1.0 / 3.0;
         let [first, second] = ways.unwrap_or([high - low; 2]);
         let [first_du, second_du] = if ways.is_some() { ways_du } else { [high_du - low_du; 2] };
-        let places = [low, low + first * third, high - second * third, high];
-        let slopes = [low_du, low_du + first_du * third, high_du - second_du * third, high_du];
-        let (places, slopes) = (part_of(places, part.from, part.to), part_of(slopes, part.from, part.to));
-        let mut control = std::array::from_fn(|index| (places[index], slopes[index]));
-        self.pull(part, local, &mut control);
-        control
+        [
+            (low, low_du),
+            (low + first * third, low_du + first_du * third),
+            (high - second * third, high_du - second_du * third),
+            (high, high_du),
+        ]
     }
 
     /// The derivatives across with their derivatives by u.
@@ -255,51 +277,57 @@ impl Strip<'_> {
         (at(local), slope)
     }
 
-    /// Pulls the row onto the cross curves: their distance from it, falling off linearly from one to the next.
-    fn pull(&self, part: &RowPart, local: f64, control: &mut [(Vec3, Vec3); 4]) {
-        let Some(rims) = self.rims else { return };
+    /// Pulls a part of a row (index) onto the cross curves: their distance from it, falling off linearly from one to the
+    /// next.
+    fn pull(&self, part: usize, local: f64, control: &mut Lines) {
+        let Some(pulls) = self.pulls else { return };
         let global = self.segment as f64 + local;
-        let place = rims.rims.partition_point(|rim| (rim.2 as f64) <= global).clamp(1, rims.rims.len() - 1);
-        let (before, after) = (&rims.rims[place - 1], &rims.rims[place]);
-        let span = (after.2 - before.2) as f64;
-        let share = (global - before.2 as f64) / span;
-        let (near, far) = (self.misfit(part, before), self.misfit(part, after));
+        let place = pulls.partition_point(|pull| (pull.end as f64) <= global).clamp(1, pulls.len() - 1);
+        let (before, after) = (&pulls[place - 1], &pulls[place]);
+        let span = (after.end - before.end) as f64;
+        let share = (global - before.end as f64) / span;
+        let (near, far) = (before.misfits[part], after.misfits[part]);
         for (index, (point, slope)) in control.iter_mut().enumerate() {
             *point += near[index] * (1.0 - share) + far[index] * share;
             *slope += (far[index] - near[index]) / span;
         }
     }
 
-    /// The control points of a cross curve over a part of a row less those of the row at that end.
-    fn misfit(&self, part: &RowPart, rim: &(SpaceCurve, Flow, usize)) -> [Vec3; 4] {
-        let (curve, flow, end) = rim;
-        let wanted = Strand { curve, flow }.cubic(part.row, [part.from, part.to]);
-        let (segment, local) = if *end < self.segments { (*end, 0.0) } else { (end - 1, 1.0) };
-        let plain = Strip { segment, rims: None, ..*self };
-        let own = plain.across(part, local, 0.5).map(|pair| pair.0);
-        std::array::from_fn(|index| wanted[index] - own[index])
+    /// What the rows lack to a cross curve at an end of this segment (local parameter 0 or 1).
+    pub(super) fn lack(&self, rim: &Rim, local: f64) -> Pull {
+        let wanted = Strand { curve: &rim.curve, flow: &rim.flow };
+        // The arc at the very end: a segment may have several.
+        let own = self.across(local, local);
+        let misfit = |(part, own): (&RowPart, &Lines)| {
+            let wanted = wanted.cubic(part.row, [part.from, part.to]);
+            std::array::from_fn(|index| wanted[index] - own[index].0)
+        };
+        Pull { end: rim.end, misfits: self.rows.iter().zip(&own).map(misfit).collect() }
     }
 
-    /// The bicubic patch with the exact values and derivatives at both ends of a column.
-    fn fitted(&self, part: &RowPart, from: f64, to: f64) -> Patch {
+    /// The bicubic patches with the exact values and derivatives at both ends of a column.
+    fn fitted(&self, from: f64, to: f64) -> Vec<Patch> {
         let middle = 0.5 * (from + to);
-        let (first, last) = (self.across(part, from, middle), self.across(part, to, middle));
+        let (first, last) = (self.across(from, middle), self.across(to, middle));
         let third = (to - from) / 3.0;
-        let mut points = [[Vec3::zeros(); 4]; 4];
-        for index in 0..4 {
-            let ((p, dp), (q, dq)) = (first[index], last[index]);
-            for (line, point) in points.iter_mut().zip([p, p + dp * third, q - dq * third, q]) {
-                line[index] = point;
+        let patch = |(first, last): (&Lines, &Lines)| {
+            let mut points = [[Vec3::zeros(); 4]; 4];
+            for index in 0..4 {
+                let ((p, dp), (q, dq)) = (first[index], last[index]);
+                for (line, point) in points.iter_mut().zip([p, p + dp * third, q - dq * third, q]) {
+                    line[index] = point;
+                }
             }
-        }
-        Patch::from_points(&points)
+            Patch::from_points(&points)
+        };
+        first.iter().zip(&last).map(patch).collect()
     }
 
     fn is_close(&self, patches: &[Patch], from: f64, to: f64, size: f64) -> bool {
         let middle = 0.5 * (from + to);
         PROBES.iter().all(|&share| {
-            patches.iter().zip(self.rows).all(|(patch, part)| {
-                let control = self.across(part, from + (to - from) * share, middle);
+            let exact = self.across(from + (to - from) * share, middle);
+            patches.iter().zip(&exact).all(|(patch, control)| {
                 let lines = patch.at_u(share);
                 control.iter().zip(&lines).all(|((point, _), found): (_, &Vector4<f64>)| {
                     (point - found.xyz() / found.w).norm() <= CLOSE * size
