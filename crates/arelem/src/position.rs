@@ -421,6 +421,11 @@ pub(crate) fn correction_of_two(residual: [f64; 2], normal: [Vec3; 2]) -> Vec3 {
     correction(&Rows { residual: [ra, rb, 0.0], normal: [a, b, Vec3::zeros()], count: 2, ..Rows::NONE })
 }
 
+/// The correction for three residuals with their gradients.
+pub(crate) fn correction_of_three(residual: [f64; 3], normal: [Vec3; 3]) -> Vec3 {
+    correction(&Rows { residual, normal, count: 3, ..Rows::NONE })
+}
+
 /// `X = −Nᵀ (N Nᵀ)⁻¹ r`, damped when the normals are dependent.
 fn correction(rows: &Rows) -> Vec3 {
     let [a, b, c] = rows.normal;

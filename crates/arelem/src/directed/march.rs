@@ -215,11 +215,10 @@ impl<'a> March<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             self.look_for_end_beside(&here, patience)?;
-            let arrived = here;
             let advanced = self.stepper.advance(&mut here, cap);
             let mut next = advanced.map_err(|failure| self.explained(&here, failure))?;
-            if let Some(straight) = self.stop_in_corner(&arrived)? {
-                (here, next) = (arrived, straight);
+            if let Some([from, straight]) = self.stop_in_corner()? {
+                (here, next) = (from, straight);
             }
             let mut before = self.snapshot(&here);
             let mut event = self.scan(&here, &next)?;
@@ -372,12 +371,12 @@ impl<'a> March<'a> {
 
     /// Where the path has turned by more than a right angle: a vector straight on, if that comes to a check surface. What the tool meets in the
     /// corner, within its bands, is not behind it on the other leg.
-    fn stop_in_corner(&self, arrived: &Vertex) -> Result<Option<Vertex>, MotionFailure> {
-        let Some(straight) = self.stepper.straight_on() else { return Ok(None) };
+    fn stop_in_corner(&self) -> Result<Option<[Vertex; 2]>, MotionFailure> {
+        let Some([from, to]) = self.stepper.straight_on() else { return Ok(None) };
         let (mut watcher, mut tangency) = (self.watcher.clone(), self.tangency.clone());
-        let sweep = arrived.sweep(self.prepared, &straight);
-        let stop = first_stop((&mut watcher, &mut tangency), &sweep, [arrived, &straight])?;
-        Ok(stop.map(|_| straight))
+        let sweep = from.sweep(self.prepared, &to);
+        let stop = first_stop((&mut watcher, &mut tangency), &sweep, [&from, &to])?;
+        Ok(stop.map(|_| [from, to]))
     }
 
     /// Moves the last vertex back on the vector that leads to it, if the next one then goes farther. Both vectors are to be

@@ -347,9 +347,10 @@ impl Corner<'_> {
             }
             let [part, drive] = [0, 1].map(|k| if turns[k] { &others[k] } else { &self.contacts[k] });
             let along = line_of_motion(part, drive, wanted, &self.tip).ok()?;
-            let is_better = || along.dot(wanted) > tangent.dot(wanted) && turning().all(touches_both);
+            let is_better = || along.dot(wanted) > tangent.dot(wanted);
             let leaves = turning().all(|k| self.contacts[k].gradient.dot(&along) >= 0.0);
-            (leaves && (turning().all(is_blocked) || is_better())).then_some((along, *drive))
+            (leaves && turning().all(touches_both) && (turning().all(is_blocked) || is_better()))
+                .then_some((along, *drive))
         })
     }
 }

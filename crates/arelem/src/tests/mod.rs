@@ -23,6 +23,7 @@ mod hollow;
 mod properties;
 mod refused;
 mod sculptured;
+mod sharp_corners;
 pub(crate) mod sheets;
 mod spared;
 mod tangencies;

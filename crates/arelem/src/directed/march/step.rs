@@ -11,6 +11,7 @@ mod longest;
 mod of_use;
 mod overlong;
 mod sag;
+mod sharp_corner;
 mod trend;
 mod window;
 
@@ -84,8 +85,10 @@ pub(super) struct Stepper<'a> {
     kept_hand: Option<Hand>,
     /// Where the path last turned by more than a right angle.
     turned_sharply: Option<Vec3>,
-    /// The end of the longest vector that leads straight on from there in the bands.
-    straight: Option<Vertex>,
+    /// Where the longest vector that leads straight on from there in the bands begins and ends.
+    straight: Option<[Vertex; 2]>,
+    /// The vertex in a corner that the last vector has led into, and such a vector from there.
+    beyond_corner: Option<(Vec3, [Vertex; 2])>,
     /// The last vector; zero before the first.
     last: Vec3,
     /// Where the path came from farther off than it may turn on the spot.
@@ -152,6 +155,7 @@ impl<'a> Stepper<'a> {
             kept_hand: None,
             turned_sharply: None,
             straight: None,
+            beyond_corner: None,
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
@@ -167,17 +171,26 @@ impl<'a> Stepper<'a> {
     /// The next vertex, at most `cap` away. Where the path turns sharply because the tool comes to touch a surface at a second
     /// place, the tangent of the vertex becomes that of the path beyond.
     pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
-        self.straight = None;
+        self.latest = None;
+        let in_corner = self.beyond_corner.take().filter(|(at, _)| *at == here.tip);
+        self.straight = in_corner.map(|(_, straight)| straight);
         self.hand.arrive(here);
         if let Some(next) = self.beyond_sharply(here, cap)? {
             return self.noted(here, Ok(next));
         }
         let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
+            Ok(next) => {
+                let next = self.in_sharp_corner(here, cap).unwrap_or(next);
+                return self.noted(here, Ok(next));
+            }
             found => return self.noted(here, found),
         };
         let corner = self.corner_at(here);
         if let Some(next) = self.around(&corner, here, cap) {
+            return self.noted(here, Ok(next));
+        }
+        if let Some(next) = self.in_sharp_corner(here, cap) {
             return self.noted(here, Ok(next));
         }
         if let Some(next) = self.around_sharply(&corner.places, here, cap)? {
@@ -194,9 +207,21 @@ impl<'a> Stepper<'a> {
         self.noted(here, found)
     }
 
-    /// Where the path has just turned by more than a right angle: the end of a vector straight on, as far as the bands allow.
-    pub(super) fn straight_on(&self) -> Option<Vertex> {
+    /// Where the path has just turned by more than a right angle: a vector straight on, as far as the bands allow.
+    pub(super) fn straight_on(&self) -> Option<[Vertex; 2]> {
         self.straight
+    }
+
+    /// The next vertex in a sharp corner ahead of where the last vector from a place leads.
+    fn in_sharp_corner(&mut self, here: &Vertex, cap: f64) -> Option<Vertex> {
+        let latest = self.latest.take();
+        let cap = cap.min(self.maximum);
+        let Some(found) = self.towards_sharp_corner(here, cap, latest.as_ref()) else {
+            self.latest = latest;
+            return None;
+        };
+        self.follow(&here.tip, &found);
+        Some(found.vertex)
     }
 
     /// Remembers the direction of a vector.

@@ -147,7 +147,7 @@ impl Stepper<'_> {
     }
 
     /// True if a vector of a length is proven that begins at a corner: what touches the tool twice may be hard to prove.
-    fn leads_on(
+    pub(super) fn leads_on(
         &self,
         corner: &Vertex,
         length: f64,

@@ -13,7 +13,7 @@ use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
 /// goes straight on there changes it.
 const TELLING_SINE: f64 = 0.1;
 /// Cosine between the gradients at both ends of a vector above which the tool touches at the same place (30°).
-const SAME_CONTACT_COSINE: f64 = 0.87;
+pub(super) const SAME_CONTACT_COSINE: f64 = 0.87;
 
 /// The sign of the triple product of the gradients of both clearances and the direction of the path. The tool keeps to one side of each
 /// surface, so its path is an edge of what it may reach, and along an edge this sign stays: where the gradient a of one clearance gives
@@ -58,7 +58,8 @@ impl Hand {
         self.sign = if is_kept { before } else { now };
     }
 
-    fn or_at(self, vertex: &Vertex) -> Self {
+    /// The same, or the sign at a vertex where none is known.
+    pub(super) fn or_at(self, vertex: &Vertex) -> Self {
         if self.sign.is_some() { self } else { Self { sign: Self::sign_at(vertex), ..self } }
     }
 
@@ -69,7 +70,7 @@ impl Hand {
     }
 
     /// The direction of the path along two contacts.
-    fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
+    pub(super) fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
         let across = part.gradient.cross(&drive.gradient);
         (across.norm() >= TELLING_SINE).then(|| across.normalize() * self.sign.unwrap_or_default())
     }
@@ -99,7 +100,7 @@ impl Stepper<'_> {
             let onward = (self.last, self.arrived);
             (self.last, self.arrived, self.turned) = known;
             if let Some(next) = next {
-                self.straight = self.straight_from(here, seconds, cap)?;
+                self.straight = self.straight_from(here, seconds, cap)?.map(|straight| [*here, straight]);
                 (self.last, self.arrived) = onward;
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
                 *here = turned;

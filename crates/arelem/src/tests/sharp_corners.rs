@@ -1,0 +1,68 @@
+//! Corners that turn the path sharply, in all bands and from all distances: one vertex does for a corner.
+
+use super::*;
+
+/// Of the tool.
+const RADIUS: f64 = 0.5;
+/// How far beyond the corner motions end.
+const AWAY: f64 = 0.5;
+
+/// The walls y = -0.5 and another one with a normal, as far from the origin.
+fn walls(second: &Vec3) -> Geometry {
+    let first = Vec3::y();
+    let product = |k: usize, l: usize| 0.5 * (first[k] * second[l] + first[l] * second[k]);
+    let along = |k: usize| 0.5 * RADIUS * (first[k] + second[k]);
+    quadric([
+        product(0, 0),
+        product(1, 1),
+        0.0,
+        RADIUS * RADIUS,
+        0.0,
+        0.0,
+        product(0, 1),
+        along(0),
+        along(1),
+        0.0,
+    ])
+}
+
+/// A tool of radius 0.5 left of two upright walls, one along the x-axis and one that turns the path by an angle, from so far before the corner.
+/// The tool end is in the origin where it touches both.
+fn around(turn: f64, band: [f64; 2], back: f64) -> Result<CutSequence, MotionFailure> {
+    let (sine, cosine) = turn.to_radians().sin_cos();
+    let walls = walls(&v(-sine, cosine, 0.0));
+    let mut program = Program::new();
+    program.cutter(&[2.0 * RADIUS]).tolerance(band[0], band[1]).from(-back, 0.0, 0.0);
+    program.run(&MotionCommand::PartSurface(named(&ground())));
+    program.side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
+    let check = plane(cosine, sine, 0.0, AWAY);
+    let command = motion(Turn::Forward, &walls, &[(Relation::On, 1, &check)]);
+    let execution = execute(&program.state, &command, &|| false);
+    match (execution.failure, execution.output) {
+        (Some(failure), _) => Err(failure),
+        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
+        _ => panic!("no sequence"),
+    }
+}
+
+/// Bands, inside and outside, and how many of them before the corner motions begin.
+const BANDS: [[f64; 2]; 3] = [[0.001, 0.001], [0.02, 0.0], [0.0, 0.005]];
+const BEFORE: [f64; 5] = [0.3, 0.5, 1.0, 3.0, 40.0];
+
+/// From within the corner's bands one vector may do; elsewhere two vectors do, however the path turns.
+#[test]
+fn one_vertex_does_for_a_sharp_corner() {
+    for band in BANDS {
+        for before in BEFORE {
+            for turn in (61..=110).step_by(7) {
+                let motion = around(f64::from(turn), band, before * (band[0] + band[1]));
+                let sequence =
+                    motion.unwrap_or_else(|failure| panic!("{turn} {band:?} {before}: {failure:?}"));
+                let count = sequence.points.len();
+                let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+                assert!(count <= 2, "{turn} {band:?} {before}: {count} vectors");
+                assert!(evidence.verified, "{turn} {band:?} {before}: {evidence:?}");
+            }
+        }
+    }
+}
