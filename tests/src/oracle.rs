@@ -101,6 +101,9 @@ pub fn check(group: &str, path: &Path) -> Vec<String> {
         symbols(&expected, &ours, &by_flow, &mut problems);
         sculptured::check(path, dialect, &expected, &mut problems);
         locations(group, &expected, &ours, &mut problems);
+        if dialect_of(group) != DialectName::Apt4 {
+            names(&expected, &ours, &mut problems);
+        }
         if group != "errors" {
             verification(&ours, &mut problems);
         }
@@ -250,6 +253,39 @@ fn locations(group: &str, expected: &Value, ours: &Value, problems: &mut Vec<Str
                 problems.push(format!("at {} the tool is at {b:?}, expected {a:?}", wanted.isn));
             }
         }
+    }
+}
+
+/// After what the positions of each statement are named, and the words of INDEX and COPY. APT4 writes no names.
+fn names(expected: &Value, ours: &Value, problems: &mut Vec<String>) {
+    let named = |report: &Value| -> Vec<(u64, String)> {
+        let entries = report["cl"].as_array().into_iter().flatten();
+        let moves = entries.filter(|entry| matches!(entry["type"].as_str(), Some("from" | "go")));
+        moves
+            .map(|entry| {
+                let name = entry["surface"].as_str().unwrap_or_default();
+                (entry["isn"].as_u64().unwrap_or(0), name.to_owned())
+            })
+            .collect()
+    };
+    let (wanted, found) = (named(expected), named(ours));
+    if wanted != found {
+        problems.push(format!("the positions are named {found:?}, expected {wanted:?}"));
+    }
+    let edits = |report: &Value| -> Vec<Value> {
+        let entries = report["cl"].as_array().into_iter().flatten().map(|entry| &entry["words"]);
+        let edits = entries.filter(|words| matches!(words[0].as_str(), Some("INDEX" | "COPY")));
+        edits
+            .map(|words| match words[2].as_str() {
+                // The name of the matrix and its first numbers are one text there.
+                Some("MODIFY") => words.as_array().into_iter().flatten().take(3).cloned().collect(),
+                _ => words.clone(),
+            })
+            .collect()
+    };
+    let (wanted, found) = (edits(expected), edits(ours));
+    if wanted != found {
+        problems.push(format!("INDEX and COPY are {found:?}, expected {wanted:?}"));
     }
 }
 

@@ -7,12 +7,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use apt_geometry::{Vec3, canonical::Matrix};
-use smol_str::SmolStr;
 
 use crate::{
     record::{ClKind, ClRecord, ClWord},
-    tilt::{TiltError, tilt},
+    tilt::tilt,
 };
+
+mod error;
+mod statement;
+
+pub use error::{EditError, EditErrorKind};
+pub use statement::CopyStep;
+use statement::{CopyOrder, index_statement, statement, transform_statement};
 
 /// Deepest nesting of INDEX ... COPY.
 pub const MAXIMUM_NESTING: usize = 3;
@@ -58,8 +64,8 @@ pub enum EditItem {
     Copy {
         /// Index number.
         number: i64,
-        /// What each copy adds; `None` for SAME.
-        matrix: Option<Matrix>,
+        /// What each copy adds.
+        step: CopyStep,
         /// How many copies.
         count: u32,
         /// Statement number.
@@ -67,142 +73,6 @@ pub enum EditItem {
         /// Origin.
         source: u32,
     },
-}
-
-/// A mistake in the edit statements, with its place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EditError {
-    /// Statement number.
-    pub isn: u32,
-    /// Origin, as in [`ClRecord::source`].
-    pub source: u32,
-    /// What is wrong.
-    pub kind: EditErrorKind,
-}
-
-// By hand, because `source` is the place in the program here and no underlying error.
-impl std::fmt::Display for EditError {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(formatter, "statement {}: {}", self.isn, self.kind)
-    }
-}
-
-impl std::error::Error for EditError {}
-
-impl EditError {
-    /// The number of the APT III edit phase message, where there is one.
-    pub fn apt3(&self) -> Option<u16> {
-        self.kind.apt3()
-    }
-}
-
-/// What is wrong with an edit statement.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum EditErrorKind {
-    /// INDEX ... COPY nested too deep; the range is not copied.
-    #[error("INDEX {number} is nested {depth} deep, at most {MAXIMUM_NESTING} are allowed")]
-    NestedTooDeep {
-        /// Index number.
-        number: i64,
-        /// The depth it would have.
-        depth: usize,
-    },
-    /// COPY names an index that no INDEX before it opened.
-    #[error("COPY {number} without INDEX {number} before it")]
-    CopyWithoutIndex {
-        /// Index number.
-        number: i64,
-    },
-    /// INDEX/n,NOMORE without INDEX/n open.
-    #[error("INDEX {number},NOMORE without INDEX {number}")]
-    EndWithoutIndex {
-        /// Index number.
-        number: i64,
-    },
-    /// Ranges overlap without one holding the other.
-    #[error("the range of INDEX {number} overlaps that of INDEX {open}")]
-    Overlap {
-        /// Index number of the statement.
-        number: i64,
-        /// The inner range that is still open.
-        open: i64,
-    },
-    /// INDEX with a number that an INDEX before it has.
-    #[error("INDEX {number} was given before")]
-    IndexReused {
-        /// Index number.
-        number: i64,
-    },
-    /// More INDEX statements than allowed.
-    #[error("more than {limit} INDEX statements")]
-    TooManyIndexes {
-        /// How many are allowed.
-        limit: usize,
-    },
-    /// More COPY statements for one INDEX than allowed.
-    #[error("more than {MAXIMUM_COPIES_PER_INDEX} COPY statements name INDEX {number}")]
-    TooManyCopies {
-        /// Index number.
-        number: i64,
-    },
-    /// COPY with a count of zero: nothing is copied.
-    #[error("COPY {number} with a count of zero")]
-    ZeroCount {
-        /// Index number.
-        number: i64,
-    },
-    /// The copies would exceed the budget of records.
-    #[error("COPY {number} would make more than {limit} records")]
-    TooManyRecords {
-        /// Index number.
-        number: i64,
-        /// The budget.
-        limit: usize,
-    },
-    /// The copies would make the path longer than allowed.
-    #[error("COPY {number} would make more than {limit} positions")]
-    TooManyPoints {
-        /// Index number.
-        number: i64,
-        /// How many are allowed.
-        limit: u64,
-    },
-    /// A transform squeezes a tool axis to nothing.
-    #[error("the transformed tool axis has no direction")]
-    AxisVanishes {
-        /// The axis before the transform.
-        axis: [f64; 3],
-    },
-    /// A transform makes a coordinate that is not a finite number.
-    #[error("the transformed position is not finite")]
-    NotFinite {
-        /// The position before the transform.
-        position: [f64; 3],
-    },
-    /// VTLAXS or WCORN.
-    #[error(transparent)]
-    Tilt(#[from] TiltError),
-}
-
-impl EditErrorKind {
-    /// The number of the APT III edit phase message, where there is one.
-    pub fn apt3(&self) -> Option<u16> {
-        match self {
-            EditErrorKind::TooManyIndexes { .. } => Some(4),
-            EditErrorKind::NestedTooDeep { .. } => Some(5),
-            EditErrorKind::CopyWithoutIndex { .. }
-            | EditErrorKind::EndWithoutIndex { .. }
-            | EditErrorKind::Overlap { .. }
-            | EditErrorKind::IndexReused { .. }
-            | EditErrorKind::TooManyCopies { .. } => Some(11),
-            EditErrorKind::AxisVanishes { .. } => Some(37),
-            EditErrorKind::Tilt(error) => error.apt3(),
-            EditErrorKind::ZeroCount { .. }
-            | EditErrorKind::TooManyRecords { .. }
-            | EditErrorKind::TooManyPoints { .. }
-            | EditErrorKind::NotFinite { .. } => None,
-        }
-    }
 }
 
 /// Executes the edit statements. The list comes back whole, also with errors: a faulty statement has no effect.
@@ -368,8 +238,8 @@ impl Editor {
                 self.push(index_statement(number, isn, source));
             }
             EditItem::Index { number, end: true, isn, source } => self.end_index(number, isn, source),
-            EditItem::Copy { number, matrix, count, isn, source } => {
-                self.copy(&CopyOrder { number, matrix, count, isn, source }, span);
+            EditItem::Copy { number, step, count, isn, source } => {
+                self.copy(&CopyOrder { number, step, count, isn, source }, span);
             }
         }
     }
@@ -458,7 +328,8 @@ impl Editor {
 
     /// Appends the copies to the innermost range.
     fn repeat(&mut self, order: &CopyOrder) {
-        let CopyOrder { number, matrix, count, isn, source } = *order;
+        let CopyOrder { number, step, count, isn, source } = *order;
+        let matrix = step.matrix();
         let Some(level) = self.levels.last() else { return };
         let range = level.end.unwrap_or(level.held.len());
         let original: Vec<Held> = level.held[..range].to_vec();
@@ -530,56 +401,12 @@ impl Editor {
     }
 }
 
-/// A COPY statement.
-struct CopyOrder {
-    number: i64,
-    matrix: Option<Matrix>,
-    count: u32,
-    isn: u32,
-    source: u32,
-}
-
-impl CopyOrder {
-    fn statement(&self) -> ClRecord {
-        let mut words = vec![ClWord::Number(self.number as f64)];
-        words.push(ClWord::Word(if self.matrix.is_some() { "MODIFY" } else { "SAME" }.into()));
-        words.extend(self.matrix.iter().flat_map(matrix_words));
-        words.push(ClWord::Number(f64::from(self.count)));
-        statement("COPY", COPY_CODE, words, self.isn, self.source)
-    }
-}
-
-fn statement(word: &str, code: u16, arguments: Vec<ClWord>, isn: u32, source: u32) -> ClRecord {
-    ClRecord {
-        isn,
-        source,
-        kind: ClKind::Postprocessor { word: SmolStr::new(word), code: Some(code), arguments },
-    }
-}
-
 /// How many positions a record holds.
 fn points_of(record: &ClRecord) -> u64 {
     match &record.kind {
         ClKind::Motion { points, .. } => points.len() as u64,
         _ => 0,
     }
-}
-
-fn index_statement(number: i64, isn: u32, source: u32) -> ClRecord {
-    statement("INDEX", INDEX_CODE, vec![ClWord::Number(number as f64)], isn, source)
-}
-
-fn transform_statement(matrix: Option<&Matrix>, isn: u32, source: u32) -> ClRecord {
-    let words = match matrix {
-        Some(matrix) => matrix_words(matrix).collect(),
-        None => vec![ClWord::Word("NOMORE".into())],
-    };
-    statement("TRACUT", TRACUT_CODE, words, isn, source)
-}
-
-fn matrix_words(matrix: &Matrix) -> impl Iterator<Item = ClWord> {
-    // Adding zero takes the sign off a negative zero.
-    matrix.rows.into_iter().flatten().map(|value| ClWord::Number(value + 0.0))
 }
 
 /// The record under a transform; `None` for a circle that is no circle any more (its chord points remain).

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
+    edit::{CopyStep, EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
     record::{ClKind, ClPoint, ClRecord, ClWord},
 };
 use apt_geometry::{
@@ -26,7 +26,8 @@ fn index(isn: u32, number: i64, end: bool) -> EditItem {
 }
 
 fn copy(isn: u32, number: i64, matrix: Option<Matrix>, count: u32) -> EditItem {
-    EditItem::Copy { number, matrix, count, isn, source: isn }
+    let step = matrix.map_or(CopyStep::Same, CopyStep::Matrix);
+    EditItem::Copy { number, step, count, isn, source: isn }
 }
 
 fn tracut(isn: u32, matrix: Option<Matrix>) -> EditItem {
@@ -345,4 +346,32 @@ fn copies_keep_the_budget_of_positions() {
     assert_eq!(errors[0].kind, EditErrorKind::TooManyPoints { number: 1, limit: 5 });
     let positions = records.iter().filter(|one| matches!(one.kind, ClKind::Motion { .. })).count();
     assert_eq!(positions, 2, "nothing is copied");
+}
+
+#[test]
+fn a_copy_is_written_in_the_words_of_the_program() {
+    let numbers = |values: &[f64]| values.iter().copied().map(ClWord::Number).collect::<Vec<_>>();
+    let matrix = Matrix::rotation(CoordinatePlane::Xy, 90.0);
+    let cases = [
+        (CopyStep::Same, "SAME", vec![]),
+        (CopyStep::Translation(Vec3::new(1.0, -0.0, 2.0)), "TRANSL", vec![1.0, 0.0, 2.0]),
+        (CopyStep::RotationAboutZ(90.0), "XYROT", vec![90.0]),
+        (CopyStep::Matrix(matrix), "MODIFY", matrix.rows.into_iter().flatten().collect()),
+    ];
+    for (step, word, values) in cases {
+        let order = EditItem::Copy { number: 7, step, count: 2, isn: 3, source: 3 };
+        let (records, errors) = edit(vec![index(1, 7, false), motion(2, [1.0, 0.0, 0.0]), order]);
+        assert_eq!(errors, vec![]);
+        let ClKind::Postprocessor { word: major, arguments, .. } = &records.last().unwrap().kind else {
+            panic!("{word}: no statement")
+        };
+        let mut expected = numbers(&[7.0]);
+        expected.push(ClWord::Word(word.into()));
+        expected.extend(numbers(&values));
+        expected.extend(numbers(&[2.0]));
+        assert_eq!((major.as_str(), arguments), ("COPY", &expected));
+        let negative_zero =
+            |word: &ClWord| matches!(word, ClWord::Number(n) if *n == 0.0 && n.is_sign_negative());
+        assert!(!arguments.iter().any(negative_zero), "no negative zero stands in a CL file: {arguments:?}");
+    }
 }

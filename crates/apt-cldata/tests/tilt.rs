@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{EditErrorKind, EditItem, edit},
+    edit::{CopyStep, EditErrorKind, EditItem, edit},
     record::{ClKind, ClPoint, ClRecord, ClWord},
     tilt::TiltError,
 };
@@ -128,7 +128,7 @@ fn mistakes_have_their_numbers() {
     const OFF: &str = "VTLAXS/OFF,LEFT,10";
     let a = || motion(1, &[[0.0, 0.0, 0.0]]);
     let b = || motion(3, &[[4.0, 0.0, 0.0]]);
-    let copy = |isn| EditItem::Copy { number: 1, matrix: None, count: 1, isn, source: isn };
+    let copy = |isn| EditItem::Copy { number: 1, step: CopyStep::Same, count: 1, isn, source: isn };
     let index = |isn| EditItem::Index { number: 1, end: false, isn, source: isn };
     let tracut = EditItem::Transform { matrix: None, isn: 9, source: 9 };
     let flat =
@@ -225,7 +225,7 @@ fn a_range_inside_of_a_copy_is_copied_tilted() {
         word(5, "VTLAXS/OFF,LEFT,10"),
         EditItem::Copy {
             number: 1,
-            matrix: Some(Matrix::translation(Vec3::new(0.0, 50.0, 0.0))),
+            step: CopyStep::Translation(Vec3::new(0.0, 50.0, 0.0)),
             count: 1,
             isn: 6,
             source: 6,

@@ -215,7 +215,12 @@ pub enum MotionCommand {
         name: String,
     },
     /// GODLTA.
-    GoDelta(Delta),
+    GoDelta {
+        /// How far, and along what.
+        delta: Delta,
+        /// Name of the vector or point for the CL record; empty where there is none.
+        name: String,
+    },
     /// INDIRV and INDIRP, for drive, part and check surface; one-shot.
     Direction([Option<Direction>; 3]),
     /// SRFVCT for drive, part and check surface: from the TO side to the PAST side; one-shot.

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use apt_geometry::{canonical::Matrix, motion::MotionCommand, regional::RegionalMilling};
+use apt_geometry::{Vec3, canonical::Matrix, motion::MotionCommand, regional::RegionalMilling};
 use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
@@ -168,7 +168,11 @@ pub enum RecordKind {
 pub enum CopyStep {
     /// SAME.
     Same,
-    /// TRANSL, XYROT and MODIFY as a matrix.
+    /// TRANSL: a shift, in the unit of the program.
+    Translation(Vec3),
+    /// XYROT: a turn about the z axis from x towards y, degrees.
+    RotationAboutZ(f64),
+    /// MODIFY: a matrix.
     Matrix(Matrix),
 }
 

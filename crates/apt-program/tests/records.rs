@@ -51,6 +51,9 @@ fn motion(command: &MotionCommand) -> String {
         MotionCommand::GoTo { position: p, axis, name } => {
             format!("GOTO {name} {},{},{} {}", p.x, p.y, p.z, axis.is_some())
         }
+        MotionCommand::GoDelta { delta: Delta::Vector(v, None), name } => {
+            format!("GODLTA {name} {},{},{}", v.x, v.y, v.z)
+        }
         MotionCommand::Drive { turn, drive, checks } => {
             let checks: Vec<String> = checks
                 .iter()
@@ -92,7 +95,12 @@ fn positions_are_read_by_counting() {
     assert_records("GOTO/(1,2)", &["1:GOTO  1,2,0 false"]);
     let delta = run("GODLTA/-.5,7");
     let kinds: Vec<_> = delta.records().map(|record| record.kind.clone()).collect();
-    assert_eq!(kinds[1], RecordKind::Motion(Box::new(MotionCommand::GoDelta(Delta::AlongAxis(-0.5)))));
+    let along = MotionCommand::GoDelta { delta: Delta::AlongAxis(-0.5), name: String::new() };
+    assert_eq!(kinds[1], RecordKind::Motion(Box::new(along)));
+    assert_records("V=VECTOR/0,0,2\nGODLTA/V", &["2:GODLTA V 0,0,2"]);
+    assert_records("V=VECTOR/0,0,2\nGODLTA/V,9", &["2:FEDRAT/9", "2:GODLTA V 0,0,2"]);
+    assert_records("GODLTA/(VECTOR/0,0,2)", &["1:GODLTA  0,0,2"]);
+    assert_records("GODLTA/0,0,2", &["1:GODLTA  0,0,2"]);
 }
 
 #[test]

@@ -41,7 +41,7 @@ const ONE_NUMBER: &[(&str, OneNumber)] = &[
 ];
 
 /// Sine of an angle in degrees, exact at multiples of 90.
-pub(crate) fn degrees_sine(degrees: f64) -> f64 {
+fn degrees_sine(degrees: f64) -> f64 {
     let turned = degrees % 360.0;
     if turned % 90.0 == 0.0 {
         return match (turned / 90.0) as i8 {

@@ -7,6 +7,5 @@ mod measure;
 mod operand;
 mod reference;
 
-pub(crate) use function::degrees_sine;
 pub(crate) use operand::{Item, Items, Operand, element_of};
 pub(crate) use reference::Resolved;

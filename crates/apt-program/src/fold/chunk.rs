@@ -79,7 +79,7 @@ fn moves_the_tool(kind: &RecordKind) -> bool {
             **command,
             MotionCommand::From { .. }
                 | MotionCommand::GoTo { .. }
-                | MotionCommand::GoDelta(_)
+                | MotionCommand::GoDelta { .. }
                 | MotionCommand::Start(_)
                 | MotionCommand::Offset(_)
                 | MotionCommand::Drive { .. }

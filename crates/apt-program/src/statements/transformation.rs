@@ -1,14 +1,11 @@
 //! TRACUT, INDEX and COPY (language reference 6.11).
 
-use apt_geometry::{
-    Vec3,
-    canonical::{Geometry, Matrix},
-};
+use apt_geometry::{Vec3, canonical::Geometry};
 
 use super::Major;
 use crate::{
     evaluator::Evaluator,
-    expression::{Item, Operand, degrees_sine},
+    expression::{Item, Operand},
     finding::{Expected, FindingKind, Found},
     record::{CopyStep, RecordKind},
 };
@@ -109,8 +106,8 @@ impl Evaluator<'_> {
         }
         match *numbers.as_slice() {
             [] => Some(CopyStep::Same),
-            [angle] => Some(CopyStep::Matrix(rotation_about_z(angle))),
-            [x, y, z] => Some(CopyStep::Matrix(Matrix::translation(Vec3::new(x, y, z)))),
+            [angle] => Some(CopyStep::RotationAboutZ(angle)),
+            [x, y, z] => Some(CopyStep::Translation(Vec3::new(x, y, z))),
             _ => None,
         }
     }
@@ -126,10 +123,4 @@ impl Evaluator<'_> {
             }
         }
     }
-}
-
-/// XYROT: x is turned towards y.
-fn rotation_about_z(degrees: f64) -> Matrix {
-    let (sine, cosine) = (degrees_sine(degrees), degrees_sine(90.0 - degrees));
-    Matrix { rows: [[cosine, -sine, 0.0, 0.0], [sine, cosine, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] }
 }

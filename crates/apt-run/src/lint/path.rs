@@ -313,7 +313,7 @@ impl Walk {
                     thickness.felt = true;
                 }
             }
-            MotionCommand::From { .. } | MotionCommand::GoTo { .. } | MotionCommand::GoDelta(_) => {
+            MotionCommand::From { .. } | MotionCommand::GoTo { .. } | MotionCommand::GoDelta { .. } => {
                 self.moved();
             }
             _ => {}

@@ -8,7 +8,7 @@ use std::{
 };
 
 use apt_cldata::{
-    edit::EditItem,
+    edit::{self, EditItem},
     record::{ClKind, ClPoint, ClRecord, ClWord, Units},
 };
 use apt_geometry::{
@@ -162,13 +162,15 @@ impl<'a> Section2<'a> {
                 source,
             }),
             RecordKind::Copy { number, step, count } => {
-                let matrix = match step {
-                    CopyStep::Same => None,
-                    CopyStep::Matrix(matrix) => Some(*matrix),
+                let step = match step {
+                    CopyStep::Same => edit::CopyStep::Same,
+                    CopyStep::Translation(by) => edit::CopyStep::Translation(*by),
+                    CopyStep::RotationAboutZ(degrees) => edit::CopyStep::RotationAboutZ(*degrees),
+                    CopyStep::Matrix(matrix) => edit::CopyStep::Matrix(*matrix),
                 };
                 self.output.items.push(EditItem::Copy {
                     number: *number,
-                    matrix,
+                    step,
                     count: *count,
                     isn: record.origin.isn,
                     source,
@@ -297,7 +299,8 @@ impl<'a> Section2<'a> {
                     MotionCommand::From { name, .. } => (true, name.as_str()),
                     MotionCommand::GoTo { name, .. } => (false, name.as_str()),
                     // What the tool was moved along stands where the name of a point stands.
-                    MotionCommand::GoDelta(Delta::AlongAxis(_)) => (false, "TLAXIS"),
+                    MotionCommand::GoDelta { delta: Delta::AlongAxis(_), .. } => (false, "TLAXIS"),
+                    MotionCommand::GoDelta { name, .. } => (false, name.as_str()),
                     _ => (false, ""),
                 };
                 self.tool = Some(position);

@@ -43,7 +43,7 @@ pub(super) fn apply(
             go_to(state, *position);
             Ok(position_output(state))
         }
-        MotionCommand::GoDelta(delta) => {
+        MotionCommand::GoDelta { delta, .. } => {
             let (increment, axis) = match delta {
                 Delta::AlongAxis(length) => (state.axis * *length, None),
                 Delta::Vector(increment, axis) => (*increment, *axis),
@@ -147,7 +147,7 @@ fn set_modal(
         MotionCommand::Output(on) => state.output = *on,
         MotionCommand::From { .. }
         | MotionCommand::GoTo { .. }
-        | MotionCommand::GoDelta(_)
+        | MotionCommand::GoDelta { .. }
         | MotionCommand::Direction(_)
         | MotionCommand::SurfaceVectors(_)
         | MotionCommand::Start(_)

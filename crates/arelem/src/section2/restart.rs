@@ -52,7 +52,7 @@ impl State {
                 };
                 false
             }
-            MotionCommand::GoDelta(delta) => {
+            MotionCommand::GoDelta { delta, .. } => {
                 let across = match delta {
                     Delta::AlongAxis(_) => false,
                     Delta::Vector(v, _) => {
@@ -91,7 +91,7 @@ fn is_motion(command: &MotionCommand) -> bool {
         command,
         MotionCommand::From { .. }
             | MotionCommand::GoTo { .. }
-            | MotionCommand::GoDelta(_)
+            | MotionCommand::GoDelta { .. }
             | MotionCommand::Direction(_)
             | MotionCommand::SurfaceVectors(_)
             | MotionCommand::Start(_)

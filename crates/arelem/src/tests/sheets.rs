@@ -247,6 +247,6 @@ fn a_tool_past_the_end_of_a_surface_stays_on_the_side_that_it_came_to() {
     assert!(program.state.side_of_part.is_some());
     program.indirv(-1.0, 0.0, 0.0).drive(Forward, &y(1.0), On, &x(2.0));
     program.ends(2.0, 1.0, 1.5625, 0.002).verified();
-    program.run(&MotionCommand::GoDelta(Delta::Vector(Vec3::z(), None)));
+    program.run(&MotionCommand::GoDelta { delta: Delta::Vector(Vec3::z(), None), name: String::new() });
     assert_eq!(program.state.side_of_part, None);
 }

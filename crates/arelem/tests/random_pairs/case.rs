@@ -394,7 +394,12 @@ impl Case {
         let mut commands = self.settings();
         let position = self.from - self.delta.unwrap_or_default();
         commands.push(MotionCommand::From { position, axis: Some(self.axis), name: String::new() });
-        commands.extend(self.delta.map(|delta| MotionCommand::GoDelta(Delta::Vector(delta, None))));
+        commands.extend(
+            self.delta.map(|delta| MotionCommand::GoDelta {
+                delta: Delta::Vector(delta, None),
+                name: String::new(),
+            }),
+        );
         let start = |name: &str, role: &Placed| StartSurface {
             relation: role.relation,
             surface: named(name, role.geometry.clone()),

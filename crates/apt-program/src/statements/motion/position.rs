@@ -119,10 +119,16 @@ impl Evaluator<'_> {
         }
         let Some(items) = self.operands_of(major, "1, 2, 3, 4, 6 or 7 numbers", 129) else { return };
         let mut values = Vec::with_capacity(7);
+        let mut name = String::new();
         for (index, item) in items.iter().enumerate() {
             match (&item.operand, item.vector().or_else(|| item.point())) {
                 (Operand::Scalar(value), _) => values.push(*value),
-                (_, Some(vector)) if index == 0 || values.len() == 3 => values.extend(vector.iter()),
+                (_, Some(vector)) if index == 0 || values.len() == 3 => {
+                    if index == 0 {
+                        name = item.name().to_string();
+                    }
+                    values.extend(vector.iter());
+                }
                 _ => return self.wrong_operand(major, Expected::Vector, item.found(), 129, item.range),
             }
         }
@@ -141,7 +147,7 @@ impl Evaluator<'_> {
             let range = items.last().map_or(major.range, |item| item.range);
             self.feed(rate, range);
         }
-        self.motion(MotionCommand::GoDelta(delta), major.range);
+        self.motion(MotionCommand::GoDelta { delta, name }, major.range);
     }
 }
 
