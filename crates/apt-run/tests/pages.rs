@@ -16,12 +16,15 @@ use apt_run::{
 /// The machine for which samples of tape codes are posted.
 const MACHINE: &str = "linuxcnc-mill3";
 
-/// The codes that stand in quotation marks in the sources of the catalogue.
+/// The codes that stand in quotation marks in the sources of the catalogue and its rooms.
 fn codes_of_the_catalogue() -> BTreeSet<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/catalogue");
+    let mut left = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src/catalogue")];
     let mut codes = BTreeSet::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    while let Some(path) = left.pop() {
+        if path.is_dir() {
+            left.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()));
+            continue;
+        }
         if path.extension().is_none_or(|extension| extension != "rs") {
             continue;
         }

@@ -1,5 +1,8 @@
 //! Words for the arithmetic element, its verifier and the path transformations (codes 06xx and 07xx).
 
+mod edit;
+mod verdict;
+
 use apt_cldata::edit::EditErrorKind;
 use apt_geometry::{
     Vec3,
@@ -7,9 +10,8 @@ use apt_geometry::{
     cutter::{CutterError, CutterWarning},
     motion::Relation,
 };
-use arelem::{
-    error::{AxisFailure, Course, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName},
-    verify::{Evidence, Rule, VerifyError},
+use arelem::error::{
+    AxisFailure, Course, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName,
 };
 
 use super::{Text, a_kind, milling, number, pocket, remedy, say};
@@ -29,11 +31,11 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
             (text, Severity::Error, failure.apt3())
         }
         RunFindingKind::Warning(warning) => (warning_text(warning), Severity::Warning, warning.apt3()),
-        RunFindingKind::Unverified(evidence) => match uncleared(evidence) {
+        RunFindingKind::Unverified(evidence) => match verdict::uncleared(evidence) {
             Some(text) => (text, Severity::Warning, None),
-            None => (unverified(evidence), Severity::Error, None),
+            None => (verdict::unverified(evidence), Severity::Error, None),
         },
-        RunFindingKind::NotJudged(error) => (not_judged(error), Severity::Warning, error.apt3()),
+        RunFindingKind::NotJudged(error) => (verdict::not_judged(error), Severity::Warning, error.apt3()),
         RunFindingKind::Skipped { statements, last } => {
             let what = match statements {
                 1 => "this motion statement was".to_owned(),
@@ -63,7 +65,7 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
                 EditErrorKind::ZeroCount { .. } => Severity::Warning,
                 _ => Severity::Error,
             };
-            (edit(&error.kind), severity, error.apt3())
+            (edit::text(&error.kind), severity, error.apt3())
         }
     }
 }
@@ -524,97 +526,6 @@ fn warning_text(warning: &Warning) -> Text {
         }),
         Warning::NegativeTolerance { value } => {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
-        }
-    }
-}
-
-/// The words for a pocket whose only fault is what it leaves: the path does no harm, and APT III makes it too.
-fn uncleared(evidence: &Evidence) -> Option<Text> {
-    let first = evidence.violations.first()?;
-    let only = evidence.violations.iter().all(|violation| violation.rule == Rule::Cleared);
-    only.then(|| {
-        let left = number(first.value);
-        say("APT0682", "a part of this pocket is not cleared")
-            .hint(format!("{left} more than the effective radius is missing beside cut vector {}; a smaller offset or a greater effective radius clears it", first.vector + 1))
-    })
-}
-
-fn unverified(evidence: &Evidence) -> Text {
-    let text = say("APT0680", "the verifier did not confirm this motion");
-    match evidence.violations.first() {
-        None => text,
-        Some(violation) => {
-            let rule = match violation.rule {
-                Rule::PartBand => "the part surface is out of tolerance",
-                Rule::DriveBand => "the drive surface is out of tolerance",
-                Rule::CheckBand => "the check surface is out of tolerance at the end",
-                Rule::StopEvent => "the tool stopped at another position than asked for",
-                Rule::Tangency => "the surfaces are not tangent where it stopped",
-                Rule::Side => "the tool changes the side of a surface",
-                Rule::Progress => "the tool moves back",
-                Rule::StepLength => "a cut vector is longer than MAXDP",
-                Rule::Cleared => "a part of the pocket is not cleared",
-                #[expect(unreachable_patterns, reason = "a new rule of the verifier still gets a sentence")]
-                _ => "a rule is broken",
-            };
-            text.hint(format!("{rule}: {} on cut vector {}", number(violation.value), violation.vector + 1))
-        }
-    }
-}
-
-fn not_judged(error: &VerifyError) -> Text {
-    let why = match error {
-        VerifyError::Cancelled => "the verification was cancelled".to_owned(),
-        VerifyError::Unsupported { kind } => format!("it has no method for {}", a_kind(*kind)),
-        VerifyError::Degenerate { kind } => {
-            format!("the canonical form of {} describes no surface", a_kind(*kind))
-        }
-        VerifyError::Cutter => "the numbers of the cutter describe no convex tool".to_owned(),
-        VerifyError::NotFinite => "a number of the path is too large, or not a number".to_owned(),
-        VerifyError::NoDistance { vector } => {
-            format!("no distance to a surface is found on cut vector {}", vector + 1)
-        }
-        VerifyError::Empty => "the path has no positions".to_owned(),
-        VerifyError::Effort { limit } => format!("it gave up after {limit} steps"),
-    };
-    say("APT0681", "the verifier could not judge this motion").hint(why)
-}
-
-fn edit(kind: &EditErrorKind) -> Text {
-    match kind {
-        EditErrorKind::NestedTooDeep { number, depth } => {
-            say("APT0710", format!("INDEX {number} is nested {depth} deep")).hint("three levels are possible")
-        }
-        EditErrorKind::CopyWithoutIndex { number } => {
-            say("APT0711", format!("there is no INDEX/{number} before this COPY"))
-        }
-        EditErrorKind::EndWithoutIndex { number } => say("APT0712", format!("INDEX/{number} is not open")),
-        EditErrorKind::Overlap { number, open } => {
-            say("APT0713", format!("the range of INDEX/{number} overlaps that of INDEX/{open}"))
-                .hint("ranges must lie inside each other or apart")
-        }
-        EditErrorKind::IndexReused { number } => say("APT0714", format!("INDEX/{number} was given before"))
-            .hint("every INDEX of a program needs a number of its own"),
-        EditErrorKind::TooManyIndexes { limit } => {
-            say("APT0715", format!("a program can have {limit} INDEX statements"))
-        }
-        EditErrorKind::TooManyCopies { number } => {
-            say("APT0715", format!("too many COPY statements name INDEX/{number}"))
-        }
-        EditErrorKind::ZeroCount { number } => say("APT0716", format!("COPY/{number} makes no copy")),
-        EditErrorKind::TooManyRecords { number, limit } => {
-            say("APT0717", format!("COPY/{number} would make more than {limit} records"))
-        }
-        EditErrorKind::TooManyPoints { number, limit } => {
-            say("APT0717", format!("COPY/{number} would give the path more than {limit} positions"))
-                .hint(MORE_POINTS)
-        }
-        EditErrorKind::AxisVanishes { .. } => {
-            say("APT0718", "the transformation leaves the tool axis without direction")
-        }
-        EditErrorKind::Tilt(error) => super::tilt::word(error),
-        EditErrorKind::NotFinite { .. } => {
-            say("APT0719", "the transformation gives a position that is not a number")
         }
     }
 }
