@@ -2,7 +2,7 @@
 
 mod support;
 
-use apt_program::{FindingKind, ListingKind, Program, Value};
+use apt_program::{FindingKind, ListingKind, Program, Severity, Value};
 use apt_syntax::DialectName;
 use support::{problems, run_as};
 
@@ -50,7 +50,38 @@ fn print_lists_what_it_names() {
             continue;
         }
         assert_eq!(lines, expected, "{text}");
-        assert!(problems(&program).is_empty(), "{text}: {:?}", problems(&program));
+        // A name without a value is warned of, where the list names it itself.
+        let warned = expected.iter().any(|line| line.ends_with("IS NOT DEFINED")) && !text.contains("THRU");
+        assert_eq!(problems(&program).len(), usize::from(warned), "{text}: {:?}", problems(&program));
+    }
+}
+
+#[test]
+fn a_list_tells_names_that_have_no_value() {
+    let told = |text: &str| {
+        let program =
+            run(&format!("RESERV/A,4\nPLANE1=PLANE/0,0,1,0\nA(1)=1\nBAD=1/0\nA(2)=1/0\n{text}\nFINI"));
+        let names: Vec<String> = program
+            .findings()
+            .filter_map(|finding| match &finding.kind {
+                FindingKind::ListedUndefined { name, similar } => {
+                    assert_eq!(finding.severity, Severity::Warning);
+                    Some(format!("{name} {similar:?}"))
+                }
+                _ => None,
+            })
+            .collect();
+        names
+    };
+    assert_eq!(told("PRINT/2,PLANE2"), ["PLANE2 [\"PLANE1\"]"]);
+    assert_eq!(told("PRINT/3,NIX(2)"), ["NIX []"]);
+    assert_eq!(told("PRINT/2,A(3)"), ["A(3) []"]);
+    assert_eq!(told("PUNCH/1,ZZZZ"), ["ZZZZ []"]);
+    // What lost its value by a mistake was told there; elements of a range may be without.
+    for text in
+        ["PRINT/2,BAD", "PRINT/2,A(2)", "PRINT/2,A(1,THRU,4)", "PRINT/2,A", "PRINT/3,ALL", "PRINT/2,PLANE1"]
+    {
+        assert!(told(text).is_empty(), "{text}: {:?}", told(text));
     }
 }
 

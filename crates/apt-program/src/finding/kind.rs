@@ -26,6 +26,14 @@ pub enum FindingKind {
         /// Defined names of similar spelling, best first.
         similar: Vec<SmolStr>,
     },
+    /// A name without a value in the list of a PRINT or PUNCH: it is listed as such, and the program goes on.
+    #[error("{name} has no value to list")]
+    ListedUndefined {
+        /// The name, with its subscript.
+        name: SmolStr,
+        /// Defined names of similar spelling, best first.
+        similar: Vec<SmolStr>,
+    },
     /// A name without a value where a statement takes words, one of which may be meant.
     #[error("{name} is not defined, and no word of {statement}")]
     UndefinedOption {

@@ -147,6 +147,7 @@ impl FindingKind {
             | Self::MotionSkipped
             | Self::RestartNotAvailable { .. }
             | Self::AfterEnd
+            | Self::ListedUndefined { .. }
             | Self::Unreachable => return None,
         })
     }
@@ -216,6 +217,7 @@ impl FindingKind {
             Self::Unused { .. } | Self::AfterEnd | Self::WordBecomesName { .. } => Severity::Hint,
             Self::MotionSkipped => Severity::Information,
             Self::EndMissing
+            | Self::ListedUndefined { .. }
             | Self::Doubtful { .. }
             | Self::NotNormalised { .. }
             | Self::IdleSelector { .. }

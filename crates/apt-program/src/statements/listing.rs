@@ -221,7 +221,11 @@ impl Evaluator<'_> {
             (Some(subscript), Some(_)) => {
                 let subscript = self.scalar(subscript);
                 if let Some(index) = subscript.and_then(|at| self.element_index(reference, at)) {
-                    items.push(self.listed_element(name, index));
+                    let element = self.listed_element(name, index);
+                    if element.value.is_none() && !self.is_poisoned_element(&key, index) {
+                        self.report_unlisted(element.full_name(), reference.range);
+                    }
+                    items.push(element);
                 }
             }
             (None, Some(extent)) if self.simple_value(name).is_none() => {
@@ -230,6 +234,7 @@ impl Evaluator<'_> {
             }
             (Some(subscript), None) => {
                 // Perhaps a function of later systems; a name that is not reserved has no value to list.
+                self.report_unlisted(name.clone(), reference.range);
                 let Expression::Number { value, .. } = **subscript else {
                     let _ = self.scalar(subscript);
                     return items.push(PrintedItem { name: name.clone(), subscript: None, value: None });
@@ -240,9 +245,26 @@ impl Evaluator<'_> {
             }
             (None, _) => {
                 let value = self.simple_value(name);
+                let poisoned =
+                    matches!(self.look_up(name).map(|symbol| &symbol.meaning), Some(Meaning::Poisoned));
+                if value.is_none() && !poisoned {
+                    self.report_unlisted(name.clone(), reference.range);
+                }
                 items.push(PrintedItem { name: name.clone(), subscript: None, value });
             }
         }
+    }
+
+    /// Tells a name in a list that has no value. APT III prints a remark; a misspelt name is told in the editor, too.
+    fn report_unlisted(&mut self, name: SmolStr, range: TextRange) {
+        let similar = self.names_like(&name, std::iter::empty());
+        self.report(FindingKind::ListedUndefined { name, similar }, range);
+    }
+
+    /// Whether an element of an array has lost its value by a mistake that has been told.
+    fn is_poisoned_element(&self, key: &str, index: u32) -> bool {
+        let meaning = self.look_up(key).map(|symbol| &symbol.meaning);
+        matches!(meaning, Some(Meaning::Array(array)) if matches!(array.get(index), Some(ArrayElement::Poisoned)))
     }
 
     /// The value of a name without subscript.

@@ -29,6 +29,9 @@ fn name(kind: &Kind) -> Option<Text> {
         Kind::Undefined { name, similar: names } => say("APT0101", format!("{name} is not defined"))
             .hint("a name must be given a value before it is used, in the order of execution")
             .maybe(similar(names)),
+        Kind::ListedUndefined { name, similar: names } => {
+            say("APT0112", format!("{name} has no value to list")).maybe(similar(names))
+        }
         Kind::UndefinedOption { statement, name, similar: words } => {
             let forms = vocabulary::lookup(statement).map_or(&[][..], |word| word.forms);
             say("APT0101", format!("{name} is not defined, and no word of {statement}"))

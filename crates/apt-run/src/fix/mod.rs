@@ -34,6 +34,7 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
     match &finding.kind {
         FindingKind::Syntax(kind) => here.syntax(kind),
         FindingKind::Undefined { name, similar }
+        | FindingKind::ListedUndefined { name, similar }
         | FindingKind::UndefinedOption { name, similar, .. }
         | FindingKind::Control(ControlFinding::UnknownLabel { name, similar })
         | FindingKind::Control(ControlFinding::UnknownMacro { name, similar }) => {
