@@ -250,6 +250,15 @@ const PROBES: [Probe; 24] = [
                 .iter()
                 .any(|one| one["name"] == "linuxcnc-mill3")
         );
+        let status = ask("apt.status", json!({}));
+        let documents = status["documents"].as_array().unwrap();
+        let held = documents.iter().find(|one| one["uri"] == URI).unwrap();
+        assert_eq!((&held["uri"], &held["positions"]), (&json!(URI), &json!(3)), "{status}");
+        assert!(held["statements"].as_u64() > Some(3) && held["records"].as_u64() > Some(3), "{status}");
+        if cfg!(target_os = "linux") {
+            let of = |key: &str| status["memory"][key].as_u64().unwrap();
+            assert!(of("resident") > 1 << 20 && of("peak") >= of("resident"), "{status}");
+        }
     }),
     ("positionEncoding", |server| {
         server.open("file:///nowhere/wide.apt", "PPRINT 😀\nP1=POINT/1,2\nPPRINT 😀\nFINI\n");

@@ -62,6 +62,21 @@ pub struct Document {
     result: OnceLock<Arc<RunResult>>,
 }
 
+/// How much one version of a program holds. What nobody has asked for yet, or what was cancelled, counts nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Holdings {
+    /// Bytes of the text.
+    pub bytes: usize,
+    /// Statements.
+    pub statements: usize,
+    /// Records of Section 1.
+    pub records: usize,
+    /// Positions of the path, copies included.
+    pub positions: usize,
+    /// Motions in the memo that all versions of the program share.
+    pub motions: usize,
+}
+
 impl Document {
     /// Parses a text. The dialect is that of the settings, else it is detected. The name of the file is its path.
     pub fn new(text: &str, file: Option<String>, settings: &Arc<Settings>) -> Self {
@@ -153,6 +168,17 @@ impl Document {
     /// The evaluation, if it has been computed.
     pub fn evaluated(&self) -> Option<&Arc<Program>> {
         self.program.get()
+    }
+
+    /// How much is held of this version; nothing is computed for it.
+    pub fn holdings(&self) -> Holdings {
+        Holdings {
+            bytes: self.tree.len().into(),
+            statements: self.tree.statement_count(),
+            records: self.program.get().map_or(0, |program| program.record_count()),
+            positions: self.result.get().map_or(0, |result| result.totals().points),
+            motions: self.memo.len(),
+        }
     }
 
     /// Section 1.

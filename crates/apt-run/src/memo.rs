@@ -124,6 +124,18 @@ impl MotionMemo {
         self.lock().counters
     }
 
+    /// How many motions and paths of regional milling are kept.
+    pub fn len(&self) -> usize {
+        let inner = self.lock();
+        inner.entries.values().map(Vec::len).sum::<usize>()
+            + inner.milled.values().map(Vec::len).sum::<usize>()
+    }
+
+    /// Whether nothing is kept.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// The motion of this command in this state: from the memo, or computed by `compute`, which gives `None` when it
     /// was cancelled.
     pub fn get_or_compute(

@@ -24,7 +24,7 @@ pub(crate) use apt_ide::signature::{Signature, SignatureHelp};
 pub(crate) use apt_ide::tape::{MachineInfo, TapeCode, length_inches};
 pub(crate) use apt_ide::tokens::{Token, TokenClass};
 pub(crate) use apt_ide::{Files, Fix, Level, Severity, Surroundings, normalised};
-pub(crate) use apt_run::diagnostic::SourceFile;
+pub(crate) use apt_run::{diagnostic::SourceFile, document::Holdings};
 use thiserror::Error;
 
 /// The answer to a question that can be interrupted.

@@ -214,6 +214,10 @@ impl Document for Program {
         Arc::new(Self(self.0.with_changed_files()))
     }
 
+    fn holdings(&self) -> Holdings {
+        self.0.document().holdings()
+    }
+
     fn has_inclusions(&self) -> bool {
         self.0.has_inclusions()
     }

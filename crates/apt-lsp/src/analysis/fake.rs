@@ -121,6 +121,10 @@ impl Document for FakeDocument {
         "toy".into()
     }
 
+    fn holdings(&self) -> Holdings {
+        Holdings { bytes: self.text.len(), statements: self.text.lines().count(), ..Holdings::default() }
+    }
+
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>> {
         if level == Level::Motion {
             self.slow(control)?;

@@ -84,6 +84,9 @@ pub(crate) trait Document: Send + Sync {
     /// The dialect in force, and why, in words for people.
     fn dialect(&self) -> String;
 
+    /// How much is held of this version; nothing is computed for it.
+    fn holdings(&self) -> Holdings;
+
     /// Everything found up to a level, ordered by place.
     fn diagnostics(&self, level: Level, control: &Control) -> Answer<Vec<Diagnostic>>;
 

@@ -162,6 +162,10 @@ impl Backend {
         self.own("apt.machines", params).await
     }
 
+    pub(super) async fn status(&self, params: Value) -> Result<Value> {
+        self.own("apt.status", params).await
+    }
+
     pub(super) async fn cancel_progress(&self, params: lsp::WorkDoneProgressCancelParams) {
         self.cancellations.cancel(&params.token);
     }

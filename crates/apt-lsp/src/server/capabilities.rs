@@ -6,8 +6,15 @@ use crate::analysis::ActionKind;
 use crate::convert::{Encoding, tokens};
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: [&str; 6] =
-    ["apt.runMotion", "apt.expand", "apt.canonicalForm", "apt.post", "apt.syntaxTree", "apt.machines"];
+pub(super) const COMMANDS: [&str; 7] = [
+    "apt.runMotion",
+    "apt.expand",
+    "apt.canonicalForm",
+    "apt.post",
+    "apt.syntaxTree",
+    "apt.machines",
+    "apt.status",
+];
 
 /// What we need to know about the client.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -222,7 +229,8 @@ mod tests {
                   "apt.canonicalForm",
                   "apt.post",
                   "apt.syntaxTree",
-                  "apt.machines"
+                  "apt.machines",
+                  "apt.status"
                 ],
                 "workDoneProgress": true
               },
@@ -300,7 +308,12 @@ mod tests {
         let announced = serde_json::to_value(server_capabilities(&client)).unwrap();
         assert_eq!(announced["positionEncoding"], "utf-8");
         assert_eq!(announced["diagnosticProvider"]["identifier"], "apt");
-        let kinds = serde_json::json!(["quickfix", "source.fixAll.apt", "refactor.inline"]);
+        let kinds = serde_json::json!([
+            "quickfix",
+            "source.fixAll.apt",
+            "refactor.inline",
+            "refactor.rewrite.renumber"
+        ]);
         assert_eq!(announced["codeActionProvider"]["codeActionKinds"], kinds);
     }
 }

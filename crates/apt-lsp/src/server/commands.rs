@@ -14,6 +14,7 @@ use super::backend::Backend;
 use super::documents::{Snapshot, file_path};
 use super::job;
 use super::progress::{self, Display};
+use super::status;
 use super::workers::Workers;
 use crate::analysis::{Control, Refusal, RunRequest, Surroundings};
 use crate::convert::{TextIndex, Uris, outgoing};
@@ -68,6 +69,7 @@ pub(super) async fn execute(
         "apt.post" => post(server, read(argument)?, token).await,
         "apt.syntaxTree" => syntax_tree(server, read(argument)?).await,
         "apt.machines" => machines(server),
+        "apt.status" => status::status(server).await,
         unknown => Err(Error::invalid_params(format!("there is no command `{unknown}`"))),
     }
 }

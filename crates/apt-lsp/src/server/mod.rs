@@ -15,6 +15,7 @@ mod lifetime;
 mod outbox;
 mod parcels;
 mod progress;
+mod status;
 mod symbols;
 #[cfg(test)]
 mod tests;
@@ -88,6 +89,7 @@ pub(crate) async fn serve(
             .custom_method("apt/post", Backend::post)
             .custom_method("apt/syntaxTree", Backend::syntax_tree)
             .custom_method("apt/machines", Backend::machines)
+            .custom_method("apt/status", Backend::status)
             .custom_method(method::SYMBOLS, Backend::symbols)
             .custom_method(method::REFERENCES, Backend::all_references)
             .custom_method(method::FOLDS, Backend::folds)

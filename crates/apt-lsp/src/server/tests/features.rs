@@ -131,7 +131,11 @@ async fn findings_are_settled_by_actions_for_the_version_they_are_about() {
     question["range"] = place;
     question["context"] = json!({ "diagnostics": pushed });
     let actions = talk.ask("textDocument/codeAction", question.clone()).await.unwrap();
-    assert_eq!(actions.as_array().unwrap().len(), 2, "a quick fix and what is written out: {actions}");
+    assert_eq!(
+        actions.as_array().unwrap().len(),
+        3,
+        "a quick fix, what is written out, other labels: {actions}"
+    );
     let fix = &actions[0];
     assert_eq!(
         (&fix["title"], &fix["kind"], &fix["isPreferred"]),
@@ -148,7 +152,7 @@ async fn findings_are_settled_by_actions_for_the_version_they_are_about() {
         ("source", &["source.fixAll.apt"]),
         ("source.fixAll", &["source.fixAll.apt"]),
         ("source.organizeImports", &[]),
-        ("refactor", &["refactor.inline"]),
+        ("refactor", &["refactor.inline", "refactor.rewrite.renumber"]),
         ("refact", &[]),
     ] {
         question["context"]["only"] = json!([only]);
@@ -243,8 +247,16 @@ async fn every_command_is_a_request_too_and_answers_the_same() {
     assert_eq!(refused["code"], -32803);
     assert!(refused["message"].as_str().unwrap().contains("toy"), "{refused}");
     assert_eq!(talk.ask("apt/post", json!({ "uri": URI })).await.unwrap_err()["code"], -32803);
+    // Memory is another one each time; what is held of the documents is not.
+    let held = json!([{
+        "uri": URI, "version": 1, "dialect": "toy", "lines": 3, "bytes": 8,
+        "statements": 2, "records": 0, "positions": 0, "motions": 0,
+    }]);
+    assert_eq!(talk.ask("apt/status", json!({})).await.unwrap()["documents"], held);
+    let params = json!({ "command": "apt.status", "arguments": [{}] });
+    assert_eq!(talk.ask("workspace/executeCommand", params).await.unwrap()["documents"], held);
     let announced = talk.capabilities["executeCommandProvider"]["commands"].as_array().unwrap();
-    assert_eq!(announced.len(), 6);
+    assert_eq!(announced.len(), 7);
 }
 
 #[tokio::test(flavor = "multi_thread")]
