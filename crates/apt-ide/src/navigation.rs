@@ -49,6 +49,19 @@ pub struct Occurrence {
     pub defines: bool,
 }
 
+/// A label, or a jump to one, that is a number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct NumberedLabel {
+    /// Its value, by which labels are compared.
+    pub(crate) number: u32,
+    /// Where it stands, bytes of the text.
+    pub(crate) range: Range<usize>,
+    /// Where it means the same.
+    pub(crate) scope: Scope,
+    /// Whether it is the label, not a jump.
+    pub(crate) defines: bool,
+}
+
 /// Why a rename is refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenameError {
@@ -178,6 +191,26 @@ impl Analysis {
         }
         let places = names.occurrences(&at.name, at.label, &at.scope).into_iter();
         Ok(places.map(|one| (one, new.trim().to_owned())).collect())
+    }
+
+    /// All labels and jump targets in the text of the program that are numbers, in order of the text.
+    pub(crate) fn numbered_labels(&self) -> Vec<NumberedLabel> {
+        let names = Names(self.files());
+        let Some(own) = names.0.first() else { return Vec::new() };
+        let mut found = Vec::new();
+        for view in own.tree.statements() {
+            let parsed = view.parsed();
+            for (at, element) in parsed.elements.iter().enumerate() {
+                if element.kind != ElementKind::Number || !is_label(&parsed, at) {
+                    continue;
+                }
+                let Ok(number) = element.text.parse::<u32>() else { continue };
+                let scope = names.element_scope(0, view.index, &parsed, at, true);
+                let (range, defines) = (absolute(&view, element.range), defines(&parsed, at));
+                found.push(NumberedLabel { number, range, scope, defines });
+            }
+        }
+        found
     }
 
     fn file_index(&self, file: Option<&Path>) -> Option<usize> {

@@ -1,7 +1,8 @@
 //! What an editor can offer to do about a place: fixes of findings, comments that allow them, all certain fixes at once,
-//! and macro calls and loops written out.
+//! macro calls and loops written out, and labels with other numbers.
 
 mod inline;
+mod renumber;
 
 #[cfg(test)]
 mod tests;
@@ -24,11 +25,13 @@ pub enum ActionKind {
     FixAll,
     /// Writes out what a CALL or a loop stands for.
     Inline,
+    /// Gives labels other numbers.
+    Renumber,
 }
 
 impl ActionKind {
     /// All kinds.
-    pub const ALL: [ActionKind; 3] = [Self::QuickFix, Self::FixAll, Self::Inline];
+    pub const ALL: [ActionKind; 4] = [Self::QuickFix, Self::FixAll, Self::Inline, Self::Renumber];
 
     /// The name that editors know.
     pub fn name(self) -> &'static str {
@@ -36,6 +39,7 @@ impl ActionKind {
             Self::QuickFix => "quickfix",
             Self::FixAll => "source.fixAll.apt",
             Self::Inline => "refactor.inline",
+            Self::Renumber => "refactor.rewrite.renumber",
         }
     }
 }
@@ -87,6 +91,9 @@ impl Analysis {
         }
         if wanted.contains(&ActionKind::Inline) {
             actions.extend(self.written_out(range.start, cancel)?);
+        }
+        if wanted.contains(&ActionKind::Renumber) {
+            actions.extend(self.renumbered(&range, cancel)?);
         }
         Ok(actions)
     }

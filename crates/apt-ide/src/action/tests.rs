@@ -69,3 +69,29 @@ fn calls_and_loops_are_written_out_when_that_means_the_same() {
         "there is no such macro"
     );
 }
+
+#[test]
+fn labels_are_renumbered_with_the_jumps_to_them() {
+    let text =
+        "A=0\nLOOPST\n7)A=A+1\nIF(A-2)7,3,03\n3)A=A\nLOOPND\nGOTO/A,0,0\n3)GOTO/0,0,0\nJUMPTO/3\nFINI\n";
+    let whole = "A=0\nLOOPST\n10)A=A+1\nIF(A-2)10,20,20\n20)A=A\nLOOPND\nGOTO/A,0,0\n30)GOTO/0,0,0\nJUMPTO/30\nFINI\n";
+    let offers = |text: &str, from: &str, to: &str| {
+        let range = text.find(from).unwrap()..text.find(to).unwrap();
+        let kinds = [ActionKind::Renumber];
+        let actions =
+            analysis(text).actions(range, &kinds, Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        actions.into_iter().map(|one| (one.title, applied(text, &one.edits))).collect::<Vec<_>>()
+    };
+    let expected = |title: &str, text: &str| [(title.to_owned(), text.to_owned())];
+    assert_eq!(offers(text, "7)A", "7)A"), expected("Renumber all labels", whole));
+    // Of those chosen the first one is 10; the others keep theirs.
+    let some = text.replace("7)A", "10)A").replace("IF(A-2)7", "IF(A-2)10");
+    assert_eq!(offers(text, "7)A", "IF("), expected("Renumber the label", &some));
+    // Where nothing is numbered, or all of it already is, there is nothing to do.
+    assert_eq!(offers(text, "A=0", "A=0"), []);
+    assert_eq!(offers(whole, "10)A", "10)A"), []);
+    // A number that a jump names without a label keeps meaning nothing.
+    let lost = "JUMPTO/10\n5)GOTO/0,0,0\nFINI\n";
+    let found = offers(lost, "5)", "5)");
+    assert_eq!(found, expected("Renumber all labels", &lost.replace("5)", "20)")));
+}

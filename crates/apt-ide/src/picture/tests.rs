@@ -224,3 +224,18 @@ fn patches_are_drawn_by_their_edges_and_middles() {
     let curve = SpaceCurve::of_arcs(vec![CurveArc::segment(&Vec3::zeros(), &Vec3::new(1.0, 2.0, 3.0))]);
     assert_eq!(wireframe::lines(&Geometry::SpaceCurve(Arc::new(curve)), &bounds).len(), 1);
 }
+
+#[test]
+fn the_page_has_every_part_that_its_script_asks_for() {
+    let page = html(&sample());
+    let script = include_str!("viewer.js");
+    let asked: Vec<&str> = script
+        .split("getElementById(\"")
+        .skip(1)
+        .filter_map(|rest| rest.split_once('"').map(|(id, _)| id))
+        .collect();
+    assert!(asked.contains(&"step") && asked.contains(&"at"), "the motion can be stepped through: {asked:?}");
+    for id in asked {
+        assert!(page.contains(&format!("id=\"{id}\"")), "there is no element {id}");
+    }
+}

@@ -46,6 +46,16 @@
   const eye = { turn: views.iso[0], tilt: views.iso[1], scale: 1, x: 0, y: 0 };
   const shown = { feed: true, rapid: true, start: true, surfaces: true };
   let width = 1, height = 1, hover = null, kept = null, waiting = false;
+  // The positions that the tool comes to: a stretch begins where the one before it ended, but for jumps.
+  const stops = [];
+  for (const s of stretches) {
+    const same = s.first > 0 && [0, 1, 2].every((i) => world[3 * s.first + i] === world[3 * s.first - 3 + i]);
+    for (let k = same ? s.first + 1 : s.first; k <= s.last; k += 1) stops.push(k);
+  }
+  // The one that it stands at: the path beyond it is drawn pale. At the last one all of the path is done.
+  const lastStop = Math.max(0, stops.length - 1);
+  let stop = lastStop;
+  const at = () => stops[stop] ?? 0;
 
   // Rows of the view: what is to the right and what is up.
   function axes() {
@@ -73,19 +83,21 @@
   }
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
-  function drawPath() {
+  // The path from one position to another.
+  function drawPath(from, to) {
     const dashes = { feed: [], rapid: [6, 4], start: [2, 4] };
     for (const kind of ["rapid", "start", "feed"]) {
       if (!shown[kind]) continue;
       pen.beginPath();
       for (const s of stretches) {
-        if (s.kind !== kind) continue;
-        let x = screen[2 * s.first], y = screen[2 * s.first + 1];
+        const [begin, end] = [Math.max(s.first, from), Math.min(s.last, to)];
+        if (s.kind !== kind || begin >= end) continue;
+        let x = screen[2 * begin], y = screen[2 * begin + 1];
         pen.moveTo(x, y);
-        for (let k = s.first + 1; k <= s.last; k += 1) {
+        for (let k = begin + 1; k <= end; k += 1) {
           const [nx, ny] = [screen[2 * k], screen[2 * k + 1]];
           // Points that cannot be told apart cost nothing.
-          if (k < s.last && Math.abs(nx - x) + Math.abs(ny - y) < 0.6) continue;
+          if (k < end && Math.abs(nx - x) + Math.abs(ny - y) < 0.6) continue;
           pen.lineTo(nx, ny);
           x = nx;
           y = ny;
@@ -135,6 +147,13 @@
       pen.fill();
       pen.fillStyle = colour("ink");
       pen.fillRect(screen[2 * total - 2] - 4, screen[2 * total - 1] - 4, 8, 8);
+      if (stop < lastStop) {
+        pen.strokeStyle = colour("mark");
+        pen.lineWidth = 3;
+        pen.beginPath();
+        pen.arc(screen[2 * at()], screen[2 * at() + 1], 6, 0, 7);
+        pen.stroke();
+      }
     }
     const origin = [46, height - 46];
     pen.font = "600 12px sans-serif";
@@ -181,7 +200,12 @@
       screen[2 * k + 1] = height / 2 + eye.y - eye.scale * (u[0] * x + u[1] * y + u[2] * z);
     }
     if (shown.surfaces) drawSurfaces(rows);
-    drawPath();
+    drawPath(0, at());
+    if (stop < lastStop) {
+      pen.globalAlpha = 0.25;
+      drawPath(at(), total - 1);
+      pen.globalAlpha = 1;
+    }
     drawMarks(rows);
     if (!total) {
       pen.fillStyle = colour("soft");
@@ -219,6 +243,36 @@
     tip.style.left = Math.min(x + 14, width - tip.offsetWidth - 6) + "px";
     tip.style.top = Math.min(y + 14, height - tip.offsetHeight - 6) + "px";
   }
+
+  // Stepping through the motion: the tool goes to a position, and its statement is kept.
+  const slider = document.getElementById("step");
+  slider.max = String(lastStop);
+  slider.value = slider.max;
+  function stretchAt(position) {
+    let [low, high] = [0, stretches.length - 1];
+    while (low < high) {
+      const half = (low + high) >> 1;
+      if (stretches[half].last < position) low = half + 1;
+      else high = half;
+    }
+    return stretches[low];
+  }
+  function standAt(number) {
+    if (!total) return;
+    stop = Math.max(0, Math.min(lastStop, number));
+    slider.value = String(stop);
+    const { isn, kind } = stretchAt(at());
+    const p = [0, 1, 2].map((i) => Number(world[3 * at() + i].toFixed(6)));
+    const manner = kind === "start" ? "start-up" : kind;
+    const place = `${stop + 1} of ${lastStop + 1} · ISN ${isn} · ${manner} · ${p.join(", ")}`;
+    document.getElementById("at").textContent = place;
+    kept = stop < lastStop ? isn : null;
+    document.dispatchEvent(new CustomEvent("apt-isn", { detail: kept }));
+    redraw();
+  }
+  slider.addEventListener("input", () => standAt(Number(slider.value)));
+  document.getElementById("back").addEventListener("click", () => standAt(stop - 1));
+  document.getElementById("forth").addEventListener("click", () => standAt(stop + 1));
 
   let drag = null;
   canvas.addEventListener("pointerdown", (e) => {
@@ -290,6 +344,7 @@
       redraw();
     } else if (e.key === "+" || e.key === "-") zoom(e.key === "+" ? 1.2 : 1 / 1.2, width / 2, height / 2);
     else if (e.key === "Home") choose("fit");
+    else if (e.key === "," || e.key === ".") standAt(stop + (e.key === "." ? 1 : -1));
     else return;
     e.preventDefault();
   });
