@@ -8,7 +8,7 @@ use crate::tilt::TiltError;
 pub struct EditError {
     /// Statement number.
     pub isn: u32,
-    /// Origin, as in [`ClRecord::source`].
+    /// Origin, as in [`crate::record::ClRecord::source`].
     pub source: u32,
     /// What is wrong.
     pub kind: EditErrorKind,
