@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use apt_geometry::{Vec3, canonical::Matrix};
+use apt_geometry::{Vec3, canonical::Matrix, copy::CopyStep};
 
 use crate::{
     record::{ClKind, ClRecord, ClWord},
@@ -17,7 +17,6 @@ mod error;
 mod statement;
 
 pub use error::{EditError, EditErrorKind};
-pub use statement::CopyStep;
 use statement::{CopyOrder, index_statement, statement, transform_statement};
 
 /// Deepest nesting of INDEX ... COPY.

@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{CopyStep, EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
+    edit::{EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
     record::{ClKind, ClPoint, ClRecord, ClWord},
 };
 use apt_geometry::{
     Vec3,
     canonical::{Matrix, matrix::CoordinatePlane},
+    copy::CopyStep,
 };
 use proptest::prelude::*;
 

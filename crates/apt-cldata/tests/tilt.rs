@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    edit::{CopyStep, EditErrorKind, EditItem, edit},
+    edit::{EditErrorKind, EditItem, edit},
     record::{ClKind, ClPoint, ClRecord, ClWord},
     tilt::TiltError,
 };
-use apt_geometry::{Vec3, canonical::Matrix};
+use apt_geometry::{Vec3, canonical::Matrix, copy::CopyStep};
 use proptest::prelude::*;
 
 fn record(isn: u32, kind: ClKind) -> EditItem {

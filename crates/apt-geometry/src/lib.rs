@@ -1,10 +1,11 @@
 //! Canonical forms of APT geometry, the definitions that make them, the surfaces that the arithmetic element works
-//! on, the cutter, and motion commands as plain data.
+//! on, the cutter, and motion commands and copies of paths as plain data.
 //!
 //! Nothing here knows text: words arrive as [`definition::Modifier`] values, names never arrive at all.
 //! Lengths are in the part program's unit, angles in radians unless a name says `degrees`.
 
 pub mod canonical;
+pub mod copy;
 pub mod cutter;
 pub mod definition;
 pub mod motion;

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use apt_geometry::{Vec3, canonical::Matrix, motion::MotionCommand, regional::RegionalMilling};
+use apt_geometry::{canonical::Matrix, copy::CopyStep, motion::MotionCommand, regional::RegionalMilling};
 use apt_syntax::{SyntaxTree, TextRange};
 use smol_str::SmolStr;
 
@@ -161,19 +161,6 @@ pub enum RecordKind {
     Gap,
     /// FINI.
     End,
-}
-
-/// What each copy of a COPY statement adds to the one before.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CopyStep {
-    /// SAME.
-    Same,
-    /// TRANSL: a shift, in the unit of the program.
-    Translation(Vec3),
-    /// XYROT: a turn about the z axis from x towards y, degrees.
-    RotationAboutZ(f64),
-    /// MODIFY: a matrix.
-    Matrix(Matrix),
 }
 
 /// One parameter of a post-processor statement.

@@ -1,7 +1,8 @@
 //! The rows of the language reference for motion, parameters, tool axis, POCKET and transformations: every form is
 //! taken, every mistake has its number (sections 6.2 to 6.11).
 
-use apt_program::{Options, Program, RecordKind, Severity, evaluate, record::CopyStep};
+use apt_geometry::copy::CopyStep;
+use apt_program::{Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 
 const NAMES: &str = "P1=POINT/1,2,3\nP2=POINT/5,2,3\nP3=POINT/5,6,3\nV1=VECTOR/0,0,2\nV2=VECTOR/1,0,0\nL1=LINE/XAXIS\n\
@@ -300,7 +301,7 @@ fn copies_carry_what_they_say() {
     let step = |text: &str| {
         let program = run(text);
         let found = program.records().find_map(|record| match &record.kind {
-            RecordKind::Copy { number, step, count } => Some((*number, step.clone(), *count)),
+            RecordKind::Copy { number, step, count } => Some((*number, *step, *count)),
             _ => None,
         });
         found.unwrap_or_else(|| panic!("{text} leaves no COPY"))

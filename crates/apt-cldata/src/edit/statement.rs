@@ -1,38 +1,10 @@
 //! The edit statements as CL records: TRACUT, INDEX and COPY stand in the CL file as the program gives them.
 
-use apt_geometry::{
-    Vec3,
-    canonical::{Matrix, matrix::CoordinatePlane},
-};
+use apt_geometry::{canonical::Matrix, copy::CopyStep};
 use smol_str::SmolStr;
 
 use super::{COPY_CODE, INDEX_CODE, TRACUT_CODE};
 use crate::record::{ClKind, ClRecord, ClWord};
-
-/// What each copy of a COPY statement adds to the one before.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CopyStep {
-    /// SAME: nothing.
-    Same,
-    /// TRANSL: a shift, in the unit of the program.
-    Translation(Vec3),
-    /// XYROT: a turn about the z axis from x towards y, degrees.
-    RotationAboutZ(f64),
-    /// MODIFY: a matrix of the program.
-    Matrix(Matrix),
-}
-
-impl CopyStep {
-    /// The transform from one copy to the next; `None` where they are the same.
-    pub fn matrix(&self) -> Option<Matrix> {
-        match self {
-            CopyStep::Same => None,
-            CopyStep::Translation(by) => Some(Matrix::translation(*by)),
-            CopyStep::RotationAboutZ(degrees) => Some(Matrix::rotation(CoordinatePlane::Xy, *degrees)),
-            CopyStep::Matrix(matrix) => Some(*matrix),
-        }
-    }
-}
 
 /// A COPY statement.
 pub(super) struct CopyOrder {

@@ -1,13 +1,13 @@
 //! TRACUT, INDEX and COPY (language reference 6.11).
 
-use apt_geometry::{Vec3, canonical::Geometry};
+use apt_geometry::{Vec3, canonical::Geometry, copy::CopyStep};
 
 use super::Major;
 use crate::{
     evaluator::Evaluator,
     expression::{Item, Operand},
     finding::{Expected, FindingKind, Found},
-    record::{CopyStep, RecordKind},
+    record::RecordKind,
 };
 
 /// APT III, edit phase: COPY cannot mirror by itself.

@@ -8,14 +8,14 @@ use std::{
 };
 
 use apt_cldata::{
-    edit::{self, EditItem},
+    edit::EditItem,
     record::{ClKind, ClPoint, ClRecord, ClWord, Units},
 };
 use apt_geometry::{
     canonical::Geometry,
     motion::{Delta, MotionCommand, PerRole},
 };
-use apt_program::record::{CopyStep, Origin, PostArgument, Record, RecordKind};
+use apt_program::record::{Origin, PostArgument, Record, RecordKind};
 use apt_syntax::dialect::DialectName;
 use arelem::{
     cure::{Patience, Remedy, remedies},
@@ -162,15 +162,9 @@ impl<'a> Section2<'a> {
                 source,
             }),
             RecordKind::Copy { number, step, count } => {
-                let step = match step {
-                    CopyStep::Same => edit::CopyStep::Same,
-                    CopyStep::Translation(by) => edit::CopyStep::Translation(*by),
-                    CopyStep::RotationAboutZ(degrees) => edit::CopyStep::RotationAboutZ(*degrees),
-                    CopyStep::Matrix(matrix) => edit::CopyStep::Matrix(*matrix),
-                };
                 self.output.items.push(EditItem::Copy {
                     number: *number,
-                    step,
+                    step: *step,
                     count: *count,
                     isn: record.origin.isn,
                     source,
