@@ -13,6 +13,37 @@ const NEGLIGIBLE: f64 = 1e-11;
 /// Bound of the Newton iteration for the nearest point; it is bracketed, so this is never reached in practice.
 const MAX_ITERATIONS: u32 = 80;
 
+/// Share of a pole next to which multipliers are told from there: a component across the plane of symmetry is known by its factor `1 + λ aᵢ`, of which
+/// the multiplier alone tells no more than rounding.
+const BESIDE_POLE: f64 = 0.1;
+/// Share of a pole next to which a multiplier is the pole, if the point is on the plane of symmetry but for so many units of rounding: of both nearest
+/// points it has one and the same wherever that is.
+const AT_POLE: f64 = 1e-14;
+const ON_PLANE: f64 = 4.0;
+
+/// A multiplier, and how it is told: as a step from zero or from a pole.
+#[derive(Debug, Clone, Copy)]
+struct Multiplier {
+    origin: f64,
+    step: f64,
+}
+
+impl Multiplier {
+    fn value(&self) -> f64 {
+        self.origin + self.step
+    }
+
+    fn is_pole(&self) -> bool {
+        self.origin != 0.0 && self.step == 0.0
+    }
+
+    /// `1 + λ a`, which is zero at the pole of that square.
+    fn factor(&self, square: f64) -> f64 {
+        let there = if self.origin == -1.0 / square { 0.0 } else { 1.0 + self.origin * square };
+        there + self.step * square
+    }
+}
+
 /// `Σ (aᵢ yᵢ² + 2 bᵢ yᵢ) + d = 0` with `y = Rᵀ(x − origin)`, and `bᵢ = 0` wherever `aᵢ ≠ 0`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrincipalQuadric {
@@ -102,12 +133,12 @@ impl PrincipalQuadric {
     }
 
     /// Point and value of F for a multiplier: `Qᵢ = (yᵢ − λ bᵢ)/(1 + λ aᵢ)`.
-    fn at(&self, y: &Vec3, multiplier: f64) -> (Vec3, f64, f64) {
+    fn at(&self, y: &Vec3, multiplier: &Multiplier) -> (Vec3, f64, f64) {
         let mut q = Vec3::zeros();
         let mut slope = 0.0;
         for i in 0..3 {
-            let k = 1.0 + multiplier * self.square[i];
-            q[i] = (y[i] - multiplier * self.linear[i]) / k;
+            let k = multiplier.factor(self.square[i]);
+            q[i] = (y[i] - multiplier.value() * self.linear[i]) / k;
             let gradient = self.square[i] * q[i] + self.linear[i];
             slope -= 2.0 * gradient * gradient / k;
         }
@@ -122,15 +153,14 @@ impl PrincipalQuadric {
             if self.square.min() < 0.0 { -1.0 / self.square.min() } else { f64::INFINITY },
         );
         let start = self.value_local(&y);
-        let multiplier = self.multiplier(&y, lowest, highest);
-        let mut q = self.at(&y, multiplier).0;
-        if multiplier == lowest || multiplier == highest {
-            q = self.on_symmetry_plane(&y, multiplier);
-        }
+        let found = self.multiplier(&y, [lowest, highest]);
+        let multiplier = found.value();
+        let is_at_pole = found.is_pole();
+        let q = if is_at_pole { self.on_symmetry_plane(&y, multiplier) } else { self.at(&y, &found).0 };
         let gradient = self.square.component_mul(&q) + self.linear;
         let length = gradient.norm();
         let offset = y - q;
-        let (distance, normal) = if length > 0.0 && multiplier != lowest && multiplier != highest {
+        let (distance, normal) = if length > 0.0 && !is_at_pole {
             (multiplier * length, gradient / length)
         } else if length > 0.0 {
             (offset.norm() * start.signum(), gradient / length)
@@ -143,15 +173,37 @@ impl PrincipalQuadric {
         (foot, multiplier)
     }
 
-    /// Root of the decreasing function F(Q(λ)) between the poles; a pole itself if there is none.
-    fn multiplier(&self, y: &Vec3, lowest: f64, highest: f64) -> f64 {
-        let (mut low, mut high) = (lowest, highest);
-        let mut x = 0.0;
+    /// Root of the decreasing function F(Q(λ)) between the poles; a pole itself if there is none. Next to a pole it is told as how far it is from there.
+    fn multiplier(&self, y: &Vec3, poles: [f64; 2]) -> Multiplier {
+        let from_zero = self.root(y, Multiplier { origin: 0.0, step: 0.0 }, poles);
+        let near = |pole: &f64| {
+            let off = from_zero.step - pole;
+            pole.is_finite() && off.abs() <= BESIDE_POLE * pole.abs()
+        };
+        let Some(pole) = poles.into_iter().find(near) else { return from_zero };
+        let rounding = f64::EPSILON * pole.abs();
+        let inward = -pole.signum();
+        let step = inward * (inward * (from_zero.step - pole)).max(rounding);
+        let found = self.root(y, Multiplier { origin: pole, step }, poles.map(|limit| limit - pole));
+        let off_plane =
+            (0..3).filter(|i| -1.0 / self.square[*i] == pole).map(|i| y[i].abs()).fold(0.0, f64::max);
+        let is_on_plane = off_plane <= ON_PLANE * f64::EPSILON * (y.norm() + self.origin.norm());
+        // Without a root the bracket closes on the pole.
+        if is_on_plane && found.step.abs() <= AT_POLE * pole.abs() {
+            Multiplier { step: 0.0, ..found }
+        } else {
+            found
+        }
+    }
+
+    /// The same by Newton's method from a beginning, between limits of the step.
+    fn root(&self, y: &Vec3, start: Multiplier, [mut low, mut high]: [f64; 2]) -> Multiplier {
+        let Multiplier { origin, step: mut x } = start;
         let smallest_step = f64::EPSILON * y.norm();
         for _ in 0..MAX_ITERATIONS {
-            let (q, value, slope) = self.at(y, x);
+            let (q, value, slope) = self.at(y, &Multiplier { origin, step: x });
             if value == 0.0 {
-                return x;
+                break;
             }
             if value > 0.0 {
                 low = x;
@@ -159,6 +211,10 @@ impl PrincipalQuadric {
                 high = x;
             }
             let newton = if slope < 0.0 { x - value / slope } else { f64::NAN };
+            // No more than rounding: the limits are as near.
+            if (newton - x).abs() <= 4.0 * f64::EPSILON * x.abs() {
+                break;
+            }
             let next = if newton > low && newton < high {
                 newton
             } else if low.is_finite() && high.is_finite() {
@@ -172,22 +228,14 @@ impl PrincipalQuadric {
             // A step of Newton that moves the point by less than its own rounding ends the search, too: on the surface
             // the multiplier is zero and has no size to compare with.
             let moved = (next - x).abs() * (self.square.component_mul(&q) + self.linear).norm();
-            let done =
-                (next - x).abs() <= 4.0 * f64::EPSILON * x.abs() || next == newton && moved <= smallest_step;
+            let is_small = next == newton && origin == 0.0 && moved <= smallest_step;
+            let done = (next - x).abs() <= 4.0 * f64::EPSILON * x.abs() || is_small;
             x = next;
             if done {
                 break;
             }
         }
-        // Without a root the bracket closes on a pole: the point lies on a plane of symmetry.
-        let at_pole = |pole: f64| pole.is_finite() && (x - pole).abs() <= 1e-14 * pole.abs();
-        if at_pole(lowest) {
-            lowest
-        } else if at_pole(highest) {
-            highest
-        } else {
-            x
-        }
+        Multiplier { origin, step: x }
     }
 
     /// Nearest point when the multiplier is a pole: the component with the pole is free and is set by F = 0.

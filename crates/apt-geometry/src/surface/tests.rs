@@ -122,6 +122,30 @@ fn degenerate_and_foreign_entities_are_errors() {
     assert_eq!(point, Err(SurfaceError::Unsupported { kind: GeometryKind::Point }));
 }
 
+/// Next to the plane between them the multiplier is next to a pole.
+#[test]
+fn between_two_walls_the_nearest_point_is_on_the_nearer_one() {
+    for turn in [40.0_f64, 64.0, 90.0, 116.0] {
+        let (sine, cosine) = turn.to_radians().sin_cos();
+        // (y + 0.5)(−sine·x + cosine·y + 0.5) = 0
+        let coefficients =
+            [0.0, cosine, 0.0, 0.25, 0.0, 0.0, -0.5 * sine, -0.25 * sine, 0.25 * (1.0 + cosine), 0.0];
+        let walls = Surface::from_geometry(&Geometry::Quadric(Quadric { coefficients })).expect("a surface");
+        for (a, nearer) in [0.0, 1e-3, 0.3].into_iter().flat_map(|a| {
+            (0..16).flat_map(move |k| [10.0_f64.powi(-k), -(10.0_f64.powi(-k))]).map(move |by| (a, by))
+        }) {
+            // Distances from both walls.
+            let (first, second) = (0.5 + a, (0.5 + a) * (1.0 + 0.1 * nearer));
+            let (y, across) = (first - 0.5, second - 0.5);
+            let point = Vec3::new((y * cosine - across) / sine, y, 0.7);
+            let foot = walls.foot(&point);
+            let wanted = first.min(second);
+            let off = (foot.distance.abs() - wanted).abs().max(((point - foot.point).norm() - wanted).abs());
+            assert!(off < 1e-12, "{turn} {a} {nearer}: {foot:?}, {wanted}");
+        }
+    }
+}
+
 #[test]
 fn centre_of_an_ellipsoid_has_a_nearest_point() {
     let foot = ellipsoid().foot(&Vec3::zeros());

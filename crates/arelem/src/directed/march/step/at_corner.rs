@@ -5,7 +5,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Stepper, Trial,
-    attempt::{Aim, LEAST_TURN_COSINE},
+    attempt::{Aim, LeastCosines},
 };
 use crate::{
     clearance::{Contact, Shape},
@@ -91,8 +91,9 @@ impl Stepper<'_> {
         let vertex = self.meet(here, &(corner.at + corner.tangents[1] * (BEYOND * room)), targets)?;
         let [until, onward] = corner.tangents.map(|tangent| vertex.tangent.dot(&tangent));
         // There it may turn by up to a right angle.
-        let least_cosine = if (vertex.tip - corner.at).norm() <= room { 0.0 } else { LEAST_TURN_COSINE };
-        let trial = self.judge(here, vertex, bends, least_cosine).filter(|trial| trial.length <= cap);
+        let is_there = (vertex.tip - corner.at).norm() <= room;
+        let least = if is_there { LeastCosines::ROUND_CORNER } else { LeastCosines::ALONG };
+        let trial = self.judge(here, vertex, bends, least).filter(|trial| trial.length <= cap);
         match trial {
             Some(trial)
                 if trial.proven && self.leads_on(&trial.vertex, WAY_ON * room, cap, (targets, bends)) =>

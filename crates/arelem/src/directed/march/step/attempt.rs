@@ -31,13 +31,39 @@ const NEARLY_SQUARE: f64 = 0.1;
 /// Share of a vector's length by which its end may be expected aside of its tangent.
 const FAR_ASIDE: f64 = 0.25;
 
+/// Cosines that a vector has at least: with the path at its beginning, and of the directions of the path at both ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LeastCosines {
+    pub(super) forward: f64,
+    pub(super) between: f64,
+}
+
+impl LeastCosines {
+    /// Of vectors that follow the path.
+    pub(super) const ALONG: Self = Self { forward: LEAST_TURN_COSINE, between: LEAST_TURN_COSINE };
+    /// Of vectors that round a corner.
+    pub(super) const ROUND_CORNER: Self = Self { between: 0.0, ..Self::ALONG };
+}
+
 /// What a vector is to end with: clearances, from second derivatives of them along the path, and the bends that tell the limits.
 pub(super) type Aim<'a> = ([f64; 2], &'a [f64; 2], &'a [Bend; 2]);
 
 impl Stepper<'_> {
     /// Tries a vector of about this length; `None` if there is no position ahead or it is too long.
     pub(super) fn attempt(&self, here: &Vertex, length: f64, cap: f64, aim: Aim<'_>) -> Option<Trial> {
-        let (targets, curvature, bends) = aim;
+        let vertex = self.reached(here, length, cap, aim)?;
+        self.judge(here, vertex, aim.2, self.least_cosines(here, &vertex))
+    }
+
+    /// What is asked of a vector: only one that is short may round a corner.
+    pub(super) fn least_cosines(&self, here: &Vertex, vertex: &Vertex) -> LeastCosines {
+        let is_short = (vertex.tip - here.tip).norm() <= self.corner();
+        if is_short { LeastCosines::ROUND_CORNER } else { LeastCosines::ALONG }
+    }
+
+    /// The position to which a vector of about this length leads.
+    pub(super) fn reached(&self, here: &Vertex, length: f64, cap: f64, aim: Aim<'_>) -> Option<Vertex> {
+        let (targets, curvature, _) = aim;
         let mut attempted = length;
         let mut start = ahead(here, attempted, targets, curvature);
         let (mut short, mut falls): (Option<Vertex>, _) = (None, 0);
@@ -65,9 +91,7 @@ impl Stepper<'_> {
             falls += 1;
             start = here.tip + chord * (attempted / reached);
         }
-        let vertex = short?;
-        let is_short = (vertex.tip - here.tip).norm() <= self.corner();
-        self.judge(here, vertex, bends, if is_short { 0.0 } else { LEAST_TURN_COSINE })
+        short
     }
 
     /// The position to which a vector of about this length leads, even where that does not lead on.
@@ -111,16 +135,16 @@ impl Stepper<'_> {
         here: &Vertex,
         vertex: Vertex,
         bends: &[Bend; 2],
-        least_cosine: f64,
+        least: LeastCosines,
     ) -> Option<Trial> {
         let chord = vertex.tip - here.tip;
         let reached = chord.norm();
-        let forward = chord.dot(&here.tangent) > 0.5 * reached;
+        let forward = chord.dot(&here.tangent) > least.forward * reached;
         if !forward
             || self.kinks_back(here, &chord)
             || self.changes_hand(&chord, &vertex)
             || reached <= LEAST_VECTOR * self.prepared.size
-            || vertex.tangent.dot(&here.tangent) < least_cosine
+            || vertex.tangent.dot(&here.tangent) < least.between
         {
             return None;
         }

@@ -3,16 +3,17 @@
 
 use apt_geometry::Vec3;
 
-use super::{Stepper, Trial};
+use super::{Stepper, Trial, attempt::LeastCosines};
 use crate::{directed::march::Vertex, error::MotionFailure, role::Working};
 
 /// Places in a band at which a vector may end, as shares of it from its inner limit.
 const PLACES: [f64; 3] = [0.02, 0.5, 0.98];
 /// Each length that is tried is this share of the one before.
 const SHORTER: f64 = 0.25;
-/// The longest and the shortest one, as shares of the bands: behind the turn vectors are as long as the path bends.
+/// The longest and the shortest one, as shares of the bands: behind the turn vectors are as long as the path bends. One that leaves a rounding of less
+/// than a band nearly square to the path ends while it is still in that band, which is a small share of it ahead.
 const LONGEST: f64 = 20.0;
-const SHORTEST: f64 = 0.1;
+const SHORTEST: f64 = 0.05;
 /// Cosine between such a vector and the path until then at least: up to nearly a right angle. What turns by more goes on on its hand
 /// ([`super::hand`]).
 pub(super) const LEAST_ONWARD: f64 = 0.1;
@@ -55,7 +56,10 @@ impl Stepper<'_> {
                 return Err(MotionFailure::Cancelled);
             }
             let targets = [place(part, share.0), place(drive, share.1)];
-            let trial = self.attempt(from, length, cap, (targets, &[0.0; 2], &bends));
+            let trial = self.reached(from, length, cap, (targets, &[0.0; 2], &bends)).and_then(|vertex| {
+                let least = LeastCosines { forward: LEAST_ONWARD, ..self.least_cosines(from, &vertex) };
+                self.judge(from, vertex, &bends, least)
+            });
             if let Some(trial) = trial
                 && trial.proven
                 && trial.length > SHORTEST * self.bands()

@@ -1,6 +1,8 @@
 //! On which hand a path keeps part and drive surface, through corners that turn it by about a right angle or more, too.
 
-use apt_geometry::Vec3;
+use std::iter::zip;
+
+use apt_geometry::{Vec3, motion::Relation};
 
 use super::{
     Places, Stepper,
@@ -145,12 +147,15 @@ impl Stepper<'_> {
     }
 
     /// Directions on the same hand that are against that of the path, or so nearly square to it that no vector along them plainly leads onward:
-    /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces.
+    /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces, unless
+    /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing.
     fn sharp_directions(&self, seconds: &[SecondPlace], here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
+        let is_on = self.roles().map(|role| role.relation == Relation::On);
         let onward = seconds.iter().filter_map(|SecondPlace { ahead, others }| {
             let (left, part, drive) = match others {
+                _ if zip(others, is_on).any(|(other, on)| *other && on) => return None,
                 [true, false] => (&here.part, &ahead.part, &here.drive),
                 [false, true] => (&here.drive, &here.part, &ahead.drive),
                 _ => return None,

@@ -3,11 +3,11 @@
 //! wall and no deeper in the other one is convex where both are straight, so that from any place of it all of each leg is seen. One vertex
 //! there does for the corner, however the path turns; short of it and beyond there is none that does.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, motion::Relation};
 
 use super::{
     CORNER_BANDS, LEAST_VECTOR, Stepper, Trial,
-    attempt::LEAST_TURN_COSINE,
+    attempt::{LEAST_TURN_COSINE, LeastCosines},
     hand::{Hand, SAME_CONTACT_COSINE},
 };
 use crate::{
@@ -97,7 +97,12 @@ impl Stepper<'_> {
             .find_map(|place| {
                 let (ahead, vertex) = self.vertex_in(&ahead, place)?;
                 let [first, second] = ahead.legs()?;
-                let mut trial = self.judge(here, Vertex { tangent: first, ..vertex }, &bends[0], 0.0)?;
+                let mut trial = self.judge(
+                    here,
+                    Vertex { tangent: first, ..vertex },
+                    &bends[0],
+                    LeastCosines::ROUND_CORNER,
+                )?;
                 trial.vertex.tangent = second;
                 let fits = trial.proven && trial.length >= least && trial.length <= cap * (1.0 + 1e-9);
                 let leads_on = || {
@@ -154,6 +159,10 @@ impl Stepper<'_> {
         let ahead = Ahead { role, before, beyond, at: at.tip, hand };
         let middle = |role: &Working| 0.5 * (role.outside - role.inside);
         let [this, other] = self.roles_by(role);
+        // On a surface the tool keeps to neither side of it, as in `sharp_directions`.
+        if this.relation == Relation::On {
+            return None;
+        }
         let place =
             Place { first: middle(this), second: middle(this) - NEARER * this.band(), other: middle(other) };
         let start = meeting(&ahead, [from.tip, at.tip, from.tip], place);
