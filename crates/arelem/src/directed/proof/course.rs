@@ -38,7 +38,7 @@ const BISECTIONS: usize = 20;
 /// have, but so many tell that the vector must be shorter.
 const MAX_UNBOUNDED: usize = 12;
 /// Share of what is left of the band below a sample that the proof of its depth may leave open.
-const OPEN: f64 = 0.1;
+const OPEN: f64 = 0.01;
 /// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
 const MOST_PIECES: f64 = 8.0;
 /// Cuts of stretches on one vector after which the parts of the surface are looked at: a vector where nothing is steady takes some
@@ -247,6 +247,11 @@ impl Course<'_, '_> {
         (OPEN * (sample.value + role.inside)).max(LEAST_OPEN * role.band())
     }
 
+    /// The same as far as the contact's own search says, which mostly leaves less open than it may.
+    fn left_open(&self, sample: &Sample) -> f64 {
+        self.open(sample).min(sample.missed)
+    }
+
     fn deep_enough(&self, sample: &Sample) -> bool {
         let open = self.open(sample);
         sample.missed <= open || self.line.certified(sample.x, sample.value - open, Some(&sample.contact))
@@ -290,7 +295,7 @@ impl Course<'_, '_> {
         if high && low {
             return Stretch::Held;
         }
-        if !is_asked || bend.is_some() && ledger.is_loose(&about) {
+        if !is_asked || bend.is_some() && ledger.is_loose(&about, asked.range) {
             bend = found(&|bend| {
                 let (held, kept) = bounded(Bend::AtMost(bend));
                 (high || held) && (low || kept)
@@ -362,7 +367,7 @@ impl Course<'_, '_> {
     fn bounded(&self, a: &Sample, b: &Sample, bend: Bend) -> (bool, bool) {
         match bend {
             Bend::AtMost(bend) => {
-                let ends = (a.value - self.open(a), b.value - self.open(b));
+                let ends = (a.value - self.left_open(a), b.value - self.left_open(b));
                 (self.line.allows(highest(a, b, bend)), self.line.allows(lowest(ends, bend, b.x - a.x)))
             }
             Bend::Unbounded => (false, false),

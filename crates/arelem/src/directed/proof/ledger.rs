@@ -99,7 +99,8 @@ struct Level {
 /// Results worth keeping from one vector to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Ledger {
-    bound: Cell<Option<Bound>>,
+    /// The last one that was made where none held, and the last one made anew about a part of what that holds for.
+    bounds: Cell<[Option<Bound>; 2]>,
     gap: Cell<Option<Gap>>,
     /// Where there was none that reaches farther than the stretch.
     cramped: Cell<Option<Vec3>>,
@@ -157,17 +158,26 @@ impl Ledger {
 
     /// The bound of [`Ledger::bend`], if one is known that holds there.
     pub(super) fn known_bend(&self, gauge: &Gauge, place: &About<'_>, range: [f64; 2]) -> Option<f64> {
-        if let Some(bound) = self.bound.get()
-            && bound.has(place, range)
-        {
-            return Some(bound.bend);
+        let known = self.bounds.get().into_iter().flatten().filter(|bound| bound.has(place, range));
+        if let Some(bend) = known.map(|bound| bound.bend).min_by(f64::total_cmp) {
+            return Some(bend);
         }
         steady_bend(gauge, place.tool, place.tip, place.spread, range)
     }
 
-    /// Whether the bound that is known reaches so much farther than about a place that one for that alone may be much less.
-    pub(super) fn is_loose(&self, place: &About<'_>) -> bool {
-        self.bound.get().is_some_and(|bound| bound.spread > LOOSE * place.spread)
+    /// Whether all bounds that are known to hold about a place reach so much farther that one for that alone may be much less.
+    pub(super) fn is_loose(&self, place: &About<'_>, range: [f64; 2]) -> bool {
+        let known = self.bounds.get().into_iter().flatten().filter(|bound| bound.has(place, range));
+        known
+            .map(|bound| bound.spread)
+            .min_by(f64::total_cmp)
+            .is_some_and(|least| least > LOOSE * place.spread)
+    }
+
+    fn keep(&self, place: &About<'_>, bound: Bound) {
+        let [wide, close] = self.bounds.get();
+        let is_part = wide.is_some_and(|wide| wide.has(place, bound.range) && bound.spread < wide.spread);
+        self.bounds.set(if is_part { [wide, Some(bound)] } else { [Some(bound), close] });
     }
 
     /// Bound of the second derivative of the clearance for all positions within `spread` of a place at which the
@@ -204,7 +214,7 @@ impl Ledger {
                 // One that reaches farther may hold a place that bends much more.
                 Some(Bend::AtMost(bend)) if more > 0.0 && !is_of_use(bend) => {}
                 Some(Bend::AtMost(bend)) => {
-                    self.bound.set(Some(Bound { tip: *tip, axis: tool.axis, spread, range, bend }));
+                    self.keep(place, Bound { tip: *tip, axis: tool.axis, spread, range, bend });
                     return found;
                 }
                 Some(Bend::Unbounded) => self.gap.set(Some(gap)),
