@@ -60,6 +60,13 @@ impl Ring {
         w - self.axis * w.dot(&self.axis)
     }
 
+    /// Whether the positions of a path are in the ring, or no farther from it than it is wide: a tool that touches with another part, as with its
+    /// top inside a cylinder that lies, is not confined to it.
+    fn holds(&self, path: &[Vec3]) -> bool {
+        let wide = self.outer - self.inner;
+        path.iter().map(|p| self.flat(p).norm()).all(|r| r >= self.inner - wide && r <= self.outer + wide)
+    }
+
     /// The bound for a path of positions: its turning angle about the axis decides.
     fn of_path(&self, path: &[Vec3]) -> u32 {
         let mut angle = 0.0;
@@ -155,7 +162,13 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     path.extend(sequence.points.iter().map(|p| p.tip));
     let (part, drive) = (&prepared.part, &prepared.drive);
     let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
-    let on_rings = rings.iter().flatten().map(|ring| ring.of_path(&path)).max().unwrap_or(1);
+    let on_rings = rings
+        .iter()
+        .flatten()
+        .filter(|ring| ring.holds(&path))
+        .map(|ring| ring.of_path(&path))
+        .max()
+        .unwrap_or(1);
     // Between two planes MAXDP does not count (language reference 6.8).
     let planar = part.shape == Shape::Flat && drive.shape == Shape::Flat;
     let maximum_step = if planar { f64::INFINITY } else { sequence.maximum_step };
@@ -327,6 +340,13 @@ mod tests {
         // Ball .25 on a cylinder of radius 1 in a plane at 45°, y ±.9: the angle counts about the cylinder's axis.
         let angle = 2.0 * (0.9f64 / 1.2505).asin();
         assert_eq!(ring(1.25, 1.251).least_chords(angle, 1.251, 1.251), 21);
+    }
+
+    #[test]
+    fn a_path_outside_of_a_ring_is_not_bound_by_it() {
+        let band = ring(5.0372, 5.0377);
+        assert!(band.holds(&[Vec3::new(5.0375, 0.0, 1.0), Vec3::new(0.0, 5.0377, 2.0)]));
+        assert!(!band.holds(&[Vec3::new(2.709, 0.0, 1.0), Vec3::new(0.0, 2.709, 2.0)]));
     }
 
     #[test]

@@ -4,12 +4,13 @@
 use apt_geometry::Vec3;
 
 use super::{Path, Prepared, Stuck};
-use crate::error::{Iteration, MotionFailure};
+use crate::error::{Course, Iteration, MotionFailure};
 
-/// The first way that is tried, as a multiple of what the turn moves the rim of the tool by, and how many, each twice as long as
-/// the one before.
+/// The first way that is tried, as a multiple of what the turn moves the rim of the tool by, and how many at least, each twice as long as
+/// the one before: as many as lead to that multiple, and twice as far, of what it moves the contacts by.
 const FIRST: f64 = 2.0;
 const WAYS: u32 = 5;
+const MOST_WAYS: u32 = 10;
 /// Angle, radians, below which the tool is not turned by the first vector.
 const NO_TURN: f64 = 1e-9;
 
@@ -30,7 +31,7 @@ pub(super) fn follow<'a>(
     if angle <= NO_TURN || shortest <= 0.0 {
         return Err(stuck);
     }
-    for k in 0..WAYS {
+    for k in 0..ways(&prepared) {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, length);
         let running = prepared.with(attitude);
@@ -56,13 +57,23 @@ fn extent(prepared: &Prepared) -> f64 {
     if radius > 0.0 { radius } else { prepared.tool.cutter.height }
 }
 
+/// How many ways are tried. A tool that touches a wall which leans over it does so high up: the turn moves it away from there, or into the wall, by
+/// much more than its rim, and no way that is short against this leads along the wall.
+fn ways(prepared: &Prepared) -> u32 {
+    let away = [&prepared.part, &prepared.drive]
+        .map(|role| (role.gauge.contact(&prepared.tool, &prepared.tip).tool - prepared.tip).norm());
+    let farther = away[0].max(away[1]) / extent(prepared);
+    (2..MOST_WAYS).find(|k| f64::from(1u32 << (k - 2)) >= farther).unwrap_or(MOST_WAYS).max(WAYS)
+}
+
 /// Angle between the axis that the tool has and the one that it is to have.
 fn turn_at_start(prepared: &Prepared) -> Result<f64, MotionFailure> {
     let (has, wants) = (prepared.tool.axis, prepared.attitude.tool_at(&prepared.tip)?.axis);
     Ok(has.cross(&wants).norm().atan2(has.dot(&wants)))
 }
 
-/// Whether no vector was found that leads on, or to the stop, not farther from where the motion begins.
+/// Whether no vector was found that leads on, or to the stop, not farther from where the motion begins, or the path goes round within that
+/// distance: where the axis turns too fast the places at which the tool touches both surfaces are a ring about the beginning.
 fn is_stuck_within(failure: &MotionFailure, prepared: &Prepared, distance: f64) -> bool {
     match failure {
         MotionFailure::NoAdmissibleVector { tip, .. }
@@ -72,6 +83,7 @@ fn is_stuck_within(failure: &MotionFailure, prepared: &Prepared, distance: f64) 
             tip,
             ..
         } => (tip - prepared.tip).norm() <= distance,
+        MotionFailure::NeverMet { course: Course::Closed { length }, .. } => 0.5 * length <= distance,
         _ => false,
     }
 }

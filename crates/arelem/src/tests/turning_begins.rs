@@ -382,3 +382,24 @@ fn a_direction_square_to_the_line_of_a_standing_tool_tells_the_way_of_one_that_t
     p.drive(Turn::Forward, &beside, Relation::To, &check);
     proven(&p);
 }
+
+/// In a corner between walls that lean over the tool it touches the second one at its top: the turn to that wall moves it there by three times as
+/// much as its rim, and as long as it turns over a short way its path is a small ring about the place where it begins.
+#[test]
+fn a_tool_turns_from_one_wall_that_leans_over_it_to_the_next() {
+    let (degrees, lean) = (60.0f64, 0.15);
+    let (s, c) = degrees.to_radians().sin_cos();
+    let first = plane(0.0, 1.0, -lean, 0.0);
+    let second = plane(-s, c, -lean, -5.0 * s);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5]).from(1.0, 2.0, 3.0);
+    along(&mut p, ToolAxis::Tangent { height: 0.0, mode: AxisTangency::Across });
+    p.go(&[(Relation::To, &first), (Relation::To, &ground()), (Relation::On, &x(1.0))]);
+    p.indirv(1.0, 0.0, 0.0).side(DriveSide::Left);
+    p.drive(Turn::Forward, &first, Relation::To, &second);
+    p.drive(Turn::Left, &second, Relation::On, &plane(c, s, 0.0, 5.0 * c + 6.0));
+    proven(&p);
+    let ToolPosition { axis, .. } = *p.last().points.last().expect("a position");
+    let wanted = v(-s * lean, c * lean, 1.0).normalize();
+    assert!((axis - wanted).norm() < 1e-6, "{degrees}: {axis:?}, not {wanted:?}");
+}
