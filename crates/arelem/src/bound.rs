@@ -11,7 +11,8 @@ use self::filled::{Filled, Limits};
 pub(crate) use self::readings::{Reading, Readings};
 use crate::{
     clearance::{Shape, Tool},
-    directed::Prepared,
+    directed::{Prepared, is_tangent},
+    position,
     role::Working,
     sequence::CutSequence,
 };
@@ -60,26 +61,25 @@ impl Ring {
         w - self.axis * w.dot(&self.axis)
     }
 
-    /// Whether the positions of a path are in the ring, or no farther from it than it is wide: a tool that touches with another part, as with its
-    /// top inside a cylinder that lies, is not confined to it.
+    /// Whether the positions of a path are in the ring, or no farther from it than it is wide: a tool that touches with another part, as with its top
+    /// inside a cylinder that lies, is not confined to it.
     fn holds(&self, path: &[Vec3]) -> bool {
         let wide = self.outer - self.inner;
         path.iter().map(|p| self.flat(p).norm()).all(|r| r >= self.inner - wide && r <= self.outer + wide)
     }
 
-    /// The bound for a path of positions: its turning angle about the axis decides.
-    fn of_path(&self, path: &[Vec3]) -> u32 {
+    /// The bound for a path of positions, whose turning angle about the axis decides, and all others from where it begins. They may end at any
+    /// radius, and a way before its end.
+    fn of_path(&self, path: &[Vec3], earlier: f64) -> u32 {
         let mut angle = 0.0;
         for pair in path.windows(2) {
             let (a, b) = (self.flat(&pair[0]), self.flat(&pair[1]));
             angle += a.cross(&b).norm().atan2(a.dot(&b));
         }
-        match (path.first(), path.last()) {
-            (Some(first), Some(last)) => {
-                self.least_chords(angle, self.flat(first).norm(), self.flat(last).norm())
-            }
-            _ => 1,
-        }
+        // No way turns by more than it does on the inner circle.
+        let less = if earlier > 0.0 { earlier / self.inner } else { 0.0 };
+        let start = path.first().map(|first| self.flat(first).norm());
+        start.map_or(1, |start| self.least_chords((angle - less).max(0.0), start, self.outer))
     }
 }
 
@@ -162,11 +162,13 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     path.extend(sequence.points.iter().map(|p| p.tip));
     let (part, drive) = (&prepared.part, &prepared.drive);
     let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
+    let earlier = earlier_end(sequence, prepared);
     let on_rings = rings
         .iter()
         .flatten()
         .filter(|ring| ring.holds(&path))
-        .map(|ring| ring.of_path(&path))
+        // Where it is not known how far before its end another path may end that is taken to be the end of all.
+        .map(|ring| ring.of_path(&path, earlier.unwrap_or(0.0)))
         .max()
         .unwrap_or(1);
     // Between two planes MAXDP does not count (language reference 6.8).
@@ -178,16 +180,55 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
         _ => 0.0,
     };
     on_rings
-        .max(bends(prepared, &path, bent, maximum_step))
+        .max(bends(prepared, &path, bent, (maximum_step, earlier)))
         .max(whole(straight / maximum_step * (1.0 - 1e-9)))
 }
 
-/// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position.
-fn bends(prepared: &Prepared, path: &[Vec3], bent: &Bent, maximum_step: f64) -> u32 {
+/// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position. Another sequence may end a
+/// way before the end of the path: where it is not known to be a short one, a vector less is asked for.
+fn bends(
+    prepared: &Prepared,
+    path: &[Vec3],
+    bent: &Bent,
+    (maximum_step, earlier): (f64, Option<f64>),
+) -> u32 {
     let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step);
     let filled = to_end(prepared, path, bent.clone(), maximum_step).filled;
-    whole(filled.count(&limits) * (1.0 - SAMPLED)).saturating_sub(1).max(1)
+    let least = earlier.and_then(|earlier| filled.least(earlier));
+    whole(least.unwrap_or_else(|| filled.count(&limits).ceil() - 1.0)).max(1)
 }
+
+/// How far before the end of a sequence along its path another one may end: in the bands of part, drive and check surface all, as the tangent
+/// planes of the clearances tell. `None` where the path does not go through the check surface, and where there are several of them.
+fn earlier_end(sequence: &CutSequence, prepared: &Prepared) -> Option<f64> {
+    let (stop, end) = (sequence.stop.as_ref()?, sequence.points.last()?.tip);
+    let [check] = &prepared.checks[..] else { return None };
+    if is_tangent(stop.role.relation) {
+        return None;
+    }
+    let mut check = check.clone();
+    check.set_side(stop.role.side);
+    let [part, drive, at_check] = [&prepared.part, &prepared.drive, &check]
+        .map(|role| (role, role.gauge.contact(&prepared.tool, &end)));
+    let along = part.1.gradient.cross(&drive.1.gradient).try_normalize(PARALLEL)?;
+    let before = sequence.points.iter().rev().nth(1).map_or(sequence.start.tip, |point| point.tip);
+    let forward = along * (end - before).dot(&along).signum();
+    let rate = at_check.1.gradient.dot(&forward);
+    let limits = |role: &Working| [-role.inside, role.outside];
+    let mut earlier: f64 = 0.0;
+    for (in_part, in_drive) in limits(part.0).into_iter().flat_map(|p| limits(drive.0).map(|d| (p, d))) {
+        let left = [part.1.clearance - in_part, drive.1.clearance - in_drive];
+        let aside = position::correction_of_two(left, [part.1.gradient, drive.1.gradient]);
+        for in_check in limits(&check) {
+            let rest = in_check - at_check.1.clearance - at_check.1.gradient.dot(&aside);
+            earlier = earlier.max(-rest / rate);
+        }
+    }
+    earlier.is_finite().then_some(EARLIER * earlier)
+}
+
+/// How many times as far as tangent planes tell another sequence is taken to end before a path, for what bends.
+const EARLIER: f64 = 2.0;
 
 /// What is known of the bend along all of a path, of whose beginning it is known: vertices that are moved later do not change how the
 /// path bends.
@@ -205,9 +246,6 @@ pub(crate) fn to_end(prepared: &Prepared, path: &[Vec3], mut bent: Bent, maximum
     }
     bent
 }
-
-/// Part of what is filled that reading the clearances at few places of each vector may add.
-const SAMPLED: f64 = 0.01;
 
 /// The clearance of a role along a vector, at its ends and in its middle.
 pub(crate) fn read(tool: &Tool<'_>, role: &Working, [from, to]: [&Vec3; 2]) -> Readings {

@@ -41,6 +41,10 @@ pub(super) fn integral(
     sum
 }
 
+/// What a vector covers less, by the integral, that begins in the middle of the band and not at its limit: half of 1 − √½, and as much again in
+/// the last vector, which may end in the middle, too.
+pub(super) const LOST: f64 = 0.3;
+
 fn assert_frugal(name: &str, sequence: &CutSequence, integral: f64) {
     let count = sequence.points.len();
     let minimum = sequence.minimum.expect("a bound");
@@ -48,7 +52,8 @@ fn assert_frugal(name: &str, sequence: &CutSequence, integral: f64) {
     assert!(count as f64 <= 1.02 * integral + 2.0, "{name}: {count} vectors, integral {integral}");
     assert!(minimum as usize <= count, "{name}: bound {minimum} above {count}");
     assert!(f64::from(minimum) >= 0.97 * integral - 2.0, "{name}: bound {minimum} for integral {integral}");
-    assert!(f64::from(minimum) <= integral.max(1.0), "{name}: bound {minimum} above the integral {integral}");
+    let most = (integral + LOST).ceil();
+    assert!(f64::from(minimum) <= most, "{name}: bound {minimum} above the integral {integral}");
 }
 
 const BANDS: [f64; 3] = [1e-2, 1e-3, 1e-5];

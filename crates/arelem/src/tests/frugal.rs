@@ -10,7 +10,7 @@ use proptest::{
 };
 
 use super::{
-    economy::{Curve, along_directrix, integral, tabulated},
+    economy::{Curve, LOST, along_directrix, integral, tabulated},
     *,
 };
 
@@ -31,7 +31,10 @@ fn frugal(p: &Program, curve: Curve<'_>, range: [f64; 2], left: f64, between: [f
     let count = sequence.points.len() as f64;
     assert!(count <= SHARE * wanted + MORE, "{count} vectors, the integral is {wanted}: {sequence:?}");
     let minimum = f64::from(sequence.minimum.expect("a bound"));
-    assert!(minimum <= count && minimum <= wanted.max(1.0), "bound {minimum}, {count} vectors, {wanted}");
+    assert!(
+        minimum <= count && minimum <= (wanted + LOST).ceil(),
+        "bound {minimum}, {count} vectors, {wanted}"
+    );
 }
 
 fn begun(band: f64, share: f64) -> Program {
@@ -159,7 +162,11 @@ fn tabulated_cylinders() {
         along(&mut p, &drive, v(between[0], heights[0] + aside, 0.0), side, between);
         let wanted = integral(&curve, range, left, 0, between, band);
         let (count, minimum) = (p.last().points.len() as f64, p.last().minimum.expect("a bound"));
-        assert!(f64::from(minimum) <= count && f64::from(minimum) <= wanted.max(1.0), "{minimum}, {wanted}");
+        // Where the bend changes sides more is needed than the integral tells.
+        assert!(
+            f64::from(minimum) <= count && f64::from(minimum) <= 1.02 * wanted + MORE,
+            "{minimum}, {wanted}"
+        );
         assert!(count <= SHARE * wanted + MORE + 1.0, "{count} vectors, {wanted}: {heights:?} {band}");
         over += usize::from(count > SHARE * wanted + MORE);
     }

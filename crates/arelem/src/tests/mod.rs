@@ -16,6 +16,7 @@ mod cost;
 mod disk;
 mod economy;
 mod ends;
+mod fewest;
 mod found;
 mod frugal;
 mod gouges;

@@ -248,15 +248,12 @@ impl Tally {
 /// Cut vectors that a motion may have for each that it needs at least, and besides (arelem reference 5.6).
 const SHARE: f64 = 1.02;
 const MORE: f64 = 2.0;
-/// What the bound leaves out for being sure to be one: a hundredth, and a vector.
-const SURE: [f64; 2] = [0.99, 1.0];
 
-/// Why a sequence has more cut vectors than are needed, if it has.
+/// Why a sequence has more cut vectors than are needed, if it has, or fewer than are told to be.
 fn lavish(sequence: &CutSequence) -> Option<String> {
     let least = f64::from(sequence.minimum?);
-    let needed = (least + SURE[1]) / SURE[0];
-    let count = sequence.points.len();
-    (count as f64 > SHARE * needed + MORE).then(|| format!("{count} vectors, {least} at least"))
+    let count = sequence.points.len() as f64;
+    (count > SHARE * least + MORE || count < least).then(|| format!("{count} vectors, {least} at least"))
 }
 
 /// Executes commands one after the other within the budget.

@@ -1,0 +1,263 @@
+//! How one clearance bends along a stretch that a vector may cover, and where a vector may begin it.
+//!
+//! The longest line of a stretch touches one limit of the band, then the other one, and leaves the band at the first again: beyond its second
+//! contact all places that its number of vectors leads to are on its side of that. So a vector that leads on beyond its end crosses it between
+//! that contact and the end, the window, and comes out on the other side: extended backward it is within the limit of the second contact all along
+//! the window. Those places bound the next line, too, on that side alone. (Such windows tell the least number of pieces of a line that keeps
+//! within a tolerance of a curve: H. Imai, M. Iri, Computer Vision, Graphics, and Image Processing 36, 1986.) The first line goes through the place
+//! where the motion begins.
+
+use super::{
+    super::readings::Readings,
+    WIDER,
+    hull::{Point, Widest, chain, widest, widest_from},
+    room,
+    steady::{Steady, share_of},
+};
+
+/// Pieces into which what fills a vector is divided: a parabola's sag between them is then a hundredth of that over all.
+const PIECES: f64 = 10.0;
+/// Bound of the pieces between two readings.
+const MOST_PIECES: f64 = 16.0;
+/// How many points of a stretch are kept, of which more are not needed than those of its hull.
+const MOST_POINTS: usize = 64;
+/// Bound of the places that are looked at for where a vector is full, and the share of one by which it need not be found.
+const MOST_LOOKS: u32 = 8;
+const CLOSELY: f64 = 1e-3;
+/// Vectors of a stretch that are kept for the points they have: of more points are made.
+const MOST_STEADILY: usize = 8;
+/// Share of a vector by which one is more than full by rounding alone.
+const ROUNDING: f64 = 1e-9;
+
+/// What bounds a line where the stretch before it ended.
+#[derive(Debug, Clone)]
+struct Window {
+    /// On which side of the points the line is: 1 for those that it is to be below, −1 for those above.
+    side: f64,
+    /// The points, in order of their places before the stretch.
+    points: Vec<Point>,
+}
+
+/// How one clearance bends along a stretch: steadily, or as points tell.
+#[derive(Debug, Clone)]
+pub(super) struct Strand {
+    /// What is filled while it bends steadily.
+    steady: Option<Steady>,
+    /// The vectors since it began while it does, and the place of each from which on.
+    steadily: Vec<(Readings, f64)>,
+    points: Vec<Point>,
+    /// The last of them.
+    end: Point,
+    /// The slope there.
+    slope: f64,
+    window: Option<Window>,
+    /// How far from the lower and the upper limit the first line begins, while that is not full.
+    start: Option<[f64; 2]>,
+}
+
+impl Strand {
+    /// From where a motion begins.
+    pub(super) fn from_start(readings: &Readings, [low, high]: [f64; 2]) -> Self {
+        let value = readings.at(0.0).value;
+        let more = 0.5 * WIDER * (high - low);
+        let start = (high > low).then(|| {
+            let value = value.clamp(low, high);
+            [value - low + more, high - value + more]
+        });
+        Self {
+            steady: start.is_none().then(Steady::default),
+            steadily: Vec::new(),
+            points: Vec::new(),
+            end: Point::default(),
+            slope: 0.0,
+            window: None,
+            start,
+        }
+    }
+
+    /// Another stretch begins, anywhere in the band.
+    pub(super) fn begin(&mut self) {
+        self.steady = Some(Steady::default());
+        self.steadily.clear();
+        self.points.clear();
+        (self.end, self.slope) = (Point::default(), 0.0);
+        (self.window, self.start) = (None, None);
+    }
+
+    /// Another stretch begins where this one is full, at a place of the next vector.
+    pub(super) fn begin_beyond(&mut self, readings: &Readings, band: [f64; 2], x: f64) {
+        self.settle(band);
+        let window = self.window_at(readings, band, x);
+        self.begin();
+        self.window = window;
+    }
+
+    /// The window where this stretch is full.
+    fn window_at(&self, readings: &Readings, band: [f64; 2], x: f64) -> Option<Window> {
+        let mut points = self.points.clone();
+        points.extend(self.ahead(readings, band, [0.0, x]));
+        let full = *points.last()?;
+        let (room, [upper, lower]) = (room(band)?, self.hull(&points));
+        let Widest { height, corner, side, across } = self.widest(&upper, &lower)?;
+        if across[0] < full[0] {
+            return None;
+        }
+        // The line is not quite that which is full: it may be nearer to the limit by that.
+        let whole = if self.start.is_some() { 1.0 } else { room };
+        let less = ((1.0 - height / whole).max(0.0) + 2.0 * CLOSELY) * room;
+        let tilt = self.tilt(readings.at(0.0).slope);
+        let as_seen_beyond = |point: &Point| {
+            let back = point[0] - full[0];
+            [back, point[1] - full[1] - tilt * back - side * less]
+        };
+        let known = if side > 0.0 { &upper } else { &lower };
+        let within = known.iter().filter(|point| point[0] >= corner[0] && point[0] < full[0]);
+        Some(Window { side, points: within.map(as_seen_beyond).collect() })
+    }
+
+    /// Upper and lower part of the hull of points, with those of the window.
+    fn hull(&self, points: &[Point]) -> [Vec<Point>; 2] {
+        [1.0, -1.0].map(|side| {
+            let window = self.window.iter().filter(|window| window.side == side);
+            chain(window.flat_map(|window| &window.points).chain(points), side)
+        })
+    }
+
+    /// Where a line is hindered most.
+    fn widest(&self, upper: &[Point], lower: &[Point]) -> Option<Widest> {
+        match self.start {
+            Some(rooms) => widest_from(upper, lower, rooms),
+            None => widest(upper, lower),
+        }
+    }
+
+    /// What points fill of a vector, which covers all that some straight line is near to: by the square of its length on a parabola, so that
+    /// this is the integral of √(κ/8τ) there.
+    fn share(&self, points: &[Point], band: [f64; 2]) -> f64 {
+        let Some(room) = room(band).filter(|_| points.len() > 2) else { return 0.0 };
+        let [upper, lower] = self.hull(points);
+        let whole = if self.start.is_some() { 1.0 } else { room };
+        self.widest(&upper, &lower).map_or(0.0, |widest| (widest.height.max(0.0) / whole).sqrt())
+    }
+
+    /// What is filled.
+    pub(super) fn filled(&self, band: [f64; 2]) -> f64 {
+        self.steady.map_or_else(|| self.share(&self.points, band), |steady| steady.share)
+    }
+
+    /// What is filled while it bends steadily and no window hinders it.
+    fn steady_with(&self, readings: &Readings, band: [f64; 2], between: [f64; 2]) -> Option<Steady> {
+        let with = self.steady?.with(readings, band, between)?;
+        let is_free = self.window.as_ref().is_none_or(|window| with.agrees(window.side));
+        is_free.then_some(with)
+    }
+
+    /// The same with the next vector until a place of it.
+    fn filled_until(&self, readings: &Readings, band: [f64; 2], x: f64) -> f64 {
+        if let Some(with) = self.steady_with(readings, band, [0.0, x]) {
+            return with.share;
+        }
+        let mut points = self.points.clone();
+        points.extend(self.ahead(readings, band, [0.0, x]));
+        self.share(&points, band)
+    }
+
+    /// The place of the next vector before another one at which the stretch is full.
+    pub(super) fn full(&mut self, readings: &Readings, band: [f64; 2], until: f64) -> Option<f64> {
+        let with = self.steady_with(readings, band, [0.0, until]);
+        let reached = with.map_or_else(
+            || {
+                self.settle(band);
+                self.filled_until(readings, band, until)
+            },
+            |with| with.share,
+        );
+        let (mut low, mut high) = ([0.0, self.filled(band)], [until, reached]);
+        if high[1] <= 1.0 + ROUNDING {
+            return None;
+        }
+        for _ in 0..MOST_LOOKS {
+            let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
+            let x = low[0] + (high[0] - low[0]) * part;
+            let found = [x, self.filled_until(readings, band, x)];
+            if (found[1] - 1.0).abs() <= CLOSELY {
+                return Some(x);
+            }
+            if found[1] > 1.0 {
+                high = found;
+            } else {
+                low = found;
+            }
+        }
+        Some(high[0])
+    }
+
+    /// Goes on along a vector from one of its places to its end.
+    pub(super) fn extend(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
+        let is_room = self.steadily.len() < MOST_STEADILY;
+        let length = readings.length();
+        let with = self.steady_with(readings, band, [begin, length]).filter(|_| is_room);
+        if with.is_some() {
+            self.steady = with;
+            self.steadily.push((*readings, begin));
+        } else {
+            self.settle(band);
+            self.follow(readings, band, begin);
+        }
+    }
+
+    /// From here on points tell how it bends.
+    fn settle(&mut self, band: [f64; 2]) {
+        self.steady = None;
+        for (readings, begin) in std::mem::take(&mut self.steadily) {
+            self.follow(&readings, band, begin);
+        }
+    }
+
+    /// What the bend is steeper than the clearance along a vector that begins here with a slope.
+    fn tilt(&self, slope: f64) -> f64 {
+        // At its beginning a stretch has the slope of its first vector: which line it is told from is all the same.
+        if self.points.is_empty() { 0.0 } else { self.slope - slope }
+    }
+
+    /// Points along the next vector, between two of its places.
+    fn ahead(&self, readings: &Readings, band: [f64; 2], [begin, end]: [f64; 2]) -> Vec<Point> {
+        let start = readings.at(begin);
+        let tilt = self.tilt(start.slope);
+        // What is proven to be in the band is so, whatever a cubic says.
+        let clamped = |value: f64| value.clamp(band[0], band[1]);
+        let point = |x: f64| {
+            let rise = clamped(readings.at(x).value) - clamped(start.value) + tilt * (x - begin);
+            [self.end[0] + x - begin, self.end[1] + rise]
+        };
+        let mut points = Vec::with_capacity(MOST_POINTS);
+        points.push(point(begin));
+        for piece in readings.pieces().filter(|piece| piece.to.x > begin && piece.from.x < end) {
+            let count = (PIECES * share_of(&piece, band)).ceil().clamp(1.0, MOST_PIECES);
+            let (from, length) = (piece.from.x, piece.to.x - piece.from.x);
+            let places = (1..=count as u32).map(|k| from + length * f64::from(k) / count);
+            points.extend(places.filter(|x| *x > begin && *x < end).map(point));
+            if piece.to.x >= end {
+                break;
+            }
+        }
+        points.push(point(end));
+        points
+    }
+
+    /// Adds the points along a vector from one of its places to its end.
+    fn follow(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
+        let (start, end) = (readings.at(begin), readings.at(readings.length()));
+        let points = self.ahead(readings, band, [begin, end.x]);
+        self.slope = end.slope + self.tilt(start.slope);
+        let known = usize::from(!self.points.is_empty());
+        self.points.extend(&points[known..]);
+        self.end = points[points.len() - 1];
+        if self.points.len() > MOST_POINTS {
+            let mut hull = [chain(&self.points, 1.0), chain(&self.points, -1.0)].concat();
+            hull.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            hull.dedup();
+            self.points = hull;
+        }
+    }
+}
