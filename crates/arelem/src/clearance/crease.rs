@@ -22,6 +22,10 @@ const BEYOND: f64 = 1e-6;
 const SAME: f64 = 1e-13;
 /// Bound of the positions of the tool on its way from which one that is nearest to a place is closed in.
 const MOST_POSITIONS: u32 = 24;
+/// Of so many positions of a body one is half way between two, where the others follow its slope.
+const HALVED: u32 = 3;
+/// How close a distance is told, as a share of what it is above the one to be decided on.
+const SHARE_ABOVE: f64 = 0.01;
 /// How much farther, relative to the size of the tool, the way may be than the tangents at its ends tell.
 const CLOSE: f64 = 1e-12;
 /// Share of a distance by which a bound of it may be too low: what is far away need not be known well.
@@ -263,11 +267,11 @@ pub(super) fn clears(
 ) -> bool {
     let start = from + away * (-level).max(0.0);
     let way = to - from;
-    let close = CLOSE * (tool.reach() + way.norm());
+    let wanted = level.max(least_off(tool));
+    let close = Closeness { length: CLOSE * (tool.reach() + way.norm()), wanted };
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
-    let wanted = level.max(least_off(tool));
     let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: tool.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
 }
@@ -374,42 +378,69 @@ impl Hull<'_> {
     }
 }
 
+/// How close the least distance of a place from a body on its way is told: to a length, and to a share of what it is above a distance on which
+/// it is to be decided.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Closeness {
+    pub(super) length: f64,
+    pub(super) wanted: f64,
+}
+
+impl Closeness {
+    fn is_met(&self, found: &Position) -> bool {
+        found.lost <= self.length.max(SHARE_ABOVE * (found.bound - self.wanted))
+    }
+}
+
+/// What a body in one position of its way tells of all.
+#[derive(Clone, Copy)]
+struct Position {
+    share: f64,
+    /// The bound, and the direction in which it grows.
+    bound: f64,
+    out: Vec3,
+    /// How fast the distance grows in that direction over the whole way, and by how much it may fall along it.
+    slope: f64,
+    lost: f64,
+}
+
 /// A bound from below of the distance of a place from a convex body on its way, given from the body's place at the beginning, and the
 /// direction in which it grows: with any position of the body the tangent plane there bounds the distances from all others.
-pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: f64) -> (f64, Vec3) {
+pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: Closeness) -> (f64, Vec3) {
     let square = way.norm_squared();
-    let bound = |share: f64| {
+    let at = |share: f64| {
         let (distance, out) = body(&(place - way * share));
         let slope = out.dot(way);
         // Along the way the distance falls by no more than this.
         let lost = ((1.0 - share) * slope).max(-share * slope);
-        (distance - lost, out, slope, lost)
+        Position { share, bound: distance - lost, out, slope, lost }
     };
-    if square <= 0.0 {
-        let (distance, out, ..) = bound(0.0);
-        return (distance, out);
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut share = (place.dot(way) / square).clamp(0.0, 1.0);
-    let mut best = bound(share);
-    let mut last = best;
-    for _ in 0..MOST_POSITIONS {
-        if last.3 <= close {
+    let mut last = at(if square > 0.0 { (place.dot(way) / square).clamp(0.0, 1.0) } else { 0.0 });
+    let mut best = last;
+    // Positions beside which the nearest one is: from one it is ahead, from the other behind.
+    let mut beside: [Option<Position>; 2] = [None; 2];
+    for turn in 0..MOST_POSITIONS {
+        if close.is_met(&last) {
             break;
         }
         // The distance falls along the way where the place lies ahead.
-        if last.2 > 0.0 {
-            low = share;
-        } else {
-            high = share;
-        }
-        share = 0.5 * (low + high);
-        last = bound(share);
-        if last.0 > best.0 {
+        beside[usize::from(last.slope <= 0.0)] = Some(last);
+        last = at(share_between(&beside, turn % HALVED == HALVED - 1));
+        if last.bound > best.bound {
             best = last;
         }
     }
-    (best.0, best.1)
+    (best.bound, best.out)
+}
+
+/// Between two positions the one where a slope that grows evenly is level, or that in the middle; the slope jumps where another piece is nearest.
+fn share_between([ahead, behind]: &[Option<Position>; 2], is_halved: bool) -> f64 {
+    let (low, high) = (ahead.map_or(0.0, |p| p.share), behind.map_or(1.0, |p| p.share));
+    let level = match (ahead, behind) {
+        (Some(a), Some(b)) if !is_halved => low + (high - low) * a.slope / (a.slope - b.slope),
+        _ => f64::NAN,
+    };
+    if level > low && level < high { level } else { 0.5 * (low + high) }
 }
 
 #[cfg(test)]

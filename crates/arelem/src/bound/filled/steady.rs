@@ -49,6 +49,12 @@ impl Steady {
         is_steady.then_some(Self { share, bends: Some([least, greatest]) })
     }
 
+    /// On which side of its points the window of a stretch that is full is: the second contact of the longest line is with the limit towards which the
+    /// clearance bends.
+    pub(super) fn side(&self) -> Option<f64> {
+        self.bends.map(|[least, _]| if least >= 0.0 { -1.0 } else { 1.0 })
+    }
+
     /// True if it does not bend away from where the window before it leads: what that is bounded by hinders no vector then.
     pub(super) fn agrees(&self, side: f64) -> bool {
         self.bends.is_none_or(|[least, greatest]| if side < 0.0 { least >= 0.0 } else { greatest <= 0.0 })

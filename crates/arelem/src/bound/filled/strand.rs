@@ -38,6 +38,16 @@ struct Window {
     points: Vec<Point>,
 }
 
+/// A window that is not told yet: it hinders no line that bends on to the same side, so that most are never asked for their points.
+#[derive(Debug, Clone)]
+struct Untold {
+    side: f64,
+    /// The vectors of the stretch before, with the place of each from which on, and the place of the next one at which that was full.
+    before: Vec<(Readings, f64)>,
+    next: Readings,
+    full: f64,
+}
+
 /// How one clearance bends along a stretch: steadily, or as points tell.
 #[derive(Debug, Clone)]
 pub(super) struct Strand {
@@ -51,6 +61,7 @@ pub(super) struct Strand {
     /// The slope there.
     slope: f64,
     window: Option<Window>,
+    untold: Option<Untold>,
     /// How far from the lower and the upper limit the first line begins, while that is not full.
     start: Option<[f64; 2]>,
 }
@@ -64,14 +75,20 @@ impl Strand {
             let value = value.clamp(low, high);
             [value - low + more, high - value + more]
         });
+        Self { steady: start.is_none().then(Steady::default), start, ..Self::anywhere() }
+    }
+
+    /// From anywhere in the band.
+    fn anywhere() -> Self {
         Self {
-            steady: start.is_none().then(Steady::default),
+            steady: Some(Steady::default()),
             steadily: Vec::new(),
             points: Vec::new(),
             end: Point::default(),
             slope: 0.0,
             window: None,
-            start,
+            untold: None,
+            start: None,
         }
     }
 
@@ -81,11 +98,17 @@ impl Strand {
         self.steadily.clear();
         self.points.clear();
         (self.end, self.slope) = (Point::default(), 0.0);
-        (self.window, self.start) = (None, None);
+        (self.window, self.untold, self.start) = (None, None, None);
     }
 
     /// Another stretch begins where this one is full, at a place of the next vector.
     pub(super) fn begin_beyond(&mut self, readings: &Readings, band: [f64; 2], x: f64) {
+        if let Some(side) = self.steady_with(readings, band, [0.0, x]).and_then(|with| with.side()) {
+            let before = std::mem::take(&mut self.steadily);
+            self.begin();
+            self.untold = Some(Untold { side, before, next: *readings, full: x });
+            return;
+        }
         self.settle(band);
         let window = self.window_at(readings, band, x);
         self.begin();
@@ -148,8 +171,9 @@ impl Strand {
     /// What is filled while it bends steadily and no window hinders it.
     fn steady_with(&self, readings: &Readings, band: [f64; 2], between: [f64; 2]) -> Option<Steady> {
         let with = self.steady?.with(readings, band, between)?;
-        let is_free = self.window.as_ref().is_none_or(|window| with.agrees(window.side));
-        is_free.then_some(with)
+        let told = self.window.as_ref().map(|window| window.side);
+        let side = told.or_else(|| self.untold.as_ref().map(|untold| untold.side));
+        side.is_none_or(|side| with.agrees(side)).then_some(with)
     }
 
     /// The same with the next vector until a place of it.
@@ -206,9 +230,14 @@ impl Strand {
         }
     }
 
-    /// From here on points tell how it bends.
+    /// From here on points tell how it bends, and the window.
     fn settle(&mut self, band: [f64; 2]) {
         self.steady = None;
+        if let Some(Untold { before, next, full, .. }) = self.untold.take() {
+            let mut stretch = Self { steadily: before, ..Self::anywhere() };
+            stretch.settle(band);
+            self.window = stretch.window_at(&next, band, full);
+        }
         for (readings, begin) in std::mem::take(&mut self.steadily) {
             self.follow(&readings, band, begin);
         }

@@ -9,7 +9,11 @@ use apt_geometry::{
 };
 
 use super::{Circle, End, Pose};
-use crate::clearance::{Contact, Tool, crease::nearest_on_way, waves::length};
+use crate::clearance::{
+    Contact, Tool,
+    crease::{Closeness, nearest_on_way},
+    waves::length,
+};
 
 /// How many parts of a surface are looked at before it is looked whether one of its places comes near to an end of the tool, and where, as shares
 /// of that end, places nearest to its axis are.
@@ -278,7 +282,7 @@ impl Pose<'_> {
     /// Whether all of the surface keeps a distance from an end of the tool while that moves straight to another place.
     pub(super) fn is_apart_on_way(&self, end: End, to: &Vec3, distance: f64) -> bool {
         let (body, way) = (|place: &Vec3| self.away_from(end, place), to - self.tip);
-        let close = CLOSE * distance.abs();
+        let close = Closeness { length: CLOSE * distance.abs(), wanted: distance };
         let away = |place: &Vec3| nearest_on_way(&body, &(place - self.tip), &way, close);
         self.surface.keeps_apart(&away, [distance; 2], self.tool.patience).is_some()
     }
