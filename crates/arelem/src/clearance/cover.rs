@@ -35,6 +35,12 @@ const SMALL: f64 = 0.5;
 /// Angle, radians, and share of a length that are rounding.
 const ROUNDING: f64 = 1e-9;
 
+#[cfg(test)]
+thread_local! {
+    /// Boxes of the tool that this thread has looked at.
+    pub(crate) static BOXES: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// A box of points in the frame of the tool: across, across, along the axis.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
@@ -128,6 +134,8 @@ pub(crate) fn upward_bend(
     let mut is_probed = false;
     while let Some(cell) = cells.pop() {
         seen += 1;
+        #[cfg(test)]
+        BOXES.set(BOXES.get() + 1);
         if seen % BOXES_A_QUESTION == 0 && tool.patience.is_over() {
             return Some(Bend::Unbounded);
         }

@@ -503,4 +503,33 @@ mod tests {
             assert!(distance + out.dot(&(other - place)) <= nearest(&other) + swing + 1e-12);
         }
     }
+
+    /// What is well above the distance to be decided on is told from few positions, and within a hundredth of that; what is not, from some more.
+    #[test]
+    fn few_positions_tell_where_a_tool_is_nearest_on_its_way() {
+        let cutter = Cutter::from_numbers(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 1.0).expect("a cutter");
+        let tool = Tool::new(cutter, v(0.1, -0.2, 1.0).normalize());
+        let looks = std::cell::Cell::new(0);
+        let body = |place: &Vec3| {
+            looks.set(looks.get() + 1);
+            outward(&tool, place)
+        };
+        let way = v(0.02, 0.005, -0.001);
+        let mut most = [0; 2];
+        for k in 0..200 {
+            let (sine, cosine) = (0.7 * f64::from(k)).sin_cos();
+            let place = v(0.4 * cosine, 0.4 * sine, 0.003 * f64::from(k) - 0.2);
+            let on_way = |k: u32| outward(&tool, &(place - way * (f64::from(k) / 1000.0))).0;
+            let nearest = (0..=1000).map(on_way).fold(f64::INFINITY, f64::min);
+            for (most, wanted) in most.iter_mut().zip([nearest - 0.01, nearest]) {
+                looks.set(0);
+                let close = Closeness { length: 1e-12, wanted };
+                let (found, _) = nearest_on_way(&body, &place, &way, close);
+                assert!(found <= nearest + 1e-12, "{k}: {found} above {nearest}");
+                assert!(found >= nearest - 0.011 * (nearest - wanted) - 1e-6, "{k}: {found}, not {nearest}");
+                *most = looks.get().max(*most);
+            }
+        }
+        assert!(most[0] <= 4 && most[1] <= 20, "{most:?} positions");
+    }
 }

@@ -516,7 +516,7 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
 }
 
 #[cfg(test)]
-pub(crate) use self::{certify::JUDGED, quadric::FLOORS, search::LOOKS_EVERYWHERE};
+pub(crate) use self::{certify::JUDGED, cover::BOXES, quadric::FLOORS, search::LOOKS_EVERYWHERE};
 
 #[cfg(test)]
 thread_local! {

@@ -10,7 +10,7 @@ use apt_geometry::{
 
 use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
-    clearance::{EVALUATIONS, FLOORS, JUDGED},
+    clearance::{BOXES, EVALUATIONS, FLOORS, JUDGED},
     verify::{
         VerifyError, WORK,
         tests::{lofted, lofts},
@@ -100,6 +100,19 @@ fn few_circles_are_bounded_for_a_vector_over_a_quadric() {
             let each = (FLOORS.get() - before) as f64 / p.last().points.len() as f64;
             assert!(each <= 200.0, "{name}, cutter {cutter:?}: {each} bounds a vector");
         }
+    }
+}
+
+/// A bound of the bend for a part of a stretch does not take the place of that for all of it, which serves the next vectors, too.
+#[test]
+fn few_boxes_are_looked_at_for_a_vector_over_a_saddle() {
+    let (name, part) = parts().pop().expect("the saddle");
+    for cutter in CUTTERS {
+        let (mut p, command) = pass(&part, cutter, 10.0);
+        let before = BOXES.get();
+        p.run(&command);
+        let each = (BOXES.get() - before) as f64 / p.last().points.len() as f64;
+        assert!(each <= 16.0, "{name}, cutter {cutter:?}: {each} boxes a vector");
     }
 }
 
