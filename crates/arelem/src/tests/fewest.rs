@@ -4,7 +4,7 @@
 use DriveSide::{Left, Right};
 use Relation::{On, To};
 
-use super::*;
+use super::{random::Random, *};
 
 /// Radius of the ball cutter, small against all surfaces.
 const BALL: f64 = 0.1;
@@ -117,12 +117,8 @@ struct Case {
 
 impl Case {
     fn random(seed: u32) -> Self {
-        let mut state = u64::from(seed) + 1;
-        let mut random = |from: f64, to: f64| {
-            // Knuth's linear congruential generator.
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            from + (to - from) * (state >> 33) as f64 / (1u64 << 31) as f64
-        };
+        let mut numbers = Random(u64::from(seed) + 1);
+        let mut random = |from: f64, to: f64| numbers.between(from, to);
         let radius = random(1.0, 4.0);
         let below = v(random(-0.2, 0.2), random(-0.2, 0.2), -radius);
         let (s, c) = random(-1.5, 1.5).sin_cos();

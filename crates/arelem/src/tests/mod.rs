@@ -22,6 +22,8 @@ mod frugal;
 mod gouges;
 mod hollow;
 mod properties;
+#[path = "../../tests/support/random.rs"]
+pub(crate) mod random;
 mod refused;
 mod sculptured;
 mod sharp_corners;

@@ -2,6 +2,7 @@
 //! which the fewest vectors are looked for.
 
 use super::{super::readings::Reading, *};
+use crate::tests::random::Random;
 
 /// Places along a path, and across each band.
 const ALONG: usize = 300;
@@ -16,20 +17,6 @@ const BAND: f64 = 0.01;
 const TOLD: f64 = 0.85;
 /// Waves that are added up.
 const WAVES: usize = 3;
-
-/// Knuth's linear congruential generator.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        from + (to - from) * (self.0 >> 33) as f64 / (1u64 << 31) as f64
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.between(0.0, count as f64) as usize).min(count - 1)
-    }
-}
 
 /// How one clearance bends along a path, as rates, beginnings and heights of waves, and its band.
 struct Bend {
@@ -147,7 +134,7 @@ fn wandering(bends: &[Bend; 2], start: Place, random: &mut Random) -> Vec<Place>
     let mut path = vec![start];
     while let Some(at) = path.last().filter(|[i, ..]| *i < ALONG) {
         let ahead = reached(bends, *at);
-        path.push(ahead[random.below(ahead.len())]);
+        path.push(random.pick(&ahead));
     }
     path
 }
@@ -169,13 +156,14 @@ fn least(bends: &[Bend; 2], path: &[Place]) -> f64 {
 /// and not many more are needed.
 #[test]
 fn dynamic_programming_finds_no_sequence_of_fewer_vectors() {
+    let levels: Vec<usize> = (0..ACROSS).collect();
     let (mut needed, mut told, mut read_elsewhere) = (0.0, 0.0, 0.0);
     for seed in 0..CURVES {
         let mut random = Random(u64::from(seed) + 1);
         // In each fourth case the drive surface is flat.
         let height = if seed.is_multiple_of(4) { 0.0 } else { 3.0 };
         let bends = [Bend::random(&mut random, 3.0), Bend::random(&mut random, height)];
-        let start = [0, random.below(ACROSS), random.below(ACROSS)];
+        let start = [0, random.pick(&levels), random.pick(&levels)];
         let path = fewest(&bends, start);
         let (count, along) = ((path.len() - 1) as f64, least(&bends, &path));
         assert!(along <= count, "{seed}: {along} told, {count} found");
