@@ -53,6 +53,12 @@ struct Cell {
 /// The middle of the box that told last that there is no bound, or none of use, in the frame of the tool: mostly it does so again.
 pub(crate) type Witness = std::cell::Cell<Option<[f64; 3]>>;
 
+#[cfg(test)]
+thread_local! {
+    /// Bounds that this thread has asked steady balls for.
+    pub(crate) static STEADY_ASKED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// The bound of [`upward_bend`] where the tool is in a ball in which nearest places do not jump: that takes no search.
 pub(crate) fn steady_bend(
     gauge: &Gauge,
@@ -61,6 +67,8 @@ pub(crate) fn steady_bend(
     spread: f64,
     range: [f64; 2],
 ) -> Option<f64> {
+    #[cfg(test)]
+    STEADY_ASKED.set(STEADY_ASKED.get() + 1);
     if gauge.on {
         return None;
     }

@@ -9,6 +9,7 @@ mod crease;
 mod dual;
 mod empty;
 mod floor;
+mod kept;
 mod matched;
 mod memory;
 mod near;
@@ -173,7 +174,10 @@ impl Gauge {
             return (level(contact), false);
         }
         match near::contact(tool, surface, side, tip, memory) {
-            Followed::Proven(contact, _) => (level(contact), true),
+            Followed::Proven(contact, missed) => {
+                memory.remember_level(&tool.axis, side, tip, contact.clearance - missed);
+                (level(contact), true)
+            }
             Followed::Likely(_, contact) => (level(contact), false),
             Followed::Lost => (level(offset_contact(tool, surface, side, tip, Some(memory)).0), true),
         }
@@ -239,6 +243,8 @@ impl Gauge {
         if self.memory.has_shown(&tool.axis, self.side, tip, level) {
             return Certificate::Holds;
         }
+        #[cfg(test)]
+        CERTIFIED.set(CERTIFIED.get() + 1);
         if let Some(posed) = quadric::Posed::new(tool, surface, self.side, tip) {
             let contact = offset_contact(tool, surface, self.side, tip, Some(&self.memory)).0;
             if contact.clearance >= level && posed.clears(level, &contact) {
@@ -282,109 +288,9 @@ impl Gauge {
         found
     }
 
-    /// Whether the clearance is known to be nowhere below a level on the straight way of the tool end from one contact to another.
-    /// Half of it, up to a third position, is looked at from either.
-    pub(crate) fn keeps_between(
-        &self,
-        tool: &Tool,
-        contacts: [(&Vec3, &Contact); 2],
-        between: &Vec3,
-        level: f64,
-    ) -> bool {
-        if self.on {
-            return false;
-        }
-        let (tool, middle) = &self.body(tool, between);
-        let level = level + self.thickness;
-        let contacts = contacts.map(|(tip, contact)| {
-            let contact = Contact { clearance: contact.clearance + self.thickness, ..*contact };
-            (tip + (middle - between), contact)
-        });
-        let posed = |tip| quadric::Posed::new(tool, &self.surface, self.side, tip);
-        if let [(Some(first), from), (Some(last), to)] =
-            contacts.each_ref().map(|(tip, contact)| (posed(tip), contact))
-        {
-            return [(first, from), (last, to)]
-                .into_iter()
-                .all(|(posed, contact)| posed.on_the_way_to(middle).clears(level, contact));
-        }
-        if !self.surface.has_charts() {
-            return false;
-        }
-        let around = Around::new(self, tool, middle, 0.0);
-        if contacts.iter().all(|(tip, contact)| around.keeps(contact, [tip, middle], level)) {
-            return true;
-        }
-        // Beside an edge, and where several patches are near, no distance of a point is steady; a ball that is may be known from before the
-        // tool came to the edge.
-        let surface = self.met(tool);
-        let is_by_edge = |(tip, contact): &(Vec3, Contact)| {
-            Beside { tool, surface, side: self.side, tip }.has_edge_by(&contact.surface)
-        };
-        let is_unsteady = match surface {
-            Surface::Sculptured(_) => true,
-            Surface::Ruled(_) | Surface::PolyConic(_) => {
-                let may_be = self.memory.crease(self.side).is_some() || !around.is_steady();
-                may_be && contacts.iter().any(is_by_edge)
-            }
-            _ => false,
-        };
-        let [(from, first), (to, last)] = &contacts;
-        is_unsteady && self.parts_clear(tool, [(from, first), (to, last)], level)
-    }
-
     /// Whether patches of the tool did not decide about the last contact that was searched for.
     pub(crate) fn is_hard(&self) -> bool {
         self.memory.by_parts() == ByParts::Needed
-    }
-
-    /// Whether the parts of a surface show the same, whatever is steady there: they are beside ends of it, and where long and thin gaps
-    /// are left beside the contact. Those of a sculptured one have been asked then.
-    pub(crate) fn is_clear_between(
-        &self,
-        tool: &Tool,
-        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
-        level: f64,
-    ) -> bool {
-        if self.on || !self.surface.has_charts() || matches!(self.surface, Surface::Sculptured(_)) {
-            return false;
-        }
-        let (tool, start) = &self.body(tool, from);
-        let end = to + (start - from);
-        self.parts_clear(tool, [(start, first), (&end, last)], level + self.thickness)
-    }
-
-    /// Whether the parts of a surface show that the clearance is nowhere below a level while the tool goes straight from one contact to another and
-    /// turns evenly.
-    pub(crate) fn is_clear_while_turning(
-        &self,
-        tools: [&Tool; 2],
-        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
-        level: f64,
-    ) -> bool {
-        // Both ends of a stretch meet the surface as one and the same.
-        let is_same = std::ptr::eq(self.met(tools[0]), self.met(tools[1]));
-        if self.on || self.disk.is_some() || !is_same || !self.surface.has_charts() {
-            return false;
-        }
-        let poses = [(tools[0], from), (tools[1], to)];
-        let away = (first.gradient + last.gradient).try_normalize(0.0);
-        away.is_some_and(|away| {
-            crease::clears_turning(self.met(tools[0]), poses, &away, level + self.thickness)
-        })
-    }
-
-    /// Whether no part of the surface is nearer than a level to what is measured while its end goes straight from one contact to another.
-    fn parts_clear(
-        &self,
-        tool: &Tool,
-        [(from, first), (to, last)]: [(&Vec3, &Contact); 2],
-        level: f64,
-    ) -> bool {
-        let away = (first.gradient + last.gradient).try_normalize(0.0);
-        let surface = self.met(tool);
-        let normal = crease::square_to(surface, self.side, first);
-        away.is_some_and(|away| crease::clears(surface, tool, [from, to], [&away, &normal], level))
     }
 
     /// A bound from above of the clearance of a tool by one place of the surface, which is nowhere nearer to it than its nearest place, nor less
@@ -516,12 +422,21 @@ pub(crate) fn has_closed_form(gauge: &Gauge, tool: &Tool, tip: &Vec3) -> bool {
 }
 
 #[cfg(test)]
-pub(crate) use self::{certify::JUDGED, cover::BOXES, quadric::FLOORS, search::LOOKS_EVERYWHERE};
+pub(crate) use self::{
+    certify::JUDGED,
+    cover::{BOXES, STEADY_ASKED},
+    kept::{CONTACTS_ASKED, PARTS_ASKED},
+    near::LOOKS,
+    quadric::FLOORS,
+    search::LOOKS_EVERYWHERE,
+};
 
 #[cfg(test)]
 thread_local! {
     /// Clearances that this thread has computed.
     pub(crate) static EVALUATIONS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+    /// Levels that it has proven to be kept in one position of a tool, where that had not been shown by a contact.
+    pub(crate) static CERTIFIED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 /// Distance between the tool body and the surface, with the tool on the given side; and how much less it may be.

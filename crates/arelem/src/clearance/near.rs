@@ -22,6 +22,8 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::Around;
+#[cfg(test)]
+pub(crate) use self::held::LOOKS;
 use self::held::{Cap, Held, Rest};
 use self::last::Last;
 use self::trough::{Acrosses, Bends, Grounds};

@@ -13,6 +13,7 @@ mod corners_while_turning;
 mod corpus_plane;
 mod corpus_space;
 mod cost;
+mod cost_by_charts;
 mod disk;
 mod economy;
 mod ends;

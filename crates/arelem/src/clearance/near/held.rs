@@ -1,12 +1,11 @@
 //! Which part of the tool a ball about a contact is to hold, and how far what is beyond keeps off the surface.
 
-use std::f64::consts::TAU;
-
-use apt_geometry::{
-    Vec3,
-    cutter::Profile,
-    surface::{Body, Limit, perpendicular},
+use std::{
+    cell::{Cell, OnceCell},
+    f64::consts::TAU,
 };
+
+use apt_geometry::{Vec3, cutter::Profile, surface::perpendicular};
 
 use super::{Circle, End, Pose};
 use crate::clearance::{
@@ -19,6 +18,8 @@ use crate::clearance::{
 /// of that end, places nearest to its axis are.
 const FEW_LOOKS: u32 = 40;
 const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
+/// A bound of a distance that tells nothing.
+const NOTHING: (f64, Vec3) = (f64::MIN, Vec3::new(0.0, 0.0, 0.0));
 /// Share of the flank's height up to which a contact counts as one on its lower edge.
 const NEAR_EDGE: f64 = 1e-6;
 
@@ -94,6 +95,12 @@ impl Held {
     pub(super) fn heights(&self) -> [f64; 2] {
         self.cap.map_or([self.low, self.top], |cap| cap.heights)
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Places whose distance from an end of a tool this thread has computed.
+    pub(crate) static LOOKS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 impl Pose<'_> {
@@ -250,19 +257,15 @@ impl Pose<'_> {
 
     /// A distance of all of the surface from an end of the tool, if it is known not to be below a given one.
     pub(super) fn apart_of(&self, end: End, distance: f64) -> Option<f64> {
-        let away = |place: &Vec3| self.away_from(end, &(place - self.tip));
-        let body = Body { away: &away, within: None };
-        let enough = distance + self.scale();
-        let few = Limit { looks: FEW_LOOKS, enough, patience: self.tool.patience };
-        self.surface.keeps_off_body(body, distance, few).or_else(|| {
-            // What comes near cannot be told from what takes many looks but by the place that does.
-            let is_near = self.comes_near(end, distance);
-            if is_near {
-                None
-            } else {
-                self.surface.keeps_apart(&away, [distance, enough], self.tool.patience)
-            }
-        })
+        // What comes near cannot be told from what takes many looks but by the place that does: it is looked for once few have not
+        // done, and nothing is told of any place from there on.
+        let (looks, comes_near) = (Cell::new(0), OnceCell::new());
+        let is_vain = || {
+            looks.set(looks.get() + 1);
+            looks.get() > FEW_LOOKS && *comes_near.get_or_init(|| self.comes_near(end, distance))
+        };
+        let away = |place: &Vec3| if is_vain() { NOTHING } else { self.away_from(end, &(place - self.tip)) };
+        self.surface.keeps_apart(&away, [distance, distance + self.scale()], self.tool.patience)
     }
 
     /// Whether one of some places of the surface is nearer to an end of the tool than a distance: those nearest to places of its axis.
@@ -290,6 +293,8 @@ impl Pose<'_> {
     /// No place of an end of the tool is nearer to one from the tool end than this, and the direction in which that grows. What is below a
     /// height of the flank lies in the cone of that.
     fn away_from(&self, end: End, place: &Vec3) -> (f64, Vec3) {
+        #[cfg(test)]
+        LOOKS.set(LOOKS.get() + 1);
         let Tool { axis, profile, .. } = self.tool;
         let (along, across, radial) = self.tool.split(place);
         let from_flank = |[low, high]: [f64; 2]| {

@@ -4,6 +4,7 @@
 //! parabolas of curvature K from both ends.
 
 mod by_place;
+mod kept;
 
 use std::borrow::Cow;
 
@@ -208,6 +209,10 @@ impl Course<'_, '_> {
         if !samples.iter().all(|sample| self.deep_enough(sample)) {
             return false;
         }
+        if let [first, .., last] = samples.as_slice() {
+            let vector = self.ask(first, last);
+            self.line.ledger.foresee(&self.line.role.gauge, &vector.about(), vector.range);
+        }
         let (mut count, mut unbounded) = (samples.len(), 0);
         let mut open: Vec<(Sample, Sample)> = samples.windows(2).map(|pair| (pair[0], pair[1])).collect();
         while let Some((a, b)) = open.pop() {
@@ -275,8 +280,10 @@ impl Course<'_, '_> {
         let mut bend = ledger.known_bend(&role.gauge, &about, asked.range).map(Bend::AtMost);
         let shorter = || Ledger::bend_of_shorter(&role.gauge, &about, asked.range, SHORTER);
         let known = bend.or_else(|| shorter().map(Bend::AtMost));
-        // What is straight without a bend of use that is known is told by places and parts of the surface, not by bends of all distances.
-        let is_clear = !serves(known) && self.is_straight(a, b) && self.is_clear_between(a, b);
+        // What is straight without a bend of use that is known is told by places and parts of the surface, not by bends of all distances; by parts,
+        // some hundred of them, only where the contacts at both ends do not tell it.
+        let is_straight = !serves(known) && self.is_straight(a, b);
+        let is_clear = is_straight && (self.is_kept_by_contacts(a, b) || self.is_clear_between(a, b));
         if is_clear && self.is_held_from_both(a, b, false) {
             return Stretch::Held;
         }
@@ -285,13 +292,19 @@ impl Course<'_, '_> {
             (bend, is_asked) = (found(&is_of_use), true);
             ledger.note_use(&asked.tip, serves(bend));
         }
-        // Where pieces will do, that takes less than the contacts on a quadric, and than those of a disc seen along a surface.
+        // Where pieces will do, that takes less than the contacts on a quadric, than those of a disc seen along a surface, and than contacts that have
+        // just told nothing of as long a stretch.
         let by_contacts = !serves(bend)
-            || role.gauge.surface.has_charts() && !role.gauge.is_seen_along(&asked.tool, &asked.tip);
+            || role.gauge.surface.has_charts()
+                && (cuts >= MOST_CUTS || ledger.expects_contacts(&asked.tool, &asked.tip, b.x - a.x))
+                && !role.gauge.is_seen_along(&asked.tool, &asked.tip);
         let (held, kept) = bend.map_or((false, false), bounded);
         // Where shorter stretches will do, two more feet on the surface cost more than a contact.
         let high = held || self.is_held_from_both(a, b, !serves(bend));
         let low = is_clear || kept || high && by_contacts && self.is_kept_from_both(a, b);
+        if high && by_contacts && !low {
+            ledger.note_silence(&asked.tip, b.x - a.x);
+        }
         if high && low {
             return Stretch::Held;
         }
@@ -458,30 +471,6 @@ impl Course<'_, '_> {
             Some(bend.max(0.0) * stretch * stretch + sweep.swing(arm))
         };
         if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
-    }
-
-    /// Whether the contacts at both ends of a stretch show that the tool is nowhere below the band on it.
-    fn is_kept_from_both(&self, a: &Sample, b: &Sample) -> bool {
-        let Line { sweep, role, limits, .. } = self.line;
-        if sweep.turns() {
-            return false;
-        }
-        let at = |x: f64| sweep.at(x).0;
-        let (from, to, meeting) = (at(a.x), at(b.x), at(tangents_meet(*a, *b).0));
-        let contacts = [(&from, &a.contact), (&to, &b.contact)];
-        role.gauge.keeps_between(&sweep.at(a.x).1, contacts, &meeting, limits[0])
-    }
-
-    /// Whether the parts of the surface show the same.
-    fn is_clear_between(&self, a: &Sample, b: &Sample) -> bool {
-        let Line { sweep, role, limits, .. } = self.line;
-        let (from, tool) = sweep.at(a.x);
-        let (to, turned) = sweep.at(b.x);
-        if sweep.turns() {
-            let contacts = [(&from, &a.contact), (&to, &b.contact)];
-            return role.gauge.is_clear_while_turning([&tool, &turned], contacts, limits[0]);
-        }
-        role.gauge.is_clear_between(&tool, [(&from, &a.contact), (&to, &b.contact)], limits[0])
     }
 }
 

@@ -19,6 +19,11 @@ const LOOSE: f64 = 32.0;
 /// How many times the distance asked for it is told what of a tool is within it, and for which share of that it is told anew.
 const WIDER: f64 = 2.0;
 const MUCH_NEARER: f64 = 0.125;
+/// Share by which a bound for a vector reaches beyond it, so that rounding does not keep its pieces out.
+const BARELY: f64 = 1e-9;
+/// Share of the length of a stretch of which the contacts at its ends told nothing up to which they are asked about another one near by: what
+/// they leave open grows with its square.
+const MUCH_SHORTER: f64 = 0.25;
 /// How far from where there was no such bound none is asked for, relative to how far that was to reach.
 const CRAMPED: f64 = 0.5;
 
@@ -101,11 +106,15 @@ struct Level {
 pub(crate) struct Ledger {
     /// The last one that was made where none held, and the last one made anew about a part of what that holds for.
     bounds: Cell<[Option<Bound>; 2]>,
+    /// What the steady ball told of all of a vector, for its pieces.
+    steady: Cell<Option<Bound>>,
     gap: Cell<Option<Gap>>,
     /// Where there was none that reaches farther than the stretch.
     cramped: Cell<Option<Vec3>>,
     /// Where a bound for all of the tool was of no use when one was last asked for.
     useless: Cell<Option<Vec3>>,
+    /// Where the contacts at both ends of a stretch told nothing of it, and its length.
+    silent: Cell<Option<(Vec3, f64)>>,
     /// What of the tool told last that there is none.
     witness: [Witness; 2],
     /// What of the tool was near by when that was last asked.
@@ -124,6 +133,18 @@ impl Ledger {
     /// Notes of what use a bound was.
     pub(super) fn note_use(&self, tip: &Vec3, is_of_use: bool) {
         self.useless.set((!is_of_use).then_some(*tip));
+    }
+
+    /// Whether the contacts at both ends of a stretch about a place may tell that the tool is clear on it: not where the last ones near by did not.
+    pub(super) fn expects_contacts(&self, tool: &Tool, tip: &Vec3, length: f64) -> bool {
+        self.silent
+            .get()
+            .is_none_or(|(last, known)| (tip - last).norm() > tool.radius() || length <= MUCH_SHORTER * known)
+    }
+
+    /// Notes that they did not.
+    pub(super) fn note_silence(&self, tip: &Vec3, length: f64) {
+        self.silent.set(Some((*tip, length)));
     }
 
     /// No point of the tool that may be within a distance of the surface is farther than this from its end. It is told of a greater distance than
@@ -162,7 +183,19 @@ impl Ledger {
         if let Some(bend) = known.map(|bound| bound.bend).min_by(f64::total_cmp) {
             return Some(bend);
         }
-        steady_bend(gauge, place.tool, place.tip, place.spread, range)
+        let steady = self.steady.get().filter(|bound| bound.has(place, range)).map(|bound| bound.bend);
+        steady.or_else(|| steady_bend(gauge, place.tool, place.tip, place.spread, range))
+    }
+
+    /// Keeps what a steady ball tells about a vector, for its pieces.
+    pub(super) fn foresee(&self, gauge: &Gauge, place: &About<'_>, range: [f64; 2]) {
+        if !gauge.surface.has_charts() {
+            return;
+        }
+        let About { tool, tip, .. } = *place;
+        let spread = place.spread * (1.0 + BARELY);
+        let bend = steady_bend(gauge, tool, tip, spread, range);
+        self.steady.set(bend.map(|bend| Bound { tip: *tip, axis: tool.axis, spread, range, bend }));
     }
 
     /// Whether all bounds that are known to hold about a place reach so much farther that one for that alone may be much less.
