@@ -339,11 +339,13 @@ impl Search<'_> {
         let step = std::f64::consts::TAU / AZIMUTHS as f64;
         let slack = 1e-12 * self.tool.profile.reach();
         let mut arcs = Vec::with_capacity(2 * AZIMUTHS);
+        let mut least = f64::INFINITY;
         for k in 0..AZIMUTHS {
             let phi = step * k as f64;
-            arcs.push((phi, self.on_circle(p, phi)?.0, step, self.on_circle(p, phi + step)?.0));
+            let (first, is_told) = self.of_circle(p, phi, radius)?;
+            least = if is_told { least.min(first - radius) } else { least };
+            arcs.push((phi, first, step, self.on_circle(p, phi + step)?.0));
         }
-        let mut least = arcs.iter().map(|arc| arc.1 - radius).fold(f64::INFINITY, f64::min);
         let mut lowest = f64::INFINITY;
         let mut budget = ARC_BUDGET;
         while let Some((phi, first, width, last)) = arcs.pop() {
@@ -361,8 +363,8 @@ impl Search<'_> {
                 continue;
             }
             budget -= 1;
-            let (middle, _) = self.on_circle(p, phi + half)?;
-            least = least.min(middle - radius);
+            let (middle, is_told) = self.of_circle(p, phi + half, radius)?;
+            least = if is_told { least.min(middle - radius) } else { least };
             if is_of_tool && middle - radius < self.best_value() {
                 self.accept(p, phi + half, radius)?;
             }
@@ -370,6 +372,13 @@ impl Search<'_> {
             arcs.push((phi + half, middle, half, last));
         }
         Some(lowest)
+    }
+
+    /// The distance of a place of a circle, and whether the ball round it touches with a place of the corner: one that does not tells nothing of how
+    /// near the tool is.
+    fn of_circle(&self, p: Meridian, phi: f64, radius: f64) -> Option<(f64, bool)> {
+        let (value, normal) = self.distance(&self.place(p, phi))?;
+        Some((value, radius == 0.0 || self.fan_near(&normal, phi, 0.0)))
     }
 
     /// Whether a ball contact with about this normal could be on the corner arc.

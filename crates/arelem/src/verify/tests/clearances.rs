@@ -369,3 +369,28 @@ fn a_tool_that_touches_a_hollow_cone_all_round_is_measured_to_rounding() {
         }
     }
 }
+
+/// A bell tool in a hollow touches in two places that are equally near, and the ball of its corner comes nearer than both with its far side,
+/// which is inside the tool.
+#[test]
+fn the_far_side_of_a_ball_tells_nothing_of_the_corner() {
+    let bell = cutter(&[0.6, 0.11, 0.2, 0.13, 6.1004642321928, 2.273556894334401, 2.735673037174148]);
+    let hollow = quadric([
+        0.07080613925957382,
+        0.10559833774391138,
+        -0.11744145850813797,
+        0.5167916003422437,
+        0.10731085762130174,
+        0.010141314362686537,
+        -0.029311589715129413,
+        0.08310674847737345,
+        -0.1515829452663683,
+        -0.5560604253087537,
+    ]);
+    let axis = [-0.1816524186998199, -0.27106077408772283, 0.94526634105498];
+    for t in [0.455, 0.459, 0.4605, 0.461, 0.4615, 0.4625, 0.467] {
+        let tip = Vec3::new(0.92077, 1.78176, 0.61053).lerp(&Vec3::new(0.61428, 2.08527, 0.59630), t);
+        let (value, _, error) = clearance(&bell, &hollow, -1.0, tip.into(), axis);
+        assert!(value > 0.0 && error < 1e-9, "{t}: {value} ± {error}");
+    }
+}
