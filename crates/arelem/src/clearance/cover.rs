@@ -285,6 +285,11 @@ fn corner(tool: &Tool) -> Option<Circle> {
     })
 }
 
+/// Whether the balls of a round corner are all in the tool.
+pub(super) fn holds_balls(tool: &Tool) -> bool {
+    corner(tool).is_some()
+}
+
 /// Whether a place of the tool, from its end, is neither above a round corner nor nearer to the axis.
 fn is_at_corner(tool: &Tool, place: &Vec3) -> bool {
     let (along, across, _) = tool.split(place);

@@ -27,7 +27,7 @@ use std::borrow::Cow;
 use apt_geometry::{
     Vec3,
     cutter::Disk,
-    surface::{Bend, Convexity, Region, Surface},
+    surface::{Bend, Convexity, Foot, Region, Surface},
 };
 
 use self::{
@@ -327,6 +327,22 @@ impl Gauge {
         let distance = self.side * foot.distance;
         let region = Region { center, radius, lowest: distance - radius, highest: distance + radius };
         match surface.bend(self.side, &foot, &region, tool.patience) {
+            Bend::AtMost(bend) => Some(bend),
+            Bend::Unbounded => None,
+        }
+    }
+
+    /// The same of the tool's point at a contact that goes no farther from there than a way.
+    pub(crate) fn bend_beside(&self, tool: &Tool, contact: &Contact, way: f64) -> Option<f64> {
+        let distance = contact.clearance + self.thickness;
+        let foot = Foot {
+            distance: self.side * distance,
+            point: contact.surface,
+            normal: contact.gradient * self.side,
+        };
+        let region =
+            Region { center: contact.tool, radius: way, lowest: distance - way, highest: distance + way };
+        match self.met(tool).bend(self.side, &foot, &region, tool.patience) {
             Bend::AtMost(bend) => Some(bend),
             Bend::Unbounded => None,
         }

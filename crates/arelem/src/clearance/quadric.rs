@@ -6,6 +6,7 @@
 //! tangent planes for convex solids, and for all others by quadratic functions below the squared distance, which have
 //! closed bounds over whole circles and patches of the tool.
 
+mod floor;
 mod halves;
 mod patch;
 
@@ -14,9 +15,11 @@ use std::borrow::Cow;
 use apt_geometry::{
     Vec3,
     cutter::ProfilePoint,
-    surface::{PrincipalQuadric, QuadraticFunction, Surface},
+    surface::{PrincipalQuadric, Surface},
 };
 
+#[cfg(test)]
+pub(crate) use self::floor::FLOORS;
 use super::{
     Contact, Shape, Tool,
     memory::{Memory, Place},
@@ -25,7 +28,7 @@ use super::{
     search::MISSED,
     shape,
     tool::{Circle, Piece},
-    waves::{Waves, length, turned},
+    waves::turned,
 };
 
 /// Bound of Newton's method: without convergence the general search takes over.
@@ -46,10 +49,6 @@ const SLIGHT: f64 = 0.05;
 /// Shares of the size of the tool by which another point of it may be nearer: what rounding leaves, which is less than the depth of a
 /// place beside a limit of the band must be known to, and what a search leaves.
 const SLACKS: [f64; 2] = [1e-12, MISSED];
-/// Bound of the parts of the corner's arc that are looked at.
-const MAX_ARCS: u32 = 60;
-/// Bound of the parts into which a flank of the tool is cut.
-const MAX_PARTS: u32 = 200;
 
 /// Tool and surface in the principal coordinates of the surface.
 pub(super) struct Posed<'a> {
@@ -62,26 +61,6 @@ pub(super) struct Posed<'a> {
     /// The straight way from here to another tool end, on all of which bounds are to hold.
     way: Option<Vec3>,
 }
-
-#[cfg(test)]
-thread_local! {
-    /// Bounds over circles of the tool that this thread has computed.
-    pub(crate) static FLOORS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
-}
-
-/// A quadratic function with its values on the directions of the tool.
-struct Bound {
-    function: QuadraticFunction,
-    /// The form of the squares for both directions across the axis, and for both together.
-    across: [f64; 3],
-    /// The tool end from which circles are measured.
-    tip: Vec3,
-    /// What the function must not be below.
-    target: f64,
-}
-
-/// A circle of the tool, and what a function is nowhere on it below.
-type Circled = (ProfilePoint, f64);
 
 /// A contact on a circle.
 pub(super) struct Touch {
@@ -390,212 +369,4 @@ impl<'a> Posed<'a> {
         }
         next
     }
-
-    /// Whether no point of the tool is nearer to the surface than a level, here and on the way, by bounds made from a contact. If
-    /// not, there may be one or the bounds are too weak.
-    pub(super) fn clears(&self, level: f64, contact: &Contact) -> bool {
-        if let Some(half) = self.half_by_plane(level, contact)
-            && self.keeps_off(&half, level, contact)
-        {
-            return true;
-        }
-        let Some((sharp, steepness, towards)) = self.bound_from(level, contact) else { return false };
-        let profile = &self.tool.profile;
-        let floor = |circle: &ProfilePoint| (*circle, self.floor(&sharp, circle, &towards));
-        let ends = [floor(&profile.lower), floor(&profile.upper)];
-        let corner = if profile.arc > 0.0 {
-            let balls = (level + profile.arc > 0.0)
-                .then(|| self.bound(level + profile.arc, steepness, &towards))
-                .flatten();
-            let keeps = |bound: &Bound| match profile.is_barrel() {
-                true => self.floor_at_ball(bound, &towards) >= bound.target,
-                false => self.floor(bound, &profile.center, &towards) >= bound.target,
-            };
-            balls.as_ref().is_some_and(keeps) || self.arcs(&sharp, ends, &towards)
-        } else {
-            ends[0].1 >= sharp.target
-        };
-        let tip = ProfilePoint { radius: 0.0, height: 0.0 };
-        corner
-            && if profile.lower.height > 0.0 {
-                self.flank(&sharp, [floor(&tip), ends[0]], &towards)
-            } else {
-                self.bottom(&sharp, ends[0])
-            }
-            && (profile.top.height <= profile.upper.height
-                || self.flank(&sharp, [ends[1], floor(&profile.top)], &towards))
-    }
-
-    /// Half the slope of F at a point of the surface.
-    fn steepness(&self, point: &Vec3) -> f64 {
-        self.form.stationary(&self.form.to_principal(point), 0.0).gradient.norm()
-    }
-
-    /// The function for a distance by the steepness of F at a contact, that steepness, and the direction in which the contact is
-    /// left.
-    fn bound_from(&self, level: f64, contact: &Contact) -> Option<(Bound, f64, Vec3)> {
-        let steepness = self.steepness(&contact.surface);
-        let towards = self.form.direction_to_principal(&contact.gradient);
-        if steepness <= 0.0 || steepness.is_nan() {
-            return None;
-        }
-        Some((self.bound(level, steepness, &towards)?, steepness, towards))
-    }
-
-    /// The function for a distance that points must keep; for a depth, F for the tool shifted out by it.
-    fn bound(&self, distance: f64, steepness: f64, towards: &Vec3) -> Option<Bound> {
-        let least = distance.max(0.0);
-        let function = self.form.distance_bound(self.side, least / steepness)?;
-        let [u, v] = &self.across;
-        Some(Bound {
-            across: [function.form(u, u), function.form(v, v), function.form(u, v)],
-            tip: self.tip + towards * (least - distance),
-            target: least * steepness + self.sag(&function),
-            function,
-        })
-    }
-
-    /// How much lower a function may be on the way than at the lower of its ends: along a straight line it is a parabola, whose
-    /// second derivative is the same wherever the line lies.
-    fn sag(&self, function: &QuadraticFunction) -> f64 {
-        self.way.map_or(0.0, |way| 0.25 * function.form(&way, &way).max(0.0))
-    }
-
-    /// Whether the corner keeps a distance, where its whole balls stand out from the tool: patches along the tangents at both
-    /// ends of stretches of its arc have the arc behind them. An end that is the contact itself is no obstacle to that.
-    fn arcs(&self, bound: &Bound, ends: [Circled; 2], towards: &Vec3) -> bool {
-        let profile = &self.tool.profile;
-        let at = |polar: f64, away: f64| {
-            let circle = ProfilePoint {
-                radius: profile.center.radius + away * polar.sin(),
-                height: profile.center.height - away * polar.cos(),
-            };
-            (circle, self.floor(bound, &circle, towards))
-        };
-        let mut open = vec![(profile.fan, ends)];
-        for _ in 0..MAX_ARCS {
-            let Some(([from, to], ends)) = open.pop() else { return true };
-            let middle = 0.5 * (from + to);
-            let meeting = at(middle, profile.arc / (0.5 * (to - from)).cos());
-            if !ends.iter().all(|end| self.flank(bound, [*end, meeting], towards)) {
-                let between = at(middle, profile.arc);
-                open.extend([([middle, to], [between, ends[1]]), ([from, middle], [ends[0], between])]);
-            }
-        }
-        open.is_empty()
-    }
-
-    /// A lower bound of a function over a circle about the axis, at both ends of the way.
-    fn floor(&self, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
-        let here = self.floor_at(&bound.tip, bound, circle, towards);
-        match self.way {
-            Some(way) if here >= bound.target => {
-                here.min(self.floor_at(&(bound.tip + way), bound, circle, towards))
-            }
-            _ => here,
-        }
-    }
-
-    /// The value of a function at the centre of the ball of a barrel's corner that is at the azimuth of the contact, the least of both ends of
-    /// the way: that one ball holds all of the corner.
-    fn floor_at_ball(&self, bound: &Bound, towards: &Vec3) -> f64 {
-        let ProfilePoint { radius, height } = self.tool.profile.center;
-        let facing = -(towards - self.axis * self.axis.dot(towards));
-        let facing = facing.try_normalize(0.0).unwrap_or(self.across[0]);
-        let center = bound.tip + self.axis * height + facing * radius;
-        let here = bound.function.at(&center);
-        self.way.map_or(here, |way| here.min(bound.function.at(&(center + way))))
-    }
-
-    fn floor_at(&self, tip: &Vec3, bound: &Bound, circle: &ProfilePoint, towards: &Vec3) -> f64 {
-        #[cfg(test)]
-        FLOORS.set(FLOORS.get() + 1);
-        let center = tip + self.axis * circle.height;
-        let middle = bound.function.at(&center);
-        let rho = circle.radius;
-        if rho == 0.0 {
-            return middle;
-        }
-        let slope = bound.function.half_gradient(&center);
-        let [u, v] = &self.across;
-        let [uu, vv, uv] = bound.across;
-        let waves = Waves {
-            constant: middle + 0.5 * rho * rho * (uu + vv),
-            first: [2.0 * rho * slope.dot(u), 2.0 * rho * slope.dot(v)],
-            second: [0.5 * rho * rho * (uu - vv), rho * rho * uv],
-        };
-        let coarse = waves.coarse_floor();
-        if coarse >= bound.target { coarse } else { waves.floor([-towards.dot(u), -towards.dot(v)]) }
-    }
-
-    /// Whether a function is nowhere on the flat bottom below its target: not on its edge, and inside there is a least value
-    /// only where the function is bowl-shaped. That the edge keeps its distance as part of the corner is not enough, for
-    /// this function may be lower there than the one that shows it.
-    fn bottom(&self, bound: &Bound, (edge, least): Circled) -> bool {
-        let [uu, vv, uv] = bound.across;
-        let determinant = uu * vv - uv * uv;
-        let radius = edge.radius;
-        if radius == 0.0 {
-            // It is the edge, and the corner's.
-            return true;
-        }
-        if least < bound.target {
-            return false;
-        }
-        if determinant <= 0.0 || uu + vv <= 0.0 {
-            return true;
-        }
-        let keeps_at = |tip: &Vec3| {
-            let slope = bound.function.half_gradient(tip);
-            let (a, b) = (slope.dot(&self.across[0]), slope.dot(&self.across[1]));
-            let (x, y) = ((uv * b - vv * a) / determinant, (uv * a - uu * b) / determinant);
-            length([x, y]) >= radius || bound.function.at(tip) + a * x + b * y >= bound.target
-        };
-        keeps_at(&bound.tip) && self.way.is_none_or(|way| keeps_at(&(bound.tip + way)))
-    }
-
-    /// Whether a function is nowhere below its target on the patch between two circles. Along each straight line of the
-    /// patch it is a parabola whose second derivative is known.
-    fn flank(&self, bound: &Bound, [(low, first), (high, last)]: [Circled; 2], towards: &Vec3) -> bool {
-        let (rise, spread) = (high.height - low.height, high.radius - low.radius);
-        let [uu, vv, uv] = bound.across;
-        let along = bound.function.square.component_mul(&self.axis);
-        let tilt = length([along.dot(&self.across[0]), along.dot(&self.across[1])]);
-        let bend = rise * rise * along.dot(&self.axis)
-            + 2.0 * (rise * spread).abs() * tilt
-            + spread * spread * (0.5 * (uu + vv) + length([0.5 * (uu - vv), uv]));
-        let at = |t: f64| ProfilePoint { radius: low.radius + t * spread, height: low.height + t * rise };
-        let floor = |t: f64| self.floor(bound, &at(t), towards);
-        if first < bound.target || last < bound.target {
-            return false;
-        }
-        let mut open = Vec::new();
-        let mut part = Some((0.0, first, 1.0, last));
-        let mut count = 0;
-        while let Some((from, start, to, end)) = part {
-            if least_between(start, end, bend * (to - from) * (to - from)) < bound.target {
-                count += 1;
-                let middle = 0.5 * (from + to);
-                let value = floor(middle);
-                if count > MAX_PARTS || value < bound.target {
-                    return false;
-                }
-                open.push((middle, value, to, end));
-                part = Some((from, start, middle, value));
-            } else {
-                part = open.pop();
-            }
-        }
-        true
-    }
-}
-
-/// Least value of a parabola between the values at both ends of [0, 1], given half its second derivative.
-fn least_between(start: f64, end: f64, bend: f64) -> f64 {
-    let ends = start.min(end);
-    if bend <= 0.0 {
-        return ends;
-    }
-    let t = 0.5 * (start - end + bend) / bend;
-    if t > 0.0 && t < 1.0 { start + (end - start - bend * (1.0 - t)) * t } else { ends }
 }

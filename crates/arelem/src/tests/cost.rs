@@ -79,7 +79,7 @@ fn cost_is_linear_in_the_number_of_cut_vectors() {
 #[test]
 fn changes_of_the_bend_take_few_clearances() {
     let saddle = quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]);
-    let parts = [("saddle", saddle, 30.0), ("roof", lofts::roof(), 50.0), ("vault", lofts::vault(), 50.0)];
+    let parts = [("saddle", saddle, 22.0), ("roof", lofts::roof(), 50.0), ("vault", lofts::vault(), 50.0)];
     for (name, part, most) in parts {
         let (mut p, command) = pass(&part, &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 10.0);
         let before = EVALUATIONS.get();
@@ -89,7 +89,7 @@ fn changes_of_the_bend_take_few_clearances() {
     }
 }
 
-/// Where pieces of a vector are shown by a bound that holds for many of them, no bounds are made from the contacts at their ends.
+/// Functions made from the contacts at both ends of a stretch and in its middle show all of a vector; pieces of it take them again and again.
 #[test]
 fn few_circles_are_bounded_for_a_vector_over_a_quadric() {
     for (name, part) in parts() {
@@ -103,16 +103,18 @@ fn few_circles_are_bounded_for_a_vector_over_a_quadric() {
     }
 }
 
-/// A bound of the bend for a part of a stretch does not take the place of that for all of it, which serves the next vectors, too.
+/// Where functions made from contacts show a vector no bound of the bend of all distances is searched for; and one for a part of a stretch does not
+/// take the place of that for all of it, which serves the next vectors, too.
 #[test]
 fn few_boxes_are_looked_at_for_a_vector_over_a_saddle() {
     let (name, part) = parts().pop().expect("the saddle");
-    for cutter in CUTTERS {
+    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
+    for cutter in CUTTERS.into_iter().chain([slanted]) {
         let (mut p, command) = pass(&part, cutter, 10.0);
         let before = BOXES.get();
         p.run(&command);
         let each = (BOXES.get() - before) as f64 / p.last().points.len() as f64;
-        assert!(each <= 16.0, "{name}, cutter {cutter:?}: {each} boxes a vector");
+        assert!(each <= 3.0, "{name}, cutter {cutter:?}: {each} boxes a vector");
     }
 }
 

@@ -3,7 +3,7 @@
 
 use apt_geometry::{Vec3, cutter::ProfilePoint};
 
-use super::{Bound, Means, Posed, Scene, Start, Touch, above_plane};
+use super::{Means, Posed, Scene, Start, Touch, above_plane, floor::Bound};
 use crate::clearance::{Contact, tool::Piece};
 
 /// Steepness of F by which bounds are made, as shares of that at the contact: nearer to the vertex of a cone it is less.
@@ -132,7 +132,7 @@ impl Posed<'_> {
             half.room(self, &profile.center) - profile.arc >= level
                 || self.arcs(bound, [lower(), floor(&profile.upper)], towards)
         } else {
-            is_beyond(&profile.lower) || lower().1 >= bound.target
+            is_beyond(&profile.lower) || bound.keeps(lower().1)
         };
         let flank = |ends: [&ProfilePoint; 2]| {
             self.not_beyond(half, level, ends)

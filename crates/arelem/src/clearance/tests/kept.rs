@@ -42,6 +42,30 @@ fn a_way_past_a_vertex_is_clear_by_its_contacts() {
     }
 }
 
+/// Beside the deepest place of a way the clearance rises as the function that touches it there does, so that it keeps the very level of that place.
+#[test]
+fn a_way_from_its_deepest_place_is_clear_by_that_place_alone() {
+    let gauge = gauge(&quadric([0.2, -0.15, 0.0], [0.0, 0.0, 0.5], 0.0), 1.0);
+    let numbers: [&[f64]; 3] = [&[0.5, 0.25], &[0.5, 0.1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+    for (numbers, x) in numbers.into_iter().flat_map(|numbers| [-0.7, 0.3].map(|x| (numbers, x))) {
+        let tool = tool(numbers);
+        let (deepest, contact) = laid(&gauge, &tool, v(x, 0.4, 0.3), 0.0);
+        let along = contact.gradient.cross(&Vec3::y()).normalize();
+        for length in [-0.008, 0.008] {
+            let end = deepest + along * length;
+            let middle = 0.5 * (deepest + end);
+            let rise = gauge.contact(&tool, &end).clearance;
+            let keeps = |level: f64| {
+                let posed = quadric::Posed::new(&tool, &gauge.surface, 1.0, &deepest).expect("a quadric");
+                posed.on_the_way_to(&middle).clears(level, &contact)
+            };
+            // A thousandth of how far the clearance rises is left below, and above it nothing is said.
+            assert!(rise > 0.0 && keeps(contact.clearance - 1e-3 * rise), "{numbers:?} at {x} by {length}");
+            assert!(!keeps(contact.clearance + 1e-3 * rise), "{numbers:?} at {x} by {length}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
     /// No point of the tool comes nearer than it is said to keep, and the clearance is nowhere above the parabola by the bend of the

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 
 use apt_geometry::{Vec3, surface::Bend};
 
+use self::kept::CUTS_BY_FUNCTIONS;
 use super::{
     ENOUGH, Extremes, LEAST_OPEN, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About,
     tangents_meet,
@@ -265,6 +266,13 @@ impl Course<'_, '_> {
     /// Whether the clearance is in the band between two samples: by a bound for all of the tool, if one is known or likely to be of
     /// use, by the contacts at both ends, or by a bound after all; and by parts of the surface where cuts have not done.
     fn stretch(&self, a: &Sample, b: &Sample, cuts: usize) -> Stretch {
+        let told = self.told_by_functions(a, b, cuts);
+        match told {
+            Some([true, true]) => return Stretch::Held,
+            // Shorter stretches are told by them before a bend is searched for.
+            Some(_) if cuts < CUTS_BY_FUNCTIONS => return Stretch::Open(None),
+            _ => {}
+        }
         let asked = self.ask(a, b);
         let Line { role, ledger, .. } = self.line;
         let about = asked.about();
@@ -294,14 +302,15 @@ impl Course<'_, '_> {
         }
         // Where pieces will do, that takes less than the contacts on a quadric, than those of a disc seen along a surface, and than contacts that have
         // just told nothing of as long a stretch.
-        let by_contacts = !serves(bend)
+        let by_contacts = told.is_none() && !serves(bend)
             || role.gauge.surface.has_charts()
                 && (cuts >= MOST_CUTS || ledger.expects_contacts(&asked.tool, &asked.tip, b.x - a.x))
                 && !role.gauge.is_seen_along(&asked.tool, &asked.tip);
         let (held, kept) = bend.map_or((false, false), bounded);
         // Where shorter stretches will do, two more feet on the surface cost more than a contact.
-        let high = held || self.is_held_from_both(a, b, !serves(bend));
-        let low = is_clear || kept || high && by_contacts && self.is_kept_from_both(a, b);
+        let [is_kept, is_held] = told.unwrap_or_default();
+        let high = held || is_held || self.is_held_from_both(a, b, told.is_none() && !serves(bend));
+        let low = is_clear || kept || is_kept || high && by_contacts && self.is_kept_from_both(a, b);
         if high && by_contacts && !low {
             ledger.note_silence(&asked.tip, b.x - a.x);
         }
