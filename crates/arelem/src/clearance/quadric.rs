@@ -185,6 +185,9 @@ impl<'a> Scene<'a> {
             (&Piece::Ring { radius, height, ball, fan }, _) => {
                 self.touch_circle(&Circle { radius, height, ball }, fan.is_some(), start)?
             }
+            (&Piece::Frustum { radius, height }, Means::Round(round)) => {
+                round.touch_line(self.tool, self.tip, [radius, height], start.direction)?
+            }
             (_, Means::Round(_)) => return None,
             (_, Means::Convex(posed) | Means::General(posed)) => posed.touch_patch(piece, last, start)?,
         };

@@ -17,6 +17,11 @@ const NEARLY: f64 = 1e-5;
 /// Largest azimuth step, radians.
 const LARGEST_STEP: f64 = 0.5;
 
+/// Squared sine of the angle between axes below which they are parallel: a whole line of the tool then touches.
+const PARALLEL: f64 = 1e-12;
+/// Rounding of the length of a unit vector; a normal that is longer is none.
+const ROUNDING: f64 = 1e-12;
+
 /// A solid from which the distance of a point outside is `cosine · ρ − sine · z − radius`, ρ being its distance from the axis
 /// and z that along it.
 pub(super) struct Round {
@@ -91,6 +96,52 @@ impl Round {
         None
     }
 
+    /// The contact on a straight piece of the profile between two circles, near a direction. Its normal makes the angle with the tool axis that the piece
+    /// has, and with that of the solid the one that all its normals have: two normals do, one to either side of both axes. While contact goes along the
+    /// piece the normal is one and the same.
+    pub(super) fn touch_line(
+        &self,
+        tool: &Tool,
+        tip: &Vec3,
+        [[low, high], [bottom, top]]: [[f64; 2]; 2],
+        direction: [f64; 2],
+    ) -> Option<Touch> {
+        let (out, up) = (high - low, top - bottom);
+        let (sloping, upright) = (out / out.hypot(up), up / out.hypot(up));
+        let between = self.axis.dot(&tool.axis);
+        let square = 1.0 - between * between;
+        if upright <= 0.0 || square <= PARALLEL {
+            return None;
+        }
+        // By both axes, and across them.
+        let by_tool = (sloping + self.sine * between) / square;
+        let by_solid = -self.sine - by_tool * between;
+        let planar = tool.axis * by_tool + self.axis * by_solid;
+        let across = self.axis.cross(&tool.axis);
+        let share = ((1.0 - planar.norm_squared()) / square).max(0.0).sqrt();
+        let radial = tool.across[0] * direction[0] + tool.across[1] * direction[1];
+        let gradient = planar - across * share.copysign(across.dot(&radial));
+        let towards = (tool.axis * sloping - gradient) / upright;
+        // Where its perpendicular to the axis of the solid lies along the normal.
+        let aside = self.axis.cross(&gradient);
+        let start = tip + tool.axis * bottom + towards * low - self.origin;
+        let line = tool.axis * up + towards * out;
+        let along = -start.dot(&aside) / line.dot(&aside);
+        if !(0.0..=1.0).contains(&along) || (gradient.norm_squared() - 1.0).abs() > ROUNDING {
+            return None;
+        }
+        let place = start + line * along;
+        let distance = gradient.dot(&place) - self.radius;
+        if (gradient + self.axis * self.sine).dot(&place) <= 0.0 {
+            return None;
+        }
+        let place = place + self.origin;
+        let contact =
+            Contact { clearance: distance, gradient, tool: place, surface: place - gradient * distance };
+        let direction = [0, 1].map(|k| towards.dot(&tool.across[k]));
+        Some(Touch { contact, lean: sloping, start: Start { direction, multiplier: None } })
+    }
+
     fn made(&self, tool: &Tool, center: Vec3, circle: &Circle, direction: [f64; 2]) -> Option<Touch> {
         let place = center + (tool.across[0] * direction[0] + tool.across[1] * direction[1]) * circle.radius;
         let along = place.dot(&self.axis);
@@ -122,10 +173,69 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::clearance::quadric::is_way_out;
+    use crate::clearance::{
+        dual,
+        quadric::{contact_anywhere, is_way_out},
+    };
+
+    /// A tool with a slanted bottom, a corner and a slanted flank, beside solids whose axis leans to its own.
+    fn slanted() -> Tool<'static> {
+        let cutter = Cutter::from_numbers(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 1.0).expect("cutter");
+        Tool::new(cutter, Vec3::z())
+    }
+
+    fn solid(is_cone: bool, axis: Vec3) -> Surface {
+        let (point, axis) = (Vec3::new(0.1, 0.2, -0.3), axis.normalize());
+        let geometry = if is_cone {
+            Geometry::Cone(Cone { vertex: point, axis, cosine: 0.8 })
+        } else {
+            Geometry::Cylinder(Cylinder { point, axis, radius: 0.7 })
+        };
+        Surface::from_geometry(&geometry).expect("surface")
+    }
+
+    /// While contact goes along the slanted bottom it is found there, and is what the greatest of the distances by planes tells.
+    #[test]
+    fn contact_on_a_slanted_bottom_needs_no_search() {
+        let (tool, surface) = (slanted(), solid(false, Vec3::new(0.2, 1.0, 0.1)));
+        let bottom = tool.profile.lower;
+        let mut on_bottom = 0;
+        for k in -60..=60 {
+            let tip = Vec3::new(0.1 + 0.01 * f64::from(k), 0.3, 0.45);
+            let wanted = dual::contact(&tool, &surface, 1.0, &tip).expect("a contact");
+            let from_tip = wanted.tool - tip;
+            let share = from_tip.z / bottom.height;
+            if share > 0.01 && share < 0.99 {
+                on_bottom += 1;
+                let (found, missed) =
+                    contact_anywhere(&tool, &surface, 1.0, &tip, None).expect("a contact on the bottom");
+                assert_eq!(missed, 0.0);
+                assert!((found.clearance - wanted.clearance).abs() < 1e-13, "{found:?} {wanted:?}");
+                assert!((found.gradient - wanted.gradient).norm() < 1e-9, "{found:?} {wanted:?}");
+                assert!((found.tool - wanted.tool).norm() < 1e-6, "{found:?} {wanted:?}");
+            }
+        }
+        assert!(on_bottom >= 10, "{on_bottom} contacts on the bottom");
+    }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(256))]
+        /// What is found anywhere on a tool is what the greatest of the distances by planes tells, on straight pieces of it, too.
+        #[test]
+        fn contacts_are_those_of_the_best_plane(
+            is_cone in prop::bool::ANY, axis in prop::array::uniform3(-1.0..1.0f64),
+            tip in prop::array::uniform3(-3.0..3.0f64),
+        ) {
+            let axis = Vec3::from(axis);
+            prop_assume!(axis.norm() > 0.1);
+            let (tool, surface, tip) = (slanted(), solid(is_cone, axis), Vec3::from(tip));
+            let wanted = dual::contact(&tool, &surface, 1.0, &tip).expect("a contact");
+            prop_assume!(wanted.clearance > 0.0);
+            if let Some((found, missed)) = contact_anywhere(&tool, &surface, 1.0, &tip, None) {
+                prop_assert!((found.clearance - wanted.clearance).abs() <= missed + 1e-12, "{found:?} {wanted:?}");
+            }
+        }
+
         /// What is found is stationary on the circle, and its distance is that of the surface.
         #[test]
         fn contacts_are_stationary(
