@@ -72,6 +72,11 @@ impl<'a> Attitude<'a> {
         &self.tool
     }
 
+    /// Whether the axis would have to jump where the path turns from one direction to another, because it leads in the direction of motion.
+    pub(crate) fn jumps_between(&self, tip: &Vec3, before: &Vec3, beyond: &Vec3) -> bool {
+        self.law.as_ref().is_some_and(|law| law.jumps_between(tip, before, beyond))
+    }
+
     /// True if the axis changes along the path.
     pub(crate) fn turns(&self) -> bool {
         self.law.is_some()

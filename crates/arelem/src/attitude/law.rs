@@ -286,6 +286,18 @@ impl Law {
         plane(&self.base) && (alone || self.other.as_ref().is_some_and(plane))
     }
 
+    /// Whether the axis leads along one direction and lags along another, so that it would have to jump where the path turns from the one to the other.
+    pub(crate) fn jumps_between(&self, tip: &Vec3, before: &Vec3, beyond: &Vec3) -> bool {
+        let Mode::Lead { ahead, .. } = self.mode else { return false };
+        if ahead.abs() <= ZERO_ANGLE {
+            return false;
+        }
+        let other = self.others(tip);
+        let beside = other.as_ref().map(|(normal, _)| normal);
+        frame(&self.base.normal(tip), beside)
+            .is_ok_and(|(tangent, _)| tangent.dot(before) * tangent.dot(beyond) < 0.0)
+    }
+
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
         self.standing(tool, tip).map(|standing| standing.axis)

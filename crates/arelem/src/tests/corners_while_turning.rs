@@ -97,3 +97,59 @@ fn an_axis_that_a_corner_tells_ends_the_motion_there() {
     let failure = program.attempt(&motion(Turn::Forward, &walls, &[(Relation::On, 1, &x(AWAY))]));
     assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
 }
+
+/// Radius of a hollow cylinder about the x axis, and how far a plane across which a flank comes to lie leans against that.
+const HOLLOW: f64 = 2.0;
+const LEAN: f64 = 60.0;
+/// Corner radius and height of a tool that stands in the hollow, which is higher than its middle.
+const CORNER: f64 = 0.5;
+const HEIGHT: f64 = 6.0;
+
+/// A tool that stands across a hollow cylinder, its end at (x, s), s along the arc, touches a plane with its corner on one side of s = 0 and with the top
+/// of its flank on the other, which goes against its end: x = −1.30 s, x = 3.46 s in the beginning. In between the whole flank lies along the plane.
+fn from_corner_to_top(mode: ToolAxis) -> Result<Program, MotionFailure> {
+    let hollow = cylinder(Vec3::zeros(), Vec3::x(), HOLLOW);
+    let (normal, across) = LEAN.to_radians().sin_cos();
+    let wall = plane(across, 0.0, normal, -CORNER);
+    let mut program = Program::new();
+    program.cutter(&[2.0 * CORNER, CORNER, 0.0, CORNER, 0.0, 0.0, HEIGHT]).tolerance(0.001, 0.001);
+    program.run(&MotionCommand::ToolAxis(ToolAxis::Fixed(v(0.0, -0.95, 0.3)))).from(0.9, 1.8, -0.5);
+    program.run(&MotionCommand::ToolAxis(mode));
+    program.go(&[(Relation::On, &hollow), (Relation::To, &wall), (Relation::On, &level(-0.6))]);
+    program.side(DriveSide::On).indirv(-1.3, 0.0, 1.0);
+    program.attempt(&motion(Turn::Forward, &hollow, &[(Relation::On, 1, &level(0.2))]))?;
+    Ok(program)
+}
+
+/// Where a flank comes to lie along a plane a turning tool goes on by its top, away from there and by more than a right angle. The normal is the same
+/// all along the flank.
+#[test]
+fn a_turning_tool_goes_on_by_its_top_where_its_flank_comes_to_lie_along_a_plane() {
+    let program = from_corner_to_top(ToolAxis::Normal { part: false }).expect("a path");
+    let mut path = program.last().clone();
+    let sharp = path.points.windows(3).position(|at| {
+        let [before, beyond] = [at[1].tip - at[0].tip, at[2].tip - at[1].tip];
+        before.dot(&beyond) < -0.2 * before.norm() * beyond.norm()
+    });
+    let corner = sharp.expect("a corner") + 1;
+    // By the bands, and how steep the legs are.
+    assert!((path.points[corner].tip - v(0.0, HOLLOW, 0.0)).norm() < 0.01, "{:?}", path.points[corner]);
+    let end = v((HEIGHT - HOLLOW) * LEAN.to_radians().tan() * 0.1, HOLLOW * 0.99f64.sqrt(), 0.2);
+    assert!((program.tip() - end).norm() < 0.01, "{:?}", program.tip());
+    is_proven(&program);
+    // Back along the leg that it came along is another way.
+    let back: Vec<_> = path.points[..corner].iter().rev().copied().collect();
+    path.points.truncate(corner + 1);
+    path.points.extend(back);
+    let evidence = crate::verify::verify(&path, &|| false).expect("evidence");
+    assert!(evidence.violations.iter().any(|violation| violation.rule == Rule::Progress), "{evidence:?}");
+}
+
+/// Beyond such a corner a tool that leads would lag: on the spot it cannot turn.
+#[test]
+fn a_tool_that_leads_does_not_go_on_against_its_lead() {
+    let mode = AxisAngle::Lead(4f64.to_radians());
+    let outcome = from_corner_to_top(ToolAxis::AtAngle { part: false, angle: 6f64.to_radians(), mode });
+    let failure = outcome.map(|program| program.tip());
+    assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
+}

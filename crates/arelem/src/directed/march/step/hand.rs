@@ -148,7 +148,8 @@ impl Stepper<'_> {
 
     /// Directions on the same hand that are against that of the path, or so nearly square to it that no vector along them plainly leads onward:
     /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces, unless
-    /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing.
+    /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing. Where the tool leads in the direction
+    /// of motion it cannot turn to lead against it on the spot.
     fn sharp_directions(&self, seconds: &[SecondPlace], here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
@@ -165,7 +166,8 @@ impl Stepper<'_> {
         let mut found: Vec<Vec3> = Vec::new();
         for along in own.into_iter().chain(onward) {
             let is_known = found.iter().any(|known| known.dot(&along) > SAME_TANGENT_COSINE);
-            if along.dot(&here.tangent) < LEAST_ONWARD && !is_known {
+            let jumps = self.prepared.attitude.jumps_between(&here.tip, &here.tangent, &along);
+            if along.dot(&here.tangent) < LEAST_ONWARD && !is_known && !jumps {
                 found.push(along);
             }
         }
