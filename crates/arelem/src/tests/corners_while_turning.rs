@@ -1,6 +1,9 @@
 //! Corners that turn the path by more than a right angle while the axis follows a surface.
 
-use apt_geometry::motion::{AxisAngle, AxisTangency, ToolAxis};
+use apt_geometry::{
+    canonical::{Cylinder, Remembering, RuledSurface},
+    motion::{AxisAngle, AxisTangency, ToolAxis},
+};
 
 use super::*;
 use crate::verify::Rule;
@@ -152,4 +155,50 @@ fn a_tool_that_leads_does_not_go_on_against_its_lead() {
     let outcome = from_corner_to_top(ToolAxis::AtAngle { part: false, angle: 6f64.to_radians(), mode });
     let failure = outcome.map(|program| program.tip());
     assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
+}
+
+/// A tool end ON a ruled surface comes to where that ends, 30 units along its extension: beyond, its normal turns within the band, and with it the
+/// gradients of clearances do, though the tool touches its drive surface where it did. That is no corner to go back from along the same leg.
+#[test]
+fn a_path_does_not_go_back_where_its_axis_begins_to_turn_fast() {
+    let circle = Cylinder {
+        point: v(-14.35630129524699, -3.8933251741697523, 12.96210742102925),
+        axis: v(0.30491161405061046, 0.8326588237325535, 0.4622858324428429),
+        radius: 19.164468276593364,
+    };
+    let point = |x, y, z| Geometry::Point(v(x, y, z));
+    let parts = vec![
+        Geometry::Circle(circle),
+        point(-4.385084028151377, -1.9716528773345738, -3.565410424083006),
+        point(0.6473007203135145, -6.295879547938617, 0.9040601759606537),
+        Geometry::Vector(v(0.7150716073289143, 0.12045083475071192, -0.6885958123601245)),
+        plane(0.7243104535446746, 0.11243146261906363, -0.6802452007175396, -0.9132377760310463),
+        point(-2.5132439109207763, 3.0314371880600257, -0.8324970811519339),
+        point(2.4343999716902394, -1.3070637285425752, 3.718576822343696),
+        Geometry::Vector(v(0.7243104535446745, 0.11243146261906352, -0.6802452007175398)),
+    ];
+    let sheet = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let wall = plane(0.3789386585744906, -0.906776108424816, 0.1848312263328682, 0.6878285780227179);
+    let onward = v(0.5590835195209517, 0.38347688614362285, 0.735099378311298);
+    let across = |d: f64| plane(onward.x, onward.y, onward.z, d);
+    let mut program = Program::new();
+    program.cutter(&[0.22128125553126526, 0.030438584899399036]).tolerance(0.0005, 0.0);
+    let stock = 0.1592625149369374;
+    let all = PerRole { part: stock, drive: stock, check: [stock; 2] };
+    program.run(&MotionCommand::Thickness(all)).run(&MotionCommand::MaximumStep(10.0));
+    program.from(-1.4604665056778339, -0.7439687138009958, 0.007747177000470007).part_side(PartSide::On);
+    let mode = AxisAngle::PerpendicularTo(v(0.3115195945495952, -0.6949686250170459, -0.19548094539225258));
+    let angle = -0.055215330133156645;
+    program.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle, mode }));
+    program.go(&[
+        (Relation::To, &wall),
+        (Relation::On, &sheet),
+        (Relation::On, &across(-0.5297451722314743)),
+    ]);
+    program.side(DriveSide::Left).indirv(onward.x, onward.y, onward.z);
+    let failure = program.attempt(&motion(Turn::Forward, &wall, &[(Relation::On, 1, &across(100.0))]));
+    assert!(
+        matches!(failure, Err(MotionFailure::IterationLimit { tip, .. }) if (tip.x - 30.45).abs() < 0.02),
+        "{failure:?}"
+    );
 }

@@ -178,6 +178,14 @@ impl<'a> Stepper<'a> {
         if let Some(next) = self.beyond_sharply(here, cap)? {
             return self.noted(here, Ok(next));
         }
+        self.kept_hand = self.hand_between_corners(here);
+        let found = self.along_tangent(here, cap);
+        self.kept_hand = None;
+        found
+    }
+
+    /// The next vertex along the tangent, through a corner or into one.
+    fn along_tangent(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
             Ok(next) => {

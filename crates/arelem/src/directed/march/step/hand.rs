@@ -87,8 +87,7 @@ impl Stepper<'_> {
         here: &mut Vertex,
         cap: f64,
     ) -> Result<Option<Vertex>, MotionFailure> {
-        let is_near = |at: Vec3| (here.tip - at).norm() <= self.rounding();
-        if self.turned_sharply.is_some_and(is_near) {
+        if self.has_turned_near(here) {
             return Ok(None);
         }
         for direction in self.sharp_directions(seconds, here) {
@@ -123,6 +122,17 @@ impl Stepper<'_> {
             return Ok(None);
         }
         self.around_sharply(&[], here, cap)
+    }
+
+    /// The hand that vectors keep from where the last one has ended beyond a corner, if that is as near to the last sharp one as the tool may round one:
+    /// it turns no second time there, and along its tangent would go back along a leg.
+    pub(super) fn hand_between_corners(&self, here: &Vertex) -> Option<Hand> {
+        (self.hand.is_beyond_corner && self.has_turned_near(here)).then(|| self.hand.or_at(here))
+    }
+
+    /// Whether the path has turned sharply as near to a vertex as the tool may round a corner.
+    fn has_turned_near(&self, here: &Vertex) -> bool {
+        self.turned_sharply.is_some_and(|at| (here.tip - at).norm() <= self.rounding())
     }
 
     /// The end of the longest vector straight on into a corner, wherever in the bands it ends. Errors: cancelled.
