@@ -11,7 +11,7 @@ pub(crate) struct Reading {
 }
 
 /// How many readings of a vector are kept: its ends, its extreme, and what is about a place where contact jumps.
-const MOST: usize = 5;
+pub(super) const MOST: usize = 5;
 
 /// Readings of one vector in the order of their places, between which the clearance is taken to be the cubic through both.
 #[derive(Debug, Clone, Copy, PartialEq)]

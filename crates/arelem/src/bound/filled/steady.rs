@@ -1,7 +1,7 @@
 //! A bend that changes little and is to one side fills the integral of √(κ/8τ), than which points tell hardly more.
 
 use super::{
-    super::readings::{Piece, Readings},
+    super::readings::{MOST, Piece, Readings},
     room,
 };
 
@@ -11,6 +11,41 @@ const STEADY: f64 = 1.5;
 const STRAIGHT: f64 = 1e-3;
 /// Share of a vector up to which the slopes at the ends of a piece of it tell the bend, and its values too little of it.
 const SHORT: f64 = 0.05;
+
+/// How a vector bends from reading to reading.
+pub(super) struct Turns<'a> {
+    pub(super) readings: &'a Readings,
+    pieces: [Turn; MOST - 1],
+    count: usize,
+}
+
+/// What is between two readings: from where to where, what it fills if its bend is steady, and the bends at both ends.
+#[derive(Debug, Clone, Copy, Default)]
+struct Turn {
+    from: f64,
+    to: f64,
+    full: f64,
+    bends: [f64; 2],
+}
+
+impl<'a> Turns<'a> {
+    pub(super) fn of(readings: &'a Readings, band: [f64; 2]) -> Self {
+        let (mut pieces, mut count) = ([Turn::default(); MOST - 1], 0);
+        for (told, piece) in pieces.iter_mut().zip(readings.pieces()) {
+            let (full, whole) = (share_of(&piece, band), piece.to.x - piece.from.x);
+            let part = whole / readings.length();
+            let bends = match part {
+                // What the whole vector would fill with the bend of this piece.
+                _ if full <= STRAIGHT * part => [0.0; 2],
+                _ if part <= SHORT => [(piece.to.slope - piece.from.slope) / whole; 2],
+                _ => piece.bends(),
+            };
+            *told = Turn { from: piece.from.x, to: piece.to.x, full, bends };
+            count += 1;
+        }
+        Self { readings, pieces, count }
+    }
+}
 
 /// What is filled by such a bend.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,27 +57,18 @@ pub(super) struct Steady {
 
 impl Steady {
     /// The same with a vector between two of its places; `None` if it bends otherwise there.
-    pub(super) fn with(self, readings: &Readings, band: [f64; 2], [begin, end]: [f64; 2]) -> Option<Self> {
+    pub(super) fn with(self, along: &Turns<'_>, [begin, end]: [f64; 2]) -> Option<Self> {
         let Self { mut share, bends } = self;
         let [mut least, mut greatest] = bends.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
-        for piece in readings.pieces() {
-            let (from, to) = (piece.from.x.max(begin), piece.to.x.min(end));
+        for turn in &along.pieces[..along.count] {
+            let (from, to) = (turn.from.max(begin), turn.to.min(end));
             if to <= from {
                 continue;
             }
-            let full = share_of(&piece, band);
-            let whole = piece.to.x - piece.from.x;
-            share += if to - from < whole { full * (to - from) / whole } else { full };
-            let part = whole / readings.length();
-            // What the whole vector would fill with the bend of this piece.
-            let as_whole = full / part;
-            let bends = match part {
-                _ if as_whole <= STRAIGHT => [0.0; 2],
-                _ if part <= SHORT => [(piece.to.slope - piece.from.slope) / whole; 2],
-                _ => piece.bends(),
-            };
-            least = least.min(bends[0].min(bends[1]));
-            greatest = greatest.max(bends[0].max(bends[1]));
+            let whole = turn.to - turn.from;
+            share += if to - from < whole { turn.full * (to - from) / whole } else { turn.full };
+            least = least.min(turn.bends[0].min(turn.bends[1]));
+            greatest = greatest.max(turn.bends[0].max(turn.bends[1]));
         }
         let (small, great) = (least.abs().min(greatest.abs()), least.abs().max(greatest.abs()));
         let is_steady = least * greatest >= 0.0 && great <= STEADY * small;

@@ -12,7 +12,7 @@ use super::{
     WIDER,
     hull::{Point, Widest, chain, widest, widest_from},
     room,
-    steady::{Steady, share_of},
+    steady::{Steady, Turns, share_of},
 };
 
 /// Pieces into which what fills a vector is divided: a parabola's sag between them is then a hundredth of that over all.
@@ -102,15 +102,17 @@ impl Strand {
     }
 
     /// Another stretch begins where this one is full, at a place of the next vector.
-    pub(super) fn begin_beyond(&mut self, readings: &Readings, band: [f64; 2], x: f64) {
-        if let Some(side) = self.steady_with(readings, band, [0.0, x]).and_then(|with| with.side()) {
-            let before = std::mem::take(&mut self.steadily);
+    pub(super) fn begin_beyond(&mut self, along: &Turns<'_>, band: [f64; 2], x: f64) {
+        if let Some(side) = self.steady_with(along, [0.0, x]).and_then(|with| with.side()) {
+            // What is told no more leaves its room to the next one.
+            let room = self.untold.take().map(|untold| untold.before).unwrap_or_default();
+            let before = std::mem::replace(&mut self.steadily, room);
             self.begin();
-            self.untold = Some(Untold { side, before, next: *readings, full: x });
+            self.untold = Some(Untold { side, before, next: *along.readings, full: x });
             return;
         }
         self.settle(band);
-        let window = self.window_at(readings, band, x);
+        let window = self.window_at(along.readings, band, x);
         self.begin();
         self.window = window;
     }
@@ -169,30 +171,30 @@ impl Strand {
     }
 
     /// What is filled while it bends steadily and no window hinders it.
-    fn steady_with(&self, readings: &Readings, band: [f64; 2], between: [f64; 2]) -> Option<Steady> {
-        let with = self.steady?.with(readings, band, between)?;
+    fn steady_with(&self, along: &Turns<'_>, between: [f64; 2]) -> Option<Steady> {
+        let with = self.steady?.with(along, between)?;
         let told = self.window.as_ref().map(|window| window.side);
         let side = told.or_else(|| self.untold.as_ref().map(|untold| untold.side));
         side.is_none_or(|side| with.agrees(side)).then_some(with)
     }
 
     /// The same with the next vector until a place of it.
-    fn filled_until(&self, readings: &Readings, band: [f64; 2], x: f64) -> f64 {
-        if let Some(with) = self.steady_with(readings, band, [0.0, x]) {
+    fn filled_until(&self, along: &Turns<'_>, band: [f64; 2], x: f64) -> f64 {
+        if let Some(with) = self.steady_with(along, [0.0, x]) {
             return with.share;
         }
         let mut points = self.points.clone();
-        points.extend(self.ahead(readings, band, [0.0, x]));
+        points.extend(self.ahead(along.readings, band, [0.0, x]));
         self.share(&points, band)
     }
 
     /// The place of the next vector before another one at which the stretch is full.
-    pub(super) fn full(&mut self, readings: &Readings, band: [f64; 2], until: f64) -> Option<f64> {
-        let with = self.steady_with(readings, band, [0.0, until]);
+    pub(super) fn full(&mut self, along: &Turns<'_>, band: [f64; 2], until: f64) -> Option<f64> {
+        let with = self.steady_with(along, [0.0, until]);
         let reached = with.map_or_else(
             || {
                 self.settle(band);
-                self.filled_until(readings, band, until)
+                self.filled_until(along, band, until)
             },
             |with| with.share,
         );
@@ -203,7 +205,7 @@ impl Strand {
         for _ in 0..MOST_LOOKS {
             let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
             let x = low[0] + (high[0] - low[0]) * part;
-            let found = [x, self.filled_until(readings, band, x)];
+            let found = [x, self.filled_until(along, band, x)];
             if (found[1] - 1.0).abs() <= CLOSELY {
                 return Some(x);
             }
@@ -217,16 +219,16 @@ impl Strand {
     }
 
     /// Goes on along a vector from one of its places to its end.
-    pub(super) fn extend(&mut self, readings: &Readings, band: [f64; 2], begin: f64) {
+    pub(super) fn extend(&mut self, along: &Turns<'_>, band: [f64; 2], begin: f64) {
         let is_room = self.steadily.len() < MOST_STEADILY;
-        let length = readings.length();
-        let with = self.steady_with(readings, band, [begin, length]).filter(|_| is_room);
+        let length = along.readings.length();
+        let with = self.steady_with(along, [begin, length]).filter(|_| is_room);
         if with.is_some() {
             self.steady = with;
-            self.steadily.push((*readings, begin));
+            self.steadily.push((*along.readings, begin));
         } else {
             self.settle(band);
-            self.follow(readings, band, begin);
+            self.follow(along.readings, band, begin);
         }
     }
 
