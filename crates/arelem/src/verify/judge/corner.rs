@@ -1,7 +1,7 @@
 //! Corners in which a tool that turns goes on along another leg by more than a right angle.
 
-use super::{Bound, Judge};
-use crate::{sequence::ToolPosition, verify::span::between};
+use super::{super::span::between, Bound, Judge};
+use crate::sequence::ToolPosition;
 
 /// How many vectors are looked at for the way that led to a corner: before it some are short, for a vertex has to lie in it.
 const MOST_VECTORS_BACK: usize = 8;
