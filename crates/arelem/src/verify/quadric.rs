@@ -4,6 +4,8 @@
 //! is the one with all `1 + λaᵢ ≥ 0` (the single-constraint case of the trust-region theory: sufficient and necessary),
 //! and on that interval F(q(λ)) decreases, so its root is found with a bracket and cannot be the wrong one.
 
+mod from_body;
+
 use apt_geometry::{Vec3, canonical};
 use nalgebra::{Matrix3, SymmetricEigen};
 

@@ -5,11 +5,12 @@
 //! plane at the contact proves the minimum at once (distance is a convex function); inside a convex hollow distance is
 //! concave, so only edges matter and the corners of a circumscribed polygon bound what lies between samples.
 
+mod bodies;
 mod bulge;
 
 use apt_geometry::Vec3;
 
-use self::bulge::Bulge;
+use self::{bodies::Body, bulge::Bulge};
 use super::{
     circle_contact,
     clearance::{Reading, Shape},
@@ -53,6 +54,8 @@ struct Search<'a> {
     shape: Shape,
     /// A solid may reach into the top of the tool.
     open_top: bool,
+    /// Of two convex bodies the one that is looked at.
+    body: Option<Body>,
     best: Option<Candidate>,
     /// Greatest amount by which the true minimum could be below the best candidate.
     gap: f64,
@@ -115,21 +118,31 @@ pub(super) fn at(quadric: &PrincipalQuadric, side: f64, tip: &Vec3, tool: &Tool<
     if shown.is_some() {
         return shown;
     }
-    let first = perpendicular(&tool.axis);
-    let mut search = Search {
-        quadric,
-        side,
-        tip: *tip,
-        tool,
-        across: [first, tool.axis.cross(&first)],
-        shape,
-        open_top,
-        best: None,
-        gap: 0.0,
-    };
+    if let Some(pair) = quadric.pair(side) {
+        return bodies::at(quadric, pair, side, tip, tool);
+    }
+    let mut search = Search { shape, open_top, ..Search::of(quadric, side, tip, tool) };
     search.run()?;
     let best = search.best?;
     Some(Reading::new(best.value, best.normal, search.gap))
+}
+
+impl<'a> Search<'a> {
+    fn of(quadric: &'a PrincipalQuadric, side: f64, tip: &Vec3, tool: &'a Tool<'a>) -> Self {
+        let first = perpendicular(&tool.axis);
+        Self {
+            quadric,
+            side,
+            tip: *tip,
+            tool,
+            across: [first, tool.axis.cross(&first)],
+            shape: Shape::Free,
+            open_top: false,
+            body: None,
+            best: None,
+            gap: 0.0,
+        }
+    }
 }
 
 impl Search<'_> {
@@ -151,6 +164,9 @@ impl Search<'_> {
     fn distance(&self, x: &Vec3) -> Option<(f64, Vec3)> {
         if self.tool.patience.ends_after(1) {
             return None;
+        }
+        if let Some(body) = &self.body {
+            return body.distance(self.quadric, self.side, x);
         }
         let d = self.quadric.distance(x)?;
         Some((self.side * d.distance, d.normal * self.side))

@@ -11,7 +11,11 @@ use super::{
     paths::sequence,
     plane, quadric, role,
 };
-use crate::verify::{clearance::Surface, verify};
+use crate::verify::{
+    clearance::Surface,
+    tool::{Profile, perpendicular},
+    verify,
+};
 
 /// x² − y² = ¼, and the surface of revolution that it makes about x.
 const TWO_BRANCHES: [[f64; 10]; 2] = [
@@ -81,4 +85,45 @@ fn a_vector_from_one_branch_to_the_other_is_out_of_tolerance() {
     // Half way the ball is 0.6 deep; what is far beyond the band is not looked into further.
     let least = evidence.drive.unwrap().min;
     assert!(!evidence.verified && least < -0.25, "{least}");
+}
+
+/// Two bodies that are almost a double cone.
+const NEARLY_A_CONE: [f64; 10] = [
+    0.7174650662862181,
+    1.0231540868029048,
+    0.2987843472166665,
+    8.547745331835097,
+    -0.3493505300902319,
+    -0.028187046383605738,
+    -0.7356979094928593,
+    0.7006808965052893,
+    1.075518447073334,
+    -1.5701039218368291,
+];
+
+/// Part of a turn of the rim over which the tool touches both bodies.
+const BESIDE: f64 = 0.05;
+
+#[test]
+fn a_rim_that_touches_both_bodies_at_places_close_to_each_other_is_as_near_as_the_nearer() {
+    let [alpha, beta] = [0.19134375311007784_f64, 0.08726646259971647].map(f64::to_degrees);
+    let tool = cutter(&[1.0, 0.1875, 0.33, 0.22, alpha, beta, 2.8551858613504546]);
+    let axis = Vec3::new(-0.8359763968861117, -0.4121287885835951, 0.3623442085502854);
+    let surface = Surface::of(&quadric(NEARLY_A_CONE)).unwrap();
+    let [.., rim] = Profile::of(&tool).unwrap().edges();
+    let across = perpendicular(&axis);
+    let azimuth = std::f64::consts::FRAC_PI_2;
+    // A way of the tool end along which the contact goes over from one body to the other.
+    for k in 0..=64 {
+        let way = Vec3::new(1.0989573, -0.2720640, 3.1376563)
+            .lerp(&Vec3::new(1.1012855, -0.2720402, 3.1593623), f64::from(k) / 64.0);
+        let (value, ..) = clearance(&tool, &quadric(NEARLY_A_CONE), 1.0, way.into(), axis.into());
+        let about = (0..=20_000).map(|k| {
+            let phi = azimuth + BESIDE * (f64::from(k) / 10_000.0 - 1.0);
+            let out = across * phi.cos() + axis.cross(&across) * phi.sin();
+            surface.point_distance(&(way + out * rim[0] + axis * rim[1])).unwrap().0
+        });
+        let nearest = about.fold(f64::INFINITY, f64::min);
+        assert!((value - nearest).abs() < 1e-7, "{k}: {value}, {nearest}");
+    }
 }

@@ -45,8 +45,8 @@ fn a_tool_along_a_ruling_is_beside_one_nappe() {
             let found = worst(&clearance, ends, &Vec3::z()).expect("beside one nappe");
             assert!(found < 1e-9, "{numbers:?} {ends:?}: {found:e}");
         }
-        // Into the other nappe's half space.
-        let through = [0.5, -0.5].map(|x| Vec3::new(x, 0.0, 1e-3));
+        // From beside the one nappe, the other farther away, into the other.
+        let through = [0.7, -0.5].map(|x| Vec3::new(x, 0.0, 1e-3));
         assert!(worst(&clearance, through, &Vec3::z()).is_none());
     }
 }
