@@ -54,7 +54,7 @@ const BEFORE: [f64; 5] = [0.3, 0.5, 1.0, 3.0, 40.0];
 fn one_vertex_does_for_a_sharp_corner() {
     for band in BANDS {
         for before in BEFORE {
-            for turn in (61..=119).step_by(2) {
+            for turn in 60..=120 {
                 let motion = around(f64::from(turn), band, before * (band[0] + band[1]));
                 let sequence =
                     motion.unwrap_or_else(|failure| panic!("{turn} {band:?} {before}: {failure:?}"));

@@ -3,7 +3,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{Places, Stepper};
+use super::{Places, Stepper, exhaustive::LEAST_ONWARD};
 use crate::{
     clearance::Contact,
     directed::{
@@ -80,9 +80,14 @@ impl Stepper<'_> {
         others.contains(&true).then_some(SecondPlace { ahead, others })
     }
 
-    /// The next vertex along a second contact.
+    /// The next vertex along a second contact. Before the first vector the direction asked for alone tells the way: one nearly square to it may lead
+    /// across the bands against it, and is left to the sharp corners.
     pub(super) fn around(&mut self, corner: &Corner, here: &mut Vertex, cap: f64) -> Option<Vertex> {
+        let sets_out = self.last == Vec3::zeros();
         corner.directions.iter().skip(1).find_map(|tangent| {
+            if sets_out && tangent.dot(&here.tangent) < LEAST_ONWARD {
+                return None;
+            }
             let turned = Vertex { tangent: *tangent, ..*here };
             self.trend.forget();
             let next = self.onward(&turned, cap, Places::Limits).ok()?;

@@ -33,6 +33,8 @@ const SETTLED: f64 = 1e-3;
 const NEARER: f64 = 0.05;
 /// How many bands a vector is long that is to lead on.
 const WAY_ON: f64 = 4.0;
+/// Rounding of the cosine of the angle by which a corner turns the path.
+const ROUNDING: f64 = 1e-9;
 /// Share by which a vector into the corner is to be longer than the one that is known.
 const LONGER: f64 = 1e-3;
 
@@ -168,7 +170,8 @@ impl Stepper<'_> {
         let start = meeting(&ahead, [from.tip, at.tip, from.tip], place);
         let (ahead, _) = self.vertex_in(&Ahead { at: start, ..ahead }, place)?;
         let [first, second] = ahead.legs()?;
-        (first.dot(&from.tangent) > 0.0 && first.dot(&second) < LEAST_TURN_COSINE).then_some(ahead)
+        let is_sharp = first.dot(&second) <= LEAST_TURN_COSINE + ROUNDING;
+        (first.dot(&from.tangent) > 0.0 && is_sharp).then_some(ahead)
     }
 
     /// The role that turns and the other one.
