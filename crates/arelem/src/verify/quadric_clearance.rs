@@ -7,6 +7,7 @@
 
 mod bodies;
 mod bulge;
+mod hollow;
 
 use apt_geometry::Vec3;
 
@@ -33,8 +34,6 @@ const AZIMUTH_WIDTH: f64 = 1e-7;
 const PROVING_WIDTH: f64 = 1e-9;
 /// Parts of a patch that are looked at or left out as a whole.
 const PATCH_PIECES: u32 = 16;
-/// Arcs examined per circle by branch and bound; the gap left then is the error term.
-const ARC_BUDGET: usize = 400;
 
 /// A point of the tool with its distance on the tool's side.
 #[derive(Debug, Clone, Copy)]
@@ -332,80 +331,6 @@ impl Search<'_> {
         }
         self.offer(Candidate { value: value - radius, point: center - normal * radius, normal });
         Some(())
-    }
-
-    /// Takes into account how much nearer than the best candidate a circle could be for all that is known inside a convex hollow.
-    fn prove_circle(&mut self, p: Meridian, radius: f64) -> Option<()> {
-        let lowest = self.lowest_on_circle(p, radius, true)?;
-        self.gap = self.gap.max(self.best_value() - lowest);
-        Some(())
-    }
-
-    /// Inside a convex hollow no place of a circle is nearer than the best candidate or than this: the arc between two samples lies
-    /// in the triangle with the meeting point of its tangents, and a concave function is least at a corner of it. Places of a circle of the
-    /// tool are candidates.
-    fn lowest_on_circle(&mut self, p: Meridian, radius: f64, is_of_tool: bool) -> Option<f64> {
-        let (at_axis, _) = self.distance(&self.place([0.0, p[1]], 0.0))?;
-        if p[0] <= 0.0 {
-            return Some(at_axis - radius);
-        }
-        if at_axis - p[0] - radius >= self.best_value() {
-            return Some(f64::INFINITY);
-        }
-        let step = std::f64::consts::TAU / AZIMUTHS as f64;
-        let slack = 1e-12 * self.tool.profile.reach();
-        let mut arcs = Vec::with_capacity(2 * AZIMUTHS);
-        let mut least = f64::INFINITY;
-        for k in 0..AZIMUTHS {
-            let phi = step * k as f64;
-            let (first, is_told) = self.of_circle(p, phi, radius)?;
-            least = if is_told { least.min(first - radius) } else { least };
-            arcs.push((phi, first, step, self.on_circle(p, phi + step)?.0));
-        }
-        let mut lowest = f64::INFINITY;
-        let mut budget = ARC_BUDGET;
-        while let Some((phi, first, width, last)) = arcs.pop() {
-            let half = 0.5 * width;
-            let corner = [p[0] / half.cos(), p[1]];
-            let (at_corner, normal) = self.distance(&self.place(corner, phi + half))?;
-            let bound = first.min(last).min(at_corner) - radius;
-            let is_no_nearer = self.best_value() - bound <= slack;
-            if is_no_nearer || (radius > 0.0 && !self.fan_near(&normal, phi + half, half)) {
-                continue;
-            }
-            // Of a circle that is nearer no more is told than how near it is.
-            if budget == 0 || least - bound <= slack {
-                lowest = lowest.min(bound);
-                continue;
-            }
-            budget -= 1;
-            let (middle, is_told) = self.of_circle(p, phi + half, radius)?;
-            least = if is_told { least.min(middle - radius) } else { least };
-            if is_of_tool && middle - radius < self.best_value() {
-                self.accept(p, phi + half, radius)?;
-            }
-            arcs.push((phi, first, half, middle));
-            arcs.push((phi + half, middle, half, last));
-        }
-        Some(lowest)
-    }
-
-    /// The distance of a place of a circle, and whether the ball round it touches with a place of the corner: one that does not tells nothing of how
-    /// near the tool is.
-    fn of_circle(&self, p: Meridian, phi: f64, radius: f64) -> Option<(f64, bool)> {
-        let (value, normal) = self.distance(&self.place(p, phi))?;
-        Some((value, radius == 0.0 || self.fan_near(&normal, phi, 0.0)))
-    }
-
-    /// Whether a ball contact with about this normal could be on the corner arc.
-    fn fan_near(&self, normal: &Vec3, phi: f64, turn: f64) -> bool {
-        let height = -normal.dot(&self.tool.axis);
-        let outward = -normal.dot(&self.radial(phi));
-        let reach = turn + 1e-6;
-        [-reach, 0.0, reach].iter().any(|d| {
-            let (s, c) = d.sin_cos();
-            self.tool.profile.fan_holds([(outward * c - height * s).max(0.0), outward * s + height * c])
-        })
     }
 
     /// Searches those parts of a patch that could be nearer than the best contact: a part lies in a ball round a point of
