@@ -85,24 +85,16 @@ enum Manner {
     Followed,
 }
 
+/// Residuals and their gradients.
 #[derive(Clone, Copy)]
 struct Rows {
     residual: [f64; 3],
     normal: [Vec3; 3],
-    contacts: [Option<Contact>; 3],
     count: usize,
-    /// Whether every contact that is to be the nearest is known to be it.
-    is_proven: bool,
 }
 
 impl Rows {
-    const NONE: Self = Self {
-        residual: [0.0; 3],
-        normal: [Vec3::new(0.0, 0.0, 0.0); 3],
-        contacts: [None; 3],
-        count: 0,
-        is_proven: true,
-    };
+    const NONE: Self = Self { residual: [0.0; 3], normal: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0 };
 
     fn greatest(&self) -> (f64, usize) {
         let mut best = (0.0, 0);
@@ -112,6 +104,25 @@ impl Rows {
             }
         }
         best
+    }
+}
+
+/// A place on the way to a position. It is large, and there are many: it is filled where it is, not passed on.
+struct Place {
+    tip: Vec3,
+    rows: Rows,
+    contacts: [Option<Contact>; 3],
+    /// Whether every contact that is to be the nearest is known to be it.
+    is_proven: bool,
+}
+
+impl Place {
+    const NONE: Self =
+        Self { tip: Vec3::new(0.0, 0.0, 0.0), rows: Rows::NONE, contacts: [None; 3], is_proven: true };
+
+    /// The solution that it is after so many corrections.
+    fn solution(&self, corrections: u32) -> Solution {
+        Solution { tip: self.tip, corrections, contacts: self.contacts }
     }
 }
 
@@ -176,35 +187,46 @@ pub(crate) fn solve_unless(
     is_in_vain: &dyn Fn(&Vec3) -> bool,
 ) -> Result<Solution, Unsolved> {
     let search = Search { attitude, conditions, effort, is_in_vain, is_proven: Cell::new(true) };
+    let (mut here, mut next) = (Place::NONE, Place::NONE);
     let (mut from, mut made) = (*start, 0);
     for turn in 1..=effort.turns.max(1) {
-        let (found, is_proven) = search.newton(&from, Manner::Followed);
-        let solution = match found {
+        let mut way = Way { here: &mut here, next: &mut next };
+        let (found, is_proven) = search.newton(&from, &mut way, Manner::Followed);
+        let place = way.here;
+        match found {
             // A failure is one of the way from the start.
-            _ if is_proven && turn == 1 => return found,
-            Ok(solution) => solution,
+            _ if is_proven && turn == 1 => return found.map(|corrections| place.solution(corrections)),
+            Ok(corrections) => made += corrections,
             Err(unsolved) if turn == 1 && effort.is_one_of_many && search.is_known_at(&unsolved) => {
-                return found;
+                return Err(unsolved);
             }
             Err(_) => break,
-        };
-        made += solution.corrections;
-        if is_proven {
-            return Ok(Solution { corrections: made, ..solution });
         }
-        from = solution.tip;
-        let nearest = search.evaluate(&from, Manner::Proven);
-        let is_another = nearest.greatest().0 > ACCEPTABLE * size(attitude.tool(), &from);
+        if is_proven {
+            return Ok(place.solution(made));
+        }
+        from = place.tip;
+        search.evaluate(&from, Manner::Proven, &mut here);
+        let is_another = here.rows.greatest().0 > ACCEPTABLE * size(attitude.tool(), &from);
         // What is nearer there is followed in turn.
         if is_another && turn < effort.turns {
             continue;
         }
-        if let (Ok(proven), _) = search.newton_with(&from, nearest, Manner::Proven) {
-            return Ok(Solution { corrections: made + proven.corrections, ..proven });
+        let mut way = Way { here: &mut here, next: &mut next };
+        if let (Ok(corrections), _) = search.newton_with(&mut way, Manner::Proven) {
+            return Ok(way.here.solution(made + corrections));
         }
         break;
     }
-    search.newton(start, Manner::Proven).0
+    let mut way = Way { here: &mut here, next: &mut next };
+    let (found, _) = search.newton(start, &mut way, Manner::Proven);
+    found.map(|corrections| way.here.solution(corrections))
+}
+
+/// The place that a search has come to, and room for the next one.
+struct Way<'a> {
+    here: &'a mut Place,
+    next: &'a mut Place,
 }
 
 /// A search for a position.
@@ -218,99 +240,106 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What Newton's method finds, and whether contacts that need not be the nearest have no part in it.
-    fn newton(&self, start: &Vec3, manner: Manner) -> (Result<Solution, Unsolved>, bool) {
-        self.newton_with(start, self.evaluate(start, manner), manner)
+    /// With how many corrections Newton's method comes to a solution from a start, and whether contacts that need not be the nearest have no part in it.
+    fn newton(&self, start: &Vec3, way: &mut Way<'_>, manner: Manner) -> (Result<u32, Unsolved>, bool) {
+        self.evaluate(start, manner, way.here);
+        self.newton_with(way, manner)
     }
 
-    /// The same from what the start is like.
-    fn newton_with(
-        &self,
-        start: &Vec3,
-        mut rows: Rows,
-        manner: Manner,
-    ) -> (Result<Solution, Unsolved>, bool) {
+    /// The same from where it is known what it is like.
+    fn newton_with(&self, way: &mut Way<'_>, manner: Manner) -> (Result<u32, Unsolved>, bool) {
         let Self { attitude, effort: Effort { corrections, halvings, .. }, is_in_vain, .. } = *self;
         let unsolved = |unsolved: Unsolved| (Err(unsolved), manner == Manner::Proven || self.is_proven.get());
-        let mut tip = *start;
         for iteration in 0..corrections {
+            let Place { tip, ref rows, is_proven, .. } = *way.here;
             let (worst, row) = rows.greatest();
             let scale = size(attitude.tool(), &tip);
-            let solution = Solution { tip, corrections: iteration, contacts: rows.contacts };
             if worst <= RESOLUTION * scale {
                 // What was on the way does not matter where the end is proven.
-                return (Ok(solution), rows.is_proven);
+                return (Ok(iteration), is_proven);
             }
             if is_in_vain(&tip) {
                 return unsolved(Unsolved { residual: worst, row, tip, iterations: iteration });
             }
-            let step = correction(&rows);
-            let bounds = (halvings, manner);
-            let improved = self.improve((&tip, &rows), &step, bounds);
-            let improved = self.between_contacts((&tip, &rows), &step, improved, manner).or_else(|| {
-                // What has room in its band need not stay where it is in that.
-                let wrong = self.wrong_alone(&rows)?;
-                let step = correction(&wrong);
-                self.improve((&tip, &rows), &step, bounds).or_else(|| {
-                    let both = self.with_contact_ahead(wrong, &tip, &step, manner)?;
-                    self.improve((&tip, &rows), &correction(&both), bounds)
-                })
-            });
-            let Some((next, next_rows)) = improved else {
+            if !self.corrected(way, (halvings, manner)) {
                 if worst <= ACCEPTABLE * scale {
-                    return (Ok(solution), rows.is_proven);
+                    return (Ok(iteration), is_proven);
                 }
                 return unsolved(Unsolved { residual: worst, row, tip, iterations: iteration + 1 });
-            };
-            (tip, rows) = (next, next_rows);
+            }
+            std::mem::swap(&mut way.here, &mut way.next);
         }
+        let Place { tip, ref rows, is_proven, .. } = *way.here;
         let (residual, row) = rows.greatest();
         if residual <= ACCEPTABLE * size(attitude.tool(), &tip) {
-            return (Ok(Solution { tip, corrections, contacts: rows.contacts }), rows.is_proven);
+            return (Ok(corrections), is_proven);
         }
         unsolved(Unsolved { residual, row, tip, iterations: corrections })
     }
 
-    /// What a correction has led to, or, where that hardly helped, what leads to the contact before it and to the one after it at once, if that does
-    /// help: a tool that lies between two walls would be led from one to the other and back.
-    fn between_contacts(
-        &self,
-        (tip, rows): (&Vec3, &Rows),
-        step: &Vec3,
-        improved: Option<(Vec3, Rows)>,
-        manner: Manner,
-    ) -> Option<(Vec3, Rows)> {
-        let left = improved.map_or(rows.greatest().0, |(_, next)| next.greatest().0);
-        if left < HARDLY * rows.greatest().0 {
-            return improved;
+    /// Whether a correction leads on: to the next place.
+    fn corrected(&self, Way { here, next }: &mut Way<'_>, bounds: (u32, Manner)) -> bool {
+        let (_, manner) = bounds;
+        let step = correction(&here.rows);
+        let is_improved = self.improve(here, &step, bounds, next);
+        if self.between_contacts(here, &step, is_improved, manner, next) {
+            return true;
         }
-        let both = self.with_contact_ahead(*rows, tip, step, manner);
-        let between = both.and_then(|both| {
-            let next = tip + correction(&both);
-            let next_rows = self.evaluate(&next, manner);
-            (next_rows.greatest().0 < HARDLY * left).then_some((next, next_rows))
-        });
-        between.or(improved)
+        // What has room in its band need not stay where it is in that.
+        let Some(wrong) = self.wrong_alone(&here.rows) else { return false };
+        let step = correction(&wrong);
+        if self.improve(here, &step, bounds, next) {
+            return true;
+        }
+        let both = self.with_contact_ahead(wrong, &here.tip, &step, manner);
+        both.is_some_and(|both| self.improve(here, &correction(&both), bounds, next))
     }
 
-    /// The first of the step and its halves that reduces the greatest residual.
+    /// Whether the next place is better: what a correction has led to, if it has, or, where that hardly helped, what leads to the contact before it and
+    /// to the one after it at once, if that does help: a tool that lies between two walls would be led from one to the other and back.
+    fn between_contacts(
+        &self,
+        here: &Place,
+        step: &Vec3,
+        is_improved: bool,
+        manner: Manner,
+        next: &mut Place,
+    ) -> bool {
+        let worst = here.rows.greatest().0;
+        let left = if is_improved { next.rows.greatest().0 } else { worst };
+        if left < HARDLY * worst {
+            return is_improved;
+        }
+        let Some(both) = self.with_contact_ahead(here.rows, &here.tip, step, manner) else {
+            return is_improved;
+        };
+        let mut between = Place::NONE;
+        self.evaluate(&(here.tip + correction(&both)), manner, &mut between);
+        if between.rows.greatest().0 < HARDLY * left {
+            *next = between;
+            return true;
+        }
+        is_improved
+    }
+
+    /// Whether the step or one of its halves reduces the greatest residual: the first that does leads to the next place.
     fn improve(
         &self,
-        (tip, rows): (&Vec3, &Rows),
+        here: &Place,
         step: &Vec3,
         (halvings, manner): (u32, Manner),
-    ) -> Option<(Vec3, Rows)> {
-        let (worst, _) = rows.greatest();
+        next: &mut Place,
+    ) -> bool {
+        let (worst, _) = here.rows.greatest();
         let mut share = 1.0;
         for _ in 0..=halvings {
-            let next = tip + step * share;
-            let next_rows = self.evaluate(&next, manner);
-            if next_rows.greatest().0 < worst {
-                return Some((next, next_rows));
+            self.evaluate(&(here.tip + step * share), manner, next);
+            if next.rows.greatest().0 < worst {
+                return true;
             }
             share *= 0.5;
         }
-        None
+        false
     }
 
     /// The rows without those that are between their limits; `None` if there are no such.
@@ -333,7 +362,9 @@ impl Search<'_> {
         if wrong.count >= wrong.residual.len() {
             return None;
         }
-        let ahead = self.evaluate(&(tip + step), manner);
+        let mut place = Place::NONE;
+        self.evaluate(&(tip + step), manner, &mut place);
+        let ahead = &place.rows;
         let (_, row) = ahead.greatest();
         let (residual, normal) = (ahead.residual[row] - ahead.normal[row].dot(step), ahead.normal[row]);
         (wrong.residual[wrong.count], wrong.normal[wrong.count]) = (residual, normal);
@@ -343,14 +374,15 @@ impl Search<'_> {
 
     /// Whether what is left where a search ended is left of the nearest contacts there.
     fn is_known_at(&self, &Unsolved { residual, ref tip, .. }: &Unsolved) -> bool {
-        let nearest = self.evaluate(tip, Manner::Proven).greatest().0;
+        let mut place = Place::NONE;
+        self.evaluate(tip, Manner::Proven, &mut place);
+        let nearest = place.rows.greatest().0;
         (nearest - residual).abs() <= ACCEPTABLE * size(self.attitude.tool(), tip)
     }
 
-    fn evaluate(&self, tip: &Vec3, manner: Manner) -> Rows {
-        let rows = evaluate(self.attitude, self.conditions, tip, manner);
-        self.is_proven.set(self.is_proven.get() && rows.is_proven);
-        rows
+    fn evaluate(&self, tip: &Vec3, manner: Manner, place: &mut Place) {
+        evaluate(self.attitude, self.conditions, tip, manner, place);
+        self.is_proven.set(self.is_proven.get() && place.is_proven);
     }
 }
 
@@ -361,9 +393,10 @@ pub(crate) fn corrected(
     start: &Vec3,
     corrections: u32,
 ) -> Vec3 {
-    let mut tip = *start;
+    let (mut tip, mut place) = (*start, Place::NONE);
     for _ in 0..corrections {
-        let next = tip + correction(&evaluate(attitude, conditions, &tip, Manner::Proven));
+        evaluate(attitude, conditions, &tip, Manner::Proven, &mut place);
+        let next = tip + correction(&place.rows);
         if !next.iter().all(|x| x.is_finite()) {
             break;
         }
@@ -372,58 +405,65 @@ pub(crate) fn corrected(
     tip
 }
 
-/// Residuals and their gradients. Where the axis is not determined, where dependent normals lead nowhere, and once the tool's patience is
+/// What it is like at a place. Where the axis is not determined, where dependent normals lead nowhere, and once the tool's patience is
 /// over, the residuals are not numbers, and no step goes there.
-fn evaluate(attitude: &Attitude, conditions: &[Condition<'_>], tip: &Vec3, manner: Manner) -> Rows {
-    let mut rows = Rows { count: conditions.len().min(3), ..Rows::NONE };
-    let is_place = tip.iter().all(|x| x.is_finite()) && !attitude.tool().patience.was_over();
-    let Some(posture) = is_place.then(|| attitude.posture(tip).ok()).flatten() else {
-        rows.residual = [f64::NAN; 3];
-        return rows;
+fn evaluate(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    tip: &Vec3,
+    manner: Manner,
+    place: &mut Place,
+) {
+    let count = conditions.len().min(3);
+    let is_place =
+        [tip.x, tip.y, tip.z].iter().all(|x| x.is_finite()) && !attitude.tool().patience.was_over();
+    let nowhere = || {
+        let rows = Rows { residual: [f64::NAN; 3], count, ..Rows::NONE };
+        Place { tip: *tip, rows, ..Place::NONE }
     };
-    let contact = |gauge: &Gauge| match manner {
-        Manner::Proven => (posture.contact(gauge, tip), true),
-        Manner::Followed => posture.contact_followed(gauge, tip),
-    };
-    for (k, condition) in conditions.iter().take(3).enumerate() {
-        (rows.residual[k], rows.normal[k]) = match condition {
-            Condition::Clearance(gauge, target) => {
-                let (contact, is_proven) = contact(gauge);
-                rows.is_proven &= is_proven;
-                rows.contacts[k] = Some(contact);
-                (contact.clearance - target, contact.gradient)
-            }
-            Condition::Passing(gauge, target) => {
-                let (contact, is_found) = match manner {
-                    Manner::Proven => (posture.contact_passing(gauge, tip), true),
-                    Manner::Followed => posture.contact_passing_followed(gauge, tip),
-                };
-                rows.is_proven &= is_found;
-                rows.contacts[k] = Some(contact);
-                (contact.clearance - target, contact.gradient)
-            }
-            Condition::Between(gauge, [least, greatest]) => {
-                let (contact, is_proven) = contact(gauge);
-                rows.is_proven &= is_proven;
-                rows.contacts[k] = Some(contact);
-                // What lies between counts as it is.
-                (contact.clearance - contact.clearance.max(*least).min(*greatest), contact.gradient)
-            }
-            Condition::Plane(normal, distance) => (normal.dot(tip) - distance, *normal),
-        };
+    if !is_place {
+        *place = nowhere();
+        return;
     }
-    rows
+    let Ok(posture) = &attitude.posture(tip) else {
+        *place = nowhere();
+        return;
+    };
+    (place.tip, place.rows.count, place.is_proven) = (*tip, count, true);
+    for (k, condition) in conditions.iter().take(count).enumerate() {
+        let (gauge, [least, greatest], is_passed) = match *condition {
+            Condition::Clearance(gauge, wanted) => (gauge, [wanted; 2], false),
+            Condition::Passing(gauge, wanted) => (gauge, [wanted; 2], true),
+            Condition::Between(gauge, limits) => (gauge, limits, false),
+            Condition::Plane(normal, distance) => {
+                (place.rows.residual[k], place.rows.normal[k]) = (normal.dot(tip) - distance, normal);
+                place.contacts[k] = None;
+                continue;
+            }
+        };
+        let (contact, is_known) = match (manner, is_passed) {
+            (Manner::Proven, false) => (posture.contact(gauge, tip), true),
+            (Manner::Proven, true) => (posture.contact_passing(gauge, tip), true),
+            (Manner::Followed, false) => posture.contact_followed(gauge, tip),
+            (Manner::Followed, true) => posture.contact_passing_followed(gauge, tip),
+        };
+        // What lies between counts as it is.
+        place.rows.residual[k] = contact.clearance - contact.clearance.max(least).min(greatest);
+        place.rows.normal[k] = contact.gradient;
+        place.contacts[k] = Some(contact);
+        place.is_proven &= is_known;
+    }
 }
 
 /// The shortest correction for two residuals with their gradients.
 pub(crate) fn correction_of_two(residual: [f64; 2], normal: [Vec3; 2]) -> Vec3 {
     let ([ra, rb], [a, b]) = (residual, normal);
-    correction(&Rows { residual: [ra, rb, 0.0], normal: [a, b, Vec3::zeros()], count: 2, ..Rows::NONE })
+    correction(&Rows { residual: [ra, rb, 0.0], normal: [a, b, Vec3::zeros()], count: 2 })
 }
 
 /// The correction for three residuals with their gradients.
 pub(crate) fn correction_of_three(residual: [f64; 3], normal: [Vec3; 3]) -> Vec3 {
-    correction(&Rows { residual, normal, count: 3, ..Rows::NONE })
+    correction(&Rows { residual, normal, count: 3 })
 }
 
 /// `X = −Nᵀ (N Nᵀ)⁻¹ r`, damped when the normals are dependent.
