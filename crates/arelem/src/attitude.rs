@@ -137,34 +137,40 @@ impl<'a> Attitude<'a> {
 impl Posture<'_> {
     /// The contact with a surface; the gradient takes the turning of the axis into account and is then no unit vector.
     pub(crate) fn contact(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
-        self.with_turning(gauge, tip, gauge.contact(&self.tool, tip))
+        let mut contact = gauge.contact(&self.tool, tip);
+        self.turn(gauge, tip, &mut contact);
+        contact
     }
 
     /// The same as it is found without proof, for a place that is only passed through.
     pub(crate) fn contact_passing(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
-        self.with_turning(gauge, tip, gauge.contact_passing(&self.tool, tip))
+        let mut contact = gauge.contact_passing(&self.tool, tip);
+        self.turn(gauge, tip, &mut contact);
+        contact
     }
 
     /// [`Gauge::contact_passing_followed`] with the gradient of the law.
     pub(crate) fn contact_passing_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
-        let (contact, is_found) = gauge.contact_passing_followed(&self.tool, tip);
-        (self.with_turning(gauge, tip, contact), is_found)
+        let mut found = gauge.contact_passing_followed(&self.tool, tip);
+        self.turn(gauge, tip, &mut found.0);
+        found
     }
 
     /// The contact where the last one leads, and whether it is known to be the nearest.
     pub(crate) fn contact_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
-        let (contact, is_nearest) = gauge.contact_followed(&self.tool, tip);
-        (self.with_turning(gauge, tip, contact), is_nearest)
+        let mut found = gauge.contact_followed(&self.tool, tip);
+        self.turn(gauge, tip, &mut found.0);
+        found
     }
 
-    fn with_turning(&self, gauge: &Gauge, tip: &Vec3, mut contact: Contact) -> Contact {
+    /// Lets the gradient follow the law of the axis.
+    fn turn(&self, gauge: &Gauge, tip: &Vec3, contact: &mut Contact) {
         if let Some(rate) = &self.rate
             && !gauge.on
         {
             let arm = contact.tool - tip;
             contact.gradient += rate.transpose() * arm.cross(&contact.gradient).cross(&self.tool.axis);
         }
-        contact
     }
 }
 
@@ -181,6 +187,8 @@ pub(crate) struct Sweep<'a> {
     pub(crate) direction: Vec3,
     pub(crate) length: f64,
     axis: Vec3,
+    /// Whether it begins with the axis that the tool was given.
+    is_as_given: bool,
     /// Unit vector about which the axis turns, and by which angle.
     turn: Option<(Vec3, f64)>,
 }
@@ -197,7 +205,8 @@ impl<'a> Sweep<'a> {
         let normal = from.1.cross(to.1);
         let sine = normal.norm();
         let turn = (sine > NO_TURN).then(|| (normal / sine, sine.atan2(from.1.dot(to.1))));
-        Self { tool, from: *from.0, direction, length, axis: *from.1, turn }
+        let is_as_given = tool.has_axis(from.1);
+        Self { tool, from: *from.0, direction, length, axis: *from.1, is_as_given, turn }
     }
 
     /// The tool, with the axis that it was given.
@@ -213,7 +222,7 @@ impl<'a> Sweep<'a> {
     pub(crate) fn at(&self, x: f64) -> (Vec3, Cow<'_, Tool<'_>>) {
         let tip = self.from + self.direction * x;
         match self.turn {
-            None if self.axis == self.tool.axis => (tip, Cow::Borrowed(self.tool)),
+            None if self.is_as_given => (tip, Cow::Borrowed(self.tool)),
             None => (tip, Cow::Owned(self.tool.turned(self.axis))),
             Some((about, angle)) => {
                 let share = if self.length > 0.0 { x / self.length } else { 1.0 };

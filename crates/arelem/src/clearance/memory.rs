@@ -9,7 +9,13 @@ use std::cell::{Cell, RefCell};
 use apt_geometry::Vec3;
 
 use super::{
-    Contact, Tool, certify::Proof, crease::Spot, near::Contacts, quadric::Start, search::Courses, tool::Piece,
+    Contact, Tool,
+    certify::Proof,
+    crease::Spot,
+    near::Contacts,
+    quadric::Start,
+    search::Courses,
+    tool::{Piece, are_same},
 };
 
 /// How many times the last steps the tool may move before the bends are looked at again.
@@ -56,6 +62,12 @@ struct Known {
     /// How far the tool moved lately between two contacts.
     stride: f64,
     proof: Option<Proof>,
+}
+
+impl Known {
+    fn is_of(&self, tool: &Tool, side: f64) -> bool {
+        self.side == side && tool.has_axis(&self.axis)
+    }
 }
 
 /// Positions of which it is remembered what was shown there: the ends of a vector and of some that are tried, and places between.
@@ -144,15 +156,16 @@ impl Memory {
     /// Where contact was, if that was with the same axis on the same side.
     pub(super) fn place(&self, tool: &Tool, side: f64) -> Option<Place> {
         let known = self.known.try_borrow().ok()?;
-        known.as_ref().filter(|k| k.axis == tool.axis && k.side == side).map(|k| k.place)
+        known.as_ref().filter(|known| known.is_of(tool, side)).map(|known| known.place)
     }
 
-    /// Where contact was on another piece before, if the tool has moved little since.
-    pub(super) fn other_place(&self, tool: &Tool, side: f64, tip: &Vec3) -> Option<Place> {
+    /// The same, and where contact was on another piece before, if the tool has moved little since.
+    pub(super) fn places(&self, tool: &Tool, side: f64, tip: &Vec3) -> Option<(Place, Option<Place>)> {
         let known = self.known.try_borrow().ok()?;
-        let known = known.as_ref().filter(|k| k.axis == tool.axis && k.side == side)?;
-        let (place, at) = known.other?;
-        ((tip - at).norm() <= BACK * tool.radius()).then_some(place)
+        let known = known.as_ref().filter(|known| known.is_of(tool, side))?;
+        let is_near = |at: &Vec3| (tip - at).norm() <= BACK * tool.radius();
+        let other = known.other.as_ref().filter(|(_, at)| is_near(at)).map(|(place, _)| *place);
+        Some((known.place, other))
     }
 
     /// Keeps what a contact was shown to be in a position.
@@ -165,7 +178,12 @@ impl Memory {
 
     /// Whether a contact in exactly this position was shown to be at least a level.
     pub(super) fn has_shown(&self, axis: &Vec3, side: f64, tip: &Vec3, level: f64) -> bool {
-        let is_there = |s: &Shown| s.tip == *tip && s.axis == *axis && s.side == side && s.level >= level;
+        let is_there = |shown: &Shown| {
+            shown.level >= level
+                && shown.side == side
+                && are_same(&shown.tip, tip)
+                && are_same(&shown.axis, axis)
+        };
         self.shown.try_borrow().is_ok_and(|shown| shown.1.iter().flatten().any(is_there))
     }
 

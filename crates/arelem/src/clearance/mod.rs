@@ -221,13 +221,14 @@ impl Gauge {
     fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
         let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
-        let (mut contact, missed) = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
+        let mut found = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
+        let (contact, missed) = &mut found;
         // Without anything missed it is known otherwise, or the nearest of a family only.
-        if missed > 0.0 && missed.is_finite() {
-            memory.remember_level(&tool.axis, *side, &tip, contact.clearance - missed);
+        if *missed > 0.0 && missed.is_finite() {
+            memory.remember_level(&tool.axis, *side, &tip, contact.clearance - *missed);
         }
         contact.clearance -= thickness;
-        (contact, missed)
+        found
     }
 
     /// Whether the clearance is nowhere on the tool below a level; the contact that was found there tells where to look first.

@@ -89,17 +89,22 @@ pub(super) fn contact(
     tip: &Vec3,
     memory: &Memory,
 ) -> Option<(Contact, f64)> {
-    let place = memory.place(tool, side)?;
-    let scene = Scene::new(tool, surface, side, tip)?;
-    let near = |place: Place| {
-        Some((place.piece, scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool))?))
+    let (last, other) = memory.places(tool, side, tip)?;
+    // Large, and so not moved out of where it was made.
+    let Some(scene) = &Scene::new(tool, surface, side, tip) else { return None };
+    let near = |place: &Place| scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool));
+    let (there, elsewhere) = (near(&last), other.as_ref().and_then(near));
+    let (place, touch) = match (&there, &other, &elsewhere) {
+        (Some(there), Some(other), Some(elsewhere))
+            if elsewhere.contact.clearance.total_cmp(&there.contact.clearance).is_lt() =>
+        {
+            (other, elsewhere)
+        }
+        (Some(there), ..) => (&last, there),
+        (None, Some(other), Some(elsewhere)) => (other, elsewhere),
+        (None, ..) => return None,
     };
-    let found = [near(place), memory.other_place(tool, side, tip).and_then(near)];
-    let nearest = |(_, a): &(usize, Touch), (_, b): &(usize, Touch)| {
-        a.contact.clearance.total_cmp(&b.contact.clearance)
-    };
-    let (piece, touch) = found.into_iter().flatten().min_by(nearest)?;
-    scene.proven(piece, &touch, Some(memory))
+    scene.proven(place.piece, touch, Some(memory))
 }
 
 /// The contact on whichever part of the tool it is, if that is proven; and how much nearer another point may be.
@@ -160,7 +165,7 @@ struct Scene<'a> {
 /// How contacts are found and proven.
 enum Means<'a> {
     /// The tool outside a cylinder or cone.
-    Round(Round),
+    Round(Round<'a>),
     /// The tool outside any other convex solid.
     Convex(Posed<'a>),
     /// Anything else.
@@ -170,13 +175,13 @@ enum Means<'a> {
 impl<'a> Scene<'a> {
     /// `None` for surfaces that are no quadrics.
     fn new(tool: &'a Tool<'a>, surface: &'a Surface, side: f64, tip: &'a Vec3) -> Option<Self> {
+        let scene = |means: Means<'a>| Self { tool, surface, side, tip, means };
         let convex = shape(surface, side) == Shape::Convex;
-        let means = match Round::new(surface) {
-            Some(round) if convex => Means::Round(round),
-            _ if convex => Means::Convex(Posed::new(tool, surface, side, tip)?),
-            _ => Means::General(Posed::new(tool, surface, side, tip)?),
-        };
-        Some(Self { tool, surface, side, tip, means })
+        match Round::new(surface) {
+            Some(round) if convex => Some(scene(Means::Round(round))),
+            _ if convex => Some(scene(Means::Convex(Posed::new(tool, surface, side, tip)?))),
+            _ => Some(scene(Means::General(Posed::new(tool, surface, side, tip)?))),
+        }
     }
 
     /// The contact on a piece of the tool, near the last one (from the tool end) and a start, if it is a way out.

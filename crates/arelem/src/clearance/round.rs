@@ -24,23 +24,23 @@ const ROUNDING: f64 = 1e-12;
 
 /// A solid from which the distance of a point outside is `cosine · ρ − sine · z − radius`, ρ being its distance from the axis
 /// and z that along it.
-pub(super) struct Round {
-    origin: Vec3,
-    axis: Vec3,
+pub(super) struct Round<'a> {
+    origin: &'a Vec3,
+    axis: &'a Vec3,
     cosine: f64,
     sine: f64,
     radius: f64,
 }
 
-impl Round {
+impl<'a> Round<'a> {
     /// `None` for surfaces that are neither cylinders nor cones.
-    pub(super) fn new(surface: &Surface) -> Option<Self> {
+    pub(super) fn new(surface: &'a Surface) -> Option<Self> {
         match surface {
             Surface::Cylinder(c) => {
-                Some(Self { origin: c.point, axis: c.axis, cosine: 1.0, sine: 0.0, radius: c.radius })
+                Some(Self { origin: &c.point, axis: &c.axis, cosine: 1.0, sine: 0.0, radius: c.radius })
             }
             Surface::Cone(c) => {
-                Some(Self { origin: c.vertex, axis: c.axis, cosine: c.cosine, sine: c.sine, radius: 0.0 })
+                Some(Self { origin: &c.vertex, axis: &c.axis, cosine: c.cosine, sine: c.sine, radius: 0.0 })
             }
             _ => None,
         }
@@ -62,7 +62,7 @@ impl Round {
         let radius = circle.radius;
         let center = tip + tool.axis * circle.height - self.origin;
         let [u, v] = &tool.across;
-        let [along, ua, va] = [&center, u, v].map(|w| w.dot(&self.axis));
+        let [along, ua, va] = [&center, u, v].map(|w| w.dot(self.axis));
         let aside = center - self.axis * along;
         let (first, second) = (radius * aside.dot(u), radius * aside.dot(v));
         let square = aside.norm_squared() + 0.5 * radius * radius * (2.0 - ua * ua - va * va);
@@ -144,7 +144,7 @@ impl Round {
 
     fn made(&self, tool: &Tool, center: Vec3, circle: &Circle, direction: [f64; 2]) -> Option<Touch> {
         let place = center + (tool.across[0] * direction[0] + tool.across[1] * direction[1]) * circle.radius;
-        let along = place.dot(&self.axis);
+        let along = place.dot(self.axis);
         let aside = place - self.axis * along;
         let rho = aside.norm();
         let distance = self.cosine * rho - self.sine * along - self.radius;

@@ -148,6 +148,12 @@ impl<'a> Tool<'a> {
         Self { axis, across: [x, axis.cross(&x)], ..self.clone() }
     }
 
+    /// Whether it has exactly this axis.
+    #[inline]
+    pub(crate) fn has_axis(&self, axis: &Vec3) -> bool {
+        are_same(&self.axis, axis)
+    }
+
     /// Radius of a ball that the body holds: one in the cone on its widest circle to the end of the axis that is farther from that.
     pub(crate) fn held_ball(&self) -> f64 {
         let (radius, height) = (self.widest, 0.5 * self.profile.top.height);
@@ -201,6 +207,12 @@ impl<'a> Tool<'a> {
         let square = direction.and_then(|direction| direction.try_normalize(ALONG_AXIS));
         (along, across, square.unwrap_or(self.across[0]))
     }
+}
+
+/// Whether two vectors are the same, number by number.
+#[inline]
+pub(super) fn are_same(a: &Vec3, b: &Vec3) -> bool {
+    a.x == b.x && a.y == b.y && a.z == b.z
 }
 
 fn pieces(profile: &Profile) -> Vec<Piece> {
