@@ -5,6 +5,8 @@
 mod filled;
 mod readings;
 
+use std::collections::VecDeque;
+
 use apt_geometry::{Vec3, surface::Surface};
 
 use self::filled::{Filled, Limits};
@@ -112,7 +114,7 @@ pub(crate) struct Record {
     /// What is not taken back any more.
     settled: Bent,
     /// The vectors since then.
-    recent: Vec<Vector>,
+    recent: VecDeque<Vector>,
     limits: Limits,
 }
 
@@ -123,23 +125,25 @@ impl Record {
     /// A path that begins at a position, and MAXDP.
     pub(crate) fn new(from: &Vec3, roles: [&Working; 2], maximum_step: f64) -> Self {
         let limits = Limits::new(roles, maximum_step);
-        Self { settled: Bent::none(from), recent: Vec::with_capacity(KEPT), limits }
+        Self { settled: Bent::none(from), recent: VecDeque::with_capacity(KEPT), limits }
     }
 
     /// A vector from one position to the next, and what has been read of both clearances along it.
-    pub(crate) fn add(&mut self, (from, to): (&Vec3, &Vec3), readings: [Readings; 2]) {
+    pub(crate) fn add(&mut self, (from, to): (&Vec3, &Vec3), readings: &[Readings; 2]) {
         if let Some(known) = self.recent.iter().rposition(|vector| vector.to == *from) {
             // What led on from there has been taken back.
             self.recent.truncate(known + 1);
         } else if self.settled.to == *from {
             self.recent.clear();
         }
-        if self.recent.len() >= KEPT {
-            let Vector { to, readings: [part, drive] } = self.recent.remove(0);
-            self.settled.filled.add([&part, &drive], &self.limits);
-            self.settled.to = to;
+        if self.recent.len() >= KEPT
+            && let Some(Vector { to, readings: [part, drive] }) = self.recent.front()
+        {
+            self.settled.filled.add([part, drive], &self.limits);
+            self.settled.to = *to;
+            self.recent.pop_front();
         }
-        self.recent.push(Vector { to: *to, readings });
+        self.recent.push_back(Vector { to: *to, readings: *readings });
     }
 
     /// What is known of a path with these positions.

@@ -75,7 +75,7 @@ pub(super) struct Event {
 pub(super) struct Watcher<'a> {
     prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
-    watches: Vec<Watch>,
+    watches: Rc<[Watch]>,
     /// Positions met so far, with any relation.
     pub(super) met: usize,
     /// Least distance from a relation, where and of which check surface.
@@ -91,13 +91,13 @@ impl<'a> Watcher<'a> {
         let mut watcher = Self {
             prepared,
             checks,
-            watches: Vec::new(),
+            watches: Rc::new([]),
             met: 0,
             nearest: (f64::INFINITY, prepared.tip, 0),
             thorough: false,
             memories: checks.iter().map(|_| Default::default()).collect(),
         };
-        for (index, check) in checks.iter().enumerate() {
+        let watch = |(index, check): (usize, &CheckSurface)| {
             let value = if is_tangent(check.relation) {
                 f64::INFINITY
             } else {
@@ -112,8 +112,9 @@ impl<'a> Watcher<'a> {
             } else {
                 Status::Inside
             };
-            watcher.watches.push(Watch { status, count: 0, quiet: (prepared.tip, 0.0), falling: false });
-        }
+            Watch { status, count: 0, quiet: (prepared.tip, 0.0), falling: false }
+        };
+        watcher.watches = checks.iter().enumerate().map(watch).collect();
         watcher
     }
 
@@ -188,7 +189,7 @@ impl<'a> Watcher<'a> {
         if first.is_none() {
             for (index, next) in after {
                 self.met += (next.count - self.watches[index].count) as usize;
-                self.watches[index] = next;
+                Rc::make_mut(&mut self.watches)[index] = next;
             }
         }
         first

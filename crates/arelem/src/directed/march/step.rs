@@ -15,6 +15,8 @@ mod sharp_corner;
 mod trend;
 mod window;
 
+use std::ops::{Deref, DerefMut};
+
 use apt_geometry::{Vec3, patience::Patience};
 
 use self::{hand::Hand, overlong::Overlong, trend::Trend};
@@ -111,8 +113,27 @@ struct Arrival {
     tangent: Vec3,
 }
 
+/// A vector that has been tried. It goes through many hands, so what is told of it stays where it was written.
 #[derive(Clone)]
-struct Trial {
+struct Trial(Box<Tried>);
+
+impl Deref for Trial {
+    type Target = Tried;
+
+    fn deref(&self) -> &Tried {
+        &self.0
+    }
+}
+
+impl DerefMut for Trial {
+    fn deref_mut(&mut self) -> &mut Tried {
+        &mut self.0
+    }
+}
+
+/// What is told of a vector that has been tried.
+#[derive(Clone)]
+struct Tried {
     vertex: Vertex,
     length: f64,
     /// Second derivative of each clearance along the vector, on average.
@@ -176,11 +197,15 @@ impl<'a> Stepper<'a> {
         self.straight = in_corner.map(|(_, straight)| straight);
         self.hand.arrive(here);
         if let Some(next) = self.beyond_sharply(here, cap)? {
-            return self.noted(here, Ok(next));
+            self.note(here, &next);
+            return Ok(next);
         }
         self.kept_hand = self.hand_between_corners(here);
         let found = self.along_tangent(here, cap);
         self.kept_hand = None;
+        if let Ok(next) = &found {
+            self.note(here, next);
+        }
         found
     }
 
@@ -188,31 +213,27 @@ impl<'a> Stepper<'a> {
     fn along_tangent(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
-            Ok(next) => {
-                let next = self.in_sharp_corner(here, cap).unwrap_or(next);
-                return self.noted(here, Ok(next));
-            }
-            found => return self.noted(here, found),
+            Ok(next) => return Ok(self.in_sharp_corner(here, cap).unwrap_or(next)),
+            cancelled => return cancelled,
         };
         let corner = self.corner_at(here);
         if let Some(next) = self.around(&corner, here, cap) {
-            return self.noted(here, Ok(next));
+            return Ok(next);
         }
         if let Some(next) = self.in_sharp_corner(here, cap) {
-            return self.noted(here, Ok(next));
+            return Ok(next);
         }
         if let Some(next) = self.around_sharply(&corner.places, here, cap)? {
-            return self.noted(here, Ok(next));
+            return Ok(next);
         }
         // Where the path bends tightly the way from one limit of the bands to the other is too steep: then level.
         self.trend.forget();
         let level = self.onward(here, cap, Places::Level);
         if matches!(level, Ok(_) | Err(MotionFailure::Cancelled)) {
-            return self.noted(here, level);
+            return level;
         }
         let next = self.anywhere_onward(&corner, here, cap)?;
-        let found = next.ok_or_else(|| corner.explained(self.prepared, here, failure));
-        self.noted(here, found)
+        next.ok_or_else(|| corner.explained(self.prepared, here, failure))
     }
 
     /// Where the path has just turned by more than a right angle: a vector straight on, as far as the bands allow.
@@ -233,20 +254,13 @@ impl<'a> Stepper<'a> {
     }
 
     /// Remembers the direction of a vector.
-    fn noted(
-        &mut self,
-        here: &Vertex,
-        found: Result<Vertex, MotionFailure>,
-    ) -> Result<Vertex, MotionFailure> {
-        if let Ok(next) = &found {
-            self.hand.follow(here, next);
-            self.last = next.tip - here.tip;
-            if !self.is_where_it_arrived(&next.tip) {
-                let (vector, tangent) = (self.last, arrival(here, next));
-                self.arrived = Some(Arrival { at: next.tip, vector, tangent });
-            }
+    fn note(&mut self, here: &Vertex, next: &Vertex) {
+        self.hand.follow(here, next);
+        self.last = next.tip - here.tip;
+        if !self.is_where_it_arrived(&next.tip) {
+            let (vector, tangent) = (self.last, arrival(here, next));
+            self.arrived = Some(Arrival { at: next.tip, vector, tangent });
         }
-        found
     }
 
     fn bands(&self) -> f64 {
@@ -340,13 +354,15 @@ impl<'a> Stepper<'a> {
             self.trend.forget();
         }
         self.longest = self.longest.max(found.length);
-        self.note_bend(from, &found.vertex.tip, found.readings);
+        if !self.prepared.attitude.turns() {
+            self.record.add((from, &found.vertex.tip), &found.readings);
+        }
     }
 
     /// Notes what has been read along a vector; the least number of vectors is told while the axis keeps its direction.
     fn note_bend(&mut self, from: &Vec3, to: &Vec3, readings: [Readings; 2]) {
         if !self.prepared.attitude.turns() {
-            self.record.add((from, to), readings);
+            self.record.add((from, to), &readings);
         }
     }
 

@@ -174,8 +174,8 @@ pub(super) struct Watch<'a> {
     prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
     patience: Patience<'a>,
-    counts: Vec<u32>,
-    approaches: Vec<Approach>,
+    counts: Rc<[u32]>,
+    approaches: Rc<[Approach]>,
     sides: Rc<[Sides]>,
     /// Tangencies met so far.
     pub(super) met: usize,
@@ -192,7 +192,8 @@ impl<'a> Watch<'a> {
         checks: &'a [CheckSurface],
         patience: Patience<'a>,
     ) -> Self {
-        let (counts, approaches) = (vec![0; checks.len()], vec![Approach::default(); checks.len()]);
+        let counts = checks.iter().map(|_| 0).collect();
+        let approaches = checks.iter().map(|_| Approach::default()).collect();
         let sides = prepared.checks.iter().map(Sides::of).collect();
         let (nearest, check, along) = (f64::INFINITY, 0, None);
         Self { prepared, checks, patience, counts, approaches, sides, met: 0, nearest, check, along }
@@ -264,7 +265,7 @@ impl<'a> Watch<'a> {
                 None => self.touch_before(index, &approach, [&here, &next], reach + step)?,
             };
             if let Some(tangency) = tangency {
-                self.counts[index] += 1;
+                Rc::make_mut(&mut self.counts)[index] += 1;
                 self.met += 1;
                 if self.counts[index] >= self.checks[index].occurrence.max(1) {
                     return Ok(Some(tangency));
@@ -277,7 +278,7 @@ impl<'a> Watch<'a> {
                 None => approach.go_on(last, &here),
             }
         }
-        self.approaches[index] = approach;
+        Rc::make_mut(&mut self.approaches)[index] = approach;
         Ok(None)
     }
 

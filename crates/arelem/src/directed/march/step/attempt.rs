@@ -3,7 +3,7 @@
 use apt_geometry::{Vec3, surface::Surface};
 
 use super::{
-    CORNER_BANDS, GREATEST_GROWTH, LEAST_VECTOR, Stepper, Trial, along_arc,
+    CORNER_BANDS, GREATEST_GROWTH, LEAST_VECTOR, Stepper, Trial, Tried, along_arc,
     sag::{growth, sagging},
 };
 use crate::{
@@ -110,11 +110,14 @@ impl Stepper<'_> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions =
             [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
-        let Solution { tip, contacts, .. } =
-            position::try_within(attitude, &conditions, start, CORRECTIONS).ok()?;
-        let [Some(part), Some(drive), _] = contacts else { return None };
-        let axis = attitude.tool_at(&tip).ok()?.axis;
-        Some(Vertex { tip, axis, part, drive, tangent: tangent(&part, &drive, &here.tangent) })
+        let Ok(Solution { tip, contacts: [Some(part), Some(drive), _], .. }) =
+            &position::try_within(attitude, &conditions, start, CORRECTIONS)
+        else {
+            return None;
+        };
+        let axis = attitude.tool_at(tip).ok()?.axis;
+        let tangent = tangent(part, drive, &here.tangent);
+        Some(Vertex { tip: *tip, axis, part: *part, drive: *drive, tangent })
     }
 
     /// How long a vector may be that rounds a corner. The path has one over the vertex of a cone, and, while the axis stands
@@ -133,7 +136,7 @@ impl Stepper<'_> {
     pub(super) fn judge(
         &self,
         here: &Vertex,
-        vertex: Vertex,
+        mut vertex: Vertex,
         bends: &[Bend; 2],
         least: LeastCosines,
     ) -> Option<Trial> {
@@ -148,7 +151,7 @@ impl Stepper<'_> {
         {
             return None;
         }
-        let mut vertex = Vertex { tangent: tangent(&vertex.part, &vertex.drive, &chord), ..vertex };
+        vertex.tangent = tangent(&vertex.part, &vertex.drive, &chord);
         // Where the path turns by about a right angle at the end of a bend the vector does not tell which way it goes on.
         if vertex.tangent.dot(&chord) < NEARLY_SQUARE * reached {
             vertex.tangent = tangent(&vertex.part, &vertex.drive, &along_arc(here, &chord));
@@ -165,7 +168,7 @@ impl Stepper<'_> {
             }
         }
         let course = self.course(here, &vertex, &direction, &curvature);
-        let mut trial = Trial {
+        let mut trial = Trial(Box::new(Tried {
             vertex,
             length: reached,
             curvature,
@@ -176,10 +179,10 @@ impl Stepper<'_> {
             growth: GREATEST_GROWTH,
             is_at_corner: false,
             proven: extremes.iter().all(|e| e.proven),
-            readings: extremes.map(|extremes| extremes.readings),
+            readings: [extremes[0].readings, extremes[1].readings],
             culprit: 0,
             worst: 0.0,
-        };
+        }));
         for (k, role) in self.roles().iter().enumerate() {
             let growth = growth(role, &extremes[k], ends[k]);
             if growth < trial.growth {

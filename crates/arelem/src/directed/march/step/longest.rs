@@ -169,7 +169,7 @@ impl Stepper<'_> {
             }
         }
         self.end_at_corner(here, places, &mut search);
-        self.found(here, search)
+        self.found(here, &mut search)
     }
 
     /// Lets the longest vector that is proven end at a corner that is left beyond it.
@@ -213,11 +213,13 @@ impl Stepper<'_> {
     }
 
     /// The longest vector that has been found, or why there is none.
-    fn found(&self, here: &Vertex, search: Search) -> Result<Trial, MotionFailure> {
-        let Search { best, corners, culprit, .. } = search;
+    fn found(&self, here: &Vertex, search: &mut Search) -> Result<Trial, MotionFailure> {
         let tip = here.tip;
-        match (best, culprit) {
-            (Some((trial, _)), _) => Ok(Trial { is_at_corner: corners.is_met, ..trial }),
+        match (search.best.take(), search.culprit) {
+            (Some((mut trial, _)), _) => {
+                trial.is_at_corner = search.corners.is_met;
+                Ok(trial)
+            }
             (None, Some((culprit, clearance))) if clearance != 0.0 => {
                 let role = self.roles()[culprit].name;
                 Err(MotionFailure::NoAdmissibleVector { role, clearance, tip })
