@@ -66,13 +66,15 @@ impl Filled {
         let Self { vectors, length: covered, last, bent } = self;
         let bent =
             bent.get_or_insert_with(|| [0, 1].map(|k| Strand::from_start(readings[k], limits.bands[k])));
-        let along = [0, 1].map(|k| Turns::of(readings[k], limits.bands[k]));
+        let ([part, drive], [for_part, for_drive]) = (readings, limits.bands);
+        let (part, drive) = (Turns::of(part, for_part), Turns::of(drive, for_drive));
+        let along = [&part, &drive];
         let length = readings[0].length();
         let mut full = (*covered + length > limits.longest).then_some(limits.longest - *covered);
         // The surface that fills the vector: along the other one it is not known where another vector would have come to.
         let mut by = None;
         for (k, strand) in bent.iter_mut().enumerate() {
-            if let Some(x) = strand.full(&along[k], limits.bands[k], full.unwrap_or(length)) {
+            if let Some(x) = strand.full(along[k], limits.bands[k], full.unwrap_or(length)) {
                 (full, by) = (Some(x), Some(k));
             }
         }
@@ -82,7 +84,7 @@ impl Filled {
             (*last, *covered) = (*covered + begin, 0.0);
             for (k, strand) in bent.iter_mut().enumerate() {
                 if by == Some(k) {
-                    strand.begin_beyond(&along[k], limits.bands[k], begin);
+                    strand.begin_beyond(along[k], limits.bands[k], begin);
                 } else {
                     strand.begin();
                 }
@@ -90,7 +92,7 @@ impl Filled {
         }
         *covered += length - begin;
         for (k, strand) in bent.iter_mut().enumerate() {
-            strand.extend(&along[k], limits.bands[k], begin);
+            strand.extend(along[k], limits.bands[k], begin);
         }
     }
 

@@ -14,9 +14,18 @@ pub(super) struct Widest {
     pub(super) across: Point,
 }
 
+/// Points for which there is room in a hull that begins: of a stretch there are hardly more.
+const ROOM: usize = 64;
+
 /// The upper or lower part of the hull of points in order of their places.
 pub(super) fn chain<'a>(points: impl IntoIterator<Item = &'a Point>, side: f64) -> Vec<Point> {
-    let mut hull: Vec<Point> = Vec::new();
+    let mut hull = Vec::with_capacity(ROOM);
+    lengthen(&mut hull, points, side);
+    hull
+}
+
+/// Lengthens such a part by points beyond its last one: what those before them hide stays hidden.
+pub(super) fn lengthen<'a>(hull: &mut Vec<Point>, points: impl IntoIterator<Item = &'a Point>, side: f64) {
     for point in points {
         while let [.., a, b] = hull[..]
             && side * ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) >= 0.0
@@ -25,7 +34,6 @@ pub(super) fn chain<'a>(points: impl IntoIterator<Item = &'a Point>, side: f64) 
         }
         hull.push(*point);
     }
-    hull
 }
 
 /// The greatest height of the upper part above the lower one where there are both, which is twice what the nearest line is away from the

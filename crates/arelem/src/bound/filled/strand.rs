@@ -10,7 +10,7 @@
 use super::{
     super::readings::Readings,
     WIDER,
-    hull::{Point, Widest, chain, widest, widest_from},
+    hull::{Point, Widest, chain, lengthen, widest, widest_from},
     room,
     steady::{Steady, Turns, share_of},
 };
@@ -28,6 +28,9 @@ const CLOSELY: f64 = 1e-3;
 const MOST_STEADILY: usize = 8;
 /// Share of a vector by which one is more than full by rounding alone.
 const ROUNDING: f64 = 1e-9;
+
+/// Upper and lower part of the hull of the points of a stretch.
+type Hull = [Vec<Point>; 2];
 
 /// What bounds a line where the stretch before it ended.
 #[derive(Debug, Clone)]
@@ -119,10 +122,9 @@ impl Strand {
 
     /// The window where this stretch is full.
     fn window_at(&self, readings: &Readings, band: [f64; 2], x: f64) -> Option<Window> {
-        let mut points = self.points.clone();
-        points.extend(self.ahead(readings, band, [0.0, x]));
-        let full = *points.last()?;
-        let (room, [upper, lower]) = (room(band)?, self.hull(&points));
+        let ahead = self.ahead(readings, band, [0.0, x]);
+        let full = *ahead.last()?;
+        let (room, [upper, lower]) = (room(band)?, with_points(&self.hull(), &ahead));
         let Widest { height, corner, side, across } = self.widest(&upper, &lower)?;
         if across[0] < full[0] {
             return None;
@@ -140,12 +142,13 @@ impl Strand {
         Some(Window { side, points: within.map(as_seen_beyond).collect() })
     }
 
-    /// Upper and lower part of the hull of points, with those of the window.
-    fn hull(&self, points: &[Point]) -> [Vec<Point>; 2] {
-        [1.0, -1.0].map(|side| {
+    /// Upper and lower part of the hull of its points, with those of the window.
+    fn hull(&self) -> Hull {
+        let part = |side: f64| {
             let window = self.window.iter().filter(|window| window.side == side);
-            chain(window.flat_map(|window| &window.points).chain(points), side)
-        })
+            chain(window.flat_map(|window| &window.points).chain(&self.points), side)
+        };
+        [part(1.0), part(-1.0)]
     }
 
     /// Where a line is hindered most.
@@ -156,18 +159,17 @@ impl Strand {
         }
     }
 
-    /// What points fill of a vector, which covers all that some straight line is near to: by the square of its length on a parabola, so that
+    /// What so many points fill of a vector, which covers all that some straight line is near to: by the square of its length on a parabola, so that
     /// this is the integral of √(κ/8τ) there.
-    fn share(&self, points: &[Point], band: [f64; 2]) -> f64 {
-        let Some(room) = room(band).filter(|_| points.len() > 2) else { return 0.0 };
-        let [upper, lower] = self.hull(points);
+    fn share(&self, [upper, lower]: &Hull, count: usize, band: [f64; 2]) -> f64 {
+        let Some(room) = room(band).filter(|_| count > 2) else { return 0.0 };
         let whole = if self.start.is_some() { 1.0 } else { room };
-        self.widest(&upper, &lower).map_or(0.0, |widest| (widest.height.max(0.0) / whole).sqrt())
+        self.widest(upper, lower).map_or(0.0, |widest| (widest.height.max(0.0) / whole).sqrt())
     }
 
     /// What is filled.
     pub(super) fn filled(&self, band: [f64; 2]) -> f64 {
-        self.steady.map_or_else(|| self.share(&self.points, band), |steady| steady.share)
+        self.steady.map_or_else(|| self.share(&self.hull(), self.points.len(), band), |steady| steady.share)
     }
 
     /// What is filled while it bends steadily and no window hinders it.
@@ -178,44 +180,26 @@ impl Strand {
         side.is_none_or(|side| with.agrees(side)).then_some(with)
     }
 
-    /// The same with the next vector until a place of it.
-    fn filled_until(&self, along: &Turns<'_>, band: [f64; 2], x: f64) -> f64 {
-        if let Some(with) = self.steady_with(along, [0.0, x]) {
-            return with.share;
-        }
-        let mut points = self.points.clone();
-        points.extend(self.ahead(along.readings, band, [0.0, x]));
-        self.share(&points, band)
+    /// What is filled with the next vector until a place of it, as points tell.
+    fn filled_until(&self, hull: &Hull, along: &Turns<'_>, band: [f64; 2], x: f64) -> f64 {
+        let ahead = self.ahead(along.readings, band, [0.0, x]);
+        self.share(&with_points(hull, &ahead), self.points.len() + ahead.len(), band)
     }
 
     /// The place of the next vector before another one at which the stretch is full.
     pub(super) fn full(&mut self, along: &Turns<'_>, band: [f64; 2], until: f64) -> Option<f64> {
-        let with = self.steady_with(along, [0.0, until]);
-        let reached = with.map_or_else(
-            || {
-                self.settle(band);
-                self.filled_until(along, band, until)
-            },
-            |with| with.share,
-        );
-        let (mut low, mut high) = ([0.0, self.filled(band)], [until, reached]);
-        if high[1] <= 1.0 + ROUNDING {
-            return None;
+        if let Some(with) = self.steady_with(along, [0.0, until]) {
+            let filled = [self.steady.map_or(0.0, |steady| steady.share), with.share];
+            // A part of what bends steadily does so, too.
+            let filled_until =
+                |x: f64| self.steady_with(along, [0.0, x]).map_or(with.share, |with| with.share);
+            return full_between(filled, until, filled_until);
         }
-        for _ in 0..MOST_LOOKS {
-            let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
-            let x = low[0] + (high[0] - low[0]) * part;
-            let found = [x, self.filled_until(along, band, x)];
-            if (found[1] - 1.0).abs() <= CLOSELY {
-                return Some(x);
-            }
-            if found[1] > 1.0 {
-                high = found;
-            } else {
-                low = found;
-            }
-        }
-        Some(high[0])
+        self.settle(band);
+        let hull = self.hull();
+        let filled = self.share(&hull, self.points.len(), band);
+        let reached = self.filled_until(&hull, along, band, until);
+        full_between([filled, reached], until, |x| self.filled_until(&hull, along, band, x))
     }
 
     /// Goes on along a vector from one of its places to its end.
@@ -291,4 +275,37 @@ impl Strand {
             self.points = hull;
         }
     }
+}
+
+/// The place before another one at which a stretch is full, of which it is known what is filled before the vector and until there.
+fn full_between([before, reached]: [f64; 2], until: f64, filled_until: impl Fn(f64) -> f64) -> Option<f64> {
+    let (mut low, mut high) = ([0.0, before], [until, reached]);
+    if high[1] <= 1.0 + ROUNDING {
+        return None;
+    }
+    for _ in 0..MOST_LOOKS {
+        let part = ((1.0 - low[1]) / (high[1] - low[1])).clamp(0.0, 1.0);
+        let x = low[0] + (high[0] - low[0]) * part;
+        let found = [x, filled_until(x)];
+        if (found[1] - 1.0).abs() <= CLOSELY {
+            return Some(x);
+        }
+        if found[1] > 1.0 {
+            high = found;
+        } else {
+            low = found;
+        }
+    }
+    Some(high[0])
+}
+
+/// A hull with the points ahead of it.
+fn with_points([upper, lower]: &Hull, ahead: &[Point]) -> Hull {
+    let part = |known: &Vec<Point>, side: f64| {
+        let mut part = Vec::with_capacity(known.len() + ahead.len());
+        part.extend_from_slice(known);
+        lengthen(&mut part, ahead, side);
+        part
+    };
+    [part(upper, 1.0), part(lower, -1.0)]
 }
