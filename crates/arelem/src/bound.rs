@@ -130,11 +130,14 @@ impl Record {
 
     /// A vector from one position to the next, and what has been read of both clearances along it.
     pub(crate) fn add(&mut self, (from, to): (&Vec3, &Vec3), readings: &[Readings; 2]) {
-        if let Some(known) = self.recent.iter().rposition(|vector| vector.to == *from) {
+        let leads_there = |vector: &Vector| vector.to == *from;
+        if !self.recent.back().is_some_and(leads_there) {
             // What led on from there has been taken back.
-            self.recent.truncate(known + 1);
-        } else if self.settled.to == *from {
-            self.recent.clear();
+            if let Some(known) = self.recent.iter().rposition(leads_there) {
+                self.recent.truncate(known + 1);
+            } else if self.settled.to == *from {
+                self.recent.clear();
+            }
         }
         if self.recent.len() >= KEPT
             && let Some(Vector { to, readings: [part, drive] }) = self.recent.front()

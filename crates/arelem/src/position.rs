@@ -7,7 +7,7 @@ mod tests;
 use std::cell::Cell;
 
 use apt_geometry::Vec3;
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::Matrix3;
 
 use crate::{
     attitude::Attitude,
@@ -195,7 +195,7 @@ pub(crate) fn solve_unless(
         let place = way.here;
         match found {
             // A failure is one of the way from the start.
-            _ if is_proven && turn == 1 => return found.map(|corrections| place.solution(corrections)),
+            Err(unsolved) if is_proven && turn == 1 => return Err(unsolved),
             Ok(corrections) => made += corrections,
             Err(unsolved) if turn == 1 && effort.is_one_of_many && search.is_known_at(&unsolved) => {
                 return Err(unsolved);
@@ -219,8 +219,10 @@ pub(crate) fn solve_unless(
         break;
     }
     let mut way = Way { here: &mut here, next: &mut next };
-    let (found, _) = search.newton(start, &mut way, Manner::Proven);
-    found.map(|corrections| way.here.solution(corrections))
+    match search.newton(start, &mut way, Manner::Proven).0 {
+        Ok(corrections) => Ok(way.here.solution(corrections)),
+        Err(unsolved) => Err(unsolved),
+    }
 }
 
 /// The place that a search has come to, and room for the next one.
@@ -476,14 +478,14 @@ fn correction(rows: &Rows) -> Vec3 {
         2 => {
             let (aa, ab, bb) = (a.norm_squared(), a.dot(&b), b.norm_squared());
             let damping = if aa * bb - ab * ab < DEPENDENT * aa * bb { DAMPING } else { 0.0 };
-            let gram = Matrix2::new(aa + damping, ab, ab, bb + damping);
-            match gram.try_inverse() {
-                Some(inverse) => {
-                    let x = inverse * Vector2::new(ra, rb);
-                    -(a * x.x + b * x.y)
-                }
-                None => -a * ra,
+            let (aa, bb) = (aa + damping, bb + damping);
+            let determinant = aa * bb - ab * ab;
+            if determinant == 0.0 {
+                return -a * ra;
             }
+            // By the inverse of the Gram matrix.
+            let (by_a, by_b, mixed) = (bb / determinant, aa / determinant, -ab / determinant);
+            -(a * (by_a * ra + mixed * rb) + b * (mixed * ra + by_b * rb))
         }
         _ => {
             // Cramer's rule with the sine of the solid angle as determinant.

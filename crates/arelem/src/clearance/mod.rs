@@ -380,7 +380,8 @@ impl Gauge {
     /// How it behaves on a straight way of a tool end.
     pub(crate) fn shape_along(&self, tool: &Tool, [from, to]: [&Vec3; 2]) -> Shape {
         let shape = self.shape();
-        if shape != Shape::Convex || self.on {
+        // Other solids are measured with the disc at the top of the tool.
+        if shape != Shape::Convex || self.on || !matches!(self.surface, Surface::Quadric(_)) {
             return shape;
         }
         let (body, start) = self.body(tool, from);

@@ -215,9 +215,13 @@ impl<'a> March<'a> {
                 return Err(MotionFailure::Cancelled);
             }
             self.look_for_end_beside(&here, patience)?;
-            let advanced = self.stepper.advance(&mut here, cap);
-            let mut next = advanced.map_err(|failure| self.explained(&here, failure))?;
-            if let Some([from, straight]) = self.stop_in_corner()? {
+            let mut next = match self.stepper.advance(&mut here, cap) {
+                Ok(next) => next,
+                Err(failure) => return Err(self.explained(&here, failure)),
+            };
+            if self.stepper.straight_on().is_some()
+                && let Some([from, straight]) = self.stop_in_corner()?
+            {
                 (here, next) = (from, straight);
             }
             let mut before = self.snapshot(&here);
@@ -374,9 +378,9 @@ impl<'a> March<'a> {
     fn stop_in_corner(&self) -> Result<Option<[Vertex; 2]>, MotionFailure> {
         let Some([from, to]) = self.stepper.straight_on() else { return Ok(None) };
         let (mut watcher, mut tangency) = (self.watcher.clone(), self.tangency.clone());
-        let sweep = from.sweep(self.prepared, &to);
-        let stop = first_stop((&mut watcher, &mut tangency), &sweep, [&from, &to])?;
-        Ok(stop.map(|_| [from, to]))
+        let sweep = from.sweep(self.prepared, to);
+        let stop = first_stop((&mut watcher, &mut tangency), &sweep, [from, to])?;
+        Ok(stop.map(|_| [*from, *to]))
     }
 
     /// Moves the last vertex back on the vector that leads to it, if the next one then goes farther. Both vectors are to be

@@ -88,9 +88,9 @@ pub(super) struct Stepper<'a> {
     /// Where the path last turned by more than a right angle.
     turned_sharply: Option<Vec3>,
     /// Where the longest vector that leads straight on from there in the bands begins and ends.
-    straight: Option<[Vertex; 2]>,
+    straight: Option<Box<[Vertex; 2]>>,
     /// The vertex in a corner that the last vector has led into, and such a vector from there.
-    beyond_corner: Option<(Vec3, [Vertex; 2])>,
+    beyond_corner: Option<(Vec3, Box<[Vertex; 2]>)>,
     /// The last vector; zero before the first.
     last: Vec3,
     /// Where the path came from farther off than it may turn on the spot.
@@ -193,8 +193,10 @@ impl<'a> Stepper<'a> {
     /// place, the tangent of the vertex becomes that of the path beyond.
     pub(super) fn advance(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         self.latest = None;
-        let in_corner = self.beyond_corner.take().filter(|(at, _)| *at == here.tip);
-        self.straight = in_corner.map(|(_, straight)| straight);
+        self.straight = None;
+        if let Some((at, straight)) = self.beyond_corner.take() {
+            self.straight = (at == here.tip).then_some(straight);
+        }
         self.hand.arrive(here);
         if let Some(next) = self.beyond_sharply(here, cap)? {
             self.note(here, &next);
@@ -237,8 +239,8 @@ impl<'a> Stepper<'a> {
     }
 
     /// Where the path has just turned by more than a right angle: a vector straight on, as far as the bands allow.
-    pub(super) fn straight_on(&self) -> Option<[Vertex; 2]> {
-        self.straight
+    pub(super) fn straight_on(&self) -> Option<&[Vertex; 2]> {
+        self.straight.as_deref()
     }
 
     /// The next vertex in a sharp corner ahead of where the last vector from a place leads.

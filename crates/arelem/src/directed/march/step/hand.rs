@@ -101,7 +101,8 @@ impl Stepper<'_> {
             let onward = (self.last, self.arrived);
             (self.last, self.arrived, self.turned) = known;
             if let Some(next) = next {
-                self.straight = self.straight_from(here, seconds, cap)?.map(|straight| [*here, straight]);
+                let straight = self.straight_from(here, seconds, cap)?;
+                self.straight = straight.map(|straight| Box::new([*here, straight]));
                 (self.last, self.arrived) = onward;
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
                 *here = turned;

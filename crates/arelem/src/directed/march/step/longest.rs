@@ -204,6 +204,9 @@ impl Stepper<'_> {
 
     /// A vector to a corner, if there is one.
     fn trial_to_corner(&self, here: &Vertex, places: Places, search: &mut Search) -> Option<Trial> {
+        if search.corners.is_unknown() {
+            return None;
+        }
         let Search { bends, bent, cap, .. } = *search;
         let aim = (self.targets(here, &bends, places), &bent, &bends);
         let known = search.best.as_ref().map(|(trial, _)| trial);

@@ -123,7 +123,7 @@ impl Stepper<'_> {
                 Some((trial, self.straight_through(&ahead, place, &vertex)))
             })
             .map(|(trial, straight)| {
-                self.beyond_corner = straight.map(|straight| (trial.vertex.tip, straight));
+                self.beyond_corner = straight.map(|straight| (trial.vertex.tip, Box::new(straight)));
                 trial
             })
     }
