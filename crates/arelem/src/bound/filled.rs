@@ -116,7 +116,7 @@ impl Filled {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::readings::Reading, *};
+    use super::{super::readings::Reading, hull::LAID, *};
 
     const BAND: f64 = 0.01;
     const LIMITS: Limits = Limits { bands: [[-0.25 * BAND, 0.75 * BAND]; 2], longest: f64::INFINITY };
@@ -206,6 +206,17 @@ mod tests {
         }
         let found = filled.count(&LIMITS);
         assert!(found > 1.1 * 24.0 && found < 48.0, "{found}");
+    }
+
+    /// Where a vector is full is looked for with the points ahead alone: those of the stretch are laid to its hull once a vector.
+    #[test]
+    fn points_of_a_stretch_are_laid_once_a_vector() {
+        let wave = |x: f64| [0.02 * (9.0 * x).sin(), 0.18 * (9.0 * x).cos()];
+        let vectors = along(wave, &places(240, 8.0), &[0.3, 0.6]);
+        let before = LAID.get();
+        count(&vectors, &LIMITS);
+        let each = (LAID.get() - before) as f64 / vectors.len() as f64;
+        assert!(each <= 80.0, "{each} points a vector");
     }
 
     /// No vector is longer than MAXDP and what the bands are wide, straight ones least of all.

@@ -14,6 +14,12 @@ pub(super) struct Widest {
     pub(super) across: Point,
 }
 
+#[cfg(test)]
+thread_local! {
+    /// Points that this thread has laid to hulls.
+    pub(super) static LAID: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// Points for which there is room in a hull that begins: of a stretch there are hardly more.
 const ROOM: usize = 64;
 
@@ -27,6 +33,8 @@ pub(super) fn chain<'a>(points: impl IntoIterator<Item = &'a Point>, side: f64) 
 /// Lengthens such a part by points beyond its last one: what those before them hide stays hidden.
 pub(super) fn lengthen<'a>(hull: &mut Vec<Point>, points: impl IntoIterator<Item = &'a Point>, side: f64) {
     for point in points {
+        #[cfg(test)]
+        LAID.set(LAID.get() + 1);
         while let [.., a, b] = hull[..]
             && side * ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) >= 0.0
         {
@@ -92,6 +100,20 @@ mod tests {
         assert_eq!(height(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]), 0.0);
         // A corner below and one above, at different places.
         assert!((height(&[[0.0, 0.0], [1.0, -1.0], [3.0, 1.0], [4.0, 0.0]]) - 4.0 / 3.0).abs() < 1e-12);
+    }
+
+    /// A hull that is lengthened is that of all points, wherever it was left and taken up again.
+    #[test]
+    fn a_hull_may_be_lengthened_bit_by_bit() {
+        let wave = |k: u32| [0.1 * f64::from(k), (0.37 * f64::from(k * k % 101)).sin()];
+        let points: Vec<Point> = (0..40).map(wave).collect();
+        for side in [1.0, -1.0] {
+            for left in 0..=points.len() {
+                let mut hull = chain(&points[..left], side);
+                lengthen(&mut hull, &points[left..], side);
+                assert_eq!(hull, chain(&points, side), "{left}");
+            }
+        }
     }
 
     /// From the middle of a band about a parabola a line leads √½ of half as far as one from its limit, and as far again.

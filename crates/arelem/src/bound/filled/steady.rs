@@ -19,8 +19,8 @@ pub(super) struct Turns<'a> {
     count: usize,
 }
 
-/// What is between two readings: from where to where, what it fills if its bend is steady, and the bends at both ends.
-#[derive(Debug, Clone, Copy, Default)]
+/// What is between two readings: from where to where, what it fills if its bend is steady, and the bends at both ends, the lesser one first.
+#[derive(Debug, Clone, Copy)]
 struct Turn {
     from: f64,
     to: f64,
@@ -28,22 +28,30 @@ struct Turn {
     bends: [f64; 2],
 }
 
+impl Turn {
+    const NONE: Self = Self { from: 0.0, to: 0.0, full: 0.0, bends: [0.0; 2] };
+}
+
 impl<'a> Turns<'a> {
     pub(super) fn of(readings: &'a Readings, band: [f64; 2]) -> Self {
-        let (mut pieces, mut count) = ([Turn::default(); MOST - 1], 0);
-        for (told, piece) in pieces.iter_mut().zip(readings.pieces()) {
+        let mut turns = Self { readings, pieces: [Turn::NONE; MOST - 1], count: 0 };
+        for piece in readings.pieces() {
             let (full, whole) = (share_of(&piece, band), piece.to.x - piece.from.x);
             let part = whole / readings.length();
             let bends = match part {
                 // What the whole vector would fill with the bend of this piece.
                 _ if full <= STRAIGHT * part => [0.0; 2],
                 _ if part <= SHORT => [(piece.to.slope - piece.from.slope) / whole; 2],
-                _ => piece.bends(),
+                _ => {
+                    let [a, b] = piece.bends();
+                    [a.min(b), a.max(b)]
+                }
             };
+            let Some(told) = turns.pieces.get_mut(turns.count) else { break };
             *told = Turn { from: piece.from.x, to: piece.to.x, full, bends };
-            count += 1;
+            turns.count += 1;
         }
-        Self { readings, pieces, count }
+        turns
     }
 }
 
@@ -67,8 +75,8 @@ impl Steady {
             }
             let whole = turn.to - turn.from;
             share += if to - from < whole { turn.full * (to - from) / whole } else { turn.full };
-            least = least.min(turn.bends[0].min(turn.bends[1]));
-            greatest = greatest.max(turn.bends[0].max(turn.bends[1]));
+            least = least.min(turn.bends[0]);
+            greatest = greatest.max(turn.bends[1]);
         }
         let (small, great) = (least.abs().min(greatest.abs()), least.abs().max(greatest.abs()));
         let is_steady = least * greatest >= 0.0 && great <= STEADY * small;
