@@ -88,7 +88,7 @@ enum Guard {
 impl Guard {
     /// How far outside a part is at least.
     fn outside(&self, part: &Part) -> f64 {
-        let points = part.net.iter().flatten();
+        let points = part.net.as_flattened().iter();
         match self {
             Self::Level(outward, height) => {
                 points.map(|p| outward.dot(p)).fold(f64::INFINITY, f64::min) - height
@@ -105,7 +105,7 @@ fn beyond(part: &Part, center: &Vec3, along: Option<&Vec3>, radius: f64) -> f64 
     let over = |place: &Vec3| {
         let from = place - center;
         let away = from - onward(from);
-        let heights = part.net.iter().flatten().map(|p| away.dot(&(p - center)));
+        let heights = part.net.as_flattened().iter().map(|p| away.dot(&(p - center)));
         heights.fold(f64::INFINITY, f64::min) / away.norm() - radius
     };
     // Its middle is known; its nearest place has to be found.
@@ -308,7 +308,7 @@ impl Following<'_> {
         let (apart, nearest) = self.tool.signed_distance(&from);
         let is_above = |outward: &Vec3| {
             let base = outward.dot(self.tip) + self.tool.support(outward).0 + least;
-            part.net.iter().flatten().all(|p| outward.dot(p) >= base)
+            part.net.as_flattened().iter().all(|p| outward.dot(p) >= base)
         };
         let own = (from - nearest).try_normalize(0.0).map(|away| away * apart.signum());
         let level = along.cross(&across).try_normalize(0.0).map(|normal| normal * -part.sense(side));

@@ -74,7 +74,7 @@ pub(super) fn keeps_apart(
     let across = tool.axis.cross(&radial);
     let along = across.cross(&outward);
     let (mut reach, mut greatest_rise, mut far) = ([0.0f64; 2], 0.0f64, 0.0f64);
-    for p in net.iter().flatten() {
+    for p in net.as_flattened().iter() {
         let d = p - place;
         reach = [reach[0].max(along.dot(&d).abs()), reach[1].max(across.dot(&d).abs())];
         greatest_rise = greatest_rise.max(normal.dot(&d));

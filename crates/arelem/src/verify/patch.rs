@@ -120,9 +120,16 @@ pub(super) fn halves_across(net: &Net) -> [Net; 2] {
 
 /// The ball about the middle of the control points that holds a patch.
 pub(super) fn ball(net: &Net) -> (Vec3, f64) {
-    let center = net.iter().flatten().sum::<Vec3>() / 16.0;
-    let radius = net.iter().flatten().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
-    (center, radius)
+    let mut center = Vec3::zeros();
+    for [a, b, c, d] in net {
+        center += (a + b) + (c + d);
+    }
+    center /= 16.0;
+    let mut farthest: f64 = 0.0;
+    for place in net.as_flattened() {
+        farthest = farthest.max((place - center).norm_squared());
+    }
+    (center, farthest.sqrt())
 }
 
 /// Lengths of a patch along and across.
@@ -203,26 +210,35 @@ impl Patch {
     }
 }
 
-/// The same cubic from −[`BEYOND`] to 1 + [`BEYOND`].
-fn stretched(c: &Cubic) -> Cubic {
-    between(c, [-BEYOND, 1.0 + BEYOND])
+/// The weights with which the blossom of a cubic at three parameters goes through its control points.
+const fn blossom(x: f64, y: f64, z: f64) -> [f64; 4] {
+    let (p, q, r) = (1.0 - x, 1.0 - y, 1.0 - z);
+    [p * q * r, x * q * r + p * y * r + p * q * z, x * y * r + x * q * z + p * y * z, x * y * z]
+}
+
+/// The weights of the control points of a cubic in those of the same cubic from one parameter to another.
+const fn weights_between([low, high]: [f64; 2]) -> [[f64; 4]; 4] {
+    [blossom(low, low, low), blossom(low, low, high), blossom(low, high, high), blossom(high, high, high)]
+}
+
+/// Those of a cubic from −[`BEYOND`] to 1 + [`BEYOND`].
+const STRETCHED: [[f64; 4]; 4] = weights_between([-BEYOND, 1.0 + BEYOND]);
+
+/// The patch with other control points across, by their weights in its own.
+fn mixed_across(net: &Net, weights: &[[f64; 4]; 4]) -> Net {
+    let [first, second, third, last] = net;
+    let mut mixed = *net;
+    for (row, [a, b, c, d]) in mixed.iter_mut().zip(weights) {
+        for (i, place) in row.iter_mut().enumerate() {
+            *place = first[i] * *a + second[i] * *b + third[i] * *c + last[i] * *d;
+        }
+    }
+    mixed
 }
 
 /// The part of a patch between two parameters across it.
 pub(super) fn between_across(net: &Net, range: [f64; 2]) -> Net {
-    let [a, b, c, d] = turned(net);
-    turned(&[between(&a, range), between(&b, range), between(&c, range), between(&d, range)])
-}
-
-/// The same cubic from one parameter to another.
-fn between(c: &Cubic, [low, high]: [f64; 2]) -> Cubic {
-    // The blossom of the cubic at the three parameters.
-    let at = |x: f64, y: f64, z: f64| {
-        let first = [lerp(&c[0], &c[1], x), lerp(&c[1], &c[2], x), lerp(&c[2], &c[3], x)];
-        let second = [lerp(&first[0], &first[1], y), lerp(&first[1], &first[2], y)];
-        lerp(&second[0], &second[1], z)
-    };
-    [at(low, low, low), at(low, low, high), at(low, high, high), at(high, high, high)]
+    mixed_across(net, &weights_between(range))
 }
 
 /// Parameters of a patch and a little beyond, where its bounds still hold.
@@ -232,7 +248,14 @@ pub(super) fn held(parameters: [f64; 2]) -> [f64; 2] {
 
 /// The same patch with what is a little beyond its sides.
 fn stretched_net(net: &Net) -> Net {
-    turned(&turned(&net.map(|row| stretched(&row))).map(|row| stretched(&row)))
+    let mut wide = mixed_across(net, &STRETCHED);
+    for row in &mut wide {
+        let within = *row;
+        for (place, weights) in row.iter_mut().zip(&STRETCHED) {
+            *place = mixed(&within, weights);
+        }
+    }
+    wide
 }
 
 /// A patch as far as it reaches from a place on it, or a little beyond its sides, to all of its places.
@@ -262,8 +285,12 @@ impl Bends {
         let wide = stretched_net(net);
         let (along, across) = (differences(&wide), differences(&turned(&wide)));
         let spread = |all: &[[Vec3; 3]; 4]| {
-            let mean = all.iter().flatten().sum::<Vec3>() / 12.0;
-            let off = all.iter().flatten().map(|d| (d - mean).norm_squared()).fold(0.0, f64::max).sqrt();
+            let mut mean = Vec3::zeros();
+            for [first, second, third] in all {
+                mean += (first + second) + third;
+            }
+            mean /= 12.0;
+            let off = all.as_flattened().iter().map(|d| (d - mean).norm_squared()).fold(0.0, f64::max).sqrt();
             (mean, off)
         };
         let ((u, off_u), (v, off_v)) = (spread(&along), spread(&across));
@@ -279,28 +306,22 @@ impl Bends {
         let turn = 2.0 * (off_u * size_v + size_u * off_v + off_u * off_v) / area;
         // Greatest product of a second derivative with any normal of the patch, to both sides. The differences count
         // thirds of the first derivative, and so ninths of the mixed and two thirds of the others.
-        let most = |all: &mut dyn Iterator<Item = Vec3>| {
-            let mut found = [0.0f64, 0.0, 0.0];
-            let mut first = true;
-            for second in all {
-                let height = normal.dot(&second);
-                if first {
-                    (found[0], found[1]) = (height, -height);
-                    first = false;
-                }
-                found[0] = found[0].max(height);
-                found[1] = found[1].max(-height);
-                found[2] = found[2].max(second.norm_squared());
-            }
-            let tilt = turn * found[2].sqrt();
-            [found[0] + tilt, found[1] + tilt]
-        };
         let bends = |all: &[[Vec3; 3]; 4]| {
-            most(&mut all.iter().flat_map(|d| [d[1] - d[0], d[2] - d[1]])).map(|x| x * (2.0 / 3.0))
+            let mut most = Most::NONE;
+            for [first, second, third] in all {
+                most.take(&normal, &(second - first));
+                most.take(&normal, &(third - second));
+            }
+            most.tilted(turn).map(|x| x * (2.0 / 3.0))
         };
         let (uu, vv) = (bends(&along), bends(&across));
-        let mut twists = along.windows(2).flat_map(|rows| (0..3).map(move |i| rows[1][i] - rows[0][i]));
-        let uv = most(&mut twists);
+        let mut twists = Most::NONE;
+        for (row, next) in along.iter().zip(&along[1..]) {
+            for (here, beyond) in row.iter().zip(next) {
+                twists.take(&normal, &(beyond - here));
+            }
+        }
+        let uv = twists.tilted(turn);
         let twist = uv[0].max(uv[1]).max(0.0) / (size_u * size_v);
         let hollow = [0, 1].map(|side| {
             let (l, k) = (uu[side] / (size_u * size_u), vv[side] / (size_v * size_v));
@@ -308,6 +329,30 @@ impl Bends {
             greatest.max(0.0) / (progress * progress)
         });
         hollow.iter().all(|h| h.is_finite()).then_some(Self { hollow })
+    }
+}
+
+/// The greatest heights of vectors over a plane and under it, and their greatest length squared.
+struct Most {
+    over: f64,
+    under: f64,
+    square: f64,
+}
+
+impl Most {
+    const NONE: Self = Self { over: f64::NEG_INFINITY, under: f64::NEG_INFINITY, square: 0.0 };
+
+    fn take(&mut self, normal: &Vec3, vector: &Vec3) {
+        let height = normal.dot(vector);
+        self.over = self.over.max(height);
+        self.under = self.under.max(-height);
+        self.square = self.square.max(vector.norm_squared());
+    }
+
+    /// Both heights where the plane may lean by a sine.
+    fn tilted(&self, turn: f64) -> [f64; 2] {
+        let tilt = turn * self.square.sqrt();
+        [self.over + tilt, self.under + tilt]
     }
 }
 

@@ -485,12 +485,15 @@ impl Part {
         let along = first[3] - corner;
         let shortest = along.norm().min(across.norm());
         let twist = last[3] - last[0] - along;
-        let off = |j: usize, i: usize| {
-            let [u, v] = [i, j].map(|k| k as f64 / 3.0);
-            self.net[j][i] - corner - along * u - across * v - twist * (u * v)
-        };
-        let most =
-            (0..4).flat_map(|j| (0..4).map(move |i| off(j, i).norm_squared())).fold(0.0, f64::max).sqrt();
+        let mut most: f64 = 0.0;
+        for (j, row) in self.net.iter().enumerate() {
+            let v = j as f64 / 3.0;
+            let (start, way) = (corner + across * v, along + twist * v);
+            for (i, place) in row.iter().enumerate() {
+                most = most.max((place - start - way * (i as f64 / 3.0)).norm_squared());
+            }
+        }
+        let most = most.sqrt();
         // The control points of a bend stand out by a ninth of its curvature times the square of its length.
         let (room, bend) = (PLAIN * shortest, 9.0 * most / (shortest * shortest));
         most <= room && twist.norm() <= room && bend * self.radius <= PLAINLY_BENT
@@ -512,6 +515,9 @@ impl Part {
     /// How the clearance may bend where the tool is nearer than `reach` to a place at which the surface ends or bends sharply: as the tool is
     /// round there, zero without such a place; none where that is not known.
     fn bend_at_edges(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> Option<f64> {
+        if self.edges.sides == [false; 4] {
+            return (!self.edges.within).then_some(0.0);
+        }
         let apart = |place: &Vec3| tool.distance(&(place - tip));
         let mut open: Vec<(Cubic, u32)> = Vec::new();
         let edges = sides(&self.net).into_iter().zip(self.edges.sides);

@@ -58,7 +58,7 @@ pub(super) fn lower_bound(
     let face = |outward: Vec3| {
         let base = outward.dot(tip) + tool.support(&outward).0;
         let mut heights = [0.0; 16];
-        for (height, place) in heights.iter_mut().zip(net.iter().flatten()) {
+        for (height, place) in heights.iter_mut().zip(net.as_flattened().iter()) {
             *height = outward.dot(place) - base;
         }
         Face { heights, slopes: [outward.dot(run), outward.dot(rise)] }
