@@ -6,16 +6,17 @@
 //! shows it. For any other the multipliers do, of the contact's foot and of the circle: with them the squared distance has a
 //! lower bound that is the least value of one quadratic function, on a straight piece between two heights.
 
+mod demand;
 mod piece;
 
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 
-use self::piece::Part;
+use self::{demand::Demand, piece::Part};
 use super::{
     clearance::{Reading, Shape},
-    quadric::{Lower, PrincipalQuadric},
-    tool::{Meridian, Tool, perpendicular},
+    quadric::PrincipalQuadric,
+    tool::{Meridian, Tool, count_work, perpendicular},
 };
 
 /// Steps of Newton's method before the general search is asked.
@@ -26,12 +27,17 @@ const LAST_STEP: f64 = 1e-6;
 const SLACK: f64 = 1e-10;
 /// The same for tangent planes, which are exact.
 const PLANE_SLACK: f64 = 1e-12;
-/// Halvings of one straight piece.
-const HALVINGS: usize = 60;
-/// Parts of the arc of the corner looked at.
-const ARCS: usize = 60;
+/// Stretches of a straight piece or of the arc of the corner that are looked at, and for a contact that is only expected to be the
+/// nearest: one that is not would take them all.
+const STRETCHES: usize = 60;
+const FIRST_STRETCHES: usize = 8;
 /// Rounding of the fan of the corner arc, as a sine.
 const NEARLY_IN_FAN: f64 = 1e-9;
+/// Share of the size of the tool by which it may go farther towards the surface than the place that touches, which is found by its
+/// azimuth: rounding, and the square of the last step.
+const FOREMOST: f64 = 1e-9;
+/// Looks along the surface beside the place that touches, until that is known about.
+const GLANCES: usize = 2;
 
 /// One position of the tool in the principal axes of the surface.
 pub(super) struct Place<'a> {
@@ -54,13 +60,6 @@ pub(super) struct Touch {
     pub(super) foot: Vec3,
     /// Where on the meridian of the tool, a ball's centre for the corner.
     pub(super) meridian: Meridian,
-}
-
-/// What is asked of all points of the tool: a bound of their squared distances, from a place of the tool end.
-struct Demand {
-    lower: Lower,
-    tip: Vec3,
-    least: f64,
 }
 
 /// The clearance, if one circle of the tool is in contact and that is proven.
@@ -90,18 +89,18 @@ pub(super) fn at(
     let [lower, upper, top] = tool.profile.edges();
     let convex = shape == Shape::Convex;
     let error = if convex { PLANE_SLACK } else { SLACK } * size;
-    let proven = |touch: &Touch, ball: f64| {
+    let proven_by = |touch: &Touch, ball: f64, stretches: usize| {
         let value = touch.distance - ball;
         let holds = if convex {
             place.is_beyond_plane(touch, value - error)
         } else {
-            place.keeps(value - error, touch)
+            place.keeps(value - error, touch, stretches)
         };
         holds.then(|| Reading::new(value, quadric.turned_out(&touch.normal), error))
     };
+    let proven = |touch: &Touch, ball: f64| proven_by(touch, ball, STRETCHES);
     // The tool end is in contact only where the bottom rises from it.
     let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
-    let mut done: Option<Meridian> = None;
     // The nearest of those circles that are not shown to be the nearest at once, with its distance.
     let mut nearest: Option<(f64, Touch, f64)> = None;
     if let Some(touch) = bulge.and_then(|bulge| place.touch_piece(bulge)) {
@@ -110,25 +109,35 @@ pub(super) fn at(
         }
         nearest = Some((touch.distance, touch, 0.0));
     }
-    for (p, ball) in corner.into_iter().chain(tip).chain(edges) {
+    let expected = place.expected();
+    let [first, second, third] = edges;
+    let all = [corner, tip, Some(first), Some(second), Some(third)];
+    let others = all.iter().flatten().filter(|circle| Some(**circle) != expected);
+    let mut done: Option<Meridian> = None;
+    for &(p, ball) in expected.iter().filter(|circle| all.contains(&Some(**circle))).chain(others) {
         if done == Some(p) {
             continue;
         }
         done = Some(p);
         let Some(touch) = place.touch(p, ball) else { continue };
-        // A tangent plane is quickly tried, and the corner is the nearest so mostly that it is worth the longer trial.
-        if (convex || Some((p, ball)) == corner)
-            && let Some(reading) = proven(&touch, ball)
+        // A tangent plane is quickly tried. A place from which the tool goes on towards the surface is not the nearest.
+        let may_be_nearest = convex || ball > 0.0 || place.is_foremost(&touch);
+        // The corner is the nearest so mostly that it is worth the longer trial, and so is what is expected.
+        let is_expected = Some((p, ball)) == expected;
+        if may_be_nearest
+            && (convex || is_expected || Some((p, ball)) == corner)
+            && let Some(reading) =
+                proven_by(&touch, ball, if is_expected { FIRST_STRETCHES } else { STRETCHES })
         {
             return Some(reading);
         }
         let distance = touch.distance - ball;
-        if nearest.is_none_or(|near| distance < near.0) {
+        if may_be_nearest && nearest.is_none_or(|near| distance < near.0) {
             nearest = Some((distance, touch, ball));
         }
     }
     let nearest = nearest.map(|(_, touch, ball)| (touch, ball));
-    if let Some((touch, ball)) = nearest.filter(|near| !convex && near.1 <= 0.0)
+    if let Some((touch, ball)) = nearest.filter(|near| !convex && (near.1 <= 0.0 || expected == corner))
         && let Some(reading) = proven(&touch, ball)
     {
         return Some(reading);
@@ -148,8 +157,34 @@ impl Place<'_> {
         [self.across[0] * c + self.across[1] * s, self.across[1] * c - self.across[0] * s]
     }
 
+    /// The circle of the tool, with the ball about it, that is expected to touch: the one that goes farthest towards the surface by the
+    /// normal of that beside it.
+    fn expected(&self) -> Option<(Meridian, f64)> {
+        let mut at = self.tip + self.axis * self.tool.profile.edges()[0][1];
+        let mut found = None;
+        for _ in 0..GLANCES {
+            let towards = (self.quadric.slope(&at) * -self.side).try_normalize(0.0)?;
+            let height = towards.dot(&self.axis);
+            let across = towards - self.axis * height;
+            let out = across.norm();
+            let (_, place, is_round) = self.tool.profile.support_on([out, height]);
+            found = Some(if is_round { self.tool.profile.corner()? } else { (place, 0.0) });
+            at = self.tip + across * (place[0] / out.max(f64::MIN_POSITIVE)) + self.axis * place[1];
+        }
+        found
+    }
+
+    /// Whether nothing of the tool goes farther towards the surface than the place that touches.
+    fn is_foremost(&self, touch: &Touch) -> bool {
+        let height = -touch.normal.dot(&self.axis);
+        let towards = [(1.0 - height * height).max(0.0).sqrt(), height];
+        let reach = towards[0] * touch.meridian[0] + towards[1] * touch.meridian[1];
+        self.tool.profile.support(towards).0 - reach <= FOREMOST * self.tool.profile.reach()
+    }
+
     /// The contact with a ball about a circle near the azimuth that faces the surface.
     fn touch(&self, [rho, height]: Meridian, ball: f64) -> Option<Touch> {
+        count_work();
         let center = self.tip + self.axis * height;
         let facing = self.quadric.slope(&center) * -self.side;
         let mut phi = facing.dot(&self.across[1]).atan2(facing.dot(&self.across[0]));
@@ -232,7 +267,7 @@ impl Place<'_> {
     }
 
     /// Whether every point of the tool keeps a distance from the surface.
-    fn keeps(&self, least: f64, touch: &Touch) -> bool {
+    fn keeps(&self, least: f64, touch: &Touch, stretches: usize) -> bool {
         let profile = self.tool.profile;
         let Some(sharp) = self.demand(least, touch) else { return false };
         let [lower, upper, top] = profile.edges();
@@ -241,27 +276,27 @@ impl Place<'_> {
             Some((center, radius)) => {
                 let balls = (least + radius > 0.0).then(|| self.demand(least + radius, touch)).flatten();
                 let keeps = |demand: &Demand| match center[0] < 0.0 {
-                    true => demand.lower.at(&self.facing_place(demand, center, touch)) >= demand.least,
+                    true => demand.at(center, &self.facing(touch)) >= demand.least,
                     false => self.circle(demand, center, touch) >= demand.least,
                 };
-                balls.as_ref().is_some_and(keeps) || self.arcs(&sharp, touch)
+                balls.as_ref().is_some_and(keeps) || self.arcs(&sharp, touch, stretches)
             }
             None => self.circle(&sharp, lower, touch) >= sharp.least,
         };
         corner
             && (lower == [0.0; 2]
                 || if lower[1] > 0.0 {
-                    self.piece(&sharp, [[0.0; 2], lower], touch)
+                    self.piece(&sharp, [[0.0; 2], lower], touch, stretches)
                 } else {
                     self.disc(&sharp, lower, touch)
                 })
-            && (upper == top || self.piece(&sharp, [upper, top], touch))
+            && (upper == top || self.piece(&sharp, [upper, top], touch, stretches))
     }
 
     /// Whether the arc of the corner keeps a distance, where its whole balls stand out from the tool: the straight pieces
     /// along the tangents at both ends of a stretch of it are outside of the arc. A stretch that ends at the contact touches
     /// with that end alone.
-    fn arcs(&self, demand: &Demand, touch: &Touch) -> bool {
+    fn arcs(&self, demand: &Demand, touch: &Touch, stretches: usize) -> bool {
         let Some((center, radius)) = self.tool.profile.corner() else { return true };
         let [lower, upper, _] = self.tool.profile.edges();
         let angle = |p: Meridian| (p[0] - center[0]).atan2(center[1] - p[1]);
@@ -276,7 +311,7 @@ impl Place<'_> {
         } else {
             vec![[first, last]]
         };
-        for _ in 0..ARCS {
+        for _ in 0..stretches {
             let Some([from, to]) = open.pop() else { return true };
             let half = 0.5 * (to - from);
             let middle = from + half;
@@ -288,46 +323,19 @@ impl Place<'_> {
         open.is_empty()
     }
 
-    /// For a distance to keep, the bound of squared distances; for a depth allowed, F itself with the tool moved out by it.
-    fn demand(&self, distance: f64, touch: &Touch) -> Option<Demand> {
-        let kept = distance.max(0.0);
-        let lower = self.quadric.lower(self.side, kept / touch.steepness)?;
-        Some(Demand {
-            lower,
-            tip: self.tip + touch.normal * (kept - distance),
-            least: kept * touch.steepness,
-        })
-    }
-
     /// Azimuth of a circle that faces the contact.
     fn facing(&self, touch: &Touch) -> Vector2<f64> {
         let n = Vector2::new(-touch.normal.dot(&self.across[0]), -touch.normal.dot(&self.across[1]));
         n.try_normalize(0.0).unwrap_or_else(Vector2::x)
     }
 
-    /// The place of the meridian, or of its other half beyond the axis, at that azimuth.
-    fn facing_place(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> Vec3 {
-        let facing = self.facing(touch) * rho;
-        demand.tip + self.axis * height + self.across[0] * facing.x + self.across[1] * facing.y
-    }
-
-    /// The quadratic form across the axis.
-    fn form(&self, lower: &Lower) -> Matrix2<f64> {
-        let [u, v] = &self.across;
-        let uv = lower.form(u, v);
-        Matrix2::new(lower.form(u, u), uv, uv, lower.form(v, v))
-    }
-
     /// Lower bound over a circle: with the multiplier of the circle at the place that faces the contact.
     fn circle(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> f64 {
-        let center = demand.tip + self.axis * height;
-        let middle = demand.lower.at(&center);
+        let middle = demand.on_axis(height);
         if rho <= 0.0 {
             return middle;
         }
-        let slope = demand.lower.slope(&center);
-        let g = Vector2::new(slope.dot(&self.across[0]), slope.dot(&self.across[1]));
-        let form = self.form(&demand.lower);
+        let (g, form) = (demand.slope_across(height), demand.form);
         let mut place = self.facing(touch) * rho;
         let mut best = f64::NEG_INFINITY;
         // One step of Newton's method along the circle, in case that the nearest place is turned away a little.
@@ -350,11 +358,7 @@ impl Place<'_> {
 
     /// Whether nothing within a circle is lower than demanded, if nothing on it is.
     fn disc(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> bool {
-        let center = demand.tip + self.axis * height;
-        let slope = demand.lower.slope(&center);
-        let g = Vector2::new(slope.dot(&self.across[0]), slope.dot(&self.across[1]));
-        let form = self.form(&demand.lower);
-        let middle = demand.lower.at(&center);
+        let (middle, g, form) = (demand.on_axis(height), demand.slope_across(height), demand.form);
         let place = self.facing(touch) * rho;
         let mu = (-(form * place + g).dot(&place) / (rho * rho)).max(0.0);
         let bowl = form.m11 * form.m22 > form.m12 * form.m12 && form.trace() > 0.0;
@@ -363,13 +367,13 @@ impl Place<'_> {
     }
 
     /// Whether nothing on the piece between two circles is lower than demanded, with multipliers for the distance from the axis.
-    fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch) -> bool {
+    fn piece(&self, demand: &Demand, ends: [Meridian; 2], touch: &Touch, stretches: usize) -> bool {
         let facing = self.facing(touch);
         let mut open = vec![ends];
-        for _ in 0..HALVINGS {
+        for _ in 0..stretches {
             let Some([a, b]) = open.pop() else { return true };
-            let rises = a[0] <= 0.0 && self.rises_from_apex(demand, [a, b]);
-            if !rises && self.best_between(demand, [a, b], touch, &facing) < demand.least {
+            let keeps = self.best_between(demand, [a, b], touch, &facing) >= demand.least;
+            if !(keeps || a[0] <= 0.0 && self.rises_from_apex(demand, [a, b])) {
                 let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                 open.extend([[middle, b], [a, middle]]);
             }
@@ -380,19 +384,15 @@ impl Place<'_> {
     /// Whether the bound rises, or falls by too little, along every straight line of a piece that begins on the axis.
     fn rises_from_apex(&self, demand: &Demand, [a, b]: [Meridian; 2]) -> bool {
         let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
-        let (apex, lower) = (demand.tip + self.axis * a[1], &demand.lower);
-        let slope = lower.slope(&apex);
-        let [u, v] = &self.across;
-        let least_slope = rise * slope.dot(&self.axis) - spread * slope.dot(u).hypot(slope.dot(v));
-        let form = self.form(lower);
+        let form = &demand.form;
+        let least_slope = rise * demand.slope_along(a[1]) - spread * demand.slope_across(a[1]).norm();
         let least_form = 0.5 * form.trace() - (0.5 * (form.m11 - form.m22)).hypot(form.m12);
-        let twist = lower.form(u, &self.axis).hypot(lower.form(v, &self.axis));
-        let bend = rise * rise * lower.form(&self.axis, &self.axis) - 2.0 * (rise * spread).abs() * twist
+        let bend = rise * rise * demand.upright - 2.0 * (rise * spread).abs() * demand.twist.norm()
             + spread * spread * least_form;
-        lower.at(&apex) + (2.0 * least_slope + bend.min(0.0)).min(0.0) >= demand.least
+        demand.on_axis(a[1]) + (2.0 * least_slope + bend.min(0.0)).min(0.0) >= demand.least
     }
 
-    /// The best of the bounds with the multipliers of either end, of the middle and, if contact is in between, of the contact.
+    /// The best of the bounds with the multipliers of the place nearest to the contact, of either end and of the middle.
     fn best_between(
         &self,
         demand: &Demand,
@@ -400,66 +400,25 @@ impl Place<'_> {
         touch: &Touch,
         facing: &Vector2<f64>,
     ) -> f64 {
-        let mut best = f64::NEG_INFINITY;
-        for at in [0.0, 1.0, 0.5] {
-            best = best.max(self.between(demand, ends, Some(facing), at));
-            if best >= demand.least {
-                return best;
-            }
-        }
         let [a, b] = ends;
         let way = [b[0] - a[0], b[1] - a[1]];
         let from = [touch.meridian[0] - a[0], touch.meridian[1] - a[1]];
-        let at = (from[0] * way[0] + from[1] * way[1]) / (way[0] * way[0] + way[1] * way[1]);
-        if at > 0.0 && at < 1.0 {
-            best = best.max(self.between(demand, ends, Some(facing), at));
+        let contact = (from[0] * way[0] + from[1] * way[1]) / (way[0] * way[0] + way[1] * way[1]);
+        let mut best = f64::NEG_INFINITY;
+        for at in [contact.clamp(0.0, 1.0), 0.0, 1.0, 0.5] {
+            best = best.max(demand.between(ends, Some(facing), at));
+            if best >= demand.least {
+                return best;
+            }
         }
         // Another side of the tool may be lower.
         for at in [0.0, 1.0, 0.5] {
             if best >= demand.least {
                 break;
             }
-            best = best.max(self.between(demand, ends, None, at));
+            best = best.max(demand.between(ends, None, at));
         }
         best
-    }
-
-    /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the circle `at` of
-    /// 0 … 1: that of its place that faces the contact, or without one that of its lowest place. The least value over the places
-    /// at each height, wherever they are, is a quadratic function of the height, lowest at an end or where it is level.
-    fn between(&self, demand: &Demand, [a, b]: [Meridian; 2], facing: Option<&Vector2<f64>>, at: f64) -> f64 {
-        let (spread, rise) = (b[0] - a[0], b[1] - a[1]);
-        let rho = a[0] + spread * at;
-        if rho <= 0.0 {
-            return f64::NEG_INFINITY;
-        }
-        let start = demand.tip + self.axis * a[1];
-        let way = self.axis * rise;
-        let [u, v] = &self.across;
-        let lower = &demand.lower;
-        let (form, slope) = (self.form(lower), lower.slope(&start));
-        let g = Vector2::new(slope.dot(u), slope.dot(v));
-        let cross = Vector2::new(lower.form(u, &way), lower.form(v, &way));
-        let pull = g + cross * at;
-        let mu = match facing {
-            Some(facing) => -(form * facing * rho + pull).dot(facing) / rho,
-            None => multiplier_of_circle(&form, &pull, rho),
-        };
-        let held = form + Matrix2::identity() * mu;
-        let determinant = held.determinant();
-        if !(determinant > 0.0 && held.trace() > 0.0) {
-            return f64::NEG_INFINITY;
-        }
-        let solved = |w: &Vector2<f64>| {
-            Vector2::new(held.m22 * w.x - held.m12 * w.y, held.m11 * w.y - held.m12 * w.x) / determinant
-        };
-        let (of_g, of_cross) = (solved(&g), solved(&cross));
-        let first = lower.at(&start) - mu * a[0] * a[0] - g.dot(&of_g);
-        let climb = slope.dot(&way) - mu * a[0] * spread - g.dot(&of_cross);
-        let bend = lower.form(&way, &way) - mu * spread * spread - cross.dot(&of_cross);
-        let ends = first.min(first + 2.0 * climb + bend);
-        let level = -climb / bend;
-        if bend > 0.0 && level > 0.0 && level < 1.0 { ends.min(first + climb * level) } else { ends }
     }
 }
 

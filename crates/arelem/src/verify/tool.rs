@@ -204,7 +204,7 @@ impl Profile {
     }
 
     /// The same with whether the place is on the corner arc.
-    fn support_on(&self, direction: Meridian) -> (f64, Meridian, bool) {
+    pub(super) fn support_on(&self, direction: Meridian) -> (f64, Meridian, bool) {
         let mut best = (0.0, [0.0; 2], false);
         for vertex in self.edges() {
             let value = dot(direction, vertex);
