@@ -256,6 +256,9 @@ fn a_flank_along_a_leaning_ruling_takes_few_clearances() {
 /// in a release build.
 const WORK_BETWEEN_QUESTIONS: u64 = 1000;
 
+/// Readings of a motion besides those at its positions: of the extremes of both roles, and of the check surface.
+const READINGS_OF_EXTREMES: usize = 40;
+
 #[test]
 fn the_verifier_asks_often_whether_to_go_on() {
     let [ruled, polyconic] = lofted();
@@ -289,6 +292,47 @@ fn the_verifier_asks_often_whether_to_go_on() {
                 let after = WORK.get() - last.get();
                 assert!(after <= WORK_BETWEEN_QUESTIONS, "{name}, cutter {cutter:?}: {after} after {share}");
             }
+        }
+    }
+}
+
+/// What the readings at the ends of a vector show to be within the band is not read between them: each role is read once at each position,
+/// and looked at on the two vectors on which it is least and greatest.
+#[test]
+fn the_verifier_reads_little_between_vertices() {
+    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
+    for (name, part) in parts() {
+        for cutter in CUTTERS.into_iter().chain([slanted]) {
+            let (mut p, command) = pass(&part, cutter, 0.02);
+            p.run(&command);
+            let asked = Cell::new(0);
+            let ask = || {
+                asked.set(asked.get() + 1);
+                false
+            };
+            let evidence = verify(p.last(), &ask).expect("evidence");
+            assert!(evidence.verified, "{name}, cutter {cutter:?}: {evidence:?}");
+            let positions = p.last().points.len() + 1;
+            // Both roles, and the check surface at the end and along the last vector.
+            let most = 2 * positions + READINGS_OF_EXTREMES;
+            assert!(asked.get() <= most, "{name}, cutter {cutter:?}: {} of {positions}", asked.get());
+        }
+    }
+}
+
+/// Of the circles of a tool, of which a cutter of seven numbers has five, the one that touches is asked first but about where contact goes over
+/// from one to another.
+#[test]
+fn the_verifier_expects_the_circle_that_touches() {
+    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
+    for (name, part) in parts() {
+        for cutter in CUTTERS.into_iter().chain([slanted]) {
+            let (mut p, command) = pass(&part, cutter, 0.02);
+            p.run(&command);
+            let before = WORK.get();
+            assert!(verify(p.last(), &|| false).expect("evidence").verified, "{name}, cutter {cutter:?}");
+            let each = (WORK.get() - before) as f64 / p.last().points.len() as f64;
+            assert!(each <= 2.0, "{name}, cutter {cutter:?}: {each} circles a vector");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The rules, one after the other.
 
+mod band;
 mod corner;
 
 use std::cell::RefCell;
@@ -16,7 +17,7 @@ use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
     clearance::{Clearance, Reading, Surface},
     hand::Hand,
-    span::{Extremes, Readings, Span, between},
+    span::{Extremes, between},
     stop,
     tool::Profile,
 };
@@ -26,9 +27,6 @@ const ROUND_OFF: f64 = 1e-9;
 /// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it, at first and
 /// where it would decide.
 const MODEL_SHARES: [f64; 3] = [4e-4, 1e-5, 0.0];
-/// Accuracy of the bounds of a clearance on a vector, relative to the band, at first and when it would decide: less than
-/// sequences leave of the band.
-const BAND_SHARES: [f64; 3] = [4e-4, 2e-5, 0.0];
 /// Sine of the angle between part and drive surface below which they give no direction of travel.
 const PARALLEL: f64 = 1e-3;
 /// Cosine of the angle between a vector and the path at its end below which that may go on either way.
@@ -325,49 +323,6 @@ impl Judge<'_> {
             verified: violations.is_empty(),
             violations,
         })
-    }
-
-    /// The band of one role: at the last point, or over every vector.
-    fn band(&mut self, bound: &Bound<'_>, rule: Rule, only_end: bool) -> Result<Extent, VerifyError> {
-        let guard = self.guard();
-        if only_end {
-            let vector = self.last_vector();
-            let end = self.positions[vector + 1];
-            let found = bound.at_point(&end, vector)?;
-            if let Some((value, excess)) = bound.excess(&found, guard) {
-                self.findings.add(rule, vector, value, excess);
-            }
-            return Ok(bound.extent(&found));
-        }
-        let clearance = bound.clearance();
-        let width = bound.intol + bound.outtol;
-        let tolerances = BAND_SHARES.map(|s| (s * width).max(0.1 * guard));
-        // A whole band outside is out of tolerance whatever else there is on the vector.
-        let beyond = [-bound.intol - width - guard, bound.outtol + width + guard];
-        let allowed = [-bound.intol - guard, bound.outtol + guard];
-        let mut all: Option<Extremes> = None;
-        bound.normals.borrow_mut().reserve_exact(self.positions.len());
-        let mut left = bound.read(self.positions.first().ok_or(VerifyError::Empty)?)?;
-        for (vector, pair) in self.positions.windows(2).enumerate() {
-            let ends = [left, bound.read(&pair[1])?];
-            left = ends[1];
-            let read = Readings::default();
-            let (from, to) = (pair[0], pair[1]);
-            let span = Span { clearance: &clearance, from, to, ends, beyond, band: allowed, read: &read };
-            let lost = VerifyError::NoDistance { vector };
-            let mut found = span.extremes(tolerances[0]).ok_or(lost.clone())?;
-            for finer in &tolerances[1..] {
-                // Let no error term decide that could be made smaller.
-                if bound.excess(&found, guard).is_some() && found.error() > *finer {
-                    found = span.extremes(*finer).ok_or(lost.clone())?;
-                }
-            }
-            if let Some((value, excess)) = bound.excess(&found, guard) {
-                self.findings.add(rule, vector, value, excess);
-            }
-            all = Some(all.map_or(found, |a| a.join(found)));
-        }
-        all.map(|a| bound.extent(&a)).ok_or(VerifyError::Empty)
     }
 
     fn stop_event(&mut self, check: &Bound<'_>, occurrence: u32) -> Result<(), VerifyError> {

@@ -1,11 +1,14 @@
 //! Extremes of a clearance over the whole of one cut vector, with proof.
 
+mod piece;
+
 use std::{cell::RefCell, collections::HashMap};
 
 use apt_geometry::Vec3;
 
 use crate::sequence::ToolPosition;
 
+use self::piece::{Piece, told_by_each_other};
 use super::clearance::{Clearance, Reading, Shape};
 
 /// Evaluations that one extreme may cost; the gap left then is the error term.
@@ -139,6 +142,8 @@ pub(super) struct Span<'a> {
     pub(super) band: [f64; 2],
     /// What has been read on a vector on which the axis turns.
     pub(super) read: &'a Readings,
+    /// Whether extremes between its ends are looked at also where bounds show the whole vector to be within the band.
+    pub(super) is_looked_at: bool,
 }
 
 /// Readings by their positions, bit for bit: slopes need those beside one place, and closer bounds the same places again.
@@ -204,12 +209,12 @@ impl Span<'_> {
         match shape {
             Shape::Linear => Some(Extremes::within(error, low, high)),
             Shape::Convex => {
-                let (min, gap) = self.trough(first, last, 1.0, tolerance)?;
+                let (min, gap) = self.trough([first, last], 1.0, [tolerance, missed])?;
                 let min = min.min(low);
                 Some(Extremes { min, max: high, low: min - error.max(gap), high: high + error })
             }
             Shape::Concave => {
-                let (depth, gap) = self.trough(first, last, -1.0, tolerance)?;
+                let (depth, gap) = self.trough([first, last], -1.0, [tolerance, missed])?;
                 let max = (-depth).max(high);
                 Some(Extremes { min: low, max, low: low - error, high: max + error.max(gap) })
             }
@@ -284,13 +289,34 @@ impl Span<'_> {
         Some(first.bend().is_some() || last.bend().is_some())
     }
 
+    /// The extreme clearance between its ends that the readings there tell of by their slopes, with a cubic: it says whether the vector is
+    /// worth a look, and proves nothing. None where the slope keeps its sign.
+    pub(super) fn told(&self) -> Option<f64> {
+        let ends = [self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?];
+        let [first, last] = ends;
+        if first.slope * last.slope >= 0.0 {
+            return None;
+        }
+        let sense = last.slope.signum();
+        let turned = |s: Sample| Sample { value: sense * s.value, slope: sense * s.slope, ..s };
+        let t = lowest_of_cubic(ends.map(turned));
+        let (r, rise) = (1.0 - t, last.value - first.value);
+        Some(first.value + t * t * (3.0 - 2.0 * t) * rise + t * r * (r * first.slope - t * last.slope))
+    }
+
     /// Least value of the convex function `sign`·clearance between two samples, and the gap to the lower bound that the
-    /// tangents at both sides give.
-    fn trough(&self, first: Sample, last: Sample, sign: f64, tolerance: f64) -> Option<(f64, f64)> {
+    /// tangents at both sides give, from readings that may miss some of it beside their errors.
+    fn trough(
+        &self,
+        [first, last]: [Sample; 2],
+        sign: f64,
+        [tolerance, missed]: [f64; 2],
+    ) -> Option<(f64, f64)> {
+        let floor = if sign > 0.0 { self.band[0] } else { -self.band[1] };
         let turn = |s: Sample| Sample { value: sign * s.value, slope: sign * s.slope, ..s };
         let (mut a, mut b) = (turn(first), turn(last));
         let mut least = a.value.min(b.value);
-        let mut error = a.error.max(b.error);
+        let mut error = a.error.max(b.error) + missed;
         if a.slope >= 0.0 || b.slope <= 0.0 {
             return Some((least, error));
         }
@@ -299,7 +325,8 @@ impl Span<'_> {
             let meet = (a.value - b.value + b.slope * b.t - a.slope * a.t) / (b.slope - a.slope);
             let bound = a.value + a.slope * (meet - a.t);
             gap = (least - bound).max(0.0);
-            if gap <= tolerance || b.t - a.t <= 4.0 * f64::EPSILON {
+            let is_within = !self.is_looked_at && bound - error >= floor;
+            if gap <= tolerance || is_within || b.t - a.t <= 4.0 * f64::EPSILON {
                 break;
             }
             let t = match step % 4 {
@@ -309,7 +336,7 @@ impl Span<'_> {
             };
             let t = if t > a.t && t < b.t { t } else { 0.5 * (a.t + b.t) };
             let middle = turn(self.sample(t)?);
-            error = error.max(middle.error);
+            error = error.max(middle.error + missed);
             least = least.min(middle.value);
             if middle.slope < 0.0 {
                 a = middle;
@@ -341,7 +368,8 @@ impl Span<'_> {
     }
 
     /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the
-    /// band, or to hide no more than `tolerance`.
+    /// band, or to hide no more than `tolerance`. A part that may be above the band is divided where it may be highest, which is about
+    /// where the tool goes over to another contact if it does; in the middle if that left more than half of it.
     fn bent(
         &self,
         first: Sample,
@@ -350,20 +378,21 @@ impl Span<'_> {
         tolerance: f64,
     ) -> Option<Extremes> {
         let mut found: Option<Extremes> = None;
-        let mut open = vec![(first, last)];
+        let mut open = vec![(first, last, true)];
         let mut budget = FREE_EVALUATIONS;
-        while let Some((a, b)) = open.pop() {
+        while let Some((a, b, may_be_short)) = open.pop() {
             let part = bounds([a, b], rate, jumps);
             let is_whole = b.t - a.t >= 1.0;
             let within = part.low >= self.band[0] && part.high <= self.band[1];
-            // Where the slope changes its sign, an extreme is looked at once.
+            // Where the slope changes its sign, an extreme is looked at once, unless nothing depends on it.
             let turn = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
             let between = turn > a.t && turn < b.t && a.slope * b.slope < 0.0;
             let error = a.error.max(b.error);
             let close = part.error() <= tolerance.max(SHARE_OF_ERROR * error) + error;
             let settled = within || close || budget == 0;
             let beyond = part.min < self.beyond[0] || part.max > self.beyond[1];
-            if beyond || settled && !(is_whole && between) {
+            let is_skipped = within && !self.is_looked_at;
+            if beyond || is_skipped || settled && !(is_whole && between) {
                 found = Some(found.map_or(part, |f| f.join(part)));
                 if beyond {
                     return found;
@@ -371,8 +400,11 @@ impl Span<'_> {
                 continue;
             }
             budget = budget.saturating_sub(1);
-            let middle = self.sample(if is_whole && between { turn } else { 0.5 * (a.t + b.t) })?;
-            open.extend([(middle, b), (a, middle)]);
+            let half = 0.5 * (a.t + b.t);
+            let highest = crest([a, b], rate).filter(|_| may_be_short && part.high > self.band[1]);
+            let t = highest.unwrap_or(if is_whole && between { turn } else { half });
+            let middle = self.sample(t)?;
+            open.extend([(middle, b, t >= half), (a, middle, t <= half)]);
         }
         found
     }
@@ -417,60 +449,6 @@ impl Span<'_> {
     }
 }
 
-/// Three samples of which each is no farther from another than the tool moves between them, and their errors: what is known closely
-/// at one place tells how close the others are.
-fn told_by_each_other(samples: [Sample; 3], length: f64) -> [Sample; 3] {
-    samples.map(|sample| {
-        let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-        for other in samples {
-            let apart = length * (other.t - sample.t).abs() + other.error;
-            range = [range[0].max(other.value - apart), range[1].min(other.value + apart)];
-        }
-        if range[0] > range[1] {
-            return sample;
-        }
-        let value = sample.value.clamp(range[0], range[1]);
-        Sample { value, error: (value - range[0]).max(range[1] - value), ..sample }
-    })
-}
-
-/// What the samples at the ends and the middle of a piece of a vector say.
-struct Piece {
-    found: Extremes,
-    /// What it may hide beside them.
-    hidden: f64,
-    /// The greatest error of them.
-    error: f64,
-}
-
-impl Piece {
-    fn of([a, middle, b]: &[Sample; 3], length: f64) -> Self {
-        let samples = [a, middle, b];
-        let width = b.t - a.t;
-        // What the cubic through the ends misses at the middle, and what curvature can hide beside the three samples:
-        // twice the bulge of a parabola with the observed change of slope over each half.
-        let cubic = 0.5 * (a.value + b.value) + width / 8.0 * (a.slope - b.slope);
-        let surprise = (middle.value - cubic).abs();
-        let bend = (a.slope - middle.slope).abs().max((b.slope - middle.slope).abs());
-        // Where the slope keeps its sign by more than it changes, the extremes are at the ends.
-        let steepness = samples.map(|s| s.slope.abs()).into_iter().fold(f64::INFINITY, f64::min);
-        let rises = samples.map(|s| s.slope > 0.0);
-        let monotone = rises[0] == rises[1] && rises[1] == rises[2] && steepness > bend;
-        let bulge = if monotone { 0.0 } else { 0.25 * bend * 0.5 * width };
-        // No place is farther from a sample than a quarter of the piece.
-        let hidden = (bulge + surprise).min(0.25 * length * width);
-        let one = |s: &Sample| Extremes::within(s.error, s.value, s.value);
-        let found = one(a).join(one(middle)).join(one(b));
-        Self { found, hidden, error: a.error.max(middle.error).max(b.error) }
-    }
-
-    /// Its extremes where it may hide so many times as much.
-    fn hiding(&self, times: f64) -> Extremes {
-        let hidden = times * self.hidden;
-        Extremes { low: self.found.low - hidden, high: self.found.high + hidden, ..self.found }
-    }
-}
-
 /// Where the cubic with the values and slopes of two samples is lowest, of which the first falls and the last rises.
 fn lowest_of_cubic([a, b]: [Sample; 2]) -> f64 {
     let width = b.t - a.t;
@@ -479,6 +457,14 @@ fn lowest_of_cubic([a, b]: [Sample; 2]) -> f64 {
     let square = 3.0 * (first + last) - 6.0 * rise;
     let linear = 6.0 * rise - 4.0 * first - 2.0 * last;
     a.t - 2.0 * first * width / (linear + (linear * linear - 4.0 * square * first).max(0.0).sqrt())
+}
+
+/// Where the parabolas from two samples with a second derivative of `rate` meet, if that is between them.
+fn crest([a, b]: [Sample; 2], rate: f64) -> Option<f64> {
+    let width = b.t - a.t;
+    let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
+        / (a.slope - b.slope + rate * width);
+    (at > 0.0 && at < width).then_some(a.t + at)
 }
 
 /// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
@@ -511,11 +497,10 @@ fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
     };
     let low = low - 0.25 * jumps * width;
     let low = low.max(from(a.value, b.slope, b.slack)).max(from(b.value, -a.slope, a.slack)).min(least);
-    // Where the parabolas from both ends meet.
-    let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
-        / (a.slope - b.slope + rate * width);
-    let high =
-        if at > 0.0 && at < width { most.max(a.value + a.slope * at + 0.5 * rate * at * at) } else { most };
+    let high = crest([a, b], rate).map_or(most, |t| {
+        let at = t - a.t;
+        most.max(a.value + a.slope * at + 0.5 * rate * at * at)
+    });
     let error = a.error.max(b.error);
     Extremes { min: least, max: most, low: low - error, high: high + jumps * width + error }
 }
@@ -549,6 +534,23 @@ mod tests {
                 prop_assert!(told.error <= 2.0 * own.error);
             }
         }
+    }
+
+    /// Where contact goes over from one place to another, the parabolas of both meet, and nothing between the samples is above that.
+    #[test]
+    fn the_crest_is_where_two_parabolas_meet() {
+        let [rate, kink] = [0.8, 0.37];
+        let rising =
+            |t: f64| Sample { slope: 0.5 + rate * t, ..sample(t, 0.5 * t + 0.5 * rate * t * t, 0.0) };
+        let top = rising(kink).value;
+        let falling = |t: f64| Sample {
+            slope: -0.9 + rate * (t - kink),
+            ..sample(t, top - 0.9 * (t - kink) + 0.5 * rate * (t - kink).powi(2), 0.0)
+        };
+        let ends = [rising(0.0), falling(1.0)];
+        let found = crest(ends, rate).unwrap();
+        assert!((found - kink).abs() < 1e-12, "{found}");
+        assert!((bounds(ends, rate, 0.0).high - top).abs() < 1e-12);
     }
 
     /// A reading that is known to little says no more than the close ones beside it; a slope that is not that of the values does not make a
