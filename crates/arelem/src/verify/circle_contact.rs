@@ -109,6 +109,7 @@ pub(super) fn at(
         }
         nearest = Some((touch.distance, touch, 0.0));
     }
+    let pieces = [([0.0; 2], lower), (upper, top)];
     let expected = place.expected();
     let [first, second, third] = edges;
     let all = [corner, tip, Some(first), Some(second), Some(third)];
@@ -131,6 +132,14 @@ pub(super) fn at(
         {
             return Some(reading);
         }
+        // Where the tangent plane there cuts the tool, a straight piece beside it touches.
+        if convex && is_expected {
+            let beside = pieces.iter().filter(|(a, b)| a != b && (*a == p || *b == p));
+            let mut straight = beside.filter_map(|(a, b)| place.touch_straight([*a, *b], &-touch.normal));
+            if let Some(reading) = straight.find_map(|touch| proven(&touch, 0.0)) {
+                return Some(reading);
+            }
+        }
         let distance = touch.distance - ball;
         if may_be_nearest && nearest.is_none_or(|near| distance < near.0) {
             nearest = Some((distance, touch, ball));
@@ -142,7 +151,6 @@ pub(super) fn at(
     {
         return Some(reading);
     }
-    let pieces = [([0.0; 2], lower), (upper, top)];
     pieces.into_iter().filter(|(a, b)| a != b).find_map(|(a, b)| {
         let straight =
             nearest.filter(|_| convex).and_then(|near| place.touch_straight([a, b], &-near.0.normal));
@@ -340,14 +348,14 @@ impl Place<'_> {
         let mut best = f64::NEG_INFINITY;
         // One step of Newton's method along the circle, in case that the nearest place is turned away a little.
         for _ in 0..3 {
-            let pull = form * place + g;
+            let pull = demand.formed(&place) + g;
             let mu = -pull.dot(&place) / (rho * rho);
             best = best.max(middle + least_of(&form, mu, &g) - mu * rho * rho);
             if best >= demand.least {
                 break;
             }
             let round = Vector2::new(-place.y, place.x);
-            let bend = round.dot(&(form * round)) - pull.dot(&place);
+            let bend = round.dot(&demand.formed(&round)) - pull.dot(&place);
             if bend <= 0.0 {
                 break;
             }
@@ -360,7 +368,7 @@ impl Place<'_> {
     fn disc(&self, demand: &Demand, [rho, height]: Meridian, touch: &Touch) -> bool {
         let (middle, g, form) = (demand.on_axis(height), demand.slope_across(height), demand.form);
         let place = self.facing(touch) * rho;
-        let mu = (-(form * place + g).dot(&place) / (rho * rho)).max(0.0);
+        let mu = (-(demand.formed(&place) + g).dot(&place) / (rho * rho)).max(0.0);
         let bowl = form.m11 * form.m22 > form.m12 * form.m12 && form.trace() > 0.0;
         // Not bowl-shaped, it is lowest on the circle.
         !bowl || middle + least_of(&form, mu, &g) - mu * rho * rho >= demand.least

@@ -119,7 +119,7 @@ impl Bend {
 
 /// Clearance, derivative by the parameter 0 … 1 and error at one place of the vector.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+pub(super) struct Sample {
     t: f64,
     value: f64,
     slope: f64,
@@ -199,9 +199,13 @@ impl Span<'_> {
         Some(Sample { t, value: reading.value, slope, slack, error: reading.error })
     }
 
-    /// Extremes to within `tolerance`; None where there is no distance.
-    pub(super) fn extremes(&self, tolerance: f64) -> Option<Extremes> {
-        let (first, last) = (self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?);
+    /// The readings at both ends with their slopes.
+    pub(super) fn at_ends(&self) -> Option<[Sample; 2]> {
+        Some([self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?])
+    }
+
+    /// Extremes to within `tolerance`, by the readings at both ends; None where there is no distance.
+    pub(super) fn extremes(&self, [first, last]: [Sample; 2], tolerance: f64) -> Option<Extremes> {
         let error = first.error.max(last.error);
         let (low, high) = (first.value.min(last.value), first.value.max(last.value));
         let (shape, missed) = self.shape();
@@ -252,7 +256,7 @@ impl Span<'_> {
     /// Extremes where nothing is known of the shape: by the bend, if that is bounded, of the vector or of halves of it. A bound
     /// that tells nothing tells no more on halves.
     fn unshaped(&self, tolerance: f64, halvings: u32) -> Option<Extremes> {
-        let [first, last] = [self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?];
+        let [first, last] = self.at_ends()?;
         let share = 0.5f64.powi((HALVINGS - halvings) as i32);
         match self.bend() {
             Some(bend) if self.tells(&bend, share) => return self.bent(first, last, bend, tolerance),
@@ -287,21 +291,6 @@ impl Span<'_> {
         let first = Span { to: near?, ends: [self.ends[0]; 2], ..*self };
         let last = Span { from: far?, ends: [self.ends[1]; 2], ..*self };
         Some(first.bend().is_some() || last.bend().is_some())
-    }
-
-    /// The extreme clearance between its ends that the readings there tell of by their slopes, with a cubic: it says whether the vector is
-    /// worth a look, and proves nothing. None where the slope keeps its sign.
-    pub(super) fn told(&self) -> Option<f64> {
-        let ends = [self.known(0.0, self.ends[0])?, self.known(1.0, self.ends[1])?];
-        let [first, last] = ends;
-        if first.slope * last.slope >= 0.0 {
-            return None;
-        }
-        let sense = last.slope.signum();
-        let turned = |s: Sample| Sample { value: sense * s.value, slope: sense * s.slope, ..s };
-        let t = lowest_of_cubic(ends.map(turned));
-        let (r, rise) = (1.0 - t, last.value - first.value);
-        Some(first.value + t * t * (3.0 - 2.0 * t) * rise + t * r * (r * first.slope - t * last.slope))
     }
 
     /// Least value of the convex function `sign`·clearance between two samples, and the gap to the lower bound that the
@@ -447,6 +436,20 @@ impl Span<'_> {
         }
         found
     }
+}
+
+/// The extreme clearance between both ends of a vector that the readings there tell of by their slopes, with a cubic: it says whether the
+/// vector is worth a look, and proves nothing. None where the slope keeps its sign.
+pub(super) fn told(ends: &[Sample; 2]) -> Option<f64> {
+    let [first, last] = ends;
+    if first.slope * last.slope >= 0.0 {
+        return None;
+    }
+    let sense = last.slope.signum();
+    let turned = |s: &Sample| Sample { value: sense * s.value, slope: sense * s.slope, ..*s };
+    let t = lowest_of_cubic([turned(first), turned(last)]);
+    let (r, rise) = (1.0 - t, last.value - first.value);
+    Some(first.value + t * t * (3.0 - 2.0 * t) * rise + t * r * (r * first.slope - t * last.slope))
 }
 
 /// Where the cubic with the values and slopes of two samples is lowest, of which the first falls and the last rises.

@@ -58,10 +58,16 @@ impl Demand {
         self.along + self.upright * height
     }
 
+    /// The form applied to a direction across the axis.
+    pub(super) fn formed(&self, v: &Vector2<f64>) -> Vector2<f64> {
+        let form = &self.form;
+        Vector2::new(form.m11 * v.x + form.m12 * v.y, form.m12 * v.x + form.m22 * v.y)
+    }
+
     /// The value at a place of the meridian, or of its other half beyond the axis, at an azimuth.
     pub(super) fn at(&self, [rho, height]: Meridian, azimuth: &Vector2<f64>) -> f64 {
         let place = azimuth * rho;
-        self.on_axis(height) + (self.form * place + self.slope_across(height) * 2.0).dot(&place)
+        self.on_axis(height) + (self.formed(&place) + self.slope_across(height) * 2.0).dot(&place)
     }
 
     /// A lower bound on the piece between two circles, with the multiplier for the distance from the axis of the circle `at` of
@@ -76,17 +82,16 @@ impl Demand {
         let (form, g, cross) = (self.form, self.slope_across(a[1]), self.twist * rise);
         let pull = g + cross * at;
         let mu = match facing {
-            Some(facing) => -(form * facing * rho + pull).dot(facing) / rho,
+            Some(facing) => -(self.formed(facing) * rho + pull).dot(facing) / rho,
             None => multiplier_of_circle(&form, &pull, rho),
         };
-        let held = form + Matrix2::identity() * mu;
-        let determinant = held.determinant();
-        if !(determinant > 0.0 && held.trace() > 0.0) {
+        let (first, both, last) = (form.m11 + mu, form.m12, form.m22 + mu);
+        let determinant = first * last - both * both;
+        if !(determinant > 0.0 && first + last > 0.0) {
             return f64::NEG_INFINITY;
         }
-        let solved = |w: &Vector2<f64>| {
-            Vector2::new(held.m22 * w.x - held.m12 * w.y, held.m11 * w.y - held.m12 * w.x) / determinant
-        };
+        let solved =
+            |w: &Vector2<f64>| Vector2::new(last * w.x - both * w.y, first * w.y - both * w.x) / determinant;
         let (of_g, of_cross) = (solved(&g), solved(&cross));
         let first = self.on_axis(a[1]) - mu * a[0] * a[0] - g.dot(&of_g);
         let climb = rise * self.slope_along(a[1]) - mu * a[0] * spread - g.dot(&of_cross);

@@ -4,7 +4,7 @@ use super::{
     super::{
         Extent, Rule, VerifyError,
         clearance::{Clearance, Reading},
-        span::{Extremes, Readings, Span},
+        span::{Extremes, Readings, Span, told},
     },
     Bound, Judge,
 };
@@ -92,16 +92,17 @@ impl Judge<'_> {
         let (from, to) = (self.positions[vector], self.positions[vector + 1]);
         let span = Span { clearance, from, to, ends, beyond, band, read: &read, is_looked_at };
         let lost = || VerifyError::NoDistance { vector };
-        let mut found = span.extremes(tolerances[0]).ok_or_else(lost)?;
+        let at_ends = span.at_ends().ok_or_else(lost)?;
+        let mut found = span.extremes(at_ends, tolerances[0]).ok_or_else(lost)?;
         for finer in &tolerances[1..] {
             // Let no error term decide that could be made smaller.
             if bound.excess(&found, *guard).is_some() && found.error() > *finer {
-                found = span.extremes(*finer).ok_or_else(lost)?;
+                found = span.extremes(at_ends, *finer).ok_or_else(lost)?;
             }
         }
         if let Some((value, excess)) = bound.excess(&found, *guard) {
             self.findings.add(*rule, vector, value, excess);
         }
-        Ok((found, span.told()))
+        Ok((found, told(&at_ends)))
     }
 }
