@@ -165,11 +165,16 @@ proptest! {
         // too coarse, but the height of the tool's samples over the surface says whether it is clear.
         let model = Surface::of(&surface).unwrap();
         let unit = Vec3::from(axis).normalize();
-        let sampled = samples(&tool, tip, unit)
-            .iter()
-            .step_by(499)
-            .map(|x| model.point_distance(x).unwrap().0)
-            .fold(f64::INFINITY, f64::min);
+        let samples = samples(&tool, tip, unit);
+        let lowest = |step: usize| {
+            let heights = samples.iter().step_by(step).map(|x| model.point_distance(x).unwrap().0);
+            heights.fold(f64::INFINITY, f64::min)
+        };
+        let mut sampled = lowest(499);
+        // Of a long flank few samples may be too far apart.
+        if sampled > 0.1 && sampled - value >= 0.1 {
+            sampled = lowest(7);
+        }
         prop_assert!(value <= sampled.max(-0.02) + 1e-6, "value {value} ± {error} sampled {sampled}");
         if sampled > 0.1 {
             prop_assert!(sampled - value < 0.1 && error < 1e-6, "value {value} ± {error} sampled {sampled}");
