@@ -37,6 +37,8 @@ fn parts() -> Vec<(&'static str, Geometry)> {
 }
 
 const CUTTERS: [&[f64]; 2] = [&[0.5, 0.25], &[0.5, 0.1]];
+/// A corner that touches neither of its slanted lines.
+const SEVEN_NUMBERS: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
 
 /// A pass over a part surface, ready for its last command.
 fn pass(part: &Geometry, cutter: &[f64], step: f64) -> (Program, MotionCommand) {
@@ -81,7 +83,7 @@ fn changes_of_the_bend_take_few_clearances() {
     let saddle = quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]);
     let parts = [("saddle", saddle, 22.0), ("roof", lofts::roof(), 50.0), ("vault", lofts::vault(), 50.0)];
     for (name, part, most) in parts {
-        let (mut p, command) = pass(&part, &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0], 10.0);
+        let (mut p, command) = pass(&part, SEVEN_NUMBERS, 10.0);
         let before = EVALUATIONS.get();
         p.run(&command);
         let each = (EVALUATIONS.get() - before) as f64 / p.last().points.len() as f64;
@@ -108,8 +110,7 @@ fn few_circles_are_bounded_for_a_vector_over_a_quadric() {
 #[test]
 fn few_boxes_are_looked_at_for_a_vector_over_a_saddle() {
     let (name, part) = parts().pop().expect("the saddle");
-    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
-    for cutter in CUTTERS.into_iter().chain([slanted]) {
+    for cutter in CUTTERS.into_iter().chain([SEVEN_NUMBERS]) {
         let (mut p, command) = pass(&part, cutter, 10.0);
         let before = BOXES.get();
         p.run(&command);
@@ -147,7 +148,7 @@ const AFTER_THE_LAST: u64 = 200;
 fn the_engine_asks_often_during_its_proofs() {
     let mut most = 0;
     for (name, part) in [("twisted", twisted_to(0.0)), ("vault", lofts::vault()), ("waves", waves_across())] {
-        for cutter in [&[0.5][..], CUTTERS[1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]] {
+        for cutter in [&[0.5][..], CUTTERS[1], SEVEN_NUMBERS] {
             let (p, command) = pass(&part, cutter, 10.0);
             let (last, longest) = (Cell::new(JUDGED.get()), Cell::new(0));
             let (asked, limit) = (Cell::new(0), Cell::new(u64::MAX));
@@ -263,7 +264,7 @@ const READINGS_OF_EXTREMES: usize = 40;
 fn the_verifier_asks_often_whether_to_go_on() {
     let [ruled, polyconic] = lofted();
     let searched = [("tabulated cylinder", waves_across()), ("ruled", ruled), ("polyconic", polyconic)];
-    let cutters = [CUTTERS[0], CUTTERS[1], &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]];
+    let cutters = [CUTTERS[0], CUTTERS[1], SEVEN_NUMBERS];
     for (name, part) in parts().into_iter().chain(searched) {
         for cutter in cutters {
             let (mut p, command) = pass(&part, cutter, 0.2);
@@ -296,27 +297,34 @@ fn the_verifier_asks_often_whether_to_go_on() {
     }
 }
 
+/// The passes over all parts with all cutters, each with its name.
+fn passes() -> impl Iterator<Item = (String, Program)> {
+    let of_part = |(name, part): (&'static str, Geometry)| {
+        CUTTERS.into_iter().chain([SEVEN_NUMBERS]).map(move |cutter| {
+            let (mut p, command) = pass(&part, cutter, 0.02);
+            p.run(&command);
+            (format!("{name}, cutter {cutter:?}"), p)
+        })
+    };
+    parts().into_iter().flat_map(of_part)
+}
+
 /// What the readings at the ends of a vector show to be within the band is not read between them: each role is read once at each position,
 /// and looked at on the two vectors on which it is least and greatest.
 #[test]
 fn the_verifier_reads_little_between_vertices() {
-    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
-    for (name, part) in parts() {
-        for cutter in CUTTERS.into_iter().chain([slanted]) {
-            let (mut p, command) = pass(&part, cutter, 0.02);
-            p.run(&command);
-            let asked = Cell::new(0);
-            let ask = || {
-                asked.set(asked.get() + 1);
-                false
-            };
-            let evidence = verify(p.last(), &ask).expect("evidence");
-            assert!(evidence.verified, "{name}, cutter {cutter:?}: {evidence:?}");
-            let positions = p.last().points.len() + 1;
-            // Both roles, and the check surface at the end and along the last vector.
-            let most = 2 * positions + READINGS_OF_EXTREMES;
-            assert!(asked.get() <= most, "{name}, cutter {cutter:?}: {} of {positions}", asked.get());
-        }
+    for (name, p) in passes() {
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let evidence = verify(p.last(), &ask).expect("evidence");
+        assert!(evidence.verified, "{name}: {evidence:?}");
+        let positions = p.last().points.len() + 1;
+        // Both roles, and the check surface at the end and along the last vector.
+        let most = 2 * positions + READINGS_OF_EXTREMES;
+        assert!(asked.get() <= most, "{name}: {} of {positions}", asked.get());
     }
 }
 
@@ -324,16 +332,11 @@ fn the_verifier_reads_little_between_vertices() {
 /// from one to another.
 #[test]
 fn the_verifier_expects_the_circle_that_touches() {
-    let slanted: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
-    for (name, part) in parts() {
-        for cutter in CUTTERS.into_iter().chain([slanted]) {
-            let (mut p, command) = pass(&part, cutter, 0.02);
-            p.run(&command);
-            let before = WORK.get();
-            assert!(verify(p.last(), &|| false).expect("evidence").verified, "{name}, cutter {cutter:?}");
-            let each = (WORK.get() - before) as f64 / p.last().points.len() as f64;
-            assert!(each <= 2.0, "{name}, cutter {cutter:?}: {each} circles a vector");
-        }
+    for (name, p) in passes() {
+        let before = WORK.get();
+        assert!(verify(p.last(), &|| false).expect("evidence").verified, "{name}");
+        let each = (WORK.get() - before) as f64 / p.last().points.len() as f64;
+        assert!(each <= 2.0, "{name}: {each} circles a vector");
     }
 }
 
@@ -387,7 +390,7 @@ const STRIP_WORK: u64 = 500_000;
 fn the_verifier_looks_at_little_where_contact_jumps_on_a_twisted_strip() {
     let (strip, drive) = (twisted_to(0.0), y(2.0));
     let mut p = Program::new();
-    p.tolerance(0.001, 0.001).cutter(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0]).from(1.0, 2.0, 4.0);
+    p.tolerance(0.001, 0.001).cutter(SEVEN_NUMBERS).from(1.0, 2.0, 4.0);
     p.go(&[(Relation::On, &drive), (Relation::To, &strip), (Relation::On, &x(1.0))]);
     p.side(DriveSide::On).drive(Turn::Right, &drive, Relation::On, &x(5.0));
     let before = WORK.get();
