@@ -82,6 +82,11 @@ impl PrincipalQuadric {
         &self.square
     }
 
+    /// F and half its gradient at the origin of the principal coordinates.
+    pub fn at_origin(&self) -> (f64, &Vec3) {
+        (self.constant, &self.linear)
+    }
+
     /// The stationary point for a place in principal coordinates.
     pub fn stationary(&self, y: &Vec3, multiplier: f64) -> Stationary {
         let stretch = self.square.map(|a| 1.0 / (1.0 + multiplier * a));
@@ -105,14 +110,12 @@ impl PrincipalQuadric {
             return None;
         }
         let linear = self.linear * side;
-        let mut constant = side * self.constant;
-        for i in 0..3 {
-            constant -= multiplier * linear[i] * linear[i] / stretch[i];
-        }
+        let shrunk = stretch.map(|stretch| 1.0 / stretch);
+        let lowered = linear.component_mul(&shrunk);
         Some(QuadraticFunction {
-            square: (self.square * side).component_div(&stretch),
-            linear: linear.component_div(&stretch),
-            constant,
+            square: (self.square * side).component_mul(&shrunk),
+            linear: lowered,
+            constant: side * self.constant - multiplier * linear.dot(&lowered),
         })
     }
 

@@ -57,11 +57,30 @@ struct Known {
     axis: Vec3,
     side: f64,
     place: Place,
-    /// Where contact was on another piece of the tool, and the last tool end there.
-    other: Option<(Place, Vec3)>,
+    /// Where contact was on another piece of the tool.
+    other: Option<Other>,
     /// How far the tool moved lately between two contacts.
     stride: f64,
     proof: Option<Proof>,
+}
+
+/// A place on another piece of the tool than the last contact.
+#[derive(Debug, Clone, Copy)]
+struct Other {
+    place: Place,
+    /// The last tool end at which contact was there.
+    left: Vec3,
+    /// A tool end, and how much farther from the surface the tool was there than in contact.
+    farther: Option<(Vec3, f64)>,
+}
+
+impl Other {
+    /// Whether contact may be there again: the tool has moved little since it was, and each place comes nearer, or goes away, by no more than the
+    /// tool moves.
+    fn may_touch(&self, tool: &Tool, tip: &Vec3) -> bool {
+        let is_farther = |(at, by): &(Vec3, f64)| 2.0 * (tip - at).norm() < *by;
+        (tip - self.left).norm() <= BACK * tool.radius() && !self.farther.as_ref().is_some_and(is_farther)
+    }
 }
 
 impl Known {
@@ -159,13 +178,20 @@ impl Memory {
         known.as_ref().filter(|known| known.is_of(tool, side)).map(|known| known.place)
     }
 
-    /// The same, and where contact was on another piece before, if the tool has moved little since.
+    /// The same, and where contact was on another piece before, if it may be there again.
     pub(super) fn places(&self, tool: &Tool, side: f64, tip: &Vec3) -> Option<(Place, Option<Place>)> {
         let known = self.known.try_borrow().ok()?;
         let known = known.as_ref().filter(|known| known.is_of(tool, side))?;
-        let is_near = |at: &Vec3| (tip - at).norm() <= BACK * tool.radius();
-        let other = known.other.as_ref().filter(|(_, at)| is_near(at)).map(|(place, _)| *place);
-        Some((known.place, other))
+        let other = known.other.as_ref().filter(|other| other.may_touch(tool, tip));
+        Some((known.place, other.map(|other| other.place)))
+    }
+
+    /// Keeps by how much farther from the surface than in contact the tool is at the place on the other piece.
+    pub(super) fn note_farther(&self, tip: &Vec3, by: f64) {
+        let Ok(mut known) = self.known.try_borrow_mut() else { return };
+        if let Some(other) = known.as_mut().and_then(|known| known.other.as_mut()) {
+            other.farther = Some((*tip, by));
+        }
     }
 
     /// Keeps what a contact was shown to be in a position.
@@ -212,7 +238,7 @@ impl Memory {
         match memory.as_mut() {
             Some(known) if known.side == side => {
                 if known.place.piece != place.piece {
-                    known.other = Some((known.place, known.tip));
+                    known.other = Some(Other { place: known.place, left: known.tip, farther: None });
                 }
                 (known.tip, known.axis, known.place) = (*tip, tool.axis, place);
             }

@@ -445,7 +445,7 @@ pub(crate) use self::{
     cover::{BOXES, STEADY_ASKED},
     kept::{CONTACTS_ASKED, PARTS_ASKED},
     near::LOOKS,
-    quadric::FLOORS,
+    quadric::{FLOORS, STEPS},
     search::LOOKS_EVERYWHERE,
 };
 

@@ -15,7 +15,7 @@ use std::borrow::Cow;
 use apt_geometry::{
     Vec3,
     cutter::ProfilePoint,
-    surface::{PrincipalQuadric, Surface},
+    surface::{PrincipalQuadric, Stationary, Surface},
 };
 
 #[cfg(test)]
@@ -30,6 +30,12 @@ use super::{
     tool::{Circle, Piece},
     waves::turned,
 };
+
+#[cfg(test)]
+thread_local! {
+    /// Steps of Newton's method to contacts that this thread has made.
+    pub(crate) static STEPS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
 
 /// Bound of Newton's method: without convergence the general search takes over.
 const MAX_ITERATIONS: u32 = 12;
@@ -95,10 +101,12 @@ pub(super) fn contact(
     let near = |place: &Place| scene.touch(tool.pieces.get(place.piece)?, &place.point, &place.start(tool));
     let (there, elsewhere) = (near(&last), other.as_ref().and_then(near));
     let (place, touch) = match (&there, &other, &elsewhere) {
-        (Some(there), Some(other), Some(elsewhere))
-            if elsewhere.contact.clearance.total_cmp(&there.contact.clearance).is_lt() =>
-        {
-            (other, elsewhere)
+        (Some(there), Some(other), Some(elsewhere)) => {
+            let farther = elsewhere.contact.clearance - there.contact.clearance;
+            if farther >= 0.0 {
+                memory.note_farther(tip, farther);
+            }
+            if farther < 0.0 { (other, elsewhere) } else { (&last, there) }
         }
         (Some(there), ..) => (&last, there),
         (None, Some(other), Some(elsewhere)) => (other, elsewhere),
@@ -202,6 +210,9 @@ impl<'a> Scene<'a> {
     /// The contact on a circle; on the corner its normal must be one of the corner's own.
     fn touch_circle(&self, circle: &Circle, is_corner: bool, start: &Start) -> Option<Touch> {
         let touch = match &self.means {
+            Means::Convex(posed) | Means::General(posed) if circle.radius == 0.0 => {
+                posed.touch_on_axis(circle, start).or_else(|| self.touch_on_axis(circle))?
+            }
             _ if circle.radius == 0.0 => self.touch_on_axis(circle)?,
             Means::Round(round) => round.touch(self.tool, self.tip, circle, start.direction)?,
             Means::Convex(posed) | Means::General(posed) => posed.touch(circle, start)?,
@@ -228,10 +239,8 @@ impl<'a> Scene<'a> {
             tool: center - gradient * circle.ball,
             surface: foot.point,
         };
-        // Where contact goes from there, should it leave the axis.
-        let (lean, _, radial) = self.tool.split(&-gradient);
-        let direction = [0, 1].map(|k| radial.dot(&self.tool.across[k]));
-        let (lean, start) = (-lean, Start { direction, multiplier: None });
+        let (direction, lean) = on_axis(self.tool, &contact);
+        let start = Start { direction, multiplier: None };
         (circle.ball <= 0.0 || distance > 0.0).then_some(Touch { contact, lean, start })
     }
 
@@ -264,6 +273,13 @@ pub(super) fn is_way_out(tool: &Tool, surface: &Surface, contact: &Contact) -> b
     let Surface::Cone(cone) = surface else { return true };
     let foot = contact.surface - cone.vertex;
     foot.dot(&cone.axis) > 0.0 && (contact.clearance > 0.0 || foot.norm() > tool.radius())
+}
+
+/// The azimuth at which a contact on the axis leaves it, should it do so (cosine, sine), and the cosine of the angle between tool axis and surface
+/// normal.
+fn on_axis(tool: &Tool, contact: &Contact) -> ([f64; 2], f64) {
+    let (along, _, radial) = tool.split(&-contact.gradient);
+    ([0, 1].map(|k| radial.dot(&tool.across[k])), -along)
 }
 
 /// Whether the tangent plane at a contact has the whole tool on one side, a convex solid being on the other: two convex
@@ -301,18 +317,11 @@ impl<'a> Posed<'a> {
         let squares = *self.form.squares();
         let center = self.tip + self.axis * height;
         let mut direction = start.direction;
-        let mut multiplier = match start.multiplier {
-            Some(known) => self.limited(0.0, known),
-            None => {
-                // The first step of Newton's method from the place itself.
-                let here = self.form.stationary(&(center + self.radial(direction) * radius), 0.0);
-                self.limited(0.0, here.value / (2.0 * here.gradient.norm_squared()))
-            }
-        };
+        let mut multiplier = self.first_multiplier(start, || center + self.radial(direction) * radius);
         for _ in 0..MAX_ITERATIONS {
             let outward = self.radial(direction) * radius;
             let onward = self.radial([-direction[1], direction[0]]) * radius;
-            let at = self.form.stationary(&(center + outward), multiplier);
+            let at = self.stationary(&(center + outward), multiplier);
             if at.stretch.min() <= 0.0 {
                 return None;
             }
@@ -345,6 +354,55 @@ impl<'a> Posed<'a> {
             }
         }
         None
+    }
+
+    /// The contact of a ball about a point of the axis, from where it was last: between the poles the multiplier has one value for which the
+    /// nearest point is on the surface. `None` where it is hard to find, or there is none.
+    fn touch_on_axis(&self, circle: &Circle, start: &Start) -> Option<Touch> {
+        let &Circle { height, ball, .. } = circle;
+        let center = self.tip + self.axis * height;
+        let mut multiplier = self.first_multiplier(start, || center);
+        for _ in 0..MAX_ITERATIONS {
+            let at = self.stationary(&center, multiplier);
+            if at.stretch.min() <= 0.0 {
+                return None;
+            }
+            let bent = at.stretch.component_mul(&at.gradient);
+            let grow = at.value / (2.0 * bent.dot(&at.gradient));
+            if !grow.is_finite() {
+                return None;
+            }
+            let is_near = grow.abs() * self.form.squares().component_mul(&at.stretch).amax() <= NEARLY;
+            multiplier = self.limited(multiplier, multiplier + grow);
+            if is_near {
+                let outside = ball <= 0.0 || self.side * multiplier > 0.0;
+                return outside.then(|| self.made_on_axis(center, multiplier, ball));
+            }
+        }
+        None
+    }
+
+    /// The contact of a ball about a point of the axis; the azimuth is where it goes from there, should it leave the axis.
+    fn made_on_axis(&self, center: Vec3, multiplier: f64, ball: f64) -> Touch {
+        let touch = self.made(center, [0.0; 2], multiplier, ball);
+        let start = Start { direction: on_axis(self.tool, &touch.contact).0, ..touch.start };
+        Touch { start, ..touch }
+    }
+
+    /// The multiplier with which a search begins: the last one, or by the first step of Newton's method from the place itself.
+    fn first_multiplier(&self, start: &Start, place: impl FnOnce() -> Vec3) -> f64 {
+        let first = start.multiplier.unwrap_or_else(|| {
+            let here = self.form.stationary(&place(), 0.0);
+            here.value / (2.0 * here.gradient.norm_squared())
+        });
+        self.limited(0.0, first)
+    }
+
+    /// The stationary point for a place on the tool, at a step to a contact.
+    fn stationary(&self, place: &Vec3, multiplier: f64) -> Stationary {
+        #[cfg(test)]
+        STEPS.set(STEPS.get() + 1);
+        self.form.stationary(place, multiplier)
     }
 
     fn radial(&self, [cosine, sine]: [f64; 2]) -> Vec3 {

@@ -239,6 +239,7 @@ fn flanks_touch_round_solids_anywhere() {
 mod halves;
 mod kept;
 mod near;
+mod on_axis;
 mod proofs;
 
 /// A flank that leans little against an ellipsoid: contact is inside of it, near the tip.

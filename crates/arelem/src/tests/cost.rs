@@ -10,7 +10,7 @@ use apt_geometry::{
 
 use super::{sheets::twisted_to, turning::waves_across, *};
 use crate::{
-    clearance::{BOXES, EVALUATIONS, FLOORS, JUDGED},
+    clearance::{BOXES, EVALUATIONS, FLOORS, JUDGED, STEPS},
     verify::{
         VerifyError, WORK,
         tests::{lofted, lofts},
@@ -116,6 +116,20 @@ fn few_boxes_are_looked_at_for_a_vector_over_a_saddle() {
         p.run(&command);
         let each = (BOXES.get() - before) as f64 / p.last().points.len() as f64;
         assert!(each <= 3.0, "{name}, cutter {cutter:?}: {each} boxes a vector");
+    }
+}
+
+/// Contact is followed from where it was, on the axis, too; another piece of the tool is asked again where it can have come near; and a search that
+/// leaves its piece ends.
+#[test]
+fn few_steps_lead_to_the_contacts_of_a_vector_over_a_saddle() {
+    let (name, part) = parts().pop().expect("the saddle");
+    for (cutter, most) in [(CUTTERS[0], 19.0), (CUTTERS[1], 36.0), (SEVEN_NUMBERS, 90.0)] {
+        let (mut p, command) = pass(&part, cutter, 10.0);
+        let before = STEPS.get();
+        p.run(&command);
+        let each = (STEPS.get() - before) as f64 / p.last().points.len() as f64;
+        assert!(each <= most, "{name}, cutter {cutter:?}: {each} steps a vector");
     }
 }
 

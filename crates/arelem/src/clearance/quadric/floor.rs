@@ -3,7 +3,7 @@
 
 use apt_geometry::{Vec3, cutter::ProfilePoint, surface::QuadraticFunction};
 
-use super::Posed;
+use super::{Posed, ROUNDING};
 use crate::clearance::{
     Contact,
     cover::holds_balls,
@@ -38,6 +38,23 @@ pub(super) struct Bound {
     target: f64,
     /// Half its second derivative along the way, where that is not negative: it is the same for all points of the tool.
     bow: f64,
+}
+
+/// How a function bends along the straight lines of patches of the tool.
+#[derive(Clone, Copy)]
+pub(super) struct Slants {
+    /// The form of the squares for the axis, the greatest one for the axis together with a unit vector across it, and the greatest one for a
+    /// unit vector across it.
+    upright: f64,
+    tilt: f64,
+    sideways: f64,
+}
+
+impl Slants {
+    /// Half the second derivative along a line, at most, that rises and goes away from the axis by so much.
+    fn bend(&self, rise: f64, spread: f64) -> f64 {
+        rise * rise * self.upright + 2.0 * (rise * spread).abs() * self.tilt + spread * spread * self.sideways
+    }
 }
 
 /// What a function is nowhere below on a part of the tool, at both ends of the way.
@@ -78,9 +95,9 @@ impl Posed<'_> {
         let Some((sharp, steepness, towards)) = self.bound_from(level, contact) else { return false };
         let at_centers = self.tool.profile.arc + level;
         let has_balls = self.tool.profile.arc > 0.0 && at_centers > 0.0;
-        let balls = if has_balls { self.bound(at_centers, steepness, &towards) } else { None };
-        self.keeps(&sharp, balls.as_ref(), &towards)
-            || self.way.is_some() && self.keeps_by_halves(&sharp, balls.as_ref(), &towards)
+        let balls = || if has_balls { self.bound(at_centers, steepness, &towards) } else { None };
+        self.keeps(&sharp, &balls, &towards)
+            || self.way.is_some() && self.keeps_by_halves(&sharp, balls().as_ref(), &towards)
     }
 
     /// Whether functions are nowhere below their targets on pieces of the way: what of the tool is lowest at one end of it is not what is at the
@@ -91,7 +108,7 @@ impl Posed<'_> {
             length *= 0.5;
             let piece = |from: f64| {
                 let of = |bound: &Bound| bound.on_piece(from, length);
-                self.keeps(&of(sharp), balls.map(of).as_ref(), towards)
+                self.keeps(&of(sharp), &|| balls.map(of), towards)
             };
             if !piece(length) {
                 return false;
@@ -105,30 +122,46 @@ impl Posed<'_> {
 
     /// Whether functions are nowhere below their targets on the way of the tool: one for points of it, and one for the centres of the balls of its
     /// corner.
-    fn keeps(&self, sharp: &Bound, balls: Option<&Bound>, towards: &Vec3) -> bool {
+    fn keeps(&self, sharp: &Bound, balls: &dyn Fn() -> Option<Bound>, towards: &Vec3) -> bool {
         let profile = &self.tool.profile;
+        let slants = &self.slants(sharp);
         let floor = |circle: &ProfilePoint| (*circle, self.floor(sharp, circle, towards));
         let ends = [floor(&profile.lower), floor(&profile.upper)];
         let corner = if profile.arc > 0.0 {
-            let keep = |balls: &Bound| match profile.is_barrel() {
-                true => balls.keeps(self.floor_at_ball(balls, towards)),
-                false => balls.keeps(self.floor(balls, &profile.center, towards)),
+            let keep = |balls: Bound| match profile.is_barrel() {
+                true => balls.keeps(self.floor_at_ball(&balls, towards)),
+                false => balls.keeps(self.floor(&balls, &profile.center, towards)),
             };
-            // Balls that are all in the tool tell of a way what there is to tell of the corner.
-            let tells = || sharp.way.is_none() || !holds_balls(self.tool);
-            balls.is_some_and(keep) || tells() && self.arcs(sharp, ends, towards)
+            let by_balls = || balls().is_some_and(keep);
+            let by_arcs = || self.arcs((sharp, slants), ends, towards);
+            if self.faces_with_corner(towards) {
+                // Balls that are all in the tool tell of a way what there is to tell of the corner.
+                let tells = || sharp.way.is_none() || !holds_balls(self.tool);
+                by_balls() || tells() && by_arcs()
+            } else {
+                by_arcs() || by_balls()
+            }
         } else {
             sharp.keeps(ends[0].1)
         };
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         corner
             && if profile.lower.height > 0.0 {
-                self.flank(sharp, [floor(&tip), ends[0]], towards)
+                self.flank((sharp, slants), [floor(&tip), ends[0]], towards)
             } else {
                 self.bottom(sharp, ends[0])
             }
             && (profile.top.height <= profile.upper.height
-                || self.flank(sharp, [ends[1], floor(&profile.top)], towards))
+                || self.flank((sharp, slants), [ends[1], floor(&profile.top)], towards))
+    }
+
+    /// Whether the corner has the normal of the contact, and so the contact: the function for its balls then is as low as they are near.
+    fn faces_with_corner(&self, towards: &Vec3) -> bool {
+        let profile = &self.tool.profile;
+        let lean = self.axis.dot(towards) * profile.arc;
+        let down = |p: &ProfilePoint| profile.center.height - p.height;
+        lean <= down(&profile.lower) + ROUNDING * profile.arc
+            && lean >= down(&profile.upper) - ROUNDING * profile.arc
     }
 
     /// Half the slope of F at a point of the surface.
@@ -145,6 +178,17 @@ impl Posed<'_> {
             return None;
         }
         Some((self.bound(level, steepness, &towards)?, steepness, towards))
+    }
+
+    /// How a function bends along straight lines of the tool.
+    pub(super) fn slants(&self, bound: &Bound) -> Slants {
+        let [uu, vv, uv] = bound.across;
+        let along = bound.function.square.component_mul(&self.axis);
+        Slants {
+            upright: along.dot(&self.axis),
+            tilt: length(self.across.each_ref().map(|u| along.dot(u))),
+            sideways: 0.5 * (uu + vv) + length([0.5 * (uu - vv), uv]),
+        }
     }
 
     /// The function for a distance that points must keep; for a depth, F for the tool shifted out by it.
@@ -164,13 +208,18 @@ impl Posed<'_> {
 
     /// Whether the corner keeps a distance, where its whole balls stand out from the tool: patches along the tangents at both
     /// ends of stretches of its arc have the arc behind them. An end that is the contact itself is no obstacle to that.
-    pub(super) fn arcs(&self, bound: &Bound, ends: [Circled; 2], towards: &Vec3) -> bool {
-        let profile = &self.tool.profile;
-        let at = |polar: f64, away: f64| {
-            let circle = ProfilePoint {
-                radius: profile.center.radius + away * polar.sin(),
-                height: profile.center.height - away * polar.cos(),
-            };
+    pub(super) fn arcs(
+        &self,
+        (bound, slants): (&Bound, &Slants),
+        ends: [Circled; 2],
+        towards: &Vec3,
+    ) -> bool {
+        let ProfilePoint { radius, height } = self.tool.profile.center;
+        let arc = self.tool.profile.arc;
+        // A circle from the centre of the arc, along the sum of the ways to both ends of a stretch.
+        let at = |along: [f64; 2], share: f64| {
+            let circle =
+                ProfilePoint { radius: radius + share * along[0], height: height + share * along[1] };
             (circle, self.floor(bound, &circle, towards))
         };
         // Circles of the arc itself are to keep it, however short the stretches are.
@@ -178,21 +227,30 @@ impl Posed<'_> {
         if !keep(&ends) {
             return false;
         }
-        let mut open = vec![(profile.fan, ends)];
-        let most = if bound.way.is_some() { MAX_ARCS_ON_WAY } else { MAX_ARCS };
-        for _ in 0..most {
-            let Some(([from, to], ends)) = open.pop() else { return true };
-            let middle = 0.5 * (from + to);
-            let meeting = at(middle, profile.arc / (0.5 * (to - from)).cos());
-            if !ends.iter().all(|end| self.flank(bound, [*end, meeting], towards)) {
-                let between = at(middle, profile.arc);
-                if !keep(&[between]) {
-                    return false;
-                }
-                open.extend([([middle, to], [between, ends[1]]), ([from, middle], [ends[0], between])]);
+        let mut open = Vec::new();
+        let mut stretch = Some(ends);
+        let mut left = if bound.way.is_some() { MAX_ARCS_ON_WAY } else { MAX_ARCS };
+        while let Some(ends) = stretch {
+            if left == 0 {
+                return false;
             }
+            left -= 1;
+            let [from, to] = ends.map(|(circle, _)| [circle.radius - radius, circle.height - height]);
+            let sum = [from[0] + to[0], from[1] + to[1]];
+            let apart = (from[0] * to[0] + from[1] * to[1]) / (arc * arc);
+            let meeting = at(sum, 1.0 / (1.0 + apart));
+            if ends.iter().all(|end| self.flank((bound, slants), [*end, meeting], towards)) {
+                stretch = open.pop();
+                continue;
+            }
+            let between = at(sum, arc / length(sum));
+            if !keep(&[between]) {
+                return false;
+            }
+            open.push([between, ends[1]]);
+            stretch = Some([ends[0], between]);
         }
-        open.is_empty()
+        true
     }
 
     /// A lower bound of a function over a circle about the axis, at both ends of the way.
@@ -269,17 +327,12 @@ impl Posed<'_> {
     /// patch it is a parabola whose second derivative is known.
     pub(super) fn flank(
         &self,
-        bound: &Bound,
+        (bound, slants): (&Bound, &Slants),
         [(low, first), (high, last)]: [Circled; 2],
         towards: &Vec3,
     ) -> bool {
         let (rise, spread) = (high.height - low.height, high.radius - low.radius);
-        let [uu, vv, uv] = bound.across;
-        let along = bound.function.square.component_mul(&self.axis);
-        let tilt = length([along.dot(&self.across[0]), along.dot(&self.across[1])]);
-        let bend = rise * rise * along.dot(&self.axis)
-            + 2.0 * (rise * spread).abs() * tilt
-            + spread * spread * (0.5 * (uu + vv) + length([0.5 * (uu - vv), uv]));
+        let bend = slants.bend(rise, spread);
         let at = |t: f64| ProfilePoint { radius: low.radius + t * spread, height: low.height + t * rise };
         let floor = |t: f64| self.floor(bound, &at(t), towards);
         if !(bound.keeps(first) && bound.keeps(last)) {

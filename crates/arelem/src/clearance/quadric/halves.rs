@@ -43,11 +43,14 @@ impl Half {
 impl Posed<'_> {
     /// Both halves, if the solid has two.
     fn halves(&self) -> Option<[Half; 2]> {
-        let square = self.form.squares() * self.side;
-        let origin = self.form.stationary(&Vec3::zeros(), 0.0);
+        let (value, gradient) = self.form.at_origin();
+        if gradient.iter().any(|slope| *slope != 0.0) {
+            return None;
+        }
+        let (square, constant) = (self.form.squares() * self.side, value * self.side);
         let mut hollow = (0..3).filter(|i| square[*i] < 0.0);
-        let (across, constant) = (hollow.next()?, origin.value * self.side);
-        let has_halves = hollow.next().is_none() && origin.gradient == Vec3::zeros() && constant >= 0.0;
+        let across = hollow.next()?;
+        let has_halves = hollow.next().is_none() && constant >= 0.0;
         let half = |sign: f64| {
             let mut inward = Vec3::zeros();
             inward[across] = sign;
@@ -127,16 +130,17 @@ impl Posed<'_> {
         let profile = &self.tool.profile;
         let is_beyond = |circle: &ProfilePoint| half.room(self, circle) >= level;
         let floor = |circle: &ProfilePoint| (*circle, self.floor(bound, circle, towards));
+        let slants = &self.slants(bound);
         let lower = || floor(&profile.lower);
         let corner = if profile.arc > 0.0 {
             half.room(self, &profile.center) - profile.arc >= level
-                || self.arcs(bound, [lower(), floor(&profile.upper)], towards)
+                || self.arcs((bound, slants), [lower(), floor(&profile.upper)], towards)
         } else {
             is_beyond(&profile.lower) || bound.keeps(lower().1)
         };
         let flank = |ends: [&ProfilePoint; 2]| {
             self.not_beyond(half, level, ends)
-                .is_none_or(|ends| self.flank(bound, ends.map(|circle| floor(&circle)), towards))
+                .is_none_or(|ends| self.flank((bound, slants), ends.map(|circle| floor(&circle)), towards))
         };
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         let bottom = if profile.lower.height > 0.0 {

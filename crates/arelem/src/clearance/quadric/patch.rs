@@ -16,6 +16,8 @@ const MAX_ITERATIONS: u32 = 16;
 const NEARLY: f64 = 1e-8;
 /// Largest step of a coordinate, in radians or shares of the patch.
 const LARGEST_STEP: f64 = 0.5;
+/// Distance from a patch, in shares of it, from which no search comes back.
+const FAR_OFF: f64 = 1.0;
 
 /// Share of the squared bends of the distance that is rounding of their product.
 const FLAT: f64 = 1e-9;
@@ -55,16 +57,11 @@ impl Posed<'_> {
             }
         };
         let squares = *self.form.squares();
-        let mut multiplier = match start.multiplier {
-            Some(known) => self.limited(0.0, known),
-            None => {
-                let here = self.form.stationary(&self.spot(piece, at)?.place, 0.0);
-                self.limited(0.0, here.value / (2.0 * here.gradient.norm_squared()))
-            }
-        };
+        let first = || self.spot(piece, at).map_or(self.tip, |spot| spot.place);
+        let mut multiplier = self.first_multiplier(start, first);
         for _ in 0..MAX_ITERATIONS {
             let spot = self.spot(piece, at)?;
-            let here = self.form.stationary(&spot.place, multiplier);
+            let here = self.stationary(&spot.place, multiplier);
             if here.stretch.min() <= 0.0 {
                 return None;
             }
@@ -98,7 +95,11 @@ impl Posed<'_> {
                 Coordinates::Line(direction, share) => Coordinates::Line(turned(direction, p), share + q),
             };
             multiplier = self.limited(multiplier, multiplier + step.z);
-            if near && !is_least {
+            let is_far_off = match at {
+                Coordinates::Flat([x, y]) => x.hypot(y) > 1.0 + FAR_OFF,
+                Coordinates::Line(_, share) => !(-FAR_OFF..=1.0 + FAR_OFF).contains(&share),
+            };
+            if is_far_off || near && !is_least {
                 return None;
             }
             if near {
