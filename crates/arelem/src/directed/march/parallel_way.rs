@@ -60,6 +60,11 @@ struct Course<'w> {
     places: Vec<(f64, Vertex)>,
 }
 
+/// Whether a path, by the rate at which the clearance of a check surface changes, may be on such a way.
+pub(super) fn is_nearly_parallel(slope: f64) -> bool {
+    slope.abs() <= NEARLY
+}
+
 impl<'a> ParallelWay<'a> {
     /// The way that leads on from a place where the check surface's clearance changes at this rate.
     pub(super) fn from(
@@ -68,7 +73,7 @@ impl<'a> ParallelWay<'a> {
         (place, slope): (&Vertex, f64),
         patience: Patience<'a>,
     ) -> Result<Option<Self>, MotionFailure> {
-        if slope.abs() > NEARLY {
+        if !is_nearly_parallel(slope) {
             return Ok(None);
         }
         let Some(origin) = Vertex::settled(prepared, &place.tip, &place.tangent) else { return Ok(None) };

@@ -1,5 +1,8 @@
 //! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
 
+#[cfg(test)]
+mod tests;
+
 use std::rc::Rc;
 
 use apt_geometry::{
@@ -8,7 +11,11 @@ use apt_geometry::{
     patience::Patience,
 };
 
-use super::{Vertex, parallel_way::ParallelWay, surface_end::is_at_end};
+use super::{
+    Vertex,
+    parallel_way::{ParallelWay, is_nearly_parallel},
+    surface_end::is_at_end,
+};
 use crate::{
     clearance::{Contact, Gauge},
     directed::{
@@ -129,9 +136,11 @@ impl OnWay {
         })
     }
 
-    /// Whether a place is on it.
+    /// Whether a place is on it. As long as its tangency lies ahead, one that may be counts: cut vectors are beside the path at rest, and where the tool
+    /// touches with a whole flank, by a hair's breadth, rounding of the places at which it does leaves more of a sine than along the way.
     fn has(&self, place: &Reading) -> bool {
-        (place.slope - self.slope).abs() <= PARALLEL
+        let may_be = self.stop.is_some() && is_nearly_parallel(place.slope);
+        may_be || (place.slope - self.slope).abs() <= PARALLEL
     }
 }
 
