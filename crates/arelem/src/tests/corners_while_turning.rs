@@ -202,3 +202,28 @@ fn a_path_does_not_go_back_where_its_axis_begins_to_turn_fast() {
         "{failure:?}"
     );
 }
+
+/// How far from the place where its flank comes to lie along the wall the tool begins.
+const BEFORE: [f64; 4] = [0.1, 0.08, 0.05, 0.03];
+/// Radius of a wall so flat that contact goes along all of the flank while the tool end goes no farther than it can in its bands.
+const FLAT: f64 = 1000.0;
+
+/// Where the wall bulges, contact goes along the flank steadily, and the path turns by as much within a few bands: bit by bit, so that no vector leads back
+/// against the one before, as one that went across the bands would make the next.
+#[test]
+fn vectors_of_a_turning_tool_lead_round_a_tight_bend_bit_by_bit() {
+    let hollow = cylinder(Vec3::zeros(), Vec3::x(), HOLLOW);
+    let (normal, across) = LEAN.to_radians().sin_cos();
+    let outward = v(across, 0.0, normal);
+    let wall = cylinder(-outward * (CORNER + FLAT) - Vec3::y(), outward.cross(&Vec3::y()), FLAT);
+    for before in BEFORE {
+        let mut program = Program::new();
+        program.cutter(&[2.0 * CORNER, CORNER, 0.0, CORNER, 0.0, 0.0, HEIGHT]).tolerance(0.001, 0.001);
+        program.run(&MotionCommand::ToolAxis(ToolAxis::Fixed(v(0.0, -0.95, 0.3)))).from(0.9, 1.8, -0.5);
+        program.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: false }));
+        program.go(&[(Relation::On, &hollow), (Relation::To, &wall), (Relation::On, &level(-before))]);
+        program.side(DriveSide::On).indirv(-1.3, 0.0, 1.0);
+        program.drive(Turn::Forward, &hollow, Relation::On, &level(0.2));
+        is_proven(&program);
+    }
+}

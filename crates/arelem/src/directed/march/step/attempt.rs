@@ -36,13 +36,16 @@ const FAR_ASIDE: f64 = 0.25;
 pub(super) struct LeastCosines {
     pub(super) forward: f64,
     pub(super) between: f64,
+    /// With the path at its end, of a tool that turns.
+    pub(super) arriving: f64,
 }
 
 impl LeastCosines {
     /// Of vectors that follow the path.
-    pub(super) const ALONG: Self = Self { forward: LEAST_TURN_COSINE, between: LEAST_TURN_COSINE };
+    pub(super) const ALONG: Self =
+        Self { forward: LEAST_TURN_COSINE, between: LEAST_TURN_COSINE, arriving: LEAST_TURN_COSINE };
     /// Of vectors that round a corner.
-    pub(super) const ROUND_CORNER: Self = Self { between: 0.0, ..Self::ALONG };
+    pub(super) const ROUND_CORNER: Self = Self { between: 0.0, arriving: -1.0, ..Self::ALONG };
 }
 
 /// What a vector is to end with: clearances, from second derivatives of them along the path, and the bends that tell the limits.
@@ -131,6 +134,13 @@ impl Stepper<'_> {
         CORNER_BANDS * self.roles().into_iter().filter(may_turn).map(Working::band).sum::<f64>()
     }
 
+    /// True if a vector of a tool that turns leads back from where the last one came, or across the path at its end, so that the next one would. The
+    /// line of motion of such a tool hangs on the law of its axis: nobody who reads the positions alone can tell that it bends so.
+    fn turns_back(&self, (chord, to): (&Vec3, &Vertex), arriving: f64) -> bool {
+        self.prepared.attitude.turns()
+            && (chord.dot(&self.last) < 0.0 || chord.dot(&to.tangent) < arriving * chord.norm())
+    }
+
     /// What there is to say of the vector to a position; `None` if it does not lead on, or if the cosine between the directions of the
     /// path at its ends is less than allowed.
     pub(super) fn judge(
@@ -144,6 +154,7 @@ impl Stepper<'_> {
         let reached = chord.norm();
         let forward = chord.dot(&here.tangent) > least.forward * reached;
         if !forward
+            || self.turns_back((&chord, &vertex), least.arriving)
             || self.kinks_back(here, &chord)
             || self.changes_hand(&chord, &vertex)
             || reached <= LEAST_VECTOR * self.prepared.size
