@@ -67,6 +67,12 @@ impl<'a> Attitude<'a> {
         self.run_in.as_ref().map_or(f64::INFINITY, |run_in| run_in.way_left(tip))
     }
 
+    /// That the surface which tells the axis ends where it does, if a tool stands to the end of it at a position.
+    pub(crate) fn end_of_law(&self, tip: &Vec3) -> Option<MotionFailure> {
+        let place = self.law.as_ref()?.end_at(&self.tool, tip)?;
+        Some(undetermined(AxisFailure::SurfaceEnds { place }, tip))
+    }
+
     /// The cutter, whatever its axis.
     pub(crate) fn tool(&self) -> &Tool<'a> {
         &self.tool

@@ -95,6 +95,12 @@ pub enum AxisFailure {
         /// Last change of the unit axis.
         change: f64,
     },
+    /// The normal that the axis stands to comes to the end of the surface, over which it turns (855).
+    #[error("the controlling surface ends at {place:?}")]
+    SurfaceEnds {
+        /// The place of the surface where it ends.
+        place: Vec3,
+    },
 }
 
 impl AxisFailure {
@@ -104,7 +110,7 @@ impl AxisFailure {
             Self::NotRuled => 852,
             Self::ImpossibleAngles { .. } => 859,
             Self::NoPlane => 854,
-            Self::NoNormal | Self::Vertex | Self::NotSettled { .. } => 855,
+            Self::NoNormal | Self::Vertex | Self::NotSettled { .. } | Self::SurfaceEnds { .. } => 855,
             Self::SignUnresolved => 861,
             Self::NoSurface => 850,
         }

@@ -128,6 +128,9 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
         AxisFailure::NotSettled { .. } => {
             "the surface that guides the axis is too hollow for this tool".to_owned()
         }
+        AxisFailure::SurfaceEnds { place: at } => {
+            format!("the surface that guides the axis ends at {}", place(at))
+        }
     };
     say("APT0606", format!("{what}, with the tool end at {}", place(tip))).hint("TLAXIS/i,j,k fixes the axis")
 }

@@ -327,6 +327,30 @@ impl Law {
         if is_vertex { Err(AxisFailure::Vertex) } else { Ok(Standing { axis, base, other }) }
     }
 
+    /// The place at which the controlling surface ends, if that is where a tool with its end at `tip` has its normal. Where the axis does not settle, which
+    /// it may not there, it is the normal at the tool end that tells the place.
+    pub(crate) fn end_at(&self, tool: &Tool, tip: &Vec3) -> Option<Vec3> {
+        let surface = &self.base.surface;
+        if !surface.has_ends() || matches!(self.mode, Mode::Fan { .. }) {
+            return None;
+        }
+        let place = match self.mode {
+            Mode::Normal | Mode::Parallel { .. } => *tip,
+            _ => {
+                let (axis, normal) = match self.standing(tool, tip) {
+                    Ok(standing) => (standing.axis, standing.base.0),
+                    Err(_) => {
+                        let (normal, other) = (self.base.normal(tip), self.others(tip));
+                        let beside = other.as_ref().map(|(normal, _)| normal);
+                        (self.towards(&normal, tip, beside).ok()?, normal)
+                    }
+                };
+                self.place(tool, tip, &axis, &normal)
+            }
+        };
+        surface.ends_at(&place).then(|| surface.foot(&place).point)
+    }
+
     /// The normal of the other surface beside a place, where the axis depends on it.
     fn others(&self, tip: &Vec3) -> Option<Bent> {
         let counts =

@@ -2,6 +2,7 @@
 //! every cut vector as long as the proof of its tolerances allows, until a check surface is met.
 
 mod creeping;
+mod explained;
 mod finish;
 mod parallel_way;
 mod scout;
@@ -134,8 +135,6 @@ const SAME_LINE: f64 = 1.0 - 1e-6;
 const MAX_FINALS: u32 = 60;
 /// After so many of them the end is looked for where in the bands the last vertex is.
 const PATIENT_FINALS: u32 = 12;
-/// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
-const WITHOUT_AXIS: f64 = 0.25;
 /// Cut vectors after which it is first looked whether a check surface lies ahead.
 const FIRST_LOOK: usize = 25;
 /// Cosine between the path and the way to the stop below which the vertex before it is taken back (60°).
@@ -315,21 +314,6 @@ impl<'a> March<'a> {
                 Ok(())
             }
         }
-    }
-
-    /// Why no vector goes on, where that is not the tolerance: the axis has no direction a little ahead, or a surface ends.
-    fn explained(&self, here: &Vertex, failure: MotionFailure) -> MotionFailure {
-        if failure == MotionFailure::Cancelled {
-            return failure;
-        }
-        self.without_axis(here).or_else(|| self.without_surface(here)).unwrap_or(failure)
-    }
-
-    /// Where no vector goes on because the axis has no direction a little ahead: that.
-    fn without_axis(&self, here: &Vertex) -> Option<MotionFailure> {
-        let Prepared { attitude, part, drive, .. } = self.prepared;
-        let ahead = here.tip + here.tangent * (WITHOUT_AXIS * (part.band() + drive.band()));
-        attitude.tool_at(&ahead).err()
     }
 
     /// Where one vector after the other hardly leads on, though none has to: that.

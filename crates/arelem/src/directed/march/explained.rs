@@ -1,0 +1,36 @@
+//! Why no vector goes on, where that is not the tolerance.
+
+use super::{March, Vertex, surface_end::just_ahead};
+use crate::{directed::Prepared, error::MotionFailure};
+
+/// How many times the bands ahead of a place without a way on it is looked whether the axis has a direction.
+const WITHOUT_AXIS: f64 = 0.25;
+
+impl March<'_> {
+    /// Why no vector goes on, where that is not the tolerance: a surface ends, or the axis has no direction a little ahead.
+    pub(super) fn explained(&self, here: &Vertex, failure: MotionFailure) -> MotionFailure {
+        if failure == MotionFailure::Cancelled {
+            return failure;
+        }
+        self.without_surface(here)
+            .or_else(|| self.without_law(here))
+            .or_else(|| self.without_axis(here))
+            .unwrap_or(failure)
+    }
+
+    /// Where no vector goes on because the surface that tells the axis ends where its normal is taken, just ahead or here: that. With the axis the path
+    /// may have turned on it, so that it lies behind.
+    fn without_law(&self, here: &Vertex) -> Option<MotionFailure> {
+        let reach = here.tangent * just_ahead(self.prepared);
+        [here.tip + reach, here.tip, here.tip - reach]
+            .iter()
+            .find_map(|tip| self.prepared.attitude.end_of_law(tip))
+    }
+
+    /// Where no vector goes on because the axis has no direction a little ahead: that.
+    fn without_axis(&self, here: &Vertex) -> Option<MotionFailure> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let ahead = here.tip + here.tangent * (WITHOUT_AXIS * (part.band() + drive.band()));
+        attitude.tool_at(&ahead).err()
+    }
+}
