@@ -57,6 +57,12 @@ impl<'a> Attitude<'a> {
         Ok(Self { tool: self.tool.clone(), law, run_in: None })
     }
 
+    /// The axis with the angle of its law to the other side; none where that hangs on no place.
+    pub(crate) fn to_other_side(&self) -> Option<Self> {
+        let law = self.law.as_ref()?.to_other_side()?;
+        Some(Self { law: Some(law), ..self.clone() })
+    }
+
     /// The same law, to which the axis turns up to a distance from the place where the tool begins.
     pub(crate) fn running_in(&self, origin: &Vec3, length: f64) -> Self {
         Self { run_in: Some(RunIn::new(&self.tool.axis, origin, length)), ..self.clone() }

@@ -276,7 +276,10 @@ fn settle_following(
 ) -> Result<Vec3, MotionFailure> {
     let first = settle(work, guide, start).unwrap_or(*start);
     follow_surfaces(work, &(first - original), Some(first))?;
-    let nearest = settle(work, guide, &first).or_else(|_| settle(work, guide, start))?;
+    let nearest = match settle(work, guide, &first).or_else(|_| settle(work, guide, start)) {
+        Ok(nearest) => nearest,
+        Err(failure) => return tilted_otherwise(work, guide, (original, [&first, start]), failure),
+    };
     let mut tip = nearest;
     for _ in 0..JUDGEMENTS {
         match is_judged_alike(work, original, &tip) {
@@ -290,6 +293,29 @@ fn settle_following(
     // Each place asks for the other one, or nothing is told there.
     follow_surfaces(work, &(first - original), Some(first))?;
     Ok(nearest)
+}
+
+/// Where no position is found with the axis tilted as it is judged where the tool would come to stand with its present one: one with the axis tilted to the
+/// other side, if it is judged to be that there.
+fn tilted_otherwise(
+    work: &mut StartUp<'_>,
+    guide: Option<(Vec3, f64)>,
+    (original, starts): (&Vec3, [&Vec3; 2]),
+    failure: MotionFailure,
+) -> Result<Vec3, MotionFailure> {
+    let judged = work.attitude.clone();
+    let is_told = matches!(failure, MotionFailure::StartUpDiverges { .. });
+    let Some(other) = judged.to_other_side().filter(|_| is_told) else { return Err(failure) };
+    for start in starts {
+        work.attitude = other.clone();
+        match settle(work, guide, start) {
+            Err(MotionFailure::Cancelled) => return Err(MotionFailure::Cancelled),
+            Ok(tip) if is_judged_alike(work, original, &tip) == Ok(true) => return Ok(tip),
+            _ => {}
+        }
+    }
+    work.attitude = judged;
+    Err(failure)
 }
 
 /// Judges how the axis follows the surfaces at a place where a move ends; whether it is there as it was.

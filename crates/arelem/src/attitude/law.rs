@@ -298,6 +298,20 @@ impl Law {
             .is_ok_and(|(tangent, _)| tangent.dot(before) * tangent.dot(beyond) < 0.0)
     }
 
+    /// The same law with the angle that it tilts by, or leads by, to the other side; none where that hangs on no place.
+    pub(crate) fn to_other_side(&self) -> Option<Self> {
+        let mode = match self.mode {
+            Mode::Across { vector, cosine, sine } if sine.abs() > ZERO_ANGLE => {
+                Mode::Across { vector, cosine, sine: -sine }
+            }
+            Mode::Lead { along, ahead, aside, sense } if ahead.abs() > ZERO_ANGLE => {
+                Mode::Lead { along, ahead, aside, sense: -sense }
+            }
+            _ => return None,
+        };
+        Some(Self { mode, ..self.clone() })
+    }
+
     /// The unit axis of a tool with its end at `tip`.
     pub(crate) fn axis(&self, tool: &Tool, tip: &Vec3) -> Result<Vec3, AxisFailure> {
         self.standing(tool, tip).map(|standing| standing.axis)

@@ -58,6 +58,23 @@ fn the_sense_of_an_angle_is_judged_where_the_start_up_ends() {
     proven(&p);
 }
 
+/// Where the tool would come to stand with its present axis the angle is judged to turn it away from the cone, in which it finds no place then. Tilted to the other
+/// side it does, and there it is judged so.
+#[test]
+fn a_tool_without_a_place_is_tilted_to_the_other_side() {
+    let under = quadric([0.04335, -0.15037, 0.0, -0.49648, 0.0, 0.0, -0.04154, 0.15066, -0.08259, 0.0]);
+    let inside = cone(v(-1.1062, -1.4947, 2.5864), v(0.79274, 0.56836, 0.22029), 37.168);
+    let first = plane(0.3833, 0.80209, -0.45797, -1.0318);
+    let mode = AxisAngle::PerpendicularTo(v(-0.10255, -0.67615, -0.90104));
+    let angle = -0.23774;
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.4473]);
+    from(&mut p, v(2.0767, 0.0672, 2.222), v(0.90227, -0.43118, 0.0));
+    along(&mut p, ToolAxis::AtAngle { part: true, angle, mode });
+    p.go(&[(Relation::To, &inside), (Relation::On, &under), (Relation::On, &first)]);
+    proven(&p);
+}
+
 /// A start-up that goes straight at both surfaces leads in no direction along them: TLLFT and TLRGT tell where ahead is.
 #[test]
 fn the_side_of_the_tool_tells_where_a_lead_angle_leads() {
