@@ -2,7 +2,7 @@
 
 mod search;
 
-use apt_geometry::{Vec3, canonical::Remembering, parametric::SculpturedSurface};
+use apt_geometry::{Vec3, canonical::Remembering, parametric::SculpturedSurface, patience::Patience};
 
 use crate::{
     bounds::PatchTree,
@@ -66,11 +66,13 @@ pub struct Cost {
 
 /// What is asked of a check.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Question {
+pub struct Question<'a> {
     /// Depth up to which nothing is said (INTOL); program units.
     pub threshold: f64,
     /// How exactly the depth of a hit is wanted; program units.
     pub gap: f64,
+    /// How long the search may go on: one that is given up has proven nothing.
+    pub patience: Patience<'a>,
 }
 
 /// The answer of a check.
@@ -87,6 +89,6 @@ pub struct Report {
 }
 
 /// Checks a tool in a pose against obstacles.
-pub fn check(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question) -> Report {
+pub fn check(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question<'_>) -> Report {
     search::deepest(tool, pose, obstacles, question)
 }

@@ -6,6 +6,7 @@ mod crease;
 use apt_geometry::{
     Vec3,
     parametric::{Edge, PatchPoint, SculpturedSurface},
+    patience::Patience,
 };
 
 use crate::{check::Obstacle, curvature::Curvature, tool::perpendicular};
@@ -26,6 +27,8 @@ const SINGULAR: f64 = 1e-10;
 const STARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// A contact so far outside of a patch, in its parameters, lies on the extension of the surface.
 const OUTSIDE: f64 = 1e-9;
+/// What a search from one place counts in units of work.
+const WORK_OF_SEARCH: u32 = 16;
 /// How many patches are tried when the line passes all of them by.
 const NEAREST_PATCHES: usize = 4;
 
@@ -63,7 +66,7 @@ pub struct NoContact {
 
 /// A ball and the line that it keeps to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RollingBall {
+pub struct RollingBall<'a> {
     /// Radius, stock included.
     pub radius: f64,
     /// A point of the line.
@@ -74,6 +77,8 @@ pub struct RollingBall {
     pub side: f64,
     /// What keeps to the line is the centre of the ball moved by this: the tool end stands below the centre.
     pub shift: Vec3,
+    /// How long contacts may be looked for.
+    pub patience: Patience<'a>,
 }
 
 impl Contact {
@@ -98,7 +103,7 @@ struct Offset {
     by_v: Vec3,
 }
 
-impl RollingBall {
+impl RollingBall<'_> {
     fn offset(&self, surface: &SculpturedSurface, place: &Place) -> Option<Offset> {
         let patch = surface.patches.get(place.patch)?;
         let [u, v] = place.parameters;
@@ -172,7 +177,7 @@ impl RollingBall {
     /// outside before from behind, least way first.
     ///
     /// # Errors
-    /// [`NoContact`] where no patch gives one.
+    /// [`NoContact`] where no patch gives one, and where the search is given up.
     pub fn first_contact(&self, obstacle: &Obstacle) -> Result<Contact, NoContact> {
         let surface = obstacle.surface();
         let first = perpendicular(&self.direction);
@@ -190,6 +195,9 @@ impl RollingBall {
         for patch in patches {
             for u in STARTS {
                 for v in STARTS {
+                    if self.patience.ends_after(WORK_OF_SEARCH) {
+                        return Err(NoContact { distance });
+                    }
                     match self.contact_from(surface, Place { patch, parameters: [u, v] }) {
                         Ok(contact) => {
                             let overshoot = contact.overshoot();

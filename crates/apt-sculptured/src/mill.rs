@@ -12,6 +12,7 @@ use apt_geometry::{
     canonical::Geometry,
     cutter::Cutter,
     motion::NamedSurface,
+    patience::Waiting,
     regional::{LiftDirection, RegionalMilling},
 };
 use serde::{Deserialize, Serialize};
@@ -133,13 +134,17 @@ pub(crate) struct Job<'a> {
     setting: Setting,
     /// Diagonal of the part surface's box.
     size: f64,
-    cancel: &'a dyn Fn() -> bool,
+    waiting: Waiting<'a>,
 }
 
-/// Carries out a SMIL. `cancel` is asked at every location.
+/// Carries out a SMIL. `cancel` is asked at every location and during the checks; once it has said so no location is added.
 pub fn mill(command: &RegionalMilling, setting: &Setting, cancel: &dyn Fn() -> bool) -> Milled {
     let mut milled = Milled::default();
-    let outcome = Job::new(command, setting, cancel).and_then(|job| pattern::run(&job, &mut milled));
+    let outcome = Job::new(command, setting, cancel).and_then(|job| {
+        let outcome = pattern::run(&job, &mut milled);
+        // What a search that was given up did not find is no mistake of the program.
+        job.was_cancelled().and(outcome)
+    });
     milled.failure = outcome.err();
     milled
 }
@@ -186,7 +191,7 @@ impl<'a> Job<'a> {
             tool,
             setting: *setting,
             size,
-            cancel,
+            waiting: Waiting::until(cancel),
         })
     }
 
@@ -195,13 +200,19 @@ impl<'a> Job<'a> {
         self.command.part.thickness
     }
 
-    fn question(&self) -> Question {
+    fn question(&self) -> Question<'_> {
         let gap = (DEPTH_SHARE * self.setting.inside).max(DEPTH_PRECISION * self.tool.reach());
-        Question { threshold: self.setting.inside, gap }
+        Question { threshold: self.setting.inside, gap, patience: self.waiting.patience() }
     }
 
+    /// Asks whether to go on.
     fn cancelled(&self) -> Result<(), MillingError> {
-        if (self.cancel)() { Err(MillingError::Cancelled) } else { Ok(()) }
+        if self.waiting.is_over() { Err(MillingError::Cancelled) } else { Ok(()) }
+    }
+
+    /// The same as far as it is known: what a search has left out that was given up is not to be told.
+    fn was_cancelled(&self) -> Result<(), MillingError> {
+        if self.waiting.has_given_up() { Err(MillingError::Cancelled) } else { Ok(()) }
     }
 }
 

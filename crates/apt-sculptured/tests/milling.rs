@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     canonical::{Geometry, Plane, Remembering},
@@ -427,6 +429,41 @@ fn a_tilt_clears_the_foot_of_a_step_within_its_range() {
         assert!(dense_depth(&STEP, &setting, &pose) <= setting.inside + 1e-6, "{encounter:?}");
     }
     assert!(tilted > 0, "{:?}", milled.encounters);
+}
+
+/// Boxes and cells that are bounded between two questions whether to go on, some microseconds each.
+const WORK_BETWEEN_QUESTIONS: u64 = 200;
+
+#[test]
+fn milling_asks_often_whether_to_go_on_and_adds_nothing_once_it_is_cancelled() {
+    let setting = setting(&[2.0, 0.3], 0.005);
+    let mut command = checked(&STEP, LiftDirection::Axis, 5.0);
+    command.axis = AxisCondition::GuideNormal(Sense::Plus);
+    let degrees = f64::to_radians;
+    command.avoidance.tilt =
+        Some(TiltControl { constant: degrees(1.0), least: degrees(-40.0), greatest: degrees(40.0) });
+    let whole = run(&command, &setting);
+    let mut before = 0;
+    for most in 1.. {
+        let questions = Cell::new(0);
+        let cancel = || {
+            questions.set(questions.get() + 1);
+            questions.get() >= most
+        };
+        let milled = mill(&command, &setting, &cancel);
+        let work = milled.cost.boxes + milled.cost.cells;
+        assert!(work <= before + WORK_BETWEEN_QUESTIONS, "{work} after {before} at question {most}");
+        before = work;
+        if milled.failure.is_none() {
+            assert_eq!(milled, whole);
+            break;
+        }
+        assert_eq!(milled.failure, Some(MillingError::Cancelled));
+        assert_eq!(questions.get(), most, "asked again after the answer");
+        assert!(milled.locations().zip(whole.locations()).all(|(one, other)| one == other), "{milled:?}");
+        let told = whole.encounters.get(..milled.encounters.len());
+        assert_eq!(told, Some(milled.encounters.as_slice()));
+    }
 }
 
 #[test]

@@ -15,6 +15,8 @@ use crate::{
 /// Most cells of one check. A thousand times what hard cases take; a tool that fits a surface exactly over an area could
 /// go on for ever.
 const MOST_CELLS: u64 = 200_000;
+/// What halving a cell, or a box of the tree, counts in units of work: two cells or boxes are bounded.
+const WORK_OF_HALVING: u32 = 4;
 
 /// A piece of an obstacle with the bound of its depth.
 struct Open {
@@ -65,14 +67,14 @@ struct Search<'a> {
     tool: &'a Tool,
     pose: &'a Pose,
     obstacles: &'a [Obstacle],
-    question: &'a Question,
+    question: &'a Question<'a>,
     open: BinaryHeap<Open>,
     best: Option<Hit>,
     cost: Cost,
 }
 
 /// The deepest point of the obstacles in the tool.
-pub(super) fn deepest(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question) -> Report {
+pub(super) fn deepest(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question<'_>) -> Report {
     let mut search = Search {
         tool,
         pose,
@@ -100,7 +102,7 @@ impl Search<'_> {
             if top.bound <= limit {
                 return self.report(limit, true);
             }
-            if self.cost.cells >= MOST_CELLS {
+            if self.cost.cells >= MOST_CELLS || self.question.patience.ends_after(WORK_OF_HALVING) {
                 return self.report(top.bound, false);
             }
             match top.piece {

@@ -31,7 +31,7 @@ const EDGE_RESIDUAL: f64 = 1e-12;
 /// How far the polished contact may be from where the ball arrived, as a share of the ball.
 const SAME_CONTACT: f64 = 1e-2;
 
-impl RollingBall {
+impl RollingBall<'_> {
     /// The contact near a place: by Newton's method, and where patches meet at an angle the first one down the line.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl RollingBall {
     /// Whether something else of the surface is in the ball at a contact.
     fn is_preceded(&self, obstacle: &Obstacle, contact: &Contact) -> bool {
         let threshold = SECOND_CONTACT * self.radius;
-        let question = Question { threshold, gap: threshold };
+        let question = Question { threshold, gap: threshold, patience: self.patience };
         let obstacles = std::slice::from_ref(obstacle);
         check(&self.tool(), &self.pose(contact.along_line), obstacles, &question).worst.is_some()
     }
@@ -89,7 +89,7 @@ impl RollingBall {
         let mut distance = size;
         for _ in 0..MOST_STEPS {
             let gap = (DISTANCE_SHARE * distance).max(0.1 * ARRIVED * size);
-            let question = Question { threshold: f64::MIN, gap };
+            let question = Question { threshold: f64::MIN, gap, patience: self.patience };
             let hit = check(&tool, &self.pose(along), obstacles, &question).worst?;
             // The surface may be nearer by the gap.
             distance = (-hit.depth - gap).max(0.0);

@@ -96,6 +96,7 @@ impl Job<'_> {
         way: Option<OnTheWay>,
         sink: &mut Sink<'_>,
     ) -> Result<(), MillingError> {
+        self.was_cancelled()?;
         if let Some(way) = way {
             self.tell(&way.pose, way.hit, Remedy::None, sink);
         }
@@ -111,7 +112,9 @@ impl Job<'_> {
         let tool = self.tool.with_stock(self.thickness());
         let hit = self.worst(&tool, &pose, sink);
         let stand = Stand { pose, clear: hit.is_none() };
-        if let Some(way) = self.on_the_way(&stand, sink) {
+        let way = self.on_the_way(&stand, sink);
+        self.was_cancelled()?;
+        if let Some(way) = way {
             self.tell(&way.pose, way.hit, Remedy::None, sink);
         }
         if let Some(hit) = hit {

@@ -117,6 +117,7 @@ impl Job<'_> {
             direction: guide.projection,
             side: self.command.part.side.sign(),
             shift: -axis * drop,
+            patience: self.waiting.patience(),
         };
         let AxisCondition::AtAngle { reference: AxisReference::Part, .. } = self.command.axis else {
             let contact = self.contact(&ball(&self.axis_of_drop(guide)?), parameters, from)?;

@@ -70,7 +70,7 @@ impl Job<'_> {
         &self,
         tool: &Tool,
         pose: &Pose,
-        question: &Question,
+        question: &Question<'_>,
         sink: &mut Sink<'_>,
     ) -> Option<Hit> {
         if self.checked.is_empty() {

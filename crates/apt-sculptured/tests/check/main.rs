@@ -3,7 +3,13 @@
 mod brute;
 mod surfaces;
 
-use apt_geometry::{Vec3, cutter::Cutter};
+use std::cell::Cell;
+
+use apt_geometry::{
+    Vec3,
+    cutter::Cutter,
+    patience::{Patience, Waiting},
+};
 use apt_sculptured::{
     check::{Obstacle, Question, Report, check},
     tool::{Pose, Tool},
@@ -24,12 +30,16 @@ fn mill(radius: f64, corner: f64, contact: Vec3, normal: Vec3, axis: Vec3) -> Mi
 }
 
 fn asked(surface: &TestSurface, mill: &Mill, threshold: f64) -> Report {
+    checked(surface, mill, &Question { threshold, gap: GAP, patience: Patience::default() })
+}
+
+fn checked(surface: &TestSurface, mill: &Mill, question: &Question<'_>) -> Report {
     let e = mill.radius - mill.corner;
     let numbers = [2.0 * mill.radius, mill.corner, e, mill.corner, 0.0, 0.0, mill.length];
     let tool = Tool::new(&Cutter::from_numbers(&numbers, 1.0).expect("a cutter"), 0.0);
     let obstacles = [Obstacle::new(surface.patches.clone())];
     let pose = Pose { end: mill.end, axis: mill.axis };
-    check(&tool, &pose, &obstacles, &Question { threshold, gap: GAP })
+    check(&tool, &pose, &obstacles, question)
 }
 
 /// Checks a row of the table of reference 5.3: both searches find this depth.
@@ -99,6 +109,37 @@ fn t13_a_collapsed_edge() {
     let pole = Vec3::new(0.0, 0.0, -6.0);
     row("T13", &t13(), &mill(5.0, 5.0, pole, Vec3::z(), Vec3::z()), 0.0);
     row("T13", &t13(), &mill(7.0, 7.0, pole, Vec3::z(), Vec3::z()), 7.0 - 37.0f64.sqrt());
+}
+
+/// Boxes and cells that are bounded between two questions whether to go on, some microseconds each.
+const WORK_BETWEEN_QUESTIONS: u64 = 150;
+
+#[test]
+fn a_check_asks_often_whether_to_go_on_and_proves_nothing_once_it_is_given_up() {
+    let (surface, flat) = (t09(), mill(6.0, 0.0, Vec3::zeros(), Vec3::z(), Vec3::z()));
+    let whole = asked(&surface, &flat, 1e-6);
+    let depth = whole.worst.expect("the twist is in the tool").depth;
+    let (mut before, mut ended) = (0, 0);
+    for most in 1.. {
+        let questions = Cell::new(0);
+        let cancel = || {
+            questions.set(questions.get() + 1);
+            questions.get() == most
+        };
+        let waiting = Waiting::until(&cancel);
+        let question = Question { threshold: 1e-6, gap: GAP, patience: waiting.patience() };
+        let report = checked(&surface, &flat, &question);
+        let work = report.cost.boxes + report.cost.cells;
+        assert!(work - before <= WORK_BETWEEN_QUESTIONS, "{work} after {before}");
+        before = work;
+        if !waiting.has_given_up() {
+            assert_eq!(report, whole);
+            break;
+        }
+        ended += 1;
+        assert!(!report.proved && report.bound >= depth, "{report:?}");
+    }
+    assert!(ended >= 2, "{whole:?}");
 }
 
 /// A ball in contact at parameters of a surface with the axis along z.
