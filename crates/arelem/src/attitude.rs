@@ -10,6 +10,8 @@ use apt_geometry::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 
 pub(crate) use self::law::Law;
+#[cfg(test)]
+pub(crate) use self::law::NORMALS;
 use self::{law::Standing, run_in::RunIn};
 use crate::{
     clearance::{Contact, Gauge, Tool},

@@ -39,13 +39,15 @@ const LEAD_SINE: f64 = 1e-3;
 const ON_VERTEX: f64 = 1e-12;
 /// Share of the way by which an axis that fans goes on turning before and behind it, for trials beyond the end.
 const BEYOND: f64 = 0.5;
+/// What a place of a surface that an axis is made of counts in units of work.
+const WORK_OF_NORMAL: u32 = 8;
 /// Angles below this (radians) are zero.
 const ZERO_ANGLE: f64 = 1e-12;
 
 #[cfg(test)]
 thread_local! {
     /// Normals of surfaces that axes were made of, on this thread.
-    static NORMALS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+    pub(crate) static NORMALS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 /// A surface whose normal counts, with the sign that turns the natural normal.
@@ -319,6 +321,7 @@ impl Law {
 
     /// How a tool stands with its end at `tip`.
     pub(crate) fn standing(&self, tool: &Tool, tip: &Vec3) -> Result<Standing, AxisFailure> {
+        go_on(tool)?;
         if let Mode::Parallel { .. } | Mode::Fan { .. } = self.mode {
             let base = (Vec3::zeros(), Matrix3::zeros());
             return Ok(Standing { axis: self.towards(&base.0, tip, None)?, base, other: None });
@@ -376,6 +379,7 @@ impl Law {
     /// come nearer, where the last one leads as long as that comes nearer fast, and then where Newton's method with differences does.
     fn settled(&self, tool: &Tool, tip: &Vec3, other: Option<&Vec3>) -> Result<Bent, AxisFailure> {
         let led = |from: Vec3| -> Result<Led, AxisFailure> {
+            go_on(tool)?;
             let axis = self.towards(&from, tip, other)?;
             let (to, bend) = self.base.bend(&self.place(tool, tip, &axis, &from));
             Ok(Led { from, to, change: (to - from).norm(), axis, bend })
@@ -456,6 +460,17 @@ impl Law {
         let share = share_of(&line, &way);
         (share == line.dot(&way)).then_some(share)
     }
+}
+
+/// Counts a place of a surface.
+///
+/// # Errors
+/// [`AxisFailure::NotSettled`] where the axis is given up with it.
+fn go_on(tool: &Tool) -> Result<(), AxisFailure> {
+    if tool.patience.ends_after(WORK_OF_NORMAL) {
+        return Err(AxisFailure::NotSettled { change: f64::INFINITY });
+    }
+    Ok(())
 }
 
 /// The share of its way at which a fan stands, for trials beyond its ends, too.

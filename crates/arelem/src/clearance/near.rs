@@ -38,6 +38,8 @@ use super::{
 const MOST_PLACES: usize = 6;
 /// Ends of the tool that are remembered: above one height and another, below it or behind, here and there.
 const MOST_FAR: usize = 9;
+/// What following a contact counts in units of work.
+const WORK_OF_CONTACT: u32 = 4;
 /// Pieces of the tool that are tried for a contact.
 const MAX_PIECES: u32 = 4;
 /// Shares of the size of the tool and of the coordinates that are rounding of a distance.
@@ -265,7 +267,7 @@ pub(super) enum Followed {
 /// The contact near the last one.
 pub(super) fn contact(tool: &Tool, surface: &Surface, side: f64, tip: &Vec3, memory: &Memory) -> Followed {
     let Ok(mut memory) = memory.near.try_borrow_mut() else { return Followed::Lost };
-    if !surface.has_charts() {
+    if !surface.has_charts() || tool.patience.ends_after(WORK_OF_CONTACT) {
         return Followed::Lost;
     }
     let pose = Pose { tool, surface, side, tip };
@@ -317,7 +319,7 @@ pub(super) fn foot(
     tip: &Vec3,
     memory: &Memory,
 ) -> Option<Contact> {
-    if !surface.has_charts() {
+    if !surface.has_charts() || tool.patience.ends_after(WORK_OF_CONTACT) {
         return None;
     }
     let mut memory = memory.near.try_borrow_mut().ok()?;

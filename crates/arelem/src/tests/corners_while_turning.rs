@@ -1,12 +1,14 @@
 //! Corners that turn the path by more than a right angle while the axis follows a surface.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     canonical::{Cylinder, Remembering, RuledSurface},
     motion::{AxisAngle, AxisTangency, ToolAxis},
 };
 
 use super::*;
-use crate::{error::AxisFailure, verify::Rule};
+use crate::{attitude::NORMALS, error::AxisFailure, verify::Rule};
 
 /// Slope of the legs of both corners, in which a path turns by 127°.
 const STEEP: f64 = 2.0;
@@ -162,6 +164,48 @@ fn a_tool_that_leads_does_not_go_on_against_its_lead() {
 /// surface where it did. That is no corner to go back from along the same leg, and the end of the surface is what is told.
 #[test]
 fn a_path_does_not_go_back_where_its_axis_begins_to_turn_fast() {
+    let (mut program, command) = along_a_sheet_that_ends();
+    let failure = program.attempt(&command);
+    let Err(MotionFailure::AxisUndetermined { cause: AxisFailure::SurfaceEnds { place }, tip }) = failure
+    else {
+        panic!("{failure:?}");
+    };
+    assert!((tip.x - 30.45).abs() < 0.02 && (place - tip).norm() < 0.1, "{tip:?} {place:?}");
+}
+
+/// Normals of surfaces from which axes are made between two questions whether to go on; each is looked for in some ten microseconds.
+const NORMALS_BETWEEN_QUESTIONS: u64 = 100;
+
+#[test]
+fn the_axis_asks_often_whether_to_go_on() {
+    let (program, command) = along_a_sheet_that_ends();
+    let (last, longest) = (Cell::new(NORMALS.get()), Cell::new(0));
+    let (asked, limit) = (Cell::new(0), Cell::new(u64::MAX));
+    let ask = || {
+        longest.set(longest.get().max(NORMALS.get() - last.replace(NORMALS.get())));
+        asked.set(asked.get() + 1);
+        asked.get() > limit.get()
+    };
+    execute(&program.state, &command, &ask);
+    let longest = longest.get().max(NORMALS.get() - last.get());
+    assert!(longest > 0 && longest <= NORMALS_BETWEEN_QUESTIONS, "{longest} normals");
+    // What is known of the surface by now is not looked for again.
+    asked.set(0);
+    execute(&program.state, &command, &ask);
+    let all = asked.get();
+    for share in [1, all / 3, all / 2, all - 1] {
+        asked.set(0);
+        limit.set(share);
+        let execution = execute(&program.state, &command, &ask);
+        assert_eq!(execution.failure, Some(MotionFailure::Cancelled));
+        assert_eq!(asked.get(), share + 1, "asked again after the answer");
+        let after = NORMALS.get() - last.get();
+        assert!(after <= NORMALS_BETWEEN_QUESTIONS, "{after} normals after {share}");
+    }
+}
+
+/// A motion whose tool end is ON the extension of a ruled surface, beside which its corner comes to the end of that surface.
+fn along_a_sheet_that_ends() -> (Program, MotionCommand) {
     let circle = Cylinder {
         point: v(-14.35630129524699, -3.8933251741697523, 12.96210742102925),
         axis: v(0.30491161405061046, 0.8326588237325535, 0.4622858324428429),
@@ -197,12 +241,7 @@ fn a_path_does_not_go_back_where_its_axis_begins_to_turn_fast() {
         (Relation::On, &across(-0.5297451722314743)),
     ]);
     program.side(DriveSide::Left).indirv(onward.x, onward.y, onward.z);
-    let failure = program.attempt(&motion(Turn::Forward, &wall, &[(Relation::On, 1, &across(100.0))]));
-    let Err(MotionFailure::AxisUndetermined { cause: AxisFailure::SurfaceEnds { place }, tip }) = failure
-    else {
-        panic!("{failure:?}");
-    };
-    assert!((tip.x - 30.45).abs() < 0.02 && (place - tip).norm() < 0.1, "{tip:?} {place:?}");
+    (program, motion(Turn::Forward, &wall, &[(Relation::On, 1, &across(100.0))]))
 }
 
 /// How far from the place where its flank comes to lie along the wall the tool begins.
