@@ -6,7 +6,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use apt_geometry::{Vec3, canonical::Matrix, copy::CopyStep};
+use apt_geometry::{
+    Vec3,
+    canonical::Matrix,
+    copy::CopyStep,
+    patience::{Patience, Waiting},
+};
 
 use crate::{
     record::{ClKind, ClRecord, ClWord},
@@ -27,6 +32,8 @@ pub const MAXIMUM_COPIES_PER_INDEX: usize = 3;
 pub const MAXIMUM_INDEXES: usize = 79;
 /// Most records that one edit may make, so that a slip in a count ends in a diagnostic and not in a full memory.
 pub const MAXIMUM_RECORDS: usize = 4_000_000;
+/// Positions that are transformed for one unit of work; a record is another.
+const POINTS_A_UNIT: usize = 8;
 /// Relative deviation from a similarity below which a circle is still a circle after a transform.
 const SIMILARITY_FRACTION: f64 = 1e-6;
 /// Subclasses of the edit statements themselves.
@@ -97,6 +104,26 @@ impl Default for EditLimits {
 
 /// Executes the edit statements of a program within limits.
 pub fn edit_within(items: Vec<EditItem>, limits: &EditLimits) -> (Vec<ClRecord>, Vec<EditError>) {
+    edited(items, limits, Patience::default())
+}
+
+/// The same while `cancel` says that it goes on; `None` once it has said otherwise.
+pub fn edit_until(
+    items: Vec<EditItem>,
+    limits: &EditLimits,
+    cancel: &dyn Fn() -> bool,
+) -> Option<(Vec<ClRecord>, Vec<EditError>)> {
+    let waiting = Waiting::until(cancel);
+    let edited = edited(items, limits, waiting.patience());
+    (!waiting.has_given_up()).then_some(edited)
+}
+
+/// What comes of the edit statements; a part of it if they are given up.
+fn edited(
+    items: Vec<EditItem>,
+    limits: &EditLimits,
+    patience: Patience<'_>,
+) -> (Vec<ClRecord>, Vec<EditError>) {
     // VTLAXS changes the path itself; TRACUT and COPY transform what it makes.
     let (items, errors) = tilt(items);
     let spans = spans(&items);
@@ -105,10 +132,13 @@ pub fn edit_within(items: Vec<EditItem>, limits: &EditLimits) -> (Vec<ClRecord>,
         .iter()
         .map(|item| if let EditItem::Record(record) = item { points_of(record) } else { 0 })
         .sum();
-    let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits };
+    let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits, patience };
     // Most programs copy nothing: then all items come there.
     editor.levels.iter_mut().for_each(|base| base.held.reserve(items.len()));
     for (at, item) in items.into_iter().enumerate() {
+        if patience.ends_after(1) {
+            break;
+        }
         editor.item(item, spans.get(&at).copied());
     }
     editor.finish()
@@ -210,7 +240,7 @@ impl Level {
     }
 }
 
-struct Editor {
+struct Editor<'a> {
     /// The program, then the open ranges from the outermost; never empty.
     levels: Vec<Level>,
     errors: Vec<EditError>,
@@ -220,9 +250,10 @@ struct Editor {
     /// The numbers of all INDEX statements met.
     indexes: BTreeSet<i64>,
     limits: EditLimits,
+    patience: Patience<'a>,
 }
 
-impl Editor {
+impl Editor<'_> {
     fn item(&mut self, item: EditItem, span: Option<Span>) {
         match item {
             EditItem::Record(record) => self.push(record),
@@ -253,7 +284,7 @@ impl Editor {
         match level.transform {
             None => level.held.push(Held { record, outer: true }),
             Some(None) => level.held.push(Held { record, outer: false }),
-            Some(Some(matrix)) => match transformed(&record, &matrix) {
+            Some(Some(matrix)) => match transformed(&record, &matrix, self.patience) {
                 Ok(Some(record)) => level.held.push(Held { record, outer: false }),
                 Ok(None) => {}
                 Err(kind) => self.errors.push(EditError { isn: record.isn, source: record.source, kind }),
@@ -355,7 +386,10 @@ impl Editor {
             let mut copies = vec![Held { record: index_statement(number, isn, source), outer: true }];
             // The INDEX statement itself stands first in the range and is renewed under the number of the COPY.
             for held in original.iter().skip(1) {
-                match transformed(&held.record, &power) {
+                if self.patience.ends_after(1) {
+                    return;
+                }
+                match transformed(&held.record, &power, self.patience) {
                     Ok(Some(record)) => copies.push(Held { record, outer: held.outer }),
                     Ok(None) => {}
                     Err(kind) => {
@@ -380,6 +414,9 @@ impl Editor {
         }
         let Some(inner) = self.levels.pop() else { return };
         for held in inner.held {
+            if self.patience.ends_after(1) {
+                return;
+            }
             if held.outer {
                 self.push(held.record);
             } else if let Some(level) = self.levels.last_mut() {
@@ -408,8 +445,13 @@ fn points_of(record: &ClRecord) -> u64 {
     }
 }
 
-/// The record under a transform; `None` for a circle that is no circle any more (its chord points remain).
-fn transformed(record: &ClRecord, matrix: &Matrix) -> Result<Option<ClRecord>, EditErrorKind> {
+/// The record under a transform, or a part of it if that is given up; `None` for a circle that is no circle any more (its
+/// chord points remain).
+fn transformed(
+    record: &ClRecord,
+    matrix: &Matrix,
+    patience: Patience<'_>,
+) -> Result<Option<ClRecord>, EditErrorKind> {
     let kind = match &record.kind {
         ClKind::Arc { surface, center, axis, radius } => {
             let Some(scale) = matrix.uniform_scale(SIMILARITY_FRACTION) else { return Ok(None) };
@@ -422,9 +464,14 @@ fn transformed(record: &ClRecord, matrix: &Matrix) -> Result<Option<ClRecord>, E
         }
         ClKind::Motion { from, surface, points } => {
             let mut moved = points.clone();
-            for point in &mut moved {
-                point.position = transformed_position(&point.position, matrix)?;
-                point.axis = transformed_axis(&point.axis, matrix)?;
+            for points in moved.chunks_mut(POINTS_A_UNIT) {
+                if patience.ends_after(1) {
+                    break;
+                }
+                for point in points {
+                    point.position = transformed_position(&point.position, matrix)?;
+                    point.axis = transformed_axis(&point.axis, matrix)?;
+                }
             }
             ClKind::Motion { from: *from, surface: surface.clone(), points: moved }
         }

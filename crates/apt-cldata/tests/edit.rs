@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
+use std::cell::Cell;
+
 use apt_cldata::{
-    edit::{EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_within},
+    edit::{EditErrorKind, EditItem, EditLimits, MAXIMUM_INDEXES, edit, edit_until, edit_within},
     record::{ClKind, ClPoint, ClRecord, ClWord},
 };
 use apt_geometry::{
@@ -374,5 +376,36 @@ fn a_copy_is_written_in_the_words_of_the_program() {
         let negative_zero =
             |word: &ClWord| matches!(word, ClWord::Number(n) if *n == 0.0 && n.is_sign_negative());
         assert!(!arguments.iter().any(negative_zero), "no negative zero stands in a CL file: {arguments:?}");
+    }
+}
+
+/// Positions that may be copied or transformed between two questions whether to go on, a tenth of a microsecond each.
+const POSITIONS_BETWEEN_QUESTIONS: u64 = 3_000;
+
+#[test]
+fn copies_and_transforms_ask_often_whether_to_go_on() {
+    let copies = || vec![index(1, 1, false), motion(2, [1.0, 0.0, 0.0]), copy(3, 1, turn(1.0), 20_000)];
+    let mut long = motion(2, [0.0; 3]);
+    if let EditItem::Record(ClRecord { kind: ClKind::Motion { points, .. }, .. }) = &mut long {
+        let point = points[0];
+        points.resize(20_000, point);
+    }
+    let whole_motion = || vec![tracut(1, Some(Matrix::rotation(CoordinatePlane::Xy, 90.0))), long.clone()];
+    for items in [copies(), whole_motion()] {
+        let asked = Cell::new(0);
+        let count = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let all = edit_until(items.clone(), &EditLimits::default(), &count);
+        assert_eq!(all, Some(edit(items.clone())));
+        assert!(asked.get() * POSITIONS_BETWEEN_QUESTIONS >= 20_000, "{} questions", asked.get());
+        let at = asked.replace(0) / 2;
+        let cancelled = edit_until(items, &EditLimits::default(), &|| {
+            asked.set(asked.get() + 1);
+            asked.get() >= at
+        });
+        assert_eq!(cancelled, None);
+        assert_eq!(asked.get(), at, "asked again after the answer");
     }
 }

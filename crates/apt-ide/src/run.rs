@@ -115,7 +115,7 @@ impl Analysis {
         let title = self.document().file().unwrap_or("program").to_owned();
         Ok(Scene {
             title: part_name(&result).unwrap_or(title),
-            segments: segments(&result),
+            segments: segments(&result, cancel)?,
             surfaces,
             units: None,
             cutter_diameter,
@@ -140,14 +140,20 @@ fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSu
     }
 }
 
+/// Records whose pieces are put into a scene between two questions whether to go on; each takes a tenth of a microsecond.
+const RECORDS_A_QUESTION: usize = 1024;
+
 /// The straight pieces of a path; a path without FROM begins at its first point.
-fn segments(result: &RunResult) -> Vec<Segment> {
+fn segments(result: &RunResult, cancel: Cancel<'_>) -> Result<Vec<Segment>, Cancelled> {
     let starts: FxHashSet<u32> =
         result.motions.iter().filter(|motion| is_start_up(motion)).map(|m| m.origin.isn).collect();
     let mut segments = Vec::new();
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
-    for record in &result.records {
+    for (done, record) in result.records.iter().enumerate() {
+        if done % RECORDS_A_QUESTION == 0 && cancel() {
+            return Err(Cancelled);
+        }
         match &record.kind {
             ClKind::Postprocessor { word, .. } if word == "RAPID" => rapid = true,
             ClKind::Motion { from, points, .. } => {
@@ -168,7 +174,7 @@ fn segments(result: &RunResult) -> Vec<Segment> {
             _ => {}
         }
     }
-    segments
+    Ok(segments)
 }
 
 fn is_start_up(motion: &Motion) -> bool {

@@ -299,7 +299,7 @@ impl Document {
         let program = self.program(cancel)?;
         let result = self.run(cancel, progress)?;
         let diagnostics = catalogue::diagnostics(&self.tree, &program, Some(&result), &self.settings);
-        Ok(report(&ReportInput {
+        let input = ReportInput {
             file: self.file.as_deref().unwrap_or("-"),
             text: &self.tree.text(),
             tree: &self.tree,
@@ -307,7 +307,8 @@ impl Document {
             result: &result,
             diagnostics: &diagnostics,
             statements,
-        }))
+        };
+        report(&input, cancel)
     }
 }
 

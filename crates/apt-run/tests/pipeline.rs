@@ -308,3 +308,27 @@ fn a_motion_that_section_1_gave_up_brings_no_findings_with_it() {
         "motion goes on at the FROM"
     );
 }
+
+/// Records of a path between two questions whether to go on; copying and telling one takes less than a microsecond each.
+const RECORDS_BETWEEN_QUESTIONS: usize = 3_000;
+
+#[test]
+fn copies_and_their_report_are_cancelled_soon() {
+    let records = 20_000;
+    let text = format!("FROM/0,0,0\nINDEX/1\nGOTO/1,0,0\nCOPY/1,TRANSL,0,1,0,{records}\nFINI\n");
+    let document = document(&text);
+    document.program(&|| false).unwrap();
+    let polls = AtomicUsize::new(0);
+    let count = || {
+        polls.fetch_add(1, Ordering::Relaxed);
+        false
+    };
+    document.run(&count, &mut |_, _| {}).unwrap();
+    assert!(polls.swap(0, Ordering::Relaxed) * RECORDS_BETWEEN_QUESTIONS >= records, "of the run");
+    document.report(&count, &mut |_, _| {}, None).unwrap();
+    let all = polls.swap(0, Ordering::Relaxed);
+    assert!(all * RECORDS_BETWEEN_QUESTIONS >= records, "{all} of the report");
+    let late = || polls.fetch_add(1, Ordering::Relaxed) + 1 >= all / 2;
+    assert_eq!(document.report(&late, &mut |_, _| {}, None).err(), Some(Cancelled));
+    assert_eq!(polls.load(Ordering::Relaxed), all / 2, "asked again after the answer");
+}

@@ -146,6 +146,9 @@ impl RunResult {
     }
 }
 
+/// Records whose origins are looked up between two questions whether to go on, some nanoseconds each.
+const ORIGINS_A_QUESTION: usize = 4096;
+
 /// Runs Sections 2 and 3 over a program; nothing comes out of them if the program says PTONLY/1. `progress` gets the
 /// number of records done and to do.
 ///
@@ -187,7 +190,8 @@ pub fn run(
         DialectName::Cl => apt_cldata::edit::copies_without_index(&output.items),
         _ => Vec::new(),
     };
-    let (mut records, mut edit_errors) = apt_cldata::edit::edit_within(output.items, &limits);
+    let edited = apt_cldata::edit::edit_until(output.items, &limits, &cancel);
+    let (mut records, mut edit_errors) = edited.ok_or(Cancelled)?;
     edit_errors.extend(unpaired);
     let mut findings = output.findings;
     findings.extend(edit_errors.into_iter().map(|error| {
@@ -196,7 +200,10 @@ pub fn run(
             origin.unwrap_or_else(|| Origin::in_program(tree.statement_count() as u32, Default::default()));
         RunFinding { kind: RunFindingKind::Edit(error), origin }
     }));
-    for record in &mut records {
+    for (done, record) in records.iter_mut().enumerate() {
+        if done % ORIGINS_A_QUESTION == 0 && cancel() {
+            return Err(Cancelled);
+        }
         // What an included file does is done by the statement of the program that includes or calls it.
         if let Some(origin) = output.origins.get(record.source as usize).filter(|one| one.source.is_some()) {
             record.isn = origin.place_in_program().0;

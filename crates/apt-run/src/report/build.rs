@@ -18,6 +18,7 @@ use super::{
     RelatedReport, RemedyEntry, Report, SourceReport, TotalsEntry,
 };
 use crate::{
+    Cancel, Cancelled,
     diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places, statement_range},
     pipeline::{Motion, RunResult},
     position::LineIndex,
@@ -82,8 +83,15 @@ impl<'a> Sources<'a> {
     }
 }
 
+/// Records that are put into a report between two questions whether to go on; each takes about a microsecond.
+const RECORDS_A_QUESTION: usize = 256;
+
 /// Builds the report.
-pub fn report(input: &ReportInput<'_>) -> Report {
+///
+/// # Errors
+///
+/// [`Cancelled`] when `cancel` said so before the end.
+pub fn report(input: &ReportInput<'_>, cancel: Cancel<'_>) -> Result<Report, Cancelled> {
     let lines = LineIndex::new(input.text);
     let statements = input.statements.as_ref();
     let wanted = |origin: &Origin| is_of(origin, statements);
@@ -92,7 +100,21 @@ pub fn report(input: &ReportInput<'_>) -> Report {
         Some(origin) => wanted(origin),
         None => statements.is_none_or(|range| range.contains(&record.isn)),
     };
-    Report {
+    let mut cl = Vec::new();
+    for (done, record) in input.result.records.iter().enumerate() {
+        if done % RECORDS_A_QUESTION == 0 && cancel() {
+            return Err(Cancelled);
+        }
+        if !wanted_record(record) {
+            continue;
+        }
+        let source = match input.result.origins.get(record.source as usize) {
+            Some(origin) => sources.of(origin),
+            None => sources.of_statement(record.isn),
+        };
+        cl.push(cl_entry(record, source));
+    }
+    Ok(Report {
         program: input.file.to_owned(),
         ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
         dialect: input.tree.dialect().name.as_str().to_owned(),
@@ -103,19 +125,7 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .collect(),
         symbols: symbols(input.program),
         listing: listing(input.program, wanted),
-        cl: input
-            .result
-            .records
-            .iter()
-            .filter(|record| wanted_record(record))
-            .map(|record| {
-                let source = match input.result.origins.get(record.source as usize) {
-                    Some(origin) => sources.of(origin),
-                    None => sources.of_statement(record.isn),
-                };
-                cl_entry(record, source)
-            })
-            .collect(),
+        cl,
         motions: input
             .result
             .motions
@@ -125,7 +135,7 @@ pub fn report(input: &ReportInput<'_>) -> Report {
             .collect(),
         interference: interference(input.result, wanted),
         totals: totals_entry(&totals_where(&input.result.records, wanted_record)),
-    }
+    })
 }
 
 /// The interferences of the wanted statements.
