@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use apt_geometry::{Vec3, surface::Surface};
 
 use self::filled::{Filled, Limits};
-pub(crate) use self::readings::{Reading, Readings};
+pub(crate) use self::readings::{Piece, Reading, Readings};
 use crate::{
     clearance::{Shape, Tool},
     directed::{Prepared, is_tangent},

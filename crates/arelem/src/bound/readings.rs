@@ -57,7 +57,7 @@ impl Readings {
         self
     }
 
-    fn known(&self) -> &[Reading] {
+    pub(crate) fn known(&self) -> &[Reading] {
         &self.all[..self.count]
     }
 
@@ -79,14 +79,14 @@ impl Readings {
 }
 
 /// What is between two readings.
-pub(super) struct Piece {
-    pub(super) from: Reading,
-    pub(super) to: Reading,
+pub(crate) struct Piece {
+    pub(crate) from: Reading,
+    pub(crate) to: Reading,
 }
 
 impl Piece {
     /// The cubic through both readings.
-    pub(super) fn at(&self, x: f64) -> Reading {
+    pub(crate) fn at(&self, x: f64) -> Reading {
         let Self { from, to } = self;
         let length = to.x - from.x;
         if length <= 0.0 {

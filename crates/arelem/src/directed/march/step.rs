@@ -5,6 +5,7 @@
 mod at_corner;
 mod attempt;
 mod corner;
+mod corridor;
 mod exhaustive;
 mod hand;
 mod longest;

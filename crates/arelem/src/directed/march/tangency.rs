@@ -1,5 +1,6 @@
 //! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
 
+mod begin;
 #[cfg(test)]
 mod tests;
 
@@ -268,6 +269,9 @@ impl<'a> Watch<'a> {
             }
             if approach.on_way.is_none() {
                 approach.on_way = self.way(index, &next, false)?;
+            }
+            if approach.on_way.is_none() && here.grows().is_some() && next.grows().is_none() {
+                approach.on_way = self.way_begun_before(index, vector, here.x, &next)?;
             }
             let tangency = match &mut approach.on_way {
                 Some(way) => way.stop_before(vector, next.x, reach),

@@ -1,11 +1,15 @@
 //! Where a path begins to bend the other way. A vector that goes as far as any can is tangent to a limit of the band and ends
 //! at the other one, or is tangent to both; the vertices before it see no farther from anywhere but the last part of the
 //! vector that leads to them, the window. So both limits are tried for the end of a vector along which the bend changes,
-//! and its beginning may move back on the vector before.
+//! and its beginning may move back on the vector before: to where the corridors of the bands ([`Corridor`]) foretell that the next one leads
+//! farthest.
 
-use super::{Guess, Stepper, Trial};
+use super::{
+    Guess, LONG_ENOUGH, Places, Stepper, Trial,
+    corridor::{Corridor, Foretold},
+};
 use crate::{
-    bound,
+    bound::{self, Reading},
     clearance::{Contact, Shape},
     directed::march::Vertex,
     error::MotionFailure,
@@ -22,16 +26,21 @@ const LEAST_GAIN: f64 = 0.02;
 /// Distance, as a share of the band, of a vector's beginning from where it ends or ought to begin above which the beginning may
 /// move.
 const MISPLACED: f64 = 0.5;
-/// By how much of the vector before it a vertex moves back at each trial.
-const SHARES: [f64; 6] = [0.035, 0.08, 0.15, 0.25, 0.4, 0.6];
-/// What it moves more or less at the end, as shares of the best of these.
-const FINER: [f64; 2] = [0.75, 1.3];
-/// Share by which a vector that begins elsewhere is to reach farther at least to be tried.
-const WORTH_TRYING: f64 = 0.25 * LEAST_GAIN;
 /// Share of a vector that another one is to reach to at least which spares the vertex before it.
 const WORTH_SPARING: f64 = 0.5;
-/// Share of the length wanted below which it is all the same how long a vector is.
-const WORTH_KNOWING: f64 = 0.7;
+/// How often half of what has been read of a vector is read again where cubics do not tell what is there.
+const DEEPEST: u32 = 3;
+/// Bound of the places that are read before a vector is tried, and of the vectors that are tried.
+const MOST_LOOKS: u32 = 6;
+const MOST_TRIED: u32 = 4;
+/// Share of a vector by which another one is to be longer to be tried in its place.
+const NEARLY: f64 = 0.005;
+/// Share of what a vector was to gain by which the next one is shorter if it was refused, and how far out of its band, in widths of that, it was
+/// if the next one is hardly shorter.
+const LESS: f64 = 0.25;
+const HARDLY: f64 = 0.02;
+/// Places along a vector that was refused, in the next of which to where it was worst it is read.
+const PLACES: f64 = 64.0;
 
 /// How clearances bend at both ends of a vector.
 pub(super) struct Course {
@@ -106,35 +115,19 @@ impl Stepper<'_> {
         if at_cap || self.prepared.attitude.turns() || !self.may_gain(here, &latest) {
             return Ok(None);
         }
-        if let Some(trial) = self.past(before, here, cap, &latest)? {
+        let Some(corridor) = Corridor::beside((before, here), &latest, self.roles(), cap) else {
+            return Ok(None);
+        };
+        let onward = (latest.vertex.tip - here.tip) / latest.length;
+        let mut window = Window { before, here, latest: &latest, onward, cap, corridor };
+        self.survey(&mut window)?;
+        if let Some(trial) = self.past(&mut window)? {
             self.trend.forget();
             self.follow(&before.tip, &trial);
             self.last = trial.vertex.tip - before.tip;
             return Ok(Some(Moved { from: *before, next: trial.vertex, all_the_way: true }));
         }
-        let mut search = Search::new(&latest, (before.tip - here.tip, here), cap);
-        let mut limits: Vec<[Bend; 2]> = vec![latest.bends];
-        limits.extend(self.other_limits(&latest));
-        for bends in limits {
-            let mut last = if bends == latest.bends { latest.length } else { 0.0 };
-            for share in SHARES {
-                let Some(reached) = search.attempt(self, (share, last), bends)? else { break };
-                if reached <= last {
-                    break;
-                }
-                last = reached;
-            }
-        }
-        if let Some((share, bends)) = search.best {
-            for finer in FINER {
-                let beaten = search.reach;
-                search.attempt(self, (share * finer, beaten), bends)?;
-            }
-        }
-        if search.reach < latest.length * (1.0 + LEAST_GAIN) {
-            return Ok(None);
-        }
-        let Some((from, trial)) = search.found else { return Ok(None) };
+        let Some(Found { from, trial, .. }) = self.farther(&mut window)? else { return Ok(None) };
         self.trend.forget();
         self.record_shortened(before, &from);
         self.follow(&from.tip, &trial);
@@ -148,14 +141,38 @@ impl Stepper<'_> {
         self.note_bend(&from.tip, &to.tip, readings);
     }
 
-    /// A vector from the vertex before that leads past the last vertex to the other limits: that vertex can be spared.
-    fn past(
-        &self,
-        before: &Vertex,
-        here: &Vertex,
-        cap: f64,
-        latest: &Trial,
-    ) -> Result<Option<Trial>, MotionFailure> {
+    /// Reads both vectors where the cubics between what is known do not tell what is there.
+    fn survey(&self, window: &mut Window<'_>) -> Result<(), MotionFailure> {
+        let [before, here, end] = [window.before.tip, window.here.tip, window.latest.vertex.tip];
+        for (from, to) in [(here, end), (before, here)] {
+            let mut open = vec![(0.0, 1.0, 0)];
+            while let Some((low, high, depth)) = open.pop() {
+                let middle = 0.5 * (low + high);
+                let is_new = self.read(window, from + (to - from) * middle)?;
+                if is_new && depth < DEEPEST {
+                    open.extend([(low, middle, depth + 1), (middle, high, depth + 1)]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads both clearances at a place; whether they are other than was known. Errors: cancelled.
+    fn read(&self, window: &mut Window<'_>, place: Vec3) -> Result<bool, MotionFailure> {
+        if self.patience.is_over() {
+            return Err(MotionFailure::Cancelled);
+        }
+        Ok(window.corridor.note(&Vertex::at(self.prepared, place, &window.onward)?))
+    }
+
+    /// A vector from the vertex before that leads past the last vertex: that vertex can be spared.
+    fn past(&self, window: &mut Window<'_>) -> Result<Option<Trial>, MotionFailure> {
+        let Window { before, here, latest, cap, .. } = *window;
+        let worth = WORTH_SPARING * latest.length;
+        let foretold = self.looked_at(window, worth, &|corridor| corridor.from(1.0))?;
+        if foretold.reach < worth {
+            return Ok(None);
+        }
         let onward = latest.vertex.tip - here.tip;
         let least = (here.tip + onward * WORTH_SPARING - before.tip).norm();
         // Where the path doubles back a vector may lead to the vertex again, or end nearer than was asked for: two vertices would be spared
@@ -173,6 +190,81 @@ impl Stepper<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// A vector from a place on the vector before that leads farther than the latest one: where that is foretold to be farthest. Each that is
+    /// tried tells more.
+    fn farther(&self, window: &mut Window<'_>) -> Result<Option<Found>, MotionFailure> {
+        let latest = window.latest.length;
+        let worth = (1.0 + LEAST_GAIN) * latest;
+        let (mut best, mut most): (Option<Found>, f64) = (None, f64::INFINITY);
+        for _ in 0..MOST_TRIED {
+            let least = best.as_ref().map_or(worth, |found| found.reach + NEARLY * found.trial.length);
+            let foretold = self.looked_at(window, least, &Corridor::best)?.within(most, latest);
+            if foretold.reach < best.as_ref().map_or(worth, |found| found.worth(&foretold)) {
+                break;
+            }
+            let from = window.beginning(self, foretold.share)?;
+            let trial = self.attempt_foretold(&from, &foretold, window)?;
+            let is_nearly = trial.as_ref().is_some_and(|trial| self.is_nearly(trial));
+            if let Some(trial) = trial.filter(|trial| trial.proven) {
+                let reach = window.reached(&trial);
+                if reach >= least {
+                    best = Some(Found { share: foretold.share, reach, from, trial });
+                }
+            } else {
+                let less = if is_nearly { 0.0 } else { LESS * (foretold.reach - least) };
+                most = foretold.reach - less.max(NEARLY * foretold.length);
+            }
+        }
+        Ok(best)
+    }
+
+    /// What is foretold, from what is known as far as a vector is to lead that is of use.
+    fn looked_at(
+        &self,
+        window: &mut Window<'_>,
+        worth: f64,
+        ask: &dyn Fn(&mut Corridor) -> Foretold,
+    ) -> Result<Foretold, MotionFailure> {
+        let mut foretold = ask(&mut window.corridor);
+        for _ in 0..MOST_LOOKS {
+            let unknown = (foretold.reach >= worth).then(|| window.corridor.unknown(&foretold)).flatten();
+            let Some(x) = unknown else { break };
+            let place = window.corridor.place(x);
+            let is_new = self.read(window, place)?;
+            foretold = ask(&mut window.corridor);
+            if !is_new && !window.corridor.is_beyond(foretold.reach) {
+                break;
+            }
+        }
+        Ok(foretold)
+    }
+
+    /// Tries a vector that has been foretold, and reads where that does not come true.
+    fn attempt_foretold(
+        &self,
+        from: &Vertex,
+        foretold: &Foretold,
+        window: &mut Window<'_>,
+    ) -> Result<Option<Trial>, MotionFailure> {
+        let Foretold { bends, curvature, length, .. } = foretold;
+        let targets = self.targets(from, bends, Places::Limits);
+        let trial = self.attempt(from, length.min(window.cap), window.cap, (targets, curvature, bends));
+        window.corridor.note(from);
+        if let Some(trial) = &trial {
+            window.corridor.note(&trial.vertex);
+            if let Some(place) = (!trial.proven).then(|| farthest_out(from, trial)).flatten() {
+                self.read(window, place)?;
+            }
+        }
+        Ok(trial)
+    }
+
+    /// Whether a vector that was refused is hardly out of its band.
+    fn is_nearly(&self, trial: &Trial) -> bool {
+        let overlong = self.overlong(trial.length, trial);
+        overlong.beyond <= HARDLY * self.roles()[trial.culprit].band()
     }
 
     /// The bends with which a vector ends at the other limits of clearances that are neither convex nor concave.
@@ -201,51 +293,57 @@ impl Stepper<'_> {
     }
 }
 
-/// The search for a better beginning of a vector.
-struct Search<'a> {
-    latest: &'a Trial,
-    /// From the vertex to the one before.
-    back: Vec3,
+/// What is known where a better beginning of a vector is looked for.
+struct Window<'a> {
+    before: &'a Vertex,
     here: &'a Vertex,
+    /// The vector from here that has been found, and its direction.
+    latest: &'a Trial,
+    onward: Vec3,
     cap: f64,
-    /// How far the best one reaches, from the vertex in the direction of the vector found first.
-    reach: f64,
-    /// Its share of the way back and its bends.
-    best: Option<(f64, [Bend; 2])>,
-    found: Option<(Vertex, Trial)>,
+    corridor: Corridor,
 }
 
-impl<'a> Search<'a> {
-    fn new(latest: &'a Trial, (back, here): (Vec3, &'a Vertex), cap: f64) -> Self {
-        Self { latest, back, here, cap, reach: latest.length, best: None, found: None }
+impl Window<'_> {
+    /// The place on the vector before at a share of the way back.
+    fn beginning(&self, stepper: &Stepper<'_>, share: f64) -> Result<Vertex, MotionFailure> {
+        let back = self.before.tip - self.here.tip;
+        Vertex::at(stepper.prepared, self.here.tip + back * share, &-back)
     }
 
-    /// How far the longest vector leads that begins at a share of the way back, if that is farther than one that is beaten.
-    fn attempt(
-        &mut self,
-        stepper: &Stepper<'_>,
-        (share, beaten): (f64, f64),
-        bends: [Bend; 2],
-    ) -> Result<Option<f64>, MotionFailure> {
-        let Self { latest, here, .. } = *self;
-        let from = Vertex::at(stepper.prepared, here.tip + self.back * share, &-self.back)?;
-        let onward = latest.vertex.tip - here.tip;
-        let way = (latest.vertex.tip - from.tip).norm();
-        let gained = |reach: f64| way + reach + WORTH_TRYING * latest.length - latest.length;
-        let length = gained(self.reach);
-        let least = gained(beaten).max(WORTH_KNOWING * length);
-        let guess = Guess { bends, curvature: latest.curvature, length };
-        let Some(trial) = stepper.longest_of_use(&from, self.cap, &guess, least)? else {
-            return Ok(None);
-        };
-        let reached = (trial.vertex.tip - here.tip).dot(&onward) / latest.length;
-        if reached > self.reach {
-            self.reach = reached;
-            self.best = Some((share, bends));
-            self.found = Some((from, trial));
-        }
-        Ok(Some(reached))
+    /// How far a vector reaches, from the vertex in the direction of the latest one.
+    fn reached(&self, trial: &Trial) -> f64 {
+        (trial.vertex.tip - self.here.tip).dot(&self.onward)
     }
+}
+
+/// A vector that has been proven.
+struct Found {
+    /// The share of the way back at which it begins.
+    share: f64,
+    from: Vertex,
+    reach: f64,
+    trial: Trial,
+}
+
+impl Found {
+    /// How far another one is to reach to be tried: one whose sag fills the band is as long as any from where it begins.
+    fn worth(&self, foretold: &Foretold) -> f64 {
+        let is_full = self.trial.growth <= 1.0 + LONG_ENOUGH;
+        if is_full && foretold.share == self.share {
+            return f64::INFINITY;
+        }
+        self.reach + if is_full { LEAST_GAIN } else { NEARLY } * foretold.length
+    }
+}
+
+/// About where a vector that was refused was seen to be farthest out of its band: what is told by it shall not depend on rounding.
+fn farthest_out(from: &Vertex, trial: &Trial) -> Option<Vec3> {
+    let off = |reading: &Reading| (reading.value - trial.worst).abs();
+    let known = trial.readings[trial.culprit].known();
+    let worst = known.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let share = (worst.x / trial.length * PLACES).round() / PLACES;
+    (share > 0.0 && share < 1.0).then(|| from.tip + (trial.vertex.tip - from.tip) * share)
 }
 
 /// The bend that a second derivative means, if its sag counts.
