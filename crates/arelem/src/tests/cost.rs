@@ -81,7 +81,7 @@ fn cost_is_linear_in_the_number_of_cut_vectors() {
 #[test]
 fn changes_of_the_bend_take_few_clearances() {
     let saddle = quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]);
-    let parts = [("saddle", saddle, 22.0), ("roof", lofts::roof(), 50.0), ("vault", lofts::vault(), 50.0)];
+    let parts = [("saddle", saddle, 22.0), ("roof", lofts::roof(), 20.0), ("vault", lofts::vault(), 20.0)];
     for (name, part, most) in parts {
         let (mut p, command) = pass(&part, SEVEN_NUMBERS, 10.0);
         let before = EVALUATIONS.get();
