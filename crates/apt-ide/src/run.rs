@@ -151,7 +151,7 @@ fn segments(result: &RunResult, cancel: Cancel<'_>) -> Result<Vec<Segment>, Canc
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
     for (done, record) in result.records.iter().enumerate() {
-        if done % RECORDS_A_QUESTION == 0 && cancel() {
+        if (done + 1) % RECORDS_A_QUESTION == 0 && cancel() {
             return Err(Cancelled);
         }
         match &record.kind {

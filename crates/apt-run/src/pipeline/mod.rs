@@ -201,7 +201,7 @@ pub fn run(
         RunFinding { kind: RunFindingKind::Edit(error), origin }
     }));
     for (done, record) in records.iter_mut().enumerate() {
-        if done % ORIGINS_A_QUESTION == 0 && cancel() {
+        if (done + 1) % ORIGINS_A_QUESTION == 0 && cancel() {
             return Err(Cancelled);
         }
         // What an included file does is done by the statement of the program that includes or calls it.

@@ -102,7 +102,7 @@ pub fn report(input: &ReportInput<'_>, cancel: Cancel<'_>) -> Result<Report, Can
     };
     let mut cl = Vec::new();
     for (done, record) in input.result.records.iter().enumerate() {
-        if done % RECORDS_A_QUESTION == 0 && cancel() {
+        if (done + 1) % RECORDS_A_QUESTION == 0 && cancel() {
             return Err(Cancelled);
         }
         if !wanted_record(record) {
