@@ -3,6 +3,7 @@
 
 mod fan;
 mod gouge;
+mod heading;
 mod march;
 mod plane_route;
 mod prepare;
@@ -47,6 +48,13 @@ impl From<MotionFailure> for Stuck {
     }
 }
 
+/// A directed motion.
+pub(crate) struct Directed {
+    pub(crate) sequence: CutSequence,
+    /// Unit direction of its path at the end, where the last vector does not tell it.
+    pub(crate) heading: Option<Vec3>,
+}
+
 /// Computes one directed motion.
 pub(crate) fn run(
     state: &State,
@@ -55,7 +63,7 @@ pub(crate) fn run(
     checks: &[CheckSurface],
     warnings: &mut Vec<MotionWarning>,
     patience: Patience<'_>,
-) -> Result<CutSequence, MotionFailure> {
+) -> Result<Directed, MotionFailure> {
     if checks.is_empty() {
         return Err(MotionFailure::SurfaceCount { found: 1 });
     }
@@ -69,11 +77,12 @@ pub(crate) fn run(
         warnings.extend(gouges);
         *failure
     })?;
+    let heading = heading::at_end(&prepared, &path.points);
     let sequence = sequence(state, &prepared, checks, path)?;
     if state.gouge_check {
         warnings.extend(gouge::along(&prepared, &sequence));
     }
-    Ok(sequence)
+    Ok(Directed { sequence, heading })
 }
 
 /// The path of a motion whose axis is settled.

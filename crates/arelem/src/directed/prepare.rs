@@ -18,7 +18,7 @@ use crate::{
 /// A motion within this angle of a right angle to the direction asked for has no sense (2°).
 pub(super) const UNDETERMINED: f64 = 0.0349;
 /// Sine between part and drive normal below which there is no line of motion.
-const TANGENT_SINE: f64 = 1e-6;
+pub(super) const TANGENT_SINE: f64 = 1e-6;
 /// Sine to the tool axis up to which the last move is parallel to it and says nothing about the forward direction. Positions
 /// are good to some 1e-9 of the size of what is machined, and moves are rarely shorter than a thousandth of that.
 const PARALLEL_SINE: f64 = 1e-6;

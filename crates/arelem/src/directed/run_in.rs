@@ -31,18 +31,26 @@ pub(super) fn follow<'a>(
     if angle <= NO_TURN || shortest <= 0.0 {
         return Err(stuck);
     }
+    let mut farthest = stuck;
     for k in 0..ways(&prepared) {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, length);
         let running = prepared.with(attitude);
         match path(&running) {
             Err(again) if is_stuck_within(&again.failure, &prepared, length) => {}
+            // A ring may be wider than the way that it is a ring of; where it is not one, the tool goes round on longer ways too.
+            Err(again) if is_closed(&again.failure) => farthest = again,
             // Where it comes back the axis would leave its law again.
             Ok(found) if comes_back(&found.points, &prepared.tip, length) => break,
             found => return found.map(|found| (running, found)),
         }
     }
-    Err(stuck)
+    Err(farthest)
+}
+
+/// Whether a path came back to its beginning.
+fn is_closed(failure: &MotionFailure) -> bool {
+    matches!(failure, MotionFailure::NeverMet { course: Course::Closed { .. }, .. })
 }
 
 /// Whether a path leaves a place by a distance and is nearer to it later.

@@ -10,7 +10,7 @@ use apt_geometry::{
 
 use super::{Output, State};
 use crate::{
-    directed,
+    directed::{self, Directed},
     error::{MotionFailure, MotionWarning},
     pocket,
     sequence::{CutSequence, ToolPosition},
@@ -68,7 +68,7 @@ pub(super) fn apply(
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
-            Ok(Some(finish(state, sequence)))
+            Ok(Some(finish(state, sequence, None)))
         }
         MotionCommand::Offset(surfaces) => {
             warnings.extend(start_up::twice::named(surfaces));
@@ -76,11 +76,12 @@ pub(super) fn apply(
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
-            Ok(Some(finish(state, sequence)))
+            Ok(Some(finish(state, sequence, None)))
         }
         MotionCommand::Drive { turn, drive, checks } => {
-            let sequence = directed::run(state, *turn, drive, checks, warnings, patience)?;
-            Ok(Some(finish(state, sequence)))
+            let Directed { sequence, heading } =
+                directed::run(state, *turn, drive, checks, warnings, patience)?;
+            Ok(Some(finish(state, sequence, heading)))
         }
         MotionCommand::Pocket(pocket) => {
             let path = pocket::clear(state, pocket, patience)?;
@@ -169,12 +170,12 @@ fn go_to(state: &mut State, tip: Vec3) {
     state.side_of_part = None;
 }
 
-/// Takes over the end of a computed motion.
-fn finish(state: &mut State, sequence: CutSequence) -> Output {
+/// Takes over the end of a computed motion, and where it leads if its last vector does not tell that.
+fn finish(state: &mut State, sequence: CutSequence, heading: Option<Vec3>) -> Output {
     let count = sequence.points.len();
     if let Some(last) = sequence.points.last() {
         let before = if count >= 2 { sequence.points.get(count - 2) } else { None };
-        let previous = before.unwrap_or(&sequence.start).tip;
+        let previous = heading.map_or(before.unwrap_or(&sequence.start).tip, |heading| last.tip - heading);
         state.axis = last.axis;
         state.move_to(previous, last.tip);
     }

@@ -86,10 +86,9 @@ fn ahead(work: &StartUp<'_>, begin: &Vec3, way: &Vec3, size: f64) -> Result<Tang
     };
     let check =
         CheckSurface { relation: check.relation, occurrence: 1, surface: check.named.clone(), label: None };
-    let sequence =
-        motion::run(&state, Turn::Forward, &drive.named, &[check], &mut Vec::new(), work.patience)?;
-    let end: Option<&ToolPosition> = sequence.points.last();
-    let (Some(end), Some(stop)) = (end, sequence.stop) else {
+    let motion = motion::run(&state, Turn::Forward, &drive.named, &[check], &mut Vec::new(), work.patience)?;
+    let end: Option<&ToolPosition> = motion.sequence.points.last();
+    let (Some(end), Some(stop)) = (end, motion.sequence.stop) else {
         return Err(MotionFailure::NotTangent { check: 0, gap: f64::INFINITY });
     };
     Ok(Tangency { tip: end.tip, side: stop.role.side })

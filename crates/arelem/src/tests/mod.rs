@@ -26,6 +26,7 @@ mod properties;
 #[path = "../../tests/support/random.rs"]
 pub(crate) mod random;
 mod refused;
+mod rounds;
 mod sculptured;
 mod sharp_corners;
 pub(crate) mod sheets;

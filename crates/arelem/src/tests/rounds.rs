@@ -1,0 +1,88 @@
+//! Round a pocket or a boss whose walls are ruled between two polygons, one turned against the other, with the flank of the tool along them.
+
+use apt_geometry::{
+    canonical::{Remembering, RuledSurface},
+    motion::{AxisTangency, ToolAxis},
+};
+
+use super::{turning::proven, *};
+
+/// Radius of the lower polygon, and heights of both.
+const RADIUS: f64 = 5.0;
+const HEIGHTS: [f64; 2] = [-0.5, 2.0];
+
+/// Walls of so many corners: the upper polygon is by so much wider, and turned by an angle.
+struct Walls {
+    corners: u32,
+    wider: f64,
+    twist: f64,
+}
+
+impl Walls {
+    fn corner(&self, k: u32, upper: bool) -> Vec3 {
+        let [radius, twist] = if upper { [RADIUS + self.wider, self.twist] } else { [RADIUS, 0.0] };
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(self.corners) + twist).sin_cos();
+        v(radius * cos, radius * sin, HEIGHTS[usize::from(upper)])
+    }
+
+    fn edge(&self, k: u32) -> Vec3 {
+        self.corner(k + 1, false) - self.corner(k, false)
+    }
+
+    /// The wall from corner k on, its edges cut out of upright planes.
+    fn wall(&self, k: u32) -> Geometry {
+        let edge = |upper: bool| {
+            let [from, to] = [self.corner(k, upper), self.corner(k + 1, upper)];
+            let normal = (to - from).cross(&Vec3::z()).normalize();
+            let upright = plane(normal.x, normal.y, normal.z, normal.dot(&from));
+            [upright, Geometry::Point(from), Geometry::Point(to), Geometry::Vector(normal)]
+        };
+        let parts = [edge(false), edge(true)].concat();
+        Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))
+    }
+
+    /// Beside the middle of the first wall, inside or outside of it, the tool sets out for the next one.
+    fn begin(&self, mode: AxisTangency, inside: bool) -> Program {
+        let middle = 0.5 * (self.corner(0, false) + self.corner(1, false));
+        let away = middle * if inside { 0.5 } else { 1.6 };
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(away.x, away.y, 3.0);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height: 0.0, mode }));
+        let towards = middle - Vec3::new(away.x, away.y, middle.z);
+        p.indirv(towards.x, towards.y, 0.0);
+        p.go(&[(Relation::To, &self.wall(0)), (Relation::To, &ground())]);
+        let along = self.edge(0);
+        p.indirv(along.x, along.y, 0.0).side(if inside { DriveSide::Left } else { DriveSide::Right });
+        p
+    }
+}
+
+/// While the tool turns over too short a way from the axis along one wall to that along the next the places at which it touches both are a ring about
+/// where it begins, which may be wider than that way: over a longer one the tool gets on.
+#[test]
+fn a_tool_gets_on_from_a_corner_of_twisted_walls_where_short_turns_lead_in_a_ring() {
+    for (wider, twist, inside) in [(0.5, -0.1, false), (-0.5, -0.1, true)] {
+        let walls = Walls { corners: 4, wider, twist };
+        let relation = if inside { Relation::To } else { Relation::Past };
+        let mut p = walls.begin(AxisTangency::Across, inside);
+        p.drive(Turn::Forward, &walls.wall(0), relation, &walls.wall(1));
+        p.drive(Turn::Left, &walls.wall(1), relation, &walls.wall(2));
+        proven(&p);
+        let way = p.tip() - p.last().start.tip;
+        assert!(way.dot(&walls.edge(1)) > 0.8 * way.norm() * walls.edge(1).norm(), "{way:?}");
+    }
+}
+
+/// The last vector of a motion may be short and lead across the band of its wall: what is left of it is told from where the path leads.
+#[test]
+fn a_turn_is_told_from_the_path_and_not_from_a_last_vector_across_its_bands() {
+    let walls = Walls { corners: 6, wider: -0.5, twist: -0.1 };
+    let mut p = walls.begin(AxisTangency::Fan, true);
+    p.drive(Turn::Forward, &walls.wall(0), Relation::To, &walls.wall(1));
+    for k in 1..4 {
+        p.drive(Turn::Left, &walls.wall(k), Relation::To, &walls.wall(k + 1));
+        let way = p.tip() - p.last().start.tip;
+        assert!(way.dot(&walls.edge(k)) > 0.8 * way.norm() * walls.edge(k).norm(), "{k}: {way:?}");
+    }
+    proven(&p);
+}
