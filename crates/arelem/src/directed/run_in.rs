@@ -66,12 +66,19 @@ fn extent(prepared: &Prepared) -> f64 {
 }
 
 /// How many ways are tried. A tool that touches a wall which leans over it does so high up: the turn moves it away from there, or into the wall, by
-/// much more than its rim, and no way that is short against this leads along the wall.
+/// much more than its rim, and no way that is short against this leads along the wall. On one that is long against what the turn moves the farthest
+/// place of the tool by no contact is moved by as much as the tool goes on: where that is stuck the turn is not why, and a longer one would but keep
+/// the axis from its law.
 fn ways(prepared: &Prepared) -> u32 {
     let away = [&prepared.part, &prepared.drive]
         .map(|role| (role.gauge.contact(&prepared.tool, &prepared.tip).tool - prepared.tip).norm());
-    let farther = away[0].max(away[1]) / extent(prepared);
-    (2..MOST_WAYS).find(|k| f64::from(1u32 << (k - 2)) >= farther).unwrap_or(MOST_WAYS).max(WAYS)
+    let cutter = &prepared.tool.cutter;
+    let farthest = prepared.tool.radius().hypot(cutter.height);
+    let up_to = |distance: f64| {
+        let ratio = distance / extent(prepared);
+        (2..MOST_WAYS).find(|k| f64::from(1u32 << (k - 2)) >= ratio).unwrap_or(MOST_WAYS)
+    };
+    up_to(away[0].max(away[1])).max(WAYS).min(up_to(farthest))
 }
 
 /// Angle between the axis that the tool has and the one that it is to have.

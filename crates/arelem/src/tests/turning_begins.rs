@@ -1,8 +1,9 @@
 //! Where motions begin and end on which the tool axis follows a surface.
 
-use apt_geometry::motion::{AxisAngle, AxisTangency, ToolAxis};
+use apt_geometry::motion::{AxisAngle, AxisTangency, Delta, ToolAxis};
 
 use super::{turning::proven, *};
+use crate::error::Iteration;
 
 fn from(p: &mut Program, position: Vec3, axis: Vec3) {
     p.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
@@ -419,4 +420,62 @@ fn a_tool_turns_from_one_wall_that_leans_over_it_to_the_next() {
     let ToolPosition { axis, .. } = *p.last().points.last().expect("a position");
     let wanted = v(-s * lean, c * lean, 1.0).normalize();
     assert!((axis - wanted).norm() < 1e-6, "{degrees}: {axis:?}, not {wanted:?}");
+}
+
+/// A line whose path is stuck while it turns over a way as long as the turn moves its top by, and over ways twice and four times as long, is not turned
+/// over one that is longer than the whole motion: its axis would never come to what the angles ask for.
+#[test]
+fn a_motion_does_not_end_before_the_tool_has_turned_to_its_law() {
+    let inside = cylinder(
+        v(-3.723810601194795, -2.11639391131639, 0.5277609835461439),
+        v(0.44612131669164934, -0.8285288393699624, 0.33840173333712736),
+        3.9627167661351934,
+    );
+    let beside = quadric([
+        -0.8369100660129569,
+        -0.1588411788966017,
+        -0.6392120440608295,
+        -0.7736139038241909,
+        0.4639013649845452,
+        -0.8644869433007294,
+        0.5962575458563693,
+        -1.2195773479629612,
+        1.3656409796742734,
+        -1.431198341849646,
+    ]);
+    let first = plane(0.0782356587835402, -0.9337727252549413, -0.34921007898493656, 1.683645878089568);
+    let check = quadric([
+        0.18966939335012784,
+        0.08265827250089623,
+        0.0,
+        -0.07538196501745853,
+        0.0,
+        0.0,
+        -0.019886179808828668,
+        0.06113104345732671,
+        0.2636128246798335,
+        0.0,
+    ]);
+    let (angle, lead) = (0.19681158188589584f64, -0.13545866279160107f64);
+    let mode = ToolAxis::AtAngle { part: true, angle, mode: AxisAngle::Lead(lead) };
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.695762185770322]);
+    from(
+        &mut p,
+        v(-1.215679377546171, -1.0754255458390265, -0.8461404070064801),
+        v(-0.8367254632996675, -0.25194219863461326, 0.48622590183279424),
+    );
+    along(&mut p, mode);
+    let delta = Delta::Vector(v(0.29463547780255706, 0.05644450570776686, -0.08492120072743528), None);
+    p.run(&MotionCommand::GoDelta { delta, name: String::new() });
+    p.run(&MotionCommand::MaximumStep(10.0));
+    p.go(&[(Relation::To, &beside), (Relation::To, &inside), (Relation::To, &first)]);
+    p.side(DriveSide::Right).indirv(-0.07823565878354032, 0.9337727252549413, 0.3492100789849365);
+    let failure = p
+        .attempt(&motion(Turn::Forward, &beside, &[(Relation::To, 1, &check)]))
+        .expect_err("no way on which the tool can turn");
+    assert!(
+        matches!(failure, MotionFailure::IterationLimit { iteration: Iteration::StepLength, .. }),
+        "{failure:?}"
+    );
 }
