@@ -155,3 +155,35 @@ fn vertices_stay_at_the_limit_where_a_convex_surface_is_straight() {
     // There were 12, and 11 with vertices at the place of ends.
     assert!(p.last().points.len() <= 10, "{} vectors", p.last().points.len());
 }
+
+/// A lens goes along two surfaces that have nearly one tangent plane 340 units from where it begins, and comes back from there: in that bend, much
+/// tighter than the bands allow for, no vertex is spared by a vector that sets out against the path.
+#[test]
+fn no_vertex_is_spared_by_a_vector_against_the_path() {
+    let part = Geometry::Cone(Cone {
+        vertex: v(-0.729_650_111_409_126_1, 1.482_466_619_442_661, -1.226_983_781_575_961_7),
+        axis: v(0.160_649_123_248_936_93, 0.433_930_652_670_696_64, -0.886_507_782_183_626),
+        cosine: 0.481_393_870_081_024_6,
+    });
+    let drive = Geometry::Cylinder(Cylinder {
+        point: v(-3.719_146_032_203_144, 3.849_015_474_746_744_7, 1.754_382_918_063_780_4),
+        axis: v(0.467_881_968_370_392_3, 0.354_428_631_435_576_1, 0.809_609_046_943_369_9),
+        radius: 1.836_803_248_793_027_3,
+    });
+    let stop =
+        sphere(-3.698_639_425_414_199, 1.099_501_661_405_735_1, 1.330_343_118_338_961, 2.992_199_718_079_065);
+    let mut p = standing(
+        &[1.0, 0.1875, 0.33, 0.22, 7.370_086_858_395_068_5, 5.0, 3.370_420_323_999_036_2],
+        [0.01, 0.005],
+        v(-2.251_006_267_160_904_4, 1.228_928_398_995_253_3, -1.728_894_507_136_345_3),
+        Vec3::z(),
+    );
+    p.run(&MotionCommand::PartSurface(named(&part)));
+    p.go(&[(To, &drive)]);
+    p.side(DriveSide::Right).indirv(0.619_463_330_185_674, 0.514_532_327_226_956_1, 0.592_892_626_698_702_7);
+    p.drive(Turn::Forward, &drive, To, &stop).verified();
+    let sequence = p.last();
+    assert!(sequence.points.len() <= 97, "{} vectors", sequence.points.len());
+    let evidence = crate::verify::verify(sequence, &|| false).expect("evidence");
+    assert!(evidence.verified, "{:?}", evidence.violations);
+}

@@ -4,7 +4,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{March, Vertex};
+use super::{March, TANGENT_SINE, Vertex};
 use crate::{
     clearance::Shape,
     directed::stop::Watcher,
@@ -28,10 +28,39 @@ const LEAST_SINE: f64 = 1e-6;
 
 /// Where a vertex may lie.
 struct Choice {
-    /// Where it has been.
+    /// Where it has been, one of them or in the middle of two.
     old: Vec3,
+    /// What it has been.
+    were: Vec<Vertex>,
     /// Places for it, and whether no way to the end of the search is known not to lead on from there.
     places: Vec<(Vertex, bool)>,
+}
+
+/// Vertices beside each other, one of which is to take the place of two.
+struct Stretch {
+    choices: Vec<Choice>,
+    /// On which hand the path keeps both surfaces all along it.
+    hand: Option<f64>,
+}
+
+impl Stretch {
+    fn of(choices: Vec<Choice>) -> Self {
+        let old: Vec<&Vertex> = choices.iter().flat_map(|choice| &choice.were).collect();
+        let mut signs = old.windows(2).flat_map(|pair| {
+            let way = pair[1].tip - pair[0].tip;
+            [pair[0], pair[1]].map(|vertex| hand_of(vertex, &way))
+        });
+        let first = signs.next().flatten();
+        let is_one = signs.all(|sign| sign == first);
+        Self { hand: first.filter(|_| is_one), choices }
+    }
+
+    /// True if a vector leads onward along the path at both its ends, as far as the hand tells. In a bend much tighter than the bands are wide a vector
+    /// against the path keeps them as well, and differs from the one in whose place it would be by less than a right angle.
+    fn is_onward(&self, from: &Vertex, to: &Vertex) -> bool {
+        let way = to.tip - from.tip;
+        self.hand.is_none() || [from, to].into_iter().all(|vertex| hand_of(vertex, &way) == self.hand)
+    }
 }
 
 impl March<'_> {
@@ -76,7 +105,7 @@ impl March<'_> {
                 let beside = self.at(start, if k == first { k + 1 } else { k - 1 });
                 let way = if k == first { beside - self.at(start, k) } else { self.at(start, k) - beside };
                 let vertex = Vertex::at(self.prepared, self.at(start, k), &way)?;
-                Choice { old: vertex.tip, places: vec![(vertex, true)] }
+                Choice { old: vertex.tip, were: vec![vertex], places: vec![(vertex, true)] }
             } else {
                 self.beside(&[k - 1, k, k + 1].map(|k| self.at(start, k)))?
             });
@@ -84,12 +113,13 @@ impl March<'_> {
         let four = [k - 1, k, k + 1, k + 2].map(|k| self.at(start, k));
         choices.insert(k - first, self.between(&four)?);
         let mut found = Vec::new();
-        if !self.leads_through(&mut choices, (0, 0), &mut found) {
+        let mut stretch = Stretch::of(choices);
+        if !self.leads_through(&mut stretch, (0, 0), &mut found) {
             return Ok(None);
         }
         found.reverse();
         let vertices: Vec<Vertex> =
-            choices.iter().zip(&found).map(|(choice, k)| choice.places[*k].0).collect();
+            stretch.choices.iter().zip(&found).map(|(choice, k)| choice.places[*k].0).collect();
         let inner = || vertices[1..vertices.len() - 1].iter().map(|vertex| vertex.tip).collect();
         Ok(self.meets_nothing(&vertices).then(|| (first, inner())))
     }
@@ -97,10 +127,11 @@ impl March<'_> {
     /// Whether vectors lead through one place of each choice, from a place of one of them on; the places, the last one first.
     fn leads_through(
         &self,
-        choices: &mut [Choice],
+        stretch: &mut Stretch,
         (level, k): (usize, usize),
         found: &mut Vec<usize>,
     ) -> bool {
+        let choices = &mut stretch.choices;
         if level + 1 == choices.len() {
             found.push(k);
             return true;
@@ -109,13 +140,14 @@ impl March<'_> {
         let (from, old) = (choices[level].places[k].0, choices[level + 1].old - choices[level].old);
         let most = self.state.maximum_step * (1.0 + ROUNDING);
         for next in 0..choices[level + 1].places.len() {
-            let (to, may_lead_on) = choices[level + 1].places[next];
+            let (to, may_lead_on) = stretch.choices[level + 1].places[next];
             let way = to.tip - from.tip;
             let leads = may_lead_on
                 && way.norm() <= most
                 && way.dot(&old) > LEAST_ONWARD * way.norm() * old.norm()
+                && stretch.is_onward(&from, &to)
                 && self.stepper.proven(&from, &to);
-            if leads && self.leads_through(choices, (level + 1, next), found) {
+            if leads && self.leads_through(stretch, (level + 1, next), found) {
                 found.push(k);
                 return true;
             }
@@ -130,20 +162,22 @@ impl March<'_> {
         let about = [*here, here + (before - here) * MOVED, here + (beyond - here) * MOVED];
         let mut places = vec![(vertex, true)];
         places.extend(self.at_limits(&about, &sense).map(|vertex| (vertex, true)));
-        Ok(Choice { old: *here, places })
+        Ok(Choice { old: *here, were: vec![vertex], places })
     }
 
     /// Places for one vertex instead of the two in the middle: where the lines of the vectors to the first and from the other are nearest
     /// to each other, and the limits of the bands next to the vector between them.
     fn between(&self, [a, b, c, d]: &[Vec3; 4]) -> Result<Choice, MotionFailure> {
         let sense = c - b;
-        let mut places = Vec::new();
+        let mut vertices = Vec::new();
         for place in [meeting(a, b, c, d), Some(*b), Some(*c)].into_iter().flatten() {
-            places.push((Vertex::at(self.prepared, place, &sense)?, true));
+            vertices.push(Vertex::at(self.prepared, place, &sense)?);
         }
+        let were = vertices[vertices.len() - 2..].to_vec();
+        let mut places: Vec<_> = vertices.into_iter().map(|vertex| (vertex, true)).collect();
         let about = PLACES.map(|share| b + sense * share);
         places.extend(self.at_limits(&about, &sense).map(|vertex| (vertex, true)));
-        Ok(Choice { old: 0.5 * (b + c), places })
+        Ok(Choice { old: 0.5 * (b + c), were, places })
     }
 
     /// The positions at the limits of the bands next to places.
@@ -165,6 +199,13 @@ impl March<'_> {
             is_last || watcher.scan(&pair[0].sweep(self.prepared, &pair[1])).is_none()
         })
     }
+}
+
+/// The sign of part gradient × drive gradient · way at a vertex: along an edge of what the tool may reach it stays. None where both surfaces are
+/// tangent, or the way is straight across the path.
+fn hand_of(vertex: &Vertex, way: &Vec3) -> Option<f64> {
+    let across = vertex.part.gradient.cross(&vertex.drive.gradient).try_normalize(TANGENT_SINE)?;
+    Some(across.dot(way)).filter(|along| *along != 0.0).map(f64::signum)
 }
 
 /// The middle of the shortest way between the lines of two vectors, if they are not parallel.
