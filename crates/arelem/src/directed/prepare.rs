@@ -48,7 +48,10 @@ pub(crate) struct Prepared<'a> {
     pub(crate) checks: Vec<Working>,
     /// Unit tangent of the path in the sense of motion.
     pub(crate) tangent: Vec3,
-    /// The same for a tool that keeps its axis, and the direction asked for.
+    /// Unit gradients of the clearances from part and drive surface between which a tool that keeps its axis sets out: in a corner those of the places
+    /// that it touches along the path, not of those that it leaves.
+    pub(super) followed: [Vec3; 2],
+    /// The same line for a tool that keeps its axis, and the direction asked for.
     standing: Vec3,
     wanted: Vec3,
     /// Size of the coordinates, for rounding.
@@ -91,14 +94,15 @@ pub(super) fn prepare<'a>(
     let mut drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn)?;
+    let mut part_followed = part_contact;
     let mut tangent = match line_of_motion(&part_contact, &drive_contact, &wanted, &tip) {
         Err(failure) => {
             let contacts = [part_contact, drive_contact];
             let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
             let own = || own_line(state, &tool, (&part, &drive), (&tip, &wanted));
             match place.decided(&wanted, failure) {
-                Ok((along, contact)) => {
-                    drive_contact = contact;
+                Ok((along, followed)) => {
+                    [part_followed, drive_contact] = followed;
                     along
                 }
                 Err(failure) => own().ok_or(failure)?,
@@ -114,11 +118,12 @@ pub(super) fn prepare<'a>(
         && misplaced(state.drive_side, &tool, &contact, &along).is_none()
     {
         (drive, drive_contact, tangent) = (other, contact, along);
+        part_followed = part_contact;
     }
     let place =
         Corner { tool: &tool, tip, roles: [&part, &drive], contacts: [part_contact, drive_contact], size };
-    if let Some((along, contact)) = place.way_out(&tangent, &wanted) {
-        (tangent, drive_contact) = (along, contact);
+    if let Some((along, followed)) = place.way_out(&tangent, &wanted) {
+        (tangent, [part_followed, drive_contact]) = (along, followed);
     }
     let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
     let standing = tangent;
@@ -144,6 +149,7 @@ pub(super) fn prepare<'a>(
         drive,
         checks,
         tangent,
+        followed: [part_followed.gradient, drive_contact.gradient],
         standing,
         wanted,
         size,
@@ -312,15 +318,15 @@ struct Corner<'a> {
 
 impl Corner<'_> {
     /// Where the direction asked for is square to the line of motion that is measured: the one along another contact, which it decides.
-    fn decided(&self, wanted: &Vec3, failure: MotionFailure) -> Result<(Vec3, Contact), MotionFailure> {
+    fn decided(&self, wanted: &Vec3, failure: MotionFailure) -> Result<(Vec3, [Contact; 2]), MotionFailure> {
         let MotionFailure::DirectionUndetermined { tangent, .. } = failure else { return Err(failure) };
         [tangent, -tangent].iter().find_map(|along| self.way_out(along, wanted)).ok_or(failure)
     }
 
     /// Where the tool touches a surface at two places: the line of motion along the other one than that which is measured, if this
-    /// one leads it against the other, or less than the other in the direction asked for; and the contact with the drive surface
+    /// one leads it against the other, or less than the other in the direction asked for; and the contacts with part and drive surface
     /// there. The line of motion must lead away from the one that is measured.
-    fn way_out(&self, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, Contact)> {
+    fn way_out(&self, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, [Contact; 2])> {
         if self.roles.iter().all(|role| role.shape == Shape::Flat) {
             return None;
         }
@@ -328,7 +334,7 @@ impl Corner<'_> {
     }
 
     /// The same with the other contact that is measured a little ahead.
-    fn way_out_seen(&self, ahead: &Vec3, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, Contact)> {
+    fn way_out_seen(&self, ahead: &Vec3, tangent: &Vec3, wanted: &Vec3) -> Option<(Vec3, [Contact; 2])> {
         let bands = self.roles[0].band() + self.roles[1].band();
         let step = ahead * (CORNER_AHEAD * bands);
         let others = self.roles.map(|role| role.gauge.contact(self.tool, &(self.tip + step)));
@@ -350,7 +356,7 @@ impl Corner<'_> {
             let is_better = || along.dot(wanted) > tangent.dot(wanted);
             let leaves = turning().all(|k| self.contacts[k].gradient.dot(&along) >= 0.0);
             (leaves && turning().all(touches_both) && (turning().all(is_blocked) || is_better()))
-                .then_some((along, *drive))
+                .then_some((along, [*part, *drive]))
         })
     }
 }

@@ -148,3 +148,38 @@ fn the_nearer_of_both_halves_is_found_by_both_measures() {
         }
     }
 }
+
+/// A ball in a hollow cone, with its end on a plane so far beside the vertex, from so far before the bend of its path there to half a unit beyond.
+fn beside_hollow_vertex(degrees: f64, band: [f64; 2], back: f64, aside: f64) -> Program {
+    let radius = 0.25;
+    // The end is in the origin where the ball touches all around.
+    let vertex = v(0.0, 0.0, radius - radius / degrees.to_radians().sin());
+    let around = cone(vertex, Vec3::z(), degrees);
+    let height = back.hypot(aside) / degrees.to_radians().tan();
+    let mut p = Program::new();
+    p.cutter(&[2.0 * radius, radius]).tolerance(band[0], band[1]).from(-back, aside, height + 0.01);
+    p.go(&[(Relation::On, &y(aside)), (Relation::To, &around), (Relation::On, &x(-back))]);
+    p.side(DriveSide::On).indirv(1.0, 0.0, 0.0);
+    p.drive(Turn::Forward, &y(aside), Relation::On, &x(0.5));
+    p
+}
+
+/// The path turns by up to 130° within thousandths of where it begins. It sets out along the leg beyond, on the same hand as along the one on which it is.
+#[test]
+fn a_path_that_begins_in_a_tight_bend_goes_on_along_its_other_leg() {
+    for band in [[0.001, 0.001], [0.02, 0.0], [0.0, 0.005]] {
+        for aside in [0.0002, 0.0005, 0.001, 0.003] {
+            for back in [-0.001, 0.0005, 0.001, 0.003, 0.008] {
+                for degrees in (25..=60).step_by(5) {
+                    let p = beside_hollow_vertex(f64::from(degrees), band, back, aside);
+                    let evidence = crate::verify::verify(p.last(), &|| false).expect("evidence");
+                    assert!(evidence.verified, "{degrees} {band:?} {back} {aside}: {evidence:?}");
+                    assert!(
+                        p.last().points.len() <= 4,
+                        "{degrees} {band:?} {back} {aside}: too many vectors"
+                    );
+                }
+            }
+        }
+    }
+}

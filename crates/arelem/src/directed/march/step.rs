@@ -173,7 +173,7 @@ impl<'a> Stepper<'a> {
             trend: Trend::default(),
             latest: None,
             turned: None,
-            hand: Hand::default(),
+            hand: Hand::setting_out(prepared),
             kept_hand: None,
             turned_sharply: None,
             straight: None,

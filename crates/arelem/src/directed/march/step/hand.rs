@@ -9,7 +9,14 @@ use super::{
     corner::{SAME_TANGENT_COSINE, SecondPlace},
     exhaustive::LEAST_ONWARD,
 };
-use crate::{clearance::Contact, directed::march::Vertex, error::MotionFailure};
+use crate::{
+    clearance::Contact,
+    directed::{
+        Prepared,
+        march::{SAME_LINE, Vertex},
+    },
+    error::MotionFailure,
+};
 
 /// Sine between the gradients of both clearances below which they do not tell a hand: where surfaces are nearly tangent paths cross, and what
 /// goes straight on there changes it.
@@ -34,12 +41,27 @@ fn gradients(vertex: &Vertex) -> [Vec3; 2] {
     [vertex.part.gradient, vertex.drive.gradient]
 }
 
+/// The sign that two gradients tell with a direction of the path along both.
+fn sign_of([part, drive]: [&Vec3; 2], tangent: &Vec3) -> Option<f64> {
+    let across = part.cross(drive);
+    let along = across.dot(tangent);
+    let is_told = across.norm() >= TELLING_SINE && along.abs() >= SAME_LINE * across.norm();
+    is_told.then(|| along.signum())
+}
+
 impl Hand {
-    /// The sign at a vertex, by its tangent.
+    /// That of the beginning of a motion, where the path may set out along other contacts than those that are measured there. One of a tool that turns is
+    /// told by its own line.
+    pub(super) fn setting_out(prepared: &Prepared<'_>) -> Self {
+        let [part, drive] = &prepared.followed;
+        let sign = sign_of([part, drive], &prepared.tangent).filter(|_| !prepared.attitude.turns());
+        Self { sign, ..Self::default() }
+    }
+
+    /// The sign at a vertex, by its tangent. Where a path begins in a corner or before a tight bend its tangent is that of the leg beyond: held against
+    /// the contacts of the one that it leaves it tells the other hand, if the path turns by more than a right angle.
     fn sign_at(vertex: &Vertex) -> Option<f64> {
-        let across = vertex.part.gradient.cross(&vertex.drive.gradient);
-        let is_told = across.norm() >= TELLING_SINE;
-        is_told.then(|| across.dot(&vertex.tangent).signum())
+        sign_of([&vertex.part.gradient, &vertex.drive.gradient], &vertex.tangent)
     }
 
     /// Goes on along a vector.
@@ -68,13 +90,13 @@ impl Hand {
     /// Whether a direction leads along the surfaces on this hand: onward then, whatever angle it makes with the vector that led there. In a wide
     /// band that may lead from one limit to the other, across the path.
     pub(super) fn leads_along(self, at: &Vertex, direction: &Vec3) -> bool {
-        self.sign.is_some() && self.along(&at.part, &at.drive).is_some_and(|along| along.dot(direction) > 0.0)
+        self.along(&at.part, &at.drive).is_some_and(|along| along.dot(direction) > 0.0)
     }
 
-    /// The direction of the path along two contacts.
+    /// The direction of the path along two contacts, where a hand is known.
     pub(super) fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
-        let across = part.gradient.cross(&drive.gradient);
-        (across.norm() >= TELLING_SINE).then(|| across.normalize() * self.sign.unwrap_or_default())
+        let (sign, across) = (self.sign?, part.gradient.cross(&drive.gradient));
+        (across.norm() >= TELLING_SINE).then(|| across.normalize() * sign)
     }
 }
 
