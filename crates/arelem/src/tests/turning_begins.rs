@@ -422,8 +422,8 @@ fn a_tool_turns_from_one_wall_that_leans_over_it_to_the_next() {
     assert!((axis - wanted).norm() < 1e-6, "{degrees}: {axis:?}, not {wanted:?}");
 }
 
-/// A line whose path is stuck while it turns over a way as long as the turn moves its top by, and over ways twice and four times as long, is not turned
-/// over one that is longer than the whole motion: its axis would never come to what the angles ask for.
+/// A line whose path is stuck where its first vector turns it, and over ways twice and four times as long as the turn moves its top by, is not turned over
+/// one that is longer than the whole motion: its axis would never come to what the angles ask for.
 #[test]
 fn a_motion_does_not_end_before_the_tool_has_turned_to_its_law() {
     let inside = cylinder(
