@@ -280,6 +280,11 @@ impl<'a> Clearance<'a> {
         self.surface.shape(self.side)
     }
 
+    /// Whether readings are searched for, so that they cost much more than to remember them.
+    pub(super) fn is_searched_for(&self) -> bool {
+        matches!(self.surface, Surface::Ruled(_))
+    }
+
     /// How the clearance varies along a straight move with a fixed axis.
     pub(super) fn shape_along(&self, ends: [&Vec3; 2], axis: &Vec3) -> Shape {
         match self.surface {

@@ -140,7 +140,7 @@ pub(super) struct Span<'a> {
     pub(super) beyond: [f64; 2],
     /// Least and greatest clearance allowed.
     pub(super) band: [f64; 2],
-    /// What has been read on a vector on which the axis turns.
+    /// What has been read on a vector on which the axis turns, and where places are searched for.
     pub(super) read: &'a Readings,
     /// Whether extremes between its ends are looked at also where bounds show the whole vector to be within the band.
     pub(super) is_looked_at: bool,
@@ -170,7 +170,8 @@ impl Span<'_> {
 
     fn at(&self, place: &ToolPosition) -> Option<Reading> {
         let read = || self.clearance.at(&place.tip, &place.axis);
-        if self.turns() { self.read.get_or_read(place, read) } else { read() }
+        let is_kept = self.turns() || self.clearance.is_searched_for();
+        if is_kept { self.read.get_or_read(place, read) } else { read() }
     }
 
     fn value(&self, t: f64) -> Option<f64> {

@@ -21,6 +21,14 @@ const WORK_OF_CELL: u32 = 2;
 /// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction: rounded, it
 /// would say less of what is as far away as the tool is long than a distance need be close.
 const SURE_DIRECTION: f64 = 1e-4;
+/// Steps of Newton's method from a place to the nearest about it, their derivatives' step and the last of them, in parameters.
+const SETTLING_STEPS: usize = 12;
+const DIFFERENCE: f64 = 1e-7;
+const LAST_STEP: f64 = 1e-7;
+/// Halvings of a step that does not lead nearer.
+const SHORTENINGS: usize = 4;
+/// What a step counts in units of work.
+const WORK_OF_STEP: u32 = 4;
 
 /// Control points of a cubic.
 pub(super) type Cubic = [Vec3; 4];
@@ -120,6 +128,16 @@ impl Seen {
     }
 }
 
+/// A place of a patch with its parameters, how far from the tool it is, in which direction, and how fast half the square of that grows by
+/// both parameters; less than that falls in the tool.
+struct Across {
+    at: [f64; 2],
+    point: Vec3,
+    value: f64,
+    outward: Vec3,
+    slopes: [f64; 2],
+}
+
 struct Search<'a> {
     /// Where the tool end is, in one place or several: what counts of a place is its greatest distance.
     tips: &'a [Vec3],
@@ -127,6 +145,8 @@ struct Search<'a> {
     resolution: f64,
     sure: f64,
     best: Option<Touch>,
+    /// Whether that has been led to the nearest place about it.
+    is_settled: bool,
 }
 
 impl Search<'_> {
@@ -181,6 +201,7 @@ impl Search<'_> {
         let Seen { value, outward, lower, spread } = seen;
         if self.best.is_none_or(|b| value < b.value) {
             let [along, across] = [along, across].map(|range| range[0] + 0.5 * range[1]);
+            self.is_settled = false;
             self.best = Some(Touch { value, gap: 0.0, outward, point: x, piece, along, across });
         }
         Cell { net, piece, along, across, lower, halve_along: spread[0] >= spread[1] }
@@ -218,6 +239,13 @@ impl Search<'_> {
         mut lower: f64,
         enough: f64,
     ) -> f64 {
+        // Beside the place that is nearest so far the plane across from it to the tool says most: close to an edge the tool is in another
+        // direction from each place.
+        if lower < enough
+            && let Some(best) = &self.best
+        {
+            lower = lower.max(self.bound(tip, net, &best.outward).0);
+        }
         // At a sharp edge of the tool the nearest place says little about the places beside it, but the half-space
         // along the surface does.
         let towards = if normal.dot(outward) < 0.0 { -normal } else { *normal };
@@ -274,6 +302,93 @@ impl Search<'_> {
         Some(())
     }
 
+    /// Leads the place found to the nearest about it on its patch, by Newton's method: among places that are as near to within the resolution
+    /// another may be as far to the side as makes another direction, and what is left of a cell shows itself sooner by the true one. What
+    /// does not lead nearer is dropped. None when it is given up.
+    fn settle(&mut self, patches: &[Patch]) -> Option<()> {
+        let [tip] = self.tips else { return Some(()) };
+        if self.is_settled {
+            return Some(());
+        }
+        self.is_settled = true;
+        let mut best = self.best?;
+        let net = &patches.get(best.piece)?.net;
+        let mut here = self.across(tip, net, [best.along, best.across]);
+        for _ in 0..SETTLING_STEPS {
+            if self.tool.patience.ends_after(WORK_OF_STEP) {
+                return None;
+            }
+            let Some(step) = self.step_to_nearest(tip, net, &here) else { break };
+            let mut nearer = None;
+            let mut share = 1.0;
+            for _ in 0..=SHORTENINGS {
+                let at = [0, 1].map(|k: usize| (here.at[k] + share * step[k]).clamp(0.0, 1.0));
+                let there = self.across(tip, net, at);
+                if there.value < here.value {
+                    nearer = Some(there);
+                    break;
+                }
+                share *= 0.5;
+            }
+            let Some(nearer) = nearer else { break };
+            let way = (nearer.at[0] - here.at[0]).abs().max((nearer.at[1] - here.at[1]).abs());
+            here = nearer;
+            if way <= LAST_STEP {
+                break;
+            }
+        }
+        if here.value < best.value {
+            let [along, across] = here.at;
+            let Across { value, outward, point, .. } = here;
+            best = Touch { value, outward, point, along, across, ..best };
+            self.best = Some(best);
+        }
+        Some(())
+    }
+
+    /// A place of a patch as the tool sees it.
+    fn across(&self, tip: &Vec3, net: &Net, at: [f64; 2]) -> Across {
+        super::tool::count_work();
+        let [point, run, rise] = jet(net, at);
+        let normal = run.cross(&rise).try_normalize(0.0).unwrap_or(self.tool.axis);
+        let (value, outward) = self.measure(tip, &point, &normal);
+        // The way from the tool, not its direction: that varies evenly also where the tool is a line close by.
+        let away = outward * value.abs();
+        Across { at, point, value, outward, slopes: [away.dot(&run), away.dot(&rise)] }
+    }
+
+    /// The step by both parameters to where the way to the tool is square to the patch, or to the side of it that it leads out over; none
+    /// where its derivatives tell none that leads nearer.
+    fn step_to_nearest(&self, tip: &Vec3, net: &Net, here: &Across) -> Option<[f64; 2]> {
+        let is_held = [0, 1].map(|k: usize| {
+            (here.at[k] <= 0.0 && here.slopes[k] >= 0.0) || (here.at[k] >= 1.0 && here.slopes[k] <= 0.0)
+        });
+        let rates = |k: usize| -> [f64; 2] {
+            let mut at = here.at;
+            at[k] += if at[k] < 0.5 { DIFFERENCE } else { -DIFFERENCE };
+            let by = at[k] - here.at[k];
+            let there = self.across(tip, net, at);
+            [0, 1].map(|j: usize| (there.slopes[j] - here.slopes[j]) / by)
+        };
+        let alone = |k: usize| {
+            let rate = rates(k)[k];
+            (rate > 0.0).then(|| -here.slopes[k] / rate)
+        };
+        let step = match is_held {
+            [true, true] => return None,
+            [true, false] => [0.0, alone(1)?],
+            [false, true] => [alone(0)?, 0.0],
+            [false, false] => {
+                let ([a, c], [b, d]) = (rates(0), rates(1));
+                let area = a * d - b * c;
+                let [p, q] = here.slopes;
+                [(b * q - d * p) / area, (c * p - a * q) / area]
+            }
+        };
+        let leads_nearer = step[0] * here.slopes[0] + step[1] * here.slopes[1] < 0.0;
+        (leads_nearer && step.iter().all(|x| x.is_finite())).then_some(step)
+    }
+
     fn split(&mut self, cell: &Cell) -> [Cell; 2] {
         let (piece, along, across) = (cell.piece, cell.along, cell.across);
         let parts = |range: [f64; 2]| {
@@ -311,7 +426,7 @@ pub(super) fn nearest_to_all(
     deep: f64,
 ) -> Option<Touch> {
     let sure = SURE_DIRECTION * tool.profile.reach() + resolution;
-    let mut search = Search { tips, tool, resolution, sure, best: None };
+    let mut search = Search { tips, tool, resolution, sure, best: None, is_settled: false };
     let middle = tips.first()? + tool.axis * (0.5 * tool.profile.reach());
     let first = patches
         .iter()
@@ -323,7 +438,9 @@ pub(super) fn nearest_to_all(
     let mut budget = CELL_BUDGET;
     let mut open = BinaryHeap::with_capacity(32);
     open.push(search.whole(patches.get(first)?, first));
+    search.settle(patches)?;
     search.close_in(&mut open, deep, &mut budget)?;
+    search.settle(patches)?;
     let outward = search.best?.outward;
     // The greatest distances are from where that is least.
     let level = |tip: &Vec3| outward.dot(tip) + tool.support(&outward).0;
@@ -339,6 +456,7 @@ pub(super) fn nearest_to_all(
         }
     }
     search.close_in(&mut open, deep, &mut budget)?;
+    search.settle(patches)?;
     let mut touch = search.best?;
     let lowest = open.peek().map_or(f64::INFINITY, |cell| cell.lower);
     touch.gap = resolution.max(touch.value - lowest);

@@ -15,6 +15,7 @@ mod paths;
 mod poly_conics;
 mod ruled;
 mod rulings;
+mod searched;
 mod stock;
 mod straight;
 mod turning;

@@ -22,10 +22,10 @@ use super::{
 use crate::sequence::CutSequence;
 
 /// The coefficients of A, B, C, D, L, H, P.
-type Functions = [[f64; 3]; 7];
+pub(super) type Functions = [[f64; 3]; 7];
 
 /// The 79 values; the rows of the matrix are those of a rotation.
-fn poly_conic(
+pub(super) fn poly_conic(
     rows: [[f64; 3]; 3],
     thickness: f64,
     base: f64,
@@ -46,7 +46,7 @@ fn poly_conic(
     Geometry::PolyConic(Remembering::new(values))
 }
 
-const ALONG_X: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(super) const ALONG_X: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const ALONG_Z: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
 /// An arc of a tube, counter-clockwise seen against the stations: its natural normal is outward.
@@ -69,7 +69,7 @@ fn tube(rows: [[f64; 3]; 3], radius: f64, center: f64, degrees: [f64; 2], statio
 }
 
 /// A loft whose conics grow, turn and fill up.
-const LOFT: Functions = [
+pub(super) const LOFT: Functions = [
     [1.5, 0.2, -0.1],
     [1.0, 0.3, 0.2],
     [1.5, -0.1, 0.0],
