@@ -74,16 +74,16 @@ fn ask_everything(text: &str, dialect: &str, offset: usize) {
     analysis.occurrences(offset);
     analysis.definitions_at(offset);
     let _ = analysis.rename(offset, "X9");
-    for fold in analysis.folds() {
+    for fold in analysis.folds(&|| false).unwrap() {
         assert!(fold.range.start <= fold.range.end && fold.range.end <= text.len(), "{fold:?}");
     }
-    for lens in analysis.lenses() {
+    for lens in analysis.lenses(&|| false).unwrap() {
         assert!(lens.range.start <= lens.range.end && lens.range.end <= text.len(), "{lens:?}");
     }
-    for entry in analysis.outline() {
+    for entry in analysis.outline(&|| false).unwrap() {
         assert!(entry.range.start <= entry.range.end && entry.range.end <= text.len(), "{entry:?}");
     }
-    for token in analysis.tokens(None) {
+    for token in analysis.tokens(None, &|| false).unwrap() {
         assert!(token.range.start < token.range.end && token.range.end <= text.len(), "{token:?}");
     }
 }

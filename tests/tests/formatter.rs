@@ -1,6 +1,7 @@
 //! The formatter over every program of the repository and over damaged ones: idempotent, and nothing but the look
 //! changes.
 
+use apt_geometry::patience::Patience;
 use apt_ide::format::{
     FormatOptions, Kept, KeptReason, LAST_STATEMENT_COLUMN, LetterCase, applied, format, format_text, plan,
 };
@@ -49,7 +50,7 @@ fn formatted(text: &str, dialect: DialectName) -> Vec<String> {
     let tree = SyntaxTree::parse(text, dialect);
     let before = meaning(text, &tree.layout());
     let one = |options: FormatOptions| {
-        let edits = format(&tree, &options);
+        let edits = format(&tree, &options, Patience::default()).expect("nobody waits");
         for pair in edits.windows(2) {
             assert!(pair[0].0.end <= pair[1].0.start, "edits overlap: {pair:?} in {text:?}");
         }
@@ -58,7 +59,11 @@ fn formatted(text: &str, dialect: DialectName) -> Vec<String> {
         }
         let once = applied(text, &edits);
         assert_eq!(meaning(&once, &tree.layout()), before, "the meaning of {text:?} has changed");
-        assert_eq!(format_text(&once, dialect, &options), once, "a second time changes {text:?}");
+        assert_eq!(
+            format_text(&once, dialect, &options, Patience::default()).expect("nobody waits"),
+            once,
+            "a second time changes {text:?}"
+        );
         once
     };
     styles().map(one).to_vec()
@@ -204,7 +209,7 @@ fn assert_same_report(name: &str, text: &str, dialect: DialectName, different: &
     let dialect = Dialect::named(dialect);
     let mut changed = 0;
     for style in styles() {
-        let new = format_text(text, dialect, &style);
+        let new = format_text(text, dialect, &style, Patience::default()).expect("nobody waits");
         if new == *text {
             continue;
         }
@@ -260,7 +265,12 @@ fn examples_have_the_style() {
     for path in runs::examples() {
         let text = runs::read(&path);
         let free = Dialect::named(DialectName::Free);
-        assert_eq!(format_text(&text, free, &FormatOptions::of(&free)), text, "{}", path.display());
+        assert_eq!(
+            format_text(&text, free, &FormatOptions::of(&free), Patience::default()).expect("nobody waits"),
+            text,
+            "{}",
+            path.display()
+        );
     }
 }
 
@@ -268,7 +278,7 @@ fn examples_have_the_style() {
 fn no_good_program_has_a_statement_that_cannot_be_laid_out() {
     for (dialect, name, text) in programs().iter().filter(|(_, name, _)| !name.contains("errors")) {
         let tree = SyntaxTree::parse(text, Dialect::named(*dialect));
-        let kept = plan(&tree, &FormatOptions::default()).kept;
+        let kept = plan(&tree, &FormatOptions::default(), Patience::default()).expect("nobody waits").kept;
         let numbered = |kept: &Kept| kept.reason == KeptReason::SequenceNumber;
         assert!(kept.iter().all(numbered), "{name}: {kept:?}");
     }

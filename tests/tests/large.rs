@@ -46,7 +46,7 @@ fn a_million_lines_of_cl_text_open_and_take_edits() {
     }
     // What an editor asks for while typing concerns what is seen.
     let at = usize::from(edited.document().tree().statement(MILLION / 2).start);
-    assert!(!edited.tokens(Some(at..at + 400)).is_empty());
+    assert!(!edited.tokens(Some(at..at + 400), &|| false).unwrap().is_empty());
 }
 
 #[test]

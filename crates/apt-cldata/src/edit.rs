@@ -433,7 +433,9 @@ impl Editor<'_> {
             self.close();
         }
         let records = self.levels.pop().map(|level| level.held).unwrap_or_default();
-        (records.into_iter().map(|held| held.record).collect(), self.errors)
+        let patience = self.patience;
+        let record = |held: Held| (!patience.ends_after(1)).then_some(held.record);
+        (records.into_iter().map_while(record).collect(), self.errors)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sums over a path: positions, lengths, time and extent.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 use serde::{Deserialize, Serialize};
 
 use crate::record::{ClKind, ClRecord, ClWord, Units};
@@ -28,25 +28,31 @@ pub struct Totals {
 
 /// Sums up a list of CL records.
 pub fn totals(records: &[ClRecord]) -> Totals {
-    totals_where(records, |_| true)
+    sum(records, |_| true, Patience::default()).told()
 }
 
 /// Sums up those of a list of CL records that are counted. The others only set the scene: where the tool comes from, how
-/// fast it feeds, and in which unit.
-pub fn totals_where(records: &[ClRecord], mut is_counted: impl FnMut(&ClRecord) -> bool) -> Totals {
+/// fast it feeds, and in which unit. `None` when who waits has given up before the end.
+pub fn totals_where(
+    records: &[ClRecord],
+    is_counted: impl FnMut(&ClRecord) -> bool,
+    patience: Patience<'_>,
+) -> Option<Totals> {
+    let sum = sum(records, is_counted, patience);
+    (!patience.was_over()).then(|| sum.told())
+}
+
+/// The sum of the records up to the end, or to where who waits gives up.
+fn sum(records: &[ClRecord], mut is_counted: impl FnMut(&ClRecord) -> bool, patience: Patience<'_>) -> Sum {
     let mut sum = Sum { time: Some(0.0), ..Sum::default() };
     for record in records {
+        if patience.ends_after(1) {
+            break;
+        }
         sum.counts = is_counted(record);
         sum.record(&record.kind);
     }
-    Totals {
-        points: sum.points,
-        length: sum.cut_length + sum.rapid_length,
-        cut_length: sum.cut_length,
-        rapid_length: sum.rapid_length,
-        time_minutes: sum.time,
-        bounds: sum.bounds,
-    }
+    sum
 }
 
 /// How fast the tool feeds.
@@ -75,6 +81,17 @@ struct Sum {
 }
 
 impl Sum {
+    fn told(&self) -> Totals {
+        Totals {
+            points: self.points,
+            length: self.cut_length + self.rapid_length,
+            cut_length: self.cut_length,
+            rapid_length: self.rapid_length,
+            time_minutes: self.time,
+            bounds: self.bounds,
+        }
+    }
+
     fn record(&mut self, kind: &ClKind) {
         match kind {
             ClKind::Units(units) => self.units = Some(*units),

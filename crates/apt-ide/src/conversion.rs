@@ -4,6 +4,7 @@ use apt_cldata::{
     conversion::convert,
     text::{ClText, detect},
 };
+use apt_geometry::patience::Waiting;
 use apt_run::{catalogue, diagnostic::Diagnostic};
 use apt_syntax::dialect::DialectName;
 
@@ -78,7 +79,9 @@ impl Analysis {
         let made = convert(&file, from, to, &code_table())?;
         let mut diagnostics = source.diagnostics;
         let (tree, settings) = (self.document().tree(), self.document().settings());
-        let told = catalogue::conversion_diagnostics(tree, &made.notes, &source.origins, settings);
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let told = catalogue::conversion_diagnostics(tree, &made.notes, &source.origins, settings, patience)?;
         diagnostics.extend(told);
         Ok(Converted { file: made.file, from, diagnostics })
     }

@@ -1,7 +1,11 @@
 //! The program with macros and loops unrolled, each line with its origin.
 
+use apt_geometry::patience::{Patience, Waiting};
 use apt_program::{Origin, expand};
-use apt_run::format::{FormatOptions, format_text};
+use apt_run::{
+    format::{FormatOptions, format_text},
+    go_on,
+};
 use apt_syntax::{
     Dialect, StatementView, SyntaxTree, dialect::SequenceFieldRule, record::SEQUENCE_FIELD_COLUMN,
     statement::Body,
@@ -38,13 +42,16 @@ impl Analysis {
     ) -> Result<Expansion, Cancelled> {
         let at = offset.and_then(|offset| self.statement_at(offset)).map(|(view, _)| view.index);
         let options = self.document().options();
-        let expansion = expand(self.document().tree(), &options, at, depth, &cancel);
-        if cancel() {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let expansion = expand(self.document().tree(), &options, at, depth, &|| waiting.is_over());
+        if waiting.has_given_up() {
             return Err(Cancelled);
         }
         let mut text = String::new();
         let mut origins = Vec::with_capacity(expansion.lines.len());
         for line in expansion.lines {
+            go_on(patience, 1)?;
             text.push_str(&line.text);
             text.push('\n');
             origins.push(line.origin);
@@ -56,13 +63,10 @@ impl Analysis {
         let wrap = on_cards.then_some(SEQUENCE_FIELD_COLUMN - 1);
         let style = FormatOptions { wrap, ..FormatOptions::of(&dialect) };
         let unbounded = Dialect { sequence_field: SequenceFieldRule::Never, ..dialect };
-        let formatted = format_text(&text, if on_cards { unbounded } else { dialect }, &style);
-        let formatted = if SyntaxTree::parse(&formatted, dialect).statements().count() == origins.len() {
-            formatted
-        } else {
-            text
-        };
-        let (lines, room_behind) = places(&formatted, dialect, on_cards);
+        let formatted = format_text(&text, if on_cards { unbounded } else { dialect }, &style, patience)?;
+        let read = parsed(&formatted, dialect, patience)?;
+        let formatted = if read.statement_count() == origins.len() { formatted } else { text };
+        let (lines, room_behind) = places(&formatted, dialect, on_cards, patience)?;
         Ok(Expansion { text: formatted, origins, lines, room_behind })
     }
 }
@@ -70,18 +74,28 @@ impl Analysis {
 /// The least that a remark takes behind a statement: a blank and its sign.
 const LEAST_REMARK: usize = 3;
 
+fn parsed(text: &str, dialect: Dialect, patience: Patience<'_>) -> Result<SyntaxTree, Cancelled> {
+    SyntaxTree::parse_until(text, dialect, &|| patience.is_over()).ok_or(Cancelled)
+}
+
 /// The line in which each statement of a text begins, and whether a remark may stand behind it.
-fn places(text: &str, dialect: Dialect, on_cards: bool) -> (Vec<usize>, Vec<bool>) {
-    let tree = SyntaxTree::parse(text, dialect);
+fn places(
+    text: &str,
+    dialect: Dialect,
+    on_cards: bool,
+    patience: Patience<'_>,
+) -> Result<(Vec<usize>, Vec<bool>), Cancelled> {
+    let tree = parsed(text, dialect, patience)?;
     let mut line = 0;
     let place = |view: StatementView| {
+        go_on(patience, 1)?;
         let (first, count) = (line, view.text().lines().count());
         line += count;
         let width = view.text().trim_end().chars().count();
         let fits = !on_cards || width + LEAST_REMARK < SEQUENCE_FIELD_COLUMN;
-        (first, count <= 1 && fits && !ends_in_text(&view))
+        Ok((first, count <= 1 && fits && !ends_in_text(&view)))
     };
-    tree.statements().map(place).unzip()
+    tree.statements().map(place).collect()
 }
 
 /// Whether what stands behind a statement belongs to its free text.

@@ -67,7 +67,7 @@ impl Analysis {
                 if known || files.len() >= MOST_FILES || resolver.is_program(&source.path) {
                     continue;
                 }
-                let marks = Marks::find(&source.tree);
+                let marks = Marks::of(&source.tree);
                 names.extend(inclusions(&marks, &source.tree));
                 let (tree, regions) = (source.tree.clone(), marks.regions(&source.tree));
                 files.push(ProgramFile { source: Some(source), tree, regions });

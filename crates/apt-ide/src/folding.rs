@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::tree::SyntaxTree;
 
-use crate::Analysis;
+use crate::{Analysis, Cancel, Cancelled};
 
 /// The kind of a fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +28,14 @@ pub struct Fold {
 
 impl Analysis {
     /// All folds, in order of their start.
-    pub fn folds(&self) -> Vec<Fold> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn folds(&self, cancel: Cancel<'_>) -> Result<Vec<Fold>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let branches = self.with_marks(patience)?.branches();
         let tree = self.document().tree();
         let bytes = |index: usize| {
             let range = tree.statement(index).range();
@@ -42,12 +51,13 @@ impl Analysis {
             })
             .collect();
         // The clause that ends a branch stays in sight.
-        folds.extend(self.marks().branches().into_iter().map(|branch| Fold {
+        folds.extend(branches.into_iter().map(|branch| Fold {
             kind: FoldKind::Region,
             range: bytes(branch.start).start..bytes(branch.end).start,
         }));
         let mut comment: Option<Range<usize>> = None;
         for view in tree.statements() {
+            go_on(patience, 1)?;
             let text = view.text();
             let range = bytes(view.index);
             if text.trim_start().starts_with("$$") {
@@ -61,7 +71,7 @@ impl Analysis {
         }
         close(&mut folds, tree, &mut comment);
         folds.sort_by_key(|fold| (fold.range.start, std::cmp::Reverse(fold.range.end)));
-        folds
+        Ok(folds)
     }
 }
 

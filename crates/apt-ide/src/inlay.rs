@@ -2,6 +2,8 @@
 
 use std::{ops::Range, path::Path};
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::{
     statement::{Argument, Body, Expression},
     tree::StatementView,
@@ -47,6 +49,9 @@ impl Analysis {
         range: Range<usize>,
         cancel: Cancel<'_>,
     ) -> Result<Vec<Inlay>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        self.with_marks(patience)?;
         let Some(tree) = self.files().iter().find(|one| one.is(file)).map(|one| &one.tree) else {
             return Ok(Vec::new());
         };
@@ -60,6 +65,7 @@ impl Analysis {
         let mut given: FxHashMap<(u32, &str), (usize, Option<u32>, &apt_program::Value)> =
             FxHashMap::default();
         for event in program.definitions() {
+            go_on(patience, 1)?;
             let source = event.origin.source.as_ref().map(|source| source.path.as_path());
             if isns.contains(&event.origin.isn) && source == file {
                 let times =

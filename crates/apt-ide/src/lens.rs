@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::{statement::Body, vocabulary::WordClass};
 
-use crate::Analysis;
+use crate::{Analysis, Cancel, Cancelled};
 
 /// A place to start a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,7 +24,14 @@ const GREATEST_LENSES: usize = 500;
 
 impl Analysis {
     /// A lens on PARTNO (or the first statement with motion) for the program, and one on every start-up and macro call.
-    pub fn lenses(&self) -> Vec<Lens> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn lenses(&self, cancel: Cancel<'_>) -> Result<Vec<Lens>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        self.with_marks(patience)?;
         let tree = self.document().tree();
         let mut lenses = Vec::new();
         let mut program = None;
@@ -30,6 +39,7 @@ impl Analysis {
             if lenses.len() >= GREATEST_LENSES {
                 break;
             }
+            go_on(patience, 1)?;
             if !may_start(view.text()) {
                 continue;
             }
@@ -57,7 +67,7 @@ impl Analysis {
         if let Some(range) = program {
             lenses.insert(0, Lens { range, title: "Run motion".to_owned(), run: None });
         }
-        lenses
+        Ok(lenses)
     }
 }
 

@@ -35,6 +35,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
+use apt_geometry::patience::Patience;
 use apt_program::Program;
 use apt_run::catalogue;
 use apt_run::pipeline::RunResult;
@@ -133,7 +134,20 @@ impl Analysis {
 
     /// The statements that open and close regions or put in files.
     fn marks(&self) -> &regions::Marks {
-        self.marks.get_or_init(|| regions::Marks::find(self.document.tree()))
+        self.marks.get_or_init(|| regions::Marks::of(self.document.tree()))
+    }
+
+    /// The same for somebody who waits.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub(crate) fn with_marks(&self, patience: Patience<'_>) -> Result<&regions::Marks, Cancelled> {
+        if let Some(marks) = self.marks.get() {
+            return Ok(marks);
+        }
+        let marks = regions::Marks::find(self.document.tree(), patience)?;
+        Ok(self.marks.get_or_init(|| marks))
     }
 
     /// What is known of the program without any work: its evaluation, or that of the last version that has one.

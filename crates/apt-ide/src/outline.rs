@@ -2,9 +2,11 @@
 
 use std::{collections::BTreeMap, ops::Range};
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::statement::{Body, Clause};
 
-use crate::{Analysis, absolute};
+use crate::{Analysis, Cancel, Cancelled, absolute};
 
 /// The kind of an outline entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,14 +44,25 @@ pub const GREATEST_OUTLINE: usize = 20_000;
 
 impl Analysis {
     /// The outline, in order of the text.
-    pub fn outline(&self) -> Vec<OutlineEntry> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn outline(&self, cancel: Cancel<'_>) -> Result<Vec<OutlineEntry>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
         let tree = self.document().tree();
         let mut stack: Vec<(usize, OutlineEntry)> = Vec::new();
         let mut top = Vec::new();
         let mut count = 0;
-        let branches: BTreeMap<usize, usize> =
-            self.marks().branches().into_iter().map(|branch| (branch.start, branch.end)).collect();
+        let branches: BTreeMap<usize, usize> = self
+            .with_marks(patience)?
+            .branches()
+            .into_iter()
+            .map(|branch| (branch.start, branch.end))
+            .collect();
         for view in tree.statements() {
+            go_on(patience, 1)?;
             while stack.last().is_some_and(|(last, _)| *last < view.index) {
                 pop(&mut stack, &mut top);
             }
@@ -85,7 +98,7 @@ impl Analysis {
         while !stack.is_empty() {
             pop(&mut stack, &mut top);
         }
-        top
+        Ok(top)
     }
 }
 

@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use apt_geometry::patience::Patience;
+use apt_run::go_on;
 use apt_syntax::{
     statement::{Body, Clause},
     tree::SyntaxTree,
 };
 use smol_str::SmolStr;
 
-use crate::{carry::Carried, files::names_of_files, search::contains};
+use crate::{Cancelled, carry::Carried, files::names_of_files, search::contains};
 
 /// The kind of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,15 +60,34 @@ enum Mark {
     },
 }
 
+/// Statements that are looked through for marks before their work is counted; less than is done between two questions.
+const LOOKED_THROUGH_AT_ONCE: usize = 64;
+
 /// The statements that open or close regions and branches, in order; after an edit only the statements that it touched are looked
 /// at again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Marks(Vec<(usize, Mark)>);
 
 impl Marks {
-    /// Finds the marks of a program.
-    pub(crate) fn find(tree: &SyntaxTree) -> Self {
+    /// The marks of a program.
+    pub(crate) fn of(tree: &SyntaxTree) -> Self {
         Self(Self::among(tree, 0..tree.statement_count()).collect())
+    }
+
+    /// The same for somebody who waits.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub(crate) fn find(tree: &SyntaxTree, patience: Patience<'_>) -> Result<Self, Cancelled> {
+        let mut marks = Vec::new();
+        let end = tree.statement_count();
+        for from in (0..end).step_by(LOOKED_THROUGH_AT_ONCE) {
+            let to = end.min(from + LOOKED_THROUGH_AT_ONCE);
+            go_on(patience, to - from)?;
+            marks.extend(Self::among(tree, from..to));
+        }
+        Ok(Self(marks))
     }
 
     /// The marks of the next version.

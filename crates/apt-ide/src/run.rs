@@ -2,11 +2,16 @@
 
 use std::ops::Range;
 
-use apt_cldata::record::ClKind;
-use apt_geometry::{motion::MotionCommand, regional::Guide};
+use apt_cldata::record::{ClKind, ClRecord};
+use apt_geometry::{
+    motion::MotionCommand,
+    patience::{Patience, Waiting},
+    regional::Guide,
+};
 use apt_program::record::RecordKind;
 use apt_run::{
     catalogue::story_lines,
+    go_on,
     pipeline::{Motion, RunResult},
     report::{Report, is_of},
 };
@@ -80,9 +85,13 @@ impl Analysis {
     ) -> Result<Scene, Cancelled> {
         let result = self.result(cancel, progress)?;
         let program = self.program(cancel)?;
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
         let mut surfaces = Vec::new();
         let mut cutter_diameter = None;
         for record in program.records() {
+            // Each surface is looked for among those that are known.
+            go_on(patience, 1 + surfaces.len())?;
             let command = match &record.kind {
                 RecordKind::Motion(command) => command,
                 RecordKind::Regional(milling) => {
@@ -114,8 +123,8 @@ impl Analysis {
         }
         let title = self.document().file().unwrap_or("program").to_owned();
         Ok(Scene {
-            title: part_name(&result).unwrap_or(title),
-            segments: segments(&result, cancel)?,
+            title: part_name(&result, patience)?.unwrap_or(title),
+            segments: segments(&result, patience)?,
             surfaces,
             units: None,
             cutter_diameter,
@@ -123,13 +132,20 @@ impl Analysis {
     }
 }
 
-fn part_name(result: &RunResult) -> Option<String> {
-    result.records.iter().find_map(|record| match &record.kind {
+fn part_name(result: &RunResult, patience: Patience<'_>) -> Result<Option<String>, Cancelled> {
+    let name = |record: &ClRecord| match &record.kind {
         ClKind::Text { word, text, .. } if word == "PARTNO" && !text.trim().is_empty() => {
             Some(text.trim().to_owned())
         }
         _ => None,
-    })
+    };
+    for records in result.records.chunks(POSITIONS_A_UNIT) {
+        go_on(patience, 1)?;
+        if let Some(name) = records.iter().find_map(name) {
+            return Ok(Some(name));
+        }
+    }
+    Ok(None)
 }
 
 fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSurface, role: &str) {
@@ -140,24 +156,24 @@ fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSu
     }
 }
 
-/// Records whose pieces are put into a scene between two questions whether to go on; each takes a tenth of a microsecond.
-const RECORDS_A_QUESTION: usize = 1024;
+/// Positions or records that are counted as one unit of work where one is looked at in some nanoseconds.
+const POSITIONS_A_UNIT: usize = 16;
 
 /// The straight pieces of a path; a path without FROM begins at its first point.
-fn segments(result: &RunResult, cancel: Cancel<'_>) -> Result<Vec<Segment>, Cancelled> {
+fn segments(result: &RunResult, patience: Patience<'_>) -> Result<Vec<Segment>, Cancelled> {
     let starts: FxHashSet<u32> =
         result.motions.iter().filter(|motion| is_start_up(motion)).map(|m| m.origin.isn).collect();
-    let mut segments = Vec::new();
+    // A list that grows is copied as a whole, which nobody can interrupt.
+    let mut segments = Vec::with_capacity(positions(result, patience)?);
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
-    for (done, record) in result.records.iter().enumerate() {
-        if (done + 1) % RECORDS_A_QUESTION == 0 && cancel() {
-            return Err(Cancelled);
-        }
+    for record in &result.records {
+        go_on(patience, 1)?;
         match &record.kind {
             ClKind::Postprocessor { word, .. } if word == "RAPID" => rapid = true,
             ClKind::Motion { from, points, .. } => {
-                for point in points {
+                for (done, point) in points.iter().enumerate() {
+                    go_on(patience, usize::from(done % POSITIONS_A_UNIT == POSITIONS_A_UNIT - 1))?;
                     let to: [f64; 3] = point.position.into();
                     if let (Some(start), false) = (at, *from) {
                         let kind = match (rapid, starts.contains(&record.isn)) {
@@ -175,6 +191,20 @@ fn segments(result: &RunResult, cancel: Cancel<'_>) -> Result<Vec<Segment>, Canc
         }
     }
     Ok(segments)
+}
+
+/// How many positions a path has.
+fn positions(result: &RunResult, patience: Patience<'_>) -> Result<usize, Cancelled> {
+    let mut positions = 0;
+    for records in result.records.chunks(POSITIONS_A_UNIT) {
+        go_on(patience, 1)?;
+        let motions = records.iter().filter_map(|record| match &record.kind {
+            ClKind::Motion { points, .. } => Some(points.len()),
+            _ => None,
+        });
+        positions += motions.sum::<usize>();
+    }
+    Ok(positions)
 }
 
 fn is_start_up(motion: &Motion) -> bool {

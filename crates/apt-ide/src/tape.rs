@@ -6,6 +6,7 @@ use apt_cldata::{
     record::ClRecord,
     text::{ClText, Remark, Shortened, read_with_remarks, write_text_with_lines},
 };
+use apt_geometry::patience::Waiting;
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::{
     Origin,
@@ -15,6 +16,8 @@ use apt_run::{
     catalogue,
     diagnostic::Diagnostic,
     document::Level,
+    go_on,
+    pipeline::RunResult,
     settings::{Settings, Units},
 };
 use apt_syntax::{
@@ -175,13 +178,9 @@ impl Analysis {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
             _ => {
                 let result = self.result(cancel, progress)?;
-                Source {
-                    records: result.records.clone(),
-                    remarks: Vec::new(),
-                    shortened: Vec::new(),
-                    origins: result.origins.clone(),
-                    diagnostics: Vec::new(),
-                }
+                let (records, origins) = copied(&result, cancel)?;
+                let diagnostics = Vec::new();
+                Source { records, remarks: Vec::new(), shortened: Vec::new(), origins, diagnostics }
             }
         };
         // What there is to say about the program itself is told anyway.
@@ -204,12 +203,9 @@ impl Analysis {
         let tape = apt_post::post(&source.records, machine, &options, cancel)
             .map_err(|apt_post::Cancelled| Cancelled)?;
         let mut diagnostics = source.diagnostics;
-        diagnostics.extend(catalogue::tape_diagnostics(
-            self.document().tree(),
-            &tape,
-            &source.origins,
-            settings,
-        ));
+        let (waiting, tree) = (Waiting::until(cancel), self.document().tree());
+        let told = catalogue::tape_diagnostics(tree, &tape, &source.origins, settings, waiting.patience())?;
+        diagnostics.extend(told);
         Ok(ControlTape { tape, diagnostics, origins: source.origins })
     }
 
@@ -221,7 +217,7 @@ impl Analysis {
     ) -> Result<Source, Cancelled> {
         let diagnostics = self.program_diagnostics(Level::Motion, cancel, progress)?;
         let result = self.result(cancel, progress)?;
-        let (records, origins) = (result.records.clone(), result.origins.clone());
+        let (records, origins) = copied(&result, cancel)?;
         Ok(Source { records, remarks: Vec::new(), shortened: Vec::new(), origins, diagnostics })
     }
 
@@ -293,7 +289,8 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<String, Cancelled> {
         let result = self.result(cancel, progress)?;
-        Ok(apt_cldata::text::write_text(&result.records))
+        let waiting = Waiting::until(cancel);
+        apt_cldata::text::write_text_until(&result.records, waiting.patience()).ok_or(Cancelled)
     }
 
     /// The CL file as the binary CLTAPE of APT III.
@@ -307,8 +304,28 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Vec<u8>, ClTapeError> {
         let result = self.result(cancel, progress)?;
-        Ok(apt_cldata::cltape::write_tape(&result.records, &code_table())?)
+        let waiting = Waiting::until(cancel);
+        let codes = code_table();
+        let tape = apt_cldata::cltape::write_tape_until(&result.records, &codes, waiting.patience())?;
+        Ok(tape.ok_or(Cancelled)?)
     }
+}
+
+/// The records and origins of a run, for who changes them.
+fn copied(result: &RunResult, cancel: Cancel<'_>) -> Result<(Vec<ClRecord>, Vec<Origin>), Cancelled> {
+    let waiting = Waiting::until(cancel);
+    let patience = waiting.patience();
+    let mut records = Vec::with_capacity(result.records.len());
+    for record in &result.records {
+        go_on(patience, 1)?;
+        records.push(record.clone());
+    }
+    let mut origins = Vec::with_capacity(result.origins.len());
+    for origin in &result.origins {
+        go_on(patience, 1)?;
+        origins.push(origin.clone());
+    }
+    Ok((records, origins))
 }
 
 /// The unit of a program that does not say it is that of the settings.

@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::{
     statement::{Body, ElementKind},
     tree::StatementView,
     vocabulary::{WordClass, lookup},
 };
 
-use crate::{Analysis, absolute};
+use crate::{Analysis, Cancel, Cancelled, absolute};
 
 /// The class of a token; the TextMate grammar and the Vim syntax use the same classes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,11 +53,18 @@ pub const MOST_TOKENS: usize = 100_000;
 impl Analysis {
     /// The tokens of the statements that a byte range touches, or of the whole text, in order; of a long text no marks
     /// and at most [`MOST_TOKENS`].
-    pub fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn tokens(&self, range: Option<Range<usize>>, cancel: Cancel<'_>) -> Result<Vec<Token>, Cancelled> {
         let tree = self.document().tree();
         if tree.statement_count() == 0 {
-            return Vec::new();
+            return Ok(Vec::new());
         }
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        self.with_marks(patience)?;
         let whole = 0..usize::from(tree.len());
         let is_whole = range.is_none();
         let with_marks = !is_whole || tree.statement_count() <= MOST_STATEMENTS_WITH_MARKS;
@@ -64,13 +73,14 @@ impl Analysis {
         let (first, last) = (index(range.start), index(range.end));
         let mut tokens = Vec::new();
         for statement in first..=last {
+            go_on(patience, 1)?;
             self.statement_tokens(&tree.statement(statement), with_marks, &mut tokens);
             if is_whole && tokens.len() >= MOST_TOKENS {
                 tokens.truncate(MOST_TOKENS);
                 break;
             }
         }
-        tokens
+        Ok(tokens)
     }
 
     fn statement_tokens(&self, view: &StatementView, with_marks: bool, tokens: &mut Vec<Token>) {

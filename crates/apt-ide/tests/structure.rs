@@ -4,7 +4,15 @@
 
 mod support;
 
-use apt_ide::{Analysis, outline::OutlineEntry, tokens::TokenClass};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use apt_geometry::patience::Waiting;
+use apt_ide::{
+    Analysis, Cancel, Cancelled,
+    format::{FormatOptions, plan},
+    outline::OutlineEntry,
+    tokens::TokenClass,
+};
 use apt_syntax::vocabulary::{WordClass, words};
 use expect_test::expect;
 
@@ -44,7 +52,7 @@ fn outline(entries: &[OutlineEntry], depth: usize, text: &str, out: &mut String)
 #[test]
 fn the_outline_nests_macros_and_loops() {
     let mut shown = String::new();
-    outline(&analysis(PROGRAM).outline(), 0, PROGRAM, &mut shown);
+    outline(&analysis(PROGRAM).outline(&|| false).unwrap(), 0, PROGRAM, &mut shown);
     expect![[r#"
         Part BRACKET PARTNO (1 lines)
         Geometry P1 POINT (2 lines)
@@ -62,7 +70,7 @@ fn the_outline_nests_the_branches_of_an_if() {
     let text = "A=1\nIF(A.EQ.1)THEN\nB=1\nIF(A.EQ.2)THEN\nC=3\nENDIF\nELSEIF(A.GT.2)THEN\nP1=POINT/1,2\nELSE\nD=2\n\
                 ENDIF\nE=1\nIF(A.EQ.3)THEN\nFINI\n";
     let mut shown = String::new();
-    outline(&analysis(text).outline(), 0, text, &mut shown);
+    outline(&analysis(text).outline(&|| false).unwrap(), 0, text, &mut shown);
     expect![[r#"
         Scalar A  (1 lines)
         Branch IF A.EQ.1 (5 lines)
@@ -82,8 +90,12 @@ fn the_outline_nests_the_branches_of_an_if() {
 fn the_branches_of_an_if_fold() {
     let text = "A=1\nIF(A.EQ.1)THEN\nB=1\nIF(A.EQ.2)THEN\nB=3\nENDIF\nELSE\nB=2\nENDIF\nENDIF\nFINI\n";
     let lines = |offset: usize| text[..offset].matches('\n').count();
-    let folds: Vec<(usize, usize)> =
-        analysis(text).folds().iter().map(|fold| (lines(fold.range.start), lines(fold.range.end))).collect();
+    let folds: Vec<(usize, usize)> = analysis(text)
+        .folds(&|| false)
+        .unwrap()
+        .iter()
+        .map(|fold| (lines(fold.range.start), lines(fold.range.end)))
+        .collect();
     assert_eq!(folds, [(1, 6), (3, 5), (6, 8)]);
 }
 
@@ -91,7 +103,8 @@ fn the_branches_of_an_if_fold() {
 fn regions_remarks_and_continued_statements_fold() {
     let lines = |offset: usize| PROGRAM[..offset].matches('\n').count();
     let folds: Vec<String> = analysis(PROGRAM)
-        .folds()
+        .folds(&|| false)
+        .unwrap()
         .iter()
         .map(|fold| format!("{:?} {}-{}", fold.kind, lines(fold.range.start), lines(fold.range.end)))
         .collect();
@@ -106,7 +119,8 @@ fn regions_remarks_and_continued_statements_fold() {
 #[test]
 fn lenses_run_the_program_and_each_start() {
     let lenses: Vec<String> = analysis(PROGRAM)
-        .lenses()
+        .lenses(&|| false)
+        .unwrap()
         .iter()
         .map(|lens| {
             format!("{} | {:?}", PROGRAM[lens.range.clone()].trim_end(), (&lens.title, lens.run.is_some()))
@@ -122,7 +136,8 @@ fn lenses_run_the_program_and_each_start() {
 #[test]
 fn tokens_cover_words_names_numbers_and_comments() {
     let tokens: Vec<String> = analysis(PROGRAM)
-        .tokens(None)
+        .tokens(None, &|| false)
+        .unwrap()
         .iter()
         .filter(|token| token.class != TokenClass::Operator)
         .map(|token| {
@@ -139,24 +154,24 @@ fn tokens_of_a_long_text_are_without_marks_and_bounded() {
     let long = |statements: usize| analysis(&"GOTO/1,2,A\n".repeat(statements));
     let is_mark = |class: TokenClass| class == TokenClass::Operator;
     let short = long(MOST_STATEMENTS_WITH_MARKS - 1);
-    assert!(short.tokens(None).iter().any(|token| is_mark(token.class)));
+    assert!(short.tokens(None, &|| false).unwrap().iter().any(|token| is_mark(token.class)));
     let program = long(MOST_STATEMENTS_WITH_MARKS + 1);
-    let all = program.tokens(None);
+    let all = program.tokens(None, &|| false).unwrap();
     assert!(all.iter().all(|token| !is_mark(token.class)), "marks are left out");
     assert_eq!(all.len(), 4 * (MOST_STATEMENTS_WITH_MARKS + 1));
-    assert_eq!(long(MOST_TOKENS).tokens(None).len(), MOST_TOKENS);
-    let seen = program.tokens(Some(0..40));
+    assert_eq!(long(MOST_TOKENS).tokens(None, &|| false).unwrap().len(), MOST_TOKENS);
+    let seen = program.tokens(Some(0..40), &|| false).unwrap();
     assert!(seen.iter().any(|token| is_mark(token.class)), "what is shown is complete");
 }
 
 #[test]
 fn tokens_of_a_range_are_those_of_the_whole() {
     let program = analysis(PROGRAM);
-    let all = program.tokens(None);
+    let all = program.tokens(None, &|| false).unwrap();
     for line in PROGRAM.split_inclusive('\n') {
         let start = line.as_ptr() as usize - PROGRAM.as_ptr() as usize;
         let range = start..start + line.len() - 1;
-        let part = program.tokens(Some(range.clone()));
+        let part = program.tokens(Some(range.clone()), &|| false).unwrap();
         let inside: Vec<_> =
             all.iter().filter(|one| one.range.start >= range.start && one.range.end <= range.end).collect();
         assert!(inside.iter().all(|one| part.contains(one)), "{line:?}");
@@ -174,7 +189,7 @@ fn words_have_the_class_that_the_grammar_of_the_editors_gives_them() {
             ..Default::default()
         };
         let program = Analysis::new(&text, None, &std::sync::Arc::new(settings));
-        let token = &program.tokens(None)[0];
+        let token = &program.tokens(None, &|| false).unwrap()[0];
         let expected = match word.class {
             WordClass::Minor => TokenClass::Modifier,
             WordClass::GeometricType => TokenClass::Type,
@@ -214,4 +229,40 @@ fn regions_after_edits_are_those_of_a_fresh_program() {
         let fresh = analysis(&program.text());
         assert_eq!(program.regions(), fresh.regions(), "{}", program.text());
     }
+}
+
+/// Statements that are looked through between two questions whether to go on; one takes some microseconds.
+const STATEMENTS_BETWEEN_QUESTIONS: usize = 512;
+
+#[test]
+fn what_is_told_of_a_long_text_asks_often() {
+    let statements = 6_000;
+    let text = "P1=POINT/1,2\n".repeat(statements);
+    let program = analysis(&text);
+    let asks = |what: &str, work: &dyn Fn(Cancel<'_>) -> Result<(), Cancelled>| {
+        let asked = AtomicUsize::new(0);
+        let until = |last: usize| work(&|| asked.fetch_add(1, Ordering::Relaxed) + 1 >= last);
+        // What is kept is found out before.
+        assert_eq!(until(usize::MAX), Ok(()));
+        asked.store(0, Ordering::Relaxed);
+        assert_eq!(until(usize::MAX), Ok(()));
+        let all = asked.swap(0, Ordering::Relaxed);
+        assert!(all * STATEMENTS_BETWEEN_QUESTIONS >= statements, "{all} questions of the {what}");
+        for last in [1, all / 2] {
+            asked.store(0, Ordering::Relaxed);
+            assert_eq!(until(last), Err(Cancelled), "{what}");
+            assert_eq!(asked.load(Ordering::Relaxed), last, "the {what} asks again after the answer");
+        }
+    };
+    asks("outline", &|cancel| program.outline(cancel).map(drop));
+    asks("folds", &|cancel| program.folds(cancel).map(drop));
+    asks("lenses", &|cancel| program.lenses(cancel).map(drop));
+    asks("tokens", &|cancel| program.tokens(None, cancel).map(drop));
+    asks("style", &|cancel| {
+        let waiting = Waiting::until(cancel);
+        let options = FormatOptions::default();
+        plan(program.document().tree(), &options, waiting.patience()).map(drop)
+    });
+    asks("expansion", &|cancel| program.expand(None, None, cancel).map(drop));
+    asks("inlays", &|cancel| program.inlays(0..text.len(), cancel).map(drop));
 }

@@ -8,12 +8,14 @@
 
 use std::ops::Range;
 
+use apt_geometry::patience::Patience;
 use apt_program::Origin;
 use apt_syntax::{SyntaxTree, TextRange, TextSize, tree::StatementView};
 
 use crate::{
-    catalogue,
+    Cancelled, catalogue,
     diagnostic::{Diagnostic, Fix, Severity, statement_range},
+    go_on,
     lint::notes::addressing_blocks,
 };
 
@@ -63,14 +65,19 @@ pub struct Allowances {
 
 impl Allowances {
     /// Reads the comments.
-    pub fn of(tree: &SyntaxTree) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub fn of(tree: &SyntaxTree, patience: Patience<'_>) -> Result<Self, Cancelled> {
         let mut list = Vec::new();
-        for block in addressing_blocks(tree) {
+        for block in addressing_blocks(tree, patience)? {
+            go_on(patience, block.statement_count())?;
             for view in block.statements().filter(|view| view.text().contains(ADDRESS)) {
                 read(tree, &view, &mut list);
             }
         }
-        Self { list }
+        Ok(Self { list })
     }
 
     /// Whether no comment allows anything.

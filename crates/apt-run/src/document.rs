@@ -9,6 +9,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
+use apt_geometry::patience::Waiting;
 use apt_program::{Options, Program, evaluate};
 use apt_syntax::{
     SyntaxTree, TextRange, TextSize,
@@ -18,7 +19,7 @@ use apt_syntax::{
 use crate::{
     Cancel, Cancelled,
     basis::Basis,
-    catalogue::{self, Worst},
+    catalogue::{self, Judged, Worst},
     diagnostic::Diagnostic,
     include::FolderResolver,
     memo::MotionMemo,
@@ -262,7 +263,8 @@ impl Document {
             Level::Section1 => None,
             Level::Motion => Some(self.run(cancel, progress)?),
         };
-        Ok(catalogue::diagnostics(&self.tree, &program, result.as_deref(), &self.settings))
+        let waiting = Waiting::until(cancel);
+        catalogue::diagnostics(&self.judged(&program, result.as_deref()), waiting.patience())
     }
 
     /// The gravest diagnostics up to a level, at most `most`, in order of their place, and how many others there are.
@@ -282,7 +284,8 @@ impl Document {
             Level::Section1 => None,
             Level::Motion => Some(self.run(cancel, progress)?),
         };
-        Ok(catalogue::worst(&self.tree, &program, result.as_deref(), &self.settings, most))
+        let waiting = Waiting::until(cancel);
+        catalogue::worst(&self.judged(&program, result.as_deref()), most, waiting.patience())
     }
 
     /// The report of a run, of the whole program or of some statements.
@@ -298,7 +301,9 @@ impl Document {
     ) -> Result<Report, Cancelled> {
         let program = self.program(cancel)?;
         let result = self.run(cancel, progress)?;
-        let diagnostics = catalogue::diagnostics(&self.tree, &program, Some(&result), &self.settings);
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let diagnostics = catalogue::diagnostics(&self.judged(&program, Some(&result)), patience)?;
         let input = ReportInput {
             file: self.file.as_deref().unwrap_or("-"),
             text: &self.tree.text(),
@@ -308,7 +313,11 @@ impl Document {
             diagnostics: &diagnostics,
             statements,
         };
-        report(&input, cancel)
+        report(&input, patience)
+    }
+
+    fn judged<'a>(&'a self, program: &'a Program, result: Option<&'a RunResult>) -> Judged<'a> {
+        Judged { tree: &self.tree, program, result, settings: &self.settings }
     }
 }
 

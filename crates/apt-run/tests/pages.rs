@@ -6,6 +6,7 @@
 use std::{collections::BTreeSet, fs, path::Path, sync::Arc};
 
 use apt_cldata::record::Units;
+use apt_geometry::patience::Patience;
 use apt_run::{
     catalogue::{self, Page, explain, pages},
     diagnostic::{Diagnostic, Severity},
@@ -55,7 +56,16 @@ fn diagnostics(page: &Page, text: &str) -> Vec<Diagnostic> {
         let machine = apt_post::machine(MACHINE).unwrap();
         let options = apt_post::PostOptions { default_units: Units::Inches, ..Default::default() };
         let tape = apt_post::post(&result.records, &machine, &options, &|| false).unwrap();
-        list.extend(catalogue::tape_diagnostics(document.tree(), &tape, &result.origins, &settings));
+        list.extend(
+            catalogue::tape_diagnostics(
+                document.tree(),
+                &tape,
+                &result.origins,
+                &settings,
+                Patience::default(),
+            )
+            .unwrap(),
+        );
     }
     list
 }

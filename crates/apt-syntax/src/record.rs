@@ -232,8 +232,16 @@ pub struct Boundaries {
     pub open: bool,
 }
 
+/// Lines or statements that are looked at between two questions whether to go on, each in a fraction of a microsecond.
+pub(crate) const LINES_BETWEEN_QUESTIONS: usize = 1024;
+
 /// Finds the statements of a text. The text begins at a statement.
 pub fn statement_boundaries(text: &str, layout: &Layout) -> Boundaries {
+    boundaries_until(text, layout, &|| false)
+}
+
+/// The same up to the end, or to where `is_given_up`, which is asked once in so many statements, says so.
+pub(crate) fn boundaries_until(text: &str, layout: &Layout, is_given_up: &dyn Fn() -> bool) -> Boundaries {
     let mut boundaries = Boundaries::default();
     let mut offset = 0;
     while let Some(rest) = text.get(offset..).filter(|rest| !rest.is_empty()) {
@@ -241,6 +249,9 @@ pub fn statement_boundaries(text: &str, layout: &Layout) -> Boundaries {
         let (length, open) = statement_length(rest, layout);
         offset += length;
         boundaries.open = open;
+        if boundaries.starts.len().is_multiple_of(LINES_BETWEEN_QUESTIONS) && is_given_up() {
+            break;
+        }
     }
     boundaries
 }
@@ -283,9 +294,17 @@ const FIELDS_PER_EXCEPTION: u32 = 20;
 impl SequenceEvidence {
     /// Counts the lines of a text.
     pub fn of(text: &str) -> SequenceEvidence {
+        Self::until(text, &|| false)
+    }
+
+    /// The same up to the end, or to where `is_given_up`, which is asked once in so many lines, says so.
+    pub(crate) fn until(text: &str, is_given_up: &dyn Fn() -> bool) -> SequenceEvidence {
         let mut evidence = SequenceEvidence::default();
-        for line in text.lines() {
+        for (number, line) in (1_usize..).zip(text.lines()) {
             evidence.add_line(line);
+            if number.is_multiple_of(LINES_BETWEEN_QUESTIONS) && is_given_up() {
+                break;
+            }
         }
         evidence
     }

@@ -158,3 +158,29 @@ fn tokens_know_their_words() {
     assert_eq!(words, [("GOTO", 0), ("GOTO", 3)], "both pieces of a divided word are that word");
     assert!(tokens.iter().any(|token| token.kind == SyntaxKind::Comment));
 }
+
+#[test]
+fn who_gives_up_a_long_text_is_heard_soon_and_a_short_one_is_read() {
+    let dialect = Dialect::named(DialectName::Free);
+    let statements = 20_000;
+    let text = "GOTO/1,2,3\n".repeat(statements);
+    let asked = std::cell::Cell::new(0);
+    let until = |last: usize| {
+        SyntaxTree::parse_until(&text, dialect, &|| {
+            asked.set(asked.get() + 1);
+            asked.get() >= last
+        })
+    };
+    assert_eq!(until(usize::MAX).map(|tree| tree.statement_count()), Some(statements));
+    let all = asked.replace(0);
+    assert!(all * STATEMENTS_BETWEEN_QUESTIONS >= statements, "{all} questions");
+    for last in [1, all / 2, all] {
+        asked.set(0);
+        assert!(until(last).is_none());
+        assert_eq!(asked.get(), last, "asked again after the answer");
+    }
+    assert!(SyntaxTree::parse_until("GOTO/1,2,3\n", dialect, &|| true).is_some());
+}
+
+/// Statements that are found between two questions whether to go on, each in a fraction of a microsecond.
+const STATEMENTS_BETWEEN_QUESTIONS: usize = 2_048;

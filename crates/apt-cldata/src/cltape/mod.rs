@@ -10,7 +10,7 @@ mod writer;
 
 pub use ncl::is_ncl_file;
 pub use reader::{TapeContents, TapeNote, TapeReadError, is_tape, read_tape};
-pub use writer::{TapeWriteError, write_tape};
+pub use writer::{TapeWriteError, write_tape, write_tape_until};
 
 /// Record classes.
 pub(crate) const CLASS_SEQUENCE: i32 = 1000;

@@ -1,5 +1,6 @@
 //! Writes the binary tape.
 
+use apt_geometry::patience::Patience;
 use smol_str::SmolStr;
 
 use super::{
@@ -53,9 +54,36 @@ pub enum TapeWriteError {
 /// # Errors
 /// The first record that the format cannot hold.
 pub fn write_tape(records: &[ClRecord], codes: &CodeTable) -> Result<Vec<u8>, TapeWriteError> {
+    written(records, codes, Patience::default())
+}
+
+/// The same; `None` when who waits has given up before the end.
+///
+/// # Errors
+///
+/// As [`write_tape`].
+pub fn write_tape_until(
+    records: &[ClRecord],
+    codes: &CodeTable,
+    patience: Patience<'_>,
+) -> Result<Option<Vec<u8>>, TapeWriteError> {
+    let bytes = written(records, codes, patience)?;
+    Ok((!patience.was_over()).then_some(bytes))
+}
+
+/// The tape up to the end, or to where who waits gives up.
+fn written(
+    records: &[ClRecord],
+    codes: &CodeTable,
+    patience: Patience<'_>,
+) -> Result<Vec<u8>, TapeWriteError> {
     let mut writer = Writer { codes, bytes: Vec::new(), serial: 0, multax: false };
     let mut statement = None;
     for record in records {
+        let positions = if let ClKind::Motion { points, .. } = &record.kind { points.len() } else { 0 };
+        if patience.ends_after(u32::try_from(1 + positions).unwrap_or(u32::MAX)) {
+            break;
+        }
         let this = (record.isn, record.source);
         if record.isn != 0 && statement != Some(this) {
             let isn = i32::try_from(record.isn).map_err(|_| TapeWriteError::TooLong)?;

@@ -2,7 +2,7 @@
 
 use std::mem::take;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use super::{
     detect::{ClDialect, is_title},
@@ -27,16 +27,31 @@ mod arc;
 /// which COPY has turned without MULTAX, is not told. A circle that the tool does not go about (a drive surface
 /// that it only touches with a tilted axis) stands in a remark: in text, a CIRCLE is the way of the tool or one about the same axis.
 pub fn write_text(records: &[ClRecord]) -> String {
-    write_text_with_lines(records).0
+    written(records, Patience::default()).0
+}
+
+/// The same; `None` when who waits has given up before the end.
+pub fn write_text_until(records: &[ClRecord], patience: Patience<'_>) -> Option<String> {
+    let (text, _) = written(records, patience);
+    (!patience.was_over()).then_some(text)
 }
 
 /// The same, with the zero-based line on which each record begins.
 pub fn write_text_with_lines(records: &[ClRecord]) -> (String, Vec<u32>) {
+    written(records, Patience::default())
+}
+
+/// The text up to the end, or to where who waits gives up.
+fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     let mut notes = Notes::default();
     let mut writer = Writer { as_recorded: true, ..Writer::new(Form::of(ClDialect::Generic), &mut notes) };
     let mut lines = Vec::with_capacity(records.len());
     let (mut line, mut counted) = (0, 0);
     for record in records {
+        let positions = if let ClKind::Motion { points, .. } = &record.kind { points.len() } else { 0 };
+        if patience.ends_after(u32::try_from(1 + positions).unwrap_or(u32::MAX)) {
+            break;
+        }
         line += writer.sheet.text[counted..].matches('\n').count();
         counted = writer.sheet.text.len();
         lines.push(u32::try_from(line).unwrap_or(u32::MAX));

@@ -8,11 +8,13 @@ use std::sync::Arc;
 
 use apt_ide::dialect::{describe, names};
 use apt_ide::format::{FormatOptions, Kept, Plan, format_range, plan};
+use apt_ide::picture::Scene;
 use apt_ide::{Analysis, Cancelled};
+use apt_run::Waiting;
 use apt_run::diagnostic as found;
 use apt_run::document::DialectReason;
 use apt_run::position::LineIndex;
-use apt_run::report::{Sources, diagnostic_report};
+use apt_run::report::{Report, Sources, diagnostic_report};
 use apt_run::settings::Settings;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -309,20 +311,20 @@ impl Document for Program {
         self.0.callees(name, file)
     }
 
-    fn outline(&self) -> Vec<OutlineEntry> {
-        self.0.outline()
+    fn outline(&self, control: &Control) -> Answer<Vec<OutlineEntry>> {
+        Ok(with(control, "", |cancel, _| self.0.outline(cancel))?)
     }
 
-    fn folds(&self) -> Vec<Fold> {
-        self.0.folds()
+    fn folds(&self, control: &Control) -> Answer<Vec<Fold>> {
+        Ok(with(control, "", |cancel, _| self.0.folds(cancel))?)
     }
 
-    fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
-        self.0.tokens(range)
+    fn tokens(&self, range: Option<Range<usize>>, control: &Control) -> Answer<Vec<Token>> {
+        Ok(with(control, "", |cancel, _| self.0.tokens(range, cancel))?)
     }
 
-    fn lenses(&self) -> Vec<Lens> {
-        self.0.lenses()
+    fn lenses(&self, control: &Control) -> Answer<Vec<Lens>> {
+        Ok(with(control, "", |cancel, _| self.0.lenses(cancel))?)
     }
 
     fn actions(
@@ -345,21 +347,26 @@ impl Document for Program {
         Ok(found.into_iter().map(action).collect())
     }
 
-    fn format(&self, range: Option<Range<usize>>) -> Formatting {
+    fn format(&self, range: Option<Range<usize>>, control: &Control) -> Answer<Formatting> {
         let (document, tree) = (self.0.document(), self.0.document().tree());
         let options = FormatOptions::with(&tree.dialect(), &document.settings().format);
-        let plan = match range {
-            Some(range) => Plan { edits: format_range(tree, range, &options), kept: Vec::new() },
-            None => plan(tree, &options),
-        };
+        let plan = with(control, "", |cancel, _| {
+            let waiting = Waiting::until(cancel);
+            let patience = waiting.patience();
+            match range {
+                Some(range) => format_range(tree, range, &options, patience)
+                    .map(|edits| Plan { edits, kept: Vec::new() }),
+                None => plan(tree, &options, patience),
+            }
+        })?;
         let kept = |kept: &Kept| {
             let view = tree.statement(kept.statement);
             (Range::<usize>::from(view.range()), kept.reason.to_string())
         };
-        Formatting {
+        Ok(Formatting {
             kept: plan.kept.iter().map(kept).collect(),
             edits: plan.edits.into_iter().map(|(range, text)| TextEdit { range, text }).collect(),
-        }
+        })
     }
 
     fn statements(&self) -> Vec<Range<usize>> {
@@ -392,7 +399,8 @@ impl Document for Program {
     fn run(&self, request: &RunRequest, control: &Control) -> Result<Value, Refusal> {
         let report =
             with(control, "running", |cancel, progress| self.0.run(request.range.clone(), cancel, progress))?;
-        let mut report = to_json(&report)?;
+        let pace = control.pace();
+        let mut report = report_json(report, &pace)?;
         let mut add = |key: &str, value: Value| {
             if let Some(fields) = report.as_object_mut() {
                 fields.insert(key.to_owned(), value);
@@ -403,7 +411,7 @@ impl Document for Program {
         }
         if request.scene {
             let scene = with(control, "drawing", |cancel, progress| self.0.scene(cancel, progress))?;
-            add("scene", to_json(&scene)?);
+            add("scene", scene_json(scene, &pace)?);
         }
         if request.story {
             let range = request.range.clone();
@@ -492,6 +500,44 @@ impl Document for Program {
             }
         })
     }
+}
+
+/// A report as JSON; its lists, which grow with the path, item by item.
+fn report_json(mut report: Report, pace: &Pace<'_>) -> Result<Value, Refusal> {
+    let symbols = std::mem::take(&mut report.symbols);
+    let (diagnostics, cl) = (std::mem::take(&mut report.diagnostics), std::mem::take(&mut report.cl));
+    let motions = std::mem::take(&mut report.motions);
+    let lists = [
+        ("diagnostics", list_json(diagnostics, pace)?),
+        ("symbols", Value::Object(symbols)),
+        ("cl", list_json(cl, pace)?),
+        ("motions", list_json(motions, pace)?),
+    ];
+    Ok(with_lists(to_json(&report)?, lists))
+}
+
+/// A scene as JSON; its pieces one by one.
+fn scene_json(mut scene: Scene, pace: &Pace<'_>) -> Result<Value, Refusal> {
+    let segments = std::mem::take(&mut scene.segments);
+    let lists = [("segments", list_json(segments, pace)?)];
+    Ok(with_lists(to_json(&scene)?, lists))
+}
+
+/// An object with lists in the places of those that were taken out.
+fn with_lists<const N: usize>(mut object: Value, lists: [(&str, Value); N]) -> Value {
+    for (key, list) in lists {
+        object[key] = list;
+    }
+    object
+}
+
+fn list_json<T: serde::Serialize>(things: Vec<T>, pace: &Pace<'_>) -> Result<Value, Refusal> {
+    let mut list = Vec::with_capacity(things.len());
+    for thing in things {
+        pace.go_on(1)?;
+        list.push(to_json(&thing)?);
+    }
+    Ok(Value::Array(list))
 }
 
 fn to_json(value: &impl serde::Serialize) -> Result<Value, Refusal> {

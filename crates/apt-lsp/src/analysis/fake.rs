@@ -252,31 +252,31 @@ impl Document for FakeDocument {
         Vec::new()
     }
 
-    fn outline(&self) -> Vec<OutlineEntry> {
-        vec![OutlineEntry {
+    fn outline(&self, _: &Control) -> Answer<Vec<OutlineEntry>> {
+        Ok(vec![OutlineEntry {
             name: "PROGRAM".into(),
             detail: String::new(),
             kind: OutlineKind::Part,
             range: 0..self.text.len(),
             focus: 0..0,
             children: Vec::new(),
-        }]
+        }])
     }
 
-    fn folds(&self) -> Vec<Fold> {
-        vec![Fold { range: 0..self.text.len(), kind: FoldKind::Region }]
+    fn folds(&self, _: &Control) -> Answer<Vec<Fold>> {
+        Ok(vec![Fold { range: 0..self.text.len(), kind: FoldKind::Region }])
     }
 
-    fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token> {
+    fn tokens(&self, range: Option<Range<usize>>, _: &Control) -> Answer<Vec<Token>> {
         let wanted = |place: &Range<usize>| {
             range.as_ref().is_none_or(|range| place.start < range.end && place.end > range.start)
         };
         let token = |range| Token { range, class: TokenClass::Keyword, definition: false };
-        self.places("BAD").into_iter().filter(wanted).map(token).collect()
+        Ok(self.places("BAD").into_iter().filter(wanted).map(token).collect())
     }
 
-    fn lenses(&self) -> Vec<Lens> {
-        vec![Lens { range: 0..0, title: "Run motion".into(), run: None }]
+    fn lenses(&self, _: &Control) -> Answer<Vec<Lens>> {
+        Ok(vec![Lens { range: 0..0, title: "Run motion".into(), run: None }])
     }
 
     fn actions(
@@ -301,16 +301,16 @@ impl Document for FakeDocument {
             .collect())
     }
 
-    fn format(&self, range: Option<Range<usize>>) -> Formatting {
+    fn format(&self, range: Option<Range<usize>>, _: &Control) -> Answer<Formatting> {
         let wanted = |place: &Range<usize>| {
             range.as_ref().is_none_or(|range| place.start < range.end && place.end > range.start)
         };
         let loud = |range: Range<usize>| TextEdit { text: "BAD".to_owned(), range };
         let edits = self.places("bad").into_iter().filter(wanted).map(loud).collect();
-        Formatting {
+        Ok(Formatting {
             edits,
             kept: self.places("odd").into_iter().map(|range| (range, "odd".to_owned())).collect(),
-        }
+        })
     }
 
     fn statements(&self) -> Vec<Range<usize>> {

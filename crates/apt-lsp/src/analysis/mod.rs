@@ -8,6 +8,7 @@ mod engine;
 #[cfg(test)]
 pub(crate) mod fake;
 
+use std::cell::Cell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -138,16 +139,16 @@ pub(crate) trait Document: Send + Sync {
     fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls>;
 
     /// The outline.
-    fn outline(&self) -> Vec<OutlineEntry>;
+    fn outline(&self, control: &Control) -> Answer<Vec<OutlineEntry>>;
 
     /// What can be folded away.
-    fn folds(&self) -> Vec<Fold>;
+    fn folds(&self, control: &Control) -> Answer<Vec<Fold>>;
 
     /// The classes of words, in order; only those of statements that touch the range if one is given.
-    fn tokens(&self, range: Option<Range<usize>>) -> Vec<Token>;
+    fn tokens(&self, range: Option<Range<usize>>, control: &Control) -> Answer<Vec<Token>>;
 
     /// The places that can be run on their own.
-    fn lenses(&self) -> Vec<Lens>;
+    fn lenses(&self, control: &Control) -> Answer<Vec<Lens>>;
 
     /// What can be done about a range, of the kinds wanted; findings count up to a level.
     fn actions(
@@ -160,7 +161,7 @@ pub(crate) trait Document: Send + Sync {
 
     /// The edits that give the program the style of its project; only those of statements that touch the range if one is
     /// given.
-    fn format(&self, range: Option<Range<usize>>) -> Formatting;
+    fn format(&self, range: Option<Range<usize>>, control: &Control) -> Answer<Formatting>;
 
     /// The statements in the order of their numbers, which begin with one; bytes of the text.
     fn statements(&self) -> Vec<Range<usize>>;
@@ -225,10 +226,54 @@ impl Control {
         self.token.is_cancelled()
     }
 
+    /// Counts the work of an answer that grows with the document.
+    pub(crate) fn pace(&self) -> Pace<'_> {
+        Pace { control: self, left: Cell::new(WORK_BETWEEN_QUESTIONS) }
+    }
+
     /// Tells how far the work has come.
     pub(crate) fn report(&self, progress: Progress) {
         if let Some(report) = &self.progress {
             report(progress);
         }
+    }
+}
+
+/// Things of an answer that are written between two questions, each in about a microsecond.
+const WORK_BETWEEN_QUESTIONS: usize = 512;
+
+/// Counts the things of an answer, and asks once in so many of them whether it is still wanted.
+pub(crate) struct Pace<'a> {
+    control: &'a Control,
+    left: Cell<usize>,
+}
+
+impl Pace<'_> {
+    /// Counts some things.
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`] when nobody wants the answer any more.
+    pub(crate) fn go_on(&self, things: usize) -> Result<(), Interrupted> {
+        let left = self.left.get().saturating_sub(things);
+        self.left.set(if left == 0 { WORK_BETWEEN_QUESTIONS } else { left });
+        if left == 0 && self.control.is_cancelled() { Err(Interrupted) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_wants_no_answer_any_more_is_heard_soon_and_a_short_answer_is_given() {
+        let token = CancellationToken::new();
+        let control = Control::new(token.clone());
+        let pace = control.pace();
+        assert_eq!(pace.go_on(10 * WORK_BETWEEN_QUESTIONS), Ok(()));
+        token.cancel();
+        let given = (0..).take_while(|_| pace.go_on(1).is_ok()).count();
+        assert_eq!(given + 1, WORK_BETWEEN_QUESTIONS);
+        assert_eq!(control.pace().go_on(WORK_BETWEEN_QUESTIONS - 1), Ok(()));
     }
 }

@@ -7,7 +7,7 @@ use super::Outcome;
 use super::arguments::FmtCall;
 use super::console::Console;
 use super::program::{self, Dialects, Program, STANDARD_INPUT};
-use crate::analysis::Language;
+use crate::analysis::{Control, Language};
 
 /// Statements of one file that are named if they cannot be given the style.
 const MOST_NAMED: usize = 5;
@@ -36,7 +36,13 @@ fn one(program: &Program, file: &Path, check: bool, console: &Console) -> Outcom
         console.note(&format!("{}: a binary CL file has no style; it stays as it is", program.name));
         return Outcome::Clean;
     };
-    let formatting = program.document.format(None);
+    let formatting = match program.document.format(None, &Control::unlimited()) {
+        Ok(formatting) => formatting,
+        Err(interrupted) => {
+            console.error(&format!("{}: {interrupted}", program.name));
+            return Outcome::Unusable;
+        }
+    };
     tell_kept(program, &formatting.kept, console);
     let old = program.index.rope.to_string();
     let new = formatting.applied(&old);

@@ -6,7 +6,7 @@ use tower_lsp::ls_types::{self as lsp, SemanticTokenModifier, SemanticTokenType,
 
 use super::position::protocol_number;
 use super::{Positions, TextIndex};
-use crate::analysis::{Token, TokenClass};
+use crate::analysis::{Interrupted, Pace, Token, TokenClass};
 
 /// Numbers of one encoded token.
 const NUMBERS_PER_TOKEN: usize = 5;
@@ -38,11 +38,20 @@ pub(crate) fn legend() -> lsp::SemanticTokensLegend {
 }
 
 /// Encodes tokens, each relative to the one before it; a token over several lines becomes one per line.
-pub(crate) fn encode(index: &TextIndex, tokens: &[Token]) -> Vec<lsp::SemanticToken> {
+///
+/// # Errors
+///
+/// [`Interrupted`] when nobody wants them any more.
+pub(crate) fn encode(
+    index: &TextIndex,
+    tokens: &[Token],
+    pace: &Pace<'_>,
+) -> Result<Vec<lsp::SemanticToken>, Interrupted> {
     let mut encoded = Vec::with_capacity(tokens.len());
     let mut last = lsp::Position::default();
     let mut positions = Positions::of(index);
     for token in tokens {
+        pace.go_on(1)?;
         let token_type = type_number(token.class);
         let mut tell = |range: lsp::Range| {
             if range.start < last || range.start.line != range.end.line || range.start == range.end {
@@ -66,7 +75,7 @@ pub(crate) fn encode(index: &TextIndex, tokens: &[Token]) -> Vec<lsp::SemanticTo
             lines_of(index, &token.range).iter().for_each(|piece| tell(positions.range(piece)));
         }
     }
-    encoded
+    Ok(encoded)
 }
 
 fn type_number(class: TokenClass) -> u32 {
@@ -113,6 +122,7 @@ mod tests {
 
     use super::super::Encoding;
     use super::*;
+    use crate::analysis::Control;
 
     fn token(range: Range<usize>, class: TokenClass) -> Token {
         Token { range, class, definition: false }
@@ -134,7 +144,7 @@ mod tests {
             token(remark..text.len(), TokenClass::Comment),
         ];
         assert_eq!(
-            numbers(&encode(&index, &tokens)),
+            numbers(&encode(&index, &tokens, &Control::unlimited().pace()).unwrap()),
             [[0, 0, 2, 2], [0, 3, 2, 11], [1, 1, 1, 0], [1, 0, 8, 12], [1, 0, 1, 12]]
         );
     }

@@ -6,7 +6,7 @@ use tower_lsp::ls_types as lsp;
 
 use super::outgoing::{related_information, symbol_kind};
 use super::{Places, Positions, TextIndex};
-use crate::analysis::{Diagnostic, OutlineEntry, Severity};
+use crate::analysis::{Answer, Diagnostic, OutlineEntry, Pace, Severity};
 
 /// Who found it, as editors show it.
 pub(crate) const SOURCE: &str = "apt";
@@ -56,16 +56,42 @@ pub(crate) fn diagnostic(
 const USUAL_LENGTH: usize = 256;
 
 /// Writes the entries of an outline with everything inside them, as a list.
-pub(crate) fn symbols(out: &mut Vec<u8>, index: &TextIndex, outline: &[OutlineEntry]) {
+///
+/// # Errors
+///
+/// [`crate::analysis::Interrupted`] when nobody wants them any more.
+pub(crate) fn symbols(
+    out: &mut Vec<u8>,
+    index: &TextIndex,
+    outline: &[OutlineEntry],
+    pace: &Pace<'_>,
+) -> Answer<()> {
     out.reserve(outline.len() * USUAL_LENGTH);
-    list_of_symbols(out, &mut Positions::of(index), outline);
+    list_of_symbols(out, &mut Positions::of(index), outline, pace)
 }
 
-fn list_of_symbols(out: &mut Vec<u8>, positions: &mut Positions<'_>, outline: &[OutlineEntry]) {
-    list(out, outline, |out, entry| symbol(out, positions, entry));
+fn list_of_symbols(
+    out: &mut Vec<u8>,
+    positions: &mut Positions<'_>,
+    outline: &[OutlineEntry],
+    pace: &Pace<'_>,
+) -> Answer<()> {
+    let mut done = Ok(());
+    list(out, outline, |out, entry| {
+        if done.is_ok() {
+            done = symbol(out, positions, entry, pace);
+        }
+    });
+    done
 }
 
-fn symbol(out: &mut Vec<u8>, positions: &mut Positions<'_>, entry: &OutlineEntry) {
+fn symbol(
+    out: &mut Vec<u8>,
+    positions: &mut Positions<'_>,
+    entry: &OutlineEntry,
+    pace: &Pace<'_>,
+) -> Answer<()> {
+    pace.go_on(1)?;
     out.extend_from_slice(b"{\"name\":");
     // Clients reject an empty name.
     value(out, if entry.name.trim().is_empty() { "(no name)" } else { &entry.name });
@@ -81,9 +107,10 @@ fn symbol(out: &mut Vec<u8>, positions: &mut Positions<'_>, entry: &OutlineEntry
     range(out, positions.range(&entry.focus));
     if !entry.children.is_empty() {
         out.extend_from_slice(b",\"children\":");
-        list_of_symbols(out, positions, &entry.children);
+        list_of_symbols(out, positions, &entry.children, pace)?;
     }
     out.push(b'}');
+    Ok(())
 }
 
 /// Writes a list of things.
@@ -127,7 +154,7 @@ mod tests {
 
     use super::super::{Encoding, Uris};
     use super::*;
-    use crate::analysis::{OriginFrame, OutlineKind, Related};
+    use crate::analysis::{Control, OriginFrame, OutlineKind, Related};
 
     fn index(text: &str) -> TextIndex {
         TextIndex { rope: Rope::from_str(text), encoding: Encoding::Utf16 }
@@ -201,7 +228,7 @@ mod tests {
         let inner = vec![entry("A\"", "", 5..8, Vec::new()), entry(" ", "POINT", 9..11, Vec::new())];
         let outline = [entry("M", "MACRO", 0..12, inner), entry("B", "", 14..15, Vec::new())];
         let mut out = Vec::new();
-        symbols(&mut out, &index("M=MA\nA=1\nB=\nT\nX"), &outline);
+        symbols(&mut out, &index("M=MA\nA=1\nB=\nT\nX"), &outline, &Control::unlimited().pace()).unwrap();
         let symbols: Vec<lsp::DocumentSymbol> = serde_json::from_slice(&out).unwrap();
         let value: Value = serde_json::from_slice(&out).unwrap();
         assert_eq!(serde_json::to_value(&symbols).unwrap(), value, "written as the protocol has it");
@@ -218,7 +245,7 @@ mod tests {
         assert_eq!((inner[1].name.as_str(), inner[1].detail.as_deref()), ("(no name)", Some("POINT")));
         assert_eq!((symbols[1].range, &symbols[1].children), (place((4, 0), (4, 1)), &None));
         let mut nothing = Vec::new();
-        super::symbols(&mut nothing, &index(""), &[]);
+        super::symbols(&mut nothing, &index(""), &[], &Control::unlimited().pace()).unwrap();
         assert_eq!(nothing, b"[]");
     }
 }

@@ -175,11 +175,15 @@ impl Backend {
 const MOST_EDITS: usize = 1_000;
 
 /// The edits that give a document its style, or the statements in a range of it.
-fn formatting_edits(snapshot: &Snapshot, range: Option<lsp::Range>) -> Vec<lsp::TextEdit> {
+fn formatting_edits(
+    snapshot: &Snapshot,
+    range: Option<lsp::Range>,
+    control: &Control,
+) -> Answer<Vec<lsp::TextEdit>> {
     let range = range.map(|range| snapshot.index.bytes(range));
-    let edits = snapshot.document.format(range).edits;
+    let edits = snapshot.document.format(range, control)?.edits;
     let edits = joined(&snapshot.index.rope, edits, MOST_EDITS).into_iter();
-    edits.map(|edit| outgoing::edit(&snapshot.index, edit)).collect()
+    Ok(edits.map(|edit| outgoing::edit(&snapshot.index, edit)).collect())
 }
 
 /// Places in the files of the program that a document belongs to, as locations.
@@ -428,8 +432,8 @@ impl LanguageServer for Backend {
         let open = job::snapshots(&self.events).await?;
         for snapshot in &open {
             let query = params.query.clone();
-            let named = job::on_snapshot("workspace symbols", snapshot.clone(), move |snapshot, _| {
-                Ok::<_, Refusal>(symbols::of_document(snapshot, &query))
+            let named = job::on_snapshot("workspace symbols", snapshot.clone(), move |snapshot, control| {
+                symbols::of_document(snapshot, &query, control)
             });
             found.extend(named.await?);
         }
@@ -474,8 +478,8 @@ impl LanguageServer for Backend {
         params: lsp::DocumentRangeFormattingParams,
     ) -> Result<Option<Vec<lsp::TextEdit>>> {
         let range = params.range;
-        self.ask("formatting", params.text_document.uri, move |snapshot, _| {
-            Ok(Some(formatting_edits(snapshot, Some(range))))
+        self.ask("formatting", params.text_document.uri, move |snapshot, control| {
+            formatting_edits(snapshot, Some(range), control).map(Some)
         })
         .await
     }
@@ -485,9 +489,9 @@ impl LanguageServer for Backend {
         params: lsp::SemanticTokensRangeParams,
     ) -> Result<Option<lsp::SemanticTokensRangeResult>> {
         let range = params.range;
-        self.ask("semantic tokens", params.text_document.uri, move |snapshot, _| {
-            let found = snapshot.document.tokens(Some(snapshot.index.bytes(range)));
-            let data = tokens::encode(&snapshot.index, &found);
+        self.ask("semantic tokens", params.text_document.uri, move |snapshot, control| {
+            let found = snapshot.document.tokens(Some(snapshot.index.bytes(range)), control)?;
+            let data = tokens::encode(&snapshot.index, &found, &control.pace())?;
             Ok(Some(lsp::SemanticTokens { result_id: None, data }.into()))
         })
         .await

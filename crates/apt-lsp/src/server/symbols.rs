@@ -9,7 +9,7 @@ use ropey::Rope;
 use tower_lsp::ls_types::SymbolInformation;
 
 use super::documents::Snapshot;
-use crate::analysis::{Control, Files, Language, Refusal, Surroundings, normalised};
+use crate::analysis::{Answer, Control, Files, Language, Refusal, Surroundings, normalised};
 use crate::convert::{TextIndex, outgoing};
 use crate::settings::Settings;
 use crate::source;
@@ -20,9 +20,13 @@ const MOST_FILES: usize = 500;
 const LARGEST_FILE: u64 = 4 << 20;
 
 /// The symbols of an open document whose names contain what is wanted.
-pub(super) fn of_document(snapshot: &Snapshot, wanted: &str) -> Vec<SymbolInformation> {
-    let outline = snapshot.document.outline();
-    outgoing::symbols_named(&snapshot.index, &snapshot.uri, outline, wanted)
+pub(super) fn of_document(
+    snapshot: &Snapshot,
+    wanted: &str,
+    control: &Control,
+) -> Answer<Vec<SymbolInformation>> {
+    let outline = snapshot.document.outline(control)?;
+    Ok(outgoing::symbols_named(&snapshot.index, &snapshot.uri, outline, wanted))
 }
 
 /// The symbols of the files that belong to the open documents and are not open themselves.
@@ -48,7 +52,7 @@ pub(super) fn of_closed_files(
         let surroundings = Surroundings { path: Some(path.clone()), files: Files::default() };
         let document = language.open(&source.text, name, &settings.program, surroundings);
         let index = TextIndex { rope: Rope::from_str(&source.text), encoding: snapshot.index.encoding };
-        found.extend(outgoing::symbols_named(&index, &uri, document.outline(), wanted));
+        found.extend(outgoing::symbols_named(&index, &uri, document.outline(control)?, wanted));
     }
     Ok(found)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use apt_geometry::patience::{Patience, Waiting};
 use apt_syntax::{
     SyntaxTree,
     dialect::TextWords,
@@ -60,9 +61,15 @@ pub fn expand(
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, State::default());
     let isn = at.map(|at| u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX));
     let count = tree.statement_count();
-    let all: Vec<_> = (0..count).map(|index| tree.statement(index).parsed()).collect();
+    let waiting = Waiting::until(cancel);
+    let patience = waiting.patience();
+    let mut all = Vec::with_capacity(count);
     let mut labels = RegionLabels::default();
-    all.iter().for_each(|statement| labels.statement(statement));
+    for index in (0..count).take_while(|_| !patience.ends_after(1)) {
+        let statement = tree.statement(index).parsed();
+        labels.statement(&statement);
+        all.push(statement);
+    }
     evaluator.trace = Some(Trace::new(isn, depth, labels));
     if tree.dialect().branch_anywhere || tree.dialect().do_loops {
         let jumps_free = tree.dialect().branch_anywhere;
@@ -72,13 +79,14 @@ pub fn expand(
     }
     let mut top = TopLevel::new(tree);
     let mut index = 0;
-    while index < count && !evaluator.state.ended && !evaluator.is_cancelled() {
+    while index < count && !evaluator.state.ended && !patience.was_over() && !evaluator.is_cancelled() {
         index = evaluator.step(&mut top, index).next;
     }
     let lines = evaluator.trace.map(|trace| trace.lines).unwrap_or_default();
-    let needed = needed_macros(&lines);
+    let needed = needed_macros(&lines, patience);
     let lines = lines
         .into_iter()
+        .take_while(|_| !patience.ends_after(1))
         .filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)))
         .map(|line| expanded_line(line, tree.dialect().text_words))
         .collect();
@@ -101,12 +109,13 @@ fn is_do(elements: &[Element]) -> bool {
 }
 
 /// The macros that the lines still call, and those that these call.
-fn needed_macros(lines: &[TracedLine]) -> BTreeSet<SmolStr> {
+fn needed_macros(lines: &[TracedLine], patience: Patience<'_>) -> BTreeSet<SmolStr> {
     let mut needed: BTreeSet<SmolStr> = BTreeSet::new();
     loop {
         let before = needed.len();
+        let looked_at = lines.iter().take_while(|_| !patience.ends_after(1));
         let standing =
-            lines.iter().filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)));
+            looked_at.filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)));
         let called: Vec<SmolStr> = standing.filter_map(|line| called_macro(&line.elements)).collect();
         needed.extend(called);
         // Each round adds a macro, or is the last one.

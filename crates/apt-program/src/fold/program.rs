@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use apt_geometry::patience::Patience;
 use apt_syntax::{StatementChange, SyntaxTree, dialect::DialectName};
 use smol_str::SmolStr;
 
@@ -204,7 +205,13 @@ impl Program {
     /// All names with their values at the end, sorted; elements of arrays as `NAME(3)`. Geometry is in the coordinates
     /// of the reference system in force at the end.
     pub fn symbols(&self) -> Vec<(SmolStr, Value)> {
-        values_of(&self.end.symbols, self.end.system.as_ref())
+        values_of(&self.end.symbols, self.end.system.as_ref(), Patience::default())
+    }
+
+    /// The same; `None` when who waits has given up before the end.
+    pub fn symbols_until(&self, patience: Patience<'_>) -> Option<Vec<(SmolStr, Value)>> {
+        let values = values_of(&self.end.symbols, self.end.system.as_ref(), patience);
+        (!patience.was_over()).then_some(values)
     }
 
     /// What the evaluation cost.

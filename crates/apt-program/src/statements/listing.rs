@@ -1,5 +1,6 @@
 //! PRINT, PUNCH and READ/1 (language reference 7.9): what the program lists, and dumps that another program takes back.
 
+use apt_geometry::patience::Patience;
 use apt_syntax::{
     TextRange,
     statement::{Argument, Expression, Name, Reference},
@@ -177,7 +178,7 @@ impl Evaluator<'_> {
             match argument {
                 Argument::Word(word) if word.word.spelling == "ALL" => {
                     self.output.lists_all = true;
-                    let all = values_of(&self.state.symbols, self.state.system.as_ref());
+                    let all = values_of(&self.state.symbols, self.state.system.as_ref(), Patience::default());
                     items.extend(all.into_iter().map(|(name, value)| named_item(&name, value)));
                 }
                 Argument::Expression(Expression::Reference(reference)) => {

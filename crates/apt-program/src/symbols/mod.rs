@@ -6,7 +6,7 @@ mod system;
 
 use std::sync::Arc;
 
-use apt_geometry::canonical::Geometry;
+use apt_geometry::{canonical::Geometry, patience::Patience};
 use smol_str::SmolStr;
 
 pub(crate) use array::{Array, ArrayElement};
@@ -95,19 +95,29 @@ impl Meaning {
 }
 
 /// All names with values, sorted; elements of arrays as `NAME(3)`. Geometry is in the coordinates of `system`, or, if
-/// it cannot be carried there, of the system in which it was defined.
-pub(crate) fn values_of(table: &SymbolTable, system: Option<&Arc<ReferenceSystem>>) -> Vec<(SmolStr, Value)> {
+/// it cannot be carried there, of the system in which it was defined. Those before the place where who waits gives up.
+pub(crate) fn values_of(
+    table: &SymbolTable,
+    system: Option<&Arc<ReferenceSystem>>,
+    patience: Patience<'_>,
+) -> Vec<(SmolStr, Value)> {
     let seen = |stored: &Stored| {
         Value::Geometry(stored.seen_from(system).unwrap_or_else(|| Arc::clone(&stored.geometry)))
     };
     let mut values = Vec::new();
     for (name, symbol) in table {
+        if patience.ends_after(1) {
+            break;
+        }
         match &symbol.meaning {
             Meaning::Scalar(number) => values.push((name.clone(), Value::Scalar(*number))),
             Meaning::Geometry(stored) => values.push((name.clone(), seen(stored))),
             Meaning::Array(array) => {
                 let stem = name.trim_end_matches(ARRAY_KEY_SUFFIX);
                 for (subscript, element) in array.elements() {
+                    if patience.ends_after(1) {
+                        break;
+                    }
                     let value = match element {
                         ArrayElement::Scalar(number) => Value::Scalar(*number),
                         ArrayElement::Geometry(stored) => seen(stored),

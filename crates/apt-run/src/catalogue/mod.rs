@@ -24,7 +24,7 @@ mod tilt;
 use std::cmp::Reverse;
 
 use apt_cldata::{conversion::ConversionNote, text::ReadError};
-use apt_geometry::canonical::GeometryKind;
+use apt_geometry::{canonical::GeometryKind, patience::Patience};
 use apt_post::{PostFinding, Tape};
 use apt_program::{
     Origin, Program,
@@ -37,8 +37,10 @@ pub use pages::{Page, explain, pages};
 pub use story::lines as story_lines;
 
 use crate::{
+    Cancelled,
     allow::{Allowances, Idle},
     diagnostic::{Diagnostic, Fix, Severity, Wording},
+    go_on,
     lint::{Lint, LintKind},
     pipeline::{RunFinding, RunResult},
     settings::Settings,
@@ -73,19 +75,36 @@ impl Text {
 /// Findings for which fixes are looked for. Nobody reads more, and a file in another language has one in every line.
 const MOST_FIXED: usize = 1_000;
 
+/// What diagnostics are made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Judged<'a> {
+    /// The syntax of the program.
+    pub tree: &'a SyntaxTree,
+    /// Its evaluation.
+    pub program: &'a Program,
+    /// Its run, if it was run.
+    pub result: Option<&'a RunResult>,
+    /// The settings, of which the severities are.
+    pub settings: &'a Settings,
+}
+
 /// All diagnostics of a program and perhaps its run, in order of their place, with the severities of the settings.
-pub fn diagnostics(
-    tree: &SyntaxTree,
-    program: &Program,
-    result: Option<&RunResult>,
-    settings: &Settings,
-) -> Vec<Diagnostic> {
-    let findings: Vec<&Finding> = program.findings().collect();
-    let mut list: Vec<Diagnostic> = findings.iter().map(|finding| of_program(finding)).collect();
-    for (diagnostic, finding) in list.iter_mut().zip(findings).take(MOST_FIXED) {
-        diagnostic.fixes = crate::fix::of_finding(tree, finding);
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn diagnostics(judged: &Judged<'_>, patience: Patience<'_>) -> Result<Vec<Diagnostic>, Cancelled> {
+    let mut list = Vec::new();
+    for finding in judged.program.findings() {
+        go_on(patience, 1)?;
+        let mut diagnostic = of_program(finding);
+        if list.len() < MOST_FIXED {
+            diagnostic.fixes = crate::fix::of_finding(judged.tree, finding);
+        }
+        list.push(diagnostic);
     }
-    completed(list, tree, program, Allowances::of(tree), result, settings)
+    let allowances = Allowances::of(judged.tree, patience)?;
+    completed(list, judged, allowances, patience)
 }
 
 /// The gravest diagnostics of a program.
@@ -114,26 +133,30 @@ impl Worst {
 
 /// What [`diagnostics`] finds, cut to the gravest: only these are put into words, as far as the others can be judged
 /// without. Fixes for findings of Section 1 are left out: they are looked for when somebody asks what can be done.
-pub fn worst(
-    tree: &SyntaxTree,
-    program: &Program,
-    result: Option<&RunResult>,
-    settings: &Settings,
-    most: usize,
-) -> Worst {
-    let allowances = Allowances::of(tree);
-    let mut findings: Vec<&Finding> = program.findings().collect();
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn worst(judged: &Judged<'_>, most: usize, patience: Patience<'_>) -> Result<Worst, Cancelled> {
+    let settings = judged.settings;
+    let allowances = Allowances::of(judged.tree, patience)?;
+    let mut findings: Vec<&Finding> = judged.program.findings().collect();
     let total = findings.len();
     // Settings and comments name codes, and words that become names are judged one with the other.
-    let judged = |finding: &&Finding| matches!(finding.kind, FindingKind::WordBecomesName { .. });
-    if total > most && settings.severity.is_empty() && allowances.is_empty() && !findings.iter().any(judged) {
+    let in_pairs = |finding: &&Finding| matches!(finding.kind, FindingKind::WordBecomesName { .. });
+    if total > most && settings.severity.is_empty() && allowances.is_empty() && !findings.iter().any(in_pairs)
+    {
         findings = gravest(&findings, most);
     }
     let unworded = total - findings.len();
-    let list = findings.into_iter().map(of_program).collect();
-    let mut worst = Worst::of(completed(list, tree, program, allowances, result, settings), most);
+    let mut list = Vec::with_capacity(findings.len());
+    for finding in findings {
+        go_on(patience, 1)?;
+        list.push(of_program(finding));
+    }
+    let mut worst = Worst::of(completed(list, judged, allowances, patience)?, most);
     worst.left_out += unworded;
-    worst
+    Ok(worst)
 }
 
 /// The gravest of more than `most` findings; of equally grave ones those that come first.
@@ -154,20 +177,23 @@ fn gravest<'a>(findings: &[&'a Finding], most: usize) -> Vec<&'a Finding> {
 /// The findings of Section 1 with all others, in order of their place.
 fn completed(
     mut list: Vec<Diagnostic>,
-    tree: &SyntaxTree,
-    program: &Program,
+    judged: &Judged<'_>,
     mut allowances: Allowances,
-    result: Option<&RunResult>,
-    settings: &Settings,
-) -> Vec<Diagnostic> {
-    crate::lint::keep_shadowing(tree, &mut list);
-    list.extend(result.into_iter().flat_map(|result| &result.findings).map(|finding| of_run(tree, finding)));
-    for lint in crate::lint::lint(tree, program, settings.units) {
+    patience: Patience<'_>,
+) -> Result<Vec<Diagnostic>, Cancelled> {
+    let Judged { tree, program, result, settings } = *judged;
+    crate::lint::keep_shadowing(tree, &mut list, patience)?;
+    for finding in result.into_iter().flat_map(|result| &result.findings) {
+        go_on(patience, 1)?;
+        list.push(of_run(tree, finding));
+    }
+    for lint in crate::lint::lint(tree, program, settings.units, patience)? {
+        go_on(patience, 1)?;
         add_lint(&mut list, lint);
     }
     allowances.filter(&mut list);
     list.extend(allowances.idle(result.is_some()));
-    in_order(list, settings)
+    Ok(in_order(list, settings))
 }
 
 fn of_program(finding: &Finding) -> Diagnostic {
@@ -263,12 +289,17 @@ fn of_run(tree: &SyntaxTree, finding: &RunFinding) -> Diagnostic {
 }
 
 /// The diagnostics of a tape, with the severities of the settings. `origins` is the table that the findings refer to.
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
 pub fn tape_diagnostics(
     tree: &SyntaxTree,
     tape: &Tape,
     origins: &[Origin],
     settings: &Settings,
-) -> Vec<Diagnostic> {
+    patience: Patience<'_>,
+) -> Result<Vec<Diagnostic>, Cancelled> {
     let of_post = |finding: &PostFinding| {
         let (text, severity) = postprocessor::word(&finding.kind);
         let unknown = || Origin::in_program(finding.isn.max(1), TextRange::default());
@@ -282,8 +313,8 @@ pub fn tape_diagnostics(
         }
     };
     let mut list = tape.findings.iter().map(of_post).collect();
-    Allowances::of(tree).filter(&mut list);
-    in_order(list, settings)
+    Allowances::of(tree, patience)?.filter(&mut list);
+    Ok(in_order(list, settings))
 }
 
 /// What the reader of a CL file says, with the severities of the settings. `origins` has the statement of every line.
@@ -304,12 +335,17 @@ pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Set
 }
 
 /// What a conversion to another CL dialect tells, with the severities of the settings. `origins` is the table that the records refer to.
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
 pub fn conversion_diagnostics(
     tree: &SyntaxTree,
     notes: &[ConversionNote],
     origins: &[Origin],
     settings: &Settings,
-) -> Vec<Diagnostic> {
+    patience: Patience<'_>,
+) -> Result<Vec<Diagnostic>, Cancelled> {
     let of_note = |note: &ConversionNote| {
         let (text, severity) = conversion::word(note);
         let unknown = || Origin::in_program(note.isn.max(1), TextRange::default());
@@ -323,8 +359,8 @@ pub fn conversion_diagnostics(
         }
     };
     let mut list = notes.iter().map(of_note).collect();
-    Allowances::of(tree).filter(&mut list);
-    in_order(list, settings)
+    Allowances::of(tree, patience)?.filter(&mut list);
+    Ok(in_order(list, settings))
 }
 
 /// Applies the severities of the settings and sorts by place.

@@ -1,22 +1,30 @@
 //! Comments behind the statements of adjacent lines begin in the same column.
 
+use apt_geometry::patience::Patience;
 use apt_syntax::record::Layout;
 
 use super::line::Line;
+use crate::{Cancelled, go_on};
 
 /// A line whose code is longer does not move the comments of its neighbours.
 const LONGEST_ALIGNED: usize = 60;
 
 /// The columns in which the signs and comments of adjacent lines begin.
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
 pub(super) fn columns<'a>(
     lines: impl Iterator<Item = Option<&'a Line>>,
     align: bool,
     layout: &Layout,
-) -> Vec<usize> {
+    patience: Patience<'_>,
+) -> Result<Vec<usize>, Cancelled> {
     let lines: Vec<Option<&Line>> = lines.collect();
-    let mut columns: Vec<usize> = lines.iter().map(|line| line.map_or(0, Line::own_column)).collect();
+    let own = |line: &Option<&Line>| go_on(patience, 1).map(|()| line.map_or(0, Line::own_column));
+    let mut columns = lines.iter().map(own).collect::<Result<Vec<usize>, Cancelled>>()?;
     if !align {
-        return columns;
+        return Ok(columns);
     }
     let joins = |line: &Option<&Line>| {
         line.is_some_and(|line| line.has_trailing_comment() && line.width() <= LONGEST_ALIGNED)
@@ -34,6 +42,7 @@ pub(super) fn columns<'a>(
             own.fill(column);
         }
         from += length.max(1);
+        go_on(patience, length.max(1))?;
     }
-    columns
+    Ok(columns)
 }

@@ -21,12 +21,15 @@ mod tests;
 
 use std::ops::Range;
 
+use apt_geometry::patience::Patience;
 use apt_syntax::{Dialect, SyntaxTree, lexer::lex, record::Layout, tree::StatementView};
 
 pub use options::{FormatOptions, FormatSettings, LAST_STATEMENT_COLUMN, LetterCase};
 
 use line::Line;
 use record::Division;
+
+use crate::{Cancelled, go_on};
 
 /// One replacement: bytes of the old text, and what takes their place.
 pub type Edit = (Range<usize>, String);
@@ -73,21 +76,38 @@ pub struct Plan {
 }
 
 /// The edits that give a program the style, in order and without overlap; empty if it has it.
-pub fn format(tree: &SyntaxTree, options: &FormatOptions) -> Vec<Edit> {
-    plan(tree, options).edits
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn format(
+    tree: &SyntaxTree,
+    options: &FormatOptions,
+    patience: Patience<'_>,
+) -> Result<Vec<Edit>, Cancelled> {
+    Ok(plan(tree, options, patience)?.edits)
 }
 
 /// The edits of the statements that a range (bytes) touches.
-pub fn format_range(tree: &SyntaxTree, range: Range<usize>, options: &FormatOptions) -> Vec<Edit> {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn format_range(
+    tree: &SyntaxTree,
+    range: Range<usize>,
+    options: &FormatOptions,
+    patience: Patience<'_>,
+) -> Result<Vec<Edit>, Cancelled> {
     if tree.statement_count() == 0 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let at = |offset: usize| {
         tree.statement_at(apt_syntax::TextSize::new(u32::try_from(offset).unwrap_or(u32::MAX)))
     };
     // A selection of whole lines ends at the start of the next one, which does not belong to it.
     let last = at(if range.end > range.start { range.end - 1 } else { range.end });
-    plan_of(tree, at(range.start)..=last, options).edits
+    Ok(plan_of(tree, at(range.start)..=last, options, patience)?.edits)
 }
 
 /// The edits that end the lines of one statement in column 72 at the latest and change nothing else that is seen: the
@@ -122,9 +142,18 @@ pub fn wrap_statement(tree: &SyntaxTree, view: &StatementView) -> Vec<Edit> {
 }
 
 /// The text in the style. For every text of a dialect the result of a second call is that of the first.
-pub fn format_text(text: &str, dialect: Dialect, options: &FormatOptions) -> String {
-    let tree = SyntaxTree::parse(text, dialect);
-    applied(text, &format(&tree, options))
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn format_text(
+    text: &str,
+    dialect: Dialect,
+    options: &FormatOptions,
+    patience: Patience<'_>,
+) -> Result<String, Cancelled> {
+    let tree = SyntaxTree::parse_until(text, dialect, &|| patience.is_over()).ok_or(Cancelled)?;
+    Ok(applied(text, &format(&tree, options, patience)?))
 }
 
 /// A text with edits in order of the text applied to it.
@@ -141,9 +170,16 @@ pub fn applied(text: &str, edits: &[Edit]) -> String {
 }
 
 /// What formatting the whole program would do, with what it has to leave.
-pub fn plan(tree: &SyntaxTree, options: &FormatOptions) -> Plan {
-    plan_of(tree, 0..=tree.statement_count(), options)
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn plan(tree: &SyntaxTree, options: &FormatOptions, patience: Patience<'_>) -> Result<Plan, Cancelled> {
+    plan_of(tree, 0..=tree.statement_count(), options, patience)
 }
+
+/// What a statement that is laid out and read again counts in units of work.
+const WORK_OF_LAYOUT: usize = 4;
 
 /// A statement with its new lines, none for one that stays.
 struct Laid {
@@ -153,14 +189,20 @@ struct Laid {
     shared: bool,
 }
 
-fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: &FormatOptions) -> Plan {
+fn plan_of(
+    tree: &SyntaxTree,
+    wanted: std::ops::RangeInclusive<usize>,
+    options: &FormatOptions,
+    patience: Patience<'_>,
+) -> Result<Plan, Cancelled> {
     let layout = tree.layout();
     let mut plan = Plan::default();
     let not_wrapped = FormatOptions { wrap: None, ..*options };
     let last = tree.statement_count().saturating_sub(1);
     let mut inside_next = false;
     let mut all = Vec::with_capacity(tree.statement_count());
-    for (view, place) in tree.statements().zip(structure::places(tree)) {
+    for (view, place) in tree.statements().zip(structure::places(tree, patience)?) {
+        go_on(patience, WORK_OF_LAYOUT)?;
         let text = view.text();
         let ends_inside = !text.ends_with(['\n', '\r']) && view.index < last;
         let inside = std::mem::replace(&mut inside_next, ends_inside);
@@ -180,19 +222,20 @@ fn plan_of(tree: &SyntaxTree, wanted: std::ops::RangeInclusive<usize>, options: 
         });
         all.push(Laid { view, lines, shared });
     }
-    for (view, new) in written(&all, options, &layout) {
+    for (view, new) in written(&all, options, &layout, patience)? {
+        go_on(patience, 1)?;
         if wanted.contains(&view.index) {
             plan.edits.extend(edits::between(view.text(), &new, usize::from(view.start)));
         }
     }
-    if !reads_the_same(tree, &plan.edits) {
+    if !reads_the_same(tree, &plan.edits, patience)? {
         let statement = *wanted.start();
-        return Plan {
+        return Ok(Plan {
             edits: Vec::new(),
             kept: vec![Kept { statement, reason: KeptReason::SequenceFields }],
-        };
+        });
     }
-    plan
+    Ok(plan)
 }
 
 /// The lines of a statement; none if it is to stay as it is.
@@ -229,15 +272,17 @@ fn written<'a>(
     all: &'a [Laid],
     options: &FormatOptions,
     layout: &Layout,
-) -> Vec<(&'a StatementView, String)> {
+    patience: Patience<'_>,
+) -> Result<Vec<(&'a StatementView, String)>, Cancelled> {
     // A statement that stays divides its neighbours, as an empty line does; so does one that shares a line.
     let lines = all.iter().flat_map(|laid| {
         let none = laid.lines.is_empty().then_some(None);
         laid.lines.iter().map(|line| Some(line).filter(|_| !laid.shared)).chain(none)
     });
-    let mut columns = align::columns(lines, options.align_comments, layout).into_iter();
+    let mut columns = align::columns(lines, options.align_comments, layout, patience)?.into_iter();
     let mut texts = Vec::new();
     for laid in all {
+        go_on(patience, 1)?;
         if laid.lines.is_empty() {
             columns.next();
             continue;
@@ -249,14 +294,15 @@ fn written<'a>(
         }
         texts.push((&laid.view, text));
     }
-    texts
+    Ok(texts)
 }
 
 /// Whether the edited text has as many statements and the same columns as before.
-fn reads_the_same(tree: &SyntaxTree, edits: &[Edit]) -> bool {
+fn reads_the_same(tree: &SyntaxTree, edits: &[Edit], patience: Patience<'_>) -> Result<bool, Cancelled> {
     if edits.is_empty() {
-        return true;
+        return Ok(true);
     }
-    let new = SyntaxTree::parse(&applied(&tree.text(), edits), tree.dialect());
-    new.statement_count() == tree.statement_count() && new.sequence_field() == tree.sequence_field()
+    let text = applied(&tree.text(), edits);
+    let new = SyntaxTree::parse_until(&text, tree.dialect(), &|| patience.is_over()).ok_or(Cancelled)?;
+    Ok(new.statement_count() == tree.statement_count() && new.sequence_field() == tree.sequence_field())
 }

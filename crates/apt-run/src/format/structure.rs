@@ -1,5 +1,6 @@
 //! What stands where: how deep every statement is nested, and which ones the author wants left alone.
 
+use apt_geometry::patience::Patience;
 use apt_syntax::{
     SyntaxTree,
     grammar::ParsedStatement,
@@ -7,6 +8,8 @@ use apt_syntax::{
     tree::StatementView,
 };
 use smol_str::SmolStr;
+
+use crate::{Cancelled, go_on};
 
 /// The place of one statement.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -28,11 +31,16 @@ enum Open {
 
 /// The places of all statements. Only macros and loops that are closed count, so that a program that is being typed
 /// does not jump to and fro.
-pub(super) fn places(tree: &SyntaxTree) -> Vec<Place> {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub(super) fn places(tree: &SyntaxTree, patience: Patience<'_>) -> Result<Vec<Place>, Cancelled> {
     let mut survey =
         Survey { places: Vec::with_capacity(tree.statement_count()), open: Vec::new(), bodies: Vec::new() };
     let mut off = false;
     for view in tree.statements() {
+        go_on(patience, 1)?;
         let parsed = view.parsed();
         let mark = mark(&view, &parsed);
         // The marks themselves belong to what is left alone.
@@ -41,7 +49,7 @@ pub(super) fn places(tree: &SyntaxTree) -> Vec<Place> {
         survey.places.push(Place { depth: 0, off: here });
         survey.statement(view.index, &parsed);
     }
-    survey.nested()
+    Ok(survey.nested())
 }
 
 struct Survey {

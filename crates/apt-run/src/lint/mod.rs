@@ -17,7 +17,7 @@ mod tests;
 pub(crate) use path::side_word;
 pub(crate) use shadow::keep_shadowing;
 
-use apt_geometry::motion::DriveSide;
+use apt_geometry::{motion::DriveSide, patience::Patience};
 use apt_program::{
     Origin, Program,
     finding::{Finding, Severity},
@@ -26,7 +26,7 @@ use apt_syntax::{SyntaxTree, dialect::DialectName};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use crate::{diagnostic::Fix, fix::removal, settings::Units};
+use crate::{Cancelled, diagnostic::Fix, fix::removal, go_on, settings::Units};
 
 /// What is odd, with its evidence.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,16 +112,26 @@ pub struct Lint {
 /// over the records.
 ///
 /// `units` are those of the settings, in which the processor has its own tolerances.
-pub fn lint(tree: &SyntaxTree, program: &Program, units: Units) -> Vec<Lint> {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn lint(
+    tree: &SyntaxTree,
+    program: &Program,
+    units: Units,
+    patience: Patience<'_>,
+) -> Result<Vec<Lint>, Cancelled> {
     if tree.dialect().name == DialectName::Cl {
         // Programs write these files: their lines are of any length, their values are results, and a point has no
         // surface to hold a tolerance of.
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let mut texts = text::TextLints::new(tree);
     let mut values = values::Join::default();
     let mut depth = 0;
     for block in tree.blocks() {
+        go_on(patience, block.statement_count())?;
         let notes = notes::Notes::of(&block, depth);
         let sum = notes.values(&block, depth);
         texts.block(block.first_statement(), &notes.text);
@@ -130,8 +140,8 @@ pub fn lint(tree: &SyntaxTree, program: &Program, units: Units) -> Vec<Lint> {
     }
     let mut lints = texts.lints();
     lints.extend(effective_overwriting(tree, program, values.lints()));
-    lints.extend(path::lints(tree, program, units));
-    lints
+    lints.extend(path::lints(tree, program, units, patience)?);
+    Ok(lints)
 }
 
 /// The overwritten values of which nothing else is told: a name that cannot take the value keeps its meaning.

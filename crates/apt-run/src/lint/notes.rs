@@ -3,13 +3,14 @@
 
 use std::sync::{Arc, OnceLock};
 
+use apt_geometry::patience::Patience;
 use apt_syntax::{SyntaxTree, dialect::DialectName, tree::BlockView};
 
 use super::{
     text::{self, TextNote},
     values::{Stretch, Summary},
 };
-use crate::allow::ADDRESS;
+use crate::{Cancelled, allow::ADDRESS, go_on};
 
 /// What is known of a block.
 pub(crate) struct Notes {
@@ -64,17 +65,28 @@ impl Notes {
 }
 
 /// The blocks of a program whose comments may speak to this program.
-pub(crate) fn addressing_blocks(tree: &SyntaxTree) -> Vec<BlockView<'_>> {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub(crate) fn addressing_blocks<'a>(
+    tree: &'a SyntaxTree,
+    patience: Patience<'_>,
+) -> Result<Vec<BlockView<'a>>, Cancelled> {
     let is_lint_free = tree.dialect().name == DialectName::Cl;
     let mut depth = 0;
-    let addresses = |block: &BlockView<'_>| {
-        if is_lint_free {
+    let mut addressing = Vec::new();
+    for block in tree.blocks() {
+        go_on(patience, block.statement_count())?;
+        let addresses = if is_lint_free {
             // Nothing else is asked about these files, which are long: the notes would be made for this alone.
-            return block.text().contains(ADDRESS);
-        }
-        let notes = Notes::of(block, depth);
-        depth = notes.values(block, depth).depth();
-        notes.addresses
-    };
-    tree.blocks().filter(addresses).collect()
+            block.text().contains(ADDRESS)
+        } else {
+            let notes = Notes::of(&block, depth);
+            depth = notes.values(&block, depth).depth();
+            notes.addresses
+        };
+        addressing.extend(addresses.then_some(block));
+    }
+    Ok(addressing)
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use apt_geometry::{
     canonical::GeometryKind,
     motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
+    patience::Patience,
     regional::RegionalCommand,
 };
 use apt_program::{Origin, Program, Record, RecordKind, record::PostArgument};
@@ -17,31 +18,39 @@ use smol_str::SmolStr;
 
 use super::{Lint, LintKind};
 use crate::{
+    Cancelled,
     diagnostic::{Fix, statement_range},
     fix::{inserting, removal, rewriting, written},
+    go_on,
     settings::Units,
 };
 
 /// A tolerance above this part of the cutter's diameter leaves marks that the eye sees.
 const LOOSE_PART_OF_DIAMETER: f64 = 0.25;
 
-pub(super) fn lints(tree: &SyntaxTree, program: &Program, units: Units) -> Vec<Lint> {
+pub(super) fn lints(
+    tree: &SyntaxTree,
+    program: &Program,
+    units: Units,
+    patience: Patience<'_>,
+) -> Result<Vec<Lint>, Cancelled> {
     let mut walk = Walk::default();
     for record in program.records() {
+        go_on(patience, 1)?;
         walk.record(record);
     }
     walk.close_thickness();
     walk.feed_for_the_first_cut();
     let Walk { lints, effective, .. } = walk;
     let mut told = FxHashSet::default();
-    lints
+    let kept = lints
         .into_iter()
         .filter(|lint| lint.origin.source.is_none())
         // What has an effect the next time it is executed is needed.
         .filter(|lint| !needs_no_effect(&lint.kind) || !effective.contains(&place(&lint.origin)))
         .filter(|lint| told.insert((place(&lint.origin), std::mem::discriminant(&lint.kind))))
-        .map(|lint| with_fixes(tree, lint, units))
-        .collect()
+        .map(|lint| go_on(patience, 1).map(|()| with_fixes(tree, lint, units)));
+    kept.collect()
 }
 
 /// A statement part of the program.

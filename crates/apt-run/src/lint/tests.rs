@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use apt_geometry::patience::Patience;
+
 use crate::{
     diagnostic::{Diagnostic, absolute_range},
     document::{Document, Level},
@@ -448,7 +450,8 @@ fn a_macro_that_is_opened_far_above_hides_what_is_overwritten_below() {
     let plain = Document::new(&text("$$"), None, &settings);
     let lints = |document: &Document| {
         let program = document.program(&|| false).unwrap();
-        super::lint(document.tree(), &program, crate::settings::Units::Inch)
+        super::lint(document.tree(), &program, crate::settings::Units::Inch, Patience::default())
+            .unwrap()
             .into_iter()
             .map(|one| one.kind)
             .collect::<Vec<_>>()

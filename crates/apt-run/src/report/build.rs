@@ -6,7 +6,7 @@ use apt_cldata::{
     record::{ClKind, ClRecord, ClWord, Units},
     totals::{Totals, totals_where},
 };
-use apt_geometry::{canonical::Geometry, regional::LiftDirection};
+use apt_geometry::{canonical::Geometry, patience::Patience, regional::LiftDirection};
 use apt_program::{Program, Value as SymbolValue, record::Origin};
 use apt_sculptured::mill::{Encounter, Remedy};
 use apt_syntax::{SyntaxTree, TextRange};
@@ -18,8 +18,9 @@ use super::{
     RelatedReport, RemedyEntry, Report, SourceReport, TotalsEntry,
 };
 use crate::{
-    Cancel, Cancelled,
+    Cancelled,
     diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places, statement_range},
+    go_on,
     pipeline::{Motion, RunResult},
     position::LineIndex,
 };
@@ -83,15 +84,12 @@ impl<'a> Sources<'a> {
     }
 }
 
-/// Records that are put into a report between two questions whether to go on; each takes about a microsecond.
-const RECORDS_A_QUESTION: usize = 256;
-
 /// Builds the report.
 ///
 /// # Errors
 ///
-/// [`Cancelled`] when `cancel` said so before the end.
-pub fn report(input: &ReportInput<'_>, cancel: Cancel<'_>) -> Result<Report, Cancelled> {
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn report(input: &ReportInput<'_>, patience: Patience<'_>) -> Result<Report, Cancelled> {
     let lines = LineIndex::new(input.text);
     let statements = input.statements.as_ref();
     let wanted = |origin: &Origin| is_of(origin, statements);
@@ -100,11 +98,10 @@ pub fn report(input: &ReportInput<'_>, cancel: Cancel<'_>) -> Result<Report, Can
         Some(origin) => wanted(origin),
         None => statements.is_none_or(|range| range.contains(&record.isn)),
     };
-    let mut cl = Vec::new();
-    for (done, record) in input.result.records.iter().enumerate() {
-        if (done + 1) % RECORDS_A_QUESTION == 0 && cancel() {
-            return Err(Cancelled);
-        }
+    // A list that grows is copied as a whole, which nobody can interrupt.
+    let mut cl = Vec::with_capacity(if statements.is_none() { input.result.records.len() } else { 0 });
+    for record in &input.result.records {
+        go_on(patience, 1)?;
         if !wanted_record(record) {
             continue;
         }
@@ -114,27 +111,28 @@ pub fn report(input: &ReportInput<'_>, cancel: Cancel<'_>) -> Result<Report, Can
         };
         cl.push(cl_entry(record, source));
     }
+    let mut diagnostics = Vec::with_capacity(input.diagnostics.len());
+    for diagnostic in input.diagnostics {
+        go_on(patience, 1)?;
+        diagnostics.push(diagnostic_report(diagnostic, input.file, input.text, input.tree, &lines));
+    }
+    let mut motions = Vec::new();
+    for motion in input.result.motions.iter().filter(|motion| wanted(&motion.origin)) {
+        go_on(patience, 1)?;
+        motions.push(motion_entry(motion, input.tree, sources.of(&motion.origin)));
+    }
+    let totals = totals_where(&input.result.records, wanted_record, patience).ok_or(Cancelled)?;
     Ok(Report {
         program: input.file.to_owned(),
         ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
         dialect: input.tree.dialect().name.as_str().to_owned(),
-        diagnostics: input
-            .diagnostics
-            .iter()
-            .map(|diagnostic| diagnostic_report(diagnostic, input.file, input.text, input.tree, &lines))
-            .collect(),
-        symbols: symbols(input.program),
-        listing: listing(input.program, wanted),
+        diagnostics,
+        symbols: symbols(input.program, patience)?,
+        listing: listing(input.program, wanted, patience)?,
         cl,
-        motions: input
-            .result
-            .motions
-            .iter()
-            .filter(|motion| wanted(&motion.origin))
-            .map(|motion| motion_entry(motion, input.tree, sources.of(&motion.origin)))
-            .collect(),
+        motions,
         interference: interference(input.result, wanted),
-        totals: totals_entry(&totals_where(&input.result.records, wanted_record)),
+        totals: totals_entry(&totals),
     })
 }
 
@@ -176,10 +174,18 @@ fn interference_entry(isn: u32, encounter: &Encounter) -> InterferenceEntry {
 }
 
 /// What the wanted statements list.
-fn listing(program: &Program, wanted: impl Fn(&Origin) -> bool) -> Vec<ListingReport> {
+fn listing(
+    program: &Program,
+    wanted: impl Fn(&Origin) -> bool,
+    patience: Patience<'_>,
+) -> Result<Vec<ListingReport>, Cancelled> {
     let entries = program.listing().filter(|entry| wanted(&entry.origin));
     entries
-        .map(|entry| ListingReport { isn: entry.origin.place_in_program().0, lines: entry.lines() })
+        .map(|entry| {
+            let lines = entry.lines();
+            go_on(patience, 1 + lines.len())?;
+            Ok(ListingReport { isn: entry.origin.place_in_program().0, lines })
+        })
         .collect()
 }
 
@@ -235,16 +241,17 @@ fn clean(number: f64) -> f64 {
     number + 0.0
 }
 
-fn symbols(program: &Program) -> Map<String, Value> {
+fn symbols(program: &Program, patience: Patience<'_>) -> Result<Map<String, Value>, Cancelled> {
     let mut map = Map::new();
-    for (name, value) in program.symbols() {
+    for (name, value) in program.symbols_until(patience).ok_or(Cancelled)? {
+        go_on(patience, 1)?;
         let entry = match value {
             SymbolValue::Scalar(number) => json!({ "type": "SCALAR", "canonical": [clean_number(number)] }),
             SymbolValue::Geometry(geometry) => geometry_value(&geometry),
         };
         map.insert(name.to_string(), entry);
     }
-    map
+    Ok(map)
 }
 
 /// Type and canonical values as the oracle corpus shows them: a pattern has none, a ruled surface shows its parts.

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::length_of;
 use crate::dialect::SequenceFieldRule;
 use crate::grammar::{ParsedStatement, parse_statement};
-use crate::record::{Layout, SequenceEvidence, statement_boundaries};
+use crate::record::{LINES_BETWEEN_QUESTIONS, Layout, SequenceEvidence, boundaries_until};
 
 /// How many statements a new block has. An edit copies the text of its block, some kilobytes.
 const STATEMENTS_PER_BLOCK: usize = 128;
@@ -28,12 +28,23 @@ pub(super) struct Block {
 }
 
 /// Divides a text that begins at a statement into blocks.
-pub(super) fn split(text: &str, layout: &Layout) -> Vec<Arc<Block>> {
-    blocks_of(text, &statement_boundaries(text, layout).starts, layout)
+pub(super) fn split(text: &str, layout: &Layout, is_given_up: &dyn Fn() -> bool) -> Vec<Arc<Block>> {
+    let starts = boundaries_until(text, layout, is_given_up).starts;
+    blocks_until(text, &starts, layout, is_given_up)
 }
 
 /// Blocks of a text whose statements are known.
 pub(super) fn blocks_of(text: &str, starts: &[u32], layout: &Layout) -> Vec<Arc<Block>> {
+    blocks_until(text, starts, layout, &|| false)
+}
+
+/// The same up to the end, or to where `is_given_up`, which is asked once in so many statements, says so.
+fn blocks_until(
+    text: &str,
+    starts: &[u32],
+    layout: &Layout,
+    is_given_up: &dyn Fn() -> bool,
+) -> Vec<Arc<Block>> {
     let mut blocks = Vec::with_capacity(starts.len().div_ceil(STATEMENTS_PER_BLOCK));
     for (number, chunk) in starts.chunks(STATEMENTS_PER_BLOCK).enumerate() {
         let from = chunk.first().copied().unwrap_or(0);
@@ -51,6 +62,9 @@ pub(super) fn blocks_of(text: &str, starts: &[u32], layout: &Layout) -> Vec<Arc<
             kept: OnceLock::new(),
             derived: OnceLock::new(),
         }));
+        if blocks.len().is_multiple_of(LINES_BETWEEN_QUESTIONS / STATEMENTS_PER_BLOCK) && is_given_up() {
+            break;
+        }
     }
     blocks
 }

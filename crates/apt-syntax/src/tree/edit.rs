@@ -133,7 +133,7 @@ fn reread(tree: &SyntaxTree, region: &Region) -> (SyntaxTree, StatementChange) {
     before.iter().for_each(|block| text.push_str(block.text()));
     text.push_str(&region.text);
     after.iter().for_each(|block| text.push_str(block.text()));
-    let new = SyntaxTree::from_blocks(layout, block::split(&text, &layout));
+    let new = SyntaxTree::from_blocks(layout, block::split(&text, &layout, &|| false));
     let count = new.statement_count();
     let change =
         StatementChange { first: 0, removed: tree.statement_count(), inserted: count, scanned: count };

@@ -9,6 +9,7 @@ mod edit;
 mod green;
 mod view;
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use rowan::{TextRange, TextSize};
@@ -50,13 +51,29 @@ struct BlockStart {
 impl SyntaxTree {
     /// Parses a document: finds its statements; what they say is found out when it is asked.
     pub fn parse(text: &str, dialect: Dialect) -> SyntaxTree {
+        Self::read(text, dialect, &|| false)
+    }
+
+    /// The same; `None` when `cancel`, which is asked once in so many statements, said so before the end.
+    pub fn parse_until(text: &str, dialect: Dialect, cancel: &dyn Fn() -> bool) -> Option<SyntaxTree> {
+        let has_given_up = Cell::new(false);
+        let ask = || {
+            has_given_up.set(has_given_up.get() || cancel());
+            has_given_up.get()
+        };
+        let tree = Self::read(text, dialect, &ask);
+        (!has_given_up.get()).then_some(tree)
+    }
+
+    /// The document up to the end, or a part of it if it is given up.
+    fn read(text: &str, dialect: Dialect, is_given_up: &dyn Fn() -> bool) -> SyntaxTree {
         // Only this dialect rule needs a look at the whole text before statements can be found.
         let evidence = match dialect.sequence_field {
-            SequenceFieldRule::WhenPresent => SequenceEvidence::of(text),
+            SequenceFieldRule::WhenPresent => SequenceEvidence::until(text, is_given_up),
             SequenceFieldRule::Always | SequenceFieldRule::Never => SequenceEvidence::default(),
         };
         let layout = Layout { dialect, sequence_field: evidence.decides(dialect.sequence_field) };
-        SyntaxTree::from_blocks(layout, block::split(text, &layout))
+        SyntaxTree::from_blocks(layout, block::split(text, &layout, is_given_up))
     }
 
     fn from_blocks(layout: Layout, blocks: Vec<Arc<Block>>) -> SyntaxTree {

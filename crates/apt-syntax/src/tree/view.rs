@@ -46,10 +46,15 @@ impl<'a> BlockView<'a> {
         self.block.text()
     }
 
+    /// How many statements it has.
+    pub fn statement_count(&self) -> usize {
+        self.block.statement_count() as usize
+    }
+
     /// Its statements.
     pub fn statements(&self) -> impl Iterator<Item = StatementView> + use<'a> {
         let (tree, first) = (self.tree, self.first);
-        let end = first + self.block.statement_count() as usize;
+        let end = first + self.statement_count();
         (first..end).map(move |index| tree.statement(index))
     }
 

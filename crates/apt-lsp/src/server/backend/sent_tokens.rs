@@ -36,9 +36,10 @@ impl Backend {
         answer: impl FnOnce(String, &[lsp::SemanticToken]) -> T + Send + 'static,
     ) -> Result<Ticket> {
         let (id, tokens, packed) = self
-            .ask("semantic tokens", uri.clone(), |snapshot, _| {
+            .ask("semantic tokens", uri.clone(), |snapshot, control| {
                 let id = snapshot.revision.to_string();
-                let tokens = tokens::encode(&snapshot.index, &snapshot.document.tokens(None));
+                let tokens = snapshot.document.tokens(None, control)?;
+                let tokens = tokens::encode(&snapshot.index, &tokens, &control.pace())?;
                 let packed = packed(&answer(id.clone(), &tokens));
                 Ok((id, Arc::new(tokens), packed))
             })

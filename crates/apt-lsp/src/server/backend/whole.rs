@@ -26,11 +26,11 @@ impl Backend {
 
     pub(in crate::server) async fn symbols(&self, params: lsp::DocumentSymbolParams) -> Result<Ticket> {
         let (uri, nested) = (params.text_document.uri, self.features().nested_symbols);
-        let answer = self.ask("document symbols", uri, move |snapshot, _| {
-            let (index, outline) = (&snapshot.index, snapshot.document.outline());
+        let answer = self.ask("document symbols", uri, move |snapshot, control| {
+            let (index, outline) = (&snapshot.index, snapshot.document.outline(control)?);
             let mut packed = begun();
             if nested {
-                written::symbols(&mut packed, index, &outline);
+                written::symbols(&mut packed, index, &outline, &control.pace())?;
             } else {
                 written::value(&mut packed, &outgoing::flat_symbols(index, &snapshot.uri, outline));
             }
@@ -53,17 +53,22 @@ impl Backend {
     }
 
     pub(in crate::server) async fn folds(&self, params: lsp::FoldingRangeParams) -> Result<Ticket> {
-        self.ask_whole("folding ranges", params.text_document.uri, |snapshot, _| {
-            let folds = snapshot.document.folds();
-            Ok(folds.iter().filter_map(|fold| outgoing::fold(&snapshot.index, fold)).collect::<Vec<_>>())
+        self.ask_whole("folding ranges", params.text_document.uri, |snapshot, control| {
+            let folds = snapshot.document.folds(control)?;
+            let (pace, mut told) = (control.pace(), Vec::new());
+            for fold in &folds {
+                pace.go_on(1)?;
+                told.extend(outgoing::fold(&snapshot.index, fold));
+            }
+            Ok(told)
         })
         .await
     }
 
     pub(in crate::server) async fn lenses(&self, params: lsp::CodeLensParams) -> Result<Ticket> {
-        self.ask_whole("code lenses", params.text_document.uri, |snapshot, _| {
+        self.ask_whole("code lenses", params.text_document.uri, |snapshot, control| {
             let program = snapshot.program();
-            let mut lenses = snapshot.document.lenses();
+            let mut lenses = snapshot.document.lenses(control)?;
             if program.uri != snapshot.uri {
                 // An included file runs with its program only.
                 lenses.retain(|lens| lens.run.is_none());
@@ -76,8 +81,8 @@ impl Backend {
 
     pub(in crate::server) async fn format(&self, params: lsp::DocumentFormattingParams) -> Result<Ticket> {
         // The style is that of the project, not of the editor: columns have a meaning in part programs.
-        self.ask_whole("formatting", params.text_document.uri, |snapshot, _| {
-            Ok(super::formatting_edits(snapshot, None))
+        self.ask_whole("formatting", params.text_document.uri, |snapshot, control| {
+            super::formatting_edits(snapshot, None, control)
         })
         .await
     }

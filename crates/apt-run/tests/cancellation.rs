@@ -1,0 +1,85 @@
+//! Who gives up what is told of a long program is heard soon: questions are counted, not timed.
+
+#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
+use std::{
+    fmt::Debug,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+
+use apt_run::{
+    Cancel, Cancelled,
+    document::{Document, Level},
+    settings::Settings,
+};
+
+/// Statements, records, names or findings that are told between two questions; one takes some microseconds.
+const TOLD_BETWEEN_QUESTIONS: usize = 512;
+
+fn document(text: &str) -> Document {
+    let settings = Settings { dialect: Some("free".to_owned()), ..Settings::default() };
+    Document::new(text, Some("sample.apt".to_owned()), &Arc::new(settings))
+}
+
+/// How often a work asks, which must be once in so much of what it tells. It is given up at the first question, in the
+/// middle and at the last, never asks again after the answer, and then gives what it gave before.
+fn asks_often<T: PartialEq + Debug>(
+    told: usize,
+    what: &str,
+    work: impl Fn(Cancel<'_>) -> Result<T, Cancelled>,
+) {
+    let asked = AtomicUsize::new(0);
+    let until = |last: usize| {
+        asked.store(0, Ordering::Relaxed);
+        work(&|| asked.fetch_add(1, Ordering::Relaxed) + 1 >= last)
+    };
+    let whole = until(usize::MAX).unwrap();
+    let all = asked.load(Ordering::Relaxed);
+    assert!(all * TOLD_BETWEEN_QUESTIONS >= told, "{all} questions for {told} of {what}");
+    for last in [1, all / 2, all] {
+        assert_eq!(until(last).err(), Some(Cancelled), "{what}");
+        assert_eq!(asked.load(Ordering::Relaxed), last, "{what} asks again after the answer");
+    }
+    assert!(until(usize::MAX).unwrap() == whole, "{what} after it was given up");
+}
+
+#[test]
+fn what_is_told_of_a_long_program_asks_often_and_what_is_told_of_a_short_one_never() {
+    let points = 1_000;
+    let text: String =
+        (0..points).map(|number| format!("P{number}=POINT/{number},.5\nA{number}=B{number}\n")).collect();
+    let long = document(&text);
+    long.run(&|| false, &mut |_, _| {}).unwrap();
+    let findings = |cancel: Cancel<'_>| long.diagnostics(Level::Section1, cancel, &mut |_, _| {});
+    let found = findings(&|| false).unwrap().len();
+    assert!(found >= points, "{found}: nobody knows the other names");
+    asks_often(2 * points + found, "findings", findings);
+    let gravest = |cancel: Cancel<'_>| long.worst_diagnostics(Level::Section1, 10, cancel, &mut |_, _| {});
+    asks_often(2 * points, "the gravest findings", gravest);
+    let report = |cancel: Cancel<'_>| {
+        let report = long.report(cancel, &mut |_, _| {}, None)?;
+        Ok(serde_json::to_string(&report).unwrap())
+    };
+    asks_often(3 * points + 2 * found, "a report of statements, names and findings", report);
+
+    let short = document("P1=POINT/1,2\nGOTO/P1\nFINI\n");
+    short.run(&|| false, &mut |_, _| {}).unwrap();
+    assert!(short.report(&|| true, &mut |_, _| {}, None).is_ok(), "it is known already");
+}
+
+#[test]
+fn a_report_asks_while_it_lists_and_sums_up() {
+    let records = 6_000;
+    let gotos: String = (0..records).map(|number| format!("GOTO/{number},0,0\n")).collect();
+    let path = document(&gotos);
+    path.run(&|| false, &mut |_, _| {}).unwrap();
+    let report = |cancel: Cancel<'_>| {
+        let report = path.report(cancel, &mut |_, _| {}, None)?;
+        Ok(serde_json::to_string(&report).unwrap())
+    };
+    // Statements, the records of Section 1 for the lints of the path, and the records as entries and as a sum.
+    asks_often(4 * records, "a report of a path", report);
+}
