@@ -1,6 +1,9 @@
 //! Byte offsets to the zero-based line and UTF-16 character of the fixed interfaces.
 
+use apt_geometry::patience::Patience;
 use serde::Serialize;
+
+use crate::Cancelled;
 
 /// A zero-based line and a UTF-16 offset in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -20,6 +23,9 @@ pub struct Range {
     pub end: Position,
 }
 
+/// Bytes that are looked through for ends of lines as one unit of work, in some microseconds.
+const BYTES_A_UNIT: usize = 1024;
+
 /// The starts of the lines of a text.
 #[derive(Debug, Clone)]
 pub struct LineIndex {
@@ -29,12 +35,33 @@ pub struct LineIndex {
 impl LineIndex {
     /// Finds the lines of a text; LF, CRLF and a lone CR end a line, as in the language server protocol.
     pub fn new(text: &str) -> Self {
+        Self::found(text, Patience::default())
+    }
+
+    /// The same.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub fn until(text: &str, patience: Patience<'_>) -> Result<Self, Cancelled> {
+        let index = Self::found(text, patience);
+        if patience.was_over() { Err(Cancelled) } else { Ok(index) }
+    }
+
+    /// The lines up to the end, or to where who waits gives up.
+    fn found(text: &str, patience: Patience<'_>) -> Self {
         let bytes = text.as_bytes();
-        let ends = bytes
-            .iter()
-            .enumerate()
-            .filter(|&(at, &byte)| byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n')));
-        let starts = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
+        let mut starts = vec![0];
+        for (number, piece) in bytes.chunks(BYTES_A_UNIT).enumerate() {
+            if patience.ends_after(1) {
+                break;
+            }
+            let first = number * BYTES_A_UNIT;
+            let ends = (first..)
+                .zip(piece)
+                .filter(|&(at, &byte)| byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n')));
+            starts.extend(ends.map(|(at, _)| at + 1));
+        }
         Self { starts }
     }
 

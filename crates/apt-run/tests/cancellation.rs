@@ -11,8 +11,9 @@ use std::{
 };
 
 use apt_run::{
-    Cancel, Cancelled,
+    Cancel, Cancelled, Waiting,
     document::{Document, Level},
+    position::LineIndex,
     settings::Settings,
 };
 
@@ -68,6 +69,21 @@ fn what_is_told_of_a_long_program_asks_often_and_what_is_told_of_a_short_one_nev
     let short = document("P1=POINT/1,2\nGOTO/P1\nFINI\n");
     short.run(&|| false, &mut |_, _| {}).unwrap();
     assert!(short.report(&|| true, &mut |_, _| {}, None).is_ok(), "it is known already");
+}
+
+#[test]
+fn the_lines_of_a_long_text_are_found_in_pieces() {
+    let text = "GOTO/1,2,3\r\nGOTO/4,5,6\rGOTO/7,8,9\n".repeat(20_000);
+    let asked = AtomicUsize::new(0);
+    let until = |last: usize| {
+        let ask = || asked.fetch_add(1, Ordering::Relaxed) + 1 >= last;
+        let waiting = Waiting::until(&ask);
+        LineIndex::until(&text, waiting.patience()).map(|lines| lines.line_of(text.len()))
+    };
+    assert_eq!(until(usize::MAX), Ok(60_000));
+    assert!(asked.swap(0, Ordering::Relaxed) >= 2, "it is asked in the middle");
+    assert_eq!(until(1), Err(Cancelled));
+    assert_eq!(asked.load(Ordering::Relaxed), 1, "asked again after the answer");
 }
 
 #[test]

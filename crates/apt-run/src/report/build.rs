@@ -90,7 +90,7 @@ impl<'a> Sources<'a> {
 ///
 /// [`Cancelled`] when who waits has given up before the end.
 pub fn report(input: &ReportInput<'_>, patience: Patience<'_>) -> Result<Report, Cancelled> {
-    let lines = LineIndex::new(input.text);
+    let lines = LineIndex::until(input.text, patience)?;
     let statements = input.statements.as_ref();
     let wanted = |origin: &Origin| is_of(origin, statements);
     let mut sources = Sources::new(input.tree, &lines);
