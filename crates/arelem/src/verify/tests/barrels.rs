@@ -18,12 +18,14 @@ fn outline(cutter: &Cutter, count: u32) -> Vec<Meridian> {
     let (sb, cb) = cutter.beta.sin_cos();
     let knee = [cutter.radius(), cutter.knee_height()];
     let mut places = vec![[0.0; 2], [cutter.top_radius(), cutter.height]];
-    for k in 0..=count {
+    let (e, f, r) = (cutter.corner_offset, cutter.corner_height, cutter.corner_radius);
+    // Where the circle leaves the lower line: all that there is of an arc between two samples.
+    let along = e * ca + f * sa + (r * r - (f * ca - e * sa).powi(2)).max(0.0).sqrt();
+    let samples = (0..=count).map(|k| {
         let (s, c) = (FRAC_PI_2 * f64::from(k) / f64::from(count)).sin_cos();
-        let p = [
-            cutter.corner_offset + cutter.corner_radius * s,
-            cutter.corner_height - cutter.corner_radius * c,
-        ];
+        [e + r * s, f - r * c]
+    });
+    for p in std::iter::once([along * ca, along * sa]).chain(samples) {
         let below = sa * p[0] - ca * p[1];
         let beyond = cb * (p[0] - knee[0]) - sb * (p[1] - knee[1]);
         if p[0] >= 0.0 && below <= 1e-9 && beyond <= 1e-9 {
