@@ -130,7 +130,7 @@ fn edited(
     let (levels, indexes) = (vec![Level::base()], BTreeSet::new());
     let points = items
         .iter()
-        .map(|item| if let EditItem::Record(record) = item { points_of(record) } else { 0 })
+        .map(|item| if let EditItem::Record(record) = item { record.position_count() as u64 } else { 0 })
         .sum();
     let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits, patience };
     // Most programs copy nothing: then all items come there.
@@ -370,7 +370,7 @@ impl Editor<'_> {
         if self.made.saturating_add(more) > MAXIMUM_RECORDS {
             return self.error(isn, source, EditErrorKind::TooManyRecords { number, limit: MAXIMUM_RECORDS });
         }
-        let copied = original.iter().map(|held| points_of(&held.record)).sum::<u64>();
+        let copied = original.iter().map(|held| held.record.position_count() as u64).sum::<u64>();
         let points = self.points.saturating_add(copied.saturating_mul(u64::from(count)));
         if points > self.limits.points {
             let limit = self.limits.points;
@@ -436,14 +436,6 @@ impl Editor<'_> {
         let patience = self.patience;
         let record = |held: Held| (!patience.ends_after(1)).then_some(held.record);
         (records.into_iter().map_while(record).collect(), self.errors)
-    }
-}
-
-/// How many positions a record holds.
-fn points_of(record: &ClRecord) -> u64 {
-    match &record.kind {
-        ClKind::Motion { points, .. } => points.len() as u64,
-        _ => 0,
     }
 }
 

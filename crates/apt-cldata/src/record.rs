@@ -15,6 +15,13 @@ pub struct ClRecord {
     pub kind: ClKind,
 }
 
+impl ClRecord {
+    /// How many positions it holds: those of a motion, none of anything else.
+    pub fn position_count(&self) -> usize {
+        if let ClKind::Motion { points, .. } = &self.kind { points.len() } else { 0 }
+    }
+}
+
 /// What a CL record says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ClKind {

@@ -198,11 +198,7 @@ fn positions(result: &RunResult, patience: Patience<'_>) -> Result<usize, Cancel
     let mut positions = 0;
     for records in result.records.chunks(POSITIONS_A_UNIT) {
         go_on(patience, 1)?;
-        let motions = records.iter().filter_map(|record| match &record.kind {
-            ClKind::Motion { points, .. } => Some(points.len()),
-            _ => None,
-        });
-        positions += motions.sum::<usize>();
+        positions += records.iter().map(ClRecord::position_count).sum::<usize>();
     }
     Ok(positions)
 }

@@ -80,8 +80,7 @@ fn written(
     let mut writer = Writer { codes, bytes: Vec::new(), serial: 0, multax: false };
     let mut statement = None;
     for record in records {
-        let positions = if let ClKind::Motion { points, .. } = &record.kind { points.len() } else { 0 };
-        if patience.ends_after(u32::try_from(1 + positions).unwrap_or(u32::MAX)) {
+        if patience.ends_after(u32::try_from(1 + record.position_count()).unwrap_or(u32::MAX)) {
             break;
         }
         let this = (record.isn, record.source);

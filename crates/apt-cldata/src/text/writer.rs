@@ -48,8 +48,7 @@ fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     let mut lines = Vec::with_capacity(records.len());
     let (mut line, mut counted) = (0, 0);
     for record in records {
-        let positions = if let ClKind::Motion { points, .. } = &record.kind { points.len() } else { 0 };
-        if patience.ends_after(u32::try_from(1 + positions).unwrap_or(u32::MAX)) {
+        if patience.ends_after(u32::try_from(1 + record.position_count()).unwrap_or(u32::MAX)) {
             break;
         }
         line += writer.sheet.text[counted..].matches('\n').count();

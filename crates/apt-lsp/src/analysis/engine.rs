@@ -525,8 +525,8 @@ fn scene_json(mut scene: Scene, pace: &Pace<'_>) -> Result<Value, Refusal> {
 
 /// An object with lists in the places of those that were taken out.
 fn with_lists<const N: usize>(mut object: Value, lists: [(&str, Value); N]) -> Value {
-    for (key, list) in lists {
-        object[key] = list;
+    if let Some(fields) = object.as_object_mut() {
+        fields.extend(lists.map(|(key, list)| (key.to_owned(), list)));
     }
     object
 }
