@@ -11,6 +11,7 @@ pub mod definition;
 pub mod motion;
 pub mod parametric;
 pub mod patience;
+pub mod pieces;
 pub mod regional;
 pub mod surface;
 

@@ -41,6 +41,18 @@ impl<'a> Waiting<'a> {
     }
 }
 
+/// Gives back, on a thread of its own, something of so many parts that nobody needs any more, so that nobody waits until
+/// all its memory is free. Little is given back at once, and so is all where no thread can be had.
+pub fn put_away<T: Send + 'static>(thing: T, parts: usize) {
+    if parts >= PARTS_FOR_A_THREAD {
+        // Where it does not start, what it was to do is dropped, and the thing with it.
+        drop(std::thread::Builder::new().name("put away".to_owned()).spawn(move || drop(thing)));
+    }
+}
+
+/// Parts that are given back in about as long as a thread takes to start.
+const PARTS_FOR_A_THREAD: usize = 1024;
+
 /// How long a search may go on; without end if nobody waits.
 #[derive(Clone, Copy, Default)]
 pub struct Patience<'a>(Option<&'a Waiting<'a>>);
@@ -55,6 +67,12 @@ impl Patience<'_> {
             return waiting.has_given_up();
         }
         waiting.is_over()
+    }
+
+    /// Counts things that are looked at one after the other, of which so many are done, where `a_unit` of them are one unit
+    /// of work; whether the search is to be given up.
+    pub fn ends_among(&self, done: usize, a_unit: usize) -> bool {
+        self.ends_after(u32::from(done % a_unit == a_unit - 1))
     }
 
     /// Asks; whether the search is to be given up.
@@ -103,5 +121,26 @@ mod tests {
         assert_eq!(asked.get(), 3);
         assert_eq!(done / WORK_BETWEEN_QUESTIONS, 2, "{done}");
         assert!(!Patience::default().ends_after(u32::MAX));
+    }
+
+    #[test]
+    fn what_nobody_needs_is_given_back_much_of_it_elsewhere() {
+        use std::{
+            sync::mpsc::{Sender, channel},
+            thread::{ThreadId, current},
+        };
+
+        struct Told(Sender<ThreadId>);
+        impl Drop for Told {
+            fn drop(&mut self) {
+                let _ = self.0.send(current().id());
+            }
+        }
+
+        let (tell, told) = channel();
+        put_away(Told(tell.clone()), 1);
+        assert_eq!(told.recv(), Ok(current().id()));
+        put_away(Told(tell), PARTS_FOR_A_THREAD);
+        assert!(told.recv().is_ok_and(|thread| thread != current().id()));
     }
 }

@@ -1,0 +1,220 @@
+//! Long lists. One that grows as a whole is copied as a whole now and then, and one that is put in order as a whole takes its time, which
+//! nobody can interrupt.
+
+use std::cmp::Ordering;
+
+use crate::patience::Patience;
+
+/// Things of a piece: such of hundred bytes are copied in some ten microseconds.
+const PIECE: usize = 4096;
+
+/// Things that are counted as one unit of work where they are copied.
+const THINGS_A_UNIT: usize = 16;
+
+/// Things that are put in order without a question, in some ten microseconds.
+const RUN: usize = 256;
+
+/// A list in an order, found in pieces that are put in order and then merged, between which is asked; things that are alike stay in
+/// the order that they have. As far as it is found where who waits gives up before the end.
+pub fn sorted<T>(list: Vec<T>, order: impl Fn(&T, &T) -> Ordering, patience: Patience<'_>) -> Vec<T> {
+    let mut runs = Vec::new();
+    let mut list = list.into_iter();
+    loop {
+        let mut run: Vec<T> = list.by_ref().take(RUN).collect();
+        if run.is_empty() || patience.ends_after(run.len() as u32) {
+            break;
+        }
+        run.sort_by(&order);
+        runs.push(run);
+    }
+    while runs.len() > 1 {
+        let mut shorter = runs.into_iter();
+        let mut longer = Vec::new();
+        while let Some(first) = shorter.next() {
+            longer.push(match shorter.next() {
+                Some(second) => merged(first, second, &order, patience),
+                None => first,
+            });
+        }
+        runs = longer;
+    }
+    runs.pop().unwrap_or_default()
+}
+
+/// Two lists in an order as one.
+fn merged<T>(
+    first: Vec<T>,
+    second: Vec<T>,
+    order: impl Fn(&T, &T) -> Ordering,
+    patience: Patience<'_>,
+) -> Vec<T> {
+    let mut all = Vec::with_capacity(first.len() + second.len());
+    let (mut first, mut second) = (first.into_iter().peekable(), second.into_iter().peekable());
+    while !patience.ends_among(all.len(), THINGS_A_UNIT) {
+        let next = match (first.peek(), second.peek()) {
+            (Some(one), Some(other)) if order(one, other).is_gt() => second.next(),
+            (Some(_), _) => first.next(),
+            (None, _) => second.next(),
+        };
+        let Some(next) = next else { break };
+        all.push(next);
+    }
+    all
+}
+
+/// A list in pieces, none of which is ever copied to make room.
+#[derive(Debug, Clone)]
+pub struct Pieces<T> {
+    full: Vec<Vec<T>>,
+    last: Vec<T>,
+}
+
+impl<T> Default for Pieces<T> {
+    fn default() -> Self {
+        Self { full: Vec::new(), last: Vec::new() }
+    }
+}
+
+impl<T> Pieces<T> {
+    /// Puts a thing behind the others.
+    pub fn push(&mut self, thing: T) {
+        if self.last.len() == PIECE {
+            self.full.push(std::mem::replace(&mut self.last, Vec::with_capacity(PIECE)));
+        }
+        self.last.push(thing);
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.full.len() * PIECE + self.last.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.last.is_empty()
+    }
+
+    /// One of them, counted from zero.
+    pub fn get(&self, index: usize) -> Option<&T> {
+        match index.checked_sub(self.full.len() * PIECE) {
+            Some(in_last) => self.last.get(in_last),
+            None => self.full.get(index / PIECE)?.get(index % PIECE),
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn get_mut(&mut self, index: usize) -> Option<&mut T> {
+        match index.checked_sub(self.full.len() * PIECE) {
+            Some(in_last) => self.last.get_mut(in_last),
+            None => self.full.get_mut(index / PIECE)?.get_mut(index % PIECE),
+        }
+    }
+
+    /// All of them in order.
+    pub fn iter(&self) -> impl Iterator<Item = &T> {
+        self.full.iter().flatten().chain(&self.last)
+    }
+
+    /// The last one.
+    pub fn last(&self) -> Option<&T> {
+        self.last.last()
+    }
+
+    /// The same, to be changed.
+    pub fn last_mut(&mut self) -> Option<&mut T> {
+        self.last.last_mut()
+    }
+
+    /// All as one list; as far as they are put together where who waits gives up before the end.
+    pub fn joined(self, patience: Patience<'_>) -> Vec<T> {
+        if self.full.is_empty() {
+            return self.last;
+        }
+        let mut all = Vec::with_capacity(self.len());
+        for piece in self.full.into_iter().chain([self.last]) {
+            if patience.ends_after((PIECE / THINGS_A_UNIT) as u32) {
+                break;
+            }
+            all.extend(piece);
+        }
+        all
+    }
+}
+
+impl<T> IntoIterator for Pieces<T> {
+    type Item = T;
+    type IntoIter = std::iter::Flatten<std::vec::IntoIter<Vec<T>>>;
+
+    /// All of them in order; a piece is given back when it has been gone through.
+    fn into_iter(self) -> Self::IntoIter {
+        let mut pieces = self.full;
+        pieces.push(self.last);
+        pieces.into_iter().flatten()
+    }
+}
+
+impl<T> FromIterator<T> for Pieces<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(things: I) -> Self {
+        let mut pieces = Self::default();
+        pieces.extend(things);
+        pieces
+    }
+}
+
+impl<T> Extend<T> for Pieces<T> {
+    fn extend<I: IntoIterator<Item = T>>(&mut self, things: I) {
+        things.into_iter().for_each(|thing| self.push(thing));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+    use crate::patience::Waiting;
+
+    #[test]
+    fn pieces_are_one_list_and_are_put_together_with_questions() {
+        for count in [0, 1, PIECE, PIECE + 1, 3 * PIECE + 7] {
+            let mut pieces = Pieces::default();
+            pieces.extend(0..count);
+            assert_eq!((pieces.len(), pieces.is_empty()), (count, count == 0));
+            assert_eq!(pieces.last().copied(), count.checked_sub(1));
+            for index in [0, PIECE - 1, PIECE, count.saturating_sub(1)] {
+                let there = (index < count).then_some(index);
+                assert_eq!(pieces.get_mut(index).copied(), there, "{index} of {count}");
+            }
+            assert!(pieces.get(count).is_none() && pieces.get_mut(count).is_none());
+            assert!(pieces.iter().copied().eq(0..count) && pieces.clone().into_iter().eq(0..count));
+            assert_eq!(pieces.joined(Patience::default()), (0..count).collect::<Vec<_>>());
+        }
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            asked.get() == 2
+        };
+        let waiting = Waiting::until(&ask);
+        let mut pieces = Pieces::default();
+        pieces.extend(0..3 * PIECE);
+        assert_eq!(pieces.joined(waiting.patience()).len(), PIECE);
+        assert_eq!(asked.get(), 2);
+    }
+
+    #[test]
+    fn a_list_is_put_in_order_with_questions_and_what_is_alike_keeps_its_order() {
+        let list: Vec<(usize, usize)> = (0..10 * RUN + 7).map(|at| (at * 7_919 % 1_000, at)).collect();
+        let order = |one: &(usize, usize), other: &(usize, usize)| one.0.cmp(&other.0);
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let waiting = Waiting::until(&ask);
+        let mut known = list.clone();
+        known.sort_by(order);
+        assert_eq!(sorted(list, order, waiting.patience()), known);
+        assert!(asked.get() >= 10, "{}", asked.get());
+        assert_eq!(sorted(Vec::<usize>::new(), Ord::cmp, Patience::default()), []);
+    }
+}
