@@ -70,10 +70,10 @@ fn ask_everything(text: &str, dialect: &str, offset: usize) {
         analysis.tape("linuxcnc-mill3", cancel, &mut |_, _| {}).map_err(|_| apt_ide::Cancelled)
     });
     assert!(!tape.unwrap().tape.text().contains("NaN"));
-    analysis.completions(offset);
-    analysis.occurrences(offset);
-    analysis.definitions_at(offset);
-    let _ = analysis.rename(offset, "X9");
+    analysis.completions(offset, &|| false).unwrap();
+    analysis.occurrences(offset, &|| false).unwrap();
+    analysis.definitions_at(offset, &|| false).unwrap();
+    let _ = analysis.rename(offset, "X9", &|| false);
     for fold in analysis.folds(&|| false).unwrap() {
         assert!(fold.range.start <= fold.range.end && fold.range.end <= text.len(), "{fold:?}");
     }

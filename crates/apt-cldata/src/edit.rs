@@ -11,6 +11,7 @@ use apt_geometry::{
     canonical::Matrix,
     copy::CopyStep,
     patience::{Patience, Waiting},
+    pieces::Pieces,
 };
 
 use crate::{
@@ -133,8 +134,6 @@ fn edited(
         .map(|item| if let EditItem::Record(record) = item { record.position_count() as u64 } else { 0 })
         .sum();
     let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits, patience };
-    // Most programs copy nothing: then all items come there.
-    editor.levels.iter_mut().for_each(|base| base.held.reserve(items.len()));
     for (at, item) in items.into_iter().enumerate() {
         if patience.ends_after(1) {
             break;
@@ -223,7 +222,7 @@ struct Level {
     /// Index number; none for the program.
     number: Option<i64>,
     /// What has been met in it.
-    held: Vec<Held>,
+    held: Pieces<Held>,
     /// Where INDEX/n,NOMORE stood, as a length of `held`.
     end: Option<usize>,
     /// The TRACUT given inside: none, NOMORE, or a matrix.
@@ -232,11 +231,11 @@ struct Level {
 
 impl Level {
     fn base() -> Self {
-        Level { number: None, held: Vec::new(), end: None, transform: Some(None) }
+        Level { number: None, held: Pieces::default(), end: None, transform: Some(None) }
     }
 
     fn index(number: i64) -> Self {
-        Level { number: Some(number), held: Vec::new(), end: None, transform: None }
+        Level { number: Some(number), held: Pieces::default(), end: None, transform: None }
     }
 }
 
@@ -362,7 +361,9 @@ impl Editor<'_> {
         let matrix = step.matrix();
         let Some(level) = self.levels.last() else { return };
         let range = level.end.unwrap_or(level.held.len());
-        let original: Vec<Held> = level.held[..range].to_vec();
+        let patience = self.patience;
+        let original: Vec<Held> =
+            level.held.iter().take(range).take_while(|_| !patience.ends_after(1)).cloned().collect();
         if count == 0 {
             return self.error(isn, source, EditErrorKind::ZeroCount { number });
         }
@@ -402,7 +403,7 @@ impl Editor<'_> {
                 }
             }
             if let Some(level) = self.levels.last_mut() {
-                level.held.append(&mut copies);
+                level.held.extend(copies);
             }
         }
     }
@@ -432,10 +433,15 @@ impl Editor<'_> {
         while self.levels.len() > 1 {
             self.close();
         }
-        let records = self.levels.pop().map(|level| level.held).unwrap_or_default();
-        let patience = self.patience;
-        let record = |held: Held| (!patience.ends_after(1)).then_some(held.record);
-        (records.into_iter().map_while(record).collect(), self.errors)
+        let held = self.levels.pop().map(|level| level.held).unwrap_or_default();
+        let mut records = Vec::with_capacity(held.len());
+        for held in held {
+            if self.patience.ends_after(1) {
+                break;
+            }
+            records.push(held.record);
+        }
+        (records, self.errors)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Cutter-location records (CLTAPE, ISO 3592), independent of the dialect they are written in.
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -18,8 +18,29 @@ pub struct ClRecord {
 impl ClRecord {
     /// How many positions it holds: those of a motion, none of anything else.
     pub fn position_count(&self) -> usize {
-        if let ClKind::Motion { points, .. } = &self.kind { points.len() } else { 0 }
+        self.kind.position_count()
     }
+}
+
+impl ClKind {
+    /// How many positions it says: those of a motion, none of anything else.
+    pub fn position_count(&self) -> usize {
+        if let Self::Motion { points, .. } = self { points.len() } else { 0 }
+    }
+}
+
+/// Whether who waits gives up before a record with so many positions.
+pub(crate) fn ends_before(positions: usize, patience: Patience<'_>) -> bool {
+    patience.ends_after(u32::try_from(1 + positions).unwrap_or(u32::MAX))
+}
+
+/// Positions or records that are counted as one unit of work where one is looked at in some nanoseconds.
+pub const POSITIONS_A_UNIT: usize = 16;
+
+/// How many positions records hold; fewer where who waits gives up before the end.
+pub fn positions(records: &[ClRecord], patience: Patience<'_>) -> usize {
+    let pieces = records.chunks(POSITIONS_A_UNIT).take_while(|_| !patience.ends_after(1));
+    pieces.flatten().map(ClRecord::position_count).sum()
 }
 
 /// What a CL record says.

@@ -2,7 +2,9 @@
 
 use std::{ops::Range, path::Path, sync::Arc};
 
+use apt_geometry::patience::Waiting;
 use apt_program::SourceFile;
+use apt_run::go_on;
 use apt_syntax::{
     TextRange,
     statement::Body,
@@ -11,7 +13,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use crate::{
-    Analysis, absolute,
+    Analysis, Cancel, Cancelled, absolute,
     files::ProgramFile,
     navigation::{Spot, statement_at},
     regions::{Region, RegionKind},
@@ -53,24 +55,43 @@ struct Found {
 
 impl Analysis {
     /// The macro that is named at a place, or the program at its PARTNO.
-    pub fn routine_at(&self, spot: Spot<'_>) -> Option<Routine> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn routine_at(&self, spot: Spot<'_>, cancel: Cancel<'_>) -> Result<Option<Routine>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let files = self.with_files(waiting.patience())?;
         if let Some(at) = self.name_at_spot(spot).filter(|at| !at.label)
             && let Some(found) = self.macro_named(&at.name)
         {
-            return Some(found);
+            return Ok(Some(found));
         }
-        let file = self.files().iter().find(|file| file.is(spot.file))?;
-        let (view, _) = statement_at(&file.tree, spot.offset)?;
+        let file = files.iter().find(|file| file.is(spot.file));
         let is_part = |body: &Body| matches!(body, Body::Text { word, .. } if word.word.spelling == "PARTNO");
-        view.parsed().statement.parts.iter().any(|part| is_part(&part.body)).then(|| whole(file))
+        Ok(file
+            .filter(|file| {
+                let at = statement_at(&file.tree, spot.offset);
+                at.is_some_and(|(view, _)| {
+                    view.parsed().statement.parts.iter().any(|part| is_part(&part.body))
+                })
+            })
+            .map(whole))
     }
 
     /// Who calls a macro, in order of the files.
-    pub fn callers(&self, name: &str) -> Vec<Calls> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn callers(&self, name: &str, cancel: Cancel<'_>) -> Result<Vec<Calls>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
         let mut callers: Vec<Calls> = Vec::new();
-        for file in self.files() {
-            for call in calls(&file.tree, statements_with(&file.tree, name)).filter(|call| call.name == name)
-            {
+        for file in self.with_files(patience)? {
+            let statements = statements_with(&file.tree, name, patience)?;
+            for call in calls(&file.tree, statements).filter(|call| call.name == name) {
+                go_on(patience, 1)?;
                 let around =
                     |region: &&Region| region.kind == RegionKind::Macro && region.contains(call.statement);
                 let routine = match file.regions.iter().rfind(around) {
@@ -86,25 +107,37 @@ impl Analysis {
                 }
             }
         }
-        callers
+        Ok(callers)
     }
 
     /// Whom a macro calls, or for none the statements of a file outside of all macros; in order of the CALLs. Macros that are
     /// nowhere are left out.
-    pub fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn callees(
+        &self,
+        name: Option<&str>,
+        file: Option<&Path>,
+        cancel: Cancel<'_>,
+    ) -> Result<Vec<Calls>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
         let mut callees: Vec<Calls> = Vec::new();
         let is_named =
             |region: &Region| region.kind == RegionKind::Macro && Some(region.name.as_str()) == name;
-        let found = self.files().iter().find_map(|one| match name {
+        let found = self.with_files(patience)?.iter().find_map(|one| match name {
             Some(_) => Some((one, Some(one.regions.iter().find(|region| is_named(region))?))),
             None => one.is(file).then_some((one, None)),
         });
-        let Some((file, region)) = found else { return callees };
+        let Some((file, region)) = found else { return Ok(callees) };
         let belongs = |statement: usize| match region {
             Some(region) => region.contains(statement),
             None => !file.regions.iter().any(|one| one.kind == RegionKind::Macro && one.contains(statement)),
         };
-        for call in calls(&file.tree, statements_with(&file.tree, "CALL")) {
+        for call in calls(&file.tree, statements_with(&file.tree, "CALL", patience)?) {
+            go_on(patience, 1)?;
             if !belongs(call.statement) {
                 continue;
             }
@@ -117,7 +150,7 @@ impl Analysis {
                 }
             }
         }
-        callees
+        Ok(callees)
     }
 
     fn macro_named(&self, name: &str) -> Option<Routine> {

@@ -1,8 +1,8 @@
 //! Between CL dialects: of a program, which is run first, or of a CL file, which is read.
 
 use apt_cldata::{
-    conversion::convert,
-    text::{ClText, detect},
+    conversion::convert_until,
+    text::{ClFile, detect},
 };
 use apt_geometry::patience::Waiting;
 use apt_run::{catalogue, diagnostic::Diagnostic};
@@ -72,16 +72,15 @@ impl Analysis {
             }
             (None, _) => (self.run_to_cutter_locations(cancel, progress)?, ClDialect::PartProgram),
         };
-        if cancel() {
-            return Err(Cancelled.into());
-        }
-        let file = ClText { records: source.records, remarks: source.remarks, shortened: source.shortened };
-        let made = convert(&file, from, to, &code_table())?;
-        let mut diagnostics = source.diagnostics;
-        let (tree, settings) = (self.document().tree(), self.document().settings());
         let waiting = Waiting::until(cancel);
         let patience = waiting.patience();
-        let told = catalogue::conversion_diagnostics(tree, &made.notes, &source.origins, settings, patience)?;
+        let file =
+            ClFile { records: source.records.list(), remarks: &source.remarks, shortened: &source.shortened };
+        let made = convert_until(file, from, to, &code_table(), patience)?.ok_or(Cancelled)?;
+        let mut diagnostics = source.diagnostics;
+        let (tree, settings) = (self.document().tree(), self.document().settings());
+        let origins = source.records.origins();
+        let told = catalogue::conversion_diagnostics(tree, &made.notes, origins, settings, patience)?;
         diagnostics.extend(told);
         Ok(Converted { file: made.file, from, diagnostics })
     }

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use apt_cldata::{
-    difference::{Difference, Path, Side, Tolerance, compare},
-    record::ClRecord,
-};
+use apt_cldata::difference::{Difference, Path, Side, Tolerance, compare};
+use apt_geometry::patience::{Waiting, put_away};
 use apt_program::Origin;
-use apt_run::diagnostic::{Diagnostic, absolute_range};
+use apt_run::{
+    diagnostic::{Diagnostic, absolute_range},
+    go_on,
+};
 use apt_syntax::dialect::DialectName;
 
 pub use apt_cldata::{difference::StretchKind, record::Units};
@@ -118,13 +119,25 @@ impl Analysis {
             _ => self.run_to_cutter_locations(cancel, progress)?,
         };
         let tree = self.document().tree();
-        let statement = |record: &ClRecord| {
-            let origin = source.origins.get(record.source as usize).cloned();
-            let origin = origin.unwrap_or_else(|| Origin::in_program(record.isn, Default::default()));
-            Statement { isn: origin.place_in_program().0, range: absolute_range(tree, &origin) }
-        };
-        let statements = source.records.iter().map(statement).collect();
-        Ok((ToolPath { path: Path::of(&source.records), statements }, source.diagnostics))
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let (records, origins) = (source.records.list(), source.records.origins());
+        let mut statements = Vec::with_capacity(records.len());
+        for record in records {
+            go_on(patience, 1)?;
+            statements.push(match origins.get(record.source as usize) {
+                Some(origin) => {
+                    Statement { isn: origin.place_in_program().0, range: absolute_range(tree, origin) }
+                }
+                None => {
+                    let origin = Origin::in_program(record.isn, Default::default());
+                    Statement { isn: record.isn, range: absolute_range(tree, &origin) }
+                }
+            });
+        }
+        let path = Path::until(records, patience).ok_or(Cancelled)?;
+        put_away(source.records, statements.len());
+        Ok((ToolPath { path, statements }, source.diagnostics))
     }
 }
 

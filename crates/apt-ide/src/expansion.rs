@@ -1,6 +1,6 @@
 //! The program with macros and loops unrolled, each line with its origin.
 
-use apt_geometry::patience::{Patience, Waiting};
+use apt_geometry::patience::{Patience, Waiting, put_away};
 use apt_program::{Origin, expand};
 use apt_run::{
     format::{FormatOptions, format_text},
@@ -65,9 +65,15 @@ impl Analysis {
         let unbounded = Dialect { sequence_field: SequenceFieldRule::Never, ..dialect };
         let formatted = format_text(&text, if on_cards { unbounded } else { dialect }, &style, patience)?;
         let read = parsed(&formatted, dialect, patience)?;
-        let formatted = if read.statement_count() == origins.len() { formatted } else { text };
-        let (lines, room_behind) = places(&formatted, dialect, on_cards, patience)?;
-        Ok(Expansion { text: formatted, origins, lines, room_behind })
+        let (text, tree) = if read.statement_count() == origins.len() {
+            (formatted, read)
+        } else {
+            let tree = parsed(&text, dialect, patience)?;
+            (text, tree)
+        };
+        let (lines, room_behind) = places(&tree, on_cards, patience)?;
+        put_away(tree, lines.len());
+        Ok(Expansion { text, origins, lines, room_behind })
     }
 }
 
@@ -80,12 +86,10 @@ fn parsed(text: &str, dialect: Dialect, patience: Patience<'_>) -> Result<Syntax
 
 /// The line in which each statement of a text begins, and whether a remark may stand behind it.
 fn places(
-    text: &str,
-    dialect: Dialect,
+    tree: &SyntaxTree,
     on_cards: bool,
     patience: Patience<'_>,
 ) -> Result<(Vec<usize>, Vec<bool>), Cancelled> {
-    let tree = parsed(text, dialect, patience)?;
     let mut line = 0;
     let place = |view: StatementView| {
         go_on(patience, 1)?;

@@ -8,6 +8,7 @@ use std::{
     sync::Arc,
 };
 
+use apt_geometry::patience::Patience;
 use apt_program::SourceFile;
 use apt_syntax::{
     SyntaxTree, TextRange,
@@ -16,7 +17,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use crate::{
-    Analysis, absolute,
+    Analysis, Cancelled, absolute,
     regions::{Marks, Region},
 };
 
@@ -74,6 +75,16 @@ impl Analysis {
             }
             files
         })
+    }
+
+    /// The same for somebody who waits.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub(crate) fn with_files(&self, patience: Patience<'_>) -> Result<&[ProgramFile], Cancelled> {
+        self.with_marks(patience)?;
+        Ok(self.files())
     }
 
     /// The names of files in the text of the program, with the files that they name.

@@ -8,7 +8,7 @@ use apt_syntax::{
     statement::{Argument, Body, Expression},
     tree::StatementView,
 };
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{Analysis, Cancel, Cancelled, absolute, hover::CanonicalForm};
 
@@ -62,16 +62,21 @@ impl Analysis {
         let (first, last) = (index(range.start), index(range.end));
         let program = self.program(cancel)?;
         let isns = tree.statement(first).isn()..=tree.statement(last).isn();
-        let mut given: FxHashMap<(u32, &str), (usize, Option<u32>, &apt_program::Value)> =
-            FxHashMap::default();
+        let mut events = Vec::new();
         for event in program.definitions() {
             go_on(patience, 1)?;
             let source = event.origin.source.as_ref().map(|source| source.path.as_path());
             if isns.contains(&event.origin.isn) && source == file {
-                let times =
-                    given.get(&(event.origin.isn, event.name.as_str())).map_or(0, |(times, ..)| *times);
-                given.insert((event.origin.isn, &event.name), (times + 1, event.subscript, &event.value));
+                events.push(event);
             }
+        }
+        // A table that grows is made anew as a whole, which nobody can interrupt.
+        let mut given: FxHashMap<(u32, &str), (usize, Option<u32>, &apt_program::Value)> =
+            FxHashMap::with_capacity_and_hasher(events.len(), FxBuildHasher);
+        for event in events {
+            go_on(patience, 1)?;
+            let times = given.get(&(event.origin.isn, event.name.as_str())).map_or(0, |(times, ..)| *times);
+            given.insert((event.origin.isn, &event.name), (times + 1, event.subscript, &event.value));
         }
         let mut inlays = Vec::new();
         for view in (first..=last).map(|index| tree.statement(index)).take(GREATEST_INLAYS) {

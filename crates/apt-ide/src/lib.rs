@@ -35,7 +35,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use apt_geometry::patience::Patience;
+use apt_geometry::patience::{Patience, Waiting};
 use apt_program::Program;
 use apt_run::catalogue;
 use apt_run::pipeline::RunResult;
@@ -210,7 +210,7 @@ impl Analysis {
         let sound = found.iter().all(|one| one.severity != Severity::Error);
         if level == Level::Motion && sound {
             found.extend(self.machine_diagnostics(cancel, progress)?);
-            catalogue::sort_by_place(&mut found);
+            found = catalogue::by_place(found, Waiting::until(cancel).patience())?;
         }
         Ok(found)
     }
@@ -236,9 +236,9 @@ impl Analysis {
         let sound = worst.diagnostics.iter().all(|one| one.severity != Severity::Error);
         if level == Level::Motion && sound {
             worst.diagnostics.extend(self.machine_diagnostics(cancel, progress)?);
-            catalogue::sort_by_place(&mut worst.diagnostics);
             let left_out = worst.left_out;
-            worst = Worst::of(worst.diagnostics, most);
+            let found = catalogue::by_place(worst.diagnostics, Waiting::until(cancel).patience())?;
+            worst = Worst::of(found, most);
             worst.left_out += left_out;
         }
         Ok(worst)

@@ -2,7 +2,9 @@
 
 use std::{ops::Range, path::Path, sync::Arc};
 
+use apt_geometry::patience::{Patience, Waiting};
 use apt_program::SourceFile;
+use apt_run::go_on;
 use apt_syntax::{
     ParsedStatement, SyntaxTree, TextSize,
     statement::{Body, Element, ElementKind},
@@ -11,7 +13,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use crate::{
-    Analysis, absolute,
+    Analysis, Cancel, Cancelled, absolute,
     files::{ProgramFile, names_of_files},
     regions::Region,
     search::statements_with,
@@ -82,6 +84,9 @@ pub enum RenameError {
     /// The new name is in use where the old one is.
     #[error("{0} is in use already")]
     InUse(SmolStr),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// A place in one of the files of a program.
@@ -114,31 +119,61 @@ impl Analysis {
     }
 
     /// All occurrences of the name at an offset in the text of the program, in order.
-    pub fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn occurrences(&self, offset: usize, cancel: Cancel<'_>) -> Result<Vec<Occurrence>, Cancelled> {
         let own = |one: Located| one.source.is_none().then_some(one.occurrence);
-        self.occurrences_everywhere(Spot { file: None, offset }).into_iter().filter_map(own).collect()
+        let everywhere = self.occurrences_everywhere(Spot { file: None, offset }, cancel)?;
+        Ok(everywhere.into_iter().filter_map(own).collect())
     }
 
     /// All occurrences of the name at a place, those of the program first, then file by file.
-    pub fn occurrences_everywhere(&self, spot: Spot<'_>) -> Vec<Located> {
-        let Some(at) = self.name_at_spot(spot) else { return Vec::new() };
-        Names(self.files()).occurrences(&at.name, at.label, &at.scope)
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn occurrences_everywhere(
+        &self,
+        spot: Spot<'_>,
+        cancel: Cancel<'_>,
+    ) -> Result<Vec<Located>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let names = Names(self.with_files(patience)?);
+        let Some(at) = self.name_at_spot(spot) else { return Ok(Vec::new()) };
+        names.occurrences(&at.name, at.label, &at.scope, patience)
     }
 
     /// Where the name at an offset gets its value: all places, the one in force at the offset first.
-    pub fn definitions_at(&self, offset: usize) -> Vec<Range<usize>> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn definitions_at(&self, offset: usize, cancel: Cancel<'_>) -> Result<Vec<Range<usize>>, Cancelled> {
         let own = |one: Located| one.source.is_none().then_some(one.occurrence.range);
-        self.definitions_everywhere(Spot { file: None, offset }).into_iter().filter_map(own).collect()
+        let everywhere = self.definitions_everywhere(Spot { file: None, offset }, cancel)?;
+        Ok(everywhere.into_iter().filter_map(own).collect())
     }
 
     /// Where the name at a place gets its value: all places, the one in force there first. The name of a file leads to
     /// the beginning of the file.
-    pub fn definitions_everywhere(&self, spot: Spot<'_>) -> Vec<Located> {
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn definitions_everywhere(
+        &self,
+        spot: Spot<'_>,
+        cancel: Cancel<'_>,
+    ) -> Result<Vec<Located>, Cancelled> {
+        self.with_files(Waiting::until(cancel).patience())?;
         if let Some(file) = self.included_at(spot) {
             let occurrence = Occurrence { range: 0..0, defines: true };
-            return vec![Located { source: file.source.clone(), occurrence }];
+            return Ok(vec![Located { source: file.source.clone(), occurrence }]);
         }
-        let mut places = self.occurrences_everywhere(spot);
+        let mut places = self.occurrences_everywhere(spot, cancel)?;
         places.retain(|one| one.occurrence.defines);
         let here = |one: &Located| {
             one.source.as_ref().map(|source| source.path.as_path()) == spot.file
@@ -148,31 +183,43 @@ impl Analysis {
             let in_force = places.remove(before);
             places.insert(0, in_force);
         }
-        places
+        Ok(places)
     }
 
     /// The edits that rename the name at an offset in the text of the program.
     ///
     /// # Errors
     ///
-    /// [`RenameError`] when there is no name, or the new one cannot be used.
-    pub fn rename(&self, offset: usize, new: &str) -> Result<Vec<(Range<usize>, String)>, RenameError> {
-        let edits = self.rename_everywhere(Spot { file: None, offset }, new)?;
-        let own =
-            |(one, text): (Located, String)| one.source.is_none().then_some((one.occurrence.range, text));
-        Ok(edits.into_iter().filter_map(own).collect())
+    /// [`RenameError`] when there is no name, the new one cannot be used, or `cancel` said so before the end.
+    pub fn rename(
+        &self,
+        offset: usize,
+        new: &str,
+        cancel: Cancel<'_>,
+    ) -> Result<Vec<(Range<usize>, String)>, RenameError> {
+        let waiting = Waiting::until(cancel);
+        let mut own = Vec::new();
+        for (one, text) in self.rename_everywhere(Spot { file: None, offset }, new, cancel)? {
+            go_on(waiting.patience(), 1)?;
+            own.extend(one.source.is_none().then_some((one.occurrence.range, text)));
+        }
+        Ok(own)
     }
 
     /// The edits of all files of the program that rename the name at a place.
     ///
     /// # Errors
     ///
-    /// [`RenameError`] when there is no name, or the new one cannot be used.
+    /// [`RenameError`] when there is no name, the new one cannot be used, or `cancel` said so before the end.
     pub fn rename_everywhere(
         &self,
         spot: Spot<'_>,
         new: &str,
+        cancel: Cancel<'_>,
     ) -> Result<Vec<(Located, String)>, RenameError> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let names = Names(self.with_files(patience)?);
         let at = self.name_at_spot(spot).filter(|_| self.included_at(spot).is_none());
         let at = at.ok_or(RenameError::NoName)?;
         let wanted = SmolStr::new(new.trim().to_ascii_uppercase());
@@ -185,20 +232,28 @@ impl Analysis {
         if apt_syntax::vocabulary::lookup(&wanted).is_some() {
             return Err(RenameError::Word(wanted));
         }
-        let names = Names(self.files());
-        if wanted != at.name && !names.occurrences(&wanted, at.label, &at.scope).is_empty() {
+        if wanted != at.name && !names.occurrences(&wanted, at.label, &at.scope, patience)?.is_empty() {
             return Err(RenameError::InUse(wanted));
         }
-        let places = names.occurrences(&at.name, at.label, &at.scope).into_iter();
-        Ok(places.map(|one| (one, new.trim().to_owned())).collect())
+        let mut edits = Vec::new();
+        for one in names.occurrences(&at.name, at.label, &at.scope, patience)? {
+            go_on(patience, 1)?;
+            edits.push((one, new.trim().to_owned()));
+        }
+        Ok(edits)
     }
 
     /// All labels and jump targets in the text of the program that are numbers, in order of the text.
-    pub(crate) fn numbered_labels(&self) -> Vec<NumberedLabel> {
-        let names = Names(self.files());
-        let Some(own) = names.0.first() else { return Vec::new() };
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when who waits has given up before the end.
+    pub(crate) fn numbered_labels(&self, patience: Patience<'_>) -> Result<Vec<NumberedLabel>, Cancelled> {
+        let names = Names(self.with_files(patience)?);
+        let Some(own) = names.0.first() else { return Ok(Vec::new()) };
         let mut found = Vec::new();
         for view in own.tree.statements() {
+            go_on(patience, 1)?;
             let parsed = view.parsed();
             for (at, element) in parsed.elements.iter().enumerate() {
                 if element.kind != ElementKind::Number || !is_label(&parsed, at) {
@@ -210,7 +265,7 @@ impl Analysis {
                 found.push(NumberedLabel { number, range, scope, defines });
             }
         }
-        found
+        Ok(found)
     }
 
     fn file_index(&self, file: Option<&Path>) -> Option<usize> {
@@ -249,10 +304,17 @@ impl Names<'_> {
         Some(NameAt { name: element.text.clone(), range: absolute(&view, element.range), scope, label })
     }
 
-    fn occurrences(&self, name: &str, label: bool, scope: &Scope) -> Vec<Located> {
+    fn occurrences(
+        &self,
+        name: &str,
+        label: bool,
+        scope: &Scope,
+        patience: Patience<'_>,
+    ) -> Result<Vec<Located>, Cancelled> {
         let mut found = Vec::new();
         for (file, one) in self.0.iter().enumerate() {
-            for index in statements_with(&one.tree, name) {
+            for index in statements_with(&one.tree, name, patience)? {
+                go_on(patience, 1)?;
                 let view = one.tree.statement(index);
                 let parsed = view.parsed();
                 for (at, element) in parsed.elements.iter().enumerate() {
@@ -268,7 +330,7 @@ impl Names<'_> {
                 }
             }
         }
-        found
+        Ok(found)
     }
 
     /// Where the name at an element means the same. In a CALL, what stands before `=` is a variable of the macro.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use apt_cldata::record::{ClKind, ClRecord};
+use apt_cldata::record::{ClKind, ClRecord, POSITIONS_A_UNIT, positions};
 use apt_geometry::{
     motion::MotionCommand,
     patience::{Patience, Waiting},
@@ -156,15 +156,12 @@ fn add(surfaces: &mut Vec<SceneSurface>, surface: &apt_geometry::motion::NamedSu
     }
 }
 
-/// Positions or records that are counted as one unit of work where one is looked at in some nanoseconds.
-const POSITIONS_A_UNIT: usize = 16;
-
 /// The straight pieces of a path; a path without FROM begins at its first point.
 fn segments(result: &RunResult, patience: Patience<'_>) -> Result<Vec<Segment>, Cancelled> {
     let starts: FxHashSet<u32> =
         result.motions.iter().filter(|motion| is_start_up(motion)).map(|m| m.origin.isn).collect();
     // A list that grows is copied as a whole, which nobody can interrupt.
-    let mut segments = Vec::with_capacity(positions(result, patience)?);
+    let mut segments = Vec::with_capacity(positions(&result.records, patience));
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
     for record in &result.records {
@@ -191,16 +188,6 @@ fn segments(result: &RunResult, patience: Patience<'_>) -> Result<Vec<Segment>, 
         }
     }
     Ok(segments)
-}
-
-/// How many positions a path has.
-fn positions(result: &RunResult, patience: Patience<'_>) -> Result<usize, Cancelled> {
-    let mut positions = 0;
-    for records in result.records.chunks(POSITIONS_A_UNIT) {
-        go_on(patience, 1)?;
-        positions += records.iter().map(ClRecord::position_count).sum::<usize>();
-    }
-    Ok(positions)
 }
 
 fn is_start_up(motion: &Motion) -> bool {

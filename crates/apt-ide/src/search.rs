@@ -1,12 +1,34 @@
 //! Finds the statements that may contain a name or word, without parsing the others.
 
+use apt_geometry::patience::Patience;
 use apt_syntax::tree::SyntaxTree;
+
+use crate::Cancelled;
+
+/// Statements whose text is looked through as one unit of work, in a microsecond or two.
+const STATEMENTS_A_UNIT: usize = 8;
 
 /// Indices of the statements whose text contains `word` (upper case), blanks and letter case ignored as the language
 /// ignores them. A name may be split over a continuation, so `$` and line ends are passed over as well.
-pub fn statements_with(tree: &SyntaxTree, word: &str) -> Vec<usize> {
-    let word = word.as_bytes();
-    tree.statements().filter(|view| contains(view.text().as_bytes(), word)).map(|view| view.index).collect()
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub(crate) fn statements_with(
+    tree: &SyntaxTree,
+    word: &str,
+    patience: Patience<'_>,
+) -> Result<Vec<usize>, Cancelled> {
+    let mut found = Vec::new();
+    for (done, view) in tree.statements().enumerate() {
+        if patience.ends_among(done, STATEMENTS_A_UNIT) {
+            return Err(Cancelled);
+        }
+        if contains(view.text().as_bytes(), word.as_bytes()) {
+            found.push(view.index);
+        }
+    }
+    Ok(found)
 }
 
 /// Whether a text contains a word, blanks, letter case and continuations ignored.

@@ -1,12 +1,17 @@
 //! The control tape: of a program, which is run first, or of the text of a CL file, which is read.
 
+use std::sync::Arc;
+
 use apt_cldata::{
     cltape::{TapeNote, TapeReadError},
     codes::CodeTable,
     record::ClRecord,
-    text::{ClText, Remark, Shortened, read_with_remarks, write_text_with_lines},
+    text::{ClText, Remark, Shortened, read_with_remarks_until, write_text_with_lines_until},
 };
-use apt_geometry::patience::Waiting;
+use apt_geometry::{
+    patience::{Patience, Waiting},
+    pieces::Pieces,
+};
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::{
     Origin,
@@ -67,14 +72,14 @@ pub struct ControlTape {
     pub tape: Tape,
     /// What was found in the program or CL file, and then by the post-processor.
     pub diagnostics: Vec<Diagnostic>,
-    /// Where blocks come from.
-    origins: Vec<Origin>,
+    /// Of what it is made.
+    records: Arc<Records>,
 }
 
 impl ControlTape {
     /// Where each block comes from, with the calls and turns that led there; `None` for a block that no statement has made.
     pub fn block_origins(&self) -> impl Iterator<Item = Option<&Origin>> {
-        self.tape.blocks.iter().map(|block| self.origins.get(block.source as usize))
+        self.tape.blocks.iter().map(|block| self.records.origins().get(block.source as usize))
     }
 }
 
@@ -107,14 +112,51 @@ pub fn punch(tape: &Tape, code: TapeCode) -> Result<Vec<u8>, PunchError> {
     apt_post::punch::punch(&tape.text(), code)
 }
 
-/// The records that a tape is made of, with their origins.
+/// CL records with their origins: those of a run, which are not copied, or of a file.
+#[derive(Debug, Clone)]
+pub(crate) enum Records {
+    Run(Arc<RunResult>),
+    Read { records: Vec<ClRecord>, origins: Vec<Origin> },
+}
+
+impl Records {
+    pub(crate) fn list(&self) -> &[ClRecord] {
+        match self {
+            Self::Run(result) => &result.records,
+            Self::Read { records, .. } => records,
+        }
+    }
+
+    /// Where they come from; [`ClRecord::source`] is an index into it.
+    pub(crate) fn origins(&self) -> &[Origin] {
+        match self {
+            Self::Run(result) => &result.origins,
+            Self::Read { origins, .. } => origins,
+        }
+    }
+}
+
+impl PartialEq for Records {
+    fn eq(&self, other: &Self) -> bool {
+        self.list() == other.list() && self.origins() == other.origins()
+    }
+}
+
+/// The records that a tape is made of.
 pub(crate) struct Source {
-    pub(crate) records: Vec<ClRecord>,
+    pub(crate) records: Arc<Records>,
     /// What only people read in CL text.
     pub(crate) remarks: Vec<Remark>,
     pub(crate) shortened: Vec<Shortened>,
-    pub(crate) origins: Vec<Origin>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+impl Source {
+    /// What a run made, with what was found in the program.
+    fn of_run(result: Arc<RunResult>, diagnostics: Vec<Diagnostic>) -> Self {
+        let records = Arc::new(Records::Run(result));
+        Self { records, remarks: Vec::new(), shortened: Vec::new(), diagnostics }
+    }
 }
 
 impl Analysis {
@@ -176,12 +218,7 @@ impl Analysis {
         };
         let mut source = match self.document().dialect() {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
-            _ => {
-                let result = self.result(cancel, progress)?;
-                let (records, origins) = copied(&result, cancel)?;
-                let diagnostics = Vec::new();
-                Source { records, remarks: Vec::new(), shortened: Vec::new(), origins, diagnostics }
-            }
+            _ => Source::of_run(self.result(cancel, progress)?, Vec::new()),
         };
         // What there is to say about the program itself is told anyway.
         source.diagnostics.clear();
@@ -200,13 +237,14 @@ impl Analysis {
         if self.document().dialect() == DialectName::Cl {
             options.text_limit = CL_TEXT;
         }
-        let tape = apt_post::post(&source.records, machine, &options, cancel)
+        let (waiting, tree) = (Waiting::until(cancel), self.document().tree());
+        let patience = waiting.patience();
+        let tape = apt_post::post_until(source.records.list(), machine, &options, patience)
             .map_err(|apt_post::Cancelled| Cancelled)?;
         let mut diagnostics = source.diagnostics;
-        let (waiting, tree) = (Waiting::until(cancel), self.document().tree());
-        let told = catalogue::tape_diagnostics(tree, &tape, &source.origins, settings, waiting.patience())?;
+        let told = catalogue::tape_diagnostics(tree, &tape, source.records.origins(), settings, patience)?;
         diagnostics.extend(told);
-        Ok(ControlTape { tape, diagnostics, origins: source.origins })
+        Ok(ControlTape { tape, diagnostics, records: source.records })
     }
 
     /// Runs the program to its CL records.
@@ -216,26 +254,27 @@ impl Analysis {
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Source, Cancelled> {
         let diagnostics = self.program_diagnostics(Level::Motion, cancel, progress)?;
-        let result = self.result(cancel, progress)?;
-        let (records, origins) = copied(&result, cancel)?;
-        Ok(Source { records, remarks: Vec::new(), shortened: Vec::new(), origins, diagnostics })
+        Ok(Source::of_run(self.result(cancel, progress)?, diagnostics))
     }
 
     /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
     pub(crate) fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
         let text = self.text();
-        let (ClText { mut records, remarks, shortened }, errors) = read_with_remarks(&text);
-        if cancel() {
-            return Err(Cancelled);
-        }
-        let origins = self.origins_of_lines(&text);
-        for record in &mut records {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let (read, errors) = read_with_remarks_until(&text, patience).ok_or(Cancelled)?;
+        let ClText { mut records, remarks, shortened } = read;
+        let origins = self.origins_of_lines(&text, patience)?;
+        for (done, record) in records.iter_mut().enumerate() {
             if let Some(origin) = origins.get(record.source as usize) {
                 record.isn = origin.isn;
             }
+            go_on(patience, usize::from(done % RECORDS_A_UNIT == RECORDS_A_UNIT - 1))?;
         }
-        let diagnostics = catalogue::read_diagnostics(&errors, &origins, self.document().settings());
-        Ok(Source { records, remarks, shortened, origins, diagnostics })
+        let settings = self.document().settings();
+        let diagnostics = catalogue::read_diagnostics(&errors, &origins, settings, patience)?;
+        let records = Arc::new(Records::Read { records, origins });
+        Ok(Source { records, remarks, shortened, diagnostics })
     }
 
     /// The records of a binary tape of which this is the text form ([`text_of_cl_tape`]): with their own statement numbers, surfaces and
@@ -253,29 +292,33 @@ impl Analysis {
             return Err(Cancelled);
         }
         let mut records = contents.records;
-        let (_, lines) = write_text_with_lines(&records);
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let (_, lines) = write_text_with_lines_until(&records, patience).ok_or(Cancelled)?;
         for (record, line) in records.iter_mut().zip(lines) {
             record.source = line;
         }
         let remark = |note: &TapeNote| Remark { line: u32::MAX, text: note_text(note) };
         let remarks = contents.notes.iter().map(remark).collect();
-        let origins = self.origins_of_lines(&self.text());
-        Ok(Ok(Source { records, remarks, shortened: Vec::new(), origins, diagnostics: Vec::new() }))
+        let origins = self.origins_of_lines(&self.text(), patience)?;
+        let records = Arc::new(Records::Read { records, origins });
+        Ok(Ok(Source { records, remarks, shortened: Vec::new(), diagnostics: Vec::new() }))
     }
 
     /// For every line of the text, the statement that it begins or goes on with.
-    fn origins_of_lines(&self, text: &str) -> Vec<Origin> {
+    fn origins_of_lines(&self, text: &str, patience: Patience<'_>) -> Result<Vec<Origin>, Cancelled> {
         let tree = self.document().tree();
-        let mut origins = Vec::new();
+        let mut origins = Pieces::default();
         let mut start = 0;
         for line in text.split_inclusive('\n') {
+            go_on(patience, 1)?;
             let view = tree.statement(tree.statement_at(TextSize::new(start)));
             let length = view.text().trim_end().len() as u32;
             let range = TextRange::new(TextSize::new(0), TextSize::new(length));
             origins.push(Origin::in_program(view.isn(), range));
             start += line.len() as u32;
         }
-        origins
+        Ok(origins.joined(patience))
     }
 
     /// The CL file as APT text (`GOTO/…`).
@@ -311,22 +354,8 @@ impl Analysis {
     }
 }
 
-/// The records and origins of a run, for who changes them.
-fn copied(result: &RunResult, cancel: Cancel<'_>) -> Result<(Vec<ClRecord>, Vec<Origin>), Cancelled> {
-    let waiting = Waiting::until(cancel);
-    let patience = waiting.patience();
-    let mut records = Vec::with_capacity(result.records.len());
-    for record in &result.records {
-        go_on(patience, 1)?;
-        records.push(record.clone());
-    }
-    let mut origins = Vec::with_capacity(result.origins.len());
-    for origin in &result.origins {
-        go_on(patience, 1)?;
-        origins.push(origin.clone());
-    }
-    Ok((records, origins))
-}
+/// Records that are counted as one unit of work where one is looked at in some ten nanoseconds.
+const RECORDS_A_UNIT: usize = 16;
 
 /// The unit of a program that does not say it is that of the settings.
 fn options(settings: &Settings) -> PostOptions {

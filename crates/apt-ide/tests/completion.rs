@@ -17,7 +17,7 @@ use support::{marked, never};
 fn labels(text: &str) -> Vec<String> {
     let (analysis, offset) = marked(text);
     analysis.program(&never).unwrap();
-    analysis.completions(offset).into_iter().map(|item| item.label).collect()
+    analysis.completions(offset, &|| false).unwrap().into_iter().map(|item| item.label).collect()
 }
 
 fn check(text: &str, expected: Expect) {
@@ -118,7 +118,12 @@ fn snippets_ask_for_parameters_unless_they_stand_there() {
     let snippet = |text: &str, label: &str| {
         let (analysis, offset) = marked(&format!("M1=MACRO/DX,DY=2\nTERMAC\n{text}\nFINI\n"));
         analysis.program(&never).unwrap();
-        let item = analysis.completions(offset).into_iter().find(|item| item.label == label).unwrap();
+        let item = analysis
+            .completions(offset, &|| false)
+            .unwrap()
+            .into_iter()
+            .find(|item| item.label == label)
+            .unwrap();
         item.snippet.unwrap_or_default()
     };
     assert_eq!(snippet("GOL$0", "GOLFT"), "GOLFT/${1:ds}$0");
@@ -144,7 +149,7 @@ fn names_are_known_while_an_edit_is_not_evaluated_yet() {
     analysis.program(&never).unwrap();
     let edited = analysis.edit(offset..offset, "P");
     assert!(edited.document().evaluated().is_none());
-    let items = edited.completions(offset + 1);
+    let items = edited.completions(offset + 1, &|| false).unwrap();
     let names: Vec<_> = items.iter().filter(|item| item.kind == CompletionKind::Name).collect();
     assert_eq!(names.iter().map(|item| item.label.as_str()).collect::<Vec<_>>(), ["P1", "P2"]);
     assert!(edited.document().evaluated().is_none(), "completion has evaluated");
@@ -176,7 +181,8 @@ fn sculptured_statements_offer_what_may_come_next() {
     ] {
         let (analysis, offset) = marked(&format!("{NAMES}{text}\nFINI\n"));
         analysis.program(&never).unwrap();
-        let offers: Vec<String> = analysis.completions(offset).into_iter().map(|one| one.label).collect();
+        let offers: Vec<String> =
+            analysis.completions(offset, &|| false).unwrap().into_iter().map(|one| one.label).collect();
         for word in expected {
             assert!(offers.iter().any(|offer| offer == word), "{text} offers {offers:?}");
         }

@@ -17,7 +17,7 @@ use support::marked;
 fn check_occurrences(text: &str, expected: Expect) {
     let (analysis, offset) = marked(text);
     let mut shown = analysis.text();
-    for one in analysis.occurrences(offset).into_iter().rev() {
+    for one in analysis.occurrences(offset, &|| false).unwrap().into_iter().rev() {
         let (open, close) = if one.defines { ("{", "}") } else { ("[", "]") };
         shown.insert_str(one.range.end, close);
         shown.insert_str(one.range.start, open);
@@ -28,7 +28,7 @@ fn check_occurrences(text: &str, expected: Expect) {
 fn renamed(text: &str, new: &str) -> Result<String, RenameError> {
     let (analysis, offset) = marked(text);
     let mut shown = analysis.text();
-    for (range, insert) in analysis.rename(offset, new)?.into_iter().rev() {
+    for (range, insert) in analysis.rename(offset, new, &|| false)?.into_iter().rev() {
         shown.replace_range(range, &insert);
     }
     Ok(shown)
@@ -127,8 +127,12 @@ fn subscripted_names_are_one_name() {
 fn the_definition_in_force_comes_first() {
     let text = "A=1\nB=A\nA=2\nC=A$0\nA=3\nFINI\n";
     let (analysis, offset) = marked(text);
-    let lines: Vec<usize> =
-        analysis.definitions_at(offset).iter().map(|range| text[..range.start].lines().count()).collect();
+    let lines: Vec<usize> = analysis
+        .definitions_at(offset, &|| false)
+        .unwrap()
+        .iter()
+        .map(|range| text[..range.start].lines().count())
+        .collect();
     assert_eq!(lines, [2, 0, 4]);
 }
 

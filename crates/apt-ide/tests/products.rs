@@ -224,9 +224,10 @@ fn the_machine_of_the_settings_is_asked_as_one_types() {
 #[test]
 fn a_program_in_the_words_of_another_system() {
     use apt_ide::conversion::{ClDialect, ConvertedFile};
-    let program = analysis("M1=MACRO/X\nFEDRAT/X,MMPM\nTERMAC\nFROM/0,0,1\nCALL/M1,X=80\nGOTO/1,2,3\nFINI\n");
+    let text = "M1=MACRO/X\nFEDRAT/X,MMPM\nTERMAC\nFROM/0,0,1\nCALL/M1,X=80\nGOTO/1,2,3\nFINI\n";
+    let program = analysis(text);
     let made = program.convert(ClDialect::Creo, None, &never, &mut silent).unwrap();
-    let ConvertedFile::Text(text) = &made.file else { panic!("{:?}", made.file) };
+    let ConvertedFile::Text(written) = &made.file else { panic!("{:?}", made.file) };
     expect![[r#"
         $$*         Pro/CLfile  Version
         UNITS / MM
@@ -235,12 +236,16 @@ fn a_program_in_the_words_of_another_system() {
         GOTO / 1.0000000000, 2.0000000000, 3.0000000000
         FINI
     "#]]
-    .assert_eq(text);
+    .assert_eq(written);
     let told: Vec<(&str, u32)> =
         made.diagnostics.iter().map(|one| (one.wording.code, one.origin.place_in_program().0)).collect();
     assert_eq!(told, [("APT0819", 4)]);
     assert_eq!(made.from, ClDialect::PartProgram);
-    let cancelled = program.convert(ClDialect::Nx, None, &|| true, &mut silent);
+    assert!(
+        program.convert(ClDialect::Nx, None, &|| true, &mut silent).is_ok(),
+        "what is known needs no work"
+    );
+    let cancelled = analysis(text).convert(ClDialect::Nx, None, &|| true, &mut silent);
     assert!(
         matches!(cancelled, Err(apt_ide::conversion::ConversionError::Cancelled(Cancelled))),
         "{cancelled:?}"

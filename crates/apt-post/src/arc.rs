@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use apt_geometry::Vec3;
+use apt_cldata::record::POSITIONS_A_UNIT;
+use apt_geometry::{Vec3, patience::Patience};
 
 use crate::machine::ArcPlane;
 
@@ -15,7 +16,7 @@ const NEAR_RESOLUTIONS: f64 = 100.0;
 
 /// What an arc has to keep to. Lengths in the unit of the tape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ArcLimits {
+pub(crate) struct ArcLimits<'a> {
     /// How far points may be off the arc.
     pub(crate) tolerance: f64,
     /// How far they may be off it along the third axis, where no circle record vouches for anything.
@@ -33,6 +34,8 @@ pub(crate) struct ArcLimits {
     pub(crate) resolution: f64,
     /// Fewest points of a run without a circle record, start included.
     pub(crate) least_points: usize,
+    /// Who waits; where he gives up there is no arc.
+    pub(crate) patience: Patience<'a>,
 }
 
 /// A fitted arc.
@@ -63,10 +66,10 @@ pub(crate) fn fit(
     points: &[Vec3],
     plane: ArcPlane,
     center: Option<Vec3>,
-    limits: &ArcLimits,
+    limits: &ArcLimits<'_>,
 ) -> Result<Arc, f64> {
     let least = if center.is_some() { 3 } else { limits.least_points.max(4) };
-    if points.len() < least {
+    if points.len() < least || limits.patience.ends_after(1) {
         return Err(f64::INFINITY);
     }
     let [u, v, w] = plane_axes(plane);
@@ -77,17 +80,23 @@ pub(crate) fn fit(
         Some(center) if full_turn => [center[u], center[v]],
         Some(center) => on_bisector(start, end, [center[u], center[v]]),
         None if full_turn => return Err(f64::INFINITY),
-        None => center_of_run(&flat).ok_or(f64::INFINITY)?,
+        None => center_of_run(&flat, limits.patience).ok_or(f64::INFINITY)?,
     };
     let radius = distance(start, middle);
     if !(limits.least_radius..=limits.greatest_radius).contains(&radius) {
         return Err(f64::INFINITY);
     }
-    let worst = flat.iter().map(|point| (distance(*point, middle) - radius).abs()).fold(0.0, f64::max);
+    let mut worst = 0.0_f64;
+    for (done, point) in flat.iter().enumerate() {
+        worst = worst.max((distance(*point, middle) - radius).abs());
+        if limits.patience.ends_among(done, POSITIONS_A_UNIT) {
+            return Err(f64::INFINITY);
+        }
+    }
     if worst > limits.tolerance || worst.is_nan() {
         return Err(worst);
     }
-    let angles = swept_angles(&flat, middle).ok_or(f64::INFINITY)?;
+    let angles = swept_angles(&flat, middle, limits.patience).ok_or(f64::INFINITY)?;
     let sweep = angles.last().copied().unwrap_or(0.0).abs();
     let full = full_turn && (sweep - TAU).abs() < 1.0;
     if full_turn != full || sweep > limits.sweep + 1e-9 {
@@ -124,7 +133,7 @@ fn on_bisector(start: [f64; 2], end: [f64; 2], near: [f64; 2]) -> [f64; 2] {
 
 /// The centre on the bisector of the ends that the inner points ask for; the median, so that one of them cannot
 /// pull it away.
-fn center_of_run(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+fn center_of_run(points: &[[f64; 2]], patience: Patience<'_>) -> Option<[f64; 2]> {
     let (start, end) = (points[0], points[points.len() - 1]);
     let length = distance(start, end);
     if length == 0.0 {
@@ -133,32 +142,36 @@ fn center_of_run(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let middle = [(start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0];
     let normal = [-(end[1] - start[1]) / length, (end[0] - start[0]) / length];
     let mut heights: Vec<f64> = Vec::with_capacity(points.len() - 2);
-    for point in &points[1..points.len() - 1] {
+    for (done, point) in points[1..points.len() - 1].iter().enumerate() {
         let arm = [point[0] - middle[0], point[1] - middle[1]];
         let across = arm[0] * normal[0] + arm[1] * normal[1];
         let height = (arm[0] * arm[0] + arm[1] * arm[1] - length * length / 4.0) / (2.0 * across);
         // A point on the chord itself: the run is straight there.
-        if !height.is_finite() {
+        if !height.is_finite() || patience.ends_among(done, POSITIONS_A_UNIT) {
             return None;
         }
         heights.push(height);
     }
-    heights.sort_by(f64::total_cmp);
-    let height = heights.get(heights.len() / 2)?;
+    let middle_height = heights.len() / 2;
+    if heights.is_empty() {
+        return None;
+    }
+    let (_, &mut height, _) = heights.select_nth_unstable_by(middle_height, f64::total_cmp);
     Some([middle[0] + height * normal[0], middle[1] + height * normal[1]])
 }
 
 /// Angle from the start to every point, signed; none when the points do not go round in one sense.
-fn swept_angles(points: &[[f64; 2]], center: [f64; 2]) -> Option<Vec<f64>> {
+fn swept_angles(points: &[[f64; 2]], center: [f64; 2], patience: Patience<'_>) -> Option<Vec<f64>> {
     let mut angles = Vec::with_capacity(points.len());
     let mut sum = 0.0;
     angles.push(sum);
-    for pair in points.windows(2) {
+    for (done, pair) in points.windows(2).enumerate() {
         let a = [pair[0][0] - center[0], pair[0][1] - center[1]];
         let b = [pair[1][0] - center[0], pair[1][1] - center[1]];
         let step = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
         let reversed = sum != 0.0 && step.signum() != f64::signum(sum);
-        if step == 0.0 || reversed || step.abs() > LARGEST_CHORD_ANGLE {
+        let given_up = patience.ends_among(done, POSITIONS_A_UNIT);
+        if step == 0.0 || reversed || step.abs() > LARGEST_CHORD_ANGLE || given_up {
             return None;
         }
         sum += step;
@@ -168,7 +181,7 @@ fn swept_angles(points: &[[f64; 2]], center: [f64; 2]) -> Option<Vec<f64>> {
 }
 
 /// Points alone cannot tell an arc from a coarse polygon: no chord may be further from the arc than chords were made.
-fn check_chords(points: &[[f64; 2]], radius: f64, limits: &ArcLimits) -> Result<(), f64> {
+fn check_chords(points: &[[f64; 2]], radius: f64, limits: &ArcLimits<'_>) -> Result<(), f64> {
     let longest = points.windows(2).map(|pair| distance(pair[0], pair[1])).fold(0.0, f64::max);
     let half = longest / 2.0;
     if half > radius {
@@ -179,7 +192,7 @@ fn check_chords(points: &[[f64; 2]], radius: f64, limits: &ArcLimits) -> Result<
     if sagitta <= limits.chord_tolerance + limits.tolerance { Ok(()) } else { Err(sagitta) }
 }
 
-fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLimits) -> Result<(), f64> {
+fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLimits<'_>) -> Result<(), f64> {
     let start = points[0][axis];
     let rise = points[points.len() - 1][axis] - start;
     let whole = angles.last().copied().unwrap_or(0.0);
@@ -196,7 +209,7 @@ pub(crate) fn longest(
     points: &[Vec3],
     plane: ArcPlane,
     center: Option<Vec3>,
-    limits: &ArcLimits,
+    limits: &ArcLimits<'_>,
 ) -> Option<(usize, Arc)> {
     let least = if center.is_some() { 2 } else { limits.least_points.max(4) - 1 };
     let last = points.len().checked_sub(1)?;
@@ -232,7 +245,7 @@ pub(crate) fn longest(
 mod tests {
     use super::*;
 
-    fn limits() -> ArcLimits {
+    fn limits() -> ArcLimits<'static> {
         ArcLimits {
             tolerance: 1e-3,
             height_tolerance: 1e-3,
@@ -243,6 +256,7 @@ mod tests {
             helix: true,
             resolution: 1e-4,
             least_points: 4,
+            patience: Patience::default(),
         }
     }
 

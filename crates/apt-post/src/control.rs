@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use apt_cldata::record::Units;
+use apt_geometry::pieces::Pieces;
 
 use crate::{
     finding::{PostFinding, PostFindingKind},
@@ -52,8 +53,8 @@ pub(crate) struct Word {
 pub(crate) struct Control<'a> {
     pub(crate) machine: &'a MachineDefinition,
     pub(crate) units: Units,
-    pub(crate) blocks: Vec<Block>,
-    pub(crate) findings: Vec<PostFinding>,
+    pub(crate) blocks: Pieces<Block>,
+    pub(crate) findings: Pieces<PostFinding>,
     /// Statement and origin that everything made now belongs to.
     pub(crate) place: (u32, u32),
     /// Text of the modal registers.
@@ -81,8 +82,8 @@ impl<'a> Control<'a> {
         Control {
             machine,
             units,
-            blocks: Vec::new(),
-            findings: Vec::new(),
+            blocks: Pieces::default(),
+            findings: Pieces::default(),
             place: (0, u32::MAX),
             held: BTreeMap::new(),
             modes: BTreeMap::new(),

@@ -16,7 +16,7 @@ mod tape;
 mod template;
 mod words;
 
-pub use engine::{Cancel, Cancelled, post};
+pub use engine::{Cancelled, post, post_until};
 pub use finding::{PostFinding, PostFindingKind, Severity};
 pub use form::{Treatment, treatment};
 pub use machine::{MachineDefinition, MachineError, MachineInfo, machine, machines};

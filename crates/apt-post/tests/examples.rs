@@ -9,7 +9,7 @@ use expect_test::{Expect, expect};
 fn tape_for(machine: &MachineDefinition, text: &str) -> Tape {
     let (records, errors) = read_text(text);
     assert_eq!(errors, vec![]);
-    post(&records, machine, &PostOptions::default(), &|| false).unwrap()
+    post(&records, machine, &PostOptions::default())
 }
 
 fn check(name: &str, text: &str, expected: &Expect) {
@@ -448,11 +448,11 @@ proptest::proptest! {
     fn any_statements_end_in_a_tape(statements in proptest::collection::vec(any_statement(), 0..40)) {
         let (records, _) = read_text(&statements.concat());
         for info in machines() {
-            let tape = post(&records, &machine(&info.name).unwrap(), &PostOptions::default(), &|| false).unwrap();
+            let tape = post(&records, &machine(&info.name).unwrap(), &PostOptions::default());
             let text = tape.text();
             proptest::prop_assert!(text.is_ascii() && !text.contains("NaN") && !text.contains("inf"), "{}", text);
             proptest::prop_assert!(!text.contains("-0.\n") && !text.contains("-0. "), "{}", text);
-            proptest::prop_assert_eq!(text, post(&records, &machine(&info.name).unwrap(), &PostOptions::default(), &|| false).unwrap().text());
+            proptest::prop_assert_eq!(text, post(&records, &machine(&info.name).unwrap(), &PostOptions::default()).text());
         }
     }
 }

@@ -23,7 +23,7 @@ fn records(text: &str) -> Vec<ClRecord> {
 }
 
 fn tape(text: &str) -> Tape {
-    let tape = post(&records(text), &mill(), &PostOptions::default(), &|| false).unwrap();
+    let tape = post(&records(text), &mill(), &PostOptions::default());
     assert!(tape.is_ok(), "{:?}\n{}", tape.findings, tape.text());
     tape
 }
@@ -246,7 +246,7 @@ fn feed_modes_delays_and_stops() {
 #[test]
 fn a_tape_with_an_error_is_not_ok_and_the_interpreter_agrees() {
     let text = "UNITS/MM\nFROM/0,0,10\nSPINDL/1200,CLW\nGOTO/10,0,10\nFINI\n";
-    let made = post(&records(text), &mill(), &PostOptions::default(), &|| false).unwrap();
+    let made = post(&records(text), &mill(), &PostOptions::default());
     assert!(!made.is_ok());
     assert!(!interpreter::run(&made.text(), &[]).contains("PROGRAM_END"));
 }

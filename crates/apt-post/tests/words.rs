@@ -67,7 +67,7 @@ fn mill() -> MachineDefinition {
 fn tape_of(statements: &str) -> Tape {
     let (records, errors) = read_text(&format!("{BEFORE}{statements}FINI\n"));
     assert!(errors.is_empty(), "{statements}: {errors:?}");
-    post(&records, &mill(), &PostOptions::default(), &|| false).expect("nobody cancels")
+    post(&records, &mill(), &PostOptions::default())
 }
 
 #[test]
@@ -230,9 +230,7 @@ fn sequence_numbers_follow_the_statement() {
 fn levels_of_optional_blocks_are_those_of_the_control() {
     let text = format!("{BEFORE}OPSKIP/ON,3\nGOTO/10,0,10\nOPSKIP/OFF\nGOTO/20,0,10\nFINI\n");
     let (records, _) = read_text(&text);
-    let post_for = |name: &str| {
-        post(&records, &machine(name).unwrap(), &PostOptions::default(), &|| false).unwrap().text()
-    };
+    let post_for = |name: &str| post(&records, &machine(name).unwrap(), &PostOptions::default()).text();
     assert!(post_for("fanuc-mill3").contains("\n/3N"), "{}", post_for("fanuc-mill3"));
     assert!(post_for("linuxcnc-mill3").contains("\n/N") && !post_for("linuxcnc-mill3").contains("/3"));
 }
@@ -270,7 +268,7 @@ fn what_must_stand_before_what() {
     let findings = |text: &str| -> Vec<PostFindingKind> {
         let (records, errors) = read_text(text);
         assert!(errors.is_empty(), "{text}: {errors:?}");
-        let tape = post(&records, &mill(), &PostOptions::default(), &|| false).unwrap();
+        let tape = post(&records, &mill(), &PostOptions::default());
         tape.findings.into_iter().map(|finding| finding.kind).collect()
     };
     let start = "FROM/0,0,1\nSPINDL/500,CLW\nFEDRAT/5\n";
@@ -318,24 +316,9 @@ fn texts_fit_on_a_card() {
     let (records, _) = read_text(&format!("{}FINI\n", line(67).replace("PPRINT", "PARTNO")));
     let kinds = |text_limit: usize| -> Vec<PostFindingKind> {
         let options = PostOptions { text_limit, ..PostOptions::default() };
-        let tape = post(&records, &mill(), &options, &|| false).unwrap();
+        let tape = post(&records, &mill(), &options);
         tape.findings.into_iter().map(|finding| finding.kind).collect()
     };
     assert_eq!(kinds(80), []);
     assert_eq!(kinds(66), [PostFindingKind::TextTooLong { word: "PARTNO".into(), length: 67, limit: 66 }]);
-}
-
-#[test]
-fn a_tape_that_is_no_longer_wanted_is_not_made() {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
-    let mut text = BEFORE.to_owned();
-    for step in 0..5_000 {
-        text += &format!("GOTO/{step},{},0\n", step % 7);
-    }
-    let (records, _) = read_text(&text);
-    let asked = AtomicUsize::new(0);
-    let cancel = || asked.fetch_add(1, Ordering::Relaxed) >= 3;
-    assert_eq!(post(&records, &mill(), &PostOptions::default(), &cancel), Err(apt_post::Cancelled));
-    assert!(asked.load(Ordering::Relaxed) < 10, "the work went on after the answer");
 }

@@ -10,6 +10,7 @@ mod writer;
 
 pub use ncl::is_ncl_file;
 pub use reader::{TapeContents, TapeNote, TapeReadError, is_tape, read_tape};
+pub(crate) use writer::written;
 pub use writer::{TapeWriteError, write_tape, write_tape_until};
 
 /// Record classes.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     codes::CodeTable,
-    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
+    record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT, Units, ends_before},
 };
 
 /// Characters of text that a record holds: columns 7 to 72 of a card.
@@ -72,15 +72,17 @@ pub fn write_tape_until(
 }
 
 /// The tape up to the end, or to where who waits gives up.
-fn written(
+pub(crate) fn written(
     records: &[ClRecord],
     codes: &CodeTable,
     patience: Patience<'_>,
 ) -> Result<Vec<u8>, TapeWriteError> {
-    let mut writer = Writer { codes, bytes: Vec::new(), serial: 0, multax: false };
+    // What grows is copied as a whole, which nobody can interrupt.
+    let bytes = Vec::with_capacity(most_bytes(records, patience));
+    let mut writer = Writer { codes, bytes, serial: 0, multax: false };
     let mut statement = None;
     for record in records {
-        if patience.ends_after(u32::try_from(1 + record.position_count()).unwrap_or(u32::MAX)) {
+        if ends_before(record.position_count(), patience) {
             break;
         }
         let this = (record.isn, record.source);
@@ -92,6 +94,30 @@ fn written(
         writer.record(record)?;
     }
     Ok(writer.bytes)
+}
+
+/// Bytes that a tape of some records has at most; fewer where who waits gives up before the end.
+fn most_bytes(records: &[ClRecord], patience: Patience<'_>) -> usize {
+    /// The header of a record, four numbers of half a word.
+    const HEADER_WORDS: usize = 2;
+    /// With the header of a sequence number, which may stand before it, and its two words.
+    const BEFORE_WORDS: usize = 2 * HEADER_WORDS + 2;
+    /// Position and axis.
+    const POINT_WORDS: usize = 6;
+    /// A surface before its figures, a circle with them.
+    const CIRCLE_WORDS: usize = 12;
+    let words = |record: &ClRecord| match &record.kind {
+        ClKind::Motion { points, .. } => {
+            let words = points.len() * POINT_WORDS;
+            words + (2 + HEADER_WORDS) * (1 + words / MOTION_COORDINATE_WORDS)
+        }
+        ClKind::Postprocessor { arguments, .. } | ClKind::Control { arguments, .. } => arguments.len(),
+        ClKind::Text { .. } => TEXT_WORDS,
+        ClKind::Arc { .. } => CIRCLE_WORDS,
+        ClKind::MultipleAxes(_) | ClKind::Units(_) | ClKind::End => 1,
+    };
+    let pieces = records.chunks(POSITIONS_A_UNIT).take_while(|_| !patience.ends_after(1));
+    pieces.flatten().map(|record| (BEFORE_WORDS + words(record)) * WORD_BYTES).sum()
 }
 
 struct Writer<'a> {
@@ -241,4 +267,47 @@ fn text_words(isn: u32, text: &str) -> Result<Vec<[u8; WORD_BYTES]>, TapeWriteEr
         word
     };
     Ok(characters.chunks(TEXT_CHARACTERS_PER_WORD).map(pack).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn a_tape_takes_no_more_room_than_was_foreseen() {
+        let point = ClPoint { position: Vec3::new(1.0, 2.0, 3.0), axis: Vec3::z(), with_axis: true };
+        let motion =
+            |count| ClKind::Motion { from: false, surface: "S(3)".into(), points: vec![point; count] };
+        let word = |count| ClKind::Postprocessor {
+            word: "FEDRAT".into(),
+            code: Some(1009),
+            arguments: vec![ClWord::Number(1.0); count],
+        };
+        let (center, axis) = (Vec3::zeros(), Vec3::z());
+        let mut kinds = vec![
+            ClKind::Text { word: "PARTNO".into(), code: Some(1045), text: "A PART".into() },
+            ClKind::Arc { surface: "C1".into(), center, axis, radius: 1.0 },
+            ClKind::Control {
+                word: "CUTTER".into(),
+                code: [6000, 6],
+                arguments: vec![ClWord::Number(1.0); 7],
+            },
+            ClKind::End,
+        ];
+        for multax in [false, true] {
+            kinds.push(ClKind::MultipleAxes(multax));
+            kinds.extend([0, 1, 39, 40, 41, 80, 81, 1_000].map(motion));
+            kinds.extend([0, 1, 20].map(word));
+        }
+        let records: Vec<ClRecord> =
+            (1..).zip(kinds).map(|(isn, kind)| ClRecord { isn, source: isn, kind }).collect();
+        for count in 0..=records.len() {
+            let records = &records[..count];
+            let bytes = write_tape(records, &CodeTable::new()).expect("all have codes");
+            let most = most_bytes(records, Patience::default());
+            assert!(bytes.len() <= most, "{} bytes, {most} foreseen, of {:?}", bytes.len(), records.last());
+        }
+    }
 }

@@ -10,14 +10,17 @@ mod tape;
 mod translate;
 mod words;
 
-use apt_geometry::Vec3;
+use apt_geometry::{
+    Vec3,
+    patience::{Patience, put_away},
+};
 use smol_str::SmolStr;
 
 use crate::{
     cltape::TapeWriteError,
     codes::CodeTable,
     record::{ClKind, Units},
-    text::{ClDialect, ClText, dialects::Form, writer},
+    text::{ClDialect, ClFile, ClText, dialects::Form, writer},
 };
 
 /// A file in the dialect that was asked for, and what is to be told of it.
@@ -130,15 +133,44 @@ pub fn convert(
     to: ClDialect,
     codes: &CodeTable,
 ) -> Result<Conversion, TapeWriteError> {
+    converted(file.into(), from, to, codes, Patience::default())
+}
+
+/// The same; `None` when who waits has given up before the end.
+///
+/// # Errors
+///
+/// As [`convert`].
+pub fn convert_until(
+    file: ClFile<'_>,
+    from: ClDialect,
+    to: ClDialect,
+    codes: &CodeTable,
+    patience: Patience<'_>,
+) -> Result<Option<Conversion>, TapeWriteError> {
+    let conversion = converted(file, from, to, codes, patience)?;
+    Ok((!patience.was_over()).then_some(conversion))
+}
+
+/// The file up to the end, or to where who waits gives up.
+fn converted(
+    file: ClFile<'_>,
+    from: ClDialect,
+    to: ClDialect,
+    codes: &CodeTable,
+    patience: Patience<'_>,
+) -> Result<Conversion, TapeWriteError> {
     let mut notes = Notes::default();
-    for shortened in &file.shortened {
+    for shortened in file.shortened {
         notes.add((0, shortened.line), ConversionNoteKind::Shortened { word: shortened.word.clone() });
     }
-    let items = translate::translate(file, Form::of(from), Form::of(to), &mut notes);
+    let items = translate::translate(file, Form::of(from), Form::of(to), &mut notes, patience);
     let file = match to {
-        ClDialect::Cltape => ConvertedFile::Tape(tape::write(&items, codes, &mut notes)?),
-        _ => ConvertedFile::Text(writer::write(&items, Form::of(to), &mut notes)),
+        ClDialect::Cltape => ConvertedFile::Tape(tape::write(&items, codes, &mut notes, patience)?),
+        _ => ConvertedFile::Text(writer::write(&items, Form::of(to), &mut notes, patience)),
     };
+    let count = items.len();
+    put_away(items, count);
     Ok(Conversion { file, notes: notes.0 })
 }
 
@@ -148,6 +180,13 @@ pub(crate) struct Item {
     pub(crate) isn: u32,
     pub(crate) source: u32,
     pub(crate) what: What,
+}
+
+impl Item {
+    /// How many positions it holds.
+    pub(crate) fn position_count(&self) -> usize {
+        if let What::Record(kind) = &self.what { kind.position_count() } else { 0 }
+    }
 }
 
 /// What is to be written.

@@ -4,17 +4,25 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{ConversionNoteKind as Kind, Item, Notes, What, same_axis};
 use crate::{
-    cltape::{TapeWriteError, write_tape},
+    cltape::{TapeWriteError, write_tape, written},
     codes::CodeTable,
-    record::{ClKind, ClRecord},
+    record::{ClKind, ClRecord, ends_before},
 };
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
-/// Writes what the tape can hold, and tells what it cannot.
-pub(super) fn write(items: &[Item], codes: &CodeTable, notes: &mut Notes) -> Result<Vec<u8>, TapeWriteError> {
+/// Writes what the tape can hold, and tells what it cannot; less where who waits gives up before the end.
+pub(super) fn write(
+    items: &[Item],
+    codes: &CodeTable,
+    notes: &mut Notes,
+    patience: Patience<'_>,
+) -> Result<Vec<u8>, TapeWriteError> {
     let mut records: Vec<ClRecord> = Vec::with_capacity(items.len());
     let mut axes = AxisInForce { multax: false, axis: Vec3::z() };
     for item in items {
+        if ends_before(item.position_count(), patience) {
+            break;
+        }
         let place = (item.isn, item.source);
         let kind = match &item.what {
             What::Record(kind) => kind,
@@ -43,7 +51,7 @@ pub(super) fn write(items: &[Item], codes: &CodeTable, notes: &mut Notes) -> Res
             }
         }
     }
-    write_tape(&records, codes)
+    written(&records, codes, patience)
 }
 
 fn left_out(kind: &ClKind, error: &TapeWriteError) -> Kind {

@@ -1,5 +1,6 @@
 //! What a file says, in the words of another system.
 
+use apt_geometry::patience::Patience;
 use smol_str::{SmolStr, format_smolstr};
 
 use super::{
@@ -10,9 +11,9 @@ use super::{
     },
 };
 use crate::{
-    record::{ClKind, ClRecord, ClWord, Units},
+    record::{ClKind, ClRecord, ClWord, POSITIONS_A_UNIT, Units, ends_before},
     text::{
-        ClDialect, ClText, Remark,
+        ClDialect, ClFile, Remark,
         dialects::{CutterForm, Form, nx::END_OF_PATH},
         sign_of_remark,
         words::{Shape, TOOL_PATH, shape},
@@ -22,23 +23,44 @@ use crate::{
 
 /// Name of an operation or tool that nothing names.
 const NO_NAME: &str = "NONE";
+/// Operation, its end, unit and part number, which the file may not have.
+const MOST_ADDED: usize = 4;
 /// Words that stand before the unit where it is added.
 const HEAD: [&str; 2] = ["MACHIN", "MODE"];
 
 /// Merges records and remarks and translates them. What the target has no words for becomes a remark.
-pub(super) fn translate(file: &ClText, from: &Form, to: &Form, notes: &mut Notes) -> Vec<Item> {
-    let mut translator = Translator { from, to, notes, items: Vec::new(), place: (0, 0) };
+/// They are fewer where who waits gives up before the end.
+pub(super) fn translate(
+    file: ClFile<'_>,
+    from: &Form,
+    to: &Form,
+    notes: &mut Notes,
+    patience: Patience<'_>,
+) -> Vec<Item> {
+    // A list that grows is copied as a whole, which nobody can interrupt. What is added to it is little.
+    let items = Vec::with_capacity(file.records.len() + file.remarks.len() + MOST_ADDED);
+    let mut translator = Translator { from, to, notes, items, place: (0, 0) };
     let mut remarks = file.remarks.iter().peekable();
-    for record in &file.records {
+    for record in file.records {
+        if ends_before(record.position_count(), patience) {
+            break;
+        }
         while let Some(remark) = remarks.next_if(|remark| remark.line < record.source) {
             translator.remark(remark);
         }
         translator.record(record);
     }
-    remarks.for_each(|remark| translator.remark(remark));
-    translator.ending();
-    translator.units();
-    translator.part_number();
+    for remark in remarks.take_while(|_| !patience.ends_after(1)) {
+        translator.remark(remark);
+    }
+    // Each looks at all of them, in some nanoseconds.
+    for step in [Translator::ending, Translator::units, Translator::part_number] {
+        let items = translator.items.len() / POSITIONS_A_UNIT;
+        if patience.ends_after(u32::try_from(items).unwrap_or(u32::MAX)) {
+            break;
+        }
+        step(&mut translator);
+    }
     translator.items
 }
 

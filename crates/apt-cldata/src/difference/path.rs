@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use crate::{
-    record::{ClKind, ClRecord, ClWord, Units},
+    record::{ClKind, ClRecord, ClWord, POSITIONS_A_UNIT, Units, positions},
     totals::MILLIMETERS_PER_INCH,
 };
 
@@ -56,9 +56,26 @@ pub(super) struct Point {
 impl Path {
     /// The path of some records. Words count only for what they say about rapid moves and units.
     pub fn of(records: &[ClRecord]) -> Self {
-        let mut path = Self::default();
+        Self::made(records, Patience::default())
+    }
+
+    /// The same; `None` when who waits has given up before the end.
+    pub fn until(records: &[ClRecord], patience: Patience<'_>) -> Option<Self> {
+        let path = Self::made(records, patience);
+        (!patience.was_over()).then_some(path)
+    }
+
+    /// The path up to the end, or to where who waits gives up.
+    fn made(records: &[ClRecord], patience: Patience<'_>) -> Self {
+        // Lists that grow are copied as a whole, which nobody can interrupt.
+        let most = positions(records, patience);
+        let (places, lengths) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        let mut path = Self { places, lengths, units: None };
         let mut rapid = false;
         for (index, record) in records.iter().enumerate() {
+            if patience.ends_after(1) {
+                break;
+            }
             match &record.kind {
                 ClKind::Units(units) => path.units = Some(*units),
                 ClKind::Postprocessor { word, arguments, .. } if word == "RAPID" => {
@@ -70,7 +87,10 @@ impl Path {
                         (false, true) => Manner::Rapid,
                         (false, false) => Manner::Feed,
                     };
-                    for point in points {
+                    for (done, point) in points.iter().enumerate() {
+                        if patience.ends_among(done, POSITIONS_A_UNIT) {
+                            break;
+                        }
                         let place =
                             Place { position: point.position, axis: point.axis, manner, record: index };
                         path.push(place);

@@ -11,5 +11,8 @@ pub(crate) mod writer;
 
 pub(crate) use detect::sign_of_remark;
 pub use detect::{ClDialect, UnknownClDialect, detect};
-pub use reader::{ClText, ReadError, ReadErrorKind, Remark, Shortened, read_text, read_with_remarks};
-pub use writer::{write_text, write_text_until, write_text_with_lines};
+pub use reader::{
+    ClFile, ClText, ReadError, ReadErrorKind, Remark, Shortened, read_text, read_with_remarks,
+    read_with_remarks_until,
+};
+pub use writer::{write_text, write_text_until, write_text_with_lines, write_text_with_lines_until};

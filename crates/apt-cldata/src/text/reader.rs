@@ -3,7 +3,7 @@
 mod arc;
 mod driven;
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience, pieces::Pieces};
 use smol_str::SmolStr;
 
 use self::{
@@ -119,15 +119,26 @@ pub fn read_text(text: &str) -> (Vec<ClRecord>, Vec<ReadError>) {
 
 /// The same with the remarks of the text.
 pub fn read_with_remarks(text: &str) -> (ClText, Vec<ReadError>) {
+    read(text, Patience::default())
+}
+
+/// The same; `None` when who waits has given up before the end.
+pub fn read_with_remarks_until(text: &str, patience: Patience<'_>) -> Option<(ClText, Vec<ReadError>)> {
+    let read = read(text, patience);
+    (!patience.was_over()).then_some(read)
+}
+
+/// What the text says up to its end, or to where who waits gives up.
+fn read(text: &str, patience: Patience<'_>) -> (ClText, Vec<ReadError>) {
     let circles_before_end = detect(text) == Some(ClDialect::Nx);
     let mut reader = Reader { circles_before_end, ..Reader::default() };
-    for statement in statements(text) {
+    for statement in statements(text).take_while(|_| !patience.ends_after(1)) {
         reader.statement(&statement);
     }
     reader.end_arc();
     reader.end_nurbs();
     let Reader { records, remarks, shortened, errors, .. } = reader;
-    (ClText { records, remarks, shortened }, errors)
+    (ClText { records: records.joined(patience), remarks, shortened }, errors)
 }
 
 /// What CL text says.
@@ -139,6 +150,23 @@ pub struct ClText {
     pub remarks: Vec<Remark>,
     /// Statements of which the records do not hold all, in order of the lines.
     pub shortened: Vec<Shortened>,
+}
+
+/// The same, of records that something else holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClFile<'a> {
+    /// As [`ClText::records`].
+    pub records: &'a [ClRecord],
+    /// As [`ClText::remarks`].
+    pub remarks: &'a [Remark],
+    /// As [`ClText::shortened`].
+    pub shortened: &'a [Shortened],
+}
+
+impl<'a> From<&'a ClText> for ClFile<'a> {
+    fn from(text: &'a ClText) -> Self {
+        Self { records: &text.records, remarks: &text.remarks, shortened: &text.shortened }
+    }
 }
 
 /// A statement of which a part is not kept: the tolerances and the cutter that NX writes behind the radius of a CIRCLE.
@@ -161,7 +189,7 @@ pub struct Remark {
 
 #[derive(Default)]
 struct Reader {
-    records: Vec<ClRecord>,
+    records: Pieces<ClRecord>,
     errors: Vec<ReadError>,
     isn: u32,
     line: u32,

@@ -19,14 +19,16 @@ pub(super) struct Statement {
     pub(super) remarks: Vec<String>,
 }
 
-/// Splits a text; linear in its length.
-pub(super) fn statements(text: &str) -> Vec<Statement> {
-    let mut found = Vec::new();
+/// Splits a text, one statement after the other; linear in its length.
+pub(super) fn statements(text: &str) -> impl Iterator<Item = Statement> {
     let mut lines = text.lines().enumerate();
-    while let Some((at, whole)) = lines.next() {
+    let mut found = 0;
+    std::iter::from_fn(move || {
+        let (at, whole) = lines.next()?;
+        found += 1;
         let line = without_row_prefix(whole);
         let mut statement = Statement {
-            number: saturated(found.len() + 1),
+            number: saturated(found),
             line: saturated(at),
             text: String::new(),
             free: None,
@@ -41,9 +43,8 @@ pub(super) fn statements(text: &str) -> Vec<Statement> {
         } else {
             significant(line, &mut statement, &mut next);
         }
-        found.push(statement);
-    }
-    found
+        Some(statement)
+    })
 }
 
 /// PostWorks goes on with a text in the next row where one ends in `~`.
@@ -133,7 +134,7 @@ mod tests {
     use super::*;
 
     fn texts(source: &str) -> Vec<(u32, u32, String)> {
-        statements(source).into_iter().map(|found| (found.number, found.line, found.text)).collect()
+        statements(source).map(|found| (found.number, found.line, found.text)).collect()
     }
 
     #[test]
@@ -160,7 +161,7 @@ mod tests {
     fn remarks_are_kept_with_their_statement() {
         let source = "$$ a $ b\nGOTO / 1, $ so\n 2,3 $$ far\n$$-> CSYS / 1, 0, $\n  0, 1\nRAPID\n";
         let remarks: Vec<(u32, Vec<String>)> =
-            statements(source).into_iter().map(|found| (found.line, found.remarks)).collect();
+            statements(source).map(|found| (found.line, found.remarks)).collect();
         let list = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect::<Vec<String>>();
         assert_eq!(
             remarks,
@@ -176,7 +177,7 @@ mod tests {
     #[test]
     fn rows_of_postworks() {
         let source = "N5    , PPRINT CLAMP AT ENDS ~\nOF THE BAR\nC15     GOTO/ 1.,2.,3.\nC1 = POINT/1,2\n";
-        let found = statements(source);
+        let found: Vec<_> = statements(source).collect();
         assert_eq!(found[0].free, Some(("PPRINT", "CLAMP AT ENDS OF THE BAR".to_owned())));
         assert_eq!(found[1].text, "     GOTO/ 1.,2.,3.");
         assert_eq!(found[2].text, "C1 = POINT/1,2");
@@ -184,7 +185,7 @@ mod tests {
 
     #[test]
     fn text_statements_keep_dollars() {
-        let found = statements("PPRINT COST 5$\nGOTO/1,2,3\nPARTNO/'A, B'\n");
+        let found: Vec<_> = statements("PPRINT COST 5$\nGOTO/1,2,3\nPARTNO/'A, B'\n").collect();
         assert_eq!(found[0].free, Some(("PPRINT", "COST 5$".to_owned())));
         assert_eq!(found[1].text, "GOTO/1,2,3");
         assert_eq!(found[2].free, Some(("PARTNO", "A, B".to_owned())));

@@ -16,7 +16,7 @@ use crate::{
     cltape::INTEGER_PARAMETERS,
     conversion::{ConversionNoteKind as Kind, Item, Notes, QUOTATION, What, same_axis, unit_word},
     geometry::SpaceCircle,
-    record::{ClKind, ClPoint, ClRecord, ClWord},
+    record::{ClKind, ClPoint, ClRecord, ClWord, ends_before},
 };
 
 mod arc;
@@ -41,6 +41,15 @@ pub fn write_text_with_lines(records: &[ClRecord]) -> (String, Vec<u32>) {
     written(records, Patience::default())
 }
 
+/// The same; `None` when who waits has given up before the end.
+pub fn write_text_with_lines_until(
+    records: &[ClRecord],
+    patience: Patience<'_>,
+) -> Option<(String, Vec<u32>)> {
+    let written = written(records, patience);
+    (!patience.was_over()).then_some(written)
+}
+
 /// The text up to the end, or to where who waits gives up.
 fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     let mut notes = Notes::default();
@@ -48,7 +57,7 @@ fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     let mut lines = Vec::with_capacity(records.len());
     let (mut line, mut counted) = (0, 0);
     for record in records {
-        if patience.ends_after(u32::try_from(1 + record.position_count()).unwrap_or(u32::MAX)) {
+        if ends_before(record.position_count(), patience) {
             break;
         }
         line += writer.sheet.text[counted..].matches('\n').count();
@@ -60,11 +69,14 @@ fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     (writer.sheet.text, lines)
 }
 
-/// Writes items in a form.
-pub(crate) fn write(items: &[Item], form: &Form, notes: &mut Notes) -> String {
+/// Writes items in a form; less where who waits gives up before the end.
+pub(crate) fn write(items: &[Item], form: &Form, notes: &mut Notes, patience: Patience<'_>) -> String {
     let mut writer = Writer::new(form, notes);
     writer.title(items);
     for item in items {
+        if ends_before(item.position_count(), patience) {
+            break;
+        }
         writer.item(item);
     }
     writer.sheet.text

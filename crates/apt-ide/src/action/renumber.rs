@@ -5,7 +5,7 @@ use std::{
     ops::Range,
 };
 
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{motion::MotionCommand, patience::Waiting};
 use apt_program::{Options, Program, RecordKind, evaluate};
 use apt_syntax::SyntaxTree;
 
@@ -35,7 +35,7 @@ impl Analysis {
         if tree.statement_count() > MOST_STATEMENTS || tree.sequence_field() {
             return Ok(None);
         }
-        let labels = self.numbered_labels();
+        let labels = self.numbered_labels(Waiting::until(cancel).patience())?;
         let touches =
             |label: &&NumberedLabel| label.range.start <= range.end && label.range.end >= range.start;
         let all = range.is_empty();

@@ -4,6 +4,7 @@ mod definition;
 #[cfg(test)]
 mod tests;
 
+use apt_geometry::patience::{Patience, Waiting};
 use apt_program::symbols::Value;
 use apt_syntax::{
     dialect::DialectName,
@@ -15,7 +16,7 @@ use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use crate::{
-    Analysis,
+    Analysis, Cancel, Cancelled,
     context::{Context, Opener},
 };
 use definition::Next;
@@ -78,12 +79,19 @@ enum Place {
 impl Analysis {
     /// What can be written at an offset: all that begins with what stands there already. Names come from the last
     /// evaluation of this program, perhaps of a version before this one, so that typing never waits for it.
-    pub fn completions(&self, offset: usize) -> Vec<Completion> {
-        let Some((view, relative)) = self.statement_at(offset) else { return Vec::new() };
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn completions(&self, offset: usize, cancel: Cancel<'_>) -> Result<Vec<Completion>, Cancelled> {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        self.with_files(patience)?;
+        let Some((view, relative)) = self.statement_at(offset) else { return Ok(Vec::new()) };
         let parsed = view.parsed();
         let comment = parsed.comments.iter().any(|range| range.start() < relative && relative <= range.end());
         if comment || parsed.elements.iter().any(|element| element.kind == ElementKind::Text) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let spelled = |element: &&Element| matches!(element.kind, ElementKind::Word | ElementKind::Name);
         let begun =
@@ -103,7 +111,7 @@ impl Analysis {
             !matches!(element.kind, Slash | LeftParenthesis | Equals)
         });
         let verb = parsed.elements.iter().find(|element| element.kind == ElementKind::Word);
-        let place = self.place(&before);
+        let place = self.place(&before, patience);
         let wrapped = self.needs_parentheses(&before);
         let mut items: Vec<Completion> = words()
             .iter()
@@ -111,17 +119,20 @@ impl Analysis {
             .filter(|word| fits(word, &place, verb.map(|verb| verb.text.as_str())))
             .map(|word| word_completion(word, wrapped))
             .collect();
-        items.extend(self.names(&place, prefix, &view));
+        items.extend(self.names(&place, prefix, &view, patience));
+        if patience.was_over() {
+            return Err(Cancelled);
+        }
         if !bare {
             items.iter_mut().for_each(|item| item.snippet = None);
         }
         items.sort_by(|a, b| (rank(a, &place), &a.label).cmp(&(rank(b, &place), &b.label)));
         items.dedup();
-        items
+        Ok(items)
     }
 
     /// Where the end of `before` is in its statement.
-    fn place(&self, before: &[&Element]) -> Place {
+    fn place(&self, before: &[&Element], patience: Patience<'_>) -> Place {
         let spelling = |index: usize| before.get(index).map(|element| element.text.as_str());
         let labelled = before.len() >= 2 && before[1].kind == ElementKind::RightParenthesis;
         let begin = if labelled { 2 } else { 0 };
@@ -140,7 +151,7 @@ impl Analysis {
                 false => Place::Value,
             };
         }
-        let kind_of = |name: &str| self.kind_of(name);
+        let kind_of = |name: &str| self.kind_of(name, patience);
         let by_forms = || definition::next_by_forms(before, |name| self.value_kind(name));
         let next = match definition::next(before, kind_of) {
             // The table of the definitions does not hold those of space curves and sculptured surfaces.
@@ -170,36 +181,44 @@ impl Analysis {
         begins && !of_function && !self.document().tree().dialect().bare_expressions
     }
 
-    fn kind_of(&self, name: &str) -> Option<apt_geometry::canonical::GeometryKind> {
-        let program = self.known_program()?;
-        let event = program.definitions().filter(|event| event.name == name).last()?;
+    /// What a name is, as far as it has been looked for where who waits gives up.
+    fn kind_of(&self, name: &str, patience: Patience<'_>) -> Option<apt_geometry::canonical::GeometryKind> {
+        let events = self.known_program()?.definitions().take_while(|_| !patience.ends_after(1));
+        let event = events.filter(|event| event.name == name).last()?;
         match &event.value {
             Value::Geometry(geometry) => Some(geometry.kind()),
             Value::Scalar(_) => None,
         }
     }
 
-    fn names(&self, place: &Place, prefix: &str, view: &StatementView) -> Vec<Completion> {
+    /// The names that fit at a place, some of them where who waits gives up before the end.
+    fn names(
+        &self,
+        place: &Place,
+        prefix: &str,
+        view: &StatementView,
+        patience: Patience<'_>,
+    ) -> Vec<Completion> {
         let isn = view.isn();
         match place {
             Place::Start | Place::NewName => Vec::new(),
             Place::Macro => self.macros(prefix),
             Place::Variable(name) => self.variables(name, prefix),
             Place::Definition(next) => {
-                let mut found = self.values(prefix, isn, |value| next.takes(value));
+                let mut found = self.values(prefix, isn, |value| next.takes(value), patience);
                 if next.labels {
-                    found.extend(self.labels(prefix, view.index));
+                    found.extend(self.labels(prefix, view.index, patience));
                 }
                 found
             }
             Place::Value | Place::Parameter | Place::Nested | Place::Expression => {
-                self.values(prefix, isn, |_| true)
+                self.values(prefix, isn, |_| true, patience)
             }
         }
     }
 
     /// The labels that a jump in a statement can lead to: those of its macro or loop, else those outside of both.
-    fn labels(&self, prefix: &str, statement: usize) -> Vec<Completion> {
+    fn labels(&self, prefix: &str, statement: usize, patience: Patience<'_>) -> Vec<Completion> {
         let tree = self.document().tree();
         let regions = self.regions();
         let innermost = |statement: usize| regions.iter().rposition(|region| region.contains(statement));
@@ -210,6 +229,9 @@ impl Analysis {
         };
         let mut found = Vec::new();
         for view in tree.statements().skip(first).take(last.saturating_sub(first) + 1) {
+            if patience.ends_after(1) {
+                break;
+            }
             if !begins_with_label(view.text().as_bytes()) || innermost(view.index) != here {
                 continue;
             }
@@ -224,10 +246,16 @@ impl Analysis {
     }
 
     /// Names with a value, the nearest to a statement first if there are too many.
-    fn values(&self, prefix: &str, isn: u32, wanted: impl Fn(&Value) -> bool) -> Vec<Completion> {
+    fn values(
+        &self,
+        prefix: &str,
+        isn: u32,
+        wanted: impl Fn(&Value) -> bool,
+        patience: Patience<'_>,
+    ) -> Vec<Completion> {
         let Some(program) = self.known_program() else { return Vec::new() };
         let mut last: FxHashMap<&SmolStr, (u32, &Value, bool)> = FxHashMap::default();
-        for event in program.definitions() {
+        for event in program.definitions().take_while(|_| !patience.ends_after(1)) {
             if event.name.starts_with(prefix) {
                 let distance = event.origin.isn.abs_diff(isn);
                 last.insert(&event.name, (distance, &event.value, event.subscript.is_some()));

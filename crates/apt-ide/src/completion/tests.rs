@@ -174,7 +174,7 @@ fn offers_are_what_the_forms_allow_and_keep_the_grammar() {
             for place in places(word) {
                 let (analysis, offset) = typing(&place, dialect);
                 let before = errors(&place, dialect);
-                for offer in analysis.completions(offset) {
+                for offer in analysis.completions(offset, &|| false).unwrap() {
                     count += 1;
                     let line = format!("{place}{}", accepted(&offer));
                     let broken = errors(&line, dialect).into_iter().find(|error| !before.contains(error));
@@ -205,7 +205,7 @@ fn jumps_are_offered_the_labels_they_reach() {
         let offset = text.find("$0").unwrap();
         let analysis = analysis(&text.replacen("$0", "", 1), DialectName::Free);
         analysis.program(&|| false).unwrap();
-        analysis.completions(offset).into_iter().map(|one| one.label).collect()
+        analysis.completions(offset, &|| false).unwrap().into_iter().map(|one| one.label).collect()
     };
     assert_eq!(labels(text), ["M2"]);
     assert_eq!(labels(&text.replace("$0", "M2").replace("IF(A1)L3,", "JUMPTO/$0")), ["L3"]);
@@ -216,7 +216,12 @@ fn jumps_are_offered_the_labels_they_reach() {
 fn functions_in_lists_come_in_parentheses_where_the_dialect_wants_them() {
     let inserted = |dialect: DialectName, line: &str| {
         let (analysis, offset) = typing(line, dialect);
-        let offer = analysis.completions(offset).into_iter().find(|one| one.label == "SINF").unwrap();
+        let offer = analysis
+            .completions(offset, &|| false)
+            .unwrap()
+            .into_iter()
+            .find(|one| one.label == "SINF")
+            .unwrap();
         offer.snippet.unwrap()
     };
     assert_eq!(inserted(DialectName::Apt3, "GOTO/"), "(SINF(${1:x}))$0");

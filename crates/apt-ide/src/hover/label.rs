@@ -1,5 +1,7 @@
 //! Hovers of labels: where one stands, who jumps there, and whether it is reached.
 
+use apt_geometry::patience::Waiting;
+use apt_run::go_on;
 use apt_syntax::{
     ParsedStatement,
     statement::{Body, Part},
@@ -26,7 +28,7 @@ impl Analysis {
             return Ok(format!("label `{}`", at.name));
         };
         // Labels belong to their file: all places are in this one.
-        let places = self.occurrences_everywhere(spot);
+        let places = self.occurrences_everywhere(spot, cancel)?;
         let own =
             places.iter().filter(|one| one.source.as_ref().map(|source| source.path.as_path()) == spot.file);
         let (mut standing, mut jumps) = (Vec::new(), Vec::new());
@@ -71,7 +73,12 @@ impl Analysis {
         let origins = definitions.chain(program.records().map(|record| &record.origin));
         let mut times = 0_usize;
         let mut last = None;
-        for origin in origins.filter(|origin| origin.isn == isn && origin.source.is_none()) {
+        let waiting = Waiting::until(cancel);
+        for origin in origins {
+            go_on(waiting.patience(), 1)?;
+            if origin.isn != isn || origin.source.is_some() {
+                continue;
+            }
             // The records of one execution stand together and have one place in loops and calls.
             if last != Some(&origin.frame) {
                 times += 1;

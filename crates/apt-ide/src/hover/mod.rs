@@ -9,7 +9,9 @@ mod valueless;
 
 use std::ops::Range;
 
+use apt_geometry::patience::Waiting;
 use apt_program::symbols::{DefinitionEvent, Value};
+use apt_run::go_on;
 use apt_syntax::{
     ParsedStatement, TextSize,
     statement::{Body, Element, ElementKind},
@@ -50,7 +52,9 @@ impl Analysis {
     ///
     /// [`Cancelled`] when `cancel` said so before the answer was found.
     pub fn hover_at(&self, spot: Spot<'_>, cancel: Cancel<'_>) -> Result<Option<Hover>, Cancelled> {
-        let Some(file) = self.files().iter().find(|file| file.is(spot.file)) else { return Ok(None) };
+        let waiting = Waiting::until(cancel);
+        let files = self.with_files(waiting.patience())?;
+        let Some(file) = files.iter().find(|file| file.is(spot.file)) else { return Ok(None) };
         let Some((view, relative)) = statement_at(&file.tree, spot.offset) else { return Ok(None) };
         let parsed = view.parsed();
         let Some(element) = element_at(&parsed.elements, relative) else { return Ok(None) };
@@ -171,7 +175,12 @@ impl Analysis {
         let wanted = |event: &&DefinitionEvent| {
             event.name == name && (subscript.is_none() || event.subscript == subscript)
         };
-        for event in program.definitions().filter(wanted) {
+        let waiting = Waiting::until(cancel);
+        for event in program.definitions() {
+            go_on(waiting.patience(), 1)?;
+            if !wanted(&event) {
+                continue;
+            }
             // What an included file defines, the statement that includes it does.
             if event.origin.place_in_program().0 > isn && found.is_some() {
                 break;
@@ -225,7 +234,7 @@ impl Analysis {
                 "variable `{}` of macro `{}`{}",
                 at.name,
                 region.name,
-                self.calls_markdown(region, &at.name)
+                self.calls_markdown(region, &at.name, cancel)?
             ))),
             None => self.valueless_markdown(spot, &at, cancel),
         }
@@ -234,13 +243,15 @@ impl Analysis {
     /// How a name changed, if its statement was executed several times in a loop or in calls of a macro.
     fn turns_markdown(&self, name: &str, isn: u32, cancel: Cancel<'_>) -> Result<String, Cancelled> {
         let program = self.program(cancel)?;
-        let here = || {
-            let of_statement = |event: &&DefinitionEvent| {
-                event.name == name && event.origin.isn == isn && event.origin.source.is_none()
-            };
-            program.definitions().filter(of_statement)
-        };
-        let (count, first) = (here().count(), here().next());
+        let waiting = Waiting::until(cancel);
+        let (mut count, mut first) = (0_usize, None);
+        for event in program.definitions() {
+            go_on(waiting.patience(), 1)?;
+            if event.name == name && event.origin.isn == isn && event.origin.source.is_none() {
+                count += 1;
+                first = first.or(Some(event));
+            }
+        }
         Ok(match first {
             Some(first) if count > 1 => {
                 let form = CanonicalForm::new(name, &first.value);
@@ -251,13 +262,21 @@ impl Analysis {
     }
 
     /// What the calls of a macro give to a variable, in the order of the text.
-    fn calls_markdown(&self, region: &crate::regions::Region, variable: &str) -> String {
+    fn calls_markdown(
+        &self,
+        region: &crate::regions::Region,
+        variable: &str,
+        cancel: Cancel<'_>,
+    ) -> Result<String, Cancelled> {
         /// More of them would not be read.
         const GREATEST_CALLS: usize = 8;
         let tree = self.document().tree();
         let mut text = String::new();
         let mut calls = 0;
-        for index in crate::search::statements_with(tree, &region.name) {
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        for index in crate::search::statements_with(tree, &region.name, patience)? {
+            go_on(patience, 1)?;
             let view = tree.statement(index);
             for part in &view.parsed().statement.parts {
                 let Body::Call { name, arguments, .. } = &part.body else { continue };
@@ -277,11 +296,11 @@ impl Analysis {
                 }
             }
         }
-        match calls {
+        Ok(match calls {
             0 => ", which is never called".to_owned(),
             _ if calls > GREATEST_CALLS => format!(":\n{text}\n- … {} more calls", calls - GREATEST_CALLS),
             _ => format!(":\n{text}"),
-        }
+        })
     }
 }
 

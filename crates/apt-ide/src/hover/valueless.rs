@@ -24,7 +24,7 @@ impl Analysis {
         }
         let Some(program) = self.files().first() else { return Ok(None) };
         let mut text = format!("`{}` has no value", at.name);
-        let places = self.occurrences_everywhere(spot);
+        let places = self.occurrences_everywhere(spot, cancel)?;
         let mut giving: Vec<u32> = Vec::new();
         let mut elsewhere = false;
         for one in places.iter().filter(|one| one.occurrence.defines) {

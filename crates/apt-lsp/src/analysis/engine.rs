@@ -271,44 +271,55 @@ impl Document for Program {
         self.0.selections(offset)
     }
 
-    fn completions(&self, offset: usize) -> Vec<Completion> {
-        self.0.completions(offset)
+    fn completions(&self, offset: usize, control: &Control) -> Answer<Vec<Completion>> {
+        Ok(with(control, "", |cancel, _| self.0.completions(offset, cancel))?)
     }
 
     fn signature_help(&self, offset: usize) -> Option<SignatureHelp> {
         self.0.signature_help(offset)
     }
 
-    fn definitions(&self, spot: Spot<'_>) -> Vec<Located> {
-        self.0.definitions_everywhere(spot)
+    fn definitions(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>> {
+        Ok(with(control, "", |cancel, _| self.0.definitions_everywhere(spot, cancel))?)
     }
 
-    fn references(&self, spot: Spot<'_>) -> Vec<Located> {
-        self.0.occurrences_everywhere(spot)
+    fn references(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>> {
+        Ok(with(control, "", |cancel, _| self.0.occurrences_everywhere(spot, cancel))?)
     }
 
-    fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
-        self.0.occurrences(offset)
+    fn occurrences(&self, offset: usize, control: &Control) -> Answer<Vec<Occurrence>> {
+        Ok(with(control, "", |cancel, _| self.0.occurrences(offset, cancel))?)
     }
 
     fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>> {
         self.0.name_at_spot(spot).map(|name| name.range)
     }
 
-    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal> {
-        self.0.rename_everywhere(spot, new).map_err(|error| Refusal::Impossible(error.to_string()))
+    fn rename(
+        &self,
+        spot: Spot<'_>,
+        new: &str,
+        control: &Control,
+    ) -> Result<Vec<(Located, String)>, Refusal> {
+        use apt_ide::navigation::RenameError;
+        with(control, "", |cancel, _| self.0.rename_everywhere(spot, new, cancel)).map_err(
+            |error| match error {
+                RenameError::Cancelled(_) => Refusal::Interrupted,
+                other => Refusal::Impossible(other.to_string()),
+            },
+        )
     }
 
-    fn routine(&self, spot: Spot<'_>) -> Option<Routine> {
-        self.0.routine_at(spot)
+    fn routine(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Routine>> {
+        Ok(with(control, "", |cancel, _| self.0.routine_at(spot, cancel))?)
     }
 
-    fn callers(&self, name: &str) -> Vec<Calls> {
-        self.0.callers(name)
+    fn callers(&self, name: &str, control: &Control) -> Answer<Vec<Calls>> {
+        Ok(with(control, "", |cancel, _| self.0.callers(name, cancel))?)
     }
 
-    fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls> {
-        self.0.callees(name, file)
+    fn callees(&self, name: Option<&str>, file: Option<&Path>, control: &Control) -> Answer<Vec<Calls>> {
+        Ok(with(control, "", |cancel, _| self.0.callees(name, file, cancel))?)
     }
 
     fn outline(&self, control: &Control) -> Answer<Vec<OutlineEntry>> {
@@ -381,14 +392,18 @@ impl Document for Program {
         let expansion = with(control, "expanding", |cancel, _| self.0.expand(at, depth, cancel))?;
         let tree = self.0.document().tree();
         let placed = expansion.lines.iter().zip(&expansion.room_behind).zip(&expansion.origins);
-        let lines = placed.map(|((line, room_behind), origin)| ExpandedLine {
-            room_behind: *room_behind,
-            line: u32::try_from(*line).unwrap_or(u32::MAX),
-            isn: origin.isn,
-            range: found::absolute_range(tree, origin),
-            stack: frames(found::frame_places(tree, origin)),
-        });
-        let origins = lines.collect();
+        let pace = control.pace();
+        let mut origins = Vec::with_capacity(expansion.origins.len());
+        for ((line, room_behind), origin) in placed {
+            pace.go_on(1)?;
+            origins.push(ExpandedLine {
+                room_behind: *room_behind,
+                line: u32::try_from(*line).unwrap_or(u32::MAX),
+                isn: origin.isn,
+                range: found::absolute_range(tree, origin),
+                stack: frames(found::frame_places(tree, origin)),
+            });
+        }
         Ok(Expansion { text: expansion.text, origins })
     }
 
@@ -435,24 +450,21 @@ impl Document for Program {
         let made = self.control_tape(machine, control)?;
         // Under its own name, whatever the program calls it.
         let machine = apt_ide::tape::machine(machine).map_or_else(|_| machine.to_owned(), |known| known.id);
-        let blocks: Vec<_> = made.tape.blocks.iter().map(|block| block.text.as_str()).collect();
-        let origin: Vec<_> = made.tape.blocks.iter().map(|block| block.isn).collect();
+        let pace = control.pace();
+        let blocks = &made.tape.blocks;
         let (text, tree) = (self.0.text(), self.0.document().tree());
         let (file, lines) = (self.0.document().file().unwrap_or("-"), LineIndex::new(&text));
-        let found: Vec<_> =
-            made.diagnostics.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines)).collect();
-        let mut sources = Sources::new(tree, &lines);
-        let sources: Vec<_> = made
-            .block_origins()
-            .map(|origin| origin.map(|origin| sources.of(origin)).unwrap_or_default())
-            .collect();
-        Ok(json!({
-            "machine": machine,
-            "blocks": blocks,
-            "origin": origin,
-            "sources": to_json(&sources)?,
-            "diagnostics": to_json(&found)?,
-        }))
+        let found = made.diagnostics.iter().map(|one| diagnostic_report(one, file, &text, tree, &lines));
+        let mut places = Sources::new(tree, &lines);
+        let sources =
+            made.block_origins().map(|origin| origin.map(|origin| places.of(origin)).unwrap_or_default());
+        let lists = [
+            ("blocks", list_json(blocks.iter().map(|block| block.text.as_str()), &pace)?),
+            ("origin", list_json(blocks.iter().map(|block| block.isn), &pace)?),
+            ("sources", list_json(sources, &pace)?),
+            ("diagnostics", list_json(found, &pace)?),
+        ];
+        Ok(with_lists(json!({ "machine": machine }), lists))
     }
 
     fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
@@ -531,8 +543,12 @@ fn with_lists<const N: usize>(mut object: Value, lists: [(&str, Value); N]) -> V
     object
 }
 
-fn list_json<T: serde::Serialize>(things: Vec<T>, pace: &Pace<'_>) -> Result<Value, Refusal> {
-    let mut list = Vec::with_capacity(things.len());
+fn list_json<T: serde::Serialize>(
+    things: impl IntoIterator<Item = T>,
+    pace: &Pace<'_>,
+) -> Result<Value, Refusal> {
+    let things = things.into_iter();
+    let mut list = Vec::with_capacity(things.size_hint().0);
     for thing in things {
         pace.go_on(1)?;
         list.push(to_json(&thing)?);

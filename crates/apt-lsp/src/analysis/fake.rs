@@ -167,14 +167,14 @@ impl Document for FakeDocument {
         Ok(Some(Hover { range, markdown }))
     }
 
-    fn completions(&self, _: usize) -> Vec<Completion> {
-        vec![Completion {
+    fn completions(&self, _: usize, _: &Control) -> Answer<Vec<Completion>> {
+        Ok(vec![Completion {
             label: "GOLFT".into(),
             kind: CompletionKind::Statement,
             detail: "go left".into(),
             documentation: String::new(),
             snippet: Some("GOLFT/${1:ds}$0".into()),
-        }]
+        }])
     }
 
     fn signature_help(&self, offset: usize) -> Option<SignatureHelp> {
@@ -185,13 +185,13 @@ impl Document for FakeDocument {
         Some(SignatureHelp { signatures: vec![signature], active: 0, parameter: Some(1) })
     }
 
-    fn definitions(&self, spot: Spot<'_>) -> Vec<Located> {
-        self.references(spot).into_iter().take(1).collect()
+    fn definitions(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>> {
+        Ok(self.references(spot, control)?.into_iter().take(1).collect())
     }
 
-    fn references(&self, spot: Spot<'_>) -> Vec<Located> {
+    fn references(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>> {
         let located = |occurrence| Located { source: None, occurrence };
-        self.occurrences(spot.offset).into_iter().map(located).collect()
+        Ok(self.occurrences(spot.offset, control)?.into_iter().map(located).collect())
     }
 
     fn with_changed_files(&self) -> Arc<dyn Document> {
@@ -219,37 +219,42 @@ impl Document for FakeDocument {
         self.diagnostics(level, control)
     }
 
-    fn occurrences(&self, offset: usize) -> Vec<Occurrence> {
-        let Some(range) = self.word_at(offset) else { return Vec::new() };
+    fn occurrences(&self, offset: usize, _: &Control) -> Answer<Vec<Occurrence>> {
+        let Some(range) = self.word_at(offset) else { return Ok(Vec::new()) };
         let places = self.places(&self.text[range]).into_iter().enumerate();
-        places.map(|(nth, range)| Occurrence { range, defines: nth == 0 }).collect()
+        Ok(places.map(|(nth, range)| Occurrence { range, defines: nth == 0 }).collect())
     }
 
     fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>> {
         self.word_at(spot.offset)
     }
 
-    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal> {
+    fn rename(
+        &self,
+        spot: Spot<'_>,
+        new: &str,
+        control: &Control,
+    ) -> Result<Vec<(Located, String)>, Refusal> {
         if new.is_empty() {
             return Err(Refusal::Impossible("a name has letters".into()));
         }
-        Ok(self.references(spot).into_iter().map(|one| (one, new.to_owned())).collect())
+        Ok(self.references(spot, control)?.into_iter().map(|one| (one, new.to_owned())).collect())
     }
 
     fn machine_of_program(&self, _: &Control) -> Answer<Option<String>> {
         Ok(None)
     }
 
-    fn routine(&self, _: Spot<'_>) -> Option<Routine> {
-        None
+    fn routine(&self, _: Spot<'_>, _: &Control) -> Answer<Option<Routine>> {
+        Ok(None)
     }
 
-    fn callers(&self, _: &str) -> Vec<Calls> {
-        Vec::new()
+    fn callers(&self, _: &str, _: &Control) -> Answer<Vec<Calls>> {
+        Ok(Vec::new())
     }
 
-    fn callees(&self, _: Option<&str>, _: Option<&std::path::Path>) -> Vec<Calls> {
-        Vec::new()
+    fn callees(&self, _: Option<&str>, _: Option<&Path>, _: &Control) -> Answer<Vec<Calls>> {
+        Ok(Vec::new())
     }
 
     fn outline(&self, _: &Control) -> Answer<Vec<OutlineEntry>> {

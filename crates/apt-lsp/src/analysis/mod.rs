@@ -109,34 +109,35 @@ pub(crate) trait Document: Send + Sync {
     fn selections(&self, offset: usize) -> Vec<Range<usize>>;
 
     /// What could be written at an offset.
-    fn completions(&self, offset: usize) -> Vec<Completion>;
+    fn completions(&self, offset: usize, control: &Control) -> Answer<Vec<Completion>>;
 
     /// The forms of what an offset is in the parameters of.
     fn signature_help(&self, offset: usize) -> Option<SignatureHelp>;
 
     /// Where the name at a place gets its meaning, in all files; the place in force there first.
-    fn definitions(&self, spot: Spot<'_>) -> Vec<Located>;
+    fn definitions(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>>;
 
     /// Where the name at a place stands, in all files.
-    fn references(&self, spot: Spot<'_>) -> Vec<Located>;
+    fn references(&self, spot: Spot<'_>, control: &Control) -> Answer<Vec<Located>>;
 
     /// Where the name at an offset stands.
-    fn occurrences(&self, offset: usize) -> Vec<Occurrence>;
+    fn occurrences(&self, offset: usize, control: &Control) -> Answer<Vec<Occurrence>>;
 
     /// The name at a place, if it is one that can be renamed.
     fn renamable(&self, spot: Spot<'_>) -> Option<Range<usize>>;
 
     /// The edits in all files that give the name at a place another spelling, all relative to this version.
-    fn rename(&self, spot: Spot<'_>, new: &str) -> Result<Vec<(Located, String)>, Refusal>;
+    fn rename(&self, spot: Spot<'_>, new: &str, control: &Control)
+    -> Result<Vec<(Located, String)>, Refusal>;
 
     /// The macro that is named at a place, or the program at its PARTNO.
-    fn routine(&self, spot: Spot<'_>) -> Option<Routine>;
+    fn routine(&self, spot: Spot<'_>, control: &Control) -> Answer<Option<Routine>>;
 
     /// Who calls a macro.
-    fn callers(&self, name: &str) -> Vec<Calls>;
+    fn callers(&self, name: &str, control: &Control) -> Answer<Vec<Calls>>;
 
     /// Whom a macro calls, or for none the statements outside of all macros of a file (none is the program itself).
-    fn callees(&self, name: Option<&str>, file: Option<&Path>) -> Vec<Calls>;
+    fn callees(&self, name: Option<&str>, file: Option<&Path>, control: &Control) -> Answer<Vec<Calls>>;
 
     /// The outline.
     fn outline(&self, control: &Control) -> Answer<Vec<OutlineEntry>>;

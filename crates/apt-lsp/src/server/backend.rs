@@ -187,9 +187,14 @@ fn formatting_edits(
 }
 
 /// Places in the files of the program that a document belongs to, as locations.
-fn locations(snapshot: &Snapshot, found: &[Located]) -> Vec<lsp::Location> {
-    let mut places = snapshot.places();
-    found.iter().filter_map(|one| places.location(one.source.as_ref(), &one.occurrence.range)).collect()
+fn locations(snapshot: &Snapshot, found: &[Located], control: &Control) -> Answer<Vec<lsp::Location>> {
+    let (mut places, pace) = (snapshot.places(), control.pace());
+    let mut locations = Vec::with_capacity(found.len());
+    for one in found {
+        pace.go_on(1)?;
+        locations.extend(places.location(one.source.as_ref(), &one.occurrence.range));
+    }
+    Ok(locations)
 }
 
 /// The kinds of actions that a client asks for: without saying so all that belong to a place.
@@ -294,8 +299,8 @@ impl LanguageServer for Backend {
 
     async fn completion(&self, params: lsp::CompletionParams) -> Result<Option<lsp::CompletionResponse>> {
         let snippets = self.features().snippets;
-        self.ask_at("completion", params.text_document_position, move |snapshot, offset, _| {
-            let items = outgoing::completions(snapshot.document.completions(offset), snippets);
+        self.ask_at("completion", params.text_document_position, move |snapshot, offset, control| {
+            let items = outgoing::completions(snapshot.document.completions(offset, control)?, snippets);
             Ok(Some(lsp::CompletionResponse::Array(items)))
         })
         .await
@@ -314,11 +319,11 @@ impl LanguageServer for Backend {
         &self,
         params: lsp::GotoDefinitionParams,
     ) -> Result<Option<lsp::GotoDefinitionResponse>> {
-        self.ask_at("definition", params.text_document_position_params, |snapshot, offset, _| {
+        self.ask_at("definition", params.text_document_position_params, |snapshot, offset, control| {
             let file = snapshot.included_path();
             let spot = Spot { file: file.as_deref(), offset };
-            let found = snapshot.program().document.definitions(spot);
-            let places = locations(snapshot, &found);
+            let found = snapshot.program().document.definitions(spot, control)?;
+            let places = locations(snapshot, &found, control)?;
             Ok((!places.is_empty()).then_some(lsp::GotoDefinitionResponse::Array(places)))
         })
         .await
@@ -357,9 +362,10 @@ impl LanguageServer for Backend {
         &self,
         params: lsp::DocumentHighlightParams,
     ) -> Result<Option<Vec<lsp::DocumentHighlight>>> {
-        self.ask_at("highlights", params.text_document_position_params, |snapshot, offset, _| {
-            let found = snapshot.document.occurrences(offset);
-            Ok(Some(found.iter().map(|one| outgoing::highlight(&snapshot.index, one)).collect()))
+        self.ask_at("highlights", params.text_document_position_params, |snapshot, offset, control| {
+            let (found, pace) = (snapshot.document.occurrences(offset, control)?, control.pace());
+            let highlight = |one| pace.go_on(1).map(|()| outgoing::highlight(&snapshot.index, one));
+            found.iter().map(highlight).collect::<Answer<_>>().map(Some)
         })
         .await
     }
@@ -379,13 +385,15 @@ impl LanguageServer for Backend {
     async fn rename(&self, params: lsp::RenameParams) -> Result<Option<lsp::WorkspaceEdit>> {
         let place = params.text_document_position;
         let snapshot = job::snapshot(&self.events, place.text_document.uri).await?;
-        let changes = job::on_snapshot("rename", snapshot, move |snapshot, _| {
+        let changes = job::on_snapshot("rename", snapshot, move |snapshot, control| {
             let file = snapshot.included_path();
             let spot = Spot { file: file.as_deref(), offset: snapshot.index.offset(place.position) };
-            let edits = snapshot.program().document.rename(spot, &params.new_name)?;
+            let edits = snapshot.program().document.rename(spot, &params.new_name, control)?;
+            let pace = control.pace();
             let mut places = snapshot.places();
             let mut changes = HashMap::<Uri, Vec<lsp::TextEdit>>::new();
             for (one, new_text) in edits {
+                pace.go_on(1)?;
                 if let Some(at) = places.location(one.source.as_ref(), &one.occurrence.range) {
                     changes.entry(at.uri).or_default().push(lsp::TextEdit { range: at.range, new_text });
                 }

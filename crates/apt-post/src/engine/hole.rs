@@ -368,6 +368,9 @@ impl Engine<'_> {
         let step = cycle.step.unwrap_or(cycle.depth + cycle.clearance);
         let passes = (((plane - bottom) / step).ceil() as u32).clamp(1, MOST_PASSES);
         for pass in 1..=passes {
+            if self.patience.ends_after(1) {
+                return;
+            }
             let depth = if pass == passes { bottom } else { plane - step * f64::from(pass) };
             self.feed_down(at(depth), cycle.feed);
             if pass < passes {

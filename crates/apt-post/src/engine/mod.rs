@@ -6,8 +6,8 @@ mod start;
 mod statement;
 mod tool;
 
-use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, Units};
-use apt_geometry::Vec3;
+use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
+use apt_geometry::{Vec3, patience::Patience, pieces::Pieces};
 use smol_str::SmolStr;
 
 use crate::{
@@ -27,42 +27,50 @@ const SPINDLE_AXIS_COSINE: f64 = 1.0 - 1.5e-10;
 ///
 /// The tape is made also where something is found, with the faulty statement left out; [`Tape::is_ok`] says whether
 /// it may be run.
+pub fn post(records: &[ClRecord], machine: &MachineDefinition, options: &PostOptions) -> Tape {
+    made(records, machine, options, Patience::default())
+}
+
+/// The same.
 ///
 /// # Errors
 ///
-/// [`Cancelled`] when `cancel`, which is asked often, said yes.
-pub fn post(
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn post_until(
     records: &[ClRecord],
     machine: &MachineDefinition,
     options: &PostOptions,
-    cancel: Cancel<'_>,
+    patience: Patience<'_>,
 ) -> Result<Tape, Cancelled> {
-    let units = start::units(records, machine, options);
-    let mut engine = Engine::new(machine, options, &units, cancel);
-    engine.start(records);
-    for (index, record) in records.iter().enumerate() {
-        if index % RECORDS_BETWEEN_QUESTIONS == 0 && engine.is_cancelled() {
-            return Err(Cancelled);
-        }
-        engine.record(record);
-    }
-    engine.finish();
-    if engine.cancelled {
-        return Err(Cancelled);
-    }
-    Ok(Tape { blocks: engine.control.blocks, findings: engine.control.findings, units: units.tape })
+    let tape = made(records, machine, options, patience);
+    if patience.was_over() { Err(Cancelled) } else { Ok(tape) }
 }
-
-/// Asked while a tape is made; `true` ends the work.
-pub type Cancel<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// The work was ended by the one who wanted it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Records after which the caller is asked again whether the tape is still wanted: a fraction of a millisecond.
-const RECORDS_BETWEEN_QUESTIONS: usize = 64;
+/// The tape up to the end, or to where who waits gives up.
+fn made(
+    records: &[ClRecord],
+    machine: &MachineDefinition,
+    options: &PostOptions,
+    patience: Patience<'_>,
+) -> Tape {
+    let units = start::units(records, machine, options, patience);
+    let mut engine = Engine::new(machine, options, &units, patience);
+    engine.start(records);
+    for record in records {
+        if patience.ends_after(1) {
+            break;
+        }
+        engine.record(record);
+    }
+    engine.finish();
+    let Control { blocks, findings, .. } = engine.control;
+    Tape { blocks: blocks.joined(patience), findings: findings.joined(patience), units: units.tape }
+}
 
 /// A feed rate in force, in tape units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,9 +114,7 @@ struct PendingCompensation {
 }
 
 struct Engine<'a> {
-    cancel: Cancel<'a>,
-    /// Whether `cancel` said yes: loops end then.
-    cancelled: bool,
+    patience: Patience<'a>,
     control: Control<'a>,
     machine: &'a MachineDefinition,
     fit_points: bool,
@@ -136,8 +142,8 @@ struct Engine<'a> {
     intol: Option<f64>,
     outtol: Option<f64>,
     arc_tolerance: Option<f64>,
-    run: Vec<RunPoint>,
-    circles: Vec<Circle>,
+    run: Pieces<RunPoint>,
+    circles: Pieces<Circle>,
     /// Circle of the motion record that comes next.
     next_circle: Option<usize>,
     compensation: Option<PendingCompensation>,
@@ -167,11 +173,10 @@ impl<'a> Engine<'a> {
         machine: &'a MachineDefinition,
         options: &PostOptions,
         units: &start::UnitChoice,
-        cancel: Cancel<'a>,
+        patience: Patience<'a>,
     ) -> Self {
         Engine {
-            cancel,
-            cancelled: false,
+            patience,
             control: Control::new(machine, units.tape),
             machine,
             fit_points: options.fit_points.unwrap_or(machine.arc.fit_points),
@@ -194,8 +199,8 @@ impl<'a> Engine<'a> {
             intol: None,
             outtol: None,
             arc_tolerance: None,
-            run: Vec::new(),
-            circles: Vec::new(),
+            run: Pieces::default(),
+            circles: Pieces::default(),
             next_circle: None,
             compensation: None,
             compensated: false,
@@ -238,12 +243,6 @@ impl<'a> Engine<'a> {
             ClKind::MultipleAxes(_) => {}
             ClKind::End => self.close(),
         }
-    }
-
-    /// Asks whether the tape is still wanted.
-    fn is_cancelled(&mut self) -> bool {
-        self.cancelled |= (self.cancel)();
-        self.cancelled
     }
 
     fn find(&mut self, kind: PostFindingKind) {
@@ -349,7 +348,10 @@ impl<'a> Engine<'a> {
     fn tape_positions(&mut self, points: &[ClPoint]) -> Vec<Vec3> {
         let mut positions = Vec::with_capacity(points.len());
         let (mut tilted, mut infinite) = (None, false);
-        for point in points {
+        for (done, point) in points.iter().enumerate() {
+            if self.patience.ends_among(done, POSITIONS_A_UNIT) {
+                break;
+            }
             let axis = point.axis;
             let position = (point.position + self.shift) * self.scale;
             if point.with_axis && (axis.z <= 0.0 || axis.z < SPINDLE_AXIS_COSINE * axis.norm()) {

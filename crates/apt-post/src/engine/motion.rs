@@ -1,6 +1,6 @@
 //! Motion: rapid moves, and runs at feed rate with arcs fitted in.
 
-use apt_cldata::record::ClPoint;
+use apt_cldata::record::{ClPoint, POSITIONS_A_UNIT};
 use apt_geometry::Vec3;
 
 use super::{Engine, Feed, RunPoint};
@@ -20,9 +20,6 @@ const CENTERS: [&str; 3] = ["I", "J", "K"];
 const PLANE_TOLERANCE: f64 = 1e-7;
 /// OUTTOL of a program that states none: .0005 inch.
 const DEFAULT_OUTTOL_MM: f64 = 0.0127;
-
-/// Points after which the caller is asked again whether the tape is still wanted.
-const POINTS_BETWEEN_QUESTIONS: usize = 256;
 
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
@@ -44,8 +41,8 @@ impl Engine<'_> {
         if self.rapid.is_some() {
             self.flush();
             self.rapid = None;
-            for (index, position) in positions.into_iter().enumerate() {
-                if index % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+            for position in positions {
+                if self.patience.ends_after(1) {
                     return;
                 }
                 self.leave_cycle();
@@ -56,15 +53,20 @@ impl Engine<'_> {
             if circle.is_some() {
                 self.circle_in_cycle();
             }
-            for (index, position) in positions.into_iter().enumerate() {
-                if index % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+            for position in positions {
+                if self.patience.ends_after(1) {
                     return;
                 }
                 self.hole(position);
             }
         } else {
             let place = self.control.place;
-            self.run.extend(positions.into_iter().map(|position| RunPoint { position, place, circle }));
+            for (done, position) in positions.into_iter().enumerate() {
+                if self.patience.ends_among(done, POSITIONS_A_UNIT) {
+                    return;
+                }
+                self.run.push(RunPoint { position, place, circle });
+            }
         }
     }
 
@@ -113,11 +115,14 @@ impl Engine<'_> {
 
     /// Makes blocks of the waiting run.
     pub(super) fn flush(&mut self) {
-        let run = std::mem::take(&mut self.run);
+        let run = std::mem::take(&mut self.run).joined(self.patience);
         let here = self.control.place;
         let mut rest = run.as_slice();
         while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|point| point.circle == first.circle).count();
+            if self.patience.was_over() {
+                return;
+            }
+            let count = self.group_length(rest, first.circle);
             let (group, others) = rest.split_at(count);
             self.group(group);
             rest = others;
@@ -125,22 +130,46 @@ impl Engine<'_> {
         self.control.place = here;
     }
 
+    /// How many points of a run lie on the circle of the first of them.
+    fn group_length(&self, run: &[RunPoint], circle: Option<usize>) -> usize {
+        let mut count = 0;
+        for points in run.chunks(POSITIONS_A_UNIT) {
+            let alike = points.iter().take_while(|point| point.circle == circle).count();
+            count += alike;
+            if alike < points.len() || self.patience.ends_after(1) {
+                break;
+            }
+        }
+        count
+    }
+
+    /// Where the tool stands, and points after it, as the control reads them. Without a start the first point is reached
+    /// straight anyway. Fewer where who waits gives up.
+    fn whole_run(&self, points: &[RunPoint]) -> Vec<Vec3> {
+        let mut whole = Vec::with_capacity(1 + points.len());
+        whole.extend(
+            self.position.or(points.first().map(|point| point.position)).map(|start| self.rounded(start)),
+        );
+        for point in points {
+            if self.patience.ends_after(1) {
+                break;
+            }
+            whole.push(self.rounded(point.position));
+        }
+        whole
+    }
+
     /// Points on one circle, or on none.
     fn group(&mut self, points: &[RunPoint]) {
-        let positions: Vec<Vec3> = points.iter().map(|point| self.rounded(point.position)).collect();
-        // Where the tool stands, and the run after it; without a start the first point is reached straight anyway.
-        let start = self.position.or(positions.first().copied());
-        let whole: Vec<Vec3> =
-            start.into_iter().map(|start| self.rounded(start)).chain(positions.iter().copied()).collect();
+        let whole = self.whole_run(points);
+        let Some((_, positions)) = whole.split_first() else { return };
         let mut at = 0;
         let mut arcs = 0;
-        let mut blocks = 0;
         let (planes, center) = self.planes(points);
         while let Some(point) = points.get(at) {
-            if blocks % POINTS_BETWEEN_QUESTIONS == 0 && self.is_cancelled() {
+            if self.patience.ends_after(1) {
                 return;
             }
-            blocks += 1;
             self.control.place = point.place;
             let straight = self.position.is_none() || self.compensation.is_some() || self.approach.is_some();
             if !straight {
@@ -163,7 +192,7 @@ impl Engine<'_> {
             self.linear_to(positions[at]);
             at += 1;
         }
-        self.report_chords(points, &positions, center, arcs);
+        self.report_chords(points, positions, center, arcs);
     }
 
     fn report_chords(&mut self, points: &[RunPoint], positions: &[Vec3], center: Option<Vec3>, arcs: usize) {
@@ -197,7 +226,7 @@ impl Engine<'_> {
         (planes, center)
     }
 
-    fn arc_limits(&self, vouched: bool) -> ArcLimits {
+    fn arc_limits(&self, vouched: bool) -> ArcLimits<'_> {
         let rules = &self.machine.arc;
         let own = self.arc_tolerance.unwrap_or_else(|| self.tape_length(rules.tolerance_mm));
         // A circle record comes from the arithmetic element, which has a tolerance also when the program states none.
@@ -218,6 +247,7 @@ impl Engine<'_> {
             helix: rules.helix,
             resolution: register.map_or(f64::EPSILON, |register| register.format(inch).resolution()),
             least_points: rules.fit_least_points,
+            patience: self.patience,
         }
     }
 

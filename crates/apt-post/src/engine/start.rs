@@ -1,6 +1,7 @@
 //! What has to be known before the first block: units, part name, program number.
 
-use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
+use apt_cldata::record::{ClKind, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
+use apt_geometry::patience::Patience;
 
 use super::{Engine, MILLIMETERS_PER_INCH};
 use crate::{
@@ -32,18 +33,33 @@ impl UnitChoice {
 }
 
 /// The program's UNITS; without it the unit of its first feed rate; without that the caller's default.
-pub(super) fn units(records: &[ClRecord], machine: &MachineDefinition, options: &PostOptions) -> UnitChoice {
-    let stated = records.iter().find_map(|record| match record.kind {
+pub(super) fn units(
+    records: &[ClRecord],
+    machine: &MachineDefinition,
+    options: &PostOptions,
+    patience: Patience<'_>,
+) -> UnitChoice {
+    let stated = first(records, patience, |record| match record.kind {
         ClKind::Units(units) => Some(units),
         _ => None,
     });
-    let program = stated.or_else(|| records.iter().find_map(feed_units)).unwrap_or(options.default_units);
+    let program = stated.or_else(|| first(records, patience, feed_units)).unwrap_or(options.default_units);
     let tape = match machine.units {
         OutputUnits::Program => program,
         OutputUnits::Mm => Units::Millimeters,
         OutputUnits::Inch => Units::Inches,
     };
     UnitChoice { program, tape }
+}
+
+/// The first thing that some records tell; none where who waits gives up before.
+fn first<'a, T>(
+    records: &'a [ClRecord],
+    patience: Patience<'_>,
+    told: impl Fn(&'a ClRecord) -> Option<T>,
+) -> Option<T> {
+    let mut pieces = records.chunks(POSITIONS_A_UNIT).take_while(|_| !patience.ends_after(1));
+    pieces.find_map(|records| records.iter().find_map(&told))
 }
 
 fn feed_units(record: &ClRecord) -> Option<Units> {
@@ -61,14 +77,14 @@ fn feed_units(record: &ClRecord) -> Option<Units> {
 impl Engine<'_> {
     /// The first blocks.
     pub(super) fn start(&mut self, records: &[ClRecord]) {
-        let name = records.iter().find_map(|record| match &record.kind {
+        let name = first(records, self.patience, |record| match &record.kind {
             ClKind::Text { word, text, .. } if word == "PARTNO" => Some((record, text.trim())),
             _ => None,
         });
         if let Some((record, _)) = name {
             self.control.place = (record.isn, record.source);
         }
-        self.first_tool = records.iter().find(|record| loads_tool(record)).map(|record| record.isn);
+        self.first_tool = first(records, self.patience, |record| loads_tool(record).then_some(record.isn));
         let text = name.map_or("", |(_, text)| text);
         let codes = &self.machine.codes;
         let unit = match self.control.units {

@@ -11,7 +11,7 @@ pub(crate) use context::{Budget, DataCards, Here, PendingDrive, Region};
 pub(crate) use output::{Output, same_place_and_kind};
 pub(crate) use state::{State, Synonym};
 pub(crate) use step::{StepEnd, TopLevel};
-pub(crate) use trace::{RegionLabels, Trace, TracedLine};
+pub(crate) use trace::{RegionLabels, Trace, TracedLine, assigned_names};
 
 use apt_syntax::{
     TextRange,

@@ -5,6 +5,7 @@ use std::{
     sync::Arc,
 };
 
+use apt_geometry::pieces::Pieces;
 use apt_syntax::{
     ParsedStatement, TextRange,
     statement::{Body, Element, ElementKind, Part, Reference},
@@ -23,7 +24,7 @@ use crate::{
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     /// The statements in order of execution.
-    pub(crate) lines: Vec<TracedLine>,
+    pub(crate) lines: Pieces<TracedLine>,
     /// Only what the statement of the program with this number executes.
     pub(crate) at: Option<u32>,
     /// How many levels of calls, loops and inclusions are opened; what lies deeper stands as it is written.
@@ -304,8 +305,15 @@ impl Evaluator<'_> {
 
     /// The names that a region assigns to show their values until [`Evaluator::leave_region`].
     pub(crate) fn enter_region<'s>(&mut self, statements: impl Iterator<Item = &'s ParsedStatement>) {
+        if self.trace.is_some() {
+            self.enter_names(statements.flat_map(assigned_names).collect());
+        }
+    }
+
+    /// The same of a region that assigns to these names.
+    pub(crate) fn enter_names(&mut self, names: BTreeSet<SmolStr>) {
         if let Some(trace) = &mut self.trace {
-            trace.varying.push(statements.flat_map(assigned_names).collect());
+            trace.varying.push(names);
         }
     }
 
@@ -365,7 +373,7 @@ impl Evaluator<'_> {
 }
 
 /// The names that a statement gives values to, and those that it hands to a macro.
-fn assigned_names(statement: &ParsedStatement) -> Vec<SmolStr> {
+pub(crate) fn assigned_names(statement: &ParsedStatement) -> Vec<SmolStr> {
     let elements = &statement.elements;
     let parts = statement.statement.parts.iter();
     let mut names: Vec<SmolStr> = parts

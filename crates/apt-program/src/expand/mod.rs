@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use apt_geometry::patience::{Patience, Waiting};
+use apt_geometry::{
+    patience::{Patience, Waiting, put_away},
+    pieces::Pieces,
+};
 use apt_syntax::{
     SyntaxTree,
     dialect::TextWords,
@@ -11,7 +14,7 @@ use apt_syntax::{
 use smol_str::SmolStr;
 
 use crate::{
-    evaluator::{Evaluator, RegionLabels, State, TopLevel, Trace, TracedLine},
+    evaluator::{Evaluator, RegionLabels, State, TopLevel, Trace, TracedLine, assigned_names},
     options::Options,
     record::Origin,
 };
@@ -63,33 +66,41 @@ pub fn expand(
     let count = tree.statement_count();
     let waiting = Waiting::until(cancel);
     let patience = waiting.patience();
-    let mut all = Vec::with_capacity(count);
+    let (jumps_free, do_loops) = (tree.dialect().branch_anywhere, tree.dialect().do_loops);
     let mut labels = RegionLabels::default();
+    let (mut varying, mut has_do) = (BTreeSet::new(), false);
     for index in (0..count).take_while(|_| !patience.ends_after(1)) {
         let statement = tree.statement(index).parsed();
         labels.statement(&statement);
-        all.push(statement);
+        has_do |= is_do(&statement.elements);
+        if (jumps_free || do_loops) && repeats(&statement.elements) {
+            varying.extend(assigned_names(&statement));
+        }
     }
     evaluator.trace = Some(Trace::new(isn, depth, labels));
-    if tree.dialect().branch_anywhere || tree.dialect().do_loops {
-        let jumps_free = tree.dialect().branch_anywhere;
-        let all = if jumps_free || all.iter().any(|one| is_do(&one.elements)) { all } else { Vec::new() };
+    if jumps_free || do_loops {
         // The whole program is one region then: loops are made of jumps.
-        evaluator.enter_region(all.iter().filter(|one| repeats(&one.elements)).map(|one| &**one));
+        evaluator.enter_names(if jumps_free || has_do { varying } else { BTreeSet::new() });
     }
     let mut top = TopLevel::new(tree);
     let mut index = 0;
     while index < count && !evaluator.state.ended && !patience.was_over() && !evaluator.is_cancelled() {
         index = evaluator.step(&mut top, index).next;
     }
-    let lines = evaluator.trace.map(|trace| trace.lines).unwrap_or_default();
-    let needed = needed_macros(&lines, patience);
-    let lines = lines
-        .into_iter()
-        .take_while(|_| !patience.ends_after(1))
-        .filter(|line| line.definition_of.as_ref().is_none_or(|name| needed.contains(name)))
-        .map(|line| expanded_line(line, tree.dialect().text_words))
-        .collect();
+    let Evaluator { trace, state, output, .. } = evaluator;
+    let mut trace = trace.unwrap_or_default();
+    let traced = std::mem::take(&mut trace.lines);
+    put_away((state, output, trace), traced.len());
+    let needed = needed_macros(&traced, patience);
+    let mut lines = Vec::with_capacity(traced.len());
+    for line in traced {
+        if patience.ends_after(1) {
+            break;
+        }
+        if line.definition_of.as_ref().is_none_or(|name| needed.contains(name)) {
+            lines.push(expanded_line(line, tree.dialect().text_words));
+        }
+    }
     Expansion { lines }
 }
 
@@ -109,7 +120,7 @@ fn is_do(elements: &[Element]) -> bool {
 }
 
 /// The macros that the lines still call, and those that these call.
-fn needed_macros(lines: &[TracedLine], patience: Patience<'_>) -> BTreeSet<SmolStr> {
+fn needed_macros(lines: &Pieces<TracedLine>, patience: Patience<'_>) -> BTreeSet<SmolStr> {
     let mut needed: BTreeSet<SmolStr> = BTreeSet::new();
     loop {
         let before = needed.len();

@@ -1,6 +1,6 @@
 //! PRINT, PUNCH and READ/1 (language reference 7.9): what the program lists, and dumps that another program takes back.
 
-use apt_geometry::patience::Patience;
+use apt_geometry::patience::Waiting;
 use apt_syntax::{
     TextRange,
     statement::{Argument, Expression, Name, Reference},
@@ -44,6 +44,9 @@ impl Sort {
         }
     }
 }
+
+/// Items of a list that are printed or punched between two questions, each in about a microsecond.
+const ITEMS_BETWEEN_QUESTIONS: usize = 256;
 
 impl Evaluator<'_> {
     /// PRINT, PUNCH and READ; names count as used.
@@ -129,7 +132,10 @@ impl Evaluator<'_> {
             Some(2.0) => PrintFormat::Values,
             Some(_) => PrintFormat::Full,
         };
-        for item in &items {
+        for (done, item) in items.iter().enumerate() {
+            if self.is_given_up_among(done) {
+                return;
+            }
             self.list(ListingKind::Item { format, item: item.clone() }, major.range);
         }
         if number == Some(4.0) {
@@ -151,7 +157,10 @@ impl Evaluator<'_> {
 
     /// The cards of the items with a value of this sort, and the END card.
     fn punch_items(&mut self, major: Major<'_>, items: &[PrintedItem], sort: Sort) {
-        for item in items {
+        for (done, item) in items.iter().enumerate() {
+            if self.is_given_up_among(done) {
+                return;
+            }
             let Some(value) = item.value.clone().filter(|value| sort.takes(value)) else { continue };
             if item.name == NESTED {
                 let found = Found::Geometry(match &value {
@@ -169,6 +178,11 @@ impl Evaluator<'_> {
         self.list(ListingKind::Card(SmolStr::new_static(cards::END_CARD)), major.range);
     }
 
+    /// Asks once in so many items that are listed one after the other, of which so many are done.
+    fn is_given_up_among(&mut self, done: usize) -> bool {
+        done % ITEMS_BETWEEN_QUESTIONS == ITEMS_BETWEEN_QUESTIONS - 1 && self.is_cancelled()
+    }
+
     // What a list names.
 
     /// The items of a list, with their values in the reference system in force.
@@ -178,8 +192,14 @@ impl Evaluator<'_> {
             match argument {
                 Argument::Word(word) if word.word.spelling == "ALL" => {
                     self.output.lists_all = true;
-                    let all = values_of(&self.state.symbols, self.state.system.as_ref(), Patience::default());
-                    items.extend(all.into_iter().map(|(name, value)| named_item(&name, value)));
+                    let waiting = Waiting::until(self.cancel);
+                    let patience = waiting.patience();
+                    let all = values_of(&self.state.symbols, self.state.system.as_ref(), patience);
+                    items.reserve(all.len());
+                    for (name, value) in all.into_iter().take_while(|_| !patience.ends_after(1)) {
+                        items.push(named_item(&name, value));
+                    }
+                    self.cancelled |= waiting.has_given_up();
                 }
                 Argument::Expression(Expression::Reference(reference)) => {
                     self.listed_reference(reference, &mut items);

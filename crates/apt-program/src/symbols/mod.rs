@@ -6,7 +6,7 @@ mod system;
 
 use std::sync::Arc;
 
-use apt_geometry::{canonical::Geometry, patience::Patience};
+use apt_geometry::{canonical::Geometry, patience::Patience, pieces::sorted};
 use smol_str::SmolStr;
 
 pub(crate) use array::{Array, ArrayElement};
@@ -104,7 +104,7 @@ pub(crate) fn values_of(
     let seen = |stored: &Stored| {
         Value::Geometry(stored.seen_from(system).unwrap_or_else(|| Arc::clone(&stored.geometry)))
     };
-    let mut values = Vec::new();
+    let mut values = Vec::with_capacity(table.len());
     for (name, symbol) in table {
         if patience.ends_after(1) {
             break;
@@ -129,8 +129,7 @@ pub(crate) fn values_of(
             Meaning::Macro(_) | Meaning::Label | Meaning::Poisoned => {}
         }
     }
-    values.sort_by(|left, right| natural_order(&left.0, &right.0));
-    values
+    sorted(values, |left, right| natural_order(&left.0, &right.0), patience)
 }
 
 /// What is appended to the name of an array where arrays and simple names of one stem are distinct (APT4).

@@ -24,7 +24,7 @@ mod tilt;
 use std::cmp::Reverse;
 
 use apt_cldata::{conversion::ConversionNote, text::ReadError};
-use apt_geometry::{canonical::GeometryKind, patience::Patience};
+use apt_geometry::{canonical::GeometryKind, patience::Patience, pieces::sorted};
 use apt_post::{PostFinding, Tape};
 use apt_program::{
     Origin, Program,
@@ -193,7 +193,7 @@ fn completed(
     }
     allowances.filter(&mut list);
     list.extend(allowances.idle(result.is_some()));
-    Ok(in_order(list, settings))
+    in_order(list, settings, patience)
 }
 
 fn of_program(finding: &Finding) -> Diagnostic {
@@ -312,26 +312,40 @@ pub fn tape_diagnostics(
             fixes: Vec::new(),
         }
     };
-    let mut list = tape.findings.iter().map(of_post).collect();
+    let mut list = Vec::with_capacity(tape.findings.len());
+    for finding in &tape.findings {
+        go_on(patience, 1)?;
+        list.push(of_post(finding));
+    }
     Allowances::of(tree, patience)?.filter(&mut list);
-    Ok(in_order(list, settings))
+    in_order(list, settings, patience)
 }
 
 /// What the reader of a CL file says, with the severities of the settings. `origins` has the statement of every line.
-pub fn read_diagnostics(errors: &[ReadError], origins: &[Origin], settings: &Settings) -> Vec<Diagnostic> {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn read_diagnostics(
+    errors: &[ReadError],
+    origins: &[Origin],
+    settings: &Settings,
+    patience: Patience<'_>,
+) -> Result<Vec<Diagnostic>, Cancelled> {
     let of_line = |error: &ReadError| {
+        go_on(patience, 1)?;
         let (text, severity) = cutter_locations::word(error);
         let unknown = || Origin::in_program(error.isn.max(1), TextRange::default());
-        Diagnostic {
+        Ok(Diagnostic {
             wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
             severity,
             origin: origins.get(error.line as usize).cloned().unwrap_or_else(unknown),
             related: Vec::new(),
             unnecessary: false,
             fixes: Vec::new(),
-        }
+        })
     };
-    in_order(errors.iter().map(of_line).collect(), settings)
+    in_order(errors.iter().map(of_line).collect::<Result<_, _>>()?, settings, patience)
 }
 
 /// What a conversion to another CL dialect tells, with the severities of the settings. `origins` is the table that the records refer to.
@@ -360,26 +374,61 @@ pub fn conversion_diagnostics(
     };
     let mut list = notes.iter().map(of_note).collect();
     Allowances::of(tree, patience)?.filter(&mut list);
-    Ok(in_order(list, settings))
+    in_order(list, settings, patience)
 }
 
 /// Applies the severities of the settings and sorts by place.
-fn in_order(mut list: Vec<Diagnostic>, settings: &Settings) -> Vec<Diagnostic> {
-    list.retain_mut(|diagnostic| match settings.severity.get(diagnostic.wording.code) {
+fn in_order(
+    list: Vec<Diagnostic>,
+    settings: &Settings,
+    patience: Patience<'_>,
+) -> Result<Vec<Diagnostic>, Cancelled> {
+    let mut told = Vec::with_capacity(list.len());
+    for mut diagnostic in list {
+        go_on(patience, 1)?;
+        if set_severity(&mut diagnostic, settings) {
+            told.push(diagnostic);
+        }
+    }
+    by_place(told, patience)
+}
+
+/// Gives a diagnostic the severity of the settings; false if they want it left out.
+fn set_severity(diagnostic: &mut Diagnostic, settings: &Settings) -> bool {
+    match settings.severity.get(diagnostic.wording.code) {
         None => true,
         Some(setting) => setting.severity().map(|severity| diagnostic.severity = severity).is_some(),
-    });
-    sort_by_place(&mut list);
-    list
+    }
 }
 
 /// Sorts diagnostics by their place in the program; those of one place keep their order.
-pub fn sort_by_place(list: &mut [Diagnostic]) {
-    list.sort_by_key(|diagnostic| {
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+pub fn by_place(list: Vec<Diagnostic>, patience: Patience<'_>) -> Result<Vec<Diagnostic>, Cancelled> {
+    // The places are sorted, not the diagnostics, which are much larger.
+    let mut places = Vec::with_capacity(list.len());
+    for (number, diagnostic) in list.iter().enumerate() {
+        go_on(patience, 1)?;
         let (isn, range) = diagnostic.origin.place_in_program();
         let inside = diagnostic.origin.source.as_ref().map(|_| diagnostic.origin.isn);
-        (isn, range.start(), inside)
-    });
+        places.push(((isn, range.start(), inside), number));
+    }
+    if places.is_sorted() {
+        return Ok(list);
+    }
+    let mut waiting = Vec::with_capacity(list.len());
+    for diagnostic in list {
+        go_on(patience, 1)?;
+        waiting.push(Some(diagnostic));
+    }
+    let mut found = Vec::with_capacity(places.len());
+    for (_, number) in sorted(places, Ord::cmp, patience) {
+        go_on(patience, 1)?;
+        found.extend(waiting.get_mut(number).and_then(Option::take));
+    }
+    if patience.was_over() { Err(Cancelled) } else { Ok(found) }
 }
 
 /// What is told when the settings name a machine that nobody knows, with the severities of the settings.
@@ -390,7 +439,7 @@ pub fn unknown_machine(name: &str, known: &[String], settings: &Settings) -> Vec
         hint: Some(format!("the machines are {}", known.join(", "))),
         apt3: None,
     };
-    let diagnostic = Diagnostic {
+    let mut diagnostic = Diagnostic {
         wording,
         severity: Severity::Warning,
         origin: Origin::in_program(1, TextRange::default()),
@@ -398,7 +447,7 @@ pub fn unknown_machine(name: &str, known: &[String], settings: &Settings) -> Vec
         unnecessary: false,
         fixes: Vec::new(),
     };
-    in_order(vec![diagnostic], settings)
+    if set_severity(&mut diagnostic, settings) { vec![diagnostic] } else { Vec::new() }
 }
 
 fn related(kind: RelatedKind) -> &'static str {

@@ -20,7 +20,8 @@ pub(super) fn columns<'a>(
     layout: &Layout,
     patience: Patience<'_>,
 ) -> Result<Vec<usize>, Cancelled> {
-    let lines: Vec<Option<&Line>> = lines.collect();
+    let lines = lines.map(|line| go_on(patience, 1).map(|()| line));
+    let lines = lines.collect::<Result<Vec<Option<&Line>>, Cancelled>>()?;
     let own = |line: &Option<&Line>| go_on(patience, 1).map(|()| line.map_or(0, Line::own_column));
     let mut columns = lines.iter().map(own).collect::<Result<Vec<usize>, Cancelled>>()?;
     if !align {

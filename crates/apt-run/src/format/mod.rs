@@ -21,7 +21,7 @@ mod tests;
 
 use std::ops::Range;
 
-use apt_geometry::patience::Patience;
+use apt_geometry::patience::{Patience, put_away};
 use apt_syntax::{Dialect, SyntaxTree, lexer::lex, record::Layout, tree::StatementView};
 
 pub use options::{FormatOptions, FormatSettings, LAST_STATEMENT_COLUMN, LetterCase};
@@ -153,14 +153,32 @@ pub fn format_text(
     patience: Patience<'_>,
 ) -> Result<String, Cancelled> {
     let tree = SyntaxTree::parse_until(text, dialect, &|| patience.is_over()).ok_or(Cancelled)?;
-    Ok(applied(text, &format(&tree, options, patience)?))
+    let (edits, statements) = (format(&tree, options, patience)?, tree.statement_count());
+    let formatted = applied_until(text, &edits, patience);
+    put_away((tree, edits), statements);
+    formatted
 }
 
 /// A text with edits in order of the text applied to it.
 pub fn applied(text: &str, edits: &[Edit]) -> String {
+    with_edits(text, edits, Patience::default())
+}
+
+/// The same.
+///
+/// # Errors
+///
+/// [`Cancelled`] when who waits has given up before the end.
+fn applied_until(text: &str, edits: &[Edit], patience: Patience<'_>) -> Result<String, Cancelled> {
+    let text = with_edits(text, edits, patience);
+    if patience.was_over() { Err(Cancelled) } else { Ok(text) }
+}
+
+/// The text up to its end, or with the edits up to where who waits gives up.
+fn with_edits(text: &str, edits: &[Edit], patience: Patience<'_>) -> String {
     let mut out = String::with_capacity(text.len());
     let mut end = 0;
-    for (range, insert) in edits {
+    for (range, insert) in edits.iter().take_while(|_| !patience.ends_after(1)) {
         out.push_str(text.get(end..range.start).unwrap_or(""));
         out.push_str(insert);
         end = range.end;
@@ -228,6 +246,7 @@ fn plan_of(
             plan.edits.extend(edits::between(view.text(), &new, usize::from(view.start)));
         }
     }
+    put_away(all, tree.statement_count());
     if !reads_the_same(tree, &plan.edits, patience)? {
         let statement = *wanted.start();
         return Ok(Plan {
@@ -302,7 +321,10 @@ fn reads_the_same(tree: &SyntaxTree, edits: &[Edit], patience: Patience<'_>) -> 
     if edits.is_empty() {
         return Ok(true);
     }
-    let text = applied(&tree.text(), edits);
+    let text = applied_until(&tree.text(), edits, patience)?;
     let new = SyntaxTree::parse_until(&text, tree.dialect(), &|| patience.is_over()).ok_or(Cancelled)?;
-    Ok(new.statement_count() == tree.statement_count() && new.sequence_field() == tree.sequence_field())
+    let same =
+        new.statement_count() == tree.statement_count() && new.sequence_field() == tree.sequence_field();
+    put_away(new, tree.statement_count());
+    Ok(same)
 }

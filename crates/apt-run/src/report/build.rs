@@ -242,8 +242,9 @@ fn clean(number: f64) -> f64 {
 }
 
 fn symbols(program: &Program, patience: Patience<'_>) -> Result<Map<String, Value>, Cancelled> {
-    let mut map = Map::new();
-    for (name, value) in program.symbols_until(patience).ok_or(Cancelled)? {
+    let symbols = program.symbols_until(patience).ok_or(Cancelled)?;
+    let mut map = Map::with_capacity(symbols.len());
+    for (name, value) in symbols {
         go_on(patience, 1)?;
         let entry = match value {
             SymbolValue::Scalar(number) => json!({ "type": "SCALAR", "canonical": [clean_number(number)] }),

@@ -37,9 +37,10 @@ impl Backend {
         &self,
         place: lsp::TextDocumentPositionParams,
     ) -> Result<Option<Vec<lsp::CallHierarchyItem>>> {
-        self.ask_at("call hierarchy", place, |snapshot, offset, _| {
+        self.ask_at("call hierarchy", place, |snapshot, offset, control| {
             let file = snapshot.included_path();
-            let found = snapshot.program().document.routine(Spot { file: file.as_deref(), offset });
+            let found =
+                snapshot.program().document.routine(Spot { file: file.as_deref(), offset }, control)?;
             Ok(found.and_then(|found| Some(vec![item(snapshot, &mut snapshot.places(), found)?])))
         })
         .await
@@ -52,8 +53,9 @@ impl Backend {
     ) -> Result<Option<Vec<lsp::CallHierarchyIncomingCall>>> {
         let key = Key::of(asked)?;
         let snapshot = job::snapshot(&self.events, key.program).await?;
-        let callers = job::on_snapshot("call hierarchy", snapshot, move |snapshot, _| {
-            let found = key.name.map(|name| snapshot.program().document.callers(&name));
+        let callers = job::on_snapshot("call hierarchy", snapshot, move |snapshot, control| {
+            let found =
+                key.name.map(|name| snapshot.program().document.callers(&name, control)).transpose()?;
             let mut places = snapshot.places();
             let mut calls = Vec::new();
             for one in found.unwrap_or_default() {
@@ -74,8 +76,9 @@ impl Backend {
     ) -> Result<Option<Vec<lsp::CallHierarchyOutgoingCall>>> {
         let key = Key::of(asked)?;
         let snapshot = job::snapshot(&self.events, key.program).await?;
-        let callees = job::on_snapshot("call hierarchy", snapshot, move |snapshot, _| {
-            let found = snapshot.program().document.callees(key.name.as_deref(), key.file.as_deref());
+        let callees = job::on_snapshot("call hierarchy", snapshot, move |snapshot, control| {
+            let (name, file) = (key.name.as_deref(), key.file.as_deref());
+            let found = snapshot.program().document.callees(name, file, control)?;
             let mut places = snapshot.places();
             let mut calls = Vec::new();
             for one in found {

@@ -42,12 +42,12 @@ impl Backend {
     pub(in crate::server) async fn all_references(&self, params: lsp::ReferenceParams) -> Result<Ticket> {
         let with_definition = params.context.include_declaration;
         let place = params.text_document_position;
-        self.ask_whole("references", place.text_document.uri, move |snapshot, _| {
+        self.ask_whole("references", place.text_document.uri, move |snapshot, control| {
             let file = snapshot.included_path();
             let spot = Spot { file: file.as_deref(), offset: snapshot.index.offset(place.position) };
-            let mut found = snapshot.program().document.references(spot);
+            let mut found = snapshot.program().document.references(spot, control)?;
             found.retain(|one| with_definition || !one.occurrence.defines);
-            Ok(locations(snapshot, &found))
+            locations(snapshot, &found, control)
         })
         .await
     }

@@ -1,0 +1,117 @@
+//! Who gives up what is made of a long program, or asked at a place of it, is heard soon: questions are counted, not timed.
+
+#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
+mod support;
+
+use std::{
+    fmt::Debug,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use apt_ide::{
+    Cancel, Cancelled,
+    conversion::{ClDialect, ConversionError},
+    navigation::RenameError,
+    tape::{ClTapeError, TapeError},
+};
+use support::{analysis, never, silent};
+
+/// Records, statements or names that are gone through between two questions; one takes some microseconds.
+const GONE_THROUGH_BETWEEN_QUESTIONS: usize = 512;
+
+/// How often a work asks, which must be once in so much of what it goes through. It is given up at the first question, in the
+/// middle and at the last, never asks again after the answer, and then gives what it gave before.
+fn asks_often<T: PartialEq + Debug>(
+    gone_through: usize,
+    what: &str,
+    work: impl Fn(Cancel<'_>) -> Result<T, Cancelled>,
+) {
+    let asked = AtomicUsize::new(0);
+    let until = |last: usize| {
+        asked.store(0, Ordering::Relaxed);
+        work(&|| asked.fetch_add(1, Ordering::Relaxed) + 1 >= last)
+    };
+    // What is kept is found out before.
+    until(usize::MAX).unwrap();
+    let whole = until(usize::MAX).unwrap();
+    let all = asked.load(Ordering::Relaxed);
+    let enough = all * GONE_THROUGH_BETWEEN_QUESTIONS >= gone_through;
+    assert!(enough, "{all} questions for {gone_through} of {what}");
+    for last in [1, all / 2, all] {
+        assert_eq!(until(last).err(), Some(Cancelled), "{what}");
+        assert_eq!(asked.load(Ordering::Relaxed), last, "{what} asks again after the answer");
+    }
+    assert!(until(usize::MAX).unwrap() == whole, "{what} after it was given up");
+}
+
+#[test]
+fn what_is_made_of_a_path_asks_at_each_look_at_its_records() {
+    let records = 6_000;
+    let gotos: String = (0..records).map(|number| format!("GOTO/{number},{},0\n", number % 7)).collect();
+    let program = analysis(&format!("FEDRAT/10,IPM\nSPINDL/1000,CLW\n{gotos}FINI\n"));
+    program.result(&never, &mut silent).unwrap();
+    // The lints of the path look at the statements too.
+    asks_often(3 * records, "a control tape", |cancel| {
+        program.tape("linuxcnc", cancel, &mut silent).map_err(|error| match error {
+            TapeError::Cancelled(cancelled) => cancelled,
+            other => panic!("{other}"),
+        })
+    });
+    asks_often(3 * records, "a tool path", |cancel| program.tool_path(cancel, &mut silent));
+    asks_often(records, "a CL text", |cancel| program.cl_text(cancel, &mut silent));
+    asks_often(records, "a CL tape", |cancel| {
+        program.cl_tape(cancel, &mut silent).map_err(|error| match error {
+            ClTapeError::Cancelled(cancelled) => cancelled,
+            other => panic!("{other}"),
+        })
+    });
+    asks_often(3 * records, "a file in another dialect", |cancel| {
+        program.convert(ClDialect::Nx, None, cancel, &mut silent).map_err(|error| match error {
+            ConversionError::Cancelled(cancelled) => cancelled,
+            other => panic!("{other}"),
+        })
+    });
+}
+
+#[test]
+fn a_cl_file_is_read_with_questions() {
+    let lines = 6_000;
+    let text: String = (0..lines).map(|number| format!("GOTO/{number},{},0\n", number % 7)).collect();
+    let settings = apt_ide::Settings { dialect: Some("cl".to_owned()), ..apt_ide::Settings::default() };
+    let file = apt_ide::Analysis::new(&text, None, &std::sync::Arc::new(settings));
+    // Statements, the statements of lines, records, and the records again as a path.
+    asks_often(4 * lines, "a tool path", |cancel| file.tool_path(cancel, &mut silent));
+}
+
+#[test]
+fn what_is_asked_at_a_place_of_a_long_program_asks_often() {
+    let points = 20_000;
+    let mut text = "P=POINT/0,0\n".to_owned();
+    text.extend((0..points).map(|number| format!("P{number}=POINT/{number},5\nGOTO/P\n")));
+    text += "GOTO/P";
+    let program = analysis(&text);
+    program.program(&never).unwrap();
+    // The name stands in every other statement; of the others only the text is looked at.
+    asks_often(points, "occurrences", |cancel| program.occurrences(0, cancel));
+    asks_often(points, "definitions", |cancel| program.definitions_at(0, cancel));
+    asks_often(points, "a new name", |cancel| {
+        program.rename(0, "Q", cancel).map_err(|error| match error {
+            RenameError::Cancelled(cancelled) => cancelled,
+            other => panic!("{other}"),
+        })
+    });
+    asks_often(points, "proposals", |cancel| program.completions(text.len(), cancel));
+    asks_often(points, "a hover", |cancel| program.hover(0, cancel));
+}
+
+#[test]
+fn what_is_asked_at_a_place_of_a_short_program_is_answered_before_the_first_question() {
+    let text = "P=POINT/0,0\nGOTO/P";
+    let program = analysis(text);
+    program.program(&never).unwrap();
+    let given_up = || true;
+    assert_eq!(program.occurrences(0, &given_up).map(|found| found.len()), Ok(2));
+    assert_eq!(program.rename(0, "Q", &given_up).map(|edits| edits.len()), Ok(2));
+    assert!(!program.completions(text.len(), &given_up).unwrap().is_empty());
+}
