@@ -5,6 +5,7 @@ use std::fmt::Write;
 use apt_geometry::patience::Waiting;
 use apt_ide::{
     Analysis, Cancel, Level,
+    conversion::ClDialect,
     format::{FormatOptions, plan},
 };
 use apt_tests::{oracle, repository, runs};
@@ -18,10 +19,11 @@ pub(crate) type Steps = Vec<(&'static str, Heard)>;
 pub(crate) type Work = fn() -> Steps;
 
 /// All works by name.
-pub(crate) fn all() -> [(&'static str, Work); 6] {
+pub(crate) fn all() -> [(&'static str, Work); 7] {
     [
         ("copies", || everything(&copies(300, 2_000), "free")),
         ("definitions", || everything(&definitions(20_000), "free")),
+        ("listing", || everything(&listing(20_000), "free")),
         ("sums", || everything(&sums(100_000), "free")),
         ("loop", || everything(&turns(100_000), "free")),
         ("locations", || everything(&locations(100_000), "cl")),
@@ -48,6 +50,11 @@ fn definitions(count: usize) -> String {
         let _ = writeln!(text, "C{number}=CIRCLE/CENTER,P{number},RADIUS,.5");
     }
     text + "FINI\n"
+}
+
+/// The same, and a list of all.
+fn listing(count: usize) -> String {
+    definitions(count).replace("FINI\n", "PRINT/3,ALL\nFINI\n")
 }
 
 /// Assignments that each need the one before.
@@ -85,6 +92,7 @@ fn everything(text: &str, dialect: &str) -> Steps {
     note("CL text", listen(|cancel| analysis.cl_text(cancel, silent).unwrap()).1);
     note("CL tape", listen(|cancel| analysis.cl_tape(cancel, silent)).1);
     note("tape", listen(|cancel| analysis.tape("linuxcnc", cancel, silent)).1);
+    note("another dialect", listen(|cancel| analysis.convert(ClDialect::Nx, None, cancel, silent)).1);
     note("tool path", listen(|cancel| analysis.tool_path(cancel, silent).unwrap()).1);
     note("expansion", listen(|cancel| analysis.expand(None, None, cancel).unwrap()).1);
     note("inlays", listen(|cancel| analysis.inlays(0..text.len(), cancel).unwrap()).1);
@@ -93,7 +101,19 @@ fn everything(text: &str, dialect: &str) -> Steps {
         listen(|cancel| analysis.actions(0..text.len(), &[], Level::Motion, cancel, silent).unwrap()).1,
     );
     steps.extend(of_text(&analysis));
+    steps.extend(at_a_place(&analysis, text.find("A=").unwrap_or(0)));
     steps
+}
+
+/// What is asked at a place.
+fn at_a_place(analysis: &Analysis, offset: usize) -> Steps {
+    vec![
+        ("occurrences", listen(|cancel| analysis.occurrences(offset, cancel).unwrap()).1),
+        ("definitions", listen(|cancel| analysis.definitions_at(offset, cancel).unwrap()).1),
+        ("rename", listen(|cancel| analysis.rename(offset, "ZZZ", cancel)).1),
+        ("completion", listen(|cancel| analysis.completions(offset + 1, cancel).unwrap()).1),
+        ("hover", listen(|cancel| analysis.hover(offset, cancel).unwrap()).1),
+    ]
 }
 
 /// What is told of the text alone.
