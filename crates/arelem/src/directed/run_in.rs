@@ -4,7 +4,11 @@
 use apt_geometry::Vec3;
 
 use super::{Path, Prepared, Stuck};
-use crate::error::{Course, Iteration, MotionFailure};
+use crate::{
+    clearance::{Gauge, Tool, separation},
+    error::{Course, Iteration, MotionFailure},
+    role::Working,
+};
 
 /// The first way that is tried, as a multiple of what the turn moves the rim of the tool by, and how many at least, each twice as long as
 /// the one before: as many as lead to that multiple, and twice as far, of what it moves the contacts by.
@@ -23,7 +27,7 @@ pub(super) fn follow<'a>(
         Ok(found) => return Ok((prepared, found)),
         Err(stuck) => stuck,
     };
-    if !is_stuck_within(&stuck.failure, &prepared, 0.0) {
+    if !is_stuck_within(&stuck.failure, &prepared, 0.0) && !turns_out_of_check(&stuck.failure, &prepared)? {
         return Err(stuck);
     }
     let angle = turn_at_start(&prepared)?;
@@ -46,6 +50,21 @@ pub(super) fn follow<'a>(
         }
     }
     Err(farthest)
+}
+
+/// Whether no check surface was met by a tool that stands to one of them otherwise where the motion begins than with the axis that the law wants there:
+/// the turn to that takes it out of the surface, or into it, and is not to go on to where the law alone would stop the motion.
+fn turns_out_of_check(failure: &MotionFailure, prepared: &Prepared) -> Result<bool, MotionFailure> {
+    if !matches!(failure, MotionFailure::NeverMet { .. }) {
+        return Ok(false);
+    }
+    let turned = prepared.attitude.tool_at(&prepared.tip)?;
+    let is_clear = |tool: &Tool, check: &Working| {
+        let Gauge { surface, thickness, .. } = &check.gauge;
+        separation(tool, surface, &prepared.tip, &Default::default()).0.clearance > *thickness
+    };
+    let mut crossed = prepared.checks.iter().filter(|check| !check.gauge.on);
+    Ok(crossed.any(|check| is_clear(&prepared.tool, check) != is_clear(&turned, check)))
 }
 
 /// Whether a path came back to its beginning.

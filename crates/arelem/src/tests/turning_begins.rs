@@ -479,3 +479,36 @@ fn a_motion_does_not_end_before_the_tool_has_turned_to_its_law() {
         "{failure:?}"
     );
 }
+
+/// A ball on a long shank that is through its check surface with the axis that it has, and clear of it with the one that a lead angle asks for: its first
+/// vector, as long as MAXDP allows, would turn it out of the surface beyond where the tool that leads comes to it. It turns over a shorter way.
+#[test]
+fn a_turn_out_of_the_check_surface_does_not_lead_past_where_the_motion_stops() {
+    let across = v(0.13151014039434267, -0.9913148253574443, 0.0);
+    let under = plane(across.x, across.y, 0.0, -2.082068195370417);
+    let beside = plane(0.6180885138109987, 0.7861085097458944, 0.0, 0.6984989367409518);
+    let check = quadric([
+        0.08258197137363649,
+        0.08896968293732799,
+        0.0077162050781681936,
+        -1.2606723750804263,
+        -0.010504358928435644,
+        0.021245848576404318,
+        0.013483704535462916,
+        0.09916395478155207,
+        -0.0658725171658136,
+        -0.48718665785033194,
+    ]);
+    let mode = AxisAngle::Lead(-0.11597151091804242);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.001).cutter(&[0.2953243045440494, 0.1476621522720247]);
+    p.run(&MotionCommand::MaximumStep(10.0));
+    from(&mut p, v(-2.1107742249664367, 0.37044587547427843, 0.0652579185459004), across);
+    along(&mut p, ToolAxis::AtAngle { part: true, angle: 0.29941376057032976, mode });
+    p.run(&MotionCommand::PartSurface(named(&under)));
+    p.go(&[(Relation::To, &beside)]);
+    p.side(DriveSide::Right).indirv(0.0, 0.0, -1.0).drive(Turn::Forward, &beside, Relation::To, &check);
+    proven(&p);
+    let end = p.tip();
+    assert!((-1.0..-0.2).contains(&end.z), "{end:?}");
+}
