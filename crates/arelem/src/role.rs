@@ -218,8 +218,13 @@ impl Working {
     /// Where the ends of a motion may lie: exactly on planes; on curved surfaces anywhere in the band but for what is kept
     /// free of rounding.
     pub(crate) fn room(&self) -> [f64; 2] {
+        if self.shape == Shape::Flat { [0.0; 2] } else { self.whole_room() }
+    }
+
+    /// The band but for what is kept free of rounding, of planes, too.
+    pub(crate) fn whole_room(&self) -> [f64; 2] {
         let guard = GUARD * self.band();
-        if self.shape == Shape::Flat { [0.0; 2] } else { [guard - self.inside, self.outside - guard] }
+        [guard - self.inside, self.outside - guard]
     }
 
     /// Where the vertices between cut vectors lie: at the limit opposite to the sag.

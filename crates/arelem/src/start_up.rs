@@ -390,16 +390,17 @@ fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Resul
 }
 
 /// Where no position has every clearance in the place that ends of motions have in their bands: one in all of the bands, near
-/// where the search for the former came to its end, or from the start. A tool that just fits between walls has no other.
+/// where the search for the former came to its end, or from the start. A tool that just fits between walls has no other. On planes it is exactly where it is
+/// asked for, unless there is none but in their bands, too: a tool whose axis the surfaces tell may not come as near to a plane with any place of its own.
 fn in_bands(work: &StartUp<'_>, start: &Vec3, failure: MotionFailure) -> Result<Vec3, MotionFailure> {
     let MotionFailure::StartUpDiverges { tip: nearest, .. } = failure else { return Err(failure) };
-    let bands: Vec<Condition<'_>> =
-        work.roles.iter().map(|role| Condition::Between(&role.gauge, role.room())).collect();
-    [nearest, *start]
-        .iter()
-        .find_map(|from| position::solve(&work.attitude, &bands, from).ok())
-        .map(|solution| solution.tip)
-        .ok_or(failure)
+    let within = |room: fn(&Working) -> [f64; 2]| -> Option<Vec3> {
+        let bands: Vec<Condition<'_>> =
+            work.roles.iter().map(|role| Condition::Between(&role.gauge, room(role))).collect();
+        let found = |from: &Vec3| position::solve(&work.attitude, &bands, from).ok();
+        [nearest, *start].iter().find_map(found).map(|solution| solution.tip)
+    };
+    within(Working::room).or_else(|| within(Working::whole_room)).ok_or(failure)
 }
 
 /// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side; if that

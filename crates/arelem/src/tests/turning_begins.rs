@@ -512,3 +512,19 @@ fn a_turn_out_of_the_check_surface_does_not_lead_past_where_the_motion_stops() {
     let end = p.tip();
     assert!((-1.0..-0.2).contains(&end.z), "{end:?}");
 }
+
+/// A flat cutter that leans as a sphere tells, with its bottom on one side and its top on the other hardly as long as a start-up plane leaves room for: as
+/// near to that as its axis lets it come, 2.4e-5 too deep, there is a position in the bands of a twentieth of a thousandth.
+#[test]
+fn a_tool_that_its_axis_keeps_from_a_plane_starts_up_within_the_band_of_that() {
+    let under = plane(0.5801632476504096, -0.81450021858544, 0.0, 0.8425600728610894);
+    let through = sphere(-0.33049354476077575, -0.8316342025904024, -1.7990139085238201, 1.2912381859247988);
+    let first = plane(0.13426383932411814, 0.09563526600345804, -0.9863199872994541, 1.1384476731495596);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[1.0241447873281158]);
+    let axis = v(0.5842694119715595, -0.811511168980921, -0.00888126419083611);
+    from(&mut p, v(1.9403582328301223, -0.6906204394845391, -0.8690781279505521), axis);
+    along(&mut p, ToolAxis::Tangent { height: 0.27038662239243005, mode: AxisTangency::Across });
+    p.go(&[(Relation::On, &through), (Relation::To, &under), (Relation::Past, &first)]);
+    proven(&p);
+}
