@@ -401,7 +401,7 @@ impl<'a> March<'a> {
 
     /// The path to an end, without what it can do without.
     fn finished(&mut self, start: &Vertex, end: &finish::End) -> Result<Path, MotionFailure> {
-        self.straighten_end(start)?;
+        self.straighten_end(start, end)?;
         let along = self.points.clone();
         let bent = self.stepper.record.along(&along);
         self.spare_vertices(start)?;
@@ -428,6 +428,12 @@ impl<'a> March<'a> {
         let sweep = here.sweep(self.prepared, &to);
         let event = self.watcher.clone().scan(&sweep);
         Ok(event.is_some_and(|event| self.watcher.leaves_band(&event, &sweep)))
+    }
+
+    /// Whether a vector to the end leads to the position there: a tool that turns goes another way on it than on those in whose place it is.
+    fn arrives(&self, from: &Vertex, to: &Vertex, end: &finish::End) -> bool {
+        let place = (end.check, end.side);
+        !self.prepared.attitude.turns() || self.watcher.arrives(place, &from.sweep(self.prepared, to))
     }
 
     /// The last vector must keep the bands like any other, go forward, and not be longer than allowed.
@@ -497,9 +503,8 @@ impl<'a> March<'a> {
 
     /// Leaves out vertices before the end that one straight move can bridge: on a straight stretch the search for the
     /// longest vector looks beyond the stop, where the path may turn, and cuts the stretch into pieces.
-    fn straighten_end(&mut self, start: &Vertex) -> Result<(), MotionFailure> {
-        let Some(&end) = self.points.last() else { return Ok(()) };
-        let end = Vertex::at(self.prepared, end, &self.prepared.tangent)?;
+    fn straighten_end(&mut self, start: &Vertex, found: &finish::End) -> Result<(), MotionFailure> {
+        let end = Vertex::at(self.prepared, found.tip, &self.prepared.tangent)?;
         while let Some(between) = self.points.len().checked_sub(2) {
             let vertex = |k: Option<usize>| match k {
                 Some(k) => Vertex::at(self.prepared, self.points[k], &self.prepared.tangent),
@@ -512,7 +517,7 @@ impl<'a> March<'a> {
             let long = way.norm() > most * (1.0 + 1e-9);
             // In a tight bend the way to the end leads back from where the path goes.
             let is_forward = tangent(&from.part, &from.drive, &until_now).dot(&way) > 0.0;
-            if !long && is_forward && self.stepper.proven(&from, &end) {
+            if !long && is_forward && self.stepper.proven(&from, &end) && self.arrives(&from, &end, found) {
                 self.points.remove(between);
                 continue;
             }

@@ -36,6 +36,7 @@ pub(super) fn follow<'a>(
         return Err(stuck);
     }
     let mut farthest = stuck;
+    let mut short = None;
     for k in 0..ways(&prepared) {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, length);
@@ -46,10 +47,20 @@ pub(super) fn follow<'a>(
             Err(again) if is_closed(&again.failure) => farthest = again,
             // Where it comes back the axis would leave its law again.
             Ok(found) if comes_back(&found.points, &prepared.tip, length) => break,
+            // A ring may lead through the check surface as well; where that is as near as the way is long the motion ends before the tool has turned.
+            Ok(found) if ends_within(&found.points, &prepared.tip, length) => {
+                short.get_or_insert((running, found));
+            }
+            Err(_) if short.is_some() => break,
             found => return found.map(|found| (running, found)),
         }
     }
-    Err(farthest)
+    short.ok_or(farthest)
+}
+
+/// Whether a path ends nearer to a place than a distance.
+fn ends_within(points: &[Vec3], place: &Vec3, distance: f64) -> bool {
+    points.last().is_some_and(|end| (end - place).norm() < distance)
 }
 
 /// Whether no check surface was met by a tool that stands to one of them otherwise where the motion begins than with the axis that the law wants there:

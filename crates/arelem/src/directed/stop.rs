@@ -31,6 +31,8 @@ const HALVINGS: u32 = 12;
 const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
 const BISECTIONS: u32 = 60;
+/// Places, each half way from the one before to the end of a vector, at which it is looked from where the tool comes to that.
+const LOOKS_BEFORE_END: i32 = 6;
 /// Distance, relative to the size of the coordinates, at which tool and check surface touch but for rounding.
 const SAME_PLACE: f64 = 1e-9;
 
@@ -155,6 +157,22 @@ impl<'a> Watcher<'a> {
     pub(super) fn leaves_band(&self, event: &Event, sweep: &Sweep<'_>) -> bool {
         let value = self.value_at(event.check, sweep, 0.5 * (event.x + sweep.length)).0;
         value.abs() > self.working(event.check).band()
+    }
+
+    /// Whether the tool may come to the end of a vector, at which it touches a check surface on a side, as its relation says: to TO from where it
+    /// is clear on that side, to PAST from anywhere else. Where it is in the band from the start of the motion on there is no telling.
+    pub(super) fn arrives(&self, (index, side): (usize, f64), sweep: &Sweep<'_>) -> bool {
+        let relation = self.checks[index].relation;
+        if is_tangent(relation) || relation == Relation::On || self.watches[index].status == Status::Touching
+        {
+            return true;
+        }
+        // What is between the tool and the end of the way is seen nearer and nearer to it.
+        (1..=LOOKS_BEFORE_END).any(|k| {
+            let share = 1.0 - 0.5_f64.powi(k);
+            let (value, at_side) = self.value_at(index, sweep, share * sweep.length);
+            (value > 0.0 && at_side == side) == (relation == Relation::To)
+        })
     }
 
     /// How far the function is above what it is where the tool just touches the check surface.

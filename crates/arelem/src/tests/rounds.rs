@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     canonical::{Remembering, RuledSurface},
-    motion::{AxisTangency, ToolAxis},
+    motion::{AxisAngle, AxisTangency, ToolAxis},
 };
 
 use super::{turning::proven, *};
@@ -42,12 +42,12 @@ impl Walls {
     }
 
     /// Beside the middle of the first wall, inside or outside of it, the tool sets out for the next one.
-    fn begin(&self, mode: AxisTangency, inside: bool) -> Program {
+    fn begin(&self, axis: ToolAxis, cutter: &[f64], inside: bool) -> Program {
         let middle = 0.5 * (self.corner(0, false) + self.corner(1, false));
         let away = middle * if inside { 0.5 } else { 1.6 };
         let mut p = Program::new();
-        p.tolerance(0.001, 0.001).cutter(&[0.5]).from(away.x, away.y, 3.0);
-        p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height: 0.0, mode }));
+        p.tolerance(0.001, 0.001).cutter(cutter).from(away.x, away.y, 3.0);
+        p.run(&MotionCommand::ToolAxis(axis));
         let towards = middle - Vec3::new(away.x, away.y, middle.z);
         p.indirv(towards.x, towards.y, 0.0);
         p.go(&[(Relation::To, &self.wall(0)), (Relation::To, &ground())]);
@@ -57,6 +57,11 @@ impl Walls {
     }
 }
 
+/// An axis along the drive surface.
+fn along(mode: AxisTangency) -> ToolAxis {
+    ToolAxis::Tangent { height: 0.0, mode }
+}
+
 /// While the tool turns over too short a way from the axis along one wall to that along the next the places at which it touches both are a ring about
 /// where it begins, which may be wider than that way: over a longer one the tool gets on.
 #[test]
@@ -64,7 +69,7 @@ fn a_tool_gets_on_from_a_corner_of_twisted_walls_where_short_turns_lead_in_a_rin
     for (wider, twist, inside) in [(0.5, -0.1, false), (-0.5, -0.1, true)] {
         let walls = Walls { corners: 4, wider, twist };
         let relation = if inside { Relation::To } else { Relation::Past };
-        let mut p = walls.begin(AxisTangency::Across, inside);
+        let mut p = walls.begin(along(AxisTangency::Across), &[0.5], inside);
         p.drive(Turn::Forward, &walls.wall(0), relation, &walls.wall(1));
         p.drive(Turn::Left, &walls.wall(1), relation, &walls.wall(2));
         proven(&p);
@@ -77,7 +82,7 @@ fn a_tool_gets_on_from_a_corner_of_twisted_walls_where_short_turns_lead_in_a_rin
 #[test]
 fn a_turn_is_told_from_the_path_and_not_from_a_last_vector_across_its_bands() {
     let walls = Walls { corners: 6, wider: -0.5, twist: -0.1 };
-    let mut p = walls.begin(AxisTangency::Fan, true);
+    let mut p = walls.begin(along(AxisTangency::Fan), &[0.5], true);
     p.drive(Turn::Forward, &walls.wall(0), Relation::To, &walls.wall(1));
     for k in 1..4 {
         p.drive(Turn::Left, &walls.wall(k), Relation::To, &walls.wall(k + 1));
@@ -85,4 +90,18 @@ fn a_turn_is_told_from_the_path_and_not_from_a_last_vector_across_its_bands() {
         assert!(way.dot(&walls.edge(k)) > 0.8 * way.norm() * walls.edge(k).norm(), "{k}: {way:?}");
     }
     proven(&p);
+}
+
+/// The tool comes to PAST out of the wall, and not from the side on which it stands there; where it turns over too short a way it goes round in a ring, on
+/// which it may come through the next wall, far from the corner of both.
+#[test]
+fn a_tool_comes_past_a_wall_out_of_it() {
+    let walls = Walls { corners: 6, wider: -0.784, twist: -0.135 };
+    let mode = AxisAngle::Lead(5f64.to_radians());
+    let axis = ToolAxis::AtAngle { part: false, angle: std::f64::consts::FRAC_PI_2, mode };
+    let mut p = walls.begin(axis, &[1.0, 0.5], false);
+    p.drive(Turn::Forward, &walls.wall(0), Relation::Past, &walls.wall(1));
+    proven(&p);
+    let way = p.tip() - p.last().start.tip;
+    assert!(way.dot(&walls.edge(0)) > 0.8 * way.norm() * walls.edge(0).norm(), "{way:?}");
 }
