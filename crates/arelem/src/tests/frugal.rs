@@ -3,6 +3,7 @@
 
 use DriveSide::{Left, Right};
 use Relation::{On, To};
+use apt_geometry::motion::ToolAxis;
 use proptest::{
     prelude::*,
     strategy::ValueTree,
@@ -215,4 +216,23 @@ fn a_narrow_waist_ahead_does_not_shorten_vectors() {
         assert!(length > full, "{length}, not {full}, from {}", pair[0].tip);
     }
     assert_eq!(points.len(), 5);
+}
+
+/// A ball whose flank goes along a cylinder comes from a bend to a straight way and on to the next bend: wherever it begins, that way is
+/// one vector, as far into the bend as the band allows.
+#[test]
+fn a_straight_way_between_two_bends_is_one_vector() {
+    let part = plane(-0.6, -0.8, 0.0, 1.1);
+    let drive = cylinder(v(-3.4, -6.6, -4.2), v(-0.3, 0.95, 0.0), 5.2);
+    for k in 0..10 {
+        let begin = plane(-0.8, 0.6, 0.0, -2.4 + 0.1 * f64::from(k));
+        let mut p = Program::new();
+        p.tolerance(0.0, 0.001).cutter(&[0.25, 0.125]);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Fixed(v(-0.5, -0.83, 0.25)))).from(1.0, -2.4, -0.5);
+        p.indirv(-0.8, 0.6, 0.0).go(&[(Relation::Past, &begin), (To, &part), (To, &drive)]);
+        p.side(Right).drive(Turn::Forward, &drive, To, &begin).verified();
+        let count = p.last().points.len();
+        let minimum = p.last().minimum.expect("a bound") as usize;
+        assert!(count <= minimum + 2, "{count} vectors, {minimum} at least, begun at {k}");
+    }
 }

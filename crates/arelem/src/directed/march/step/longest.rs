@@ -13,8 +13,9 @@ use crate::{
 
 /// Bound of the trials for one vector.
 const MAX_TRIALS: u32 = 60;
-/// Trials that try to lengthen a vector already proven, and how many while one is refused that is no less than so many times as long: what
-/// is told by both is worth a vector.
+/// Trials that try to lengthen a vector already proven, and how many while one is refused that is no less than so many times as long, or its
+/// sag says that it may become so: what is told by both is worth a vector. Where the axis turns the sag says less of a longer one, and a trial
+/// is dear.
 const LENGTHENINGS: u32 = 4;
 const MOST_LENGTHENINGS: u32 = 8;
 const MUCH_LONGER: f64 = 1.2;
@@ -38,6 +39,8 @@ struct Search {
     shortest_bad: f64,
     last_bad: Option<Overlong>,
     lengthenings: u32,
+    /// Whether the axis turns.
+    turns: bool,
     /// Trials before the first one that is proven whose sag said nothing.
     failures: u32,
     corners: Corners,
@@ -46,7 +49,7 @@ struct Search {
 }
 
 impl Search {
-    fn new(guess: &Guess, cap: f64) -> Self {
+    fn new(guess: &Guess, cap: f64, turns: bool) -> Self {
         Self {
             bends: guess.bends,
             bent: guess.curvature,
@@ -56,6 +59,7 @@ impl Search {
             shortest_bad: f64::INFINITY,
             last_bad: None,
             lengthenings: 0,
+            turns,
             failures: 0,
             corners: Corners::default(),
             culprit: None,
@@ -101,8 +105,10 @@ impl Search {
 
     /// Whether enough has been tried to find a longer one than that of a length.
     fn is_lengthened(&self, known: f64) -> bool {
-        let is_far = self.shortest_bad.is_finite() && self.shortest_bad >= known * MUCH_LONGER;
-        self.lengthenings >= if is_far { MOST_LENGTHENINGS } else { LENGTHENINGS }
+        let is_bad_far = self.shortest_bad.is_finite() && self.shortest_bad >= known * MUCH_LONGER;
+        let may_grow =
+            !self.turns && self.best.as_ref().is_some_and(|(trial, _)| trial.growth >= MUCH_LONGER);
+        self.lengthenings >= if is_bad_far || may_grow { MOST_LENGTHENINGS } else { LENGTHENINGS }
     }
 
     /// Goes on from a length with which no vector leads on.
@@ -150,7 +156,7 @@ impl Stepper<'_> {
             Places::Limits => LEAST_VECTOR * self.prepared.size,
             Places::Level | Places::Inward(_) => LEAST_LEVEL * self.bands(),
         };
-        let mut search = Search::new(guess, cap);
+        let mut search = Search::new(guess, cap, self.prepared.attitude.turns());
         for _ in 0..MAX_TRIALS {
             if search.length <= least {
                 break;
