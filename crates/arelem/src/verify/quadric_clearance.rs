@@ -32,6 +32,8 @@ const LINE_PIECES: f64 = 16.0;
 const AZIMUTH_WIDTH: f64 = 1e-7;
 /// The same where the normal at the contact proves it: the proof is off by the width times the length of the patch.
 const PROVING_WIDTH: f64 = 1e-9;
+/// Rounding of a distance, relative to the coordinates that it is read at: values that are closer do not tell which place is nearer.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Parts of a patch that are looked at or left out as a whole.
 const PATCH_PIECES: u32 = 16;
 
@@ -507,11 +509,13 @@ impl Line<'_> {
         Some(OnLine { t, value, rate: normal.dot(&self.along), normal })
     }
 
-    /// Lowers `best` to the least value between two readings, if the slope changes from − to + between them.
+    /// Lowers `best` to the least value between two readings, if the slope changes from − to + between them. The values about the trough
+    /// differ by rounding alone, over a way on which the normal still turns: its place is where the slope vanishes.
     fn trough(&self, mut low: OnLine, mut high: OnLine, best: &mut OnLine) -> Option<()> {
         if low.rate >= 0.0 || high.rate <= 0.0 {
             return Some(());
         }
+        let mut flattest = if -low.rate < high.rate { low } else { high };
         for turn in 0..STEPS {
             let secant = low.t - low.rate * (high.t - low.t) / (high.rate - low.rate);
             let t = if turn % 2 == 1 || !(secant > low.t && secant < high.t) {
@@ -523,6 +527,9 @@ impl Line<'_> {
             if middle.value < best.value {
                 *best = middle;
             }
+            if middle.rate.abs() < flattest.rate.abs() {
+                flattest = middle;
+            }
             if high.t - low.t <= 1e-11 || middle.rate.abs() <= 1e-12 * self.along.norm() {
                 break;
             }
@@ -531,6 +538,10 @@ impl Line<'_> {
             } else {
                 high = middle;
             }
+        }
+        let rounding = ROUNDING * (self.start.norm() + self.along.norm());
+        if flattest.value <= best.value + rounding {
+            *best = flattest;
         }
         Some(())
     }

@@ -21,12 +21,13 @@ fn solids() -> [Geometry; 3] {
     ]
 }
 
-fn straight_tools() -> [Cutter; 4] {
+fn straight_tools() -> [Cutter; 5] {
     [
         cutter(&[1.1, 0.0, 0.55, 0.33, 31.0, 0.0, 4.5]),
         cutter(&[0.8, 0.3]),
         cutter(&[0.5, 0.0, 0.25, 0.0, 0.0, 12.0, 2.0]),
         cutter(&[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 3.0]),
+        cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.3]),
     ]
 }
 
@@ -48,7 +49,7 @@ proptest! {
     /// A tool beside a convex solid, so that its straight pieces touch: what the bound leaves open is rounding.
     #[test]
     fn contact_within_a_straight_piece_is_proven_to_rounding(
-        solid in 0usize..3, tool in 0usize..4, share in 0.0..1.0f64, round in 0.0..std::f64::consts::TAU,
+        solid in 0usize..3, tool in 0usize..5, share in 0.0..1.0f64, round in 0.0..std::f64::consts::TAU,
         place in prop::array::uniform2(-0.8..0.8f64), lower in any::<bool>(), clear in 1e-6..0.05f64,
         lean in prop::array::uniform2(-0.3..0.3f64),
     ) {
@@ -103,6 +104,29 @@ proptest! {
         if disc.fold(f64::INFINITY, f64::min) < reading.value - 1e-6 {
             prop_assert_eq!(shape, Shape::Free);
         }
+    }
+}
+
+/// About the nearest place of a straight piece distances differ by rounding alone, over a way on which the normal turns by 10⁻⁸.
+#[test]
+fn a_line_beside_a_quadric_touches_where_the_slope_vanishes() {
+    let form = quadric([
+        -0.09198637233625799,
+        0.05623249295794469,
+        0.08133053295622357,
+        0.6863698330549635,
+        0.03985566391016435,
+        -0.07366055028688899,
+        0.1119924420414996,
+        0.37909290863343836,
+        -0.25908184516348776,
+        -0.11211901364406392,
+    ]);
+    let line = cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.2954852525404523]);
+    let [from, to] = [Vec3::new(-0.58611, 0.21449, 0.49025), Vec3::new(-0.62094, 0.16542, 0.46108)];
+    for k in 0..=200 {
+        let (reading, _) = read(&form, &line, &from.lerp(&to, f64::from(k) / 200.0), &Vec3::z());
+        assert!(reading.error < 1e-10, "{k}: {reading:?}");
     }
 }
 
