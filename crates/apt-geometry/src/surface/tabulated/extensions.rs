@@ -38,13 +38,15 @@ impl Way {
     }
 }
 
-/// How far it is on both ways to where they meet; `None` if that is behind an end or too far.
+/// How far it is on both ways to where they meet; `None` if that is behind an end or too far, and if the ways do not come to one place: of
+/// parallel ones it is rounding where they meet, which tells of each way by itself.
 fn meeting([head, tail]: [&Way; 2], size: f64) -> Option<[f64; 2]> {
     let turn = head.along.perp(&tail.along);
     let between = tail.from - head.from;
     let distances = [between.perp(&tail.along) / turn, between.perp(&head.along) / turn];
     let is_ahead = |distance: f64| distance >= -ON_CURVE * size && distance <= FARTHEST_MEETING * size;
-    distances.into_iter().all(is_ahead).then_some(distances)
+    let apart = (between + tail.along * distances[1] - head.along * distances[0]).norm();
+    (distances.into_iter().all(is_ahead) && apart <= ONE_PLACE * size).then_some(distances)
 }
 
 impl Beyond {

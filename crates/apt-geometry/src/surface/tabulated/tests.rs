@@ -109,6 +109,23 @@ fn extensions_that_meet_end_where_they_meet() {
     assert!(over.piece < at_tip.piece && chart.point.y > 0.0, "{over:?} {}", chart.point);
 }
 
+/// Of extensions along one line it is rounding alone where the lines of both cross, so that they meet nowhere.
+#[test]
+fn a_straight_curve_goes_on_for_ever_at_both_ends() {
+    for k in 0..2000 {
+        let angle = 1e-3 * f64::from(k);
+        let (sine, cosine) = angle.sin_cos();
+        let along = |x: f64| [0.3 + x * cosine, 0.7 + x * sine];
+        let curve = made(&curve(&[along(-2.0), along(-1.1), along(0.0), along(0.9), along(1.7)], 0.0));
+        assert!(!curve.closed && !curve.has_ends(), "{angle}");
+        for (x, y) in [(0.3, 0.4), (-7.0, -0.2), (9.0, 1.3)] {
+            let [u, v] = along(x);
+            let (foot, _) = curve.foot(&Vec3::new(u - y * sine, v + y * cosine, 0.0));
+            assert!((foot.distance - y).abs() < 1e-12, "{angle}: {} for {y}", foot.distance);
+        }
+    }
+}
+
 #[test]
 fn a_curve_that_ends_where_it_begins_has_no_extensions() {
     let curve = made(&pillow());

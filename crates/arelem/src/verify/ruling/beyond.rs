@@ -101,11 +101,14 @@ impl Beyond {
         let between = after.start - before.start;
         let turn = before.along.perp(&after.along);
         let far = [between.perp(&after.along) / turn, between.perp(&before.along) / turn];
+        // Of lines that are parallel, or one, rounding alone is told, of each for itself.
+        let apart = (between + after.along * far[1] - before.along * far[0]).norm();
         let ends = [before, after];
         let crossed = |to: [f64; 2]| {
             [0, 1].map(|k: usize| ends[k].is_crossed(curve, [AT_END * length, to[k] - AT_END * length]))
         };
-        let is_told = far.iter().all(|x| *x >= -SAME * length && *x <= FARTHEST * length);
+        let is_told =
+            far.iter().all(|x| *x >= -SAME * length && *x <= FARTHEST * length) && apart <= AT_END * length;
         if is_told && crossed(far) == [false; 2] {
             return Some(Self::Meeting(ends[0].start + ends[0].along * far[0]));
         }

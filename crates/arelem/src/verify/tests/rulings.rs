@@ -118,6 +118,22 @@ fn a_corner_of_the_directrix_is_touched_in_its_fan() {
     }
 }
 
+/// Of extensions along one line it is rounding alone where the lines of both cross, so that they meet nowhere.
+#[test]
+fn the_extensions_of_a_straight_directrix_do_not_meet() {
+    let tool = cutter(&[0.5, 0.25]);
+    for k in 0..4000 {
+        let slope = (-1.1 + 5.37e-4 * f64::from(k)).tan();
+        let surface = tabulated(frame(UPRIGHT), &[0.0, 1.0, 2.0].map(|u: f64| [u, 0.3 + slope * u, slope]));
+        let size = slope.hypot(1.0);
+        for (x, y) in [(0.3, 0.5), (-5.0, 0.6), (6.0, 0.7)] {
+            let tip = [(x - slope * y) / size, 0.3 + (slope * x + y) / size, 0.0];
+            let (value, ..) = clearance(&tool, &surface, 1.0, tip, [0.0, 0.0, 1.0]);
+            assert!((value - (y - 0.25)).abs() < 1e-9, "slope {slope}: {value} for {y}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
