@@ -426,7 +426,7 @@ impl Search<'_> {
             if high - low <= width {
                 break;
             }
-            if lines[0].value <= lines[1].value {
+            if lines[0].is_no_farther_than(&lines[1]) {
                 high = inner[1];
                 inner = [high - golden * (high - low), inner[0]];
                 lines = [self.on_line(a, b, inner[0])?, lines[0]];
@@ -490,6 +490,12 @@ struct OnLine {
 }
 
 impl OnLine {
+    /// Whether it is no farther than that of another line. Lines out of one point of the tool that is nearest on each of them are as far; the
+    /// one along which distance rises less is that beside which a nearer place may be.
+    fn is_no_farther_than(&self, other: &Self) -> bool {
+        self.value < other.value || self.value == other.value && self.rate <= other.rate
+    }
+
     /// Whether it is at an end of its line towards which the distance falls by more than `rate`, so that it stays there
     /// when the azimuth changes a little.
     fn is_steady_end(&self, rate: f64) -> bool {
