@@ -362,8 +362,9 @@ impl<'a> Watcher<'a> {
     }
 
     /// Bisects a sign change; the side is that on which the tool is clear (TO: before, PAST: after), for ON that it
-    /// comes from. `None` where the tool only gets around the end of the surface, beyond which the sign says nothing: there the
-    /// value leaps.
+    /// comes from. Where the sign is the new one from the start on it has changed between two vectors, of which one ends and the other begins at
+    /// the surface, but for rounding: there. `None` where the tool only gets around the end of the surface, beyond which the sign says nothing:
+    /// there the value leaps.
     fn bracket(
         &self,
         index: usize,
@@ -371,7 +372,7 @@ impl<'a> Watcher<'a> {
         [from, to]: [(f64, f64); 2],
         (label, after): (Relation, f64),
     ) -> Option<(f64, f64)> {
-        let (mut low, mut high) = (from, to);
+        let (mut low, mut high) = (from, if (from.1 > 0.0) == (to.1 > 0.0) { from } else { to });
         let mut before = self.value_at(index, sweep, from.0).1;
         let mut beyond = after;
         for _ in 0..BISECTIONS {

@@ -236,3 +236,24 @@ fn a_straight_way_between_two_bends_is_one_vector() {
         assert!(count <= minimum + 2, "{count} vectors, {minimum} at least, begun at {k}");
     }
 }
+
+/// The tool end goes along an ellipsoid, its side along an elliptic cylinder, into a corner in which the path turns back: the farther a vector is
+/// asked to lead beyond it the less far it does, and it is to end where the path turns all the same.
+#[test]
+fn vectors_do_not_creep_up_to_a_place_where_the_path_turns_back() {
+    let part = quadric([0.2165, 0.1833, 0.4321, 5.916, 0.2666, 0.1738, 0.1598, 1.0988, 0.7861, 2.0591]);
+    let drive = quadric([0.2803, 0.8509, 0.0, 2.549, 0.0, 0.0, -0.3122, -0.5219, 1.72, 0.0]);
+    let begin = plane(0.708, 0.633, -0.313, -1.6576);
+    let stop = cylinder(v(3.5595, 1.3047, -5.2286), v(0.402, 0.447, 0.799), 7.5325);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.184]);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Fixed(v(0.7146, -0.1164, 0.6897)))).from(-1.63, -1.68, -0.7);
+    p.run(&MotionCommand::PartSide(PartSide::On));
+    p.indirv(-0.7, -0.6, 0.3).go(&[(To, &drive), (On, &part), (On, &begin)]);
+    let command = motion(Turn::Forward, &drive, &[(To, 2, &stop)]);
+    p.side(Right).indirv(-0.7, -0.6, 0.3).run(&command);
+    p.verified();
+    let count = p.last().points.len();
+    let minimum = p.last().minimum.expect("a bound") as usize;
+    assert!(count <= minimum + 2, "{count} vectors, {minimum} at least");
+}

@@ -8,12 +8,15 @@ use apt_geometry::{
     canonical::Geometry,
     cutter::Cutter,
     motion::{MotionCommand, Relation, Turn},
+    patience::Patience,
     surface::Surface,
 };
 
-use super::graze::least_value;
+use super::{Watcher, graze::least_value};
 use crate::{
+    attitude::Sweep,
     clearance::{EVALUATIONS, Memory, Tool, separation},
+    directed::prepare::prepare,
     error::MotionFailure,
     tests::{Program, circle, cylinder, motion, plane, quadric, sphere, v},
     verify::{tests::lofts, verify},
@@ -84,6 +87,32 @@ fn a_needle_counts_both_walls_of_a_post() {
             motion(Turn::Forward, &plane(0.0, 1.0, 0.0, 0.0), &[(relation, 3, &circle(4.0, 0.0, 0.5))]);
         let refused = p.attempt(&third);
         assert!(matches!(refused, Err(MotionFailure::NoneAhead { .. })), "{refused:?}");
+    }
+}
+
+/// One vector ends at the surface, the next one begins beyond it by less than rounding: the stop is between them, also far from the
+/// path, which tells nothing there.
+#[test]
+fn a_stop_where_one_vector_ends_and_the_next_one_begins_is_seen() {
+    let (drive, check) = (plane(0.0, 1.0, 0.0, 0.0), plane(1.0, 0.0, 0.0, 0.0));
+    let p = needle(0.01, 0.005);
+    let MotionCommand::Drive { drive, checks, .. } =
+        motion(Turn::Forward, &drive, &[(Relation::On, 1, &check)])
+    else {
+        unreachable!("a motion");
+    };
+    let prepared = prepare(&p.state, Turn::Forward, &drive, &checks, &mut Vec::new(), Patience::default())
+        .expect("a motion");
+    let sweep = |from: f64, to: f64| {
+        let [from, to] = [from, to].map(|x| v(x, 0.0, 2.0 - x));
+        let axis = Vec3::z();
+        Sweep::new(&prepared.tool, (&from, &axis), (&to, &axis))
+    };
+    for (end, start) in [(0.0, 1e-17), (-1e-17, 1e-17), (1e-17, -1e-17), (1e-17, 0.0)] {
+        let mut watcher = Watcher::new(&prepared, &checks);
+        let found = [(-1.0, end), (start, 1.0)].map(|(from, to)| watcher.scan(&sweep(from, to)));
+        let stop = found.into_iter().flatten().next().expect("a stop");
+        assert!(stop.tip.x.abs() < 1e-9, "{stop:?}");
     }
 }
 

@@ -21,10 +21,29 @@ const MOST_LENGTHENINGS: u32 = 8;
 const MUCH_LONGER: f64 = 1.2;
 /// Share of the length that the next trial has at least.
 const GREATEST_SHRINKING: f64 = 0.3;
+/// Share of the length that is asked for below which a vector tells that the path turns back.
+const FALLS_SHORT: f64 = 0.5;
+/// Share of the length of a vector by which it may end before the place where the path turns back.
+const AT_TURN: f64 = 1e-7;
 /// Greatest change of the length that is led to, by the length, from which it is foreseen: beyond that the bend changes for another reason.
 const STEEPEST: f64 = 0.5;
 /// Least length of a vector that keeps its place in the bands, as a share of the bands: less is no way round a bend.
 const LEAST_LEVEL: f64 = 0.1;
+
+/// How far a vector was asked to lead, and how far it does.
+#[derive(Clone, Copy)]
+struct Led {
+    asked: f64,
+    led: f64,
+}
+
+impl Led {
+    /// Where the path turns back, by the line through two vectors that were asked to lead beyond it.
+    fn turn(&self, other: &Self) -> Option<f64> {
+        let slope = (self.led - other.led) / (self.asked - other.asked);
+        (slope < 0.0).then(|| (self.led - slope * self.asked) / (1.0 - slope))
+    }
+}
 
 /// What the search has come to.
 struct Search {
@@ -37,6 +56,8 @@ struct Search {
     /// The longest vector that is proven, with the length that was asked for.
     best: Option<(Trial, f64)>,
     shortest_bad: f64,
+    /// How far the last one that is proven led.
+    last_led: Option<Led>,
     last_bad: Option<Overlong>,
     lengthenings: u32,
     /// Whether the axis turns.
@@ -57,6 +78,7 @@ impl Search {
             cap,
             best: None,
             shortest_bad: f64::INFINITY,
+            last_led: None,
             last_bad: None,
             lengthenings: 0,
             turns,
@@ -69,6 +91,10 @@ impl Search {
     /// Keeps a vector that is proven; whether another one may be longer.
     fn keep(&mut self, trial: Trial) -> bool {
         let (growth, length) = (trial.growth, self.length);
+        if self.turns_back(trial.length) {
+            return self.come_back(trial);
+        }
+        self.last_led = Some(Led { asked: length, led: trial.length });
         let is_enough = growth <= 1.0 + LONG_ENOUGH
             || trial.length >= self.cap * (1.0 - 1e-6)
             || self.corners.is_met
@@ -86,6 +112,29 @@ impl Search {
         self.lengthenings += u32::from(growth < GREATEST_GROWTH || next_is_bad);
         self.length = if next_is_bad { 0.5 * (length + self.shortest_bad) } else { next };
         true
+    }
+
+    /// Whether a proven vector tells that the path turns back before where it was asked to lead: it leads far less far, or less far than one that was
+    /// asked for less.
+    fn turns_back(&self, led: f64) -> bool {
+        let before = self.last_led.is_some_and(|last| (last.asked < self.length) != (last.led < led));
+        led < FALLS_SHORT * self.length || before
+    }
+
+    /// Keeps a vector that was asked to lead beyond where the path turns back, if it is the longest; whether another one may be longer. The less is
+    /// asked for beyond that place the nearer to it vectors lead: by a line, as far as two tell.
+    fn come_back(&mut self, trial: Trial) -> bool {
+        let here = Led { asked: self.length, led: trial.length };
+        let turn = self.last_led.and_then(|last| last.turn(&here));
+        let known = self.best.as_ref().map_or(0.0, |(best, _)| best.length).max(here.led);
+        if trial.length >= known {
+            self.best = Some((trial, here.asked));
+        }
+        self.shortest_bad = self.shortest_bad.min(here.asked);
+        self.last_led = Some(here);
+        self.length = turn.unwrap_or((here.led * here.asked).sqrt()).max(known).min(self.shortest_bad);
+        self.lengthenings += 1;
+        self.lengthenings < MOST_LENGTHENINGS && self.length > known * (1.0 + AT_TURN)
     }
 
     /// The growth to the length that needs no more of it. Where the bend changes along the vector, the growth of a longer one leads on from what that of the last one
