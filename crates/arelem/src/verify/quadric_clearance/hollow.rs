@@ -7,6 +7,9 @@ use crate::verify::{tool::Meridian, trough::meeting};
 
 /// Arcs examined per circle by branch and bound; the gap left then is the error term.
 const ARC_BUDGET: usize = 400;
+/// Halvings of the arc of the corner for a bound of its places: an arc of a right angle lies within a millionth of its radius in what is
+/// left.
+const ARC_HALVINGS: u32 = 9;
 
 impl Search<'_> {
     /// Takes into account how much nearer than the best candidate a circle could be for all that is known inside a convex hollow.
@@ -80,15 +83,32 @@ impl Search<'_> {
     }
 
     /// Inside a convex hollow no place of the corner in a sector of this half is nearer: the arc lies in the triangle of its ends and of where
-    /// its tangents there meet, and turned about the axis each of them in another triangle. None where these tangents do not meet.
+    /// its tangents there meet, and turned about the axis each of them in another triangle. The arc is halved while that meeting decides, for where
+    /// the nearest place is an end of it the surface may lie hardly steeper there than the arc. None where these tangents do not meet.
     fn lowest_of_arc(&self, (center, radius): (Meridian, f64), phi: f64, half: f64) -> Option<Option<f64>> {
         let [lower, upper, _] = self.tool.profile.edges();
-        let Some(outer) = meeting([lower, upper], center, radius) else { return Some(None) };
-        let mut lowest = f64::INFINITY;
-        for [rho, height] in [lower, outer, upper] {
+        let over = |[rho, height]: Meridian| -> Option<f64> {
+            let mut lowest = f64::INFINITY;
             for (rho, azimuth) in [(rho, phi), (rho / half.cos(), phi + half), (rho, phi + 2.0 * half)] {
                 lowest = lowest.min(self.distance(&self.place([rho, height], azimuth))?.0);
             }
+            Some(lowest)
+        };
+        let mut lowest = over(lower)?.min(over(upper)?);
+        let mut open = vec![([lower, upper], ARC_HALVINGS)];
+        while let Some((ends, halvings)) = open.pop() {
+            let Some(outer) = meeting(ends, center, radius) else { return Some(None) };
+            let beyond = over(outer)?;
+            if beyond >= lowest.min(self.best_value()) {
+                continue;
+            }
+            if halvings == 0 {
+                lowest = beyond;
+                continue;
+            }
+            let middle = middle_of_arc(ends, center, radius);
+            lowest = lowest.min(over(middle)?);
+            open.extend([([middle, ends[1]], halvings - 1), ([ends[0], middle], halvings - 1)]);
         }
         Some(Some(lowest))
     }
@@ -106,6 +126,14 @@ impl Search<'_> {
     }
 }
 
+/// The place of an arc half way between two others that are less than half a turn apart.
+fn middle_of_arc(ends: [Meridian; 2], center: Meridian, radius: f64) -> Meridian {
+    let [a, b] = ends.map(|end| [end[0] - center[0], end[1] - center[1]]);
+    let sum = [a[0] + b[0], a[1] + b[1]];
+    let length = sum[0].hypot(sum[1]);
+    [0, 1].map(|k| center[k] + radius * sum[k] / length)
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -119,6 +147,19 @@ mod tests {
 
     /// Places that are looked at along the arc, and about the axis.
     const PLACES: u32 = 12;
+
+    /// The bottom of a lens, where its corner begins, is nearest to a wall that lies hardly steeper there than the corner.
+    #[test]
+    fn what_is_nearest_beside_the_corner_is_proven() {
+        let form = quadric([-0.03328, -0.03856, 0.0, 0.5589, 0.0, 0.0, 0.09885, -0.1642, -0.28956, 0.0]);
+        let Surface::Quadric(form) = Surface::of(&form).unwrap() else { panic!("a quadric") };
+        let profile = Profile::of(&cutter(&[1.0, 0.1875, 0.33, 0.22, 5.83, 5.0, 4.1786])).unwrap();
+        let tool = Tool::new(&profile, Vec3::new(-0.67305, -0.73768, -0.05319).normalize());
+        for tip in [[1.15525, 0.22373, 0.79012], [1.14687, 0.23631, 0.4867], [1.12898, 0.262, 0.28241]] {
+            let reading = super::super::at(&form, 1.0, &Vec3::from(tip), &tool).unwrap();
+            assert!(reading.error < 1e-9, "{reading:?}");
+        }
+    }
 
     proptest! {
         /// In ellipsoids narrower than the tool, too, where the place that is nearest jumps from one side to the other.
