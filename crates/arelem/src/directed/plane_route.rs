@@ -14,6 +14,7 @@ use crate::{
     bound::Bent,
     error::{Course, MotionFailure},
     plane_curve::{Curve, flat},
+    position,
     role::GUARD,
     section2::State,
 };
@@ -336,7 +337,8 @@ fn tangency(
     for x in places {
         let distance = stop.signed_distance(&track.at(x), &track.axis);
         let gap = distance.abs() - reach;
-        if working.holds(gap, prepared.size) {
+        // What is rounding far away, where the path begins, may be none here, where the next one does.
+        if working.holds(gap, position::size(&prepared.tool, &track.at(x))) {
             tangent.push(Candidate { x, level: distance.signum() * reach });
         } else if gap.abs() < nearest.abs() {
             nearest = gap;

@@ -3,13 +3,13 @@
 use apt_geometry::{
     Vec3,
     canonical::{Cylinder, Geometry, Plane},
-    motion::{DriveSide, Relation, Turn},
+    motion::{DriveSide, MotionCommand, Relation, Turn},
 };
 
 use super::{
-    Program, cylinder, ground, line, motion, quadric,
+    Program, circle, cylinder, ground, line, motion, named, quadric,
     refused::{AMPLE, Found},
-    sphere, v,
+    sphere, v, x, y,
 };
 use crate::{error::MotionFailure, sequence::Stop, verify::Rule, verify::verify};
 
@@ -148,4 +148,25 @@ fn a_path_that_goes_through_the_surface_to_which_it_is_tangent_stops_there() {
     let end = sequences.last().and_then(|sequence| sequence.points.last()).expect("an end").tip;
     let place = v(-0.34042372330058956, 0.3183054874036313, -0.4200996011250231);
     assert!((end - place).norm() < 1e-3, "{end:?}");
+}
+
+/// A circle that is deeper in the wall than its band by what is rounding far away, where the motion begins, and is none where it ends. The next
+/// motion goes along the circle.
+#[test]
+fn a_tangency_is_in_the_bands_by_the_coordinates_where_it_is() {
+    let (wall, deeper) = (y(0.0), 3e-10);
+    let circle = circle(0.0, -50.0, 50.0 + deeper);
+    for force in [false, true] {
+        let mut p = Program::new();
+        p.tolerance(0.0, 0.001).cutter(&[2.0]).run(&MotionCommand::ForceIteration(force));
+        p.from(-400.0, 1.0, 0.0).run(&MotionCommand::PartSurface(named(&ground())));
+        p.indirv(1.0, 0.0, 0.0).side(DriveSide::Left).drive(
+            Turn::Forward,
+            &wall,
+            Relation::TangentToDrive,
+            &circle,
+        );
+        assert!((p.tip().y - 1.0 - deeper).abs() < 1e-5, "{}", p.tip());
+        p.drive(Turn::Forward, &circle, Relation::On, &x(10.0)).verified();
+    }
 }

@@ -394,7 +394,8 @@ impl<'a> Watch<'a> {
         } else {
             (drive, base[1], parallel.drive.gradient)
         };
-        if check.holds(contact.clearance, *size) {
+        // What is rounding far away, where the path begins, may be none here, where the next one does.
+        if check.holds(contact.clearance, position::size(&self.prepared.tool, &parallel.tip)) {
             let apart = self.apart(stretch.index, partner, &parallel)?;
             return Ok(match apart <= (1.0 - GUARD) * (check.band() + partner.band()) {
                 true => Gap::Closed(Box::new(parallel), side),
