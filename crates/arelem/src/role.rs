@@ -236,6 +236,11 @@ impl Working {
         }
     }
 
+    /// How far a clearance is out of the band; negative in it.
+    pub(crate) fn beyond(&self, clearance: f64) -> f64 {
+        (-self.inside - clearance).max(clearance - self.outside)
+    }
+
     pub(crate) fn holds(&self, clearance: f64, size: f64) -> bool {
         clearance >= -self.inside - ROUNDING * size && clearance <= self.outside + ROUNDING * size
     }

@@ -338,7 +338,7 @@ fn tangency(
         let distance = stop.signed_distance(&track.at(x), &track.axis);
         let gap = distance.abs() - reach;
         // What is rounding far away, where the path begins, may be none here, where the next one does.
-        if working.holds(gap, position::size(&prepared.tool, &track.at(x))) {
+        if working.is_there(gap, position::size(&prepared.tool, &track.at(x))) {
             tangent.push(Candidate { x, level: distance.signum() * reach });
         } else if gap.abs() < nearest.abs() {
             nearest = gap;

@@ -217,7 +217,7 @@ fn start_check(
             role.look_from(tip);
             return Ok(contact);
         }
-        let excess = (-role.inside - contact.clearance).max(contact.clearance - role.outside);
+        let excess = role.beyond(contact.clearance);
         if nearest.is_none_or(|(least, _)| excess < least) {
             nearest = Some((excess, contact));
         }

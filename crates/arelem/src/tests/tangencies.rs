@@ -7,7 +7,7 @@ use apt_geometry::{
 };
 
 use super::{
-    Program, circle, cylinder, ground, line, motion, named, quadric,
+    Program, circle, cylinder, ground, line, motion, named, plane, quadric,
     refused::{AMPLE, Found},
     sphere, v, x, y,
 };
@@ -170,3 +170,41 @@ fn a_tangency_is_in_the_bands_by_the_coordinates_where_it_is() {
         p.drive(Turn::Forward, &circle, Relation::On, &x(10.0)).verified();
     }
 }
+
+/// A tool that goes ON a line, an arc and another line, tangent to each other but for less than the bands, over flat and round part surfaces: ON
+/// has no side, so that bands hold on either of both, whichever way the surfaces look.
+#[test]
+fn a_tool_goes_on_a_contour_from_one_surface_to_the_next() {
+    for ((inside, outside), off) in
+        [(0.0, 0.001), (0.001, 0.0), (0.0005, 0.001)].into_iter().flat_map(|band| OFF.map(|off| (band, off)))
+    {
+        for (part, bow, sense) in [ground(), sphere(0.0, 0.0, -30.0, 30.0), quadric(SADDLE)]
+            .iter()
+            .flat_map(|part| [1.0, -1.0].map(|bow| (part, bow)))
+            .flat_map(|(part, bow)| [1.0, -1.0].map(|sense| (part, bow, sense)))
+        {
+            let first = plane(0.0, sense, 0.0, 0.0);
+            let arc = circle(1.0, bow * (2.0 + off), 2.0);
+            let last = plane(sense, 0.0, 0.0, sense * (3.0 + off));
+            let mut p = Program::new();
+            p.tolerance(inside, outside).cutter(&[0.5, 0.25]).from(-2.0, 0.0, 3.0);
+            p.go(&[(Relation::On, &first), (Relation::To, part), (Relation::On, &x(-2.0))]);
+            p.indirv(1.0, 0.0, 0.0).side(DriveSide::On);
+            p.drive(Turn::Forward, &first, Relation::TangentToDrive, &arc);
+            p.drive(Turn::Forward, &arc, Relation::TangentToDrive, &last);
+            let end = y(bow * 4.0);
+            p.drive(Turn::Forward, &last, Relation::On, &end).verified();
+            let tip = p.tip();
+            assert!((tip.x - 3.0).abs() < 0.002 && (tip.y - bow * 4.0).abs() < 0.002, "{tip}");
+            for sequence in &p.sequences {
+                let evidence = verify(sequence, &|| false).expect("evidence");
+                assert!(evidence.verified, "{inside} {outside} {off} {bow} {sense}: {evidence:?}");
+            }
+        }
+    }
+}
+
+/// How far apart surfaces are that are to be tangent.
+const OFF: [f64; 5] = [0.0, 5e-10, -5e-10, 2e-4, -2e-4];
+/// z = −.02 x² + .015 y², without a plane.
+const SADDLE: [f64; 10] = [0.02, -0.015, 0.0, 0.0, 0.0, 0.0, 0.004, 0.0, 0.0, 0.5];

@@ -1,6 +1,7 @@
 //! TANTO and PSTAN as events: where the path runs parallel to the check surface, and in contact with it (CPLAN avoided).
 
 mod begin;
+mod sides;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use apt_geometry::{
     patience::Patience,
 };
 
+pub(super) use self::sides::Sides;
 use super::{
     Vertex,
     parallel_way::{ParallelWay, is_nearly_parallel},
@@ -382,7 +384,7 @@ impl<'a> Watch<'a> {
         let Prepared { part, drive, size, .. } = self.prepared;
         let parallel = self.parallel(stretch, base)?;
         let check = &self.prepared.checks[stretch.index];
-        let (contact, side) = self.sides[stretch.index].nearer(self.prepared, &parallel.tip)?;
+        let (contact, side) = self.measured(stretch.index, &parallel.tip)?;
         let (low, high) = (-check.inside, check.outside);
         // Nothing is tangent to the end of a surface.
         if is_at_end(check, &contact) {
@@ -412,8 +414,8 @@ impl<'a> Watch<'a> {
             }
             let shifted =
                 self.parallel(stretch, if to_part { [shift, base[1]] } else { [base[0], shift] })?;
-            let (contact, side) = self.sides[stretch.index].nearer(self.prepared, &shifted.tip)?;
-            let outside_by = (low - contact.clearance).max(contact.clearance - high);
+            let (contact, side) = self.measured(stretch.index, &shifted.tip)?;
+            let outside_by = check.beyond(contact.clearance);
             let apart = self.apart(stretch.index, partner, &shifted)?;
             if apart > (1.0 - GUARD) * (check.band() + partner.band()) {
                 return Ok(Gap::Open(apart));
@@ -424,6 +426,18 @@ impl<'a> Watch<'a> {
             return Ok(Gap::Open(contact.clearance));
         }
         Ok(Gap::Open(gap))
+    }
+
+    /// Contact with a check surface, and its side: of ON, which has none, that in whose band the tool is more nearly, as the next motion has it.
+    fn measured(&self, index: usize, tip: &Vec3) -> Result<(Contact, f64), MotionFailure> {
+        let (check, sides) = (&self.prepared.checks[index], &self.sides[index]);
+        let (contact, side) = sides.nearer(self.prepared, tip)?;
+        if !check.gauge.on {
+            return Ok((contact, side));
+        }
+        let other = self.prepared.attitude.posture(tip)?.contact(sides.on(-side), tip);
+        let beyond = |contact: &Contact| check.beyond(contact.clearance);
+        Ok(if beyond(&other) < beyond(&contact) { (other, -side) } else { (contact, side) })
     }
 
     /// How far the check surface and the one that it is to be tangent to miss each other where their normals agree, as far as
@@ -554,43 +568,4 @@ fn bisected(
         }
     }
     Ok(0.5 * (low + high))
-}
-
-/// A check surface seen from either side; what is known of contact stays with each.
-pub(super) struct Sides([Gauge; 2]);
-
-impl Sides {
-    fn of(check: &Working) -> Self {
-        Self([1.0, -1.0].map(|side| Gauge { side, ..check.gauge.clone() }))
-    }
-
-    /// What is measured on a side.
-    pub(super) fn on(&self, side: f64) -> &Gauge {
-        &self.0[usize::from(side < 0.0)]
-    }
-
-    /// Contact on the side where the tool touches the surface more nearly.
-    pub(super) fn nearer(&self, prepared: &Prepared, tip: &Vec3) -> Result<(Contact, f64), MotionFailure> {
-        let posture = prepared.attitude.posture(tip)?;
-        let contact = |side: f64| posture.contact(self.on(side), tip);
-        let Gauge { on, surface, disk, .. } = self.on(1.0);
-        if *on {
-            return Ok((contact(1.0), 1.0));
-        }
-        // A tool that ends on the surface is on the side of the rest of it.
-        let height =
-            Some(surface.signed_distance(tip)).filter(|height| height.abs() > PARALLEL * prepared.size);
-        let height = height.unwrap_or_else(|| posture.tool.observed(surface, tip));
-        let first = if height < 0.0 { -1.0 } else { 1.0 };
-        let here = contact(first);
-        // Where it has come off on this side the middle of a ball that it holds is as far from the surface as the ball is large, and on the
-        // other side it is as deep.
-        let ball = if disk.is_some() { 0.0 } else { posture.tool.held_ball() };
-        if here.clearance >= 0.0 || -here.clearance <= 0.5 * ball {
-            return Ok((here, first));
-        }
-        let beyond = contact(-first);
-        let is_nearer = beyond.clearance.abs() < here.clearance.abs();
-        Ok(if is_nearer { (beyond, -first) } else { (here, first) })
-    }
 }
