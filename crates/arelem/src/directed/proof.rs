@@ -161,8 +161,10 @@ pub(crate) fn extremes(
     match shape {
         Shape::Flat => ends,
         Shape::Convex => {
-            let Minimum { value, bound, at } = convex_minimum(&line, a, b, ENOUGH * role.band());
-            let proven = ends.proven && bound >= limits[0];
+            // A proof may leave open what a position may not: beside the limit the least clearance is to be known.
+            let spare = (least + role.inside).max(ROUNDING * size);
+            let Minimum { value, bound, at } = convex_minimum(&line, a, b, spare.min(ENOUGH * role.band()));
+            let proven = ends.proven && bound >= limits[0] && role.holds(value, size);
             Extremes { least: value.min(least), greatest, proven, readings: line.read(readings, &at) }
         }
         Shape::Concave => {

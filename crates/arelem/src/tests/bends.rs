@@ -537,3 +537,23 @@ fn a_vector_that_ends_nearer_than_is_of_use_spares_no_vertex() {
     };
     assert!(verify(&sequence, &|| false).expect("evidence").verified);
 }
+
+/// A tool that begins beside the very limit of its band, as after a tangency where INTOL is zero, leaves it nowhere, by as little as a proof leaves
+/// open.
+#[test]
+fn a_vector_from_the_limit_of_the_band_does_not_leave_it() {
+    let drive = circle(-2.541890174, 1.098333649, 0.493498904);
+    let part = quadric([0.02, -0.015, 0.0, 0.0, 0.0, 0.0, 0.002, 0.0, 0.0, 0.25]);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.002).cutter(&[0.4, 0.06]).from(
+        -2.6970254270692147,
+        1.7742580411751216,
+        -0.122618700735408,
+    );
+    p.run(&MotionCommand::PartSurface(named(&part)));
+    p.side(DriveSide::Right).indirv(-1.0, -0.22, 0.0);
+    p.drive(Turn::Forward, &drive, Relation::On, &y(0.8)).verified();
+    let evidence = verify(p.last(), &|| false).expect("evidence");
+    let least = evidence.drive.expect("a drive surface").min;
+    assert!(least >= -1e-11, "{least}");
+}
