@@ -152,33 +152,33 @@ impl Posture<'_> {
     /// The contact with a surface; the gradient takes the turning of the axis into account and is then no unit vector.
     pub(crate) fn contact(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
         let mut contact = gauge.contact(&self.tool, tip);
-        self.turn(gauge, tip, &mut contact);
+        self.follow_law(gauge, tip, &mut contact);
         contact
     }
 
     /// The same as it is found without proof, for a place that is only passed through.
     pub(crate) fn contact_passing(&self, gauge: &Gauge, tip: &Vec3) -> Contact {
         let mut contact = gauge.contact_passing(&self.tool, tip);
-        self.turn(gauge, tip, &mut contact);
+        self.follow_law(gauge, tip, &mut contact);
         contact
     }
 
     /// [`Gauge::contact_passing_followed`] with the gradient of the law.
     pub(crate) fn contact_passing_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
         let mut found = gauge.contact_passing_followed(&self.tool, tip);
-        self.turn(gauge, tip, &mut found.0);
+        self.follow_law(gauge, tip, &mut found.0);
         found
     }
 
     /// The contact where the last one leads, and whether it is known to be the nearest.
     pub(crate) fn contact_followed(&self, gauge: &Gauge, tip: &Vec3) -> (Contact, bool) {
         let mut found = gauge.contact_followed(&self.tool, tip);
-        self.turn(gauge, tip, &mut found.0);
+        self.follow_law(gauge, tip, &mut found.0);
         found
     }
 
-    /// Lets the gradient follow the law of the axis.
-    fn turn(&self, gauge: &Gauge, tip: &Vec3, contact: &mut Contact) {
+    /// Lets the gradient of what a tool that keeps its axis touches follow the law of the axis.
+    pub(crate) fn follow_law(&self, gauge: &Gauge, tip: &Vec3, contact: &mut Contact) {
         if let Some(rate) = &self.rate
             && !gauge.on
         {

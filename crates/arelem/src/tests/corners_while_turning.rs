@@ -268,3 +268,92 @@ fn vectors_of_a_turning_tool_lead_round_a_tight_bend_bit_by_bit() {
         is_proven(&program);
     }
 }
+
+/// A line normal to a sphere whose centre is in its drive plane: it comes to touch that with its other end as it goes round. With the law of the axis the
+/// gradient of the clearance turns by more than a right angle there while the plane has one normal: the tool is not in a corner, out of which it would go
+/// back to where it began.
+#[test]
+fn a_gradient_that_turns_with_the_law_of_the_axis_tells_no_corner() {
+    let outside = sphere(-0.1335107481581279, 0.6096472502428263, 3.164274942020075, 3.030406441596082);
+    let beside = plane(0.43876264838657986, 0.5049118141524532, 0.7433380108067078, 2.763119484936581);
+    let first = plane(0.5793948010125889, -0.7912605674094979, 0.1954696370856149, 0.22052948627351238);
+    let check = quadric([
+        0.28753182140552225,
+        -0.2794978358567462,
+        -0.35616470316855015,
+        2.147421129961299,
+        -0.7280348945758788,
+        0.1198941911343126,
+        -0.3844596219707854,
+        -1.27249221974237,
+        3.1054715548727003,
+        0.47385469037019434,
+    ]);
+    let stock = 0.16175507422664262;
+    let mut p = Program::new();
+    p.tolerance(0.00002, 0.00003).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.7199976851995995]);
+    p.run(&MotionCommand::Thickness(PerRole { part: stock, drive: stock, check: [stock; 2] }));
+    p.run(&MotionCommand::MaximumStep(10.0));
+    let position = v(1.9250841122325824, 0.977551414152843, 1.2814275556843038);
+    let axis = v(-0.6868689852805826, -0.3449214032095981, 0.639718862210225);
+    p.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true }));
+    p.go(&[(Relation::To, &beside), (Relation::To, &outside), (Relation::Past, &first)]);
+    p.side(DriveSide::Right).indirv(0.5793948010125889, -0.791260567409498, 0.195469637085615);
+    p.drive(Turn::Forward, &beside, Relation::On, &check);
+    is_proven(&p);
+}
+
+/// A ball on a polyconic, at an angle to it, whose shank goes along a circle: where the surface goes over into its extension the axis begins to turn
+/// faster, and from one vector to the next the gradient of the clearance turns by nearly a right angle while the tool touches where it did. What goes on on
+/// the hand of the path from there does not lead away from a place that it touched before, but back.
+#[test]
+fn a_path_ends_where_the_law_of_its_axis_turns_it_back() {
+    let mut values = vec![
+        1.0,
+        0.9101502007826511,
+        0.41427759691319405,
+        0.0008274727354061695,
+        1.1539621038437857,
+        0.395620713155481,
+        -0.8697510268438704,
+        0.2949871228145078,
+        0.6331533200126733,
+        0.12292625162123644,
+        -0.26815522370422296,
+        -0.9555008700480029,
+        4.363892168491371,
+        0.0,
+        0.0,
+        6.0,
+    ];
+    let side = 2.5614133632851703;
+    for line in [
+        [side, -0.0022457159087851952],
+        [side, 0.15696353386444656],
+        [side, 0.09670923697600681],
+        [-side, 0.1335337472543292],
+        [-side, 0.14117131036612124],
+        [side, 0.12876675262614823],
+        [std::f64::consts::FRAC_1_SQRT_2, -0.03981770054133942],
+    ] {
+        values.extend(line);
+        values.extend([0.0; 6]);
+    }
+    values.extend([0.0; 7]);
+    let sheet = Geometry::PolyConic(Remembering::new(values));
+    let wall = circle(0.5566318166924328, 6.035369418816494, 4.709816517579615);
+    let onward = v(-0.9689958578670285, 0.24707696662485892, 0.0);
+    let stop = cone(v(-3.5, -2.437, 0.279), v(0.958173, 0.284423, 0.031752), 58.963);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.29295114369048486, 0.14647557184524243]);
+    p.from(-0.5159759515979716, 1.8287754218638521, 0.3787919499296404);
+    let mode = AxisAngle::Plain;
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle: 0.08582967140840325, mode }));
+    let first = plane(onward.x, onward.y, 0.0, 0.7223896911808979);
+    p.go(&[(Relation::To, &wall), (Relation::To, &sheet), (Relation::On, &first)]);
+    p.side(DriveSide::Right).indirv(onward.x, onward.y, onward.z);
+    let failure = p.attempt(&motion(Turn::Forward, &wall, &[(Relation::To, 1, &stop)]));
+    let Err(MotionFailure::NoAdmissibleVector { tip, .. }) = failure else { panic!("{failure:?}") };
+    assert!((tip - v(-1.258, 3.315, 0.758)).norm() < 0.01, "{tip:?}");
+}

@@ -198,7 +198,7 @@ impl<'a> Stepper<'a> {
         if let Some((at, straight)) = self.beyond_corner.take() {
             self.straight = (at == here.tip).then_some(straight);
         }
-        self.hand.arrive(here);
+        self.hand.arrive(self.prepared, here);
         if let Some(next) = self.beyond_sharply(here, cap)? {
             self.note(here, &next);
             return Ok(next);
@@ -258,7 +258,7 @@ impl<'a> Stepper<'a> {
 
     /// Remembers the direction of a vector.
     fn note(&mut self, here: &Vertex, next: &Vertex) {
-        self.hand.follow(here, next);
+        self.hand.follow(self.prepared, [here, next]);
         self.last = next.tip - here.tip;
         if !self.is_where_it_arrived(&next.tip) {
             let (vector, tangent) = (self.last, arrival(here, next));

@@ -23,6 +23,8 @@ use crate::{
 const TELLING_SINE: f64 = 0.1;
 /// Cosine between the gradients at both ends of a vector above which the tool touches at the same place (30°).
 pub(super) const SAME_CONTACT_COSINE: f64 = 0.87;
+/// Sine between two lines of motion below which they are one, for the path bends on its way between the places at which they are measured (3°).
+const SAME_LINE_SINE: f64 = 0.05;
 
 /// The sign of the triple product of the gradients of both clearances and the direction of the path. The tool keeps to one side of each
 /// surface, so its path is an edge of what it may reach, and along an edge this sign stays: where the gradient a of one clearance gives
@@ -33,12 +35,35 @@ pub(super) struct Hand {
     sign: Option<f64>,
     /// Whether the tool has come to touch one of both surfaces at another place on the last vector, where the tangent leads back.
     is_beyond_corner: bool,
-    /// Where the last vector begins: the sign there, and the gradients of both clearances.
-    before: Option<(Option<f64>, [Vec3; 2])>,
+    /// Where the last vector begins, and the sign there.
+    before: Option<(Option<f64>, Vertex)>,
 }
 
+/// Directions of the gradients of both clearances, which are no unit vectors where the axis turns; zero where a clearance has none.
 fn gradients(vertex: &Vertex) -> [Vec3; 2] {
     [vertex.part.gradient, vertex.drive.gradient]
+        .map(|gradient| gradient.try_normalize(0.0).unwrap_or_default())
+}
+
+/// Whether the tool touches one of both surfaces at a vertex about as at the one before.
+fn touches_as_before(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], role: usize) -> bool {
+    gradients(from)[role].dot(&gradients(to)[role]) >= SAME_CONTACT_COSINE
+        || is_turned_by_law(prepared, [from, to], role)
+}
+
+/// Whether it is the law of the axis that turns the gradient of a clearance from one vertex to another, and no other place of contact: the contact at the first
+/// one has about that gradient if the axis turns as it does at the second one.
+fn is_turned_by_law(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], role: usize) -> bool {
+    let attitude = &prepared.attitude;
+    let Some(posture) = attitude.turns().then(|| attitude.posture(&to.tip).ok()).flatten() else {
+        return false;
+    };
+    let gauge = [&prepared.part.gauge, &prepared.drive.gauge][role];
+    let mut carried = gauge.contact(&prepared.tool.turned(from.axis), &from.tip);
+    carried.tool += to.tip - from.tip;
+    posture.follow_law(gauge, &to.tip, &mut carried);
+    let carried = carried.gradient.try_normalize(0.0);
+    carried.is_some_and(|carried| carried.dot(&gradients(to)[role]) >= SAME_CONTACT_COSINE)
 }
 
 /// The sign that two gradients tell with a direction of the path along both.
@@ -61,25 +86,35 @@ impl Hand {
     /// The sign at a vertex, by its tangent. Where a path begins in a corner or before a tight bend its tangent is that of the leg beyond: held against
     /// the contacts of the one that it leaves it tells the other hand, if the path turns by more than a right angle.
     fn sign_at(vertex: &Vertex) -> Option<f64> {
-        sign_of([&vertex.part.gradient, &vertex.drive.gradient], &vertex.tangent)
+        let [part, drive] = gradients(vertex);
+        sign_of([&part, &drive], &vertex.tangent)
     }
 
     /// Goes on along a vector.
-    pub(super) fn follow(&mut self, from: &Vertex, to: &Vertex) {
-        self.before = Some((self.or_at(from).sign, gradients(from)));
-        self.arrive(to);
+    pub(super) fn follow(&mut self, prepared: &Prepared<'_>, [from, to]: [&Vertex; 2]) {
+        self.before = Some((self.or_at(from).sign, *from));
+        self.arrive(prepared, to);
     }
 
     /// Comes to the end of the last vector, which may have been moved since. Where the tool touches at another place there the tangent, which only
-    /// goes on within a right angle, does not tell.
-    pub(super) fn arrive(&mut self, to: &Vertex) {
+    /// goes on within a right angle, does not tell. What goes on along the line that it came along is no corner, though: a tool that turns may touch a
+    /// plane with either end there, whose gradients are opposite.
+    pub(super) fn arrive(&mut self, prepared: &Prepared<'_>, to: &Vertex) {
         let Some((before, from)) = self.before else { return };
-        let there = gradients(to);
-        let same = [0, 1].map(|k: usize| from[k].dot(&there[k]) >= SAME_CONTACT_COSINE);
+        let same = [0, 1].map(|role| touches_as_before(prepared, [&from, to], role));
         let now = Self::sign_at(to);
         let is_kept = same.contains(&false) && before.is_some() && now.is_some();
-        self.is_beyond_corner = is_kept && before != now && same.contains(&true);
-        self.sign = if is_kept { before } else { now };
+        (self.sign, self.is_beyond_corner) = (if is_kept { before } else { now }, false);
+        if !is_kept || before == now {
+            return;
+        }
+        let Some(left) = (0..2).find(|role| !same[*role] && same[1 - role]) else { return };
+        let Some(along) = self.along(&to.part, &to.drive) else { return };
+        if gradients(&from)[left].dot(&along).abs() <= SAME_LINE_SINE {
+            self.sign = now;
+        } else {
+            self.is_beyond_corner = true;
+        }
     }
 
     /// The same, or the sign at a vertex where none is known.
@@ -95,7 +130,8 @@ impl Hand {
 
     /// The direction of the path along two contacts, where a hand is known.
     pub(super) fn along(self, part: &Contact, drive: &Contact) -> Option<Vec3> {
-        let (sign, across) = (self.sign?, part.gradient.cross(&drive.gradient));
+        let [part, drive] = [part, drive].map(|contact| contact.gradient.try_normalize(0.0));
+        let (sign, across) = (self.sign?, part?.cross(&drive?));
         (across.norm() >= TELLING_SINE).then(|| across.normalize() * sign)
     }
 }
@@ -181,19 +217,22 @@ impl Stepper<'_> {
 
     /// Directions on the same hand that are against that of the path, or so nearly square to it that no vector along them plainly leads onward:
     /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces, unless
-    /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing. Where the tool leads in the direction
-    /// of motion it cannot turn to lead against it on the spot.
+    /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing. A gradient that the law of the axis turns
+    /// ahead tells no second contact. Where the tool leads in the direction of motion it cannot turn to lead against it on the spot.
     fn sharp_directions(&self, seconds: &[SecondPlace], here: &Vertex) -> Vec<Vec3> {
         let hand = self.hand.or_at(here);
         let own = hand.is_beyond_corner.then(|| hand.along(&here.part, &here.drive)).flatten();
         let is_on = self.roles().map(|role| role.relation == Relation::On);
         let onward = seconds.iter().filter_map(|SecondPlace { ahead, others }| {
-            let (left, part, drive) = match others {
+            let (role, left, part, drive) = match others {
                 _ if zip(others, is_on).any(|(other, on)| *other && on) => return None,
-                [true, false] => (&here.part, &ahead.part, &here.drive),
-                [false, true] => (&here.drive, &here.part, &ahead.drive),
+                [true, false] => (0, &here.part, &ahead.part, &here.drive),
+                [false, true] => (1, &here.drive, &here.part, &ahead.drive),
                 _ => return None,
             };
+            if is_turned_by_law(self.prepared, [here, ahead], role) {
+                return None;
+            }
             hand.along(part, drive).filter(|along| left.gradient.dot(along) >= 0.0)
         });
         let mut found: Vec<Vec3> = Vec::new();
