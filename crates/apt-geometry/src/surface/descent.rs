@@ -21,6 +21,40 @@ const FLAT: f64 = 1e-9;
 /// Determinant of the second derivatives, relative to the metric, below which they are singular.
 const SINGULAR: f64 = 1e-14;
 
+/// Rounding of a point of a surface and of its way from another one, relative to the coordinates of both.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// How near a place of a surface is to a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Nearness {
+    /// The squared distance.
+    pub(super) square: f64,
+    /// How steeply that changes along the surface from there, in one measure for all places that are compared.
+    pub(super) slope: f64,
+}
+
+impl Nearness {
+    /// That of no place.
+    pub(super) const NONE: Self = Self { square: f64::INFINITY, slope: f64::INFINITY };
+
+    /// Whether another place counts as nearer, for coordinates of a size. As near but for rounding the one where the slope is less counts: about the nearest
+    /// place distance is level, and does not tell to within more than the root of its rounding where that is.
+    pub(super) fn yields_to(&self, other: &Self, size: f64) -> bool {
+        match self.is_farther(other, size) {
+            Some(is_farther) => is_farther,
+            None => other.slope < self.slope,
+        }
+    }
+
+    /// Whether it is farther than another place; `None` where only rounding tells.
+    fn is_farther(&self, other: &Self, size: f64) -> Option<bool> {
+        let of_points = ROUNDING * size;
+        let rounding = (2.0 * self.square.min(other.square).sqrt() + of_points) * of_points;
+        let is_told = (self.square - other.square).abs() > rounding;
+        is_told.then_some(other.square < self.square)
+    }
+}
+
 /// Half the gradient of the squared distance from a point and half its second derivatives (uu, uv, vv).
 pub(super) struct Slopes {
     pub(super) gradient: Vector2<f64>,

@@ -16,6 +16,7 @@ use self::strip::Strip;
 use super::{
     Chart, Place, Surface,
     apart::Apart,
+    descent::Nearness,
     part::Count,
     perpendicular,
     section_curve::{CurvePoint, SectionCurve},
@@ -82,7 +83,7 @@ pub struct RuledSheet {
 struct Nearest {
     t: f64,
     piece: usize,
-    square: f64,
+    near: Nearness,
 }
 
 /// Point, first and second derivative of a quintic by the parameter itself.
@@ -265,7 +266,7 @@ impl RuledSheet {
     }
 
     fn nearest(&self, p: &Vec3) -> Nearest {
-        let mut best = Nearest { t: 0.0, piece: 0, square: f64::INFINITY };
+        let mut best = Nearest { t: 0.0, piece: 0, near: Nearness::NONE };
         // The band between the curves first; nearer children first.
         let mut open: Vec<(f64, usize, usize)> = Vec::with_capacity(32);
         for (band, nodes) in self.bands.iter().enumerate() {
@@ -275,7 +276,7 @@ impl RuledSheet {
         }
         open.sort_by(|a, b| b.0.total_cmp(&a.0));
         while let Some((bound, band, node)) = open.pop() {
-            if bound > 0.0 && bound * bound >= best.square {
+            if bound > 0.0 && bound * bound >= best.near.square {
                 continue;
             }
             let Some(nodes) = self.bands.get(band) else { continue };
@@ -299,22 +300,24 @@ impl RuledSheet {
     /// The nearest ruling within a strip.
     fn descend(&self, p: &Vec3, strip: &Strip, best: &mut Nearest) {
         let [mut low, mut high] = strip.range;
-        let mut take = |t: f64, square: f64| {
-            if square < best.square {
-                *best = Nearest { t, piece: strip.piece, square };
+        let size = self.size + p.norm();
+        let mut take = |t: f64, (slope, _, square): (f64, f64, f64)| {
+            let near = Nearness { square, slope: slope.abs() };
+            if best.near.yields_to(&near, size) {
+                *best = Nearest { t, piece: strip.piece, near };
             }
         };
         let (a, b) = (self.slope(p, strip.piece, low), self.slope(p, strip.piece, high));
-        take(low, a.2);
-        take(high, b.2);
+        take(low, a);
+        take(high, b);
         if !(a.0 < 0.0 && b.0 > 0.0) {
             return;
         }
         let mut t = low + (high - low) * (a.0 / (a.0 - b.0));
         let resolution = RESOLUTION * (1.0 + low.abs().max(high.abs()));
         for _ in 0..MAX_ITERATIONS {
-            let (slope, bend, square) = self.slope(p, strip.piece, t);
-            take(t, square);
+            let told @ (slope, bend, _) = self.slope(p, strip.piece, t);
+            take(t, told);
             if slope > 0.0 {
                 high = t;
             } else {

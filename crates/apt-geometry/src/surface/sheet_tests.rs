@@ -331,6 +331,30 @@ fn what_is_beyond_the_end_of_a_polyconic_surface_is_behind_it_for_no_tool() {
     }
 }
 
+/// How far along a surface of this size the way to a nearest place may lead: what is left by parameters that are known to thirteen digits.
+const AMISS: f64 = 1e-11;
+
+/// The distance hardly tells where it is least: to within the root of its rounding. The place has to be where its slope vanishes.
+#[test]
+fn the_way_to_a_nearest_place_of_a_ruled_surface_is_as_square_to_it_as_slopes_tell() {
+    let mut worst = [0.0_f64; 3];
+    for (which, worst) in worst.iter_mut().enumerate() {
+        let sheet = sheet(which);
+        for k in 0..4000 {
+            let share = |step: f64| (f64::from(k) * step).fract();
+            let p = v(-3.0 + 10.0 * share(0.7548), -1.0 + 8.0 * share(0.5698), -1.0 + 6.0 * share(0.3247));
+            if sheet.ends_at(&p) {
+                continue;
+            }
+            let chart = sheet.place(&p).and_then(|place| sheet.chart(&place)).expect("a chart");
+            let way = p - chart.point;
+            let [a, b] = chart.first.map(|along| way.dot(&along).abs() / along.norm());
+            *worst = worst.max(a).max(b);
+        }
+    }
+    assert!(worst.iter().all(|along| *along <= AMISS), "{worst:?}");
+}
+
 fn moved(geometry: &Geometry, matrix: &Matrix) -> Surface {
     surface(&geometry.transform(matrix).expect("a rigid motion"))
 }

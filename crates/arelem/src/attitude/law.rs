@@ -17,7 +17,7 @@ mod rate;
 const MAX_ITERATIONS: u32 = 40;
 /// A change of the normal below this ends it.
 const RESOLUTION: f64 = 1e-15;
-/// The change that may be left: nearest points of ruled and polyconic surfaces are known to about a tenth of it.
+/// The change that may be left: nearest points of polyconic surfaces are known to about a tenth of it.
 const ACCEPTABLE: f64 = 1e-8;
 /// The change that rounding of nearest points may leave, where Newton's method has led.
 const ROUNDED: f64 = 1e-12;
