@@ -4,6 +4,7 @@ use apt_geometry::{
     Vec3,
     canonical::{Cylinder, Geometry, Plane, Sphere},
     motion::{NamedSurface, PerRole, Relation},
+    patience::Patience,
     surface::{Surface, SurfaceError},
 };
 
@@ -100,6 +101,7 @@ impl Working {
         named: &NamedSurface,
         relation: Relation,
         on: bool,
+        patience: Patience<'_>,
     ) -> Result<Self, MotionFailure> {
         let pick = |values: &PerRole| match name {
             RoleName::Part => values.part,
@@ -116,10 +118,10 @@ impl Working {
         }
         // In APT4 stock counts for ON, too.
         let named = match state.start_up {
-            StartUpRule::Apt4 if on && stock != 0.0 => moved(named, stock, state.tip.as_ref()),
+            StartUpRule::Apt4 if on && stock != 0.0 => moved(named, stock, state.tip.as_ref(), patience),
             _ => named.clone(),
         };
-        let surface = surface(name, &named)?;
+        let surface = surface(name, &named, patience)?;
         let thickness = if on { 0.0 } else { stock };
         let disk = state.disk.filter(|of| match name {
             RoleName::Part => of.part,
@@ -267,9 +269,9 @@ impl Working {
 
 /// A plane, line, circle, cylinder or sphere moved by stock towards the tool end; from a tool end that is on it, or not known,
 /// against its natural normal. Other surfaces stay: ON measures them without stock.
-fn moved(named: &NamedSurface, stock: f64, tip: Option<&Vec3>) -> NamedSurface {
+fn moved(named: &NamedSurface, stock: f64, tip: Option<&Vec3>, patience: Patience<'_>) -> NamedSurface {
     let towards = |surface: &Geometry| {
-        let distance = Surface::from_geometry(surface)
+        let distance = Surface::from_geometry_until(surface, patience)
             .ok()
             .zip(tip)
             .map_or(0.0, |(surface, tip)| surface.signed_distance(tip));
@@ -293,9 +295,14 @@ fn moved(named: &NamedSurface, stock: f64, tip: Option<&Vec3>) -> NamedSurface {
 }
 
 /// The surface of a role.
-pub(crate) fn surface(role: RoleName, named: &NamedSurface) -> Result<Surface, MotionFailure> {
-    Surface::from_geometry(&named.geometry).map_err(|error| match error {
+pub(crate) fn surface(
+    role: RoleName,
+    named: &NamedSurface,
+    patience: Patience<'_>,
+) -> Result<Surface, MotionFailure> {
+    Surface::from_geometry_until(&named.geometry, patience).map_err(|error| match error {
         SurfaceError::Unsupported { kind } => MotionFailure::SurfaceUnsupported { role, kind },
         SurfaceError::Degenerate { kind } => MotionFailure::SurfaceDegenerate { role, kind },
+        SurfaceError::GivenUp => MotionFailure::Cancelled,
     })
 }

@@ -195,12 +195,12 @@ impl<'a> StartUp<'a> {
                 _ => Some(start),
             };
             let on = stands_as.is_some_and(|surface| surface.relation == Relation::On);
-            roles.push(Working::new(state, name, &start.surface, start.relation, on)?.at_start());
+            roles.push(Working::new(state, name, &start.surface, start.relation, on, patience)?.at_start());
         }
         if roles.len() == 1 && !state.no_part {
             let on = state.part_side == PartSide::On;
             let relation = if on { Relation::On } else { Relation::To };
-            roles.push(Working::new(state, RoleName::Part, &state.part, relation, on)?);
+            roles.push(Working::new(state, RoleName::Part, &state.part, relation, on, patience)?);
         }
         let tool = Tool::awaited(cutter, axis, patience);
         let attitude = Attitude::fixed(tool.clone());
@@ -334,7 +334,7 @@ fn follow_surfaces(work: &mut StartUp<'_>, ahead: &Vec3, place: Option<Vec3>) ->
         return Ok(());
     }
     let (state, tip) = (work.state, work.tip);
-    let mut modal = Working::new(state, RoleName::Part, &state.part, Relation::To, false)?;
+    let mut modal = Working::new(state, RoleName::Part, &state.part, Relation::To, false, work.patience)?;
     let observed = work.tool.observed(&modal.gauge.surface, &tip);
     modal.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
     let find = |name: RoleName| work.roles.iter().find(|r| r.name == name);

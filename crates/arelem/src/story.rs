@@ -214,7 +214,7 @@ impl<'a> Teller<'a> {
         let roles = [(RoleName::Part, sequence.part.as_ref()), (RoleName::Drive, sequence.drive.as_ref())];
         let roles = roles.into_iter().filter_map(|(name, role)| Some((name, role?))).chain(stop);
         let told = roles.filter_map(|(name, role)| {
-            let surface = Surface::from_geometry(&role.surface.geometry).ok()?;
+            let surface = Surface::from_geometry_until(&role.surface.geometry, patience).ok()?;
             let on = role.relation == Relation::On;
             let memory = Memory::default();
             let (side, thickness, disk) = (role.side, role.thickness, role.disk);

@@ -42,6 +42,7 @@ use crate::{
     Vec3,
     canonical::{Cylinder, Geometry, GeometryKind, Plane, Sphere},
     parametric::{Extended, Flanged},
+    patience::Patience,
 };
 
 /// A surface ready for distance questions.
@@ -83,6 +84,9 @@ pub enum SurfaceError {
         /// What it is.
         kind: GeometryKind,
     },
+    /// Who waits for it has given up before it was made.
+    #[error("given up before it was made")]
+    GivenUp,
 }
 
 /// The nearest point of a surface.
@@ -120,6 +124,22 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError`] for points, vectors and the like, and for degenerate forms.
     pub fn from_geometry(geometry: &Geometry) -> Result<Self, SurfaceError> {
+        Self::from_geometry_until(geometry, Patience::default())
+    }
+
+    /// The same for somebody who may give up: surfaces that end are cut into many pieces when they are first made.
+    ///
+    /// # Errors
+    /// [`SurfaceError`] as before, and [`SurfaceError::GivenUp`].
+    pub fn from_geometry_until(geometry: &Geometry, patience: Patience<'_>) -> Result<Self, SurfaceError> {
+        match Self::of(geometry, patience) {
+            Err(SurfaceError::Degenerate { .. }) if patience.was_over() => Err(SurfaceError::GivenUp),
+            made => made,
+        }
+    }
+
+    /// The same, degenerate where who waits has given up.
+    fn of(geometry: &Geometry, patience: Patience<'_>) -> Result<Self, SurfaceError> {
         let kind = geometry.kind();
         let degenerate = SurfaceError::Degenerate { kind };
         match geometry {
@@ -153,16 +173,18 @@ impl Surface {
                 DirectrixCurve::new(cylinder).map(|curve| Self::Tabulated(Box::new(curve))).ok_or(degenerate)
             }
             Geometry::RuledSurface(surface) => {
-                surface.made(RuledSheet::new).map(Self::Ruled).ok_or(degenerate)
+                let sheet = surface.made(|surface| RuledSheet::new(surface, patience));
+                sheet.map(Self::Ruled).ok_or(degenerate)
             }
             Geometry::PolyConic(values) => {
-                let sheet = values.made(|values| PolyConicSheet::new(values));
+                let sheet = values.made(|values| PolyConicSheet::new(values, patience));
                 sheet.map(Self::PolyConic).ok_or(degenerate)
             }
             Geometry::Sculptured(surface) => {
                 let extended = Extended::of(surface).ok_or(degenerate)?;
                 let flanged = Flanged::of(surface).ok_or(degenerate)?;
-                let sheet = surface.made(|own| SculpturedSheet::new(own, extended.patches(), flanged));
+                let sheet =
+                    surface.made(|own| SculpturedSheet::new(own, extended.patches(), flanged, patience));
                 sheet.map(Self::Sculptured).ok_or(degenerate)
             }
             Geometry::Point(_)
@@ -200,11 +222,13 @@ impl Surface {
     /// The surface as a body of a tool on one side of it meets it, positive for that of the natural normal: where a surface ends it
     /// is taken for the face of a body, which leads away from there on the other side. Most surfaces are that themselves, and so is one
     /// of straight lines along the axis of the tool, which is beside all of such a line or beside none of it.
-    pub fn met_from(&self, side: f64, axis: &Vec3) -> &Self {
+    ///
+    /// It is made when it is first asked for; to somebody who has given up before it is the surface itself.
+    pub fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> &Self {
         match self {
             Self::Ruled(sheet) => sheet.met_from(side),
             Self::PolyConic(sheet) => sheet.met_from(side),
-            Self::Sculptured(sheet) => sheet.met_from(side, axis).unwrap_or(self),
+            Self::Sculptured(sheet) => sheet.met_from(side, axis, patience).unwrap_or(self),
             _ => self,
         }
     }

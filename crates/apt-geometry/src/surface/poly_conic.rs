@@ -30,12 +30,15 @@ use crate::{
         Made, PolyConicForm,
         extent::{GREATEST_FULLNESS, LEAST_FULLNESS, POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
     },
+    patience::Patience,
 };
 
 /// Cells along the stations and over a conic; each straight end has [`END_CELLS`] more.
 const STATION_CELLS: usize = 24;
 const CONIC_CELLS: usize = 12;
 const END_CELLS: usize = 4;
+/// Units of work that it takes to bound a cell.
+const UNITS_A_CELL: u32 = 8;
 /// First step, in halves of a cell, beyond which the nearest place is that of another cell.
 const STRAYING: f64 = 6.0;
 /// Distance of two places, in halves of a cell, at which they belong to one valley of the distance.
@@ -137,7 +140,7 @@ impl Made for PolyConicSheet {
 
 impl PolyConicSheet {
     /// `None` if the values do not describe a surface.
-    pub(super) fn new(values: &[f64]) -> Option<Self> {
+    pub(super) fn new(values: &[f64], patience: Patience<'_>) -> Option<Self> {
         let form = PolyConicForm::read(values)?;
         let last = 1.0 + POLYCONIC_STATIONS_BEYOND;
         let stations = if form.roots.is_some() {
@@ -164,7 +167,7 @@ impl PolyConicSheet {
             beyond: None,
             met: Default::default(),
         };
-        sheet.grow();
+        sheet.grow(patience)?;
         let finite = sheet.cells.iter().all(|c| c.center.iter().all(|x| x.is_finite()) && !c.radius.is_nan());
         (finite && sheet.size > 0.0).then_some(sheet)
     }
@@ -238,7 +241,7 @@ impl PolyConicSheet {
     }
 
     /// Cuts the surface into cells and builds the tree over them.
-    fn grow(&mut self) {
+    fn grow(&mut self, patience: Patience<'_>) -> Option<()> {
         let even = |from: f64, to: f64, count: usize| -> Vec<[f64; 2]> {
             let at = |k: usize| from + (to - from) * k as f64 / count as f64;
             (0..count).map(|k| [at(k), at(k + 1)]).collect()
@@ -259,7 +262,12 @@ impl PolyConicSheet {
             summary: None,
         };
         let mut nodes = vec![empty.clone(); leaves - 1];
-        nodes.extend(cells.iter().map(|&(i, j)| self.cell(conic[i], stations[j])));
+        for &(i, j) in &cells {
+            if patience.ends_after(UNITS_A_CELL) {
+                return None;
+            }
+            nodes.push(self.cell(conic[i], stations[j]));
+        }
         nodes.resize(2 * leaves - 1, empty);
         for node in (0..leaves - 1).rev() {
             if let (Some(a), Some(b)) = (nodes.get(2 * node + 1), nodes.get(2 * node + 2)) {
@@ -277,6 +285,7 @@ impl PolyConicSheet {
             }
         }
         self.cells = Arc::new(nodes);
+        Some(())
     }
 
     /// The nearest place to a point in the surface's own coordinates: squared distance and parameters.

@@ -28,6 +28,7 @@ use crate::{
         Made, RuledEnd, RuledSurface,
         extent::{RULED_BEYOND, ruled_shares},
     },
+    patience::Patience,
 };
 
 /// Accuracy of the pieces, relative to the size of the surface.
@@ -36,6 +37,8 @@ const ACCURACY: f64 = 2e-11;
 const KINK: f64 = 5e4;
 /// Bound of the halvings of a piece of the curves.
 const MAX_DEPTH: u32 = 40;
+/// Units of work that it takes to try a piece, or to bound a strip.
+const UNITS_A_PIECE: u32 = 4;
 /// Bound of the number of pieces.
 const MAX_PIECES: usize = 4096;
 /// Strips over the surface itself, roughly: short enough for one valley of the distance each.
@@ -140,7 +143,7 @@ impl Made for RuledSheet {
 
 impl RuledSheet {
     /// `None` if the parts are not those of a definition or a section does not join its end points.
-    pub(super) fn new(surface: &RuledSurface) -> Option<Self> {
+    pub(super) fn new(surface: &RuledSurface, patience: Patience<'_>) -> Option<Self> {
         let (first, end) = surface.curves()?;
         let chord = first.end - first.start;
         let mut size = chord.norm();
@@ -160,7 +163,7 @@ impl RuledSheet {
             RuledEnd::Apex(apex) => *apex,
         };
         let ruling = (other - first.start).try_normalize(0.0)?;
-        let pieces = pieces(&edges, range, ACCURACY * size)?;
+        let pieces = pieces(&edges, range, ACCURACY * size, patience)?;
         // Both curves as the chord is gone along, on the side that is ahead.
         let shares = ruled_shares(|share| Some([0, 1].map(|k: usize| edges[k].at(share, 1.0).first)))?;
         let limits = [range, shares];
@@ -175,7 +178,7 @@ impl RuledSheet {
             beyond: None,
             met: Default::default(),
         };
-        sheet.grow();
+        sheet.grow(patience)?;
         Some(sheet)
     }
 
@@ -191,8 +194,8 @@ impl RuledSheet {
         Jet { point: e + dv * v, du: e1 + duv * v, dv, duu: e2 + (f2 - e2) * v, duv, dvv: Vec3::zeros() }
     }
 
-    /// Cuts the surface into strips and builds their trees.
-    fn grow(&mut self) {
+    /// Cuts the surface into strips and builds their trees; `None` where who waits gives up.
+    fn grow(&mut self, patience: Patience<'_>) -> Option<()> {
         let [low, high] = self.limits[1];
         let length = |piece: &Piece| {
             let chord = |c: &Quintic| (evaluate(c, 1.0, 1.0)[0] - evaluate(c, 0.0, 1.0)[0]).norm();
@@ -214,16 +217,20 @@ impl RuledSheet {
         let cuts = [low, 0.0, 1.0, high];
         let mut bands = Vec::new();
         for pair in cuts.windows(2).filter(|pair| pair[1] > pair[0]) {
-            bands.push(self.tree(&ranges, [pair[0], pair[1]]));
+            bands.push(self.tree(&ranges, [pair[0], pair[1]], patience)?);
         }
-        self.curvature = self.sampled_curvature(&ranges);
+        self.curvature = self.sampled_curvature(&ranges, patience)?;
         self.bands = Arc::new(bands);
+        Some(())
     }
 
-    /// Greatest principal curvature over the surface between its curves.
-    fn sampled_curvature(&self, ranges: &[(usize, [f64; 2])]) -> f64 {
+    /// Greatest principal curvature over the surface between its curves; `None` where who waits gives up.
+    fn sampled_curvature(&self, ranges: &[(usize, [f64; 2])], patience: Patience<'_>) -> Option<f64> {
         let mut greatest: f64 = 0.0;
         for &(piece, [a, b]) in ranges.iter().filter(|(_, r)| r[1] > 0.0 && r[0] < 1.0) {
+            if patience.ends_after(1) {
+                return None;
+            }
             for v in [0.0, 0.5, 1.0] {
                 for t in [a, 0.5 * (a + b), b] {
                     let jet = self.jet(piece, t, v);
@@ -233,7 +240,7 @@ impl RuledSheet {
                 }
             }
         }
-        greatest
+        Some(greatest)
     }
 
     /// The share along a ruling that is nearest to a point, and whether it is at a limit.
@@ -463,7 +470,7 @@ impl RuledSheet {
 }
 
 /// Both curves in pieces over a range of the parameter.
-fn pieces(edges: &[Edge; 2], range: [f64; 2], accuracy: f64) -> Option<Vec<Piece>> {
+fn pieces(edges: &[Edge; 2], range: [f64; 2], accuracy: f64, patience: Patience<'_>) -> Option<Vec<Piece>> {
     let mut cuts: Vec<f64> = edges.iter().flat_map(Edge::breaks).collect();
     cuts.extend([range[0], 0.0, 0.5, 1.0, range[1]]);
     cuts.retain(|x| *x >= range[0] && *x <= range[1]);
@@ -473,6 +480,9 @@ fn pieces(edges: &[Edge; 2], range: [f64; 2], accuracy: f64) -> Option<Vec<Piece
     let mut open: Vec<(f64, f64, u32)> =
         cuts.windows(2).rev().filter_map(|pair| Some((*pair.first()?, *pair.get(1)?, 0))).collect();
     while let Some((a, b, depth)) = open.pop() {
+        if patience.ends_after(UNITS_A_PIECE) {
+            return None;
+        }
         let (width, middle) = (b - a, 0.5 * (a + b));
         let mut misfit: f64 = 0.0;
         let curves = [0, 1].map(|k: usize| {

@@ -19,6 +19,7 @@ use crate::{
     Vec3,
     canonical::Made,
     parametric::{Edge, ExtendedPatch, Flanged, Patch, PatchPoint, SculpturedSurface, Side},
+    patience::Patience,
 };
 
 /// Share of an offset along a joint's own surface above which the nearest place stays on the joint.
@@ -29,6 +30,8 @@ const INWARD: f64 = 1e-5;
 const MOST_CROSSINGS: u32 = 4;
 /// Places of each patch, along each parameter, where its curvature is looked at.
 const SAMPLES: u32 = 4;
+/// Units of work that it takes to sample a patch.
+const UNITS_A_PATCH: u32 = 4;
 
 /// A sculptured surface ready for distance questions.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,19 +97,20 @@ impl SculpturedSheet {
         surface: &SculpturedSurface,
         extended: &[ExtendedPatch],
         flanged: Arc<Flanged>,
+        patience: Patience<'_>,
     ) -> Option<Self> {
         let size = surface.size();
         if !(surface.is_finite() && size.is_finite() && size > 0.0) {
             return None;
         }
-        let mut sheet = Self::of(extended, size)?;
+        let mut sheet = Self::of(extended, size, patience)?;
         sheet.ruling = sheet.found_ruling();
-        sheet.curvature = sheet.sampled_curvature(surface.patches.len());
+        sheet.curvature = sheet.sampled_curvature(surface.patches.len(), patience)?;
         sheet.flanged = Some(flanged);
         Some(sheet)
     }
 
-    fn of(pieces: &[ExtendedPatch], size: f64) -> Option<Self> {
+    fn of(pieces: &[ExtendedPatch], size: f64, patience: Patience<'_>) -> Option<Self> {
         let mut sheet = Self {
             pieces: pieces.to_vec(),
             nodes: Vec::new(),
@@ -118,29 +122,36 @@ impl SculpturedSheet {
             flanged: None,
             met: Default::default(),
         };
-        sheet.nodes = tree::grown(&sheet);
+        sheet.nodes = tree::grown(&sheet, patience)?;
         (!sheet.nodes.is_empty()).then_some(sheet)
     }
 
     /// The surface with what it is taken for behind its ends by a tool on a side; none if that is itself.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3) -> Option<&Surface> {
+    /// None as well where who waits gives up, and then nothing is kept.
+    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> Option<&Surface> {
         let flanged = self.flanged.as_ref()?;
         if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ON_SURFACE) {
             return None;
         }
-        let made = self.met[usize::from(side < 0.0)].get_or_init(|| {
-            let mut sheet = Self::of(flanged.patches(side), self.size)?;
+        let kept = &self.met[usize::from(side < 0.0)];
+        if let Some(made) = kept.get() {
+            return made.as_deref();
+        }
+        let made = Self::of(flanged.patches(side), self.size, patience).map(|mut sheet| {
             (sheet.curvature, sheet.own) = (self.curvature, self.own);
-            Some(Box::new(Surface::Sculptured(Arc::new(sheet))))
+            Box::new(Surface::Sculptured(Arc::new(sheet)))
         });
-        made.as_deref()
+        if patience.was_over() { None } else { kept.get_or_init(|| made).as_deref() }
     }
 
-    /// Greatest principal curvature at places of the definition's own patches.
-    fn sampled_curvature(&self, own: usize) -> f64 {
+    /// Greatest principal curvature at places of the definition's own patches; `None` where who waits gives up.
+    fn sampled_curvature(&self, own: usize, patience: Patience<'_>) -> Option<f64> {
         let mut greatest: f64 = 0.0;
         let share = |k: u32| f64::from(k) / f64::from(SAMPLES);
         for piece in self.pieces.iter().take(own) {
+            if patience.ends_after(UNITS_A_PATCH) {
+                return None;
+            }
             for (i, j) in (0..=SAMPLES).flat_map(|i| (0..=SAMPLES).map(move |j| (i, j))) {
                 let jet = Jet::from(piece.patch.evaluate(share(i), share(j)));
                 if let Some(normal) = jet.natural(piece.patch.size()) {
@@ -148,7 +159,7 @@ impl SculpturedSheet {
                 }
             }
         }
-        greatest
+        Some(greatest)
     }
 
     /// The direction along which all patches are the same curve, if there is one.

@@ -1,6 +1,9 @@
 //! Bounds of curvature of tabulated, ruled, polyconic and sculptured surfaces against differences of their distances.
 
-use std::sync::{Arc, OnceLock};
+use std::{
+    cell::Cell,
+    sync::{Arc, OnceLock},
+};
 
 use nalgebra::SymmetricEigen;
 use proptest::prelude::*;
@@ -12,13 +15,15 @@ use super::{
 };
 use crate::{
     canonical::{Interval, Made, Plane, Remembering, RuledSurface, TabulatedCylinder},
-    patience::Patience,
+    patience::Waiting,
 };
 
 /// How many surfaces [`made`] has.
 pub(super) const COUNT: usize = 11;
 /// The one with a thickness.
 pub(super) const THICK: usize = 3;
+/// The one of two flat patches.
+const ROOF: usize = COUNT - 1;
 
 /// A wave of three cubics, its joints without corners.
 fn wave() -> Geometry {
@@ -38,11 +43,59 @@ fn patches() -> [Geometry; 3] {
 }
 
 /// The sheets, a half pipe, a tabulated cylinder, and sculptured surfaces.
+fn geometries() -> impl Iterator<Item = Geometry> {
+    sheets().into_iter().chain([half_pipe(), wave()]).chain(patches())
+}
+
+/// The same as surfaces.
 pub(super) fn made(which: usize) -> &'static Surface {
     static MADE: OnceLock<Vec<Surface>> = OnceLock::new();
-    &MADE.get_or_init(|| {
-        sheets().into_iter().chain([half_pipe(), wave()]).chain(patches()).map(|g| surface(&g)).collect()
-    })[which]
+    &MADE.get_or_init(|| geometries().map(|g| surface(&g)).collect())[which]
+}
+
+#[test]
+fn surfaces_are_made_with_questions_and_nothing_is_kept_of_one_that_was_given_up() {
+    let asked = Cell::new(0);
+    let until = |geometry: &Geometry, last: u32| {
+        asked.set(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            asked.get() >= last
+        };
+        let waiting = Waiting::until(&ask);
+        Surface::from_geometry_until(geometry, waiting.patience())
+    };
+    for (which, (geometry, again)) in geometries().zip(geometries()).enumerate() {
+        // A tabulated cylinder is not cut, and flat patches are hardly.
+        let is_cut = !matches!(geometry, Geometry::TabulatedCylinder(_)) && which != ROOF;
+        let whole = until(&geometry, u32::MAX).expect("a surface");
+        let all = asked.get();
+        assert_eq!(all > 0, is_cut, "surface {which}: {all} questions");
+        for last in 1..=all {
+            assert_eq!(until(&again, last), Err(SurfaceError::GivenUp), "surface {which}, question {last}");
+            assert_eq!(asked.get(), last, "surface {which} asks again after the answer");
+        }
+        assert_eq!(until(&again, u32::MAX), Ok(whole), "surface {which}");
+        assert_eq!(asked.get(), all, "surface {which}");
+        assert!(until(&again, 1).is_ok() && asked.get() == 0, "surface {which} is kept");
+    }
+}
+
+#[test]
+fn flanges_of_sculptured_surfaces_are_made_with_questions() {
+    for geometry in patches() {
+        let surface = surface(&geometry);
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            true
+        };
+        let waiting = Waiting::until(&ask);
+        assert!(std::ptr::eq(surface.met_from(1.0, &Vec3::z(), waiting.patience()), &raw const surface));
+        assert_eq!(asked.get(), 1);
+        let met = surface.met_from(1.0, &Vec3::z(), Patience::default());
+        assert!(!std::ptr::eq(met, &raw const surface), "nothing was kept of what was given up");
+    }
 }
 
 proptest! {

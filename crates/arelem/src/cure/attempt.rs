@@ -4,6 +4,7 @@
 use apt_geometry::{
     Vec3,
     motion::{Direction, DriveSide, MotionCommand, NamedSurface, PartSide, Relation, StartSurface, Turn},
+    patience::Patience,
 };
 
 use super::{Cure, MOST_POINTS, Remedy};
@@ -178,7 +179,7 @@ fn roles(state: &State, drive: &NamedSurface) -> Option<(Tool<'static>, Vec3, Wo
     let tool = Tool::new(state.cutter?, state.axis);
     let make = |name: RoleName, surface: &NamedSurface, on: bool| {
         let relation = if on { Relation::On } else { Relation::To };
-        let mut working = Working::new(state, name, surface, relation, on).ok()?;
+        let mut working = Working::new(state, name, surface, relation, on, Patience::default()).ok()?;
         let observed = tool.observed(&working.gauge.surface, &tip);
         working.set_side(if observed < 0.0 { -1.0 } else { 1.0 });
         working.look_from(&tip);
@@ -235,7 +236,7 @@ pub(super) fn normals(state: &State, command: &MotionCommand, role: RoleName) ->
     let (Some(named), Some(tip)) = (start_surface(state, command, role), state.tip) else {
         return Vec::new();
     };
-    let Ok(surface) = role::surface(role, named) else { return Vec::new() };
+    let Ok(surface) = role::surface(role, named, Patience::default()) else { return Vec::new() };
     let normal = surface.foot(&tip).normal;
     let sense = if state.forward.is_some_and(|forward| forward.dot(&normal) < 0.0) { -1.0 } else { 1.0 };
     vec![normal * sense, normal * -sense]
@@ -244,7 +245,7 @@ pub(super) fn normals(state: &State, command: &MotionCommand, role: RoleName) ->
 /// From the tool to the nearest point of the drive surface.
 pub(super) fn towards_drive(state: &State, command: &MotionCommand) -> Option<Vec3> {
     let named = start_surface(state, command, RoleName::Drive)?;
-    let surface = role::surface(RoleName::Drive, named).ok()?;
+    let surface = role::surface(RoleName::Drive, named, Patience::default()).ok()?;
     let observer = Tool::new(state.cutter?, state.axis).observer(&state.tip?);
     (surface.foot(&observer).point - observer).try_normalize(0.0)
 }

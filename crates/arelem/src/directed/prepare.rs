@@ -77,8 +77,8 @@ pub(super) fn prepare<'a>(
     let part_on = state.part_side == PartSide::On;
     let drive_on = state.drive_side == DriveSide::On;
     let relation = |on: bool| if on { Relation::On } else { Relation::To };
-    let mut part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on)?;
-    let mut drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on)?;
+    let mut part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on, patience)?;
+    let mut drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on, patience)?;
     for role in [&part, &drive] {
         if role.band() <= 0.0 {
             return Err(MotionFailure::NoTolerance {
@@ -133,7 +133,14 @@ pub(super) fn prepare<'a>(
     for (index, check) in checks.iter().enumerate() {
         let on =
             check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
-        working.push(Working::new(state, RoleName::Check(index), &check.surface, check.relation, on)?);
+        working.push(Working::new(
+            state,
+            RoleName::Check(index),
+            &check.surface,
+            check.relation,
+            on,
+            patience,
+        )?);
     }
     warn_of_surface_twice([&part, &drive].into_iter().chain(&working), warnings);
     if attitude.turns() {

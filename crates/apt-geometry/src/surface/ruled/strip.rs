@@ -7,10 +7,10 @@ use super::{
         part::{Later, Part, Summary},
         perpendicular,
     },
-    RuledSheet,
+    RuledSheet, UNITS_A_PIECE,
     bounds::ranges,
 };
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// Rounding of places, relative to the size of the surface.
 const ROUNDING: f64 = 1e-13;
@@ -120,19 +120,32 @@ impl Strip {
 }
 
 impl RuledSheet {
-    /// A heap-ordered tree over ranges; a leaf keeps its own range and piece.
-    pub(super) fn tree(&self, ranges: &[(usize, [f64; 2])], shares: [f64; 2]) -> Vec<Strip> {
+    /// A heap-ordered tree over ranges; a leaf keeps its own range and piece. `None` where who waits gives up.
+    pub(super) fn tree(
+        &self,
+        ranges: &[(usize, [f64; 2])],
+        shares: [f64; 2],
+        patience: Patience<'_>,
+    ) -> Option<Vec<Strip>> {
         let leaves = ranges.len().next_power_of_two();
         let empty = Strip::empty(shares);
         let mut nodes = vec![empty.clone(); leaves - 1];
-        nodes.extend(ranges.iter().map(|&(piece, range)| self.strip(piece, range, shares)));
+        for &(piece, range) in ranges {
+            if patience.ends_after(UNITS_A_PIECE) {
+                return None;
+            }
+            nodes.push(self.strip(piece, range, shares));
+        }
         nodes.resize(2 * leaves - 1, empty);
         for node in (0..leaves - 1).rev() {
+            if patience.ends_after(1) {
+                return None;
+            }
             if let (Some(a), Some(b)) = (nodes.get(2 * node + 1), nodes.get(2 * node + 2)) {
                 nodes[node] = self.joined(a, b, shares);
             }
         }
-        nodes
+        Some(nodes)
     }
 
     fn strip(&self, piece: usize, range: [f64; 2], shares: [f64; 2]) -> Strip {

@@ -8,10 +8,12 @@ use super::{
     SculpturedSheet,
     bounds::Stretch,
 };
-use crate::Vec3;
+use crate::{Vec3, patience::Patience};
 
 /// Bound of the halvings of a patch: those at a pole go on to it.
 const MAX_DEPTH: u32 = 12;
+/// Units of work that it takes to bound a part.
+const UNITS_A_PART: u32 = 8;
 /// Radius, relative to the surface, below which a part is not halved.
 const SMALLEST: f64 = 1e-3;
 /// Chord of the greatest turn of the normal over a leaf, which then has one valley of the distance from near places.
@@ -61,13 +63,16 @@ impl Node {
     }
 }
 
-/// The tree over all patches of a sheet.
-pub(super) fn grown(sheet: &SculpturedSheet) -> Vec<Node> {
+/// The tree over all patches of a sheet; `None` where who waits gives up.
+pub(super) fn grown(sheet: &SculpturedSheet, patience: Patience<'_>) -> Option<Vec<Node>> {
     let mut leaves = Vec::new();
     for piece in 0..sheet.pieces.len() {
         let mut open = vec![(Rectangle::between([0.0, 1.0], [0.0, 1.0]), 0)];
         let stretch = Stretch { sheet, piece };
         while let Some((rectangle, depth)) = open.pop() {
+            if patience.ends_after(UNITS_A_PART) {
+                return None;
+            }
             let part = Part::new(&stretch, rectangle);
             if depth >= MAX_DEPTH || part.radius() <= SMALLEST * sheet.size || part.turns_at_most(TURN) {
                 let jet = sheet.jet(piece, rectangle.middle);
@@ -81,7 +86,7 @@ pub(super) fn grown(sheet: &SculpturedSheet) -> Vec<Node> {
     sheet.parts.add(leaves.len());
     let mut nodes = Vec::with_capacity(2 * leaves.len());
     plant(leaves, &mut nodes);
-    nodes
+    Some(nodes)
 }
 
 /// Adds a tree over some leaves, halved along the greatest extent of their centres; returns the index of its root.

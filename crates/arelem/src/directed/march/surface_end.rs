@@ -307,7 +307,9 @@ mod tests {
         let wall = NamedSurface { name: String::new(), geometry: ruled([edge(0.0), edge(1.0)]) };
         let mut p = Program::new();
         p.tolerance(TOLERANCE, TOLERANCE).cutter(&[2.0 * RADIUS]);
-        let mut role = Working::new(&p.state, RoleName::Drive, &wall, Relation::To, false).expect("a wall");
+        let mut role =
+            Working::new(&p.state, RoleName::Drive, &wall, Relation::To, false, Patience::default())
+                .expect("a wall");
         role.set_side(role.gauge.surface.signed_distance(&v(1.0, 1.0, 0.5)).signum());
         // It goes on beyond what it is defined by.
         let (mut before, mut beyond) = (1.0, 100.0);
