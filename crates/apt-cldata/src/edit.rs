@@ -10,12 +10,12 @@ use apt_geometry::{
     Vec3,
     canonical::Matrix,
     copy::CopyStep,
-    patience::{Patience, Waiting},
+    patience::{Patience, Waiting, put_away},
     pieces::Pieces,
 };
 
 use crate::{
-    record::{ClKind, ClRecord, ClWord},
+    record::{ClKind, ClRecord, ClWord, looked_through},
     tilt::tilt,
 };
 
@@ -126,29 +126,31 @@ fn edited(
     patience: Patience<'_>,
 ) -> (Vec<ClRecord>, Vec<EditError>) {
     // VTLAXS changes the path itself; TRACUT and COPY transform what it makes.
-    let (items, errors) = tilt(items);
-    let spans = spans(&items);
+    let (items, errors) = tilt(items, patience);
+    let spans = spans(&items, patience);
     let (levels, indexes) = (vec![Level::base()], BTreeSet::new());
-    let points = items
-        .iter()
+    let points = looked_through(items.iter(), patience)
         .map(|item| if let EditItem::Record(record) = item { record.position_count() as u64 } else { 0 })
         .sum();
     let mut editor = Editor { levels, errors, made: 0, points, indexes, limits: *limits, patience };
-    for (at, item) in items.into_iter().enumerate() {
+    let count = items.len();
+    let mut items = items.into_iter();
+    for (at, item) in items.by_ref().enumerate() {
         if patience.ends_after(1) {
             break;
         }
         editor.item(item, spans.get(&at).copied());
     }
+    put_away(items, count);
     editor.finish()
 }
 
 /// The COPY statements of a CL file that no INDEX before them belongs to. In a CL file they only tell how its positions
-/// came about (CL and tape reference 3.5); so the same INDEX may stand there any number of times.
-pub fn copies_without_index(items: &[EditItem]) -> Vec<EditError> {
+/// came about (CL and tape reference 3.5); so the same INDEX may stand there any number of times. Fewer where who waits gives up.
+pub fn copies_without_index(items: &[EditItem], patience: Patience<'_>) -> Vec<EditError> {
     let mut indexes = BTreeSet::new();
     let mut errors = Vec::new();
-    for item in items {
+    for item in looked_through(items.iter(), patience) {
         let EditItem::Record(record) = item else { continue };
         let ClKind::Postprocessor { code: Some(code @ (INDEX_CODE | COPY_CODE)), arguments, .. } =
             &record.kind
@@ -178,10 +180,10 @@ enum Span {
 }
 
 /// Pairs every COPY with the INDEX before it.
-fn spans(items: &[EditItem]) -> BTreeMap<usize, Span> {
+fn spans(items: &[EditItem], patience: Patience<'_>) -> BTreeMap<usize, Span> {
     let mut open: BTreeMap<i64, (usize, Vec<usize>)> = BTreeMap::new();
     let mut closed: Vec<(usize, Vec<usize>)> = Vec::new();
-    for (at, item) in items.iter().enumerate() {
+    for (at, item) in looked_through(items.iter().enumerate(), patience) {
         match item {
             EditItem::Index { number, end: false, .. } => {
                 // The same number again before any COPY: the first range is still open, which `open_index` reports.
@@ -434,14 +436,7 @@ impl Editor<'_> {
             self.close();
         }
         let held = self.levels.pop().map(|level| level.held).unwrap_or_default();
-        let mut records = Vec::with_capacity(held.len());
-        for held in held {
-            if self.patience.ends_after(1) {
-                break;
-            }
-            records.push(held.record);
-        }
-        (records, self.errors)
+        (held.joined_as(|held| held.record, self.patience), self.errors)
     }
 }
 

@@ -37,6 +37,15 @@ pub(crate) fn ends_before(positions: usize, patience: Patience<'_>) -> bool {
 /// Positions or records that are counted as one unit of work where one is looked at in some nanoseconds.
 pub const POSITIONS_A_UNIT: usize = 16;
 
+/// Things that are looked at one after the other, each in some nanoseconds, until who waits gives up.
+pub(crate) fn looked_through<I: Iterator>(
+    things: I,
+    patience: Patience<'_>,
+) -> impl Iterator<Item = I::Item> {
+    let goes_on = move |(done, _): &(usize, I::Item)| !patience.ends_among(*done, POSITIONS_A_UNIT);
+    things.enumerate().take_while(goes_on).map(|(_, thing)| thing)
+}
+
 /// How many positions records hold; fewer where who waits gives up before the end.
 pub fn positions(records: &[ClRecord], patience: Patience<'_>) -> usize {
     let pieces = records.chunks(POSITIONS_A_UNIT).take_while(|_| !patience.ends_after(1));

@@ -9,12 +9,12 @@
 
 use std::{collections::BTreeSet, f64::consts::PI};
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, patience::Patience};
 
 use crate::{
     corner::{self, Corner},
     edit::{EditError, EditErrorKind, EditItem},
-    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units, looked_through},
 };
 
 /// Largest tilt, degrees.
@@ -174,25 +174,25 @@ impl TiltError {
     }
 }
 
-/// Tilts the axes of all ranges of VTLAXS. A range with a mistake stays as it is.
-pub(crate) fn tilt(items: Vec<EditItem>) -> (Vec<EditItem>, Vec<EditError>) {
+/// Tilts the axes of all ranges of VTLAXS. A range with a mistake stays as it is. Less where who waits gives up.
+pub(crate) fn tilt(items: Vec<EditItem>, patience: Patience<'_>) -> (Vec<EditItem>, Vec<EditError>) {
     let is_tilting = |item: &EditItem| {
         matches!(item, EditItem::Record(ClRecord { kind: ClKind::Postprocessor { word, .. }, .. })
             if word == "VTLAXS" || word == "WCORN")
     };
-    if !items.iter().any(is_tilting) {
+    if !looked_through(items.iter(), patience).any(is_tilting) {
         return (items, Vec::new());
     }
-    let copied = items.iter().filter_map(|item| match item {
+    let copied = looked_through(items.iter(), patience).filter_map(|item| match item {
         EditItem::Copy { number, .. } => Some(*number),
         _ => None,
     });
     let mut tilter = Tilter { copied: copied.collect(), ..Tilter::default() };
-    for (at, item) in items.iter().enumerate() {
+    for (at, item) in looked_through(items.iter().enumerate(), patience) {
         tilter.item(at, item);
     }
     tilter.end();
-    (tilter.applied(items), tilter.errors)
+    (tilter.applied(items, patience), tilter.errors)
 }
 
 /// A position of the path with its place in the stream.
@@ -408,12 +408,12 @@ impl Tilter {
 
     /// The stream with the tilted positions. The last position before a range gets a record of its own, since it
     /// leaves the circle of its record.
-    fn applied(&self, items: Vec<EditItem>) -> Vec<EditItem> {
+    fn applied(&self, items: Vec<EditItem>, patience: Patience<'_>) -> Vec<EditItem> {
         let tilted = self.points.iter().filter_map(|point| Some((point, point.tilted.as_ref()?)));
         let mut tilted = tilted.peekable();
         let mut result = Vec::with_capacity(items.len() + self.ranges.len());
         let mut ranges = self.ranges.iter().peekable();
-        for (at, item) in items.into_iter().enumerate() {
+        for (at, item) in looked_through(items.into_iter().enumerate(), patience) {
             while ranges.next_if(|range| range.end < at).is_some() {}
             let inside = ranges.peek().is_some_and(|range| range.contains(&at));
             let EditItem::Record(mut record) = item else {

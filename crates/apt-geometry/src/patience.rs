@@ -3,7 +3,10 @@
 //! Searches say how much work they do; once in so much of it they ask. What is given up has not been shown: searches answer as they
 //! do where they find no bound.
 
-use std::cell::Cell;
+use std::{
+    cell::Cell,
+    ops::{Deref, DerefMut},
+};
 
 /// Work between two questions. A unit takes up to some microseconds.
 const WORK_BETWEEN_QUESTIONS: u32 = 256;
@@ -47,6 +50,45 @@ pub fn put_away<T: Send + 'static>(thing: T, parts: usize) {
     if parts >= PARTS_FOR_A_THREAD {
         // Where it does not start, what it was to do is dropped, and the thing with it.
         drop(std::thread::Builder::new().name("put away".to_owned()).spawn(move || drop(thing)));
+    }
+}
+
+/// A list that is put away when nobody needs it any more, also where the work on it is given up half done.
+#[derive(Debug)]
+pub struct Aside<T: Send + 'static>(Vec<T>);
+
+impl<T: Send + 'static> Aside<T> {
+    /// The list, which somebody needs.
+    pub fn taken(mut self) -> Vec<T> {
+        std::mem::take(&mut self.0)
+    }
+}
+
+impl<T: Send + 'static> From<Vec<T>> for Aside<T> {
+    fn from(list: Vec<T>) -> Self {
+        Self(list)
+    }
+}
+
+impl<T: Send + 'static> Deref for Aside<T> {
+    type Target = Vec<T>;
+
+    fn deref(&self) -> &Vec<T> {
+        &self.0
+    }
+}
+
+impl<T: Send + 'static> DerefMut for Aside<T> {
+    fn deref_mut(&mut self) -> &mut Vec<T> {
+        &mut self.0
+    }
+}
+
+impl<T: Send + 'static> Drop for Aside<T> {
+    fn drop(&mut self) {
+        // Memory without things is given back as well.
+        let parts = self.0.capacity();
+        put_away(std::mem::take(&mut self.0), parts);
     }
 }
 
@@ -140,7 +182,14 @@ mod tests {
         let (tell, told) = channel();
         put_away(Told(tell.clone()), 1);
         assert_eq!(told.recv(), Ok(current().id()));
-        put_away(Told(tell), PARTS_FOR_A_THREAD);
+        put_away(Told(tell.clone()), PARTS_FOR_A_THREAD);
         assert!(told.recv().is_ok_and(|thread| thread != current().id()));
+        let mut list = Aside::from(Vec::with_capacity(PARTS_FOR_A_THREAD));
+        list.push(Told(tell.clone()));
+        drop(list);
+        assert!(told.recv().is_ok_and(|thread| thread != current().id()));
+        let few = Aside::from(vec![Told(tell)]);
+        drop(few.taken());
+        assert_eq!(told.recv(), Ok(current().id()));
     }
 }

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use crate::patience::Patience;
+use crate::patience::{Patience, put_away};
 
 /// Things of a piece: such of hundred bytes are copied in some ten microseconds.
 const PIECE: usize = 4096;
@@ -111,8 +111,26 @@ impl<T> Pieces<T> {
     }
 
     /// All of them in order.
-    pub fn iter(&self) -> impl Iterator<Item = &T> {
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
         self.full.iter().flatten().chain(&self.last)
+    }
+
+    /// The same, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.full.iter_mut().flatten().chain(&mut self.last)
+    }
+
+    /// Leaves at most so many of them, the first.
+    pub fn truncate(&mut self, most: usize) {
+        if most >= self.len() {
+            return;
+        }
+        let (pieces, rest) = (most / PIECE, most % PIECE);
+        if pieces < self.full.len() {
+            self.full.truncate(pieces + 1);
+            self.last = self.full.pop().unwrap_or_default();
+        }
+        self.last.truncate(rest);
     }
 
     /// The last one.
@@ -126,18 +144,52 @@ impl<T> Pieces<T> {
     }
 
     /// All as one list; as far as they are put together where who waits gives up before the end.
-    pub fn joined(self, patience: Patience<'_>) -> Vec<T> {
-        if self.full.is_empty() {
-            return self.last;
-        }
-        let mut all = Vec::with_capacity(self.len());
-        for piece in self.full.into_iter().chain([self.last]) {
+    pub fn joined(self, patience: Patience<'_>) -> Vec<T>
+    where
+        T: Send + 'static,
+    {
+        if self.full.is_empty() { self.last } else { self.joined_as(|thing| thing, patience) }
+    }
+
+    /// The same of what is made of each.
+    pub fn joined_as<U>(self, mut make: impl FnMut(T) -> U, patience: Patience<'_>) -> Vec<U>
+    where
+        T: Send + 'static,
+    {
+        let count = self.len();
+        let mut all = Vec::with_capacity(count);
+        let mut pieces = self.full;
+        pieces.push(self.last);
+        for piece in &mut pieces {
             if patience.ends_after((PIECE / THINGS_A_UNIT) as u32) {
                 break;
             }
-            all.extend(piece);
+            all.extend(piece.drain(..).map(&mut make));
         }
+        // Their memory goes back to the system at once where the last one is given back, which takes its time.
+        put_away(pieces, count);
         all
+    }
+}
+
+/// A list and another one behind it, moved in pieces, between which is asked; as far as they are moved where who waits gives up before the
+/// end. Where one of them is empty nothing is moved.
+pub fn followed<T: Send + 'static>(first: Vec<T>, second: Vec<T>, patience: Patience<'_>) -> Vec<T> {
+    match (first.is_empty(), second.is_empty()) {
+        (true, _) => second,
+        (_, true) => first,
+        (false, false) => {
+            let count = first.len() + second.len();
+            let mut all = Vec::with_capacity(count);
+            let mut lists = [first, second].map(Vec::into_iter);
+            for list in &mut lists {
+                while !list.as_slice().is_empty() && !patience.ends_after((PIECE / THINGS_A_UNIT) as u32) {
+                    all.extend(list.take(PIECE));
+                }
+            }
+            put_away(lists, count);
+            all
+        }
     }
 }
 
@@ -187,6 +239,14 @@ mod tests {
             }
             assert!(pieces.get(count).is_none() && pieces.get_mut(count).is_none());
             assert!(pieces.iter().copied().eq(0..count) && pieces.clone().into_iter().eq(0..count));
+            assert!(pieces.iter().rev().copied().eq((0..count).rev()));
+            for most in [0, 1, PIECE - 1, PIECE, PIECE + 1, 2 * PIECE, count] {
+                let mut fewer = pieces.clone();
+                fewer.truncate(most);
+                fewer.push(7);
+                fewer.iter_mut().for_each(|thing| *thing += 1);
+                assert!(fewer.iter().copied().eq((1..=count.min(most)).chain([8])), "{most} of {count}");
+            }
             assert_eq!(pieces.joined(Patience::default()), (0..count).collect::<Vec<_>>());
         }
         let asked = Cell::new(0);
@@ -199,6 +259,22 @@ mod tests {
         pieces.extend(0..3 * PIECE);
         assert_eq!(pieces.joined(waiting.patience()).len(), PIECE);
         assert_eq!(asked.get(), 2);
+    }
+
+    #[test]
+    fn a_list_behind_another_one_is_moved_with_questions() {
+        for (first, second) in [(0, 0), (0, 7), (7, 0), (3, 4), (PIECE, PIECE + 1), (2 * PIECE + 5, 1)] {
+            let all = followed((0..first).collect(), (first..first + second).collect(), Patience::default());
+            assert!(all.into_iter().eq(0..first + second), "{first} and {second}");
+        }
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            asked.get() == 3
+        };
+        let waiting = Waiting::until(&ask);
+        let all = followed(vec![0; 2 * PIECE], vec![1; 2 * PIECE], waiting.patience());
+        assert_eq!((all.len(), asked.get()), (2 * PIECE, 3), "two pieces, and none of the second list");
     }
 
     #[test]

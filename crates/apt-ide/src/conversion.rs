@@ -4,8 +4,8 @@ use apt_cldata::{
     conversion::convert_until,
     text::{ClFile, detect},
 };
-use apt_geometry::patience::Waiting;
-use apt_run::{catalogue, diagnostic::Diagnostic};
+use apt_geometry::{patience::Waiting, pieces::followed};
+use apt_run::{catalogue, diagnostic::Diagnostic, go_on};
 use apt_syntax::dialect::DialectName;
 
 pub use apt_cldata::{
@@ -77,11 +77,12 @@ impl Analysis {
         let file =
             ClFile { records: source.records.list(), remarks: &source.remarks, shortened: &source.shortened };
         let made = convert_until(file, from, to, &code_table(), patience)?.ok_or(Cancelled)?;
-        let mut diagnostics = source.diagnostics;
+        let diagnostics = source.diagnostics;
         let (tree, settings) = (self.document().tree(), self.document().settings());
         let origins = source.records.origins();
         let told = catalogue::conversion_diagnostics(tree, &made.notes, origins, settings, patience)?;
-        diagnostics.extend(told);
+        let diagnostics = followed(diagnostics, told, patience);
+        go_on(patience, 0)?;
         Ok(Converted { file: made.file, from, diagnostics })
     }
 }

@@ -2,7 +2,10 @@
 
 use std::{ops::Range, path::Path, sync::Arc};
 
-use apt_geometry::patience::{Patience, Waiting};
+use apt_geometry::{
+    patience::{Patience, Waiting},
+    pieces::Pieces,
+};
 use apt_program::SourceFile;
 use apt_run::go_on;
 use apt_syntax::{
@@ -198,8 +201,10 @@ impl Analysis {
         cancel: Cancel<'_>,
     ) -> Result<Vec<(Range<usize>, String)>, RenameError> {
         let waiting = Waiting::until(cancel);
-        let mut own = Vec::new();
-        for (one, text) in self.rename_everywhere(Spot { file: None, offset }, new, cancel)? {
+        let everywhere = self.rename_everywhere(Spot { file: None, offset }, new, cancel)?;
+        // A list that grows is copied as a whole, which nobody can interrupt.
+        let mut own = Vec::with_capacity(everywhere.len());
+        for (one, text) in everywhere {
             go_on(waiting.patience(), 1)?;
             own.extend(one.source.is_none().then_some((one.occurrence.range, text)));
         }
@@ -235,8 +240,9 @@ impl Analysis {
         if wanted != at.name && !names.occurrences(&wanted, at.label, &at.scope, patience)?.is_empty() {
             return Err(RenameError::InUse(wanted));
         }
-        let mut edits = Vec::new();
-        for one in names.occurrences(&at.name, at.label, &at.scope, patience)? {
+        let occurrences = names.occurrences(&at.name, at.label, &at.scope, patience)?;
+        let mut edits = Vec::with_capacity(occurrences.len());
+        for one in occurrences {
             go_on(patience, 1)?;
             edits.push((one, new.trim().to_owned()));
         }
@@ -311,7 +317,7 @@ impl Names<'_> {
         scope: &Scope,
         patience: Patience<'_>,
     ) -> Result<Vec<Located>, Cancelled> {
-        let mut found = Vec::new();
+        let mut found = Pieces::default();
         for (file, one) in self.0.iter().enumerate() {
             for index in statements_with(&one.tree, name, patience)? {
                 go_on(patience, 1)?;
@@ -330,6 +336,8 @@ impl Names<'_> {
                 }
             }
         }
+        let found = found.joined(patience);
+        go_on(patience, 0)?;
         Ok(found)
     }
 

@@ -10,7 +10,7 @@ use apt_cldata::{
 };
 use apt_geometry::{
     patience::{Patience, Waiting},
-    pieces::Pieces,
+    pieces::{Pieces, followed},
 };
 use apt_post::{MachineDefinition, PostOptions, Tape};
 use apt_program::{
@@ -241,9 +241,9 @@ impl Analysis {
         let patience = waiting.patience();
         let tape = apt_post::post_until(source.records.list(), machine, &options, patience)
             .map_err(|apt_post::Cancelled| Cancelled)?;
-        let mut diagnostics = source.diagnostics;
         let told = catalogue::tape_diagnostics(tree, &tape, source.records.origins(), settings, patience)?;
-        diagnostics.extend(told);
+        let diagnostics = followed(source.diagnostics, told, patience);
+        go_on(patience, 0)?;
         Ok(ControlTape { tape, diagnostics, records: source.records })
     }
 

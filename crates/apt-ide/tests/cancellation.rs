@@ -49,8 +49,12 @@ fn asks_often<T: PartialEq + Debug>(
 fn what_is_made_of_a_path_asks_at_each_look_at_its_records() {
     let records = 6_000;
     let gotos: String = (0..records).map(|number| format!("GOTO/{number},{},0\n", number % 7)).collect();
-    let program = analysis(&format!("FEDRAT/10,IPM\nSPINDL/1000,CLW\n{gotos}FINI\n"));
+    let text = format!("FEDRAT/10,IPM\nSPINDL/1000,CLW\n{gotos}FINI\n");
+    let program = analysis(&text);
     program.result(&never, &mut silent).unwrap();
+    // The records of Section 1 are looked at for conditions of milling, those of the path for positions.
+    let first = text.find("GOTO").unwrap();
+    asks_often(2 * records, "a hover of a position", |cancel| program.hover(first, cancel));
     // The lints of the path look at the statements too.
     asks_often(3 * records, "a control tape", |cancel| {
         program.tape("linuxcnc", cancel, &mut silent).map_err(|error| match error {

@@ -1,5 +1,7 @@
 //! The binary tape as a target.
 
+use std::collections::VecDeque;
+
 use smol_str::{SmolStr, format_smolstr};
 
 use super::{ConversionNoteKind as Kind, Item, Notes, What, same_axis};
@@ -12,7 +14,7 @@ use apt_geometry::{Vec3, patience::Patience};
 
 /// Writes what the tape can hold, and tells what it cannot; less where who waits gives up before the end.
 pub(super) fn write(
-    items: &[Item],
+    items: &VecDeque<Item>,
     codes: &CodeTable,
     notes: &mut Notes,
     patience: Patience<'_>,

@@ -1,5 +1,7 @@
 //! What a file says, in the words of another system.
 
+use std::collections::VecDeque;
+
 use apt_geometry::patience::Patience;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -11,7 +13,7 @@ use super::{
     },
 };
 use crate::{
-    record::{ClKind, ClRecord, ClWord, POSITIONS_A_UNIT, Units, ends_before},
+    record::{ClKind, ClRecord, ClWord, Units, ends_before, looked_through},
     text::{
         ClDialect, ClFile, Remark,
         dialects::{CutterForm, Form, nx::END_OF_PATH},
@@ -36,10 +38,10 @@ pub(super) fn translate(
     to: &Form,
     notes: &mut Notes,
     patience: Patience<'_>,
-) -> Vec<Item> {
-    // A list that grows is copied as a whole, which nobody can interrupt. What is added to it is little.
-    let items = Vec::with_capacity(file.records.len() + file.remarks.len() + MOST_ADDED);
-    let mut translator = Translator { from, to, notes, items, place: (0, 0) };
+) -> VecDeque<Item> {
+    // A list that grows is copied as a whole, which nobody can interrupt. What is added to it is little, and stands near its ends.
+    let items = VecDeque::with_capacity(file.records.len() + file.remarks.len() + MOST_ADDED);
+    let mut translator = Translator { from, to, notes, items, place: (0, 0), patience };
     let mut remarks = file.remarks.iter().peekable();
     for record in file.records {
         if ends_before(record.position_count(), patience) {
@@ -53,14 +55,9 @@ pub(super) fn translate(
     for remark in remarks.take_while(|_| !patience.ends_after(1)) {
         translator.remark(remark);
     }
-    // Each looks at all of them, in some nanoseconds.
-    for step in [Translator::ending, Translator::units, Translator::part_number] {
-        let items = translator.items.len() / POSITIONS_A_UNIT;
-        if patience.ends_after(u32::try_from(items).unwrap_or(u32::MAX)) {
-            break;
-        }
-        step(&mut translator);
-    }
+    translator.ending();
+    translator.units();
+    translator.part_number();
     translator.items
 }
 
@@ -68,20 +65,26 @@ struct Translator<'a> {
     from: &'a Form,
     to: &'a Form,
     notes: &'a mut Notes,
-    items: Vec<Item>,
+    items: VecDeque<Item>,
     /// Statement number and source of the record that is being translated.
     place: (u32, u32),
+    patience: Patience<'a>,
 }
 
 impl Translator<'_> {
     fn push(&mut self, what: What) {
         let (isn, source) = self.place;
-        self.items.push(Item { isn, source, what });
+        self.items.push_back(Item { isn, source, what });
     }
 
     fn statement(&mut self, word: &str, arguments: Vec<ClWord>) {
         let kind = ClKind::Postprocessor { word: word.into(), code: None, arguments };
         self.push(What::Record(kind));
+    }
+
+    /// What there is, until who waits gives up.
+    fn looked_through(&self) -> impl Iterator<Item = &Item> {
+        looked_through(self.items.iter(), self.patience)
     }
 
     fn is_translation(&self) -> bool {
@@ -94,6 +97,8 @@ impl Translator<'_> {
             return self.push(What::Record(record.kind.clone()));
         }
         match &record.kind {
+            // Where operations end, the file does not.
+            ClKind::End if self.to.operations => {}
             ClKind::Postprocessor { word, arguments, .. } => {
                 self.postprocessor(word, arguments, &record.kind);
             }
@@ -228,7 +233,7 @@ impl Translator<'_> {
     fn ending(&mut self) {
         let is_end = |item: &Item| matches!(item.what, What::Record(ClKind::End));
         if !self.to.operations {
-            if self.from.operations && !self.items.iter().any(is_end) {
+            if self.from.operations && !self.looked_through().any(is_end) {
                 self.push(What::Record(ClKind::End));
             }
             return;
@@ -236,15 +241,15 @@ impl Translator<'_> {
         if !self.is_translation() {
             return;
         }
-        self.items.retain(|item| !is_end(item));
         let opens = |item: &Item| is_statement(item, TOOL_PATH);
-        if !self.items.iter().any(opens) {
+        if !self.looked_through().any(opens) {
             let name = self.part_name();
             let arguments = [name.as_str(), "TOOL", NO_NAME].map(word).into();
             let kind = ClKind::Postprocessor { word: TOOL_PATH.into(), code: None, arguments };
-            self.items.insert(0, Item { isn: 0, source: 0, what: What::Record(kind) });
+            self.items.push_front(Item { isn: 0, source: 0, what: What::Record(kind) });
         }
-        let last = self.items.iter().rev().find(|item| opens(item) || is_statement(item, END_OF_PATH));
+        let last = looked_through(self.items.iter().rev(), self.patience)
+            .find(|item| opens(item) || is_statement(item, END_OF_PATH));
         if last.is_some_and(opens) {
             self.statement(END_OF_PATH, Vec::new());
         }
@@ -252,7 +257,7 @@ impl Translator<'_> {
 
     /// The text of PARTNO as the name of an operation: without what separates names.
     fn part_name(&self) -> String {
-        let text = self.items.iter().find_map(|item| match &item.what {
+        let text = self.looked_through().find_map(|item| match &item.what {
             What::Record(ClKind::Text { word, text, .. }) if word == "PARTNO" => Some(text.trim()),
             _ => None,
         });
@@ -268,21 +273,26 @@ impl Translator<'_> {
     fn part_number(&mut self) {
         let named =
             |item: &Item| matches!(&item.what, What::Record(ClKind::Text { word, .. }) if word == "PARTNO");
-        if self.to.part_number && self.is_translation() && !self.items.iter().any(named) {
+        if self.to.part_number && self.is_translation() && !self.looked_through().any(named) {
             let kind = ClKind::Text { word: "PARTNO".into(), code: None, text: SmolStr::default() };
-            self.items.insert(0, Item { isn: 0, source: 0, what: What::Record(kind) });
+            self.items.push_front(Item { isn: 0, source: 0, what: What::Record(kind) });
         }
+    }
+
+    /// The unit of length that all feed rates name.
+    fn units_of_feeds(&self) -> Option<Units> {
+        let mut found = self.looked_through().flat_map(units_of_feed);
+        found.next().filter(|units| found.all(|other| other == *units))
     }
 
     /// The unit, where the target is to tell it. If no record does, the feed rates may: all of them in one.
     fn units(&mut self) {
         let told = |item: &Item| matches!(item.what, What::Record(ClKind::Units(_)));
-        if !self.to.tells_units || !self.is_translation() || self.items.iter().any(told) {
+        if !self.to.tells_units || !self.is_translation() || self.looked_through().any(told) {
             return;
         }
-        let place = self.items.first().map_or((1, 0), |item| (item.isn.max(1), item.source));
-        let mut found = self.items.iter().flat_map(units_of_feed);
-        let Some(units) = found.next().filter(|units| found.all(|other| other == *units)) else {
+        let place = self.items.front().map_or((1, 0), |item| (item.isn.max(1), item.source));
+        let Some(units) = self.units_of_feeds() else {
             return self.notes.add(place, Kind::NoUnits);
         };
         self.notes.add(place, Kind::UnitsAdded { units });
@@ -291,7 +301,7 @@ impl Translator<'_> {
             What::Record(ClKind::Postprocessor { word, .. }) => HEAD.contains(&word.as_str()),
             What::Record(_) => false,
         };
-        let at = self.items.iter().position(|item| !head(item)).unwrap_or(self.items.len());
+        let at = self.looked_through().position(|item| !head(item)).unwrap_or(self.items.len());
         let (isn, source) = place;
         self.items.insert(at, Item { isn, source, what: What::Record(ClKind::Units(units)) });
     }

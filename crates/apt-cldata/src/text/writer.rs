@@ -1,6 +1,6 @@
 //! Writes CL text as the description of a system says it.
 
-use std::mem::take;
+use std::{collections::VecDeque, mem::take};
 
 use apt_geometry::{Vec3, patience::Patience};
 
@@ -70,7 +70,12 @@ fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
 }
 
 /// Writes items in a form; less where who waits gives up before the end.
-pub(crate) fn write(items: &[Item], form: &Form, notes: &mut Notes, patience: Patience<'_>) -> String {
+pub(crate) fn write(
+    items: &VecDeque<Item>,
+    form: &Form,
+    notes: &mut Notes,
+    patience: Patience<'_>,
+) -> String {
     let mut writer = Writer::new(form, notes);
     writer.title(items);
     for item in items {
@@ -164,7 +169,7 @@ impl Writer<'_> {
     }
 
     /// The remark by which the system is recognised, if none of those that there are is one.
-    fn title(&mut self, items: &[Item]) {
+    fn title(&mut self, items: &VecDeque<Item>) {
         let sign = |item: &Item| match &item.what {
             What::Remark(text) => is_title(text, self.form.dialect),
             What::Record(_) => false,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use apt_cldata::record::ClKind;
 use apt_program::Origin;
-use apt_run::{catalogue::story_lines, pipeline::RunResult};
+use apt_run::{Waiting, catalogue::story_lines, go_on, pipeline::RunResult};
 use arelem::{
     section2::Output,
     sequence::PocketPath,
@@ -35,7 +35,7 @@ impl Analysis {
         };
         let mut turns = result.motions.iter().filter(|motion| here(&motion.origin));
         let count = turns.clone().count();
-        let Some(motion) = turns.next_back() else { return Ok(points(&result, here)) };
+        let Some(motion) = turns.next_back() else { return points(&result, here, cancel) };
         let evidence = motion.computed.evidence.as_ref().and_then(|evidence| evidence.as_ref().ok());
         let times = if count > 1 { format!(", the last of {count} times") } else { String::new() };
         let mut text = String::new();
@@ -53,7 +53,7 @@ impl Analysis {
                 path.positions().collect()
             }
             Some(Output::Position(position)) => vec![position],
-            Some(Output::Ignored) | None => return Ok(points(&result, here)),
+            Some(Output::Ignored) | None => return points(&result, here, cancel),
         };
         text.push_str(&times);
         text.push_str(&verdict(evidence));
@@ -108,23 +108,29 @@ fn verdict(evidence: Option<&Evidence>) -> String {
 }
 
 /// The positions that a statement leaves on the CL file, for one that the arithmetic element need not compute.
-fn points(result: &RunResult, here: impl Fn(&Origin) -> bool) -> String {
-    let of_statement =
-        result.records.iter().filter(|record| result.origins.get(record.source as usize).is_some_and(&here));
-    let positions: Vec<[f64; 3]> = of_statement
-        .filter_map(|record| match &record.kind {
-            ClKind::Motion { points, .. } => Some(points),
-            _ => None,
-        })
-        .flatten()
-        .map(|point| point.position.into())
-        .collect();
-    if positions.is_empty() {
-        return String::new();
+fn points(
+    result: &RunResult,
+    here: impl Fn(&Origin) -> bool,
+    cancel: Cancel<'_>,
+) -> Result<String, Cancelled> {
+    let waiting = Waiting::until(cancel);
+    let (mut shown, mut count): (Vec<[f64; 3]>, usize) = (Vec::new(), 0);
+    for record in &result.records {
+        go_on(waiting.patience(), 1)?;
+        if let ClKind::Motion { points, .. } = &record.kind
+            && result.origins.get(record.source as usize).is_some_and(&here)
+        {
+            let more = points.iter().take(POSITIONS_SHOWN - shown.len());
+            shown.extend(more.map(|point| <[f64; 3]>::from(point.position)));
+            count += points.len();
+        }
     }
-    let mut text = format!("**{}**\n\n", counted(positions.len(), "position"));
-    list(&mut text, positions.iter().copied(), positions.len());
-    text
+    if count == 0 {
+        return Ok(String::new());
+    }
+    let mut text = format!("**{}**\n\n", counted(count, "position"));
+    list(&mut text, shown.into_iter(), count);
+    Ok(text)
 }
 
 /// The first positions, and how many there are besides.

@@ -12,6 +12,7 @@ use apt_program::{
     finding::{ConditionBlock, FindingKind, SculpturedFinding},
     record::RecordKind,
 };
+use apt_run::{Waiting, go_on};
 
 use super::{
     canonical::{plane, triple},
@@ -31,26 +32,29 @@ impl Analysis {
         let here = |origin: &Origin| {
             origin.isn == isn && origin.source.as_ref().map(|source| source.path.as_path()) == file
         };
-        let milling =
-            program.records().filter(|record| here(&record.origin)).find_map(|record| match &record.kind {
-                RecordKind::Regional(milling) => Some(table(milling)),
-                _ => None,
-            });
-        if let Some(table) = milling {
-            return Ok(table);
-        }
-        let missing = program.findings().filter(|finding| here(&finding.origin)).find_map(|finding| {
-            match &finding.kind {
-                FindingKind::Sculptured(SculpturedFinding::ConditionMissing {
-                    missing,
-                    spoiled,
-                    valid,
-                    ..
-                }) => Some(blocks(missing, spoiled, valid)),
-                _ => None,
+        let waiting = Waiting::until(cancel);
+        for record in program.records() {
+            go_on(waiting.patience(), 1)?;
+            if let RecordKind::Regional(milling) = &record.kind
+                && here(&record.origin)
+            {
+                return Ok(table(milling));
             }
-        });
-        Ok(missing.unwrap_or_default())
+        }
+        for finding in program.findings() {
+            go_on(waiting.patience(), 1)?;
+            if let FindingKind::Sculptured(SculpturedFinding::ConditionMissing {
+                missing,
+                spoiled,
+                valid,
+                ..
+            }) = &finding.kind
+                && here(&finding.origin)
+            {
+                return Ok(blocks(missing, spoiled, valid));
+            }
+        }
+        Ok(String::new())
     }
 }
 

@@ -24,7 +24,11 @@ mod tilt;
 use std::cmp::Reverse;
 
 use apt_cldata::{conversion::ConversionNote, text::ReadError};
-use apt_geometry::{canonical::GeometryKind, patience::Patience, pieces::sorted};
+use apt_geometry::{
+    canonical::GeometryKind,
+    patience::{Aside, Patience},
+    pieces::sorted,
+};
 use apt_post::{PostFinding, Tape};
 use apt_program::{
     Origin, Program,
@@ -94,7 +98,7 @@ pub struct Judged<'a> {
 ///
 /// [`Cancelled`] when who waits has given up before the end.
 pub fn diagnostics(judged: &Judged<'_>, patience: Patience<'_>) -> Result<Vec<Diagnostic>, Cancelled> {
-    let mut list = Vec::new();
+    let mut list = Aside::from(Vec::new());
     for finding in judged.program.findings() {
         go_on(patience, 1)?;
         let mut diagnostic = of_program(finding);
@@ -149,7 +153,7 @@ pub fn worst(judged: &Judged<'_>, most: usize, patience: Patience<'_>) -> Result
         findings = gravest(&findings, most);
     }
     let unworded = total - findings.len();
-    let mut list = Vec::with_capacity(findings.len());
+    let mut list = Aside::from(Vec::with_capacity(findings.len()));
     for finding in findings {
         go_on(patience, 1)?;
         list.push(of_program(finding));
@@ -176,7 +180,7 @@ fn gravest<'a>(findings: &[&'a Finding], most: usize) -> Vec<&'a Finding> {
 
 /// The findings of Section 1 with all others, in order of their place.
 fn completed(
-    mut list: Vec<Diagnostic>,
+    mut list: Aside<Diagnostic>,
     judged: &Judged<'_>,
     mut allowances: Allowances,
     patience: Patience<'_>,
@@ -312,7 +316,7 @@ pub fn tape_diagnostics(
             fixes: Vec::new(),
         }
     };
-    let mut list = Vec::with_capacity(tape.findings.len());
+    let mut list = Aside::from(Vec::with_capacity(tape.findings.len()));
     for finding in &tape.findings {
         go_on(patience, 1)?;
         list.push(of_post(finding));
@@ -333,19 +337,23 @@ pub fn read_diagnostics(
     patience: Patience<'_>,
 ) -> Result<Vec<Diagnostic>, Cancelled> {
     let of_line = |error: &ReadError| {
-        go_on(patience, 1)?;
         let (text, severity) = cutter_locations::word(error);
         let unknown = || Origin::in_program(error.isn.max(1), TextRange::default());
-        Ok(Diagnostic {
+        Diagnostic {
             wording: Wording { code: text.code, message: text.message, hint: text.hint, apt3: None },
             severity,
             origin: origins.get(error.line as usize).cloned().unwrap_or_else(unknown),
             related: Vec::new(),
             unnecessary: false,
             fixes: Vec::new(),
-        })
+        }
     };
-    in_order(errors.iter().map(of_line).collect::<Result<_, _>>()?, settings, patience)
+    let mut list = Aside::from(Vec::with_capacity(errors.len()));
+    for error in errors {
+        go_on(patience, 1)?;
+        list.push(of_line(error));
+    }
+    in_order(list, settings, patience)
 }
 
 /// What a conversion to another CL dialect tells, with the severities of the settings. `origins` is the table that the records refer to.
@@ -372,25 +380,30 @@ pub fn conversion_diagnostics(
             fixes: Vec::new(),
         }
     };
-    let mut list = notes.iter().map(of_note).collect();
+    let mut list = Aside::from(notes.iter().map(of_note).collect::<Vec<_>>());
     Allowances::of(tree, patience)?.filter(&mut list);
     in_order(list, settings, patience)
 }
 
 /// Applies the severities of the settings and sorts by place.
 fn in_order(
-    list: Vec<Diagnostic>,
+    mut list: Aside<Diagnostic>,
     settings: &Settings,
     patience: Patience<'_>,
 ) -> Result<Vec<Diagnostic>, Cancelled> {
-    let mut told = Vec::with_capacity(list.len());
-    for mut diagnostic in list {
+    let mut told = 0;
+    for at in 0..list.len() {
         go_on(patience, 1)?;
-        if set_severity(&mut diagnostic, settings) {
-            told.push(diagnostic);
+        if list.get_mut(at).is_some_and(|diagnostic| set_severity(diagnostic, settings)) {
+            list.swap(told, at);
+            told += 1;
         }
     }
-    by_place(told, patience)
+    while list.len() > told {
+        go_on(patience, 1)?;
+        list.pop();
+    }
+    by_place(list.taken(), patience)
 }
 
 /// Gives a diagnostic the severity of the settings; false if they want it left out.
@@ -407,6 +420,7 @@ fn set_severity(diagnostic: &mut Diagnostic, settings: &Settings) -> bool {
 ///
 /// [`Cancelled`] when who waits has given up before the end.
 pub fn by_place(list: Vec<Diagnostic>, patience: Patience<'_>) -> Result<Vec<Diagnostic>, Cancelled> {
+    let mut list = Aside::from(list);
     // The places are sorted, not the diagnostics, which are much larger.
     let mut places = Vec::with_capacity(list.len());
     for (number, diagnostic) in list.iter().enumerate() {
@@ -415,20 +429,34 @@ pub fn by_place(list: Vec<Diagnostic>, patience: Patience<'_>) -> Result<Vec<Dia
         let inside = diagnostic.origin.source.as_ref().map(|_| diagnostic.origin.isn);
         places.push(((isn, range.start(), inside), number));
     }
-    if places.is_sorted() {
-        return Ok(list);
+    if !places.is_sorted() {
+        let places = sorted(places, Ord::cmp, patience);
+        go_on(patience, 0)?;
+        put_in_order(&mut list, places, patience)?;
     }
-    let mut waiting = Vec::with_capacity(list.len());
-    for diagnostic in list {
-        go_on(patience, 1)?;
-        waiting.push(Some(diagnostic));
+    Ok(list.taken())
+}
+
+/// Puts things in an order, which says last where each of them stands before. They change places: another list of so many would take
+/// its time to be given back.
+fn put_in_order<T, K>(
+    list: &mut [T],
+    mut order: Vec<(K, usize)>,
+    patience: Patience<'_>,
+) -> Result<(), Cancelled> {
+    for first in 0..order.len() {
+        let mut at = first;
+        // What is in its place is said to stand there before.
+        while let Some(from) = order.get_mut(at).map(|(_, from)| std::mem::replace(from, at)) {
+            go_on(patience, 1)?;
+            if from == first {
+                break;
+            }
+            list.swap(at, from);
+            at = from;
+        }
     }
-    let mut found = Vec::with_capacity(places.len());
-    for (_, number) in sorted(places, Ord::cmp, patience) {
-        go_on(patience, 1)?;
-        found.extend(waiting.get_mut(number).and_then(Option::take));
-    }
-    if patience.was_over() { Err(Cancelled) } else { Ok(found) }
+    Ok(())
 }
 
 /// What is told when the settings name a machine that nobody knows, with the severities of the settings.

@@ -22,7 +22,7 @@ use arelem::{
 };
 
 use crate::{
-    Cancel, Cancelled,
+    Cancel, Cancelled, Waiting,
     memo::{ComputedMotion, MotionMemo},
     settings::Settings,
 };
@@ -181,13 +181,14 @@ pub fn run(
         section2.record(record)?;
     }
     let output = section2.finish();
+    let waiting = Waiting::until(&cancel);
     let indexes = match tree.dialect().name {
         DialectName::Apt3 => apt_cldata::edit::MAXIMUM_INDEXES,
         _ => usize::MAX,
     };
     let limits = apt_cldata::edit::EditLimits { indexes, points: settings.budget.points };
     let unpaired = match tree.dialect().name {
-        DialectName::Cl => apt_cldata::edit::copies_without_index(&output.items),
+        DialectName::Cl => apt_cldata::edit::copies_without_index(&output.items, waiting.patience()),
         _ => Vec::new(),
     };
     let edited = apt_cldata::edit::edit_until(output.items, &limits, &cancel);
