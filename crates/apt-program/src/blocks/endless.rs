@@ -36,9 +36,9 @@ impl Evaluator<'_> {
         let range = part.map_or(TextRange::default(), |part| part.range);
         self.report_related(finding, range, vec![(kind, origin)]);
         self.state.exhausted = self.state.exhausted.saturating_add(1);
-        self.output.records.truncate(self.output.records.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
+        self.output.records.truncate(RECORDS_KEPT_OF_ENDLESS_LOOP);
         self.output.listing.truncate(self.output.listing.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
-        self.output.definitions.truncate(self.output.definitions.len().min(RECORDS_KEPT_OF_ENDLESS_LOOP));
+        self.output.definitions.truncate(RECORDS_KEPT_OF_ENDLESS_LOOP);
         if self.pending.as_ref().is_some_and(|pending| pending.record >= self.output.records.len()) {
             self.pending = None;
         }
@@ -49,12 +49,13 @@ impl Evaluator<'_> {
 
     /// Names whose values differ from the value they had before the last turn.
     fn changing_names(&self, turn_start: usize) -> Vec<SmolStr> {
-        let (before, turn) = self.output.definitions.split_at(turn_start.min(self.output.definitions.len()));
+        let all = &self.output.definitions;
+        let before = || (0..turn_start.min(all.len())).rev().filter_map(|at| all.get(at));
+        let turn = (turn_start..all.len()).filter_map(|at| all.get(at));
         let mut names: Vec<SmolStr> = turn
-            .iter()
             .filter(|event| matches!(event.value, Value::Scalar(_)))
             .filter(|event| {
-                let earlier = before.iter().rev().find(|other| other.name == event.name);
+                let earlier = before().find(|other| other.name == event.name);
                 earlier.is_none_or(|earlier| earlier.value != event.value)
             })
             .map(|event| event.name.clone())

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use apt_geometry::pieces::Pieces;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -16,13 +17,13 @@ use crate::{
 #[derive(Debug, Default)]
 pub(crate) struct Output {
     /// Records.
-    pub(crate) records: Vec<Record>,
+    pub(crate) records: Pieces<Record>,
     /// Findings, one for each place and kind.
     pub(crate) findings: Vec<Finding>,
     /// What is printed and punched.
     pub(crate) listing: Vec<ListingEntry>,
     /// Definitions.
-    pub(crate) definitions: Vec<DefinitionEvent>,
+    pub(crate) definitions: Pieces<DefinitionEvent>,
     /// Names whose meaning changed.
     pub(crate) touched: FxHashSet<SmolStr>,
     /// Names that were used.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use apt_geometry::motion::MotionCommand;
+use apt_geometry::{motion::MotionCommand, pieces::Pieces};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -26,10 +26,10 @@ pub(super) struct ChunkData {
     pub(super) read_to: usize,
     /// How many top-level statements it executed.
     pub(super) steps: u64,
-    pub(super) records: Vec<Record>,
+    pub(super) records: Pieces<Record>,
     pub(super) findings: Vec<Finding>,
     pub(super) listing: Vec<ListingEntry>,
-    pub(super) definitions: Vec<DefinitionEvent>,
+    pub(super) definitions: Pieces<DefinitionEvent>,
     pub(super) transfers: Vec<(SmolStr, Origin)>,
     /// Labels of the statements in loops and macros that were executed.
     pub(super) inner_labels: FxHashSet<SmolStr>,
@@ -50,12 +50,13 @@ pub(super) struct ChunkData {
 impl ChunkData {
     /// A chunk of what was put out by statements from `start` on.
     pub(super) fn new(start: usize, extent: (usize, usize), steps: u64, output: Output) -> Self {
+        let moves = output.records.iter().any(|record| moves_the_tool(&record.kind));
         Self {
             start,
             read_from: extent.0,
             read_to: extent.1,
             steps,
-            moves: output.records.iter().any(|record| moves_the_tool(&record.kind)),
+            moves,
             looked_up: output.looked_up.into_inner(),
             looked_at_all: output.looked_at_all,
             lists_all: output.lists_all,

@@ -84,7 +84,7 @@ impl Shift {
         data.start = self.index(data.start);
         data.read_from = self.index(data.read_from);
         data.read_to = self.index(data.read_to);
-        for record in &mut data.records {
+        for record in data.records.iter_mut() {
             self.origin(&mut record.origin);
         }
         for finding in &mut data.findings {
@@ -96,7 +96,7 @@ impl Shift {
         for entry in &mut data.listing {
             self.origin(&mut entry.origin);
         }
-        for event in &mut data.definitions {
+        for event in data.definitions.iter_mut() {
             self.origin(&mut event.origin);
         }
         for (_, origin) in &mut data.transfers {

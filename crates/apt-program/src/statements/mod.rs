@@ -189,10 +189,10 @@ impl Evaluator<'_> {
         let flow = self.major_word(major);
         let failed = self.errors + self.unknown_values > failures;
         if failed && leaves_motion(major.spelling()) {
-            let new = self.output.records.get(records..).unwrap_or_default();
             let moves =
                 |record: &Record| matches!(record.kind, RecordKind::Motion(_) | RecordKind::Regional(_));
-            if !new.iter().any(moves) {
+            let new = &self.output.records;
+            if !(records..new.len()).filter_map(|at| new.get(at)).any(moves) {
                 self.gap(major.range);
             }
         }
