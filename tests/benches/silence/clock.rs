@@ -9,6 +9,9 @@ use std::{
 use apt_ide::Cancel;
 use rustix::time::{ClockId, clock_gettime};
 
+/// How many times later than the time before a work is given up.
+const LATER: u64 = 4;
+
 /// Places that are told of one work; the first ones tell enough.
 const MOST_TOLD: usize = 3;
 
@@ -17,9 +20,11 @@ const MOST_TOLD: usize = 3;
 pub(crate) struct Heard {
     /// The longest time between two questions.
     pub(crate) longest: Duration,
-    /// How often it asked.
+    /// The longest time from the answer that it is given up to its end.
+    pub(crate) given_up: Duration,
+    /// How often it asked when nobody gave it up.
     pub(crate) questions: u64,
-    /// What all of it took.
+    /// What all of it took then, less what it still knew of the times before.
     pub(crate) all: Duration,
 }
 
@@ -28,6 +33,7 @@ impl Heard {
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
             longest: self.longest.max(other.longest),
+            given_up: self.given_up.max(other.given_up),
             questions: self.questions + other.questions,
             all: self.all + other.all,
         }
@@ -50,12 +56,14 @@ struct Watch {
     heard: Heard,
     last: Duration,
     told: usize,
+    is_given_up: bool,
 }
 
 impl Watch {
     fn hear(&mut self, by: &str) {
         let silence = now().saturating_sub(self.last);
-        self.heard.longest = self.heard.longest.max(silence);
+        let longest = if self.is_given_up { &mut self.heard.given_up } else { &mut self.heard.longest };
+        *longest = silence.max(*longest);
         self.heard.all += silence;
         if LONG.is_some_and(|most| silence > most) && self.told < MOST_TOLD {
             self.told += 1;
@@ -65,17 +73,37 @@ impl Watch {
     }
 }
 
-/// Listens to a work that nobody cancels.
-pub(crate) fn listen<T>(work: impl FnOnce(Cancel<'_>) -> T) -> (T, Heard) {
-    let watch = Mutex::new(Watch { heard: Heard::default(), last: now(), told: 0 });
+/// Listens to a work that is given up at its first question, then at one some times later, and so on, until it comes to its end
+/// before. What it keeps it finds the next time, so that the longest silence is that of all times.
+pub(crate) fn listen<T>(mut work: impl FnMut(Cancel<'_>) -> T) -> Heard {
+    let (mut heard, mut last) = (Heard::default(), 1);
+    loop {
+        let Heard { questions, all, .. } = heard;
+        heard = heard.and(once(&mut work, last));
+        (heard.questions, heard.all) = (heard.questions - questions, heard.all - all);
+        if heard.questions < last {
+            return heard;
+        }
+        last *= LATER;
+    }
+}
+
+/// Listens to a work that is given up at a question.
+fn once<T>(work: &mut impl FnMut(Cancel<'_>) -> T, last: u64) -> Heard {
+    let watch = Watch { heard: Heard::default(), last: now(), told: 0, is_given_up: false };
+    let watch = Mutex::new(watch);
     let ask = || {
         let mut watch = watch.lock().unwrap();
-        watch.heard.questions += 1;
-        watch.hear("asked");
-        false
+        if !watch.is_given_up {
+            watch.heard.questions += 1;
+            watch.hear("asked");
+            watch.is_given_up = watch.heard.questions >= last;
+        }
+        watch.is_given_up
     };
     let done = work(&ask);
     let mut watch = watch.into_inner().unwrap();
-    watch.hear("ended");
-    (done, watch.heard)
+    watch.hear(if watch.is_given_up { "given up" } else { "ended" });
+    drop(done);
+    watch.heard
 }
