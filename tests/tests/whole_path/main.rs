@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
+mod contours;
 mod cutters;
 mod economy;
 #[allow(dead_code, unused_imports, reason = "the tests of the post-processor use all of it")]
