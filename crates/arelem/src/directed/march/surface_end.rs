@@ -287,6 +287,7 @@ mod tests {
         Vec3,
         cutter::Cutter,
         motion::{NamedSurface, Relation},
+        patience::Patience,
     };
 
     use super::{is_over, is_pushed_back};
