@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use apt_tests::runs::{analysis, path_of, report};
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::RngSeed};
 
 /// Turns of the contour at a corner: the less of one the less it tells left from right, the more the longer is the way round it.
 const TURNS: [f64; 2] = [0.21, 2.6];
@@ -15,16 +15,20 @@ const NEAR: f64 = 0.1;
 /// Digits of a coordinate after the point.
 const DIGITS: usize = 9;
 
+/// Of the contours that are gone round.
+const SEED: u64 = 20_262_901;
+
 type Point = [f64; 2];
 
 /// A part surface over the contour, all of whose lengths are scaled.
 type Part = fn(f64) -> String;
 
+/// The hollow sphere is wider than the tool is high in the smallest program, or a start-up might end at its top as well.
 const PARTS: [Part; 8] = [
     |_| "PLANE/0,0,1,0".into(),
     |_| "PLANE/.1,-.15,1,0".into(),
     |s| format!("SPHERE/0,0,{},{}", -30.0 * s, 30.0 * s),
-    |s| format!("SPHERE/0,0,{},{}", 30.0 * s, 30.0 * s),
+    |s| format!("SPHERE/0,0,{},{}", 90.0 * s, 90.0 * s),
     |s| format!("CYLNDR/0,0,{},1,.3,.05,{}", -15.0 * s, 15.0 * s),
     |s| format!("CONE/(POINT/0,0,{}),(VECTOR/.05,.1,-1),60", 3.0 * s),
     |s| format!("QADRIC/.001,.002,.01,0,0,0,0,0,{},0", 0.1 * s),
@@ -221,8 +225,15 @@ fn program(plan: &Plan, contour: &Contour) -> (String, Vec<Point>) {
     (lines.join("\n") + "\n", ends.into_iter().map(|end| end.map(|x| x * scale)).collect())
 }
 
+/// The same contours each time, so that a change is to blame for what fails; `PROPTEST_RNG_SEED` chooses others, and `PROPTEST_CASES` how many.
+fn config() -> ProptestConfig {
+    let told = ProptestConfig::default();
+    let rng_seed = if told.rng_seed == RngSeed::Random { RngSeed::Fixed(SEED) } else { told.rng_seed };
+    ProptestConfig { rng_seed, max_local_rejects: 100_000, failure_persistence: None, ..told }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { max_local_rejects: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
     fn tools_go_round_contours(
