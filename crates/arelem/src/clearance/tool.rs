@@ -10,6 +10,8 @@ use apt_geometry::{
 /// How often the observer of a side looks from another place, and how far apart, relative to the tool, places are one.
 const MOST_GLANCES: u32 = 32;
 const SAME_GLANCE: f64 = 1e-6;
+/// Parts of the axis between the places from which it is looked how deep a surface is in the tool.
+const DEPTHS: u32 = 4;
 /// Tangent of the angle to the axis below which rounding may leave something of the axis in what is across it, and sine of the angle of a
 /// direction to the axis below which that is all there is.
 const NEAR_AXIS: f64 = 1e-6;
@@ -192,6 +194,17 @@ impl<'a> Tool<'a> {
             observer = next;
         }
         surface.signed_distance(&observer)
+    }
+
+    /// How deep in the tool the deepest is of the points of a surface that are nearest to places along the axis; negative where all of them are out of
+    /// it.
+    pub(crate) fn depth_of(&self, surface: &Surface, tip: &Vec3) -> f64 {
+        let depth = |k: u32| {
+            let height = self.cutter.height * f64::from(k) / f64::from(DEPTHS);
+            let (along, across, _) = self.split(&(surface.foot(&(tip + self.axis * height)).point - tip));
+            -self.profile.distance(across, along).0
+        };
+        (0..=DEPTHS).map(depth).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Component of a vector along the axis, length of the rest and its unit direction, which is square to the axis even where the rest is

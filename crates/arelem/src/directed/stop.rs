@@ -232,7 +232,7 @@ impl<'a> Watcher<'a> {
             }
             let (x, value, side_before) = (trail.x, trail.value, trail.side);
             let floor = if step < FINE_STEPS { least } else { least.max(length / 64.0) };
-            let plain = (x + value.abs().max(floor) / stretch).min(length);
+            let plain = (x + self.way_to_change(index, sweep, (x, value)).max(floor) / stretch).min(length);
             let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, &trail, plain) };
             let next_x = leap.unwrap_or(plain);
             let (tip, tool) = sweep.at(next_x);
@@ -275,8 +275,21 @@ impl<'a> Watcher<'a> {
         }
         let clear_of =
             if trail.value > 0.0 { self.apart(index, trail.value).max(0.0) } else { f64::INFINITY };
-        watch.quiet = (sweep.at(length).0, trail.value.abs().min(clear_of));
+        let way = self.way_to_change(index, sweep, (length, trail.value));
+        watch.quiet = (sweep.at(length).0, way.min(clear_of));
         (None, watch)
+    }
+
+    /// How far the tool goes at least, from a distance along a vector, before the function changes its sign. In a surface that ends the sides end with
+    /// it, and how deep the tool is to either of them leaps; but no point of the surface comes out of the tool nearer than it is deep in that.
+    fn way_to_change(&self, index: usize, sweep: &Sweep<'_>, (x, value): (f64, f64)) -> f64 {
+        let Working { gauge, .. } = self.working(index);
+        if value > 0.0 || gauge.on || !gauge.surface.has_ends() {
+            return value.abs();
+        }
+        let (tip, tool) = sweep.at(x);
+        let depth = tool.depth_of(&gauge.surface, &tip) + gauge.thickness + self.working(index).rest();
+        depth.clamp(0.0, value.abs())
     }
 
     /// A longer step than by the clearance alone, over which the bound of the second derivative leaves no room for a

@@ -22,6 +22,7 @@ mod found;
 mod frugal;
 mod gouges;
 mod hollow;
+mod past_ends;
 mod properties;
 #[path = "../../tests/support/random.rs"]
 pub(crate) mod random;
