@@ -1,7 +1,7 @@
 //! Motions that begin in a corner, where the tool touches a surface at two places at once, or turn in one by nearly a right angle.
 
 use super::{
-    refused::{AMPLE, Found},
+    refused::{AMPLE, Found, turns_sharply},
     *,
 };
 
@@ -386,4 +386,45 @@ fn a_path_turns_by_nearly_a_right_angle_at_the_end_of_a_long_vector() {
         ),
     };
     is_delivered(&motion);
+}
+
+/// A drill comes to a second wall of a hollow cylinder whose normal is no more than 29° off the first one: the path turns back there on the same
+/// hand, and leaves the first one for good.
+#[test]
+fn a_path_turns_back_at_a_wall_that_leads_nearly_as_the_one_it_follows() {
+    turns_sharply(&Found {
+        cutter: &[
+            0.7918153029275952,
+            0.0,
+            0.3959076514637976,
+            0.23788531653628503,
+            31.0,
+            0.0,
+            2.935502570974566,
+        ],
+        axis: Vec3::z(),
+        from: v(-31.72932, 18.88887, -8.41726),
+        band: [0.0, 1e-4],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.71, 0.54, 0.45),
+        part: (
+            Relation::To,
+            Geometry::Cylinder(Cylinder {
+                point: v(-0.13496993179232075, -1.0407919902321896, 6.486933378184856),
+                axis: v(-0.8537377134395682, 0.3988648985101645, -0.3347218388265906),
+                radius: 5.274078585233665,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(4.684823933889515, -4.109552691704335, 5.307368418436364),
+                axis: v(-0.9478635457151164, 0.2520084685072516, -0.1950549422726766),
+                cosine: 0.9578990169699616,
+            }),
+        ),
+        first: (Relation::On, plane(-0.71, 0.54, 0.45, 28.94)),
+        stop: (Relation::On, plane(0.7348, -0.4094, 0.5399, -34.9)),
+    });
 }

@@ -8,6 +8,16 @@ const TELLING_SINE: f64 = 0.1;
 /// Cosine between normals at both ends of a vector above which the tool touches at the same place (30°).
 const SAME_CONTACT_COSINE: f64 = 0.87;
 
+/// Share of the way out of a surface in which a vector sets out that it is off it at least in between, where one and the same contact is read at
+/// both ends: what bends evenly is off by a quarter.
+const OFF_IN_BETWEEN: f64 = 0.25;
+
+/// Whether a vector leaves the place of contact with one of these normals for good, so that what is read at its end is another one: it sets out too
+/// steeply to come back to it within the band.
+pub(super) fn leaves(normals: &[Vec3; 2], motion: &Vec3, bands: [f64; 2]) -> bool {
+    (0..2).any(|k| OFF_IN_BETWEEN * normals[k].dot(motion) > bands[k])
+}
+
 /// The sign of part normal × drive normal · direction. The tool keeps to one side of each surface, so that its path is an edge of what it may
 /// reach, and the sign stays along an edge. Where a normal a gives way to b at a second place of contact the path comes along s·p×a to b,
 /// b·(s·p×a) < 0, which says the same as a·(s·p×b) > 0: along s·p×b it leaves the first place, whatever angle that turns it by.
@@ -45,12 +55,18 @@ impl Hand {
     }
 
     /// The direction in which the path goes on from a corner, with the normals of what it follows. The tool touches with the normals `there`,
-    /// and another contact is read at the vertex before, `self`, or at the end of the vector that leads on. `None` where there is no other one.
-    pub(super) fn beyond_corner(&self, there: &[Vec3; 2], at_end: &[Vec3; 2]) -> Option<(Vec3, [Vec3; 2])> {
+    /// and another contact is read at the vertex before, `self`, or at the end of the vector that leads on, which may leave that there. `None` where
+    /// there is no other one.
+    pub(super) fn beyond_corner(
+        &self,
+        there: &[Vec3; 2],
+        at_end: &[Vec3; 2],
+        leaves: bool,
+    ) -> Option<(Vec3, [Vec3; 2])> {
         let followed = match self.normals {
             // What ends where the tool touches as before the corner leads back from it.
             Some(before) if !is_same(&before, there) => Some(there).filter(|_| !is_same(&before, at_end)),
-            _ => Some(at_end).filter(|at_end| !is_same(there, at_end)),
+            _ => Some(at_end).filter(|at_end| leaves || !is_same(there, at_end)),
         }?;
         Some((self.along(followed)?, *followed))
     }

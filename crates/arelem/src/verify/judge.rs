@@ -16,7 +16,7 @@ use crate::sequence::{CutSequence, Role, ToolPosition};
 use super::{
     Evidence, Extent, Rule, VerifyError, Violation,
     clearance::{Clearance, Reading, Surface},
-    hand::Hand,
+    hand::{self, Hand},
     span::{Extremes, between},
     stop,
     tool::Profile,
@@ -471,8 +471,10 @@ impl Judge<'_> {
                     sine = direction.dot(&along).max(if turns || leaves { sine } else { f64::NEG_INFINITY });
                     let at_end = [part.normal_at(vector + 1)?, drive.normal_at(vector + 1)?];
                     let mut followed = normals;
+                    let bands = [part, drive].map(|bound| bound.intol + bound.outtol);
+                    let is_left = !turns && hand::leaves(&normals, &motion, bands);
                     if sine <= 0.0
-                        && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end)
+                        && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end, is_left)
                     {
                         (sine, begins, followed) = (direction.dot(&along), along, normals);
                     }
