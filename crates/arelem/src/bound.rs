@@ -168,16 +168,9 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     path.push(sequence.start.tip);
     path.extend(sequence.points.iter().map(|p| p.tip));
     let (part, drive) = (&prepared.part, &prepared.drive);
-    let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
     let earlier = earlier_end(sequence, prepared);
-    let on_rings = rings
-        .iter()
-        .flatten()
-        .filter(|ring| ring.holds(&path))
-        // Where it is not known how far before its end another path may end that is taken to be the end of all.
-        .map(|ring| ring.of_path(&path, earlier.unwrap_or(0.0)))
-        .max()
-        .unwrap_or(1);
+    // Where it is not known how far before its end another path may end that is taken to be the end of all.
+    let on_rings = on_rings(prepared, &path, earlier.unwrap_or(0.0));
     // Between two planes MAXDP does not count (language reference 6.8).
     let planar = part.shape == Shape::Flat && drive.shape == Shape::Flat;
     let maximum_step = if planar { f64::INFINITY } else { sequence.maximum_step };
@@ -189,6 +182,14 @@ pub(crate) fn minimum(sequence: &CutSequence, prepared: &Prepared, bent: &Bent) 
     on_rings
         .max(bends(prepared, &path, bent, (maximum_step, earlier)))
         .max(whole(straight / maximum_step * (1.0 - 1e-9)))
+}
+
+/// The bound of the rings that confine the tool end along a path, which another one may end before by a way.
+fn on_rings(prepared: &Prepared, path: &[Vec3], earlier: f64) -> u32 {
+    let (part, drive) = (&prepared.part, &prepared.drive);
+    let rings = [ring(prepared, part, drive), ring(prepared, drive, part)];
+    let holding = rings.iter().flatten().filter(|ring| ring.holds(path));
+    holding.map(|ring| ring.of_path(path, earlier)).max().unwrap_or(1)
 }
 
 /// The least number of vectors that the bends along a path and MAXDP ask for; what is filled is known to a position. Another sequence may end a
@@ -252,6 +253,27 @@ pub(crate) fn to_end(prepared: &Prepared, path: &[Vec3], mut bent: Bent, maximum
         bent.to = *to;
     }
     bent
+}
+
+/// How many vectors a path needs that begins and ends where it does.
+pub(crate) fn needed(prepared: &Prepared, path: &[Vec3], bent: Bent, maximum_step: f64) -> u32 {
+    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step);
+    let bends = to_end(prepared, path, bent, maximum_step).filled.count(&limits);
+    whole(bends).max(on_rings(prepared, path, 0.0))
+}
+
+/// What each of the vectors between positions fills of one.
+pub(crate) fn fills(prepared: &Prepared, path: &[Vec3], maximum_step: f64) -> Vec<f64> {
+    let roles = [&prepared.part, &prepared.drive];
+    let limits = Limits::new(roles, maximum_step);
+    let (mut filled, mut before) = (Filled::default(), 0.0);
+    let of_vector = |pair: &[Vec3]| {
+        let [part, drive] = roles.map(|role| read(&prepared.tool, role, [&pair[0], &pair[1]]));
+        filled.add([&part, &drive], &limits);
+        let now = filled.count(&limits);
+        now - std::mem::replace(&mut before, now)
+    };
+    path.windows(2).map(of_vector).collect()
 }
 
 /// The clearance of a role along a vector, at its ends and in its middle.

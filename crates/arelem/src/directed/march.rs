@@ -3,6 +3,7 @@
 
 mod creeping;
 mod explained;
+mod fewer;
 mod finish;
 mod parallel_way;
 mod scout;
@@ -405,6 +406,7 @@ impl<'a> March<'a> {
         let along = self.points.clone();
         let bent = self.stepper.record.along(&along);
         self.spare_vertices(start)?;
+        self.save_vectors(start, &along, &bent)?;
         if self.points.len() == along.len() {
             return Ok(self.path(end));
         }

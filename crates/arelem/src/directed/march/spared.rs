@@ -54,13 +54,13 @@ impl Stretch {
         let is_one = signs.all(|sign| sign == first);
         Self { hand: first.filter(|_| is_one), choices }
     }
+}
 
-    /// True if a vector leads onward along the path at both its ends, as far as the hand tells. In a bend much tighter than the bands are wide a vector
-    /// against the path keeps them as well, and differs from the one in whose place it would be by less than a right angle.
-    fn is_onward(&self, from: &Vertex, to: &Vertex) -> bool {
-        let way = to.tip - from.tip;
-        self.hand.is_none() || [from, to].into_iter().all(|vertex| hand_of(vertex, &way) == self.hand)
-    }
+/// True if a vector leads onward along the path at both its ends, as far as the hand tells. In a bend much tighter than the bands are wide a vector
+/// against the path keeps them as well, and differs from the one in whose place it would be by less than a right angle.
+pub(super) fn is_onward(hand: Option<f64>, from: &Vertex, to: &Vertex) -> bool {
+    let way = to.tip - from.tip;
+    hand.is_none() || [from, to].into_iter().all(|vertex| hand_of(vertex, &way) == hand)
 }
 
 impl March<'_> {
@@ -90,7 +90,7 @@ impl March<'_> {
     }
 
     /// A vertex by its number, that of the start being zero.
-    fn at(&self, start: &Vertex, k: usize) -> Vec3 {
+    pub(super) fn at(&self, start: &Vertex, k: usize) -> Vec3 {
         k.checked_sub(1).map_or(start.tip, |k| self.points[k])
     }
 
@@ -145,7 +145,7 @@ impl March<'_> {
             let leads = may_lead_on
                 && way.norm() <= most
                 && way.dot(&old) > LEAST_ONWARD * way.norm() * old.norm()
-                && stretch.is_onward(&from, &to)
+                && is_onward(stretch.hand, &from, &to)
                 && self.stepper.proven(&from, &to);
             if leads && self.leads_through(stretch, (level + 1, next), found) {
                 found.push(k);
@@ -203,7 +203,7 @@ impl March<'_> {
 
 /// The sign of part gradient × drive gradient · way at a vertex: along an edge of what the tool may reach it stays. None where both surfaces are
 /// tangent, or the way is straight across the path.
-fn hand_of(vertex: &Vertex, way: &Vec3) -> Option<f64> {
+pub(super) fn hand_of(vertex: &Vertex, way: &Vec3) -> Option<f64> {
     let across = vertex.part.gradient.cross(&vertex.drive.gradient).try_normalize(TANGENT_SINE)?;
     Some(across.dot(way)).filter(|along| *along != 0.0).map(f64::signum)
 }

@@ -376,6 +376,11 @@ impl<'a> Stepper<'a> {
         Overlong { culprit: trial.culprit, is_deep: deep > high, length, beyond: deep.max(high) }
     }
 
+    /// Whether nobody waits any more.
+    pub(super) fn is_over(&self) -> bool {
+        self.patience.is_over()
+    }
+
     /// True if the straight move between two positions keeps both bands.
     pub(super) fn proven(&self, from: &Vertex, to: &Vertex) -> bool {
         self.extremes(from, to).iter().all(|e| e.proven)

@@ -1,0 +1,354 @@
+//! Fewer vectors where a motion has many more than it needs. The march makes each vector as long as it can be from where the one before it ends; where
+//! the path bends to and fro, turns in corners or begins at the wrong limit of a band, that may take a vector more than if some of those
+//! before had ended elsewhere. Stretches of vectors that fill less than one of them fewer are looked through again, with vertices on several levels of
+//! the bands: of each level the farthest place to which one vector leads, then two, and so on, until one leads to where the path had come with a
+//! vector more.
+
+use std::ops::Range;
+
+use apt_geometry::Vec3;
+
+use super::{
+    March, Vertex,
+    spared::{hand_of, is_onward},
+};
+use crate::{
+    attitude::Sweep,
+    bound::{self, Bent},
+    clearance::Shape,
+    directed::stop::Watcher,
+    error::MotionFailure,
+    role::{Bend, Working},
+};
+
+/// By how many vectors, as a share of those that it fills and besides, a motion has more than it needs without being looked through.
+const MORE: f64 = 0.02;
+const BESIDES: f64 = 2.0;
+/// How many vectors make a stretch.
+const LEAST_TOGETHER: usize = 2;
+const MOST_TOGETHER: usize = 16;
+/// What a stretch leaves at least of one vector fewer: vertices on levels of the bands fill less than the fullest vectors.
+const ROOM: f64 = 0.05;
+/// Columns of places along a stretch for each of its vectors.
+const COLUMNS: usize = 12;
+/// Bound of the vectors that are tried for each of a motion, some times what the march takes, for no more vectors than these, and for one stretch.
+const MOST_TRIED: u32 = 200;
+const FEW: usize = 250;
+const MOST_FOR_ONE: u32 = 4_000;
+/// How often stretches are looked through that have changed.
+const MOST_ROUNDS: u32 = 16;
+/// Cosine between a vector and the way along the path in its place below which it leads another way (60°).
+const LEAST_ONWARD: f64 = 0.5;
+/// Share of MAXDP that a vector's length may be above it by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Places on all levels beside one of the path as it was.
+struct Column {
+    /// The way to it along the stretch, the position there, and the direction of the vector.
+    along: f64,
+    old: Vec3,
+    sense: Vec3,
+    /// The place on each level, once it has been looked for.
+    places: Vec<Option<Option<Vertex>>>,
+}
+
+/// A place to which vectors lead.
+#[derive(Clone, Copy)]
+struct Reached {
+    vertex: Vertex,
+    along: f64,
+    old: Vec3,
+    /// Index of the one before.
+    from: usize,
+}
+
+/// Vectors in whose place fewer are looked for.
+struct Stretch {
+    columns: Vec<Column>,
+    /// Clearances of part and drive surface on each level.
+    levels: Vec<[f64; 2]>,
+    /// The vertices as they were.
+    were: Vec<Reached>,
+    /// On which hand the path keeps both surfaces where it begins.
+    hand: f64,
+    /// How many vectors may still be tried.
+    left: u32,
+}
+
+impl March<'_> {
+    /// Looks for fewer vectors if there are many more than the path fills, of which it is known with `bent` how it bends until near its end.
+    pub(super) fn save_vectors(
+        &mut self,
+        start: &Vertex,
+        path: &[Vec3],
+        bent: &Bent,
+    ) -> Result<(), MotionFailure> {
+        if self.prepared.attitude.turns() || self.tangency.has_any() || self.points.len() <= LEAST_TOGETHER {
+            return Ok(());
+        }
+        let most = self.state.maximum_step;
+        let along: Vec<Vec3> = std::iter::once(start.tip).chain(path.iter().copied()).collect();
+        let needed = f64::from(bound::needed(self.prepared, &along, bent.clone(), most));
+        let before = self.points.clone();
+        let mut positions: Vec<Vec3> = std::iter::once(start.tip).chain(before.iter().copied()).collect();
+        // In the bands there is room beside a vector for a way longer than MAXDP, but for no longer vector.
+        let shares = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm() / most);
+        if !self.is_wasteful(needed.max(shares.clone().sum::<f64>().ceil())) {
+            return Ok(());
+        }
+        let mut fills = bound::fills(self.prepared, &positions, most);
+        fills.iter_mut().zip(shares).for_each(|(fill, share)| *fill = fill.max(share));
+        if !self.is_wasteful(fills.iter().sum::<f64>().ceil()) {
+            return Ok(());
+        }
+        // Of several positions on a check surface each counts as the vectors meet it; the last vector leads to that which stops the motion.
+        let met = self.met_along(&positions);
+        if met != Some(0) {
+            fills.pop();
+        }
+        let mut left = (MOST_TRIED * fills.len().min(FEW) as u32, vec![false; fills.len()]);
+        for _ in 0..MOST_ROUNDS {
+            if !self.save_apart(start, &mut fills, &mut left)? {
+                break;
+            }
+        }
+        positions.splice(1.., self.points.iter().copied());
+        if self.met_along(&positions) != met {
+            self.points = before;
+        }
+        Ok(())
+    }
+
+    /// Whether there are many more vectors than are needed.
+    fn is_wasteful(&self, needed: f64) -> bool {
+        self.points.len() as f64 > needed * (1.0 + MORE) + BESIDES
+    }
+
+    /// How many positions are met along all vectors but the last; `None` if one of them stops the motion.
+    fn met_along(&self, positions: &[Vec3]) -> Option<usize> {
+        let mut watcher = Watcher::new(self.prepared, self.checks);
+        let axis = &self.prepared.tool.axis;
+        let before_last = &positions[..positions.len() - 1];
+        let meets = |pair: &[Vec3]| {
+            let sweep = Sweep::new(&self.prepared.tool, (&pair[0], axis), (&pair[1], axis));
+            watcher.scan(&sweep).is_some()
+        };
+        (!before_last.windows(2).any(meets)).then_some(watcher.met)
+    }
+
+    /// Saves a vector in stretches that are apart, beginning with the one that leaves the most room; whether there was one. So many vectors may still be
+    /// tried, and from some on there is none to save.
+    fn save_apart(
+        &mut self,
+        start: &Vertex,
+        fills: &mut Vec<f64>,
+        (left, is_tried): &mut (u32, Vec<bool>),
+    ) -> Result<bool, MotionFailure> {
+        let mut is_changed = vec![false; fills.len()];
+        let mut found = Vec::new();
+        for k in by_room(fills) {
+            let vectors = is_changed[k..].iter().take_while(|is_changed| !**is_changed).count();
+            if *left == 0 || is_tried[k] || vectors < LEAST_TOGETHER {
+                continue;
+            }
+            is_tried[k] = true;
+            if let Some((count, between)) = self.fewer_from(start, (k, vectors), left)? {
+                is_changed[k..k + count].fill(true);
+                found.push((k, count, between));
+            }
+        }
+        found.sort_by_key(|(k, ..)| std::cmp::Reverse(*k));
+        let has_saved = !found.is_empty();
+        for (k, count, between) in found {
+            let share = fills[k..k + count].iter().sum::<f64>() / (count - 1) as f64;
+            fills.splice(k..k + count, vec![share; count - 1]);
+            is_tried.splice(k..k + count, vec![false; count - 1]);
+            is_tried[k.saturating_sub(MOST_TOGETHER)..k].fill(false);
+            self.points.splice(k..k + count - 1, between);
+        }
+        Ok(has_saved)
+    }
+
+    /// How many of so many vectors from vertex `k` on can be one fewer, and the positions between those.
+    fn fewer_from(
+        &self,
+        start: &Vertex,
+        (k, vectors): (usize, usize),
+        left: &mut u32,
+    ) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
+        let most = MOST_TOGETHER.min(vectors);
+        let old: Vec<Vec3> = (k..=k + most).map(|k| self.at(start, k)).collect();
+        let Some(mut stretch) = self.stretch(&old, *left)? else { return Ok(None) };
+        let had = stretch.left;
+        let found = self.with_fewer(&mut stretch);
+        *left -= had - stretch.left;
+        found
+    }
+
+    /// The stretch between positions; `None` where it begins on no hand.
+    fn stretch(&self, old: &[Vec3], left: u32) -> Result<Option<Stretch>, MotionFailure> {
+        let (mut along, mut were) = (0.0, Vec::new());
+        for (k, tip) in old.iter().enumerate() {
+            let before = old[k.saturating_sub(1)];
+            along += (tip - before).norm();
+            let way = old[(k + 1).min(old.len() - 1)] - before;
+            let vertex = Vertex::at(self.prepared, *tip, &way)?;
+            were.push(Reached { vertex, along, old: *tip, from: 0 });
+        }
+        let Some(hand) = hand_of(&were[0].vertex, &(old[1] - old[0])) else { return Ok(None) };
+        let [part, drive] = [&self.prepared.part, &self.prepared.drive].map(levels);
+        let levels: Vec<[f64; 2]> =
+            part.iter().flat_map(|part| drive.iter().map(move |drive| [*part, *drive])).collect();
+        let column = |pair: &[Reached], k: usize| {
+            let (share, way) = (k as f64 / COLUMNS as f64, pair[1].old - pair[0].old);
+            Column {
+                along: pair[0].along + share * (pair[1].along - pair[0].along),
+                old: pair[0].old + way * share,
+                sense: way,
+                places: vec![None; levels.len()],
+            }
+        };
+        let columns =
+            were.windows(2).flat_map(|pair| (0..COLUMNS).map(move |k| column(pair, k))).skip(1).collect();
+        Ok(Some(Stretch { columns, levels, were, hand, left: left.min(MOST_FOR_ONE) }))
+    }
+
+    /// How many vectors of a stretch can be one fewer, and the positions between those.
+    fn with_fewer(&self, stretch: &mut Stretch) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
+        let mut reached = vec![stretch.were[0]];
+        let mut latest = 0..1;
+        for count in LEAST_TOGETHER..stretch.were.len() {
+            if self.stepper.is_over() {
+                return Err(MotionFailure::Cancelled);
+            }
+            let end = stretch.were[count];
+            if let Some(mut k) = latest.clone().rev().find(|k| self.is_vector(stretch, &reached[*k], &end)) {
+                let mut between = Vec::new();
+                while k > 0 {
+                    between.push(reached[k].vertex.tip);
+                    k = reached[k].from;
+                }
+                between.reverse();
+                return Ok(Some((count, between)));
+            }
+            let mut farthest = self.farthest_from(stretch, &reached, latest.clone());
+            if farthest.is_empty() || stretch.left == 0 {
+                break;
+            }
+            farthest.sort_by(|a, b| a.along.total_cmp(&b.along));
+            latest = reached.len()..reached.len() + farthest.len();
+            reached.extend(farthest);
+        }
+        Ok(None)
+    }
+
+    /// The farthest place of each level to which one vector leads from any of those that have been reached.
+    fn farthest_from(
+        &self,
+        stretch: &mut Stretch,
+        reached: &[Reached],
+        latest: Range<usize>,
+    ) -> Vec<Reached> {
+        let mut found = Vec::new();
+        for level in 0..stretch.levels.len() {
+            let mut best = None;
+            for from in latest.clone().rev() {
+                best = self.farther(stretch, (from, &reached[from]), level, best);
+            }
+            found.extend(best.map(|(_, place)| place));
+        }
+        found
+    }
+
+    /// The farthest place on a level to which a vector leads from one, with its column, if that is farther than the one that is known. Vectors are
+    /// taken to lead everywhere up to there.
+    fn farther(
+        &self,
+        stretch: &mut Stretch,
+        (from, reached): (usize, &Reached),
+        level: usize,
+        known: Option<(usize, Reached)>,
+    ) -> Option<(usize, Reached)> {
+        let here = stretch.columns.partition_point(|column| column.along <= reached.along);
+        let end = stretch.columns.len();
+        let (mut best, mut low) = (known, known.map_or(here, |(column, _)| column + 1));
+        // A vector as long as those that were there, or else one that leads farther at all.
+        let (mut high, mut step) = (end, if known.is_some() { 1 } else { COLUMNS });
+        let mut at = low + step - 1;
+        while low < high {
+            at = at.clamp(low, high - 1);
+            let place = self.place(stretch, (at, level));
+            if let Some(place) = place.filter(|place| self.is_vector(stretch, reached, place)) {
+                best = Some((at, Reached { from, ..place }));
+                low = at + 1;
+                step *= 2;
+                at = if high == end { low + step - 1 } else { low + (high - low) / 2 };
+            } else if known.is_some() && at == low && high == end {
+                break;
+            } else {
+                high = at;
+                at = low + (high - low) / 2;
+            }
+        }
+        best
+    }
+
+    /// The place of a column on a level.
+    fn place(&self, stretch: &mut Stretch, (column, level): (usize, usize)) -> Option<Reached> {
+        let at = stretch.levels[level];
+        let Column { along, old, sense, places } = &mut stretch.columns[column];
+        let settled = || Vertex::settled_at(self.prepared, at, old, sense);
+        let vertex = (*places[level].get_or_insert_with(settled))?;
+        Some(Reached { vertex, along: *along, old: *old, from: 0 })
+    }
+
+    /// Whether a vector from one place to another one leads onward and keeps the bands.
+    fn is_vector(&self, stretch: &mut Stretch, from: &Reached, to: &Reached) -> bool {
+        let (way, old) = (to.vertex.tip - from.vertex.tip, to.old - from.old);
+        let length = way.norm();
+        if stretch.left == 0
+            || to.along <= from.along
+            || length > self.state.maximum_step * (1.0 + ROUNDING)
+            || way.dot(&old) <= LEAST_ONWARD * length * old.norm()
+            || !is_onward(Some(stretch.hand), &from.vertex, &to.vertex)
+        {
+            return false;
+        }
+        stretch.left -= 1;
+        self.is_in_middle(&from.vertex, &to.vertex) && self.stepper.proven(&from.vertex, &to.vertex)
+    }
+
+    /// Whether the middle of a vector is in both bands, which is told sooner than all of it.
+    fn is_in_middle(&self, from: &Vertex, to: &Vertex) -> bool {
+        let middle = Vertex::at(self.prepared, 0.5 * (from.tip + to.tip), &from.tangent);
+        middle.is_ok_and(|vertex| {
+            let [part, drive] = [&self.prepared.part, &self.prepared.drive];
+            part.beyond(vertex.part.clearance) <= 0.0 && drive.beyond(vertex.drive.clearance) <= 0.0
+        })
+    }
+}
+
+/// The vectors with which stretches begin that leave room of one fewer, the most of it first.
+fn by_room(fills: &[f64]) -> Vec<usize> {
+    let room = |k: usize| {
+        let mut filled = 0.0;
+        let room = |(count, fill): (usize, &f64)| {
+            filled += fill;
+            (count >= LEAST_TOGETHER).then_some(count as f64 - 1.0 - filled)
+        };
+        (1..=MOST_TOGETHER).zip(&fills[k..]).filter_map(room).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut rooms: Vec<(usize, f64)> =
+        (0..fills.len()).map(|k| (k, room(k))).filter(|(_, room)| *room >= ROOM).collect();
+    rooms.sort_by(|a, b| b.1.total_cmp(&a.1));
+    rooms.into_iter().map(|(k, _)| k).collect()
+}
+
+/// The clearances of levels of a band.
+fn levels(role: &Working) -> Vec<f64> {
+    let limits = [Bend::Convex, Bend::Concave].map(|bend| role.vertex(bend));
+    match role.shape {
+        Shape::Flat => vec![role.rest()],
+        _ => vec![limits[0], limits[1], 0.5 * (limits[0] + limits[1])],
+    }
+}
