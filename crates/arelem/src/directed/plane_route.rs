@@ -28,6 +28,11 @@ const LIMIT_GUARD: f64 = 1e-3;
 /// Angle, radians, below which a stop on a circle is the start itself.
 const START_ANGLE: f64 = 1e-9;
 
+/// Share by which rounding lets a vector be longer than MAXDP.
+const LENGTH_ROUNDING: f64 = 1e-9;
+/// Halvings of an angle of travel that leave of it what is rounding.
+const HALVINGS: u32 = 54;
+
 /// The path of the tool end, normal to the tool axis.
 struct Track {
     curve: TrackCurve,
@@ -375,12 +380,18 @@ fn cut(state: &State, prepared: &Prepared, track: &Track, end: f64) -> Result<Ve
         TrackCurve::Line { .. } => vec![track.at(end)],
         TrackCurve::Circle { center, radius, .. } => chords(state, prepared, track, (center, *radius), end)?,
     };
-    let Surface::Plane(part) = &prepared.part.gauge.surface else { return Ok(points) };
-    let cosine = part.normal.dot(&track.axis);
     for point in &mut points {
-        *point -= track.axis * (part.normal.dot(&(*point - prepared.tip)) / cosine);
+        *point += rise(prepared, &track.axis, &(*point - prepared.tip));
     }
     Ok(points)
+}
+
+/// How far the part plane lifts the tool on a way square to its axis.
+fn rise(prepared: &Prepared, axis: &Vec3, way: &Vec3) -> Vec3 {
+    match &prepared.part.gauge.surface {
+        Surface::Plane(part) => axis * (-part.normal.dot(way) / part.normal.dot(axis)),
+        _ => Vec3::zeros(),
+    }
 }
 
 /// The fewest chords of the tolerance ring from the start to an angle of travel, spread evenly.
@@ -415,12 +426,7 @@ fn chords(
     }
     let inside = ((angle - first - last) / (2.0 * step)).ceil().max(0.0);
     if inside + 1.0 > f64::from(state.maximum_points) {
-        return Err(MotionFailure::TooManyPoints {
-            limit: state.maximum_points,
-            maximum_step: state.maximum_step,
-            remaining: angle * radius,
-            at: prepared.tip,
-        });
+        return Err(too_many(state, prepared, angle * radius));
     }
     let count = inside as u32;
     let share = if count == 0 { 1.0 } else { angle / (first + last + 2.0 * step * inside) };
@@ -430,5 +436,91 @@ fn chords(
         points.push(track.on_circle(travelled, outer));
     }
     points.push(track.at(angle));
-    Ok(points)
+    let lifted = |from: &Vec3, to: &Vec3| {
+        let way = to - from;
+        (way + rise(prepared, &track.axis, &way)).norm()
+    };
+    let rising = Rising { track, most: state.maximum_step, outer, half: &half, lifted: &lifted };
+    if rising.keeps(&prepared.tip, &points) {
+        return Ok(points);
+    }
+    rising
+        .chords((prepared.tip, start), (angle, radius), state.maximum_points)
+        .ok_or_else(|| too_many(state, prepared, angle * radius))
+}
+
+fn too_many(state: &State, prepared: &Prepared, remaining: f64) -> MotionFailure {
+    MotionFailure::TooManyPoints {
+        limit: state.maximum_points,
+        maximum_step: state.maximum_step,
+        remaining,
+        at: prepared.tip,
+    }
+}
+
+/// Chords of a ring over a part plane that leans: how long they are changes with the direction, and each goes as far as it may.
+struct Rising<'a> {
+    track: &'a Track,
+    /// Length of the longest vector.
+    most: f64,
+    /// Radius of the vertices.
+    outer: f64,
+    /// Angle of travel between a vertex at a radius and where the chord touches the inner circle.
+    half: &'a dyn Fn(f64) -> f64,
+    /// Length of a vector with what it rises.
+    lifted: &'a dyn Fn(&Vec3, &Vec3) -> f64,
+}
+
+impl Rising<'_> {
+    /// Whether none of the vectors is too long.
+    fn keeps(&self, start: &Vec3, points: &[Vec3]) -> bool {
+        let mut from = start;
+        let length = |to| (self.lifted)(std::mem::replace(&mut from, to), to);
+        points.iter().map(length).all(|length| length <= self.most * (1.0 + LENGTH_ROUNDING))
+    }
+
+    fn is_short(&self, from: &Vec3, to: &Vec3) -> bool {
+        (self.lifted)(from, to) <= self.most
+    }
+
+    /// From a position at a radius to the end by its angle and radius; `None` if that takes more than so many.
+    fn chords(
+        &self,
+        (mut from, mut radius): (Vec3, f64),
+        (end, last): (f64, f64),
+        limit: u32,
+    ) -> Option<Vec<Vec3>> {
+        let (mut points, mut begin) = (Vec::new(), 0.0);
+        let goal = self.track.on_circle(end, last);
+        // Chords touch the inner circle at most.
+        let reach = |radius: f64, next: f64| (self.half)(radius) + (self.half)(next);
+        while end - begin > reach(radius, last) || !self.is_short(&from, &goal) {
+            let farthest = (begin + reach(radius, self.outer)).min(end);
+            let angle = self.longest(&from, begin, farthest);
+            if angle <= begin || points.len() as u32 + 1 >= limit {
+                return None;
+            }
+            (from, radius, begin) = (self.track.on_circle(angle, self.outer), self.outer, angle);
+            points.push(from);
+        }
+        points.push(goal);
+        Some(points)
+    }
+
+    /// The angle of the vertex, the farthest if possible, to which the vector from a position is as long as it may be.
+    fn longest(&self, from: &Vec3, mut near: f64, mut far: f64) -> f64 {
+        let is_short = |angle: f64| self.is_short(from, &self.track.on_circle(angle, self.outer));
+        if is_short(far) {
+            return far;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near + far);
+            if is_short(middle) {
+                near = middle;
+            } else {
+                far = middle;
+            }
+        }
+        near
+    }
 }

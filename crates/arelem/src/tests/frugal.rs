@@ -257,3 +257,34 @@ fn vectors_do_not_creep_up_to_a_place_where_the_path_turns_back() {
     let minimum = p.last().minimum.expect("a bound") as usize;
     assert!(count <= minimum + 2, "{count} vectors, {minimum} at least");
 }
+
+/// A part surface that leans makes the vectors along a large circle longer than they are seen from above, by as much as the way rises: all of
+/// them keep to MAXDP, and are as few as it allows.
+#[test]
+fn vectors_round_a_circle_that_rise_with_the_part_surface_are_no_longer_than_told() {
+    let (wall, stop) = (circle(0.0, 0.0, 200.0), line(0.0, 0.0, 0.0, 300.0));
+    for (part, most) in [(plane(0.1, -0.15, 1.0, 0.0), 10.0), (plane(-0.5, 0.2, 1.0, 0.0), 7.0)] {
+        for relation in [Relation::On, Relation::To] {
+            let mut program = Program::new();
+            program.run(&MotionCommand::MaximumStep(most));
+            program.cutter(&[4.0, 0.0]).tolerance(0.04, 0.04).from(-210.0, -5.0, 50.0).indirv(1.0, 0.0, 0.0);
+            program.go(&[
+                (relation, &wall),
+                (Relation::To, &part),
+                (Relation::On, &line(-1.0, 0.0, 0.0, 0.0)),
+            ]);
+            program.side(if relation == Relation::On { DriveSide::On } else { DriveSide::Left });
+            program.indirv(0.0, 1.0, 0.0).drive(Turn::Forward, &wall, Relation::On, &stop).verified();
+            let (sequence, mut from) = (program.last(), program.last().start.tip);
+            let mut longest: f64 = 0.0;
+            for point in &sequence.points {
+                longest = longest.max((point.tip - from).norm());
+                from = point.tip;
+            }
+            assert!(longest <= most * (1.0 + 1e-9), "{longest} of {most}, {relation:?}");
+            let (count, least) = (sequence.points.len(), sequence.minimum.expect("a bound"));
+            assert!(count as f64 <= 1.02 * f64::from(least) + 2.0, "{count} of {least}, {relation:?}");
+            assert!(crate::verify::verify(sequence, &|| false).expect("evidence").verified, "{relation:?}");
+        }
+    }
+}
