@@ -6,6 +6,10 @@ pub mod sculptured;
 
 use std::path::{Path, PathBuf};
 
+/// The allocator of the program `apt-lsp`, so that its memory and its silences are those that are measured.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// A path below the root of the repository.
 pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)

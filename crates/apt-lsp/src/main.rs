@@ -13,6 +13,10 @@ mod source;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+/// Gives memory back a little at a time: whoever cancels waits for a call of the allocator as well.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     cli::main(Arc::new(analysis::Engine))
 }
