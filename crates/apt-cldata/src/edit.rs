@@ -116,7 +116,12 @@ pub fn edit_until(
 ) -> Option<(Vec<ClRecord>, Vec<EditError>)> {
     let waiting = Waiting::until(cancel);
     let edited = edited(items, limits, waiting.patience());
-    (!waiting.has_given_up()).then_some(edited)
+    if waiting.has_given_up() {
+        let records = edited.0.len();
+        put_away(edited, records);
+        return None;
+    }
+    Some(edited)
 }
 
 /// What comes of the edit statements; a part of it if they are given up.
@@ -416,16 +421,17 @@ impl Editor<'_> {
             return;
         }
         let Some(inner) = self.levels.pop() else { return };
-        for held in inner.held {
-            if self.patience.ends_after(1) {
-                return;
-            }
+        let count = inner.held.len();
+        let mut all = inner.held.into_iter();
+        let patience = self.patience;
+        for held in all.by_ref().take_while(|_| !patience.ends_after(1)) {
             if held.outer {
                 self.push(held.record);
             } else if let Some(level) = self.levels.last_mut() {
                 level.held.push(held);
             }
         }
+        put_away(all, count);
         if let (Some(level), Some(transform)) = (self.levels.last_mut(), inner.transform) {
             level.transform = Some(transform);
         }

@@ -1,6 +1,6 @@
 //! The program with macros and loops unrolled, each line with its origin.
 
-use apt_geometry::patience::{Patience, Waiting, put_away};
+use apt_geometry::patience::{Aside, Patience, Waiting, put_away};
 use apt_program::{Origin, expand};
 use apt_run::{
     format::{FormatOptions, format_text},
@@ -45,16 +45,17 @@ impl Analysis {
         let waiting = Waiting::until(cancel);
         let patience = waiting.patience();
         let expansion = expand(self.document().tree(), &options, at, depth, &|| waiting.is_over());
+        let expanded = Aside::from(expansion.lines);
         if waiting.has_given_up() {
             return Err(Cancelled);
         }
         let mut text = String::new();
-        let mut origins = Vec::with_capacity(expansion.lines.len());
-        for line in expansion.lines {
+        let mut origins = Aside::from(Vec::with_capacity(expanded.len()));
+        for line in expanded.iter() {
             go_on(patience, 1)?;
             text.push_str(&line.text);
             text.push('\n');
-            origins.push(line.origin);
+            origins.push(line.origin.clone());
         }
         // Statements are neither made nor removed. What stands past the statement field of a card is lost there, so that
         // the statements are read without one until they are laid out for it.
@@ -73,7 +74,7 @@ impl Analysis {
         };
         let (lines, room_behind) = places(&tree, on_cards, patience)?;
         put_away(tree, lines.len());
-        Ok(Expansion { text, origins, lines, room_behind })
+        Ok(Expansion { text, origins: origins.taken(), lines, room_behind })
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use apt_cldata::record::{ClKind, ClRecord, POSITIONS_A_UNIT, positions};
 use apt_geometry::{
     motion::MotionCommand,
-    patience::{Patience, Waiting},
+    patience::{Aside, Patience, Waiting},
     regional::Guide,
 };
 use apt_program::record::RecordKind;
@@ -161,7 +161,7 @@ fn segments(result: &RunResult, patience: Patience<'_>) -> Result<Vec<Segment>, 
     let starts: FxHashSet<u32> =
         result.motions.iter().filter(|motion| is_start_up(motion)).map(|m| m.origin.isn).collect();
     // A list that grows is copied as a whole, which nobody can interrupt.
-    let mut segments = Vec::with_capacity(positions(&result.records, patience));
+    let mut segments = Aside::from(Vec::with_capacity(positions(&result.records, patience)));
     let mut at: Option<[f64; 3]> = None;
     let mut rapid = false;
     for record in &result.records {
@@ -187,7 +187,7 @@ fn segments(result: &RunResult, patience: Patience<'_>) -> Result<Vec<Segment>, 
             _ => {}
         }
     }
-    Ok(segments)
+    Ok(segments.taken())
 }
 
 fn is_start_up(motion: &Motion) -> bool {

@@ -9,7 +9,7 @@ use apt_cldata::{
     text::{ClText, Remark, Shortened, read_with_remarks_until, write_text_with_lines_until},
 };
 use apt_geometry::{
-    patience::{Patience, Waiting},
+    patience::{Patience, Waiting, put_away},
     pieces::{Pieces, followed},
 };
 use apt_post::{MachineDefinition, PostOptions, Tape};
@@ -241,10 +241,17 @@ impl Analysis {
         let patience = waiting.patience();
         let tape = apt_post::post_until(source.records.list(), machine, &options, patience)
             .map_err(|apt_post::Cancelled| Cancelled)?;
-        let told = catalogue::tape_diagnostics(tree, &tape, source.records.origins(), settings, patience)?;
-        let diagnostics = followed(source.diagnostics, told, patience);
-        go_on(patience, 0)?;
-        Ok(ControlTape { tape, diagnostics, records: source.records })
+        let Source { records, diagnostics, .. } = source;
+        let diagnostics = catalogue::tape_diagnostics(tree, &tape, records.origins(), settings, patience)
+            .map(|told| followed(diagnostics, told, patience));
+        match diagnostics {
+            Ok(diagnostics) if !patience.was_over() => Ok(ControlTape { tape, diagnostics, records }),
+            unfinished => {
+                let parts = tape.blocks.len() + tape.findings.len();
+                put_away((tape, unfinished), parts);
+                Err(Cancelled)
+            }
+        }
     }
 
     /// Runs the program to its CL records.

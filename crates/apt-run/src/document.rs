@@ -9,7 +9,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use apt_geometry::patience::Waiting;
+use apt_geometry::patience::{Aside, Waiting, put_away};
 use apt_program::{Options, Program, evaluate};
 use apt_syntax::{
     SyntaxTree, TextRange, TextSize,
@@ -197,6 +197,8 @@ impl Document {
             None => evaluate(&self.tree, &options, &cancel),
         };
         if !program.is_complete() {
+            let statements = program.statistics().evaluated_statements;
+            put_away(program, usize::try_from(statements).unwrap_or(usize::MAX));
             return Err(Cancelled);
         }
         Ok(Arc::clone(self.program.get_or_init(|| Arc::new(program))))
@@ -303,7 +305,8 @@ impl Document {
         let result = self.run(cancel, progress)?;
         let waiting = Waiting::until(cancel);
         let patience = waiting.patience();
-        let diagnostics = catalogue::diagnostics(&self.judged(&program, Some(&result)), patience)?;
+        let judged = self.judged(&program, Some(&result));
+        let diagnostics = Aside::from(catalogue::diagnostics(&judged, patience)?);
         let input = ReportInput {
             file: self.file.as_deref().unwrap_or("-"),
             text: &self.tree.text(),

@@ -1,6 +1,6 @@
 //! Writes the binary tape.
 
-use apt_geometry::patience::Patience;
+use apt_geometry::patience::{Patience, put_away};
 use smol_str::SmolStr;
 
 use super::{
@@ -68,7 +68,12 @@ pub fn write_tape_until(
     patience: Patience<'_>,
 ) -> Result<Option<Vec<u8>>, TapeWriteError> {
     let bytes = written(records, codes, patience)?;
-    Ok((!patience.was_over()).then_some(bytes))
+    if patience.was_over() {
+        let records = bytes.capacity() / WORD_BYTES;
+        put_away(bytes, records);
+        return Ok(None);
+    }
+    Ok(Some(bytes))
 }
 
 /// The tape up to the end, or to where who waits gives up.

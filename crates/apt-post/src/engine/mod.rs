@@ -7,7 +7,11 @@ mod statement;
 mod tool;
 
 use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
-use apt_geometry::{Vec3, patience::Patience, pieces::Pieces};
+use apt_geometry::{
+    Vec3,
+    patience::{Patience, put_away},
+    pieces::Pieces,
+};
 use smol_str::SmolStr;
 
 use crate::{
@@ -43,7 +47,12 @@ pub fn post_until(
     patience: Patience<'_>,
 ) -> Result<Tape, Cancelled> {
     let tape = made(records, machine, options, patience);
-    if patience.was_over() { Err(Cancelled) } else { Ok(tape) }
+    if patience.was_over() {
+        let parts = tape.blocks.len() + tape.findings.len();
+        put_away(tape, parts);
+        return Err(Cancelled);
+    }
+    Ok(tape)
 }
 
 /// The work was ended by the one who wanted it.

@@ -92,8 +92,10 @@ pub fn expand(
     let traced = std::mem::take(&mut trace.lines);
     put_away((state, output, trace), traced.len());
     let needed = needed_macros(&traced, patience);
-    let mut lines = Vec::with_capacity(traced.len());
-    for line in traced {
+    let count = traced.len();
+    let mut lines = Vec::with_capacity(count);
+    let mut traced = traced.into_iter();
+    for line in traced.by_ref() {
         if patience.ends_after(1) {
             break;
         }
@@ -101,6 +103,7 @@ pub fn expand(
             lines.push(expanded_line(line, tree.dialect().text_words));
         }
     }
+    put_away(traced, count);
     Expansion { lines }
 }
 

@@ -1,5 +1,6 @@
 //! The loop over top-level statements that makes chunks.
 
+use apt_geometry::patience::put_away;
 use apt_syntax::{StatementChange, SyntaxTree};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -109,6 +110,8 @@ pub(crate) fn evaluate_from(
         let before = evaluator.state.clone();
         let (chunk, next) = run_chunk(&mut evaluator, &mut top, index, until);
         if evaluator.cancelled {
+            let parts = chunk.records.len() + chunk.definitions.len();
+            put_away((chunk, evaluator.state), parts);
             return outcome;
         }
         outcome.steps += chunk.steps;

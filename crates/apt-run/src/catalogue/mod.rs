@@ -525,6 +525,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn things_are_put_in_order_where_they_stand() {
+        for count in [0, 1, 2, 7, 1_000_usize] {
+            // Seven is prime to all of them but itself, where things stay.
+            let order: Vec<((), usize)> = (0..count).map(|at| ((), at * 7 % count)).collect();
+            let order = if count == 7 { (0..7).map(|at| ((), at)).collect() } else { order };
+            let wanted: Vec<usize> = order.iter().map(|(_, from)| *from).collect();
+            let mut list: Vec<usize> = (0..count).collect();
+            assert_eq!(put_in_order(&mut list, order, Patience::default()), Ok(()));
+            assert_eq!(list, wanted);
+        }
+    }
+
+    #[test]
     fn numbers_are_written_as_people_write_them() {
         let cases = [
             (0.0, "0"),

@@ -10,6 +10,7 @@ use apt_cldata::{
     record::ClRecord,
     totals::{Totals, totals},
 };
+use apt_geometry::patience::Aside;
 use apt_program::{Origin, Program};
 use apt_sculptured::{
     error::MillingError,
@@ -191,8 +192,9 @@ pub fn run(
         DialectName::Cl => apt_cldata::edit::copies_without_index(&output.items, waiting.patience()),
         _ => Vec::new(),
     };
-    let edited = apt_cldata::edit::edit_until(output.items, &limits, &cancel);
-    let (mut records, mut edit_errors) = edited.ok_or(Cancelled)?;
+    let edited = apt_cldata::edit::edit_until(output.items.taken(), &limits, &cancel);
+    let (records, mut edit_errors) = edited.ok_or(Cancelled)?;
+    let mut records = Aside::from(records);
     edit_errors.extend(unpaired);
     let mut findings = output.findings;
     findings.extend(edit_errors.into_iter().map(|error| {
@@ -211,8 +213,8 @@ pub fn run(
         }
     }
     Ok(RunResult {
-        records,
-        origins: output.origins,
+        records: records.taken(),
+        origins: output.origins.taken(),
         motions: output.motions,
         milled: output.milled,
         findings,

@@ -14,6 +14,7 @@ use apt_cldata::{
 use apt_geometry::{
     canonical::Geometry,
     motion::{Delta, MotionCommand, PerRole},
+    patience::Aside,
 };
 use apt_program::record::{Origin, PostArgument, Record, RecordKind};
 use apt_syntax::dialect::DialectName;
@@ -50,8 +51,8 @@ const POCKET_RECORD: [usize; 2] = [77, 39];
 
 /// Everything Section 2 leaves behind.
 pub(super) struct SectionTwoOutput {
-    pub(super) items: Vec<EditItem>,
-    pub(super) origins: Vec<Origin>,
+    pub(super) items: Aside<EditItem>,
+    pub(super) origins: Aside<Origin>,
     pub(super) motions: Vec<Motion>,
     pub(super) milled: Vec<Milling>,
     pub(super) findings: Vec<RunFinding>,
@@ -94,8 +95,8 @@ impl<'a> Section2<'a> {
         cancel: Cancel<'a>,
     ) -> Self {
         let output = SectionTwoOutput {
-            items: Vec::with_capacity(records),
-            origins: Vec::with_capacity(records),
+            items: Vec::with_capacity(records).into(),
+            origins: Vec::with_capacity(records).into(),
             motions: Vec::new(),
             milled: Vec::new(),
             findings: Vec::new(),

@@ -6,7 +6,11 @@ use apt_cldata::{
     record::{ClKind, ClRecord, ClWord, Units},
     totals::{Totals, totals_where},
 };
-use apt_geometry::{canonical::Geometry, patience::Patience, regional::LiftDirection};
+use apt_geometry::{
+    canonical::Geometry,
+    patience::{Aside, Patience},
+    regional::LiftDirection,
+};
 use apt_program::{Program, Value as SymbolValue, record::Origin};
 use apt_sculptured::mill::{Encounter, Remedy};
 use apt_syntax::{SyntaxTree, TextRange};
@@ -99,7 +103,8 @@ pub fn report(input: &ReportInput<'_>, patience: Patience<'_>) -> Result<Report,
         None => statements.is_none_or(|range| range.contains(&record.isn)),
     };
     // A list that grows is copied as a whole, which nobody can interrupt.
-    let mut cl = Vec::with_capacity(if statements.is_none() { input.result.records.len() } else { 0 });
+    let count = if statements.is_none() { input.result.records.len() } else { 0 };
+    let mut cl = Aside::from(Vec::with_capacity(count));
     for record in &input.result.records {
         go_on(patience, 1)?;
         if !wanted_record(record) {
@@ -111,26 +116,27 @@ pub fn report(input: &ReportInput<'_>, patience: Patience<'_>) -> Result<Report,
         };
         cl.push(cl_entry(record, source));
     }
-    let mut diagnostics = Vec::with_capacity(input.diagnostics.len());
+    let mut diagnostics = Aside::from(Vec::with_capacity(input.diagnostics.len()));
     for diagnostic in input.diagnostics {
         go_on(patience, 1)?;
         diagnostics.push(diagnostic_report(diagnostic, input.file, input.text, input.tree, &lines));
     }
-    let mut motions = Vec::new();
+    let mut motions = Aside::from(Vec::new());
     for motion in input.result.motions.iter().filter(|motion| wanted(&motion.origin)) {
         go_on(patience, 1)?;
         motions.push(motion_entry(motion, input.tree, sources.of(&motion.origin)));
     }
     let totals = totals_where(&input.result.records, wanted_record, patience).ok_or(Cancelled)?;
+    let (symbols, listing) = (symbols(input.program, patience)?, listing(input.program, wanted, patience)?);
     Ok(Report {
         program: input.file.to_owned(),
         ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
         dialect: input.tree.dialect().name.as_str().to_owned(),
-        diagnostics,
-        symbols: symbols(input.program, patience)?,
-        listing: listing(input.program, wanted, patience)?,
-        cl,
-        motions,
+        diagnostics: diagnostics.taken(),
+        symbols,
+        listing,
+        cl: cl.taken(),
+        motions: motions.taken(),
         interference: interference(input.result, wanted),
         totals: totals_entry(&totals),
     })
