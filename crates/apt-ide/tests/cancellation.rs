@@ -10,10 +10,10 @@ use std::{
 };
 
 use apt_ide::{
-    Cancel, Cancelled,
-    conversion::{ClDialect, ConversionError},
+    Analysis, Cancel, Cancelled,
+    conversion::{ClDialect, ConversionError, Converted},
     navigation::RenameError,
-    tape::{ClTapeError, TapeError},
+    tape::{ClTapeError, ControlTape, TapeError},
 };
 use support::{analysis, never, silent};
 
@@ -45,6 +45,22 @@ fn asks_often<T: PartialEq + Debug>(
     assert!(until(usize::MAX).unwrap() == whole, "{what} after it was given up");
 }
 
+/// The control tape; nothing but a cancellation is awaited.
+fn tape(program: &Analysis, cancel: Cancel<'_>) -> Result<ControlTape, Cancelled> {
+    program.tape("linuxcnc", cancel, &mut silent).map_err(|error| match error {
+        TapeError::Cancelled(cancelled) => cancelled,
+        other => panic!("{other}"),
+    })
+}
+
+/// The program in another dialect, likewise.
+fn converted(program: &Analysis, cancel: Cancel<'_>) -> Result<Converted, Cancelled> {
+    program.convert(ClDialect::Nx, None, cancel, &mut silent).map_err(|error| match error {
+        ConversionError::Cancelled(cancelled) => cancelled,
+        other => panic!("{other}"),
+    })
+}
+
 #[test]
 fn what_is_made_of_a_path_asks_at_each_look_at_its_records() {
     let records = 6_000;
@@ -56,12 +72,7 @@ fn what_is_made_of_a_path_asks_at_each_look_at_its_records() {
     let first = text.find("GOTO").unwrap();
     asks_often(2 * records, "a hover of a position", |cancel| program.hover(first, cancel));
     // The lints of the path look at the statements too.
-    asks_often(3 * records, "a control tape", |cancel| {
-        program.tape("linuxcnc", cancel, &mut silent).map_err(|error| match error {
-            TapeError::Cancelled(cancelled) => cancelled,
-            other => panic!("{other}"),
-        })
-    });
+    asks_often(3 * records, "a control tape", |cancel| tape(&program, cancel));
     asks_often(3 * records, "a tool path", |cancel| program.tool_path(cancel, &mut silent));
     asks_often(records, "a CL text", |cancel| program.cl_text(cancel, &mut silent));
     asks_often(records, "a CL tape", |cancel| {
@@ -70,12 +81,30 @@ fn what_is_made_of_a_path_asks_at_each_look_at_its_records() {
             other => panic!("{other}"),
         })
     });
-    asks_often(3 * records, "a file in another dialect", |cancel| {
-        program.convert(ClDialect::Nx, None, cancel, &mut silent).map_err(|error| match error {
-            ConversionError::Cancelled(cancelled) => cancelled,
-            other => panic!("{other}"),
-        })
-    });
+    asks_often(3 * records, "a file in another dialect", |cancel| converted(&program, cancel));
+}
+
+#[test]
+fn statements_that_are_unrolled_are_gone_through_with_questions() {
+    let turns = 6_000;
+    let text = format!("LOOPST\nA=0\nM)A=A+1\nGOTO/A,0,0\nIF(A-{turns})M,N,N\nN)B=A\nLOOPND\nFINI\n");
+    let unrolled = analysis(&text);
+    // Three statements a turn: traced, written, read again, and laid out.
+    asks_often(4 * 3 * turns, "the expansion of a loop", |cancel| unrolled.expand(None, None, cancel));
+    let points: String = (0..turns).map(|number| format!("P{number}=POINT/{number},5\n")).collect();
+    let flat = analysis(&points);
+    asks_often(4 * turns, "the expansion of statements", |cancel| flat.expand(None, None, cancel));
+}
+
+#[test]
+fn what_is_made_of_copies_asks_at_each_look_at_them() {
+    let (positions, times) = (100, 60);
+    let records = positions * times;
+    let gotos: String = (0..positions).map(|number| format!("GOTO/{number},{},0\n", number % 7)).collect();
+    let program = analysis(&format!("FROM/0,0,0\nINDEX/1\n{gotos}COPY/1,TRANSL,0,1,0,{times}\nFINI\n"));
+    program.result(&never, &mut silent).unwrap();
+    asks_often(2 * records, "a control tape of copies", |cancel| tape(&program, cancel));
+    asks_often(2 * records, "copies in another dialect", |cancel| converted(&program, cancel));
 }
 
 #[test]
