@@ -21,7 +21,7 @@ mod tests;
 
 use std::ops::Range;
 
-use apt_geometry::patience::{Patience, put_away};
+use apt_geometry::patience::{Aside, Patience, put_away};
 use apt_syntax::{Dialect, SyntaxTree, lexer::lex, record::Layout, tree::StatementView};
 
 pub use options::{FormatOptions, FormatSettings, LAST_STATEMENT_COLUMN, LetterCase};
@@ -218,7 +218,7 @@ fn plan_of(
     let not_wrapped = FormatOptions { wrap: None, ..*options };
     let last = tree.statement_count().saturating_sub(1);
     let mut inside_next = false;
-    let mut all = Vec::with_capacity(tree.statement_count());
+    let mut all = Aside::from(Vec::with_capacity(tree.statement_count()));
     for (view, place) in tree.statements().zip(structure::places(tree, patience)?) {
         go_on(patience, WORK_OF_LAYOUT)?;
         let text = view.text();
@@ -246,7 +246,7 @@ fn plan_of(
             plan.edits.extend(edits::between(view.text(), &new, usize::from(view.start)));
         }
     }
-    put_away(all, tree.statement_count());
+    drop(all);
     if !reads_the_same(tree, &plan.edits, patience)? {
         let statement = *wanted.start();
         return Ok(Plan {
@@ -299,7 +299,8 @@ fn written<'a>(
         laid.lines.iter().map(|line| Some(line).filter(|_| !laid.shared)).chain(none)
     });
     let mut columns = align::columns(lines, options.align_comments, layout, patience)?.into_iter();
-    let mut texts = Vec::new();
+    // A list that grows is copied as a whole, which nobody can interrupt.
+    let mut texts = Vec::with_capacity(all.len());
     for laid in all {
         go_on(patience, 1)?;
         if laid.lines.is_empty() {
