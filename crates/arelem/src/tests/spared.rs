@@ -3,7 +3,10 @@
 use Relation::{On, Past, To};
 use apt_geometry::canonical::{Remembering, RuledSurface};
 
-use super::*;
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
 
 /// A polyconic between these ends of its rail, by its axes and constants and the first two of each of its polynomials.
 fn sheet(frame: [f64; 12], coefficients: [[f64; 2]; 7]) -> Geometry {
@@ -186,4 +189,57 @@ fn no_vertex_is_spared_by_a_vector_against_the_path() {
     assert!(sequence.points.len() <= 97, "{} vectors", sequence.points.len());
     let evidence = crate::verify::verify(sequence, &|| false).expect("evidence");
     assert!(evidence.verified, "{:?}", evidence.violations);
+}
+
+/// Along a quadric some short vectors follow each other, each as long as it can be from where it begins: from elsewhere in the bands fewer lead on.
+#[test]
+fn fewer_vectors_lead_on_from_elsewhere_in_the_bands() {
+    let coefficients = [
+        0.3023825347965541,
+        -0.2958255315987107,
+        0.5451233419805723,
+        10.392611144398165,
+        -0.013803971120826278,
+        -0.5369917917055612,
+        -0.3494760986606339,
+        2.440137403690842,
+        -0.0732458476116562,
+        -2.4864502392886902,
+    ];
+    let motion = Found {
+        cutter: &[1.0, 0.1875, 0.33, 0.22, 11.346682153995337, 5.0, 2.519661257886596],
+        axis: v(0.5678571201705259, -0.1005857317017565, 0.8169582618773491),
+        from: v(-1.5694677088159177, -0.22418757090525732, 0.6929885133131608),
+        band: [0.0, 1e-4],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.2064240836565287, 0.9743365830296201, 0.08976257937875151),
+        part: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-1.4051437725571976, -1.522088911123418, -0.44627517611887507),
+                axis: v(0.4773941046885202, 0.8505981781154636, -0.2204032853550522),
+                cosine: 0.8964089331806071,
+            }),
+        ),
+        drive: (Relation::To, Geometry::Quadric(Quadric { coefficients })),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(0.2064240836565286, -0.9743365830296201, -0.08976257937875155),
+                distance: 0.24791319237067697,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Line(Plane {
+                normal: v(-0.2072607555822308, 0.9782857349442865, 0.0),
+                distance: 0.89461797347149,
+            }),
+        ),
+    };
+    let sequences = motion.run(4 * AMPLE).expect("a path");
+    let path = &sequences[1];
+    let (vectors, least) = (path.points.len() as f64, f64::from(path.minimum.expect("a bound")));
+    assert!(vectors <= 1.02 * least + 2.0, "{vectors} vectors, {least} at least");
 }

@@ -93,12 +93,12 @@ impl March<'_> {
         let mut positions: Vec<Vec3> = std::iter::once(start.tip).chain(before.iter().copied()).collect();
         // In the bands there is room beside a vector for a way longer than MAXDP, but for no longer vector.
         let shares = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm() / most);
-        if !self.is_wasteful(needed.max(shares.clone().sum::<f64>().ceil())) {
+        if !self.is_wasteful(needed.max(shares.clone().sum())) {
             return Ok(());
         }
         let mut fills = bound::fills(self.prepared, &positions, most);
         fills.iter_mut().zip(shares).for_each(|(fill, share)| *fill = fill.max(share));
-        if !self.is_wasteful(fills.iter().sum::<f64>().ceil()) {
+        if !self.is_wasteful(fills.iter().sum::<f64>()) {
             return Ok(());
         }
         // Of several positions on a check surface each counts as the vectors meet it; the last vector leads to that which stops the motion.
