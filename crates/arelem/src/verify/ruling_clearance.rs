@@ -6,6 +6,7 @@
 
 mod past_end;
 mod point;
+mod skin;
 mod way_out;
 
 use apt_geometry::{Vec3, patience::Patience};
@@ -13,7 +14,7 @@ use apt_geometry::{Vec3, patience::Patience};
 pub(super) use self::point::point;
 #[cfg(test)]
 pub(super) use self::point::searched_point;
-use self::point::seen_from;
+use self::skin::{Circle, SECTOR};
 use super::{
     clearance::Reading,
     poly_conic::ConicStrips,
@@ -23,7 +24,7 @@ use super::{
     span::Bend,
     strip::{Touch, nearest},
     survey::{Accuracy, Sheet},
-    tool::{Meridian, Tool, perpendicular},
+    tool::{Tool, perpendicular},
 };
 
 /// Accuracy of a distance, relative to the size of surface and tool.
@@ -40,14 +41,6 @@ const SURE_DISTANCE: f64 = 1e-3;
 const SURE_DIRECTION: f64 = 1e3;
 /// Parameter next to the end of a piece at which the surface may have an edge.
 const JOINT: f64 = 1e-7;
-/// Azimuths at which an edge of the tool is looked at before its deepest place is closed in.
-const AZIMUTHS: usize = 24;
-/// The angle between two of them.
-const SECTOR: f64 = std::f64::consts::TAU / AZIMUTHS as f64;
-/// Steps of the secant that closes it in.
-const CLOSING_STEPS: usize = 40;
-/// Sine of the slope of an edge, or width in radians, at which it has closed in.
-const LEVEL: f64 = 1e-10;
 /// Depth, relative to the radius of the tool, up to which it is proven beyond what is meant; deeper is no question of
 /// tolerance.
 const PROVEN_DEPTH: f64 = 0.1;
@@ -385,6 +378,7 @@ impl<'a> Bodies<'a> {
         for p in self.edges() {
             self.edge(&circle, p, &mut deepest)?;
         }
+        self.faces_by(tip, &mut deepest)?;
         if deepest.depth > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
@@ -424,95 +418,6 @@ impl<'a> Bodies<'a> {
         let size = across.norm();
         (size > 0.0).then(|| Circle::of(tip, self.tool, across / size))
     }
-
-    /// Places of the meridian that can be under the surface without the surface being as deep in the tool.
-    fn edges(&self) -> Vec<Meridian> {
-        let mut edges: Vec<Meridian> = vec![[0.0; 2]];
-        for edge in self.tool.profile.edges() {
-            if !edges.contains(&edge) {
-                edges.push(edge);
-            }
-        }
-        edges
-    }
-
-    /// How deep a place is under the surface. What is beyond the end is not under it.
-    fn depth(&self, x: &Vec3) -> Option<Deepest> {
-        let (Reading { value, normal, .. }, is_beyond) = seen_from(self.surface, x, self.tool.patience)?;
-        let side = if is_beyond { value.signum() } else { self.side };
-        Some(Deepest { depth: -side * value, out: normal * side, place: *x })
-    }
-
-    /// Deepest place of an edge circle under the surface, if it is deeper than `deepest`.
-    fn edge(&self, circle: &Circle, p: Meridian, deepest: &mut Deepest) -> Option<()> {
-        if p[0] <= 0.0 {
-            return self.deepest_near(circle, p, [0.0, 0.0], deepest);
-        }
-        let mut best: Option<(f64, f64)> = None;
-        let mut known = f64::INFINITY;
-        for k in 0..AZIMUTHS {
-            let phi = SECTOR * k as f64;
-            // Depth changes no faster than the place moves; between two samples lies half a step more.
-            known += SECTOR * p[0];
-            if known + 0.5 * SECTOR * p[0] <= deepest.depth {
-                continue;
-            }
-            known = self.depth(&circle.place(p, phi))?.depth;
-            if best.is_none_or(|b| known > b.1) {
-                best = Some((phi, known));
-            }
-        }
-        match best {
-            Some((phi, value)) if value + SECTOR * p[0] > deepest.depth => {
-                self.deepest_near(circle, p, [phi - SECTOR, phi + SECTOR], deepest)
-            }
-            _ => Some(()),
-        }
-    }
-
-    /// Closes in on the deepest place of an edge circle between two azimuths.
-    fn deepest_near(
-        &self,
-        circle: &Circle,
-        p: Meridian,
-        [mut low, mut high]: [f64; 2],
-        deepest: &mut Deepest,
-    ) -> Option<()> {
-        let read = |phi: f64| -> Option<(Deepest, f64)> {
-            let found = self.depth(&circle.place(p, phi))?;
-            Some((found, -p[0] * found.out.dot(&circle.radial_rate(phi))))
-        };
-        let (middle, _) = read(0.5 * (low + high))?;
-        if middle.depth > deepest.depth {
-            *deepest = middle;
-        }
-        // The places of the range are not farther from its middle than half its arc.
-        if p[0] <= 0.0 || middle.depth + 0.5 * (high - low) * p[0] <= deepest.depth {
-            return Some(());
-        }
-        let mut rates = [read(low)?.1, read(high)?.1];
-        if rates[0] <= 0.0 || rates[1] >= 0.0 {
-            return Some(());
-        }
-        for turn in 0..CLOSING_STEPS {
-            let secant = low - rates[0] * (high - low) / (rates[1] - rates[0]);
-            let phi =
-                if turn % 3 == 2 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
-            let (found, rate) = read(phi)?;
-            if found.depth > deepest.depth {
-                *deepest = found;
-            }
-            if rate.abs() <= LEVEL * p[0] || high - low <= LEVEL {
-                break;
-            }
-            if rate > 0.0 {
-                (low, rates[0]) = (phi, rate);
-            } else {
-                (high, rates[1]) = (phi, rate);
-            }
-        }
-        Some(())
-    }
 }
 
 /// A place of the tool under the surface, or across from one of the surface in the tool.
@@ -522,27 +427,4 @@ struct Deepest {
     /// Unit direction out.
     out: Vec3,
     place: Vec3,
-}
-
-/// The edge circles of a tool in a place.
-struct Circle {
-    tip: Vec3,
-    axis: Vec3,
-    across: [Vec3; 2],
-}
-
-impl Circle {
-    fn of(tip: &Vec3, tool: &Tool<'_>, first: Vec3) -> Self {
-        Self { tip: *tip, axis: tool.axis, across: [first, tool.axis.cross(&first)] }
-    }
-
-    fn place(&self, p: Meridian, phi: f64) -> Vec3 {
-        let (s, c) = phi.sin_cos();
-        self.tip + (self.across[0] * c + self.across[1] * s) * p[0] + self.axis * p[1]
-    }
-
-    fn radial_rate(&self, phi: f64) -> Vec3 {
-        let (s, c) = phi.sin_cos();
-        self.across[1] * c - self.across[0] * s
-    }
 }

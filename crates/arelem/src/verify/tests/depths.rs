@@ -207,8 +207,8 @@ fn an_edge_under_a_surface_is_measured_in_few_looks() {
     }
 }
 
-/// What leads the rim of a flat tool out where it is deepest in a slope leaves another place of it a little in: it must be moved by some
-/// thousandths more, which are told as closely as that, and not as the first longer way tried that frees it.
+/// The rim of a flat tool is deepest in a slope where its edge is deepest at several azimuths. What leads it out at one of them that is not the
+/// deepest leaves another a little in: it is told as deep as the deepest, and not as the first longer way tried that frees it.
 #[test]
 fn a_rim_that_must_be_moved_a_little_farther_than_it_is_deep_is_not_told_to_be_much_deeper() {
     let axes = [
@@ -231,6 +231,66 @@ fn a_rim_that_must_be_moved_a_little_farther_than_it_is_deep_is_not_told_to_be_m
     let tool = Tool::new(&profile, Vec3::z());
     let tip = Vec3::new(-0.1383974178039228, 1.8798373433853528, 0.6573351911792578);
     let found = searched(slope, 1.0, &tip, &tool).expect("a clearance");
-    assert!((found.value + 1.9015e-5).abs() < 2e-8, "{found:?}");
-    assert!(found.error < 1.5e-6, "{found:?}");
+    let rim = least_over(&surface, tip, [[0.5 * 0.8639665251625519, 0.0]; 2], [1, 1440]);
+    assert!((found.value - rim).abs() < 2e-7 && found.error < 1e-8, "{rim} {found:?}");
+}
+
+/// The least distance from a surface of places all over a straight part of a tool that stands along z, between two distances from its axis
+/// and heights, in so many rows and turns.
+fn least_over(surface: &Surface, tip: Vec3, [first, last]: [[f64; 2]; 2], [rows, turns]: [u32; 2]) -> f64 {
+    let places = (0..=rows).flat_map(|k| {
+        let [radius, height] =
+            [0, 1].map(|i| first[i] + f64::from(k) / f64::from(rows) * (last[i] - first[i]));
+        (0..turns).map(move |turn| {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(turn) / f64::from(turns)).sin_cos();
+            tip + Vec3::new(radius * cosine, radius * sine, height)
+        })
+    });
+    places.map(|place| surface.point_distance(&place).expect("a distance").0).fold(f64::INFINITY, f64::min)
+}
+
+/// Where the top of a hill is a little inside of the rim of a flat tool, the rim is as deep on both sides of where it is outermost, and the
+/// hill is not as deep in the tool: it is nearer to the flank.
+#[test]
+fn a_rim_across_the_top_of_a_hill_is_as_deep_as_the_top_is_high_over_it() {
+    let hill = tabulated(
+        [Vec3::y(), Vec3::z(), Vec3::x()],
+        &[[-2.0, -0.3, 0.3], [0.0, 0.0, 0.0], [2.0, -0.3, -0.3]],
+    );
+    let surface = Surface::of(&hill).unwrap();
+    let profile = Profile::of(&cutter(&[1.6, 0.0])).unwrap();
+    let mut tool = Tool::new(&profile, Vec3::z());
+    tool.depth = 0.06;
+    for (depth, inside) in [(0.05, 0.02), (0.05, 0.001), (0.02, 0.01), (0.05, 0.04)] {
+        let tip = Vec3::new(0.3, inside - 0.8, -depth);
+        let least = least_over(&surface, tip, [[0.0, 0.0], [0.8, 0.0]], [50, 720]);
+        assert!((least + depth).abs() < 1e-6, "{least}");
+        let found = searched_in_few(&surface, 1.0, &tip, &tool);
+        assert!((found.value + depth).abs() <= found.error && found.error < 1e-8, "{depth}: {found:?}");
+    }
+}
+
+/// Where a ridge along a wall is a little above the rim of a flat tool, the flank is deeper there than the rim, and the ridge is not as deep in
+/// the tool: it is nearer to the flat.
+#[test]
+fn a_flank_across_a_ridge_close_above_its_rim_is_as_deep_as_it_is_there() {
+    let ridge = tabulated(
+        [Vec3::z(), Vec3::x(), Vec3::y()],
+        &[[-2.0, -0.3, 0.3], [0.0, 0.0, 0.0], [2.0, -0.3, -0.3]],
+    );
+    let surface = Surface::of(&ridge).unwrap();
+    for (numbers, flank) in [
+        (&[1.6, 0.0][..], [[0.8, 0.0], [0.8, 1.0]]),
+        (&[1.6, 0.0, 0.8, 0.0, 0.0, 5.0, 5.0], [[0.8, 0.0], [0.8 + 5f64.to_radians().tan(), 1.0]]),
+    ] {
+        let profile = Profile::of(&cutter(numbers)).unwrap();
+        let mut tool = Tool::new(&profile, Vec3::z());
+        tool.depth = 0.06;
+        for (depth, above) in [(0.05, 0.02), (0.05, 0.001), (0.02, 0.01), (0.05, 0.04)] {
+            let tip = Vec3::new(0.8 - depth, 0.3, -above);
+            let least = least_over(&surface, tip, flank, [200, 360]);
+            let found = searched_in_few(&surface, 1.0, &tip, &tool);
+            assert!((found.value - least).abs() < 1e-6 && found.error < 1e-8, "{least}: {found:?}");
+        }
+    }
 }
