@@ -7,7 +7,7 @@ mod readings;
 
 use std::collections::VecDeque;
 
-use apt_geometry::{Vec3, surface::Surface};
+use apt_geometry::{Vec3, patience::Patience, surface::Surface};
 
 use self::filled::{Filled, Limits};
 pub(crate) use self::readings::{Piece, Reading, Readings};
@@ -262,8 +262,13 @@ pub(crate) fn needed(prepared: &Prepared, path: &[Vec3], bent: Bent, maximum_ste
     whole(bends).max(on_rings(prepared, path, 0.0))
 }
 
-/// What each of the vectors between positions fills of one.
-pub(crate) fn fills(prepared: &Prepared, path: &[Vec3], maximum_step: f64) -> Vec<f64> {
+/// What each of the vectors between positions fills of one; `None` when it is given up.
+pub(crate) fn fills(
+    prepared: &Prepared,
+    path: &[Vec3],
+    maximum_step: f64,
+    patience: Patience<'_>,
+) -> Option<Vec<f64>> {
     let roles = [&prepared.part, &prepared.drive];
     let limits = Limits::new(roles, maximum_step);
     let (mut filled, mut before) = (Filled::default(), 0.0);
@@ -271,7 +276,7 @@ pub(crate) fn fills(prepared: &Prepared, path: &[Vec3], maximum_step: f64) -> Ve
         let [part, drive] = roles.map(|role| read(&prepared.tool, role, [&pair[0], &pair[1]]));
         filled.add([&part, &drive], &limits);
         let now = filled.count(&limits);
-        now - std::mem::replace(&mut before, now)
+        (!patience.is_over()).then(|| now - std::mem::replace(&mut before, now))
     };
     path.windows(2).map(of_vector).collect()
 }

@@ -403,11 +403,11 @@ impl<'a> March<'a> {
     /// The path to an end, without what it can do without.
     fn finished(&mut self, start: &Vertex, end: &finish::End) -> Result<Path, MotionFailure> {
         self.straighten_end(start, end)?;
-        let along = self.points.clone();
+        let along: Vec<Vec3> = std::iter::once(start.tip).chain(self.points.iter().copied()).collect();
         let bent = self.stepper.record.along(&along);
         self.spare_vertices(start)?;
         self.save_vectors(start, &along, &bent)?;
-        if self.points.len() == along.len() {
+        if self.points.len() + 1 == along.len() {
             return Ok(self.path(end));
         }
         let bent = bound::to_end(self.prepared, &along, bent, self.state.maximum_step);

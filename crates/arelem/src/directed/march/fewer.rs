@@ -76,7 +76,7 @@ struct Stretch {
 }
 
 impl March<'_> {
-    /// Looks for fewer vectors if there are many more than the path fills, of which it is known with `bent` how it bends until near its end.
+    /// Looks for fewer vectors if there are many more than a path needs, of which it is known with `bent` how it bends until near its end.
     pub(super) fn save_vectors(
         &mut self,
         start: &Vertex,
@@ -87,22 +87,26 @@ impl March<'_> {
             return Ok(());
         }
         let most = self.state.maximum_step;
-        let along: Vec<Vec3> = std::iter::once(start.tip).chain(path.iter().copied()).collect();
-        let needed = f64::from(bound::needed(self.prepared, &along, bent.clone(), most));
+        // Few motions are wasteful, and the others are not copied for it.
+        if !self.is_wasteful(f64::from(bound::needed(self.prepared, path, bent.clone(), most))) {
+            return Ok(());
+        }
         let before = self.points.clone();
         let mut positions: Vec<Vec3> = std::iter::once(start.tip).chain(before.iter().copied()).collect();
         // In the bands there is room beside a vector for a way longer than MAXDP, but for no longer vector.
         let shares = positions.windows(2).map(|pair| (pair[1] - pair[0]).norm() / most);
-        if !self.is_wasteful(needed.max(shares.clone().sum())) {
+        if !self.is_wasteful(shares.clone().sum()) {
             return Ok(());
         }
-        let mut fills = bound::fills(self.prepared, &positions, most);
+        let patience = self.stepper.patience();
+        let fills = bound::fills(self.prepared, &positions, most, patience);
+        let mut fills = fills.ok_or(MotionFailure::Cancelled)?;
         fills.iter_mut().zip(shares).for_each(|(fill, share)| *fill = fill.max(share));
         if !self.is_wasteful(fills.iter().sum::<f64>()) {
             return Ok(());
         }
         // Of several positions on a check surface each counts as the vectors meet it; the last vector leads to that which stops the motion.
-        let met = self.met_along(&positions);
+        let met = self.met_along(&positions)?;
         if met != Some(0) {
             fills.pop();
         }
@@ -113,7 +117,7 @@ impl March<'_> {
             }
         }
         positions.splice(1.., self.points.iter().copied());
-        if self.met_along(&positions) != met {
+        if self.met_along(&positions)? != met {
             self.points = before;
         }
         Ok(())
@@ -125,15 +129,19 @@ impl March<'_> {
     }
 
     /// How many positions are met along all vectors but the last; `None` if one of them stops the motion.
-    fn met_along(&self, positions: &[Vec3]) -> Option<usize> {
+    fn met_along(&self, positions: &[Vec3]) -> Result<Option<usize>, MotionFailure> {
         let mut watcher = Watcher::new(self.prepared, self.checks);
         let axis = &self.prepared.tool.axis;
-        let before_last = &positions[..positions.len() - 1];
-        let meets = |pair: &[Vec3]| {
+        for pair in positions[..positions.len() - 1].windows(2) {
+            if self.stepper.patience().is_over() {
+                return Err(MotionFailure::Cancelled);
+            }
             let sweep = Sweep::new(&self.prepared.tool, (&pair[0], axis), (&pair[1], axis));
-            watcher.scan(&sweep).is_some()
-        };
-        (!before_last.windows(2).any(meets)).then_some(watcher.met)
+            if watcher.scan(&sweep).is_some() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(watcher.met))
     }
 
     /// Saves a vector in stretches that are apart, beginning with the one that leaves the most room; whether there was one. So many vectors may still be
@@ -147,8 +155,12 @@ impl March<'_> {
         let mut is_changed = vec![false; fills.len()];
         let mut found = Vec::new();
         for k in by_room(fills) {
-            let vectors = is_changed[k..].iter().take_while(|is_changed| !**is_changed).count();
-            if *left == 0 || is_tried[k] || vectors < LEAST_TOGETHER {
+            if *left == 0 {
+                break;
+            }
+            let ahead = is_changed[k..].iter().take(MOST_TOGETHER);
+            let vectors = ahead.take_while(|is_changed| !**is_changed).count();
+            if is_tried[k] || vectors < LEAST_TOGETHER {
                 continue;
             }
             is_tried[k] = true;
@@ -169,15 +181,14 @@ impl March<'_> {
         Ok(has_saved)
     }
 
-    /// How many of so many vectors from vertex `k` on can be one fewer, and the positions between those.
+    /// How many of some vectors from vertex `k` on can be one fewer, and the positions between those.
     fn fewer_from(
         &self,
         start: &Vertex,
         (k, vectors): (usize, usize),
         left: &mut u32,
     ) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
-        let most = MOST_TOGETHER.min(vectors);
-        let old: Vec<Vec3> = (k..=k + most).map(|k| self.at(start, k)).collect();
+        let old: Vec<Vec3> = (k..=k + vectors).map(|k| self.at(start, k)).collect();
         let Some(mut stretch) = self.stretch(&old, *left)? else { return Ok(None) };
         let had = stretch.left;
         let found = self.with_fewer(&mut stretch);
@@ -218,7 +229,7 @@ impl March<'_> {
         let mut reached = vec![stretch.were[0]];
         let mut latest = 0..1;
         for count in LEAST_TOGETHER..stretch.were.len() {
-            if self.stepper.is_over() {
+            if self.stepper.patience().is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let end = stretch.were[count];

@@ -376,9 +376,9 @@ impl<'a> Stepper<'a> {
         Overlong { culprit: trial.culprit, is_deep: deep > high, length, beyond: deep.max(high) }
     }
 
-    /// Whether nobody waits any more.
-    pub(super) fn is_over(&self) -> bool {
-        self.patience.is_over()
+    /// Who waits for the vectors.
+    pub(super) fn patience(&self) -> Patience<'a> {
+        self.patience
     }
 
     /// True if the straight move between two positions keeps both bands.
