@@ -1,7 +1,7 @@
 //! Long lists. One that grows as a whole is copied as a whole now and then, and one that is put in order as a whole takes its time, which
 //! nobody can interrupt.
 
-use std::cmp::Ordering;
+use std::{cmp::Ordering, fmt};
 
 use crate::patience::{Patience, put_away};
 
@@ -10,6 +10,12 @@ const PIECE: usize = 4096;
 
 /// Things that are counted as one unit of work where they are copied.
 const THINGS_A_UNIT: usize = 16;
+
+/// Bytes of a page of text, which are copied in some microseconds.
+const PAGE: usize = 1 << 16;
+
+/// Bytes of text that are counted as one unit of work where they are copied.
+const BYTES_A_UNIT: usize = 1 << 12;
 
 /// Things that are put in order without a question, in some ten microseconds.
 const RUN: usize = 256;
@@ -193,6 +199,41 @@ pub fn followed<T: Send + 'static>(first: Vec<T>, second: Vec<T>, patience: Pati
     }
 }
 
+/// A text in pages, none of which is ever copied to make room.
+#[derive(Debug, Default)]
+pub struct Pages {
+    full: Vec<String>,
+    last: String,
+}
+
+impl Pages {
+    /// All as one text; as far as it is put together where who waits gives up before the end.
+    pub fn joined(self, patience: Patience<'_>) -> String {
+        if self.full.is_empty() {
+            return self.last;
+        }
+        let bytes = self.full.iter().map(String::len).sum::<usize>() + self.last.len();
+        let mut all = String::with_capacity(bytes);
+        for page in self.full.iter().chain([&self.last]) {
+            if patience.ends_after((PAGE / BYTES_A_UNIT) as u32) {
+                break;
+            }
+            all.push_str(page);
+        }
+        all
+    }
+}
+
+impl fmt::Write for Pages {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        if self.last.len() + text.len() > PAGE && !self.last.is_empty() {
+            self.full.push(std::mem::replace(&mut self.last, String::with_capacity(PAGE)));
+        }
+        self.last.push_str(text);
+        Ok(())
+    }
+}
+
 impl<T> IntoIterator for Pieces<T> {
     type Item = T;
     type IntoIter = std::iter::Flatten<std::vec::IntoIter<Vec<T>>>;
@@ -221,7 +262,7 @@ impl<T> Extend<T> for Pieces<T> {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::Cell;
+    use std::{cell::Cell, fmt::Write as _};
 
     use super::*;
     use crate::patience::Waiting;
@@ -259,6 +300,37 @@ mod tests {
         pieces.extend(0..3 * PIECE);
         assert_eq!(pieces.joined(waiting.patience()).len(), PIECE);
         assert_eq!(asked.get(), 2);
+    }
+
+    #[test]
+    fn pages_are_one_text_and_are_put_together_with_questions() {
+        let words = ["", "seven\n", "a word of more than one byte: \u{e9}\u{e9}", "\n"];
+        for count in [0, 1, PAGE / 8, PAGE] {
+            let (mut pages, mut known) = (Pages::default(), String::new());
+            for at in 0..count {
+                pages.write_str(words[at % words.len()]).unwrap();
+                known.push_str(words[at % words.len()]);
+            }
+            assert_eq!(pages.joined(Patience::default()), known);
+        }
+        let long = "x".repeat(3 * PAGE);
+        let mut pages = Pages::default();
+        for text in ["first", &long, "last"] {
+            pages.write_str(text).unwrap();
+        }
+        assert_eq!(pages.joined(Patience::default()), format!("first{long}last"));
+        let asked = Cell::new(0);
+        let ask = || {
+            asked.set(asked.get() + 1);
+            asked.get() == 2
+        };
+        let waiting = Waiting::until(&ask);
+        let mut pages = Pages::default();
+        for _ in 0..100 {
+            pages.write_str(&"y".repeat(PAGE)).unwrap();
+        }
+        let text = pages.joined(waiting.patience());
+        assert!(text.len() < 100 * PAGE && asked.get() == 2, "{} bytes, asked {}", text.len(), asked.get());
     }
 
     #[test]

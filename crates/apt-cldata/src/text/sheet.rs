@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use apt_geometry::{patience::Patience, pieces::Pages};
+
 /// Fewest columns a layout may have: a number, a comma and the continuation mark always fit.
 const FEWEST_COLUMNS: usize = 40;
 
@@ -24,14 +26,15 @@ pub(crate) struct Layout {
 #[derive(Debug)]
 pub(crate) struct Sheet {
     layout: Layout,
-    /// The text so far.
-    pub(crate) text: String,
+    text: Pages,
+    /// How many lines it has.
+    lines: usize,
 }
 
 impl Sheet {
     pub(crate) fn new(layout: Layout) -> Self {
         let columns = layout.columns.max(FEWEST_COLUMNS);
-        Sheet { layout: Layout { columns, ..layout }, text: String::new() }
+        Sheet { layout: Layout { columns, ..layout }, text: Pages::default(), lines: 0 }
     }
 
     /// `start` is the word with what stands before it. Where `row` says so, the line is broken before that argument in any case.
@@ -63,7 +66,7 @@ impl Sheet {
             let room = if last { columns } else { columns - mark.len() };
             let full = line.chars().count() + piece.chars().count() > room;
             if at > 0 && (full || row == Some(at)) {
-                let _ = writeln!(self.text, "{}{mark}", line.trim_end());
+                self.line(&format!("{}{mark}", line.trim_end()));
                 line = indent.to_owned();
             }
             line.push_str(&piece);
@@ -74,7 +77,18 @@ impl Sheet {
     /// A whole line as it is; line breaks in it would make statements of its tail and become blanks.
     pub(crate) fn line(&mut self, line: &str) {
         let line: String = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        self.text.push_str(line.trim_end());
-        self.text.push('\n');
+        // A text in memory takes all that is written on it.
+        let _ = writeln!(self.text, "{}", line.trim_end());
+        self.lines += 1;
+    }
+
+    /// How many lines it has so far.
+    pub(crate) fn lines(&self) -> usize {
+        self.lines
+    }
+
+    /// All that was written; less where who waits gives up before the end.
+    pub(crate) fn text(self, patience: Patience<'_>) -> String {
+        self.text.joined(patience)
     }
 }

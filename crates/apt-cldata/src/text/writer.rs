@@ -55,18 +55,15 @@ fn written(records: &[ClRecord], patience: Patience<'_>) -> (String, Vec<u32>) {
     let mut notes = Notes::default();
     let mut writer = Writer { as_recorded: true, ..Writer::new(Form::of(ClDialect::Generic), &mut notes) };
     let mut lines = Vec::with_capacity(records.len());
-    let (mut line, mut counted) = (0, 0);
     for record in records {
         if ends_before(record.position_count(), patience) {
             break;
         }
-        line += writer.sheet.text[counted..].matches('\n').count();
-        counted = writer.sheet.text.len();
-        lines.push(u32::try_from(line).unwrap_or(u32::MAX));
+        lines.push(u32::try_from(writer.sheet.lines()).unwrap_or(u32::MAX));
         writer.begin((record.isn, record.source));
         writer.record(&record.kind);
     }
-    (writer.sheet.text, lines)
+    (writer.sheet.text(patience), lines)
 }
 
 /// Writes items in a form; less where who waits gives up before the end.
@@ -84,7 +81,7 @@ pub(crate) fn write(
         }
         writer.item(item);
     }
-    writer.sheet.text
+    writer.sheet.text(patience)
 }
 
 /// A statement as one line of APT CL text.
