@@ -74,23 +74,29 @@ pub(super) fn replay(
         Relation::Past => State::Violating,
         _ => state,
     };
-    // A position is where the tool is in the middle of the band.
-    let middle = 0.5 * (role.outside_tolerance - role.inside_tolerance);
-    let [low, high] = since.map(|value| value - middle);
-    let end = end - middle;
+    // A position is where the tool just touches the check surface (arelem reference 5.4), or is in the middle of its band, to which vertices are
+    // moved as well: the path may go through the one level and only come near to the other.
+    let levels = [0.0, 0.5 * (role.outside_tolerance - role.inside_tolerance)];
+    let [low, high] = since;
     // Beyond the band, if not beyond doubt, the tool may be taken to have changed its state.
     let may_have_changed = match role.relation {
-        // Or it came out past the middle and goes in again.
-        Relation::To => since[1] > role.outside_tolerance || high > guard && end < high - guard,
+        // Or it came out past a level and goes in again.
+        Relation::To => {
+            high > role.outside_tolerance
+                || end < high - guard && levels.iter().any(|level| high > level + guard)
+        }
         // The other way round.
-        Relation::Past => since[0] < -role.inside_tolerance || low < -guard && end > low + guard,
+        Relation::Past => {
+            low < -role.inside_tolerance
+                || end > low + guard && levels.iter().any(|level| low < level - guard)
+        }
         _ => false,
     };
     let arrives = state == before || state == State::Touching || may_have_changed;
     // The tool end may be back on a surface that it went through by less than the band.
     let is_back = match state {
-        State::Clear => on && since[0] < -guard,
-        State::Violating => on && since[1] > guard,
+        State::Clear => on && low < -guard,
+        State::Violating => on && high > guard,
         State::Touching => false,
     };
     let doubtful = count.doubtful + u32::from(is_back);

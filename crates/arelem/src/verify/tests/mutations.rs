@@ -137,7 +137,7 @@ fn to_and_past_are_told_apart() {
     }
 }
 
-/// Where the path goes through the middle of the band of a check surface, in which a position is, and out again, if only in the band, that
+/// Where the path goes through the middle of the band of a check surface, to which vertices are moved, and out again, if only in the band, that
 /// may be called a PAST position; where it stops before that, or comes near without going in, it may not.
 #[test]
 fn a_position_past_what_is_only_brushed_is_one() {
@@ -158,8 +158,14 @@ fn a_position_past_what_is_only_brushed_is_one() {
 
 /// That the path along a line to an end beside a circle of radius 1 ends at a position of the label there, or at none.
 fn assert_stop(relation: Relation, center: [f64; 3], end: f64, is_position: bool) {
+    assert_stop_in(BAND, relation, center, end, is_position);
+}
+
+/// The same with another band of the circle, inside and outside.
+fn assert_stop_in(band: (f64, f64), relation: Relation, center: [f64; 3], end: f64, is_position: bool) {
     let mut brushed = paths::to_circle(relation, 1).sequence;
     let stop = &mut brushed.stop.as_mut().unwrap().role;
+    (stop.inside_tolerance, stop.outside_tolerance) = band;
     stop.surface.geometry = cylinder(center, [0.0, 0.0, 1.0], 1.0);
     stop.side = if relation == Relation::Past { 1.0 } else { -1.0 };
     brushed.points[0].tip.x = end;
@@ -167,14 +173,34 @@ fn assert_stop(relation: Relation, center: [f64; 3], end: f64, is_position: bool
     assert_eq!(rules(&brushed), wanted, "{relation:?} {center:?} {end}");
 }
 
-/// Where the path comes out of a check surface past the middle of its band and goes in again, that may be called a TO position; where it
-/// stops before that, or stays in, it may not.
+/// A band that is wider inside has its middle in the surface: what goes into that by less, and out again, has gone PAST it all the same, for the
+/// tool cuts it there; where it stops before that, or does not cut it, it has not.
+#[test]
+fn a_position_past_what_is_cut_by_less_than_the_middle_of_the_band_is_one() {
+    let cases: [([f64; 2], f64, bool); 6] = [
+        ([0.0002, 0.0003], 1.0, true),
+        ([0.0002, 0.0003], -1.0, false),
+        ([0.0002, -0.0001], 1.0, true),
+        ([0.0002, -0.0001], -1.0, false),
+        ([-0.0001, 0.0003], 1.0, false),
+        ([0.0004, -0.0001], 1.0, true),
+    ];
+    for ([depth, left], sense, is_past) in cases {
+        let (near, at_end): (f64, f64) = (1.25 - depth, 1.25 + left);
+        let end = 2.0 + sense * (at_end * at_end - near * near).sqrt();
+        assert_stop_in((BAND.1, BAND.0), Relation::Past, [2.0, 1.0 - depth, 0.0], end, is_past);
+    }
+}
+
+/// Where the path comes out of a check surface, if only in the band, and goes in again, that may be called a TO position; where it stops before
+/// that, or stays in, it may not.
 #[test]
 fn a_position_to_what_is_only_brushed_from_within_is_one() {
-    let cases: [([f64; 2], f64, bool); 6] = [
+    let cases: [([f64; 2], f64, bool); 7] = [
         ([0.0003, 0.0003], 1.0, true),
         ([0.0003, 0.0003], -1.0, false),
-        ([0.0002, 0.0004], 1.0, false),
+        ([0.0002, 0.0004], 1.0, true),
+        ([0.0002, 0.0004], -1.0, false),
         ([-0.0002, 0.0004], 1.0, false),
         ([0.0003, -0.0001], 1.0, true),
         ([0.0003, -0.0001], -1.0, false),
