@@ -49,6 +49,9 @@ fn around(turn: f64, band: [f64; 2], back: f64) -> Result<CutSequence, MotionFai
 const BANDS: [[f64; 2]; 3] = [[0.001, 0.001], [0.02, 0.0], [0.0, 0.005]];
 const BEFORE: [f64; 5] = [0.3, 0.5, 1.0, 3.0, 40.0];
 
+/// How far before the corner motions begin to which it is nothing at first.
+const FAR: f64 = 0.9;
+
 /// From within the corner's bands one vector may do; elsewhere two vectors do, however the path turns.
 #[test]
 fn one_vertex_does_for_a_sharp_corner() {
@@ -62,6 +65,53 @@ fn one_vertex_does_for_a_sharp_corner() {
                 let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
                 assert!(count <= 2, "{turn} {band:?} {before}: {count} vectors");
                 assert!(evidence.verified, "{turn} {band:?} {before}: {evidence:?}");
+            }
+        }
+    }
+}
+
+/// The same with a ball cutter over a plane that leans so that its normal is by an angle beside the middle of those of both walls: the path turns by
+/// more than a right angle though the walls are only so far apart, and comes out of the wedge beside the way by which it came.
+fn within_a_wedge(apart: f64, beside: f64, band: [f64; 2], back: f64) -> Result<CutSequence, MotionFailure> {
+    let ((sine, cosine), half) = (apart.to_radians().sin_cos(), 0.5 * apart.to_radians());
+    let second = v(-sine, cosine, 0.0);
+    let (up, level) = beside.to_radians().sin_cos();
+    let leaning = v(-half.sin() * level, half.cos() * level, up);
+    let part = Geometry::Plane(Plane { normal: leaning, distance: RADIUS * (leaning.z - 1.0) });
+    let legs = [leaning.cross(&Vec3::y()), leaning.cross(&second)].map(|leg| leg.normalize());
+    // Towards the second wall, and away from the first one.
+    let before = legs[0] * -second.dot(&legs[0]).signum();
+    let beyond = legs[1] * legs[1].y.signum();
+    let side = if Vec3::z().cross(&before).y > 0.0 { DriveSide::Left } else { DriveSide::Right };
+    let at = before * -back;
+    let mut program = Program::new();
+    program.cutter(&[2.0 * RADIUS, RADIUS]).tolerance(band[0], band[1]).from(at.x, at.y, at.z);
+    program.run(&MotionCommand::PartSurface(named(&part)));
+    program.side(side).indirv(before.x, before.y, before.z);
+    let check = plane(beyond.x, beyond.y, beyond.z, AWAY);
+    let command = motion(Turn::Forward, &walls(&second), &[(Relation::On, 1, &check)]);
+    let execution = execute(&program.state, &command, &|| false);
+    match (execution.failure, execution.output) {
+        (Some(failure), _) => Err(failure),
+        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
+        _ => panic!("no sequence"),
+    }
+}
+
+/// What tells the corner is that the contact leaps there, not by how much.
+#[test]
+fn a_path_goes_on_out_of_a_wedge_along_its_other_wall() {
+    for apart in [12.0, 20.0, 28.0, 40.0] {
+        for beside in [6.0, 8.0] {
+            for band in BANDS {
+                for back in BEFORE.map(|bands| bands * (band[0] + band[1])).into_iter().chain([FAR]) {
+                    let what = format!("{apart} {beside} {band:?} {back}");
+                    let sequence = within_a_wedge(apart, beside, band, back);
+                    let sequence = sequence.unwrap_or_else(|failure| panic!("{what}: {failure:?}"));
+                    let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+                    assert!(evidence.verified, "{what}: {evidence:?}");
+                    assert!(sequence.points.len() <= 3, "{what}: {} vectors", sequence.points.len());
+                }
             }
         }
     }

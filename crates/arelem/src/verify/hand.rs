@@ -26,6 +26,17 @@ pub(super) struct Hand {
     sign: Option<f64>,
     /// Part and drive normal where the path was seen last.
     normals: Option<[Vec3; 2]>,
+    /// The same before a corner, while vectors lead straight on in that, within the bands.
+    left: Option<[Vec3; 2]>,
+}
+
+/// Where a contact leaps beside a vertex.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Leap {
+    /// Before it.
+    Behind,
+    /// On the vector that leads on.
+    Ahead,
 }
 
 /// Part normal × drive normal, if it tells.
@@ -38,15 +49,41 @@ fn is_same(a: &[Vec3; 2], b: &[Vec3; 2]) -> bool {
     (0..2).all(|k| a[k].dot(&b[k]) >= SAME_CONTACT_COSINE)
 }
 
+/// The sign that normals tell with a motion.
+pub(super) fn sign_along(normals: &[Vec3; 2], motion: &Vec3) -> Option<f64> {
+    let along = across(normals)?.dot(motion);
+    (along != 0.0).then(|| along.signum())
+}
+
 impl Hand {
-    /// Goes on to a vertex, where the path is taken to go on along a direction.
-    pub(super) fn follow(&mut self, normals: [Vec3; 2], along: &Vec3) {
-        let now = across(&normals).map(|across| across.dot(along).signum());
-        let is_continued = self.normals.is_none_or(|before| is_same(&before, &normals));
-        if is_continued || now.is_none() || self.sign.is_none() {
+    /// The hand of a motion that sets out in a direction, if that is more along the path than across it.
+    pub(super) fn setting_out(normals: &[Vec3; 2], forward: &Vec3) -> Self {
+        let along = across(normals).map(|across| across.normalize().dot(forward));
+        let sign = along.filter(|along| 2.0 * along * along > forward.norm_squared()).map(f64::signum);
+        Self { sign, ..Self::default() }
+    }
+
+    /// Goes on to a vertex, where the path is taken to go on along a direction; on the vector that leads there it may have kept the hand all the same.
+    pub(super) fn follow(&mut self, normals: [Vec3; 2], along: &Vec3, keeps: impl FnOnce(&Self) -> bool) {
+        let now = sign_along(&normals, along);
+        let is_contrary = now.is_some() && self.sign.is_some() && now != self.sign;
+        let is_next = self.normals.is_none_or(|before| is_same(&before, &normals));
+        let is_kept = is_contrary && (self.left.is_some() || !is_next || keeps(self));
+        if !is_kept {
             self.sign = now;
         }
+        self.left = self.left.or(self.normals).filter(|_| is_kept);
         self.normals = Some(normals);
+    }
+
+    /// Whether vectors have led straight on beyond a corner.
+    pub(super) fn is_beyond_corner(&self) -> bool {
+        self.left.is_some()
+    }
+
+    /// Whether it is the hand that normals tell with a motion.
+    pub(super) fn is_told_by(&self, normals: &[Vec3; 2], motion: &Vec3) -> bool {
+        self.sign.is_some() && self.sign == sign_along(normals, motion)
     }
 
     /// The direction of the path on the same hand along normals.
@@ -68,6 +105,25 @@ impl Hand {
             Some(before) if !is_same(&before, there) => Some(there).filter(|_| !is_same(&before, at_end)),
             _ => Some(at_end).filter(|at_end| leaves || !is_same(there, at_end)),
         }?;
+        Some((self.along(followed)?, *followed))
+    }
+
+    /// The same where it is known that a contact leaps, be it to a place next to it. On the vector that leads on it leaps to what that ends at; before
+    /// it, to what is touched `there`, and what ends more nearly as the tool touched before that leads back from it.
+    pub(super) fn beyond_leap(
+        &self,
+        there: &[Vec3; 2],
+        at_end: &[Vec3; 2],
+        leap: Leap,
+    ) -> Option<(Vec3, [Vec3; 2])> {
+        let likeness = |normals: &[Vec3; 2]| normals[0].dot(&at_end[0]) + normals[1].dot(&at_end[1]);
+        let followed = match leap {
+            Leap::Ahead => at_end,
+            Leap::Behind => {
+                let before = self.left.or(self.normals)?;
+                Some(there).filter(|there| likeness(there) > likeness(&before))?
+            }
+        };
         Some((self.along(followed)?, *followed))
     }
 }

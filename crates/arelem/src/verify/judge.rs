@@ -456,6 +456,9 @@ impl Judge<'_> {
             let mut begins = direction;
             if let (Some(part), Some(drive)) = (part, drive) {
                 let normals = [part.normal_at(vector)?, drive.normal_at(vector)?];
+                if vector == 0 {
+                    hand = Hand::setting_out(&normals, &heading);
+                }
                 let travel = normals[0].cross(&normals[1]);
                 if travel.norm() > PARALLEL && heading.norm() > 0.0 {
                     let travel = travel / travel.norm();
@@ -478,10 +481,18 @@ impl Judge<'_> {
                     {
                         (sine, begins, followed) = (direction.dot(&along), along, normals);
                     }
+                    if sine <= 0.0
+                        && let Some(leap) = self.leap_beside(&hand, [part, drive], vector)
+                        && let Some((along, normals)) = hand.beyond_leap(&normals, &at_end, leap)
+                    {
+                        (sine, begins, followed) = (direction.dot(&along), along, normals);
+                    }
                     if sine <= 0.0 && self.goes_round([part, drive], vector) {
                         (sine, begins) = (1.0, direction);
                     }
-                    hand.follow(followed, &begins);
+                    hand.follow(followed, &begins, |hand| {
+                        self.keeps_hand_before(hand, [part, drive], vector)
+                    });
                 }
             }
             if sine <= 0.0 {

@@ -23,6 +23,8 @@ use crate::{
 const TELLING_SINE: f64 = 0.1;
 /// Cosine between the gradients at both ends of a vector above which the tool touches at the same place (30°).
 pub(super) const SAME_CONTACT_COSINE: f64 = 0.87;
+/// Halvings of a vector for the place on it where the contact leaps.
+const LEAP_HALVINGS: u32 = 30;
 /// Sine between two lines of motion below which they are one, for the path bends on its way between the places at which they are measured (3°).
 const SAME_LINE_SINE: f64 = 0.05;
 
@@ -66,6 +68,32 @@ fn is_turned_by_law(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], role: usi
     carried.is_some_and(|carried| carried.dot(&gradients(to)[role]) >= SAME_CONTACT_COSINE)
 }
 
+/// Whether the hand stays between two vertices though the tangent at the second one tells the other: the vector leads along on it at both ends, or the
+/// contact leaps where it changes, in a corner. However near to each other the gradients are on either side of that, the path has two directions
+/// there. Where surfaces come to be tangent and part again the hand changes as well, but the gradients go over into each other, and in between
+/// they do not tell it. A tool that turns has no contact but with its axis.
+fn stays_between(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], sign: Option<f64>) -> bool {
+    let chord = to.tip - from.tip;
+    let at = |share: f64| Vertex::at(prepared, from.tip + chord * share, &chord).ok();
+    let is_known = sign.is_some() && !prepared.attitude.turns();
+    let Some(mut ends) = is_known.then(|| Some([at(0.0)?, at(1.0)?])).flatten() else { return false };
+    let [before, beyond] = [0, 1].map(|k: usize| Hand::sign_at(&ends[k]));
+    if before != sign || beyond.is_none() || before == beyond {
+        return before == sign && beyond == sign;
+    }
+    let mut shares = [0.0, 1.0];
+    for _ in 0..LEAP_HALVINGS {
+        let share = 0.5 * (shares[0] + shares[1]);
+        let Some(middle) = at(share) else { return false };
+        let side = match Hand::sign_at(&middle) {
+            None => return false,
+            middle => usize::from(middle == beyond),
+        };
+        (shares[side], ends[side]) = (share, middle);
+    }
+    ends[0].tangent.dot(&ends[1].tangent).abs() < SAME_LINE
+}
+
 /// The sign that two gradients tell with a direction of the path along both.
 fn sign_of([part, drive]: [&Vec3; 2], tangent: &Vec3) -> Option<f64> {
     let across = part.cross(drive);
@@ -103,6 +131,11 @@ impl Hand {
         let Some((before, from)) = self.before else { return };
         let same = [0, 1].map(|role| touches_as_before(prepared, [&from, to], role));
         let now = Self::sign_at(to);
+        let may_stay = same == [true; 2] && now.is_some() && before != now;
+        if may_stay && stays_between(prepared, [&from, to], before) {
+            (self.sign, self.is_beyond_corner) = (before, true);
+            return;
+        }
         let is_kept = same.contains(&false) && before.is_some() && now.is_some();
         (self.sign, self.is_beyond_corner) = (if is_kept { before } else { now }, false);
         if !is_kept || before == now {
