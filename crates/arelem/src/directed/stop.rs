@@ -400,6 +400,10 @@ impl<'a> Watcher<'a> {
                 (high, beyond) = ((middle, value), side);
             }
         }
+        if self.working(index).gauge.on {
+            // The sign is the side. A place that is exactly on the surface, as these come to be, tells none.
+            before = if to.1 > 0.0 { -1.0 } else { 1.0 };
+        }
         let touching = SAME_PLACE * self.prepared.size;
         let met = low.1.abs().min(high.1.abs()) <= touching;
         met.then(|| (0.5 * (low.0 + high.0), if label == Relation::Past { beyond } else { before }))

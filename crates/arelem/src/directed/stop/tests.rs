@@ -90,6 +90,34 @@ fn a_needle_counts_both_walls_of_a_post() {
     }
 }
 
+/// For ON the band lies about the surface with OUTTOL on the side that the tool comes from, whether that is the outer or the inner one.
+#[test]
+fn on_a_curved_surface_the_tool_stops_in_the_band_of_the_side_it_comes_from() {
+    let surfaces = [
+        circle(1.75, 0.0, 0.5),
+        sphere(1.75, 0.0, 0.525, 0.5),
+        cylinder(v(1.75, 0.0, 0.525), v(0.0, 1.0, 0.0), 0.5),
+        // An ellipsoid about the same place.
+        quadric([1.0, 2.0, 1.5, 3.0625 + 1.5 * 0.275_625 - 0.25, 0.0, 0.0, 0.0, -1.75, 0.0, -0.7875]),
+    ];
+    for (inside, outside) in [(0.0, 0.001), (0.001, 0.0), (0.001, 0.004)] {
+        for check in &surfaces {
+            let surface = Surface::from_geometry(check).expect("a surface");
+            for (occurrence, side) in [(1, 1.0), (2, -1.0)] {
+                let mut p = needle(inside, outside);
+                p.run(&MotionCommand::ForceIteration(true));
+                let tip = end(&mut p, Relation::On, occurrence, check);
+                let at = side * surface.signed_distance(&tip);
+                let rounding = 1e-12;
+                assert!(
+                    (-inside - rounding..=outside + rounding).contains(&at),
+                    "{check:?} position {occurrence}, band {inside} {outside}: {at}"
+                );
+            }
+        }
+    }
+}
+
 /// One vector ends at the surface, the next one begins beyond it by less than rounding: the stop is between them, also far from the
 /// path, which tells nothing there.
 #[test]
