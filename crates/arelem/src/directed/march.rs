@@ -308,7 +308,10 @@ impl<'a> March<'a> {
         let reach = left as f64 * self.state.maximum_step;
         let watches = (&self.watcher, &self.tangency);
         match scout::ahead(self.prepared, self.checks, watches, from, reach, patience)? {
-            Outlook::Nothing { course, nearest, met } => Err(self.never_met(nearest, course, met)),
+            Outlook::Nothing { course, nearest, met, parallel: (gap, check) } => {
+                self.tangency.note_gap(check, gap);
+                Err(self.never_met(nearest, course, met))
+            }
             Outlook::Ends(end) => Err(self.surface_ends(&end)),
             Outlook::Open { way } => {
                 self.ahead = way;

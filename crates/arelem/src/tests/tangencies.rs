@@ -204,6 +204,32 @@ fn a_tool_goes_on_a_contour_from_one_surface_to_the_next() {
     }
 }
 
+/// How far the nearest parallel place is from being a tangency is told, too, if the tool has not yet come there when the look ahead finds that nothing
+/// stops it.
+#[test]
+fn the_gap_at_a_parallel_place_that_is_far_ahead_is_told() {
+    let (hole, missed) = (circle(0.0, 0.0, 0.8), 5e-4);
+    for degrees in [30.0_f64, 170.0, 300.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let mut p = Program::new();
+        p.tolerance(0.0, 1e-4).cutter(&[1.0]).from(0.25 * cos, 0.25 * sin, 1.0);
+        let radial = plane(-sin, cos, 0.0, 0.0);
+        p.go(&[
+            (Relation::To, &hole),
+            (Relation::To, &sphere(0.0, 0.0, -30.0, 30.0)),
+            (Relation::On, &radial),
+        ]);
+        p.side(DriveSide::Left).indirv(sin, -cos, 0.0);
+        match p.attempt(&motion(Turn::Forward, &hole, &[(Relation::TangentToDrive, 1, &x(0.8 + missed))])) {
+            Err(MotionFailure::NotTangent { gap, .. }) => {
+                // Less or more by what the band leaves.
+                assert!((gap - missed).abs() <= 1.5e-4, "{degrees}: {gap}");
+            }
+            other => panic!("{degrees}: {other:?}"),
+        }
+    }
+}
+
 /// How far apart surfaces are that are to be tangent.
 const OFF: [f64; 5] = [0.0, 5e-10, -5e-10, 2e-4, -2e-4];
 /// z = −.02 x² + .015 y², without a plane.

@@ -49,9 +49,9 @@ const MAX_HALVINGS: u32 = 40;
 pub(super) enum Outlook {
     /// The end of a surface, and no position before it that stops the motion.
     Ends(SurfaceEnd),
-    /// No position that stops the motion: the nearest approach on the way, how the way ends, and how many positions that
-    /// count were met, too few.
-    Nothing { course: Course, nearest: (f64, Vec3, usize), met: usize },
+    /// No position that stops the motion: the nearest approach on the way, how the way ends, how many positions that
+    /// count were met, too few, and how near a place parallel to a check surface is to being tangent to it.
+    Nothing { course: Course, nearest: (f64, Vec3, usize), met: usize, parallel: (f64, usize) },
     /// A check surface is met, at the latest after this way (zero where nothing could be told).
     Open { way: f64 },
 }
@@ -146,7 +146,8 @@ pub(super) fn ahead(
             return Ok(if closed && scout.met() > met {
                 untold
             } else {
-                Outlook::Nothing { course, nearest: scout.nearest, met: scout.met() }
+                let parallel = (scout.tangency.nearest, scout.tangency.check);
+                Outlook::Nothing { course, nearest: scout.nearest, met: scout.met(), parallel }
             });
         }
         step = sweep.length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);

@@ -343,7 +343,8 @@ impl<'a> Watch<'a> {
         Ok(None)
     }
 
-    fn note_gap(&mut self, index: usize, gap: f64) {
+    /// Notes how far a place parallel to a check surface is from being tangent to it.
+    pub(super) fn note_gap(&mut self, index: usize, gap: f64) {
         if gap.abs() < self.nearest.abs() {
             (self.nearest, self.check) = (gap, index);
         }
