@@ -110,7 +110,9 @@ fn failure_text(failure: &Failure) -> Text {
 fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
     let degrees = |angle: &f64| number(angle.to_degrees());
     let what = match cause {
-        AxisFailure::NotRuled => "the surface that PARLEL names has no rulings".to_owned(),
+        AxisFailure::NotRuled => {
+            "PARLEL follows the rulings of a RLDSRF, and the surface that it names is none".to_owned()
+        }
         AxisFailure::ImpossibleAngles { alpha, beta } => format!(
             "no axis is at {} degrees to the normal and leads by {} degrees",
             degrees(alpha),
@@ -174,6 +176,7 @@ fn setting(failure: &Failure) -> Option<Text> {
         Failure::SurfaceCount { found } => say("APT0610", format!("{found} surfaces cannot be met at once")),
         Failure::NoPartWithSeveral { found } => {
             say("APT0611", format!("NOPS allows one surface in the next GO, and there are {found}"))
+                .hint("leave out NOPS, or the surfaces behind the first")
         }
         Failure::NoTolerance { role: name, inside, outside } => say(
             "APT0612",
@@ -238,7 +241,10 @@ fn start(failure: &Failure) -> Option<Text> {
                 number(*apart)
             ),
         )
-        .hint("choose a drive surface that stands on the part surface"),
+        .hint(match (one, other) {
+            (RoleName::Drive, RoleName::Part) => "choose a drive surface that stands on the part surface",
+            _ => "choose a check surface that cuts the others",
+        }),
         Failure::OffsetWithoutDirection => {
             say("APT0622", "OFFSET needs a direction").hint("give INDIRV or INDIRP towards the drive surface before it")
         }

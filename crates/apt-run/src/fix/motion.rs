@@ -325,6 +325,16 @@ mod tests {
                 "APT0624",
                 "the drive surface and the part surface are parallel planes, 1 apart",
             ),
+            (
+                "FROM/0,0,3\nGO/TO,(LINE/0,1,5,1),TO,(PLANE/0,0,1,0),ON,(LINE/0,3,5,3)\nFINI\n",
+                "APT0624",
+                "choose a check surface that cuts the others",
+            ),
+            (
+                "FROM/9,0,3\nMULTAX\nTLAXIS/PARLEL,2\nGO/TO,C1,TO,(PLANE/0,0,1,0)\nFINI\n",
+                "APT0606",
+                "PARLEL follows the rulings of a RLDSRF, and the surface that it names is none",
+            ),
         ] {
             let all = found(&format!("{HEAD}{text}"));
             let Some(told) = all.iter().find(|one| one.wording.code == code) else {
