@@ -158,11 +158,14 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
         (
             MotionFailure::NeverMet { check, .. }
             | MotionFailure::NoneAhead { check, .. }
-            | MotionFailure::NotTangent { check, .. }
             | MotionFailure::TangentLines { check }
             | MotionFailure::ParallelThroughout { check },
             MotionCommand::Drive { turn, checks, .. },
         ) => stops(*check, *turn, checks.get(*check).map(|check| (check.relation, check.occurrence))),
+        (MotionFailure::NotTangent { check, gap }, MotionCommand::Drive { turn, checks, .. }) => {
+            let asked = checks.get(*check).map(|check| (check.relation, check.occurrence));
+            touching(state, *check, *gap).into_iter().chain(stops(*check, *turn, asked)).collect()
+        }
         (MotionFailure::TooManyPoints { limit, .. }, MotionCommand::Drive { turn, .. }) => {
             let more = limit.saturating_mul(MORE_POINTS).min(MOST_POINTS);
             let counts = [more, MOST_POINTS].into_iter().filter(|count| count > limit);
@@ -274,6 +277,16 @@ fn wider(state: &State, role: RoleName, clearance: f64) -> Option<Cure> {
     }
     *slot = needed;
     Some(Cure::Tolerance { role, inside, by, values })
+}
+
+/// The tolerance with which a tool touches a check surface that it misses where the path is parallel to it, also as the drive surface of the
+/// motion that goes on along it.
+fn touching(state: &State, check: usize, gap: f64) -> Option<Cure> {
+    let mut cure = wider(state, RoleName::Check(check), gap)?;
+    if let Cure::Tolerance { values, .. } = &mut cure {
+        values.drive = values.drive.max(values.check[check.min(1)]);
+    }
+    Some(cure)
 }
 
 /// Towards the drive surface, or without a direction at all.

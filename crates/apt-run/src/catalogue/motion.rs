@@ -258,7 +258,7 @@ fn start(failure: &Failure) -> Option<Text> {
                 number(*residual)
             ),
         )
-        .hint("start closer, or give a direction by INDIRV"),
+        .hint("start closer, or give a direction by INDIRV that leads to such a position"),
         Failure::StartUpAmbiguous { places: [first, second] } => say(
             "APT0628",
             format!("the start-up has more than one answer: {} and {} are equally near", place(first), place(second)),
