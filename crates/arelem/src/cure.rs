@@ -166,6 +166,9 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             let asked = checks.get(*check).map(|check| (check.relation, check.occurrence));
             touching(state, *check, *gap).into_iter().chain(stops(*check, *turn, asked)).collect()
         }
+        (MotionFailure::NotTangent { check, gap }, MotionCommand::Start(_)) => {
+            touching(state, *check, *gap).into_iter().collect()
+        }
         (MotionFailure::TooManyPoints { limit, .. }, MotionCommand::Drive { turn, .. }) => {
             let more = limit.saturating_mul(MORE_POINTS).min(MOST_POINTS);
             let counts = [more, MOST_POINTS].into_iter().filter(|count| count > limit);

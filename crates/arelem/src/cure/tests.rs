@@ -61,9 +61,9 @@ fn another_relation_is_offered_when_surfaces_are_not_tangent() {
 #[test]
 fn a_wider_tolerance_is_offered_where_a_tangency_is_missed_by_little() {
     let (x_axis, miss) = (line(0.0, 0.0, 1.0, 0.0), 0.0005);
-    for (bulges, inside) in [(1.0 + miss, false), (1.0 - miss, true)] {
+    for (above, inside) in [(1.0 + miss, false), (1.0 - miss, true)] {
         // The tool passes below the circle, which ends above the wall by its own diameter of .5 and what is missed.
-        let check = circle(6.0, 0.5 + bulges, 1.0);
+        let check = circle(6.0, 0.5 + above, 1.0);
         let mut p = beside();
         p.tolerance(0.0, 0.0001);
         let wrong = motion(GoLft, &x_axis, &[(Tanto, 1, &check)]);
@@ -81,6 +81,18 @@ fn a_wider_tolerance_is_offered_where_a_tangency_is_missed_by_little() {
         p.run(&wrong);
         p.run(&motion(GoLft, &check, &[(On, 1, &plane(0.0, 1.0, 0.0, 1.0))]));
     }
+    // The same where a start-up is to end tangent to the circle.
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.0001).cutter(&[0.5]).from(5.0, 2.0, 0.0);
+    let (floor, bulge) = (plane(0.0, 0.0, 1.0, 0.0), circle(6.0, 1.5 + miss, 1.0));
+    let wrong = start(&[(To, &x_axis), (To, &floor), (Tanto, &bulge)]);
+    let found = offered(&mut p, &wrong, 721);
+    let Some(Cure::Tolerance { inside: false, values, .. }) = found.first().map(|found| found.cure.clone())
+    else {
+        panic!("{found:?}")
+    };
+    p.state.outside = values;
+    p.run(&wrong);
     // By much more than the band no tolerance is offered.
     let wrong = motion(GoLft, &x_axis, &[(Tanto, 1, &circle(6.0, 1.6, 1.0))]);
     let found = offered(&mut beside(), &wrong, 721);

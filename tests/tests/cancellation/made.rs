@@ -1,13 +1,4 @@
-//! Who gives up what is made of a long program, or asked at a place of it, is heard soon: questions are counted, not timed.
-
-#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
-
-mod support;
-
-use std::{
-    fmt::Debug,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+//! What is made of a long program, or asked at a place of it.
 
 use apt_ide::{
     Analysis, Cancel, Cancelled,
@@ -15,34 +6,13 @@ use apt_ide::{
     navigation::RenameError,
     tape::{ClTapeError, ControlTape, TapeError},
 };
-use support::{analysis, never, silent};
+use apt_tests::runs;
 
-/// Records, statements or names that are gone through between two questions; one takes some microseconds.
-const GONE_THROUGH_BETWEEN_QUESTIONS: usize = 512;
+use super::{asks_often, never, silent};
 
-/// How often a work asks, which must be once in so much of what it goes through. It is given up at the first question, in the
-/// middle and at the last, never asks again after the answer, and then gives what it gave before.
-fn asks_often<T: PartialEq + Debug>(
-    gone_through: usize,
-    what: &str,
-    work: impl Fn(Cancel<'_>) -> Result<T, Cancelled>,
-) {
-    let asked = AtomicUsize::new(0);
-    let until = |last: usize| {
-        asked.store(0, Ordering::Relaxed);
-        work(&|| asked.fetch_add(1, Ordering::Relaxed) + 1 >= last)
-    };
-    // What is kept is found out before.
-    until(usize::MAX).unwrap();
-    let whole = until(usize::MAX).unwrap();
-    let all = asked.load(Ordering::Relaxed);
-    let enough = all * GONE_THROUGH_BETWEEN_QUESTIONS >= gone_through;
-    assert!(enough, "{all} questions for {gone_through} of {what}");
-    for last in [1, all / 2, all] {
-        assert_eq!(until(last).err(), Some(Cancelled), "{what}");
-        assert_eq!(asked.load(Ordering::Relaxed), last, "{what} asks again after the answer");
-    }
-    assert!(until(usize::MAX).unwrap() == whole, "{what} after it was given up");
+/// A program of the standard dialect.
+fn analysis(text: &str) -> Analysis {
+    runs::analysis(text, "free")
 }
 
 /// The control tape; nothing but a cancellation is awaited.
@@ -111,8 +81,7 @@ fn what_is_made_of_copies_asks_at_each_look_at_them() {
 fn a_cl_file_is_read_with_questions() {
     let lines = 6_000;
     let text: String = (0..lines).map(|number| format!("GOTO/{number},{},0\n", number % 7)).collect();
-    let settings = apt_ide::Settings { dialect: Some("cl".to_owned()), ..apt_ide::Settings::default() };
-    let file = apt_ide::Analysis::new(&text, None, &std::sync::Arc::new(settings));
+    let file = runs::analysis(&text, "cl");
     // Statements, the statements of lines, records, and the records again as a path.
     asks_often(4 * lines, "a tool path", |cancel| file.tool_path(cancel, &mut silent));
 }
