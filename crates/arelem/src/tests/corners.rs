@@ -127,12 +127,7 @@ fn between_leaning_walls(back: f64, band: [f64; 2]) -> Result<CutSequence, Motio
     program.side(side).indirv(way.x, way.y, way.z);
     let check = plane(onward.x, onward.y, onward.z, 0.7);
     let command = motion(Turn::Forward, &walls, &[(Relation::On, 1, &check)]);
-    let execution = execute(&program.state, &command, &|| false);
-    match (execution.failure, execution.output) {
-        (Some(failure), _) => Err(failure),
-        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
-        _ => panic!("no sequence"),
-    }
+    program.cut(&command)
 }
 
 /// The vector that leads into the corner goes from one limit of a wide band to the other, so that the other leg leads against it, though not

@@ -136,6 +136,14 @@ impl Program {
         }
     }
 
+    /// The cut vectors of a motion that is to have some.
+    pub(crate) fn cut(&mut self, command: &MotionCommand) -> Result<CutSequence, MotionFailure> {
+        match self.attempt(command)? {
+            Some(Output::Sequence(sequence)) => Ok(sequence),
+            other => panic!("no sequence: {other:?}"),
+        }
+    }
+
     pub(crate) fn run(&mut self, command: &MotionCommand) -> &mut Self {
         if let Err(failure) = self.attempt(command) {
             panic!("{command:?} failed: {failure:?}");

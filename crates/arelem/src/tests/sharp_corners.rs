@@ -37,12 +37,7 @@ fn around(turn: f64, band: [f64; 2], back: f64) -> Result<CutSequence, MotionFai
     program.side(DriveSide::Left).indirv(1.0, 0.0, 0.0);
     let check = plane(cosine, sine, 0.0, AWAY);
     let command = motion(Turn::Forward, &walls, &[(Relation::On, 1, &check)]);
-    let execution = execute(&program.state, &command, &|| false);
-    match (execution.failure, execution.output) {
-        (Some(failure), _) => Err(failure),
-        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
-        _ => panic!("no sequence"),
-    }
+    program.cut(&command)
 }
 
 /// Bands, inside and outside, and how many of them before the corner motions begin.
@@ -90,12 +85,7 @@ fn within_a_wedge(apart: f64, beside: f64, band: [f64; 2], back: f64) -> Result<
     program.side(side).indirv(before.x, before.y, before.z);
     let check = plane(beyond.x, beyond.y, beyond.z, AWAY);
     let command = motion(Turn::Forward, &walls(&second), &[(Relation::On, 1, &check)]);
-    let execution = execute(&program.state, &command, &|| false);
-    match (execution.failure, execution.output) {
-        (Some(failure), _) => Err(failure),
-        (None, Some(Output::Sequence(sequence))) => Ok(sequence),
-        _ => panic!("no sequence"),
-    }
+    program.cut(&command)
 }
 
 /// What tells the corner is that the contact leaps there, not by how much.
