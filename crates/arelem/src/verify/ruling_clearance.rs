@@ -49,6 +49,8 @@ const PROOF_STEPS: usize = 14;
 const FARTHER: f64 = 4.0;
 /// How far from an edge of the tool, in depths, the place is that is deepest there.
 const AT_EDGE: f64 = 8.0;
+/// How much longer than the depth that is meant the way may be out of a place that need not be the deepest.
+const ASTRAY: f64 = 2.0;
 /// Directions in which a tool without a body is led out, each normal to the place that held it in the last.
 const DIRECTIONS: usize = 6;
 /// The same for a depth that need not be the greatest yet.
@@ -327,7 +329,7 @@ impl<'a> Bodies<'a> {
 
     fn violation(&self, tip: &Vec3, touch: &Touch) -> Option<Reading> {
         if self.tool.profile.widest() <= 0.0
-            && let Some(found) = self.led_out_anywhere(tip, touch)?
+            && let Some(found) = self.led_out_in_parts(tip, touch)?
         {
             return Some(found);
         }
@@ -382,13 +384,18 @@ impl<'a> Bodies<'a> {
         if deepest.depth > self.deep {
             return Some(depth_of(&deepest, 0.0));
         }
-        if shallow && let Ruled::Parallel(ruling) = self.surface {
+        // Of a tool without a body that says nothing: no place of the surface is deep in it.
+        let has_body = self.tool.profile.widest() > 0.0;
+        if has_body
+            && shallow
+            && let Ruled::Parallel(ruling) = self.surface
+        {
             let ways = [deepest.depth + self.close(), self.resolution];
             if ruling.is_left_behind(self.side, tip, self.tool, ways)? {
                 return Some(depth_of(&deepest, self.close()));
             }
         }
-        if shallow && self.is_left_behind(tip, &deepest)? {
+        if has_body && shallow && self.is_left_behind(tip, &deepest)? {
             return Some(depth_of(&deepest, 4.0 * self.close()));
         }
         let error = self.unproven(tip, &deepest, PROOF_STEPS)?.unwrap_or(self.reach);

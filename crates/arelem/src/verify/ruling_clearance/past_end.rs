@@ -13,8 +13,6 @@ use crate::verify::{
 /// How many times as closely as is looked for the way past an end may be told for it to be the answer at once: another place may be as
 /// deep.
 const MOST_STEPS_PAST: f64 = 4.0;
-/// How much longer than the depth that is meant the way may be out of a place that need not be the deepest.
-const ASTRAY: f64 = 2.0;
 /// How often the way past the tangent of an end is taken before what it leaves is gone off step by step.
 const TANGENTS: usize = 5;
 /// How far from the side of a patch, in its parameters, the end is whose tangent is taken.
@@ -148,17 +146,9 @@ impl Bodies<'_> {
         Some(self.side * self.surface.natural(touch)?.dot(out) >= 0.0)
     }
 
-    /// The clearance of a tool without a body by the lesser of the translations that just free it: off the surface where that is nearest,
-    /// and past the end. None inside where neither is found.
-    pub(super) fn led_out_anywhere(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
-        let through = self.led_out(tip, self.away(touch)?, ASTRAY * self.deep)?;
-        let less = through.map_or(self.deep, |found| -found.value);
-        let past = self.led_past_end(tip, less)?;
-        Some([through, past].into_iter().flatten().max_by(|a, b| a.value.total_cmp(&b.value)))
-    }
-
-    /// The same past an end of the surface that is no farther away than `most`.
-    fn led_past_end(&self, tip: &Vec3, most: f64) -> Option<Option<Reading>> {
+    /// The clearance of a tool without a body by the way that just frees it past an end of the surface that is no farther away than `most`.
+    /// None inside where none does.
+    pub(super) fn led_past_end(&self, tip: &Vec3, most: f64) -> Option<Option<Reading>> {
         let (ends, sides) = self.surface.ends_within(tip, self.tool, most);
         if ends.is_empty() {
             return Some(None);

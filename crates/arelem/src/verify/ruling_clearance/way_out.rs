@@ -2,7 +2,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{Bodies, DIRECTIONS, Deepest, FARTHER, PROOF_STEPS};
+use super::{ASTRAY, Bodies, DIRECTIONS, Deepest, FARTHER, PROOF_STEPS};
 use crate::verify::{
     clearance::Reading,
     strip::{Touch, nearest_to_all},
@@ -10,21 +10,142 @@ use crate::verify::{
 
 /// Halvings between the last way that does not free the tool and the first that does.
 const CLOSER: usize = 6;
+/// How many times as closely as ways are looked for the depth of a tool without a body is told.
+const SURE: f64 = 4.0;
+/// How often a tool without a body is cut, the deepest part first: often enough that two places of it are parted that are some eighth of it
+/// from each other, wherever they are.
+const CUTS: usize = 16;
+/// Share of a part that none that is cut off it is shorter than.
+const LEAST_SHARE: f64 = 0.125;
+
+/// What holds a tool without a body that is led back into a surface in a direction.
+struct Held {
+    /// How far out it is then.
+    least: f64,
+    /// Unit normal away from the surface where it is held.
+    normal: Vec3,
+    /// How high up it is held.
+    height: f64,
+}
+
+/// Ways that free a tool without a body.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    /// No place of it is deeper.
+    depth: f64,
+    /// A place of it is not less deep.
+    known: f64,
+    /// Unit direction of the shortest.
+    normal: Vec3,
+    /// How high up it was held in the last two.
+    held: [f64; 2],
+}
+
+impl Way {
+    fn held(held: &Held, known: f64) -> Self {
+        Self { depth: held.least, known, normal: held.normal, held: [held.height; 2] }
+    }
+
+    /// What is known by another way, too.
+    fn or(self, held: &Held, known: f64) -> Self {
+        let shorter = if held.least < self.depth { Self::held(held, known) } else { self };
+        Self { known: self.known.max(known), held: [self.held[1], held.height], ..shorter }
+    }
+
+    fn is_sure(&self, close: f64) -> bool {
+        self.depth - self.known <= SURE * close
+    }
+}
+
+/// A part of a tool without a body.
+struct Part {
+    /// From which height to which.
+    heights: [f64; 2],
+    /// Its clearance, as closely as ways out tell it; none where none was found.
+    found: Option<Reading>,
+    /// Where to cut it.
+    cut: f64,
+}
+
+impl Part {
+    fn most_depth(&self) -> f64 {
+        self.found.map_or(f64::INFINITY, |found| found.error.max(0.0) - found.value)
+    }
+}
 
 impl Bodies<'_> {
-    /// The same from a direction in which so long a way frees the tool: no place of the surface is deep in it, and what is under the
-    /// surface may be anywhere along it.
-    pub(super) fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Reading>> {
+    /// How deep a tool without a body is, by a way in a direction that frees it: no place of the surface is deep in it, and what is under the
+    /// surface may be anywhere along it. None inside where the way does not free it.
+    pub(super) fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Way>> {
+        let mut found: Option<Way> = None;
         for _ in 0..DIRECTIONS {
-            let Some((least, normal)) = self.freed(tip, &out, way)? else { return Some(None) };
+            let Some(held) = self.freed(tip, &out, way)? else { break };
+            let Held { least, normal, .. } = held;
             // The place that holds it there holds it as long as it is not moved as far in its own direction.
-            let error = least * (1.0 - normal.dot(&out)) + 3.0 * self.close();
-            if error <= 4.0 * self.close() {
-                return Some(Some(Reading::new(-least, normal, error)));
+            let known = least * normal.dot(&out) - 3.0 * self.close();
+            let so_far = found.map_or_else(|| Way::held(&held, known), |before| before.or(&held, known));
+            found = Some(so_far);
+            if so_far.is_sure(self.close()) {
+                break;
             }
             (out, way) = (normal, least + self.close());
         }
+        Some(found)
+    }
+
+    /// The clearance of a tool without a body, by that of its parts where no one way out says how deep it is: the way off the surface at one
+    /// place of it leads along the surface at another, and each is as deep as it is for itself. None inside where parts are left that no way
+    /// out was found for that says it closely.
+    pub(super) fn led_out_in_parts(&self, tip: &Vec3, touch: &Touch) -> Option<Option<Reading>> {
+        let length = self.tool.profile.top_height();
+        let mut open = vec![self.part(tip, touch, [0.0, length])?];
+        for _ in 0..CUTS {
+            // That of which it is not known that it is less deep than the others.
+            let depths = open.iter().map(Part::most_depth).enumerate();
+            let (deepest, _) = depths.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let part = open.swap_remove(deepest);
+            match part.found {
+                Some(found) if found.error <= SURE * self.close() => return Some(Some(found)),
+                None if self.is_too_deep(tip, part.heights)? => return Some(None),
+                _ => {}
+            }
+            let [low, high] = part.heights;
+            for heights in [[low, part.cut], [part.cut, high]] {
+                let profile = self.tool.profile.below(heights[1] - heights[0]);
+                let tool = self.tool.with(&profile);
+                let bodies = Bodies { tool: &tool, reach: heights[1] - heights[0], ..*self };
+                let from = tip + self.tool.axis * heights[0];
+                open.push(bodies.part(&from, &bodies.touch(&from)?, heights)?);
+            }
+        }
         Some(None)
+    }
+
+    /// What is found of the tool as a part of another, between two heights of that.
+    fn part(&self, tip: &Vec3, touch: &Touch, heights: [f64; 2]) -> Option<Part> {
+        let [low, high] = heights;
+        let middle = 0.5 * (low + high);
+        if touch.value > touch.gap && self.is_on_side(touch)? {
+            let found = Some(Reading::new(touch.value, self.away(touch)?, touch.gap));
+            return Some(Part { heights, found, cut: middle });
+        }
+        let through = self.led_out(tip, self.away(touch)?, ASTRAY * self.deep)?;
+        let past = self.led_past_end(tip, through.map_or(self.deep, |way| way.depth))?;
+        let found = past.or(through.map(|way| Reading::new(-way.depth, way.normal, way.depth - way.known)));
+        let between = through.map_or(middle, |way| low + 0.5 * (way.held[0] + way.held[1]));
+        let least = LEAST_SHARE * (high - low);
+        let cut = if between > low + least && between < high - least { between } else { middle };
+        Some(Part { heights, found, cut })
+    }
+
+    /// Whether a place in a part of the tool is deeper than is a question of tolerance.
+    fn is_too_deep(&self, tip: &Vec3, [low, high]: [f64; 2]) -> Option<bool> {
+        for height in [low, 0.5 * (low + high), high] {
+            if self.depth(&(tip + self.tool.axis * height))?.depth > self.deep {
+                return Some(true);
+            }
+        }
+        Some(false)
     }
 
     /// What a way need not be closer than.
@@ -32,17 +153,19 @@ impl Bodies<'_> {
         4.0 * self.resolution
     }
 
-    /// The least way in a direction, from one on that frees the tool, that is found to do so, and the normal where the tool is nearest then.
+    /// The least way in a direction, from one on that frees the tool, that is found to do so, and what holds it then.
     /// None inside where that way does not free it.
-    fn freed(&self, tip: &Vec3, out: &Vec3, mut way: f64) -> Option<Option<(f64, Vec3)>> {
+    fn freed(&self, tip: &Vec3, out: &Vec3, mut way: f64) -> Option<Option<Held>> {
         for _ in 0..PROOF_STEPS {
-            let touch = self.touch(&(tip + out * way))?;
+            let moved = tip + out * way;
+            let touch = self.touch(&moved)?;
             let room = touch.value - touch.gap;
             if room <= 0.0 || !self.is_on_side(&touch)? {
                 return Some(None);
             }
             if room <= 2.0 * self.close() {
-                return Some(Some((way, self.away(&touch)?)));
+                let height = self.tool.axis.dot(&(touch.opposite() - moved));
+                return Some(Some(Held { least: way, normal: self.away(&touch)?, height }));
             }
             // Led back by what it is clear it is clear still.
             way -= room - self.close();

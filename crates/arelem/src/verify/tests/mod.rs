@@ -8,6 +8,7 @@ mod edges;
 mod every_kind;
 mod followed;
 mod halves;
+mod lines;
 #[path = "../../../tests/support/lofts.rs"]
 pub(crate) mod lofts;
 mod mutations;

@@ -1,0 +1,147 @@
+//! Tools without a body: how deep they are under a surface is asked of places all along them.
+
+use apt_geometry::{
+    Vec3,
+    canonical::{Geometry, Remembering},
+};
+use proptest::prelude::*;
+
+use super::{
+    super::{
+        clearance::Surface,
+        ruling_clearance::searched,
+        tool::{Profile, Tool, WORK},
+    },
+    clearances::direction,
+    cutter, plane,
+    poly_conics::poly_conic,
+    ruled, section, tabulated,
+};
+
+/// How deep the lines of these tests may be.
+const ALLOWED: f64 = 1e-3;
+/// Places along a line at which it is asked how deep it is.
+const PLACES: usize = 600;
+/// Parts of a surface that may be looked at for one line.
+const FEW: u64 = 40_000;
+
+fn line(length: f64) -> Profile {
+    Profile::of(&cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length])).expect("a line")
+}
+
+/// How deep a line is under a surface at its deepest place, and the way out there.
+fn deepest(surface: &Surface, tip: &Vec3, axis: &Vec3, length: f64) -> (f64, Vec3) {
+    let at = |height: f64| surface.point_distance(&(tip + axis * height)).expect("a distance");
+    let step = length / PLACES as f64;
+    let heights = (0..=PLACES).map(|k| step * k as f64);
+    let (_, best) =
+        heights.map(|height| (at(height).0, height)).min_by(|a, b| a.0.total_cmp(&b.0)).expect("places");
+    // Between its neighbours it is closed in.
+    let [mut low, mut high] = [(best - step).max(0.0), (best + step).min(length)];
+    for _ in 0..60 {
+        let third = (high - low) / 3.0;
+        if at(low + third).0 <= at(high - third).0 {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    let (value, out) =
+        [low, best, high].map(at).into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("three");
+    (-value, out)
+}
+
+/// A polyconic surface with hills and hollows, of length 6, about the origin.
+fn hilly() -> Geometry {
+    let functions = [
+        [1.756_532_165_193_433_8, -0.168_822_345_429_936_1, 0.0],
+        [1.756_532_165_193_433_8, -0.177_267_819_962_476_84, 0.0],
+        [1.756_532_165_193_433_8, 0.050_652_032_619_696_044, 0.0],
+        [-1.756_532_165_193_433_8, 0.104_466_245_780_734_52, 0.0],
+        [-1.756_532_165_193_433_8, -0.119_039_710_615_717_1, 0.0],
+        [1.756_532_165_193_433_8, 0.174_068_714_080_994_86, 0.0],
+        [0.707_106_781_186_547_6, 0.035_437_069_575_486_986, 0.0],
+    ];
+    let rows = [
+        [0.113_031_029_199_314_26, 0.762_275_210_171_107_6, 0.637_307_218_221_116_7],
+        [-0.240_106_748_706_478_52, -0.601_452_008_609_020_4, 0.761_973_904_123_874_2],
+        [0.964_143_524_411_043_2, -0.239_148_458_700_383_5, 0.115_044_682_786_659_58],
+    ];
+    let shifts = [-0.494_352_008_553_731_07, -2.441_295_547_196_870_3, 2.502_818_043_432_096_6];
+    let Geometry::PolyConic(values) = poly_conic(rows, 0.0, 0.0, 6.0, &functions) else {
+        panic!("a polyconic surface")
+    };
+    let mut values = values.to_vec();
+    for (row, shift) in shifts.into_iter().enumerate() {
+        values[4 + 4 * row] = shift;
+    }
+    Geometry::PolyConic(Remembering::new(values))
+}
+
+/// A line that is in a bulge of the surface with its middle and under it with its top is as deep as either, whichever is deeper: the two are
+/// judged each for itself, as closely as one of them alone.
+#[test]
+fn a_line_that_is_deep_at_two_places_is_as_deep_as_its_deeper_part() {
+    let surface = Surface::of(&hilly()).expect("a surface");
+    let Surface::Ruled(hills) = &surface else { panic!("{surface:?}") };
+    let length = 4.574_456_8;
+    let [whole, half] = [line(length), line(0.5 * length)];
+    let from = Vec3::new(-1.107_812_5, -0.938_842_9, -0.729_536_4);
+    let mut both = 0;
+    for k in 0..32 {
+        let tip = from + Vec3::new(6e-4, -2e-4, 0.0) * (f64::from(k) / 32.0);
+        let at = |profile: &Profile, tip: &Vec3| {
+            let mut tool = Tool::new(profile, Vec3::z());
+            tool.depth = 5e-4;
+            searched(hills, 1.0, tip, &tool).expect("a clearance")
+        };
+        let found = at(&whole, &tip);
+        let halves = [tip, tip + Vec3::z() * (0.5 * length)].map(|tip| at(&half, &tip));
+        let deepest = halves[0].value.min(halves[1].value);
+        let error = found.error.max(halves[0].error).max(halves[1].error);
+        assert!(error < 2e-8 && (found.value - deepest).abs() <= 2.0 * error, "{k}: {found:?} {halves:?}");
+        both += usize::from(halves.iter().all(|half| half.value < -1e-6));
+    }
+    assert!(both > 16, "{both}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn a_line_is_as_deep_as_its_deepest_place(
+        which in 0usize..3,
+        place in (-0.6..0.6f64, -0.6..0.6f64, -0.6..0.6f64),
+        axis in direction(),
+        length in 0.3..2.0f64,
+        depth in 1e-6..9e-4f64,
+    ) {
+        let twisted = || ruled(
+            section(plane([0.0, 0.0, 1.0], 0.0), [[-3.0, -2.0, 0.0], [3.0, -2.0, 0.0]], [0.0, 0.0, 1.0]),
+            section(plane([-1.0, 0.0, 3.0], 0.0), [[-3.0, 2.0, -1.0], [3.0, 2.0, 1.0]], [-1.0, 0.0, 3.0]),
+        );
+        let waves = || tabulated(
+            [Vec3::x(), Vec3::z(), -Vec3::y()],
+            &[[-2.0, 0.0, 0.9], [-1.0, 0.3, -0.6], [0.0, -0.2, 0.2], [1.0, 0.3, 0.1], [2.0, -0.1, -0.8]],
+        );
+        let geometry = [hilly, twisted, waves][which]();
+        let surface = Surface::of(&geometry).expect("a surface");
+        let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+        let axis = Vec3::from(axis).normalize();
+        let mut tip = Vec3::from([place.0, place.1, place.2]) - axis * (0.5 * length);
+        for _ in 0..40 {
+            let (least, out) = deepest(&surface, &tip, &axis, length);
+            tip += out * (least - depth);
+        }
+        let (depth, _) = deepest(&surface, &tip, &axis, length);
+        prop_assume!(depth > 0.0 && depth < ALLOWED);
+        let profile = line(length);
+        let mut tool = Tool::new(&profile, axis);
+        tool.depth = ALLOWED;
+        WORK.set(0);
+        let found = searched(ruled, 1.0, &tip, &tool).expect("a clearance");
+        let error = found.error + 1e-9;
+        prop_assert!((found.value + depth).abs() <= error, "{:?} {}", found, depth);
+        prop_assert!(error < 2e-8 && WORK.get() < FEW, "{:?} {}", found, WORK.get());
+    }
+}
