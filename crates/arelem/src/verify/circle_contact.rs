@@ -36,6 +36,10 @@ const NEARLY_IN_FAN: f64 = 1e-9;
 /// Share of the size of the tool by which it may go farther towards the surface than the place that touches, which is found by its
 /// azimuth: rounding, and the square of the last step.
 const FOREMOST: f64 = 1e-9;
+/// Least determinant of a form of two directions, relative to its size, that is not rounding of its products.
+const DEFINITE: f64 = 1e-14;
+/// Rounding of a form of two directions, relative to its size.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Looks along the surface beside the place that touches, until that is known about.
 const GLANCES: usize = 2;
 
@@ -474,13 +478,44 @@ pub(super) fn multiplier_of_circle_until(
     mu
 }
 
-/// Least value of `wᵀ(H + μ)w + 2g·w`; −∞ if there is none.
+/// Least value of `wᵀ(H + μ)w + 2g·w`, or by as much less as rounding makes of it; −∞ if there is none.
 pub(super) fn least_of(form: &Matrix2<f64>, mu: f64, g: &Vector2<f64>) -> f64 {
-    let (a, b, c) = (form.m11 + mu, form.m12, form.m22 + mu);
-    let determinant = a * c - b * b;
-    if determinant > 0.0 && a + c > 0.0 {
-        -(c * g.x * g.x - 2.0 * b * g.x * g.y + a * g.y * g.y) / determinant
-    } else {
-        f64::NEG_INFINITY
+    let Some(held) = Held::of(form, mu) else { return f64::NEG_INFINITY };
+    let place = held.solved(g);
+    -g.dot(&place) - held.rounding(place.norm())
+}
+
+/// A form with a multiplier that makes it positive definite, beyond rounding: by a determinant that is rounding any bound would hold.
+pub(super) struct Held {
+    first: f64,
+    both: f64,
+    last: f64,
+    determinant: f64,
+}
+
+impl Held {
+    pub(super) fn of(form: &Matrix2<f64>, mu: f64) -> Option<Self> {
+        let (first, both, last) = (form.m11 + mu, form.m12, form.m22 + mu);
+        let determinant = first * last - both * both;
+        let trace = first + last;
+        // Before the multiplier was added the form may have been larger.
+        let size = trace.max(form.m11.abs() + form.m22.abs() + mu.abs());
+        (trace > 0.0 && determinant > DEFINITE * trace * size).then_some(Self {
+            first,
+            both,
+            last,
+            determinant,
+        })
+    }
+
+    /// The place at which the form is level with a slope.
+    pub(super) fn solved(&self, slope: &Vector2<f64>) -> Vector2<f64> {
+        let Self { first, both, last, determinant } = *self;
+        Vector2::new(last * slope.x - both * slope.y, first * slope.y - both * slope.x) / determinant
+    }
+
+    /// How much rounding of the form is at a place so far out.
+    pub(super) fn rounding(&self, out: f64) -> f64 {
+        ROUNDING * (self.first + self.last) * out * out
     }
 }

@@ -6,7 +6,7 @@
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Place, Touch, multiplier_of_circle};
+use super::{Held, Place, Touch, multiplier_of_circle};
 use crate::verify::tool::Meridian;
 
 /// A quadratic function below what is asked about, about the tool end, and how little it may be.
@@ -85,20 +85,16 @@ impl Demand {
             Some(facing) => -(self.formed(facing) * rho + pull).dot(facing) / rho,
             None => multiplier_of_circle(&form, &pull, rho),
         };
-        let (first, both, last) = (form.m11 + mu, form.m12, form.m22 + mu);
-        let determinant = first * last - both * both;
-        if !(determinant > 0.0 && first + last > 0.0) {
-            return f64::NEG_INFINITY;
-        }
-        let solved =
-            |w: &Vector2<f64>| Vector2::new(last * w.x - both * w.y, first * w.y - both * w.x) / determinant;
-        let (of_g, of_cross) = (solved(&g), solved(&cross));
+        let Some(held) = Held::of(&form, mu) else { return f64::NEG_INFINITY };
+        let (of_g, of_cross) = (held.solved(&g), held.solved(&cross));
         let first = self.on_axis(a[1]) - mu * a[0] * a[0] - g.dot(&of_g);
         let climb = rise * self.slope_along(a[1]) - mu * a[0] * spread - g.dot(&of_cross);
         let bend = rise * rise * self.upright - mu * spread * spread - cross.dot(&of_cross);
         let ends = first.min(first + 2.0 * climb + bend);
         let level = -climb / bend;
-        if bend > 0.0 && level > 0.0 && level < 1.0 { ends.min(first + climb * level) } else { ends }
+        let is_level = bend > 0.0 && level > 0.0 && level < 1.0;
+        let least = if is_level { ends.min(first + climb * level) } else { ends };
+        least - held.rounding(of_g.norm() + of_cross.norm())
     }
 }
 

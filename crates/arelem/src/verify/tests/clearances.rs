@@ -1,7 +1,11 @@
 //! Clearances of single positions: worked cases of arelem reference 6.2, dense sampling, and quadrics against the closed
 //! forms of the surfaces they also describe.
 
-use apt_geometry::{Vec3, canonical::Geometry, cutter::Cutter};
+use apt_geometry::{
+    Vec3,
+    canonical::{Cone, Geometry},
+    cutter::Cutter,
+};
 use proptest::prelude::*;
 
 use super::{
@@ -394,5 +398,29 @@ fn the_far_side_of_a_ball_tells_nothing_of_the_corner() {
         let tip = Vec3::new(0.92077, 1.78176, 0.61053).lerp(&Vec3::new(0.61428, 2.08527, 0.59630), t);
         let (value, _, error) = clearance(&bell, &hollow, -1.0, tip.into(), axis);
         assert!(value > 0.0 && error < 1e-9, "{t}: {value} ± {error}");
+    }
+}
+
+/// The top of a tool in a hollow cone, in the plane that touches the cone along a ruling: all of its rim but two places sticks out.
+#[test]
+fn a_top_in_a_tangent_plane_of_a_hollow_cone_is_not_taken_to_touch_it() {
+    let geometry = Geometry::Cone(Cone {
+        vertex: Vec3::new(-0.20838950592030625, 0.2862256579411938, 6.6654386073157905),
+        axis: Vec3::new(0.3997818281081601, 0.23543041262376063, -0.8858594757219135),
+        cosine: 0.46395364991957616,
+    });
+    let tool = cutter(&[0.9854804994995121, 0.29749053829409555]);
+    let from = Vec3::new(0.965497250232437, 0.9775243212206997, 1.665438607315791);
+    let surface = Surface::of(&geometry).expect("a surface");
+    for (right, above) in [(0.0, 0.0), (0.0, 1e-9), (0.0, -1e-9), (0.03, 0.0), (-0.1, 0.0), (0.3, 1e-6)] {
+        let tip = from + Vec3::new(0.5 * right, right, above);
+        let (value, _, error) = clearance(&tool, &geometry, -1.0, tip.into(), UP);
+        let places = samples(&tool, tip, Vec3::z());
+        let sampled = places
+            .iter()
+            .map(|x| -surface.point_distance(x).expect("a distance").0)
+            .fold(f64::INFINITY, f64::min);
+        let is_deep = sampled < -0.01 && value <= sampled + 1e-9 && sampled - value < 5e-3;
+        assert!(is_deep && error < 1e-8, "{right} {above}: {value} sampled {sampled}");
     }
 }
