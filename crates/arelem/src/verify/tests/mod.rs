@@ -14,6 +14,7 @@ pub(crate) mod lofts;
 mod mutations;
 mod paths;
 mod poly_conics;
+mod round_numbers;
 mod ruled;
 mod rulings;
 mod searched;
