@@ -104,7 +104,7 @@ fn nearest(work: &StartUp<'_>, curve: &Curve) -> Result<Nearest, MotionFailure> 
     }
 }
 
-/// The first position along the direction with the relation asked for.
+/// The first position along the direction with the relation asked for: over it, where a part surface fixes the height.
 fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3, MotionFailure> {
     let axis = work.tool.axis;
     let flat = direction - axis * direction.dot(&axis);
@@ -115,6 +115,8 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
             direction: *direction,
         });
     };
+    // Without a part surface that fixes the height (NOPS) the tool moves exactly along the direction, up or down as that leads.
+    let way = if work.roles.len() == 1 { direction / direction.dot(&flat) } else { flat };
     let relation = work.roles[0].relation;
     let reach = work.tool.radius() + work.roles[0].gauge.thickness;
     let levels: &[f64] = if relation == Relation::On { &[0.0] } else { &[reach, -reach] };
@@ -137,7 +139,7 @@ fn along(work: &mut StartUp<'_>, curve: &Curve, direction: &Vec3) -> Result<Vec3
             if level != 0.0 {
                 work.roles[0].set_side(level.signum());
             }
-            return Ok(work.tip + flat * x);
+            return Ok(work.tip + way * x);
         }
         label = if label == Relation::To { Relation::Past } else { Relation::To };
     }

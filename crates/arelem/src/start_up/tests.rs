@@ -102,6 +102,21 @@ fn without_part_surface_the_move_is_made_along_the_direction() {
 
 /// In the middle of a sphere no direction is plainly the nearest: along its axis the tool comes out first, for its tip is all that has to.
 #[test]
+fn without_part_surface_an_inclined_move_to_an_upright_surface_is_made_along_the_direction() {
+    let (wall, boss) = (line(4.0, -1.0, 4.0, 1.0), circle(6.0, 0.0, 2.0));
+    for rule in [StartUpRule::Apt3, StartUpRule::Apt4] {
+        for (relation, surface, x) in
+            [(To, &wall, 3.5), (On, &wall, 4.0), (Past, &wall, 4.5), (To, &boss, 3.5)]
+        {
+            let mut p = program(rule);
+            p.cutter(&[1.0]).from(0.0, 0.0, 3.0).run(&MotionCommand::NoPartSurface);
+            // Down by a half of the way.
+            p.indirv(2.0, 0.0, -1.0).go(&[(relation, surface)]).ends(x, 0.0, 3.0 - 0.5 * x, BAND).verified();
+        }
+    }
+}
+
+#[test]
 fn without_part_surface_the_move_is_the_shortest_one_from_a_centre_too() {
     let ball = sphere(0.0, 0.0, 0.0, 2.0);
     let same = quadric([1.0, 1.0, 1.0, -4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
