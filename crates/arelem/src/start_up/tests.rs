@@ -100,7 +100,7 @@ fn without_part_surface_the_move_is_made_along_the_direction() {
     assert!(matches!(failure, MotionFailure::NotReachedAlong { .. }), "{failure:?}");
 }
 
-/// In the middle of a sphere no direction is plainly the nearest: along its axis the tool comes out first, for its tip is all that has to.
+/// A direction that leads up or down as well does so, whether or not a closed form finds where the surface is met.
 #[test]
 fn without_part_surface_an_inclined_move_to_an_upright_surface_is_made_along_the_direction() {
     let (wall, boss) = (line(4.0, -1.0, 4.0, 1.0), circle(6.0, 0.0, 2.0));
@@ -116,6 +116,7 @@ fn without_part_surface_an_inclined_move_to_an_upright_surface_is_made_along_the
     }
 }
 
+/// In the middle of a sphere no direction is plainly the nearest: along its axis the tool comes out first, for its tip is all that has to.
 #[test]
 fn without_part_surface_the_move_is_the_shortest_one_from_a_centre_too() {
     let ball = sphere(0.0, 0.0, 0.0, 2.0);
