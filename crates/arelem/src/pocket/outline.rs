@@ -66,13 +66,19 @@ impl Outline {
             let across = side.cross(&after(k)).try_normalize(SAME_DIRECTION);
             normals.push(across.ok_or_else(|| fail(k, CornerFault::Collinear))?);
         }
-        let Some(normal) = normals.first().copied() else { return Err(fail(0, CornerFault::Collinear)) };
-        for (corner, other) in normals.iter().enumerate() {
-            if !same(other, &normal, SAME_DIRECTION) {
-                let opposite = same(other, &-normal, SAME_DIRECTION);
-                let fault = if opposite { CornerFault::Concave } else { CornerFault::NotInPlane };
-                return Err(fail(corner, fault));
-            }
+        let Some(first) = normals.first().copied() else { return Err(fail(0, CornerFault::Collinear)) };
+        let is_along = |normal: &Vec3, other: &Vec3| same(other, normal, SAME_DIRECTION);
+        let is_in_plane = |other: &Vec3| is_along(&first, other) || is_along(&-first, other);
+        if let Some(corner) = normals.iter().position(|other| !is_in_plane(other)) {
+            return Err(fail(corner, CornerFault::NotInPlane));
+        }
+        // The figure turns as its corners do in sum; the first one may be against that.
+        let turns = sides.iter().zip(&normals).enumerate();
+        let whole: f64 =
+            turns.map(|(corner, (side, other))| side.angle(&after(corner)) * other.dot(&first)).sum();
+        let normal = if whole < 0.0 { -first } else { first };
+        if let Some(corner) = normals.iter().position(|other| !is_along(&normal, other)) {
+            return Err(fail(corner, CornerFault::Concave));
         }
         // Every corner turns the same way; more than one whole turn is a star.
         let mut turned = 0.0;

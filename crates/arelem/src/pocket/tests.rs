@@ -126,7 +126,7 @@ fn walls_of_a_canted_pocket_stand_along_the_tool_axis() {
 
 #[test]
 fn points_that_make_no_convex_figure_are_refused() {
-    let cases: [(CornerFault, usize, u16, &[[f64; 3]]); 6] = [
+    let cases: [(CornerFault, usize, u16, &[[f64; 3]]); 7] = [
         (
             CornerFault::Duplicate,
             2,
@@ -151,6 +151,13 @@ fn points_that_make_no_convex_figure_are_refused() {
             2,
             3504,
             &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 5.0, 0.0]],
+        ),
+        // The corner that is told is the one that turns against the figure, though the statement begins with it.
+        (
+            CornerFault::Concave,
+            0,
+            3504,
+            &[[2.0, 1.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 0.0], [8.0, 0.0, 0.0]],
         ),
         (
             CornerFault::Concave,
