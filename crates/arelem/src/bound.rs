@@ -45,9 +45,10 @@ impl Ring {
         2.0 * ((self.outer - self.inner) * (self.outer + self.inner)).max(0.0).sqrt()
     }
 
-    /// Least number of chords that turn by `angle` (radians) between the radii `start` and `end`, all inside the ring.
+    /// Least number of chords that turn by `angle` (radians) between the radii `start` and `end`, all inside the ring but for what the first
+    /// and the last lead to from outside of it.
     pub fn least_chords(&self, angle: f64, start: f64, end: f64) -> u32 {
-        let half = |r: f64| (self.inner / r.clamp(self.inner, self.outer)).clamp(0.0, 1.0).acos();
+        let half = |r: f64| (self.inner / r.max(self.inner)).clamp(0.0, 1.0).acos();
         let free = half(start) + half(end);
         if angle <= free {
             return 1;
@@ -388,6 +389,14 @@ mod tests {
         let band = ring(2.5, 2.501);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.501, 2.501), 28);
         assert_eq!(band.least_chords(FRAC_PI_2, 2.5009, 2.5009), 28);
+    }
+
+    /// A ball on an oblique cylinder begins outside of the ring, where the tool touches with its flank: the first chord turns by more than others.
+    #[test]
+    fn a_chord_from_outside_of_the_ring_turns_by_more_than_one_in_it() {
+        let band = ring(7.284_098_888_810_774, 7.286_098_888_810_774);
+        assert_eq!(band.least_chords(0.095_438_483_947, 7.287_494_34, band.outer), 2);
+        assert_eq!(band.least_chords(0.095_438_483_947, band.outer, band.outer), 3);
     }
 
     #[test]
