@@ -480,20 +480,20 @@ pub(super) fn multiplier_of_circle_until(
 
 /// Least value of `wᵀ(H + μ)w + 2g·w`, or by as much less as rounding makes of it; −∞ if there is none.
 pub(super) fn least_of(form: &Matrix2<f64>, mu: f64, g: &Vector2<f64>) -> f64 {
-    let Some(held) = Held::of(form, mu) else { return f64::NEG_INFINITY };
+    let Some(held) = DefiniteForm::of(form, mu) else { return f64::NEG_INFINITY };
     let place = held.solved(g);
     -g.dot(&place) - held.rounding(place.norm())
 }
 
 /// A form with a multiplier that makes it positive definite, beyond rounding: by a determinant that is rounding any bound would hold.
-pub(super) struct Held {
+pub(super) struct DefiniteForm {
     first: f64,
     both: f64,
     last: f64,
     determinant: f64,
 }
 
-impl Held {
+impl DefiniteForm {
     pub(super) fn of(form: &Matrix2<f64>, mu: f64) -> Option<Self> {
         let (first, both, last) = (form.m11 + mu, form.m12, form.m22 + mu);
         let determinant = first * last - both * both;

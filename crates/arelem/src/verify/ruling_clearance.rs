@@ -49,8 +49,6 @@ const PROOF_STEPS: usize = 14;
 const FARTHER: f64 = 4.0;
 /// How far from an edge of the tool, in depths, the place is that is deepest there.
 const AT_EDGE: f64 = 8.0;
-/// How much longer than the depth that is meant the way may be out of a place that need not be the deepest.
-const ASTRAY: f64 = 2.0;
 /// Directions in which a tool without a body is led out, each normal to the place that held it in the last.
 const DIRECTIONS: usize = 6;
 /// The same for a depth that need not be the greatest yet.

@@ -6,7 +6,7 @@
 use apt_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Held, Place, Touch, multiplier_of_circle};
+use super::{DefiniteForm, Place, Touch, multiplier_of_circle};
 use crate::verify::tool::Meridian;
 
 /// A quadratic function below what is asked about, about the tool end, and how little it may be.
@@ -85,7 +85,7 @@ impl Demand {
             Some(facing) => -(self.formed(facing) * rho + pull).dot(facing) / rho,
             None => multiplier_of_circle(&form, &pull, rho),
         };
-        let Some(held) = Held::of(&form, mu) else { return f64::NEG_INFINITY };
+        let Some(held) = DefiniteForm::of(&form, mu) else { return f64::NEG_INFINITY };
         let (of_g, of_cross) = (held.solved(&g), held.solved(&cross));
         let first = self.on_axis(a[1]) - mu * a[0] * a[0] - g.dot(&of_g);
         let climb = rise * self.slope_along(a[1]) - mu * a[0] * spread - g.dot(&of_cross);

@@ -2,7 +2,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{ASTRAY, Bodies, DIRECTIONS, Deepest, FARTHER, PROOF_STEPS};
+use super::{Bodies, DIRECTIONS, Deepest, FARTHER, PROOF_STEPS};
 use crate::verify::{
     clearance::Reading,
     strip::{Touch, nearest_to_all},
@@ -10,6 +10,8 @@ use crate::verify::{
 
 /// Halvings between the last way that does not free the tool and the first that does.
 const CLOSER: usize = 6;
+/// How much longer than the depth that is meant the way may be out of a place that need not be the deepest.
+const ASTRAY: f64 = 2.0;
 /// How many times as closely as ways are looked for the depth of a tool without a body is told.
 const SURE: f64 = 4.0;
 /// How often a tool without a body is cut, the deepest part first: often enough that two places of it are parted that are some eighth of it
@@ -30,7 +32,7 @@ struct Held {
 
 /// Ways that free a tool without a body.
 #[derive(Clone, Copy)]
-pub(super) struct Way {
+struct Way {
     /// No place of it is deeper.
     depth: f64,
     /// A place of it is not less deep.
@@ -76,7 +78,7 @@ impl Part {
 impl Bodies<'_> {
     /// How deep a tool without a body is, by a way in a direction that frees it: no place of the surface is deep in it, and what is under the
     /// surface may be anywhere along it. None inside where the way does not free it.
-    pub(super) fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Way>> {
+    fn led_out(&self, tip: &Vec3, mut out: Vec3, mut way: f64) -> Option<Option<Way>> {
         let mut found: Option<Way> = None;
         for _ in 0..DIRECTIONS {
             let Some(held) = self.freed(tip, &out, way)? else { break };
