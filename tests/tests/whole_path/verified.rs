@@ -91,3 +91,25 @@ fn a_ruled_surface_is_what_its_directions_find_whatever_its_points() {
         );
     }
 }
+
+#[test]
+fn a_contour_along_a_conic_through_rounded_points_of_a_parabola_is_proven() {
+    let program = |side: &str, start: &str, lean: &str| {
+        format!(
+            "CUTTER/10\nINTOL/.001\nOUTTOL/.001\n{lean}\
+             C1=LCONIC/5PT,(-30,27.272727273),(-13,5.121212121),(2,.121212121),(21,13.363636364),(35,37.121212121)\n\
+             FROM/{start},10\nINDIRV/1,0,0\nGO/TO,(LINE/-25,0,-25,50),TO,(PLANE/0,0,1,0),TO,C1\n\
+             INDIRV/1,0,0\n{side},GOFWD/C1,PAST,(LINE/30,0,30,50)\nFINI\n"
+        )
+    };
+    for (side, start) in [("TLRGT", "-40,0"), ("TLLFT", "-28,60")] {
+        for lean in ["", "TLAXIS/.1,.2,1\n"] {
+            let report = report(&analysis(&program(side, start, lean), "free")).unwrap();
+            assert_eq!(report["ok"], true, "{side} {lean}{}", report["diagnostics"]);
+            let motion = report["motions"].as_array().unwrap().last().unwrap();
+            assert_eq!(motion["verified"], true, "{motion}");
+            let end = path_of(&report).last().unwrap().at;
+            assert!(end[0] > 30.0, "{end:?}");
+        }
+    }
+}

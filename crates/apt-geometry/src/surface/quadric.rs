@@ -10,6 +10,9 @@ use crate::{
 
 /// An eigenvalue or linear term below this share of the largest is zero.
 const NEGLIGIBLE: f64 = 1e-11;
+/// The centre is far along a principal axis where completing the square makes a constant so many times greater than what the canonical form has
+/// beside the squares: coordinates told from there would lose as many digits. A conic through rounded points of a parabola has such a centre.
+const FAR_CENTER: f64 = 1e4;
 /// Bound of the Newton iteration for the nearest point; it is bracketed, so this is never reached in practice.
 const MAX_ITERATIONS: u32 = 80;
 
@@ -44,7 +47,8 @@ impl Multiplier {
     }
 }
 
-/// `Σ (aᵢ yᵢ² + 2 bᵢ yᵢ) + d = 0` with `y = Rᵀ(x − origin)`, and `bᵢ = 0` wherever `aᵢ ≠ 0`.
+/// `Σ (aᵢ yᵢ² + 2 bᵢ yᵢ) + d = 0` with `y = Rᵀ(x − origin)`. Where `aᵢ ≠ 0` the origin is level with the centre and `bᵢ = 0`, unless the centre is
+/// so far away that digits would be lost; then the origin is level with that of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrincipalQuadric {
     /// Columns are the principal axes.
@@ -83,7 +87,9 @@ pub(super) fn surface(quadric: &Quadric) -> Option<Surface> {
             if linear[i].abs() <= NEGLIGIBLE * vector.amax().max(scale) {
                 linear[i] = 0.0;
             }
-        } else {
+        } else if linear[i] * linear[i] / square[i].abs()
+            <= FAR_CENTER * (d.abs() + vector.norm_squared() / scale)
+        {
             shift[i] = -linear[i] / square[i];
             constant -= linear[i] * linear[i] / square[i];
             linear[i] = 0.0;
@@ -105,11 +111,12 @@ pub(super) fn surface(quadric: &Quadric) -> Option<Surface> {
 
 impl PrincipalQuadric {
     fn has_real_points(&self) -> bool {
-        if self.linear != Vec3::zeros() {
+        if (0..3).any(|i| self.square[i] == 0.0 && self.linear[i] != 0.0) {
             return true;
         }
-        let positive = self.square.iter().any(|&a| a > 0.0) && self.constant <= 0.0;
-        let negative = self.square.iter().any(|&a| a < 0.0) && self.constant >= 0.0;
+        let level = self.value_at_center();
+        let positive = self.square.iter().any(|&a| a > 0.0) && level <= 0.0;
+        let negative = self.square.iter().any(|&a| a < 0.0) && level >= 0.0;
         positive || negative || (self.square.min() < 0.0 && self.square.max() > 0.0)
     }
 
@@ -122,6 +129,17 @@ impl PrincipalQuadric {
         } else {
             Convexity::General
         }
+    }
+
+    /// The coordinate of the centre along a principal axis along which F is quadratic.
+    fn center(&self, axis: usize) -> f64 {
+        -self.linear[axis] / self.square[axis]
+    }
+
+    /// F at the centre, its linear parts along the axes without a centre left out.
+    fn value_at_center(&self) -> f64 {
+        let round = (0..3).filter(|i| self.square[*i] != 0.0);
+        self.constant + round.map(|i| self.linear[i] * self.center(i)).sum::<f64>()
     }
 
     fn local(&self, p: &Vec3) -> Vec3 {
@@ -185,8 +203,8 @@ impl PrincipalQuadric {
         let inward = -pole.signum();
         let step = inward * (inward * (from_zero.step - pole)).max(rounding);
         let found = self.root(y, Multiplier { origin: pole, step }, poles.map(|limit| limit - pole));
-        let off_plane =
-            (0..3).filter(|i| -1.0 / self.square[*i] == pole).map(|i| y[i].abs()).fold(0.0, f64::max);
+        let at_pole = (0..3).filter(|i| -1.0 / self.square[*i] == pole);
+        let off_plane = at_pole.map(|i| (y[i] - self.center(i)).abs()).fold(0.0, f64::max);
         let is_on_plane = off_plane <= ON_PLANE * f64::EPSILON * (y.norm() + self.origin.norm());
         // Without a root the bracket closes on the pole.
         if is_on_plane && found.step.abs() <= AT_POLE * pole.abs() {
@@ -256,8 +274,9 @@ impl PrincipalQuadric {
                 q[i] = (y[i] - multiplier * self.linear[i]) / k;
             }
         }
+        q[free] = self.center(free);
         let rest = self.value_local(&q);
-        q[free] = (-rest / self.square[free]).max(0.0).sqrt();
+        q[free] += (-rest / self.square[free]).max(0.0).sqrt();
         q
     }
 
@@ -319,19 +338,18 @@ impl PrincipalQuadric {
         Some(self.rotation.column(free).into_owned())
     }
 
-    /// Square of the least half gradient on the whole surface: where `Σ aᵢ yᵢ² = −d`, the terms of the sign of −d add
-    /// up to |d| at least.
+    /// Square of the least half gradient on the whole surface: what is linear has it everywhere, and where `Σ aᵢ yᵢ² = C` about the centre, the terms
+    /// of the sign of C add up to |C| at least.
     fn least_gradient(&self) -> f64 {
-        if self.linear != Vec3::zeros() {
-            return self.linear.norm_squared();
+        let flat =
+            (0..3).filter(|i| self.square[*i] == 0.0).map(|i| self.linear[i] * self.linear[i]).sum::<f64>();
+        if flat > 0.0 {
+            return flat;
         }
-        let smallest = self
-            .square
-            .iter()
-            .filter(|&&a| a * self.constant < 0.0)
-            .map(|a| a.abs())
-            .fold(f64::INFINITY, f64::min);
-        if smallest.is_finite() { smallest * self.constant.abs() } else { 0.0 }
+        let level = -self.value_at_center();
+        let smallest =
+            self.square.iter().filter(|&&a| a * level > 0.0).map(|a| a.abs()).fold(f64::INFINITY, f64::min);
+        if smallest.is_finite() { smallest * level.abs() } else { 0.0 }
     }
 
     /// UNQUAD: the direction of the gradient of the canonical form.

@@ -266,3 +266,35 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+    /// x² + εy² = 2py, turned: an ellipse or hyperbola whose centre is far away, as one through rounded points of a parabola is.
+    #[test]
+    fn nearest_points_of_a_conic_with_a_far_centre_have_all_their_digits(
+        flatness in 3.0..13.0f64, sign in prop::sample::select(vec![1.0, -1.0]), half_width in 2.0..50.0f64, turn in 0.0..6.3f64,
+        x in -40.0..40.0f64, share in -5.0..0.9f64,
+    ) {
+        let squeeze = sign * 10f64.powf(-flatness);
+        let (sine, cosine) = turn.sin_cos();
+        let [across, along] = [v(cosine, sine, 0.0), v(-sine, cosine, 0.0)];
+        let matrix = across * across.transpose() + along * along.transpose() * squeeze;
+        let linear = along * -half_width;
+        let coefficients =
+            [matrix.m11, matrix.m22, 0.0, 0.0, 0.0, 0.0, matrix.m12, linear.x, linear.y, 0.0];
+        let surface = surface(&Geometry::Quadric(Quadric { coefficients }));
+        let y = x * x / (half_width + (half_width * half_width - squeeze * x * x).sqrt());
+        let gradient = [x, squeeze * y - half_width];
+        let slope = gradient[0].hypot(gradient[1]);
+        let normal = (across * gradient[0] + along * gradient[1]) / slope;
+        // Inside as far as a share of the way to the plane of symmetry, outside as far as one likes.
+        let distance = -share * slope;
+        let place = across * x + along * y + normal * distance + v(0.0, 0.0, 3.0);
+        let foot = surface.foot(&place);
+        let off = foot.point - (place - normal * distance);
+        let size = 1.0 + place.norm() + distance.abs();
+        prop_assert!(off.norm() < 1e-11 * size, "{off} beside {place}");
+        prop_assert!((foot.distance - distance).abs() < 1e-12 * size, "{} {distance}", foot.distance);
+        prop_assert!((foot.normal - normal).norm() < 1e-11, "{} {normal}", foot.normal);
+    }
+}

@@ -322,10 +322,13 @@ impl PrincipalQuadric {
         let pole = (0..3)
             .filter(|i| self.a[*i] * toward < 0.0)
             .max_by(|i, j| self.a[*i].abs().total_cmp(&self.a[*j].abs()));
-        match pole {
-            Some(pole) => self.nearest_before_pole(p, pole, toward, first),
-            None => self.nearest_without_pole(p, toward, first, slope),
+        let Some(pole) = pole else { return self.nearest_without_pole(p, toward, first, slope) };
+        // Half way to the pole: of a root before that λ has the digits, of one beyond it what is left to the pole.
+        let half = -0.5 / self.a[pole];
+        if self.value(&self.foot(p, half)) * toward <= 0.0 {
+            return Some(self.nearest_between(p, [0.0, half], first, slope));
         }
+        self.nearest_before_pole(p, pole, toward, first)
     }
 
     /// Every λ on the way is allowed.
@@ -344,11 +347,22 @@ impl PrincipalQuadric {
             inside = trial;
             trial *= 8.0;
         }
-        let mut outside = outside?;
+        Some(self.nearest_between(p, [inside, outside?], first, slope))
+    }
+
+    /// The nearest point by a λ between two, the first of which F has the sign of F(p) at, the other not; both are as far as the poles at most.
+    fn nearest_between(
+        &self,
+        p: &Vec3,
+        [mut inside, mut outside]: [f64; 2],
+        first: f64,
+        slope: &Vec3,
+    ) -> Vec3 {
+        let toward = outside.signum();
         let mut lambda =
             first.abs().clamp(inside.abs().min(outside.abs()), inside.abs().max(outside.abs())) * toward;
         for _ in 0..ROOT_STEPS {
-            let at = f(lambda);
+            let at = self.value(&self.foot(p, lambda));
             if at * toward > 0.0 {
                 inside = lambda;
             } else {
@@ -361,11 +375,11 @@ impl PrincipalQuadric {
             let (low, high) = (inside.min(outside), inside.max(outside));
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if (next - lambda).abs() <= 4.0 * f64::EPSILON * next.abs() || next == lambda {
-                return Some(self.foot(p, next));
+                return self.foot(p, next);
             }
             lambda = next;
         }
-        Some(self.foot(p, lambda))
+        self.foot(p, lambda)
     }
 
     /// λ ends at the pole of one principal axis. The root can be so near to it that λ itself has no digits left for the
@@ -508,8 +522,11 @@ impl Pair {
         });
         let kept = kept.try_normalize(0.0)?;
         let (along, across) = self.dual(&kept);
-        let behind = kept.dot(&self.center) - (self.constant * (along - across).max(0.0)).sqrt();
-        (kept[self.axis] != 0.0).then_some((kept, behind))
+        let center = kept.component_mul(&self.center);
+        let reach = (self.constant * (along - across).max(0.0)).sqrt();
+        // Where the other body is far away, the difference has as few digits as the distance of the centre.
+        let rounding = 4.0 * f64::EPSILON * (center.lp_norm(1) + reach);
+        (kept[self.axis] != 0.0).then_some((kept, center.sum() - reach + rounding))
     }
 
     /// The place of a body that is farthest along a unit direction; what is not determined is as at a given place. None where

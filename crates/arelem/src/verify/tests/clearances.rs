@@ -424,3 +424,34 @@ fn a_top_in_a_tangent_plane_of_a_hollow_cone_is_not_taken_to_touch_it() {
         assert!(is_deep && error < 1e-8, "{right} {above}: {value} sampled {sampled}");
     }
 }
+
+/// Where the centre of a conic is so far away that nothing told from there has digits, as that of one through rounded points of a parabola, distances
+/// have all of theirs.
+#[test]
+fn distances_from_a_conic_with_a_far_centre_have_all_their_digits() {
+    let half_width = 15.0;
+    for squeeze in [1e-4, 1e-7, 1e-9, 1e-11, -1e-4, -1e-7, -1e-9, -1e-11] {
+        let Geometry::Quadric(conic) =
+            quadric([1.0, squeeze, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -half_width, 0.0])
+        else {
+            panic!("a quadric")
+        };
+        let form = PrincipalQuadric::of(&conic).unwrap();
+        for (x, share) in [(-30.0, 0.5), (-7.0, -2.0), (0.5, 0.9), (12.0, -0.01), (31.0, 0.3)] {
+            let x: f64 = x;
+            let y = x * x / (half_width + (half_width * half_width - squeeze * x * x).sqrt());
+            let gradient = Vec3::new(x, squeeze * y - half_width, 0.0);
+            let slope = gradient.norm();
+            let expected = -share * slope;
+            let place = Vec3::new(x, y, 0.0) + gradient * (expected / slope);
+            let found = form.distance(&place).unwrap();
+            let off = found.distance - expected;
+            assert!(off.abs() < 1e-12 * place.norm(), "{squeeze}: {off:.2e} at {place}");
+            assert!(
+                (found.normal - gradient / slope).norm() < 1e-10,
+                "{squeeze}: {} at {place}",
+                found.normal
+            );
+        }
+    }
+}
