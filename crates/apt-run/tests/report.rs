@@ -303,3 +303,36 @@ fn a_cl_file_has_cutters_of_any_number_of_values() {
     assert_eq!(value["cl"][0]["words"], json!(["CUTTER", 12.0, 1.0, 50.0]));
     assert_eq!((&value["cl"][1]["type"], &value["cl"][1]["code"]), (&json!("control"), &json!([6000, 6])));
 }
+
+#[test]
+fn words_of_a_finding_say_what_the_geometry_is() {
+    let head = "CUTTER/10,2\nINTOL/.001\nOUTTOL/.001\nC1=PLANE/1,0,.3,20\nL1=LINE/XAXIS\n";
+    let cases = [
+        // Only left by the tool that begins ON it.
+        (
+            "PL=PLANE/0,0,1,0\nFROM/-40,-40,0\nINDIRV/1,1,0\nGO/ON,C1,TO,PL,TO,L1\nINDIRV/1,0,0\nTLLFT,GOFWD/L1,TO,C1\n",
+            [
+                "APT0641",
+                "never met TO: the tool is there at (24.4880613",
+                "begins so or leaves",
+                "PAST here ends",
+            ],
+        ),
+        // On the uphill side the rim cuts whatever the place.
+        (
+            "PL=PLANE/.2,0,1,0\nGOUGCK/ON\nFROM/-40,-40,0\nINDIRV/1,1,0\nGO/ON,(LINE/-20,0,-20,9),ON,PL,TO,L1\n\
+             INDIRV/1,0,0\nTLLFT,TLONPS,GOFWD/L1,ON,C1\n",
+            ["APT0665", "deep into the part surface", "is ON the surface", "TLOFPS keeps all of it out"],
+        ),
+    ];
+    for (program, [code, words @ ..]) in cases {
+        let text = format!("{head}{program}FINI\n");
+        let report = report(&text, None);
+        let diagnostics = report["diagnostics"].as_array().unwrap();
+        let finding = diagnostics.iter().find(|finding| finding["code"] == code);
+        let finding = finding.unwrap_or_else(|| panic!("no {code}: {diagnostics:?}")).to_string();
+        for part in words {
+            assert!(finding.contains(part), "{part}: {finding}");
+        }
+    }
+}

@@ -315,6 +315,8 @@ pub enum MotionFailure {
         nearest: f64,
         /// Where.
         at: Vec3,
+        /// The tool stands in the band of the check surface there, but the motion begins so, or the tool leaves the surface.
+        is_there: bool,
         /// How that is known.
         course: Course,
     },
@@ -489,6 +491,8 @@ pub enum MotionWarning {
         depth: f64,
         /// Tool end, the deepest point of the tool, and the point of the surface next to it.
         contact: ContactPoints,
+        /// The tool end is ON the surface, so that the rest of the tool is not kept out of it.
+        on: bool,
         /// True where the motion failed, and this is what lies ahead.
         ahead: bool,
     },

@@ -254,6 +254,11 @@ impl Working {
         if self.gauge.on { clearance.abs() <= wider + ROUNDING * size } else { self.holds(clearance, size) }
     }
 
+    /// Whether a tool that is so far from where it just touches may be taken to do so.
+    pub(crate) fn is_as_near(&self, distance: f64, size: f64) -> bool {
+        distance <= self.inside.max(self.outside) + ROUNDING * size
+    }
+
     pub(crate) fn role(&self) -> Role {
         Role {
             surface: self.named.clone(),

@@ -134,7 +134,13 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
             format!("the surface that guides the axis ends at {}", place(at))
         }
     };
-    say("APT0606", format!("{what}, with the tool end at {}", place(tip))).hint("TLAXIS/i,j,k fixes the axis")
+    let hint = match cause {
+        AxisFailure::ImpossibleAngles { .. } => {
+            "an axis leads, by CUTANG or the second angle of ATANGL, by no more than it leans from the normal; TLAXIS/i,j,k fixes it"
+        }
+        _ => "TLAXIS/i,j,k fixes the axis",
+    };
+    say("APT0606", format!("{what}, with the tool end at {}", place(tip))).hint(hint)
 }
 
 /// Failures of what must be said before a motion.
@@ -303,14 +309,22 @@ fn path(failure: &Failure) -> Text {
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
         )
         .hint("choose a drive surface that stands on the part surface"),
-        Failure::NeverMet { relation: wanted, nearest, at, course, .. } => say(
+        Failure::NeverMet { relation: wanted, nearest, at, is_there, course, .. } => say(
             "APT0641",
-            format!(
-                "the surface to stop at is never met: the nearest approach to {} is {} at {}",
-                relation(*wanted),
-                number(*nearest),
-                place(at)
-            ),
+            if *is_there {
+                format!(
+                    "the surface to stop at is never met {}: the tool is there at {}, but begins so or leaves the surface",
+                    relation(*wanted),
+                    place(at)
+                )
+            } else {
+                format!(
+                    "the surface to stop at is never met: the nearest approach to {} is {} at {}",
+                    relation(*wanted),
+                    number(*nearest),
+                    place(at)
+                )
+            },
         )
         .hint(match course {
             Course::Analytic => "check the direction and the surface".to_owned(),
@@ -501,7 +515,7 @@ fn warning_text(warning: &Warning) -> Text {
             ),
         )
         .hint("give the part surface by PSIS"),
-        Warning::Gouge { role: name, depth, contact, ahead } => say(
+        Warning::Gouge { role: name, depth, contact, on, ahead } => say(
             "APT0665",
             format!(
                 "{} {} deep into the {} at {}",
@@ -511,10 +525,17 @@ fn warning_text(warning: &Warning) -> Text {
                 place(&contact.surface)
             ),
         )
-        .hint(format!(
-            "the tool end would be at {}; take a smaller tool, or stop before the narrow place",
-            place(&contact.tip)
-        )),
+        .hint(if *on {
+            format!(
+                "with the tool end at {}, which is ON the surface whatever the rest of the tool cuts; TLOFPS keeps all of it out",
+                place(&contact.tip)
+            )
+        } else {
+            format!(
+                "the tool end would be at {}; take a smaller tool, or stop before the narrow place",
+                place(&contact.tip)
+            )
+        }),
         Warning::EndsBesideTool { role: name, place: end } => say(
             "APT0666",
             format!("the {} ends at {}, beside the tool", role(*name), place(end)),

@@ -114,7 +114,7 @@ fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSeque
                     worst = Some((at.clearance.min(here.clearance), at, tip));
                 }
             } else if let Some(known) = worst.take() {
-                found.push(told(role.name, known));
+                found.push(told(role, known));
             }
             if x >= sweep.length {
                 break;
@@ -125,13 +125,13 @@ fn stretches(prepared: &Prepared, role: &Working, side: f64, sequence: &CutSeque
         }
         from = to;
     }
-    found.extend(worst.map(|known| told(role.name, known)));
+    found.extend(worst.map(|known| told(role, known)));
     found
 }
 
-fn told(role: RoleName, (clearance, contact, tip): (f64, Contact, Vec3)) -> MotionWarning {
+fn told(role: &Working, (clearance, contact, tip): (f64, Contact, Vec3)) -> MotionWarning {
     let contact = ContactPoints { tip, tool: contact.tool, surface: contact.surface };
-    MotionWarning::Gouge { role, depth: -clearance, contact, ahead: false }
+    MotionWarning::Gouge { role: role.name, depth: -clearance, contact, on: role.gauge.on, ahead: false }
 }
 
 /// The places where the tool would cut deeper than INTOL into a role's surface a little ahead of a position, the deepest
@@ -155,7 +155,7 @@ pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<Moti
     let warning = |cut: Cut| {
         let surface = role.gauge.surface.foot(&cut.tool).point;
         let contact = ContactPoints { tip: at, tool: cut.tool, surface };
-        MotionWarning::Gouge { role: name, depth: cut.depth, contact, ahead: true }
+        MotionWarning::Gouge { role: name, depth: cut.depth, contact, on: false, ahead: true }
     };
     cuts.into_iter().map(warning).collect()
 }
@@ -249,7 +249,7 @@ mod tests {
             .warnings
             .iter()
             .filter_map(|warning| match warning {
-                MotionWarning::Gouge { role: RoleName::Part, depth, contact, ahead: true } => {
+                MotionWarning::Gouge { role: RoleName::Part, depth, contact, ahead: true, .. } => {
                     Some((*depth, *contact))
                 }
                 _ => None,
@@ -287,7 +287,8 @@ mod tests {
     #[test]
     fn the_body_of_a_tool_on_a_hollow_part_surface_is_told() {
         let p = along_a_trough(true);
-        let [MotionWarning::Gouge { role: RoleName::Part, depth, contact, ahead: false }] = p.warnings[..]
+        let [MotionWarning::Gouge { role: RoleName::Part, depth, contact, on: true, ahead: false }] =
+            p.warnings[..]
         else {
             panic!("{:?}", p.warnings)
         };

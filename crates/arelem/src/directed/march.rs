@@ -590,6 +590,7 @@ impl<'a> March<'a> {
                 relation: self.checks[check].relation,
                 nearest,
                 at,
+                is_there: self.prepared.checks[check].is_as_near(nearest, self.prepared.size),
                 course,
             };
         }

@@ -262,6 +262,7 @@ fn crossing(
             relation: check.relation,
             nearest,
             at: track.at(x),
+            is_there: prepared.checks[0].is_as_near(nearest, prepared.size),
             course: Course::Analytic,
         });
     }

@@ -78,7 +78,7 @@ pub(super) struct Watcher<'a> {
     prepared: &'a Prepared<'a>,
     checks: &'a [CheckSurface],
     watches: Rc<[Watch]>,
-    /// Positions met so far, with any relation.
+    /// Positions met so far with the relation asked for: too few of them.
     pub(super) met: usize,
     /// Least distance from a relation, where and of which check surface.
     pub(super) nearest: (f64, Vec3, usize),

@@ -53,6 +53,7 @@ pub(super) fn run(
             relation: checks[check].relation,
             nearest,
             at,
+            is_there: prepared.checks[check].is_as_near(nearest, prepared.size),
             course: Course::Away { travelled },
         }
     })
