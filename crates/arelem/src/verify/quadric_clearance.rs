@@ -8,6 +8,7 @@
 mod bodies;
 mod bulge;
 mod hollow;
+mod planes;
 
 use apt_geometry::Vec3;
 
@@ -225,6 +226,9 @@ impl Search<'_> {
                         return Some(());
                     }
                 }
+            }
+            if self.shape == Shape::Convex {
+                self.turn_planes();
             }
         }
         Some(())

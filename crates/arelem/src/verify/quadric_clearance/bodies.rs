@@ -27,6 +27,12 @@ impl Body {
         Some((found.distance, found.normal))
     }
 
+    /// A plane near a unit normal, in principal axes, that has it behind: the normal and the level. None where all of that normal's planes
+    /// cut it.
+    pub(super) fn plane(&self, normal: &Vec3) -> Option<(Vec3, f64)> {
+        (self.pair.body_with(normal) == self.sign).then(|| self.pair.plane(normal))?
+    }
+
     /// Whether it may reach into the top of a tool, where nothing touches.
     fn may_reach_into_top(&self, quadric: &PrincipalQuadric, tip: &Vec3, tool: &Tool<'_>) -> bool {
         let down = quadric.turned_in(&-tool.axis);

@@ -83,3 +83,46 @@ proptest! {
         }
     }
 }
+
+/// How deep a line is in a sharp body is told by the planes along it that have the body behind them: about its deepest place the way out
+/// leaps from one side of the body to the other, and the planes there cut the line.
+#[test]
+fn a_line_through_the_tip_of_a_body_is_as_deep_as_the_planes_along_it_tell() {
+    // Half angles of both nappes along x, 22 and 31 degrees.
+    let [narrow, wide] = [0.16, 0.36];
+    let surface =
+        Surface::of(&quadric([-1.0, 1.0 / narrow, 1.0 / wide, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])).unwrap();
+    let profile = Profile::of(&cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0])).unwrap();
+    let clearance = Clearance::new(&surface, &profile, 1.0);
+    for axis in [[0.1, 1.0, 0.3], [0.2, -0.4, 1.0], [0.0, 0.0, 1.0], [-0.3, 0.9, -0.8]] {
+        let axis = Vec3::from(axis).normalize();
+        // A plane along the line through the vertex with a nappe behind it: its normal n is square to the line, and narrow·n.y² + wide·n.z² is n.x².
+        let across = axis.cross(&Vec3::x()).normalize();
+        let other = across.cross(&axis);
+        let level = |n: &Vec3| n.x * n.x - narrow * n.y * n.y - wide * n.z * n.z;
+        let normal = |phi: f64| other * phi.cos() + across * phi.sin();
+        let between = |sense: f64| {
+            let [mut low, mut high] = [0.0, sense * std::f64::consts::FRAC_PI_2];
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if level(&normal(middle)) > 0.0 { low = middle } else { high = middle }
+            }
+            let n = normal(low);
+            n * n.x.signum()
+        };
+        let planes = [between(1.0), between(-1.0)];
+        for off in [-0.6, -0.2, 0.0, 0.35, 0.8] {
+            // From a plane to the other one, inside.
+            let inside = Vec3::new(-0.02, 0.0, 0.0) + across * (0.005 * off);
+            let depth = planes.iter().map(|n| n.dot(&inside)).fold(f64::NEG_INFINITY, f64::max);
+            assert!(depth < 0.0, "{axis:?} {off} {depth}");
+            let found = clearance.at(&(inside - axis), &axis).unwrap();
+            let told = [found.value - found.error, found.value + found.error];
+            assert!(
+                told[0] <= depth + 1e-12 && told[1] >= depth - 1e-12,
+                "{axis:?} {off}: {found:?} {depth}"
+            );
+            assert!(told[0] >= depth - 1e-9, "{axis:?} {off}: {found:?} {depth}");
+        }
+    }
+}
