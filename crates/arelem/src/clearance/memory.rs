@@ -194,6 +194,11 @@ impl Memory {
         }
     }
 
+    /// Whether there is a last contact near a surface with charts, on a side, that the next one can be followed from.
+    pub(super) fn has_last(&self, side: f64) -> bool {
+        self.near.try_borrow().is_ok_and(|near| near.has_last(side))
+    }
+
     /// Keeps what a contact was shown to be in a position.
     pub(super) fn remember_level(&self, axis: &Vec3, side: f64, tip: &Vec3, level: f64) {
         let Ok(mut shown) = self.shown.try_borrow_mut() else { return };

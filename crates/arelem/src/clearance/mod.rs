@@ -139,6 +139,7 @@ impl Gauge {
             return (level(contact), true);
         }
         let beside = Beside { tool: &tool, surface, side: *side, tip: &tip };
+        let has_last = memory.has_last(*side);
         if follows && let Some(contact) = memory.crease_passed(*side).and_then(|spot| beside.along(&spot)) {
             return (level(contact), false);
         }
@@ -147,7 +148,7 @@ impl Gauge {
                 memory.pass_crease(*side, None);
                 return (level(contact), true);
             }
-            Followed::Likely(_, contact) if follows => return (level(contact), false),
+            Followed::Likely(_, contact) if follows && has_last => return (level(contact), false),
             Followed::Likely(..) | Followed::Lost => {}
         }
         let found = search::found(&tool, Face { surface, side: *side }, &tip);
@@ -173,13 +174,16 @@ impl Gauge {
         if let Some(contact) = memory.crease(side).and_then(|spot| beside.along(&spot)) {
             return (level(contact), false);
         }
+        let has_last = memory.has_last(side);
         match near::contact(tool, surface, side, tip, memory) {
             Followed::Proven(contact, missed) => {
                 memory.remember_level(&tool.axis, side, tip, contact.clearance - missed);
                 (level(contact), true)
             }
-            Followed::Likely(_, contact) => (level(contact), false),
-            Followed::Lost => (level(offset_contact(tool, surface, side, tip, Some(memory)).0), true),
+            Followed::Likely(_, contact) if has_last => (level(contact), false),
+            Followed::Likely(..) | Followed::Lost => {
+                (level(offset_contact(tool, surface, side, tip, Some(memory)).0), true)
+            }
         }
     }
 

@@ -1,9 +1,14 @@
 //! Motions in which the random motions once found a fault.
 
-use apt_geometry::cutter::Cutter;
+use std::sync::Arc;
+
+use apt_geometry::{canonical::TabulatedCylinder, cutter::Cutter};
 use proptest::prelude::*;
 
-use super::*;
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
 use crate::{clearance::EVALUATIONS, sequence::ToolPosition, verify::verify};
 
 /// Runs commands and has every sequence proven by sampling and by the verifier.
@@ -452,4 +457,66 @@ fn a_path_goes_on_that_turns_by_nearly_a_right_angle_at_the_end_of_a_bend() {
     program.go(&[(Relation::On, &drive), (Relation::To, &part), (Relation::On, &first)]);
     program.side(DriveSide::On).indirv(forward.x, forward.y, forward.z);
     proven(&mut program, &[motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)])]);
+}
+
+/// Where the tool comes to the check surface no contact with that is known yet, and its top comes to it first: followed from a guess, which is seen from
+/// the corner, it came to a far bend of the surface, and from there the end of the motion to a position far away.
+#[test]
+fn a_motion_ends_at_that_bend_of_a_check_surface_that_it_comes_to() {
+    let Geometry::TabulatedCylinder(flat) = economy::tabulated(
+        &[
+            [-13.118225868134777, 7.7664266326948335, 0.0, 0.0],
+            [-3.76551031178896, 4.227117134771977, 0.06699608414260312, -0.17792399211704227],
+            [-3.26551031178896, 3.992052967284876, 0.055104331710272, -0.06810802196626375],
+            [-2.76551031178896, 3.7072664218730322, 0.060425403925013915, 0.024913815382996064],
+            [-2.26551031178896, 3.4424831771312654, 0.07235214301161222, 0.12913274747150114],
+            [-1.7655103117889597, 3.2625314060108574, 0.03248941812227351, 0.253210252791247],
+            [-1.2655103117889597, 3.2114695781195097, -0.052686106875373416, 0.29971199953727196],
+            [-0.7655103117889597, 3.3017994097685293, -0.07079339453839081, 0.2118892151465962],
+            [-0.2655103117889597, 3.511405007807222, -0.057089325740700136, 0.0968217452296517],
+            [0.23448968821104033, 3.788967611584922, -0.057089325740700136, 0.001122126757142348],
+            [0.7344896882110403, 4.066530215362621, -0.07079339453839081, -0.09674575433807223],
+            [1.2344896882110403, 4.276135813401314, -0.052686106875373416, -0.21940352051991846],
+            [1.7344896882110403, 4.366465645050334, 0.03248941812227351, -0.3021978507921528],
+            [2.23448968821104, 4.315403817158986, 0.07235214301161222, -0.24447585579814346],
+            [2.73448968821104, 4.135452046038578, 0.060425403925013915, -0.12747677643968366],
+            [3.23448968821104, 3.8706688012968113, 0.055104331710272, -0.027015692197817777],
+            [3.73448968821104, 3.5858822558849677, 0.06699608414260312, 0.06687818039484572],
+            [4.23448968821104, 3.3508180883978658, 0.0, 0.0],
+        ],
+        [13.587205244556857, -0.18849140952498988],
+    ) else {
+        panic!("a tabulated cylinder")
+    };
+    let axes = [
+        v(0.7367354463838752, 0.2981544627448041, -0.6068976836229558),
+        v(0.6185909511575403, 0.06527268934554722, 0.7829972612797631),
+        v(0.27306797173517416, -0.9522832521739302, -0.13634694877950604),
+    ];
+    let part = Cylinder {
+        point: v(-6.224008957406003, 4.576356292271045, 2.8783979178569563),
+        axis: v(0.40577066939126527, 0.9117379747734202, -0.06390640983365052),
+        radius: 7.943168489365155,
+    };
+    let drive =
+        Plane { normal: v(0.3434501803487914, -0.9391708969183312, 0.0), distance: -1.5273927172237292 };
+    let motion = Found {
+        cutter: &[0.3312820966351972],
+        axis: Vec3::z(),
+        from: v(-0.6789954017498324, 1.5543844865129934, -1.7306319285834497),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(0.6878463472942435, 0.2515420279798221, 0.6808773829947395),
+        part: (Relation::To, Geometry::Cylinder(part)),
+        drive: (Relation::To, Geometry::Line(drive)),
+        first: (Relation::To, Geometry::Line(drive)),
+        stop: (
+            Relation::To,
+            Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, ..(*flat).clone() })),
+        ),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let end = sequences[0].points.last().expect("a position").tip;
+    assert!((end - v(-0.077, 1.774, -1.037)).norm() < 0.01, "{end}");
 }

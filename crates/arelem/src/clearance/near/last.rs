@@ -2,7 +2,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{Near, Pose, Start};
+use super::{Contacts, Near, Pose, Start};
 use crate::clearance::Contact;
 
 /// How near a tool was to a surface in a position: no farther away than one of its points, which this is of.
@@ -11,6 +11,14 @@ pub(super) struct Last {
     tip: Vec3,
     axis: Vec3,
     clearance: f64,
+}
+
+impl Contacts {
+    /// Whether a contact was found on a side. Where none was Newton's method begins at a guess, seen from the corner of the tool: it leads to any bend
+    /// of the surface, while another part of the tool may be in contact.
+    pub(in crate::clearance) fn has_last(&self, side: f64) -> bool {
+        self.places.iter().any(|known| known.side == side && known.last.is_some())
+    }
 }
 
 impl Near {
