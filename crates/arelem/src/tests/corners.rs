@@ -423,3 +423,43 @@ fn a_path_turns_back_at_a_wall_that_leads_nearly_as_the_one_it_follows() {
         stop: (Relation::On, plane(0.7348, -0.4094, 0.5399, -34.9)),
     });
 }
+
+/// The legs of a wedge lie so near to each other that its walls, which the tool touches with either end, hardly lead out of the way: the path goes on along
+/// the second wall all the same, not back along the first one.
+#[test]
+fn a_path_goes_on_along_the_second_wall_of_a_narrow_wedge() {
+    let part = Cylinder {
+        point: v(1.0745626479693733, -5.526176601892004, -1.9549970615224568),
+        axis: Vec3::z(),
+        radius: 5.735895176247769,
+    };
+    let drive = Cone {
+        vertex: v(4.631953942339921, 1.5160070722084114, -3.176560899546045),
+        axis: v(-0.8314734417216468, 0.12157307176914522, -0.5420995332336798),
+        cosine: 0.5267792880295258,
+    };
+    let motion = Found {
+        cutter: &[
+            0.6356648243768328,
+            0.0,
+            0.3178324121884164,
+            0.0,
+            0.0,
+            14.040644674086582,
+            4.393232149355843,
+        ],
+        axis: v(-0.5729472487170439, -0.8190844375821711, 0.0288467380871471),
+        from: v(6.544664990266997, -5.097217966438834, -164.5102027037552),
+        band: [2e-5, 3e-5],
+        thickness: 0.0,
+        drive_side: DriveSide::On,
+        forward: -Vec3::z(),
+        part: (Relation::To, Geometry::Circle(part)),
+        drive: (Relation::On, Geometry::Cone(drive)),
+        first: (Relation::On, Geometry::Cone(drive)),
+        stop: (Relation::On, plane(0.0, 0.0, 1.0, -163.0)),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let end = sequences[0].points.last().expect("a position").tip;
+    assert!(end.y < -5.14, "{end}");
+}

@@ -143,7 +143,9 @@ impl Hand {
         }
         let Some(left) = (0..2).find(|role| !same[*role] && same[1 - role]) else { return };
         let Some(along) = self.along(&to.part, &to.drive) else { return };
-        if gradients(&from)[left].dot(&along).abs() <= SAME_LINE_SINE {
+        // Square to both of its gradients is the line that it came along, whatever angle they make.
+        let (gradient, other) = (gradients(&from)[left], gradients(to)[1 - left]);
+        if gradient.dot(&along).abs() <= SAME_LINE_SINE * gradient.cross(&other).norm() {
             self.sign = now;
         } else {
             self.is_beyond_corner = true;
