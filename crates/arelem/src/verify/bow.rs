@@ -15,6 +15,8 @@ use super::{
 const ALONG: f64 = 0.5;
 /// Angle of a corner, radians, above which the slope is not followed.
 const SHARP: f64 = 0.05;
+/// Angle of a corner, radians, that is rounding.
+const ROUNDING: f64 = 1e-12;
 /// Share of the radius of curvature that a tool may be too deep.
 const DEEPEST: f64 = 0.5;
 /// Parts that each piece of a curve is cut into.
@@ -139,7 +141,7 @@ impl Passing<'_> {
         if ends.iter().any(|end| facing.above(end) <= reach) {
             return None;
         }
-        let mut bend = Bend { rate: 0.0, jumps: 0.0 };
+        let mut bend = Bend { rate: 0.0, jumps: 0.0, corners: 0 };
         let mut before: Option<&Bow> = None;
         for bow in bows {
             if !near(bow) {
@@ -159,6 +161,7 @@ impl Passing<'_> {
                     return None;
                 }
                 bend.jumps += 2.0 * away.max(0.0);
+                bend.corners += u32::from(away > ROUNDING);
             }
             before = Some(bow);
         }

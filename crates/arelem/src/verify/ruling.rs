@@ -178,7 +178,7 @@ impl Ruling {
         let [before, after] = self.rays(&shadow)?.map(|ray| ray.map(Bow::straight));
         let before = before.map(Bow::turned_round);
         let bend = passing.bend(before.iter().chain(&self.bows).chain(&after), &stops)?;
-        Some(Bend { rate: bend.rate * share * share, jumps: bend.jumps * share })
+        Some(Bend { rate: bend.rate * share * share, jumps: bend.jumps * share, ..bend })
     }
 
     fn lifted(&self, x: &Flat) -> Vec3 {

@@ -1,5 +1,6 @@
 //! Extremes of a clearance over the whole of one cut vector, with proof.
 
+mod bounds;
 mod piece;
 
 use std::{cell::RefCell, collections::HashMap};
@@ -8,7 +9,10 @@ use apt_geometry::Vec3;
 
 use crate::sequence::ToolPosition;
 
-use self::piece::{Piece, told_by_each_other};
+use self::{
+    bounds::{bounds, crest},
+    piece::{Piece, told_by_each_other},
+};
 use super::clearance::{Clearance, Reading, Shape};
 
 /// Evaluations that one extreme may cost; the gap left then is the error term.
@@ -107,13 +111,15 @@ pub(super) struct Bend {
     pub(super) rate: f64,
     /// Bound of the sum of all sudden increases of the slope.
     pub(super) jumps: f64,
+    /// At how many corners of the surface there are any.
+    pub(super) corners: u32,
 }
 
 impl Bend {
     /// For a surface that bends away with a curvature of `hill` at most, and a tool no deeper in it than `depth`.
     pub(super) fn over(hill: f64, depth: f64) -> Option<Self> {
         let deepest = hill * depth;
-        (deepest <= DEEPEST).then(|| Self { rate: hill / (1.0 - deepest), jumps: 0.0 })
+        (deepest <= DEEPEST).then(|| Self { rate: hill / (1.0 - deepest), jumps: 0.0, corners: 0 })
     }
 }
 
@@ -260,6 +266,8 @@ impl Span<'_> {
         let [first, last] = self.at_ends()?;
         let share = 0.5f64.powi((HALVINGS - halvings) as i32);
         match self.bend() {
+            // Of several corners that count one alone may be within reach of a part of the vector.
+            Some(bend) if bend.corners > 1 && bend.jumps > self.band[1] - self.band[0] && halvings > 0 => {}
             Some(bend) if self.tells(&bend, share) => return self.bent(first, last, bend, tolerance),
             None if halvings > 0 && self.bends_anywhere(0.5f64.powi(halvings as i32))? => {}
             _ => return self.free(first, last, tolerance),
@@ -347,7 +355,7 @@ impl Span<'_> {
         let enough = FULL * room / (travel * travel);
         let bend = self.clearance.bend_along([&self.from, &self.to], [first, last], [travel, enough])?;
         let rate = bend.rate * travel * travel + turn * swing;
-        Some(Bend { rate, jumps: bend.jumps * travel })
+        Some(Bend { rate, jumps: bend.jumps * travel, ..bend })
     }
 
     /// Whether a bound of the bend tells something, for such a share of a vector: beside the tip of what is nearly a cone it does
@@ -360,18 +368,13 @@ impl Span<'_> {
     /// Extremes where the growth of the slope is bounded: a vector is divided until each part is proven to lie within the
     /// band, or to hide no more than `tolerance`. A part that may be above the band is divided where it may be highest, which is about
     /// where the tool goes over to another contact if it does; in the middle if that left more than half of it.
-    fn bent(
-        &self,
-        first: Sample,
-        last: Sample,
-        Bend { rate, jumps }: Bend,
-        tolerance: f64,
-    ) -> Option<Extremes> {
+    fn bent(&self, first: Sample, last: Sample, bend: Bend, tolerance: f64) -> Option<Extremes> {
+        let is_left_once = bend.corners <= 1 && !self.turns();
         let mut found: Option<Extremes> = None;
         let mut open = vec![(first, last, true)];
         let mut budget = FREE_EVALUATIONS;
         while let Some((a, b, may_be_short)) = open.pop() {
-            let part = bounds([a, b], rate, jumps);
+            let part = bounds([a, b], &bend, is_left_once);
             let is_whole = b.t - a.t >= 1.0;
             let within = part.low >= self.band[0] && part.high <= self.band[1];
             // Where the slope changes its sign, an extreme is looked at once, unless nothing depends on it.
@@ -391,7 +394,7 @@ impl Span<'_> {
             }
             budget = budget.saturating_sub(1);
             let half = 0.5 * (a.t + b.t);
-            let highest = crest([a, b], rate).filter(|_| may_be_short && part.high > self.band[1]);
+            let highest = crest([a, b], bend.rate).filter(|_| may_be_short && part.high > self.band[1]);
             let t = highest.unwrap_or(if is_whole && between { turn } else { half });
             let middle = self.sample(t)?;
             open.extend([(middle, b, t >= half), (a, middle, t <= half)]);
@@ -463,52 +466,6 @@ fn lowest_of_cubic([a, b]: [Sample; 2]) -> f64 {
     a.t - 2.0 * first * width / (linear + (linear * linear - 4.0 * square * first).max(0.0).sqrt())
 }
 
-/// Where the parabolas from two samples with a second derivative of `rate` meet, if that is between them.
-fn crest([a, b]: [Sample; 2], rate: f64) -> Option<f64> {
-    let width = b.t - a.t;
-    let at = (b.value - a.value - b.slope * width + 0.5 * rate * width * width)
-        / (a.slope - b.slope + rate * width);
-    (at > 0.0 && at < width).then_some(a.t + at)
-}
-
-/// What a function between two samples can be whose second derivative is at most `rate` and whose slope increases suddenly
-/// by at most `jumps`: not below its chord less the bulge of a parabola, nor below what leads to either end, nor above what
-/// leads on from either end.
-fn bounds([a, b]: [Sample; 2], rate: f64, jumps: f64) -> Extremes {
-    let width = b.t - a.t;
-    let (least, most) = (a.value.min(b.value), a.value.max(b.value));
-    let rise = (b.value - a.value) / width;
-    let low = if rise.abs() < 0.5 * rate * width {
-        let at = 0.5 * width - rise / rate;
-        a.value + rise * at - 0.5 * rate * at * (width - at)
-    } else {
-        least
-    };
-    // From the one end on it is not below a parabola that has the slope of the other end there.
-    let from = |value: f64, slope: f64, slack: f64| {
-        if slack.is_infinite() {
-            return f64::NEG_INFINITY;
-        }
-        let first = slope - slack * rate - jumps - rate * width;
-        let at = -first / rate;
-        if first >= 0.0 {
-            value
-        } else if at < width {
-            value + 0.5 * first * at
-        } else {
-            value + first * width + 0.5 * rate * width * width
-        }
-    };
-    let low = low - 0.25 * jumps * width;
-    let low = low.max(from(a.value, b.slope, b.slack)).max(from(b.value, -a.slope, a.slack)).min(least);
-    let high = crest([a, b], rate).map_or(most, |t| {
-        let at = t - a.t;
-        most.max(a.value + a.slope * at + 0.5 * rate * at * at)
-    });
-    let error = a.error.max(b.error);
-    Extremes { min: least, max: most, low: low - error, high: high + jumps * width + error }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -538,23 +495,6 @@ mod tests {
                 prop_assert!(told.error <= 2.0 * own.error);
             }
         }
-    }
-
-    /// Where contact goes over from one place to another, the parabolas of both meet, and nothing between the samples is above that.
-    #[test]
-    fn the_crest_is_where_two_parabolas_meet() {
-        let [rate, kink] = [0.8, 0.37];
-        let rising =
-            |t: f64| Sample { slope: 0.5 + rate * t, ..sample(t, 0.5 * t + 0.5 * rate * t * t, 0.0) };
-        let top = rising(kink).value;
-        let falling = |t: f64| Sample {
-            slope: -0.9 + rate * (t - kink),
-            ..sample(t, top - 0.9 * (t - kink) + 0.5 * rate * (t - kink).powi(2), 0.0)
-        };
-        let ends = [rising(0.0), falling(1.0)];
-        let found = crest(ends, rate).unwrap();
-        assert!((found - kink).abs() < 1e-12, "{found}");
-        assert!((bounds(ends, rate, 0.0).high - top).abs() < 1e-12);
     }
 
     /// A reading that is known to little says no more than the close ones beside it; a slope that is not that of the values does not make a

@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::Geometry,
+    canonical::{Geometry, Interval, TabulatedCylinder},
     motion::{DriveSide, Relation},
 };
 use proptest::prelude::*;
@@ -297,6 +297,48 @@ fn sequences_along_and_over_a_wave_are_proven_and_broken_ones_are_not() {
     let mut other = along_wave(false);
     other.drive_side = DriveSide::Right;
     assert_eq!(rules(&other), [Rule::Side]);
+}
+
+/// A wall of hollows with corners between, which stand out to the tool, as FOURPT makes them: how little the slope of a vector that fills the band in a
+/// hollow can grow at the corners of others is no matter of how finely it is read.
+#[test]
+fn a_vector_beside_corners_may_fill_its_band() {
+    // Hollows v = b·u(u − 1) over chords of length one, and a vector from end to end of one of them.
+    let (bend, radius, inside, open) = (0.015, 0.25, BAND.0, 2e-4);
+    let axes = frame(UPRIGHT);
+    let hollows = (-3..4).map(|k| Interval {
+        u: f64::from(k),
+        v: 0.0,
+        a: 0.0,
+        b: bend,
+        length: 1.0,
+        maximum: 0.0,
+        minimum: 0.0,
+    });
+    let geometry = Geometry::TabulatedCylinder(std::sync::Arc::new(TabulatedCylinder {
+        axes,
+        kind: 0.0,
+        intervals: hollows.collect(),
+        last: [4.0, 0.0],
+    }));
+    let tool = cutter(&[2.0 * radius, 0.0]);
+    let beside = |u: f64| {
+        let (height, slope) = (bend * u * (u - 1.0), bend * (2.0 * u - 1.0));
+        Vec3::new(u, height, 0.0) + Vec3::new(-slope, 1.0, 0.0).normalize() * (radius - inside)
+    };
+    let tips = [beside(0.1), beside(0.9)];
+    let middle = 0.5 * (tips[0] + tips[1]);
+    let (greatest, ..) = clearance(&tool, &geometry, 1.0, middle.into(), [0.0, 0.0, 1.0]);
+    let proven = |outside: f64| {
+        let wall = role(geometry.clone(), Relation::To, 1.0, inside, outside);
+        let end = paths::end_plane(&tips, Vec3::x());
+        verify(&paths::sequence(&tips, tool, paths::floor(), wall, end, DriveSide::Left), &|| false)
+            .unwrap()
+            .verified
+    };
+    let band = inside + greatest;
+    assert!(proven(greatest + open * band));
+    assert!(!proven(greatest - open * band));
 }
 
 #[test]
