@@ -171,6 +171,13 @@ impl<'a> Prepared<'a> {
         Self { aim: Some(place), ..self }
     }
 
+    /// On which hands a tool that keeps its axis has part and drive surface where it sets out: positive if the line of motion leads along the cross product of
+    /// their gradients.
+    pub(super) fn hand(&self) -> f64 {
+        let [part, drive] = &self.followed;
+        part.cross(drive).dot(&self.standing)
+    }
+
     /// The same motion with another way of the axis.
     pub(super) fn with(&self, attitude: Attitude<'a>) -> Self {
         let lines = (&self.standing, &self.wanted);

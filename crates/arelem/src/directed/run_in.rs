@@ -45,6 +45,10 @@ pub(super) fn follow<'a>(
             Err(again) if is_stuck_within(&again.failure, &prepared, length) => {}
             // A ring may be wider than the way that it is a ring of; where it is not one, the tool goes round on longer ways too.
             Err(again) if is_closed(&again.failure) => farthest = again,
+            // Nor may one that leads away from the check surface from where the tool had not turned yet be the one asked for.
+            Err(again) if is_left_within(&again.failure, &prepared.tip, length) => farthest = again,
+            // Once it has turned the tool goes on with its surfaces on the same hands as it came with, or it goes back along them.
+            Ok(found) if changes_hands(&running, &found.points, length)? => {}
             // Where it comes back the axis would leave its law again.
             Ok(found) if comes_back(&found.points, &prepared.tip, length) => break,
             // A ring may lead through the check surface as well; where that is as near as the way is long the motion ends before the tool has turned.
@@ -56,6 +60,21 @@ pub(super) fn follow<'a>(
         }
     }
     short.ok_or(farthest)
+}
+
+/// Whether a tool that has turned to its law, at a distance from where the motion begins, goes on with part and drive surface on other hands than it has them
+/// on where it sets out: it then goes along them against the direction asked for, and has the drive surface on the other side than it is told.
+fn changes_hands(running: &Prepared, points: &[Vec3], length: f64) -> Result<bool, MotionFailure> {
+    let Some(turned) = points.iter().position(|point| (point - running.tip).norm() >= length) else {
+        return Ok(false);
+    };
+    let place = points[turned];
+    let before = turned.checked_sub(1).map_or(running.tip, |k| points[k]);
+    let onward = points.get(turned + 1).map_or(place - before, |next| next - place);
+    let tool = running.attitude.tool_at(&place)?;
+    let [part, drive] =
+        [&running.part, &running.drive].map(|role| role.gauge.contact(&tool, &place).gradient);
+    Ok(part.cross(&drive).dot(&onward) * running.hand() < 0.0)
 }
 
 /// Whether a path ends nearer to a place than a distance.
@@ -81,6 +100,11 @@ fn turns_out_of_check(failure: &MotionFailure, prepared: &Prepared) -> Result<bo
 /// Whether a path came back to its beginning.
 fn is_closed(failure: &MotionFailure) -> bool {
     matches!(failure, MotionFailure::NeverMet { course: Course::Closed { .. }, .. })
+}
+
+/// Whether no check surface was met by a path that is nowhere nearer to it than within a distance of a place.
+fn is_left_within(failure: &MotionFailure, place: &Vec3, distance: f64) -> bool {
+    matches!(failure, MotionFailure::NeverMet { at, .. } if (at - place).norm() <= distance)
 }
 
 /// Whether a path leaves a place by a distance and is nearer to it later.

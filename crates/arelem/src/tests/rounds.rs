@@ -105,3 +105,59 @@ fn a_tool_comes_past_a_wall_out_of_it() {
     let way = p.tip() - p.last().start.tip;
     assert!(way.dot(&walls.edge(0)) > 0.8 * way.norm() * walls.edge(0).norm(), "{way:?}");
 }
+
+/// Over too short a way to turn on the tool may come round a part of that ring and leave it along the wall by which it came, with the wall on its other side:
+/// it is told to go on, wherever and whichever way the same part lies.
+#[test]
+fn a_tool_that_has_turned_goes_on_in_the_direction_that_it_is_told() {
+    let shift = v(3.0, -7.0, 2.0);
+    for k in 0..24 {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
+        let turned = |x: f64, y: f64, z: f64| v(x * cos - y * sin, x * sin + y * cos, z);
+        let leaning = |x: f64, y: f64, z: f64, distance: f64| {
+            let normal = turned(x, y, z).normalize();
+            plane(normal.x, normal.y, normal.z, distance + normal.dot(&shift))
+        };
+        let wall = leaning(-0.489000495299, -0.855526285158, 0.170156666049, -4.020054761846);
+        let next = leaning(0.518029497996, -0.838267348884, 0.170156666049, -4.056086860296);
+        let across = leaning(-0.868187036845, 0.496237109711, 0.0, -1.295228184801);
+        let below = v(0.0, 0.0, -30.0) + shift;
+        let dome = sphere(below.x, below.y, below.z, 30.0);
+        let start = turned(3.694783602814, 3.854075009065, 1.5) + shift;
+        let along = turned(-0.868187036845, 0.496237109711, 0.0);
+        let mut p = Program::new();
+        p.tolerance(0.0005, 0.001)
+            .cutter(&[1.0, 0.5, 0.0, 0.5, 0.0, 0.0, 2.0])
+            .from(start.x, start.y, start.z);
+        p.go(&[(Relation::To, &wall), (Relation::To, &dome), (Relation::On, &across)]);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true }));
+        p.indirv(along.x, along.y, 0.0).side(DriveSide::Right);
+        p.drive(Turn::Forward, &wall, Relation::Past, &next);
+        proven(&p);
+        let way = p.tip() - p.last().start.tip;
+        assert!(way.dot(&along) > 0.8 * way.norm(), "{k}: {way:?}");
+    }
+}
+
+/// Where such a path never meets the check surface, because it leads away from that, a longer way to turn on is tried, too.
+#[test]
+fn a_path_that_leads_away_from_its_check_surface_while_the_tool_turns_is_not_the_last_one() {
+    let walls = [
+        plane(-0.470728581556, -0.880193935194, -0.060607251668, -3.204061954962),
+        plane(0.998040282975, 0.015567742431, -0.060607251668, -2.138856362102),
+        plane(-0.607822174959, 0.791756884829, -0.060607251668, -3.524151620929),
+    ];
+    let leaning = plane(0.098413566261, -0.147620349392, 0.98413566261, 0.0);
+    let across = plane(-0.881814983763, 0.471595519923, 0.0, -0.547835693056);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.001).cutter(&[0.5, 0.125, 0.125, 0.125, 0.0, 0.0, 2.0]);
+    p.from(2.39775001819, 3.321779224187, 1.5);
+    p.go(&[(Relation::To, &walls[0]), (Relation::To, &leaning), (Relation::On, &across)]);
+    p.run(&MotionCommand::ToolAxis(along(AxisTangency::Across)));
+    p.indirv(-0.881814983763, 0.471595519923, 0.0).side(DriveSide::Right);
+    p.drive(Turn::Forward, &walls[0], Relation::Past, &walls[1]);
+    p.drive(Turn::Left, &walls[1], Relation::Past, &walls[2]);
+    proven(&p);
+    let way = p.tip() - p.last().start.tip;
+    assert!(-way.y > 0.8 * way.norm(), "{way:?}");
+}
