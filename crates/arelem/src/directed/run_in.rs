@@ -37,6 +37,7 @@ pub(super) fn follow<'a>(
     }
     let mut farthest = stuck;
     let mut short = None;
+    let mut back_and_forth = None;
     for k in 0..ways(&prepared) {
         let length = shortest * f64::from(1u32 << k);
         let attitude = prepared.attitude.running_in(&prepared.tip, length);
@@ -49,17 +50,21 @@ pub(super) fn follow<'a>(
             Err(again) if is_left_within(&again.failure, &prepared.tip, length) => farthest = again,
             // Once it has turned the tool goes on with its surfaces on the same hands as it came with, or it goes back along them.
             Ok(found) if changes_hands(&running, &found.points, length)? => {}
+            // Nor does it go to and fro while it turns, if it need not.
+            Ok(found) if goes_back(&found.points, &prepared.tip, length) => {
+                back_and_forth.get_or_insert((running, found));
+            }
             // Where it comes back the axis would leave its law again.
             Ok(found) if comes_back(&found.points, &prepared.tip, length) => break,
             // A ring may lead through the check surface as well; where that is as near as the way is long the motion ends before the tool has turned.
             Ok(found) if ends_within(&found.points, &prepared.tip, length) => {
                 short.get_or_insert((running, found));
             }
-            Err(_) if short.is_some() => break,
+            Err(_) if short.is_some() || back_and_forth.is_some() => break,
             found => return found.map(|found| (running, found)),
         }
     }
-    short.ok_or(farthest)
+    short.or(back_and_forth).ok_or(farthest)
 }
 
 /// Whether a tool that has turned to its law, at a distance from where the motion begins, goes on with part and drive surface on other hands than it has them
@@ -75,6 +80,14 @@ fn changes_hands(running: &Prepared, points: &[Vec3], length: f64) -> Result<boo
     let [part, drive] =
         [&running.part, &running.drive].map(|role| role.gauge.contact(&tool, &place).gradient);
     Ok(part.cross(&drive).dot(&onward) * running.hand() < 0.0)
+}
+
+/// Whether a vector of a path leads back against the one before while a tool turns up to a distance from a place.
+fn goes_back(points: &[Vec3], place: &Vec3, distance: f64) -> bool {
+    let turning = points.iter().take_while(|point| (*point - place).norm() < distance).count();
+    let before = std::iter::once(place).chain(points);
+    let ways: Vec<Vec3> = points.iter().zip(before).take(turning + 1).map(|(to, from)| to - from).collect();
+    ways.windows(2).any(|pair| pair[0].dot(&pair[1]) < 0.0)
 }
 
 /// Whether a path ends nearer to a place than a distance.

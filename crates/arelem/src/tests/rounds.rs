@@ -161,3 +161,21 @@ fn a_path_that_leads_away_from_its_check_surface_while_the_tool_turns_is_not_the
     let way = p.tip() - p.last().start.tip;
     assert!(-way.y > 0.8 * way.norm(), "{way:?}");
 }
+
+/// While it turns the tool may also be led to and fro, over a way on which it need not.
+#[test]
+fn a_tool_that_turns_first_is_not_led_to_and_fro() {
+    let wall = plane(-0.698638431376, -0.712234980283, -0.068012315542, -3.613743370714);
+    let next = plane(0.851479335172, -0.484356832249, 0.200951239928, -4.024046002022);
+    let level = plane(0.0, 0.0, 1.0, 0.0);
+    let across = plane(-0.713888001046, 0.700259896012, 0.0, 0.850121116975);
+    let mode = AxisAngle::PerpendicularTo(v(0.3, 1.0, 0.1));
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.001).cutter(&[0.5, 0.0, 0.25, 0.0, 0.0, 0.0, 2.0]);
+    p.from(1.334320537014, 2.574296412184, 1.5);
+    p.go(&[(Relation::To, &wall), (Relation::To, &level), (Relation::On, &across)]);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle: 0.0, mode }));
+    p.indirv(-0.713888001046, 0.700259896012, 0.0).side(DriveSide::Left);
+    p.drive(Turn::Forward, &wall, Relation::To, &next);
+    proven(&p);
+}
