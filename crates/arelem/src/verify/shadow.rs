@@ -8,8 +8,9 @@ use nalgebra::Vector2;
 
 use super::tool::{Tool, TurningSupport};
 
-/// Arcs of directions looked at for one distance; what is left then is the gap.
-const ARCS: usize = 96;
+/// Arcs of directions looked at for one distance; what is left then is the gap. So many may be as good as each other, to a part of 1e-9 of the tool, about a
+/// place to which the rim bends.
+const ARCS: usize = 256;
 /// Steps of Newton's method towards the best direction, and the greatest of them, radians.
 const STEPS: usize = 6;
 const LARGEST_TURN: f64 = 1.0;
@@ -283,5 +284,33 @@ mod tests {
             prop_assert!(most <= found.value + found.gap + 1e-12 && found.value <= most + 1e-2, "{most} {found:?}");
             prop_assert!((found.level.above(&x) - found.value).abs() < 1e-12);
         }
+    }
+
+    /// From the tip of the evolute of the figure all its places about there are as near, to the fourth order of the angle: over so many arcs it is
+    /// that they are told from each other.
+    #[test]
+    fn a_distance_from_where_the_rim_bends_to_is_closed_in() {
+        let [alpha, beta] = [0.22768269504135877_f64, 0.21917471953489606];
+        let [diameter, radius, offset] = [0.6805591924718866, 0.12214110219818396, 0.2328298044631856];
+        let low = radius * (1.0 - 0.2606961736383478);
+        let corner_height = offset * alpha.tan() + low / alpha.cos();
+        let cutter = Cutter {
+            diameter,
+            corner_radius: radius,
+            corner_offset: offset,
+            corner_height,
+            alpha,
+            beta,
+            height: 1.8125617598774324,
+        };
+        let profile = Profile::of(&cutter).unwrap();
+        let axis = Vec3::new(-0.7908460369037865, -0.3254544225393191, 1.0).normalize();
+        let tool = Tool::new(&profile, axis);
+        let frame = [Vec3::x(), Vec3::z()];
+        let shadow = Shadow::new(&tool, &frame, &Vec3::new(0.1, 0.2, 0.3));
+        let inside = shadow.level(Flat::new(-2.2245527424926874, -1.9299535916035582).normalize());
+        let place = inside.support - inside.normal * 0.04449105484985375;
+        let found = shadow.distance(&place, 1e-10);
+        assert!(found.gap <= 1e-10, "{found:?}");
     }
 }
