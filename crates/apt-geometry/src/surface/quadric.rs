@@ -270,11 +270,9 @@ impl PrincipalQuadric {
         }
         for i in 0..3 {
             let k = 1.0 + multiplier * self.square[i];
-            if i != free && k.abs() > 1e-9 {
-                q[i] = (y[i] - multiplier * self.linear[i]) / k;
-            }
+            let is_at_pole = i == free || k.abs() <= 1e-9;
+            q[i] = if is_at_pole { self.center(i) } else { (y[i] - multiplier * self.linear[i]) / k };
         }
-        q[free] = self.center(free);
         let rest = self.value_local(&q);
         q[free] += (-rest / self.square[free]).max(0.0).sqrt();
         q

@@ -262,7 +262,7 @@ fn crossing(
             relation: check.relation,
             nearest,
             at: track.at(x),
-            is_there: prepared.checks[0].is_as_near(nearest, prepared.size),
+            is_there: prepared.checks[0].is_there(start, prepared.size),
             course: Course::Analytic,
         });
     }
