@@ -35,6 +35,14 @@ pub(crate) struct Extremes {
     pub(crate) proven: bool,
     /// What has been read of the clearance along the vector: see [`crate::bound`].
     pub(crate) readings: Readings,
+    /// Second derivative of the parabola through both ends and a place between them, if one was looked at where the tool turns.
+    pub(crate) turning_bend: Option<f64>,
+}
+
+/// Second derivative of the parabola through three places, given with their clearances.
+fn second_derivative([a, b, c]: [(f64, f64); 3]) -> f64 {
+    let rise = |from: (f64, f64), to: (f64, f64)| (to.1 - from.1) / (to.0 - from.0);
+    2.0 * (rise(b, c) - rise(a, b)) / (c.0 - a.0)
 }
 
 /// Clearance and its derivative at a place along the vector.
@@ -129,7 +137,7 @@ pub(crate) fn extremes(
     let slope = |contact: &Contact| sweep.direction.dot(&contact.gradient);
     let reading = |x, contact: &Contact| Reading { x, value: contact.clearance, slope: slope(contact) };
     let readings = Readings::at_ends(reading(0.0, from.1), reading(length, to.1));
-    let ends = Extremes { least, greatest, proven, readings };
+    let ends = Extremes { least, greatest, proven, readings, turning_bend: None };
     let turns = sweep.turns() && !role.gauge.on;
     let shape = match role.shape {
         Shape::Convex if !turns => role.gauge.shape_along(&sweep.at(0.0).1, [from.0, to.0]),
@@ -165,14 +173,14 @@ pub(crate) fn extremes(
             let spare = (least + role.inside).max(ROUNDING * size);
             let Minimum { value, bound, at } = convex_minimum(&line, a, b, spare.min(ENOUGH * role.band()));
             let proven = ends.proven && bound >= limits[0] && role.holds(value, size);
-            Extremes { least: value.min(least), greatest, proven, readings: line.read(readings, &at) }
+            Extremes { least: value.min(least), proven, readings: line.read(readings, &at), ..ends }
         }
         Shape::Concave => {
             let Minimum { value, bound, at } = convex_minimum(&line, a, b, ENOUGH * role.band());
             // The least values are those of the ends, if no other part of the tool is deeper there.
             let deepest = |x| line.certified(x, -role.inside - ROUNDING * size, None);
             let proven = ends.proven && -bound <= limits[1] && deepest(0.0) && deepest(length);
-            Extremes { least, greatest: (-value).max(greatest), proven, readings: line.read(readings, &at) }
+            Extremes { greatest: (-value).max(greatest), proven, readings: line.read(readings, &at), ..ends }
         }
         Shape::General => course::extremes(&line, a, b, ends),
     }

@@ -367,3 +367,51 @@ fn a_flat_tool_that_leans_by_little_across_a_direction_finds_its_axis() {
         }
     }
 }
+
+/// Numbers of vectors of the motions round three leaning walls on a cylinder, with the tool at 85° to each wall, where all of it is turned about
+/// the vertical.
+fn round_leaning_walls(turn: f64) -> Vec<usize> {
+    let (sine, cosine) = turn.sin_cos();
+    let turned = |x: f64, y: f64, z: f64| v(cosine * x - sine * y, sine * x + cosine * y, z);
+    let wall = |x, y, z, distance| {
+        let normal = turned(x, y, z);
+        plane(normal.x, normal.y, normal.z, distance)
+    };
+    let walls = [
+        wall(-0.380825798563, -0.869812776222, -0.313683671029, -2.294204802958),
+        wall(0.931215114389, -0.006533551527, -0.364411475447, -3.050868594258),
+        wall(-0.432702301652, 0.894529603340, 0.112185145601, -2.542390702683),
+    ];
+    let beside = wall(-0.916047968087, 0.401068722495, 0.0, -0.415054501693);
+    let under = cylinder(v(0.0, 0.0, -25.0), turned(1.0, 0.3, 0.0).normalize(), 25.0);
+    let (from, ahead) =
+        (turned(1.008345230583, 1.268206841831, 1.5), turned(-0.916047968087, 0.401068722495, 0.0));
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.001).cutter(&[0.5, 0.125, 0.125, 0.125, 0.0, 0.0, 2.0]);
+    p.from(from.x, from.y, from.z);
+    p.go(&[(Relation::To, &walls[0]), (Relation::To, &under), (Relation::On, &beside)]);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle {
+        part: false,
+        angle: 85f64.to_radians(),
+        mode: AxisAngle::Plain,
+    }));
+    p.side(DriveSide::Left).indirv(ahead.x, ahead.y, ahead.z);
+    let turns = [Turn::Forward, Turn::Left, Turn::Left, Turn::Left];
+    let numbers = turns.iter().enumerate().map(|(k, turn)| {
+        p.drive(*turn, &walls[k % 3], Relation::To, &walls[(k + 1) % 3]);
+        p.last().points.len()
+    });
+    numbers.collect()
+}
+
+/// How a clearance bends along a vector on which the tool turns is read between its ends: where it leads from one limit of its band to the other, the
+/// ends and the extremes, which are the same, tell nothing but rounding, and by that each pose would have vectors of its own.
+#[test]
+fn a_tool_that_turns_takes_as_many_vectors_however_its_surfaces_lie() {
+    let first = round_leaning_walls(0.0);
+    for k in 1..12 {
+        let numbers = round_leaning_walls(0.5 * f64::from(k));
+        let differ = first.iter().zip(&numbers).any(|(a, b)| a.abs_diff(*b) > 1);
+        assert!(!differ, "{first:?} {numbers:?}");
+    }
+}

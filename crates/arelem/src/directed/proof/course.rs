@@ -13,7 +13,7 @@ use apt_geometry::{Vec3, surface::Bend};
 use self::kept::CUTS_BY_FUNCTIONS;
 use super::{
     ENOUGH, Extremes, LEAST_OPEN, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About,
-    tangents_meet,
+    second_derivative, tangents_meet,
 };
 use crate::clearance::{Contact, Tool};
 
@@ -67,8 +67,11 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     let middle = line.sample(middle(&a, &b));
     course.note(middle.value);
     let readings = line.read(ends.readings, &[Some(middle)]);
+    let turning_bend =
+        line.sweep.turns().then(|| line.sign * second_derivative([a, middle, b].map(|s| (s.x, s.value))));
+    let ends = Extremes { turning_bend, ..ends };
     if course.beyond() > FAR_OUT * line.role.band() {
-        return Extremes { least: course.least, greatest: course.greatest, proven: false, readings };
+        return Extremes { least: course.least, greatest: course.greatest, proven: false, readings, ..ends };
     }
     course.between(a, middle, 0);
     course.samples.push(middle);
@@ -76,7 +79,7 @@ pub(super) fn extremes(line: &Line<'_>, a: Sample, b: Sample, ends: Extremes) ->
     course.samples.push(b);
     let readings = course.samples.iter().fold(readings, |known, sample| line.read(known, &[Some(*sample)]));
     let proven = ends.proven && !course.is_exhausted && course.holds() && course.prove();
-    Extremes { least: course.least, greatest: course.greatest, proven, readings }
+    Extremes { least: course.least, greatest: course.greatest, proven, readings, ..ends }
 }
 
 /// What is known of the clearance between two samples.

@@ -5,7 +5,7 @@
 
 use apt_geometry::{Vec3, surface::Surface};
 
-use super::{Extremes, course::lowest};
+use super::{Extremes, course::lowest, second_derivative};
 use crate::{
     attitude::Sweep,
     clearance::{Contact, Gauge, Tool},
@@ -107,7 +107,7 @@ pub(super) fn extremes(sweep: &Sweep<'_>, role: &Working, ends: Extremes, size: 
 
 impl Turning<'_> {
     fn extremes(&self, ends: Extremes) -> Option<Extremes> {
-        let Extremes { mut least, mut greatest, readings, .. } = ends;
+        let Extremes { mut least, mut greatest, .. } = ends;
         let mut open = Vec::with_capacity(PIECES);
         let mut from = self.sample(0.0)?;
         for k in 1..=PIECES {
@@ -115,12 +115,16 @@ impl Turning<'_> {
             open.push((from, to));
             from = to;
         }
+        let half = PIECES / 2;
+        let turning_bend =
+            second_derivative([open[0].0, open[half].0, from].map(|sample| (sample.x, sample.value)));
+        let ends = Extremes { turning_bend: Some(turning_bend), ..ends };
         let values = open.iter().flat_map(|(a, b)| [a.value, b.value]);
         (least, greatest) = values.fold((least, greatest), |(low, high), v| (low.min(v), high.max(v)));
         let mut count = PIECES + 1;
         while let Some((a, b)) = open.pop() {
             if !self.role.holds(least, self.size) || !self.role.holds(greatest, self.size) {
-                return Some(Extremes { least, greatest, proven: false, readings });
+                return Some(Extremes { least, greatest, proven: false, ..ends });
             }
             if self.holds_between(&a, &b) {
                 continue;
@@ -135,7 +139,7 @@ impl Turning<'_> {
             open.push((a, middle));
             open.push((middle, b));
         }
-        Some(Extremes { least, greatest, proven: ends.proven, readings })
+        Some(Extremes { least, greatest, ..ends })
     }
 
     fn sample(&self, x: f64) -> Option<Sample> {

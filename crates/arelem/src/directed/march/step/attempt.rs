@@ -175,7 +175,9 @@ impl Stepper<'_> {
             [(here.part.clearance, vertex.part.clearance), (here.drive.clearance, vertex.drive.clearance)];
         for k in 0..2 {
             if self.is_turned(k) {
-                curvature[k] = sagging(&extremes[k], ends[k], reached).unwrap_or(curvature[k]);
+                let role = self.roles()[k];
+                let sagging = sagging(role, &extremes[k], ends[k], reached);
+                curvature[k] = sagging.or(extremes[k].turning_bend).unwrap_or(curvature[k]);
             }
         }
         let course = self.course(here, &vertex, &direction, &curvature);

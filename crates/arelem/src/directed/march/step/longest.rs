@@ -19,6 +19,8 @@ const MAX_TRIALS: u32 = 60;
 const LENGTHENINGS: u32 = 4;
 const MOST_LENGTHENINGS: u32 = 8;
 const MUCH_LONGER: f64 = 1.2;
+/// How often vectors are aimed at other limits without being shorter: each clearance may bend the other way once.
+const MOST_TURNINGS: u32 = 2;
 /// Share of the length that the next trial has at least.
 const GREATEST_SHRINKING: f64 = 0.3;
 /// Share of the length that is asked for below which a vector tells that the path turns back.
@@ -60,6 +62,8 @@ struct Search {
     last_led: Option<Led>,
     last_bad: Option<Overlong>,
     lengthenings: u32,
+    /// How often a clearance was found to bend the other way.
+    turnings: u32,
     /// Whether the axis turns.
     turns: bool,
     /// Trials before the first one that is proven whose sag said nothing.
@@ -81,6 +85,7 @@ impl Search {
             last_led: None,
             last_bad: None,
             lengthenings: 0,
+            turnings: 0,
             turns,
             failures: 0,
             corners: Corners::default(),
@@ -166,10 +171,26 @@ impl Search {
         self.length *= 0.5;
     }
 
+    /// Whether a vector that is refused tells that a clearance bends the other way than was taken for granted, so that it was aimed at the
+    /// wrong limit of a band: that says nothing of one as long that is aimed at the right one. While the axis stands still the bend is that
+    /// of the surface, and is known from the vector before.
+    fn turns_about(&mut self, stepper: &Stepper<'_>, trial: &Trial) -> bool {
+        let bends = stepper.bends(&trial.curvature);
+        if !self.turns || bends == self.bends || self.turnings >= MOST_TURNINGS {
+            return false;
+        }
+        self.turnings += 1;
+        self.bends = bends;
+        true
+    }
+
     /// Goes on from one that is too long; whether there is more to try.
     fn refuse(&mut self, stepper: &Stepper<'_>, trial: &Trial) -> bool {
-        self.shortest_bad = self.shortest_bad.min(self.length);
         self.culprit = Some((trial.culprit, trial.worst));
+        if self.best.is_none() && self.turns_about(stepper, trial) {
+            return true;
+        }
+        self.shortest_bad = self.shortest_bad.min(self.length);
         let bad = stepper.overlong(self.length, trial);
         let line = self.last_bad.and_then(|last| bad.meets_band(&last));
         self.last_bad = Some(bad);

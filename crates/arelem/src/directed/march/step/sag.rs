@@ -3,11 +3,19 @@
 use super::{GREATEST_GROWTH, SPARED};
 use crate::{clearance::Shape, directed::proof::Extremes, role::Working};
 
+/// Share of the band that a clearance has to sag by, beyond the ends of its vector, to tell anything of how it bends.
+const LEAST_SAG: f64 = 1e-3;
+
 /// Second derivative of the parabola through the clearances of both ends of a vector that sags as much as the clearance; `None` where
 /// that has no extreme between them.
-pub(super) fn sagging(extremes: &Extremes, (start, end): (f64, f64), length: f64) -> Option<f64> {
+pub(super) fn sagging(
+    role: &Working,
+    extremes: &Extremes,
+    (start, end): (f64, f64),
+    length: f64,
+) -> Option<f64> {
     let sag = (start.min(end) - extremes.least) - (extremes.greatest - start.max(end));
-    (sag != 0.0).then(|| {
+    (sag.abs() > LEAST_SAG * role.band()).then(|| {
         // Between ends of different clearances the extreme is nearer to one of them.
         let depths = [start, end]
             .map(|value| (value - if sag > 0.0 { extremes.least } else { extremes.greatest }).abs());
@@ -25,7 +33,7 @@ pub(super) fn growth(role: &Working, extremes: &Extremes, (start, end): (f64, f6
     let mut consider = |depth: f64, room_start: f64, room_end: f64, left: f64| {
         // Parabola through both ends with its vertex `depth` beyond the nearer end.
         let sag = depth.max(0.0);
-        if sag <= 1e-3 * role.band() && left > 0.0 {
+        if sag <= LEAST_SAG * role.band() && left > 0.0 {
             return;
         }
         let used = (room_start - left).max(0.0).sqrt() + (room_end - left).max(0.0).sqrt();
