@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cylinder, Geometry, Plane},
+    canonical::{Cylinder, Geometry, Plane, Quadric},
     motion::{DriveSide, MotionCommand, Relation, Turn},
 };
 
@@ -234,3 +234,58 @@ fn the_gap_at_a_parallel_place_that_is_far_ahead_is_told() {
 const OFF: [f64; 5] = [0.0, 5e-10, -5e-10, 2e-4, -2e-4];
 /// z = −.02 x² + .015 y², without a plane.
 const SADDLE: [f64; 10] = [0.02, -0.015, 0.0, 0.0, 0.0, 0.0, 0.004, 0.0, 0.0, 0.5];
+
+/// Far down two surfaces lean together until they all but touch, and the line in both comes up again: on a bend of a hundredth, where
+/// both bands hold as far as half a unit aside. A vector is not against the path there for leading aside by a right angle and a little more.
+#[test]
+fn a_path_that_comes_back_where_its_surfaces_all_but_touch_is_proven() {
+    let motion = Found {
+        cutter: &[0.8615900508486447, 0.43079502542432235],
+        axis: v(0.6, 0.0, 0.8),
+        from: v(1.7472019280972708, 0.6805935501633713, -10508.772691028187),
+        band: [0.0005, 0.0],
+        thickness: 0.18018827883018035,
+        drive_side: DriveSide::On,
+        forward: v(0.0, 0.0, -1.0),
+        part: (
+            Relation::On,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.07514059483581147,
+                    0.1512758177717788,
+                    -0.00013167259161777495,
+                    2.3553602131741727,
+                    0.12375680763497621,
+                    -0.026753699414510397,
+                    -0.189654225540564,
+                    0.22782714388762826,
+                    -0.5439830376384773,
+                    -0.7292668085672586,
+                ],
+            }),
+        ),
+        drive: (
+            Relation::On,
+            Geometry::Hyperbola(Quadric {
+                coefficients: [
+                    -0.14893392340368408,
+                    -0.3714763998319384,
+                    0.0,
+                    -0.3920572626519241,
+                    0.0,
+                    0.0,
+                    0.28301224101930256,
+                    -0.16087601724552508,
+                    0.6662802904095738,
+                    0.0,
+                ],
+            }),
+        ),
+        first: (Relation::On, Geometry::Plane(Plane { normal: v(1.0, 0.0, 0.0), distance: 0.75 })),
+        stop: (Relation::On, Geometry::Plane(Plane { normal: v(1.0, 0.0, 0.0), distance: 0.75 })),
+    };
+    let path = &motion.run_from_there(AMPLE).expect("a path")[0];
+    let deepest = path.points.iter().map(|point| point.tip.z).fold(f64::INFINITY, f64::min);
+    let last = path.points.last().expect("a vertex").tip;
+    assert!(last.z > deepest + 1.0, "{path:?}");
+}

@@ -27,8 +27,11 @@ const ROUND_OFF: f64 = 1e-9;
 /// How far the model of a surface may be off it, relative to the band: less by far than what sequences leave of it, at first and
 /// where it would decide.
 const MODEL_SHARES: [f64; 3] = [4e-4, 1e-5, 0.0];
-/// Sine of the angle between part and drive surface below which they give no direction of travel.
+/// Sine of the angle between part and drive surface below which they give no direction of travel by themselves: a place elsewhere in
+/// the bands tells another.
 const PARALLEL: f64 = 1e-3;
+/// The same below which they give none at all, as far as rounding leaves normals true.
+const ALL_BUT_PARALLEL: f64 = 1e-6;
 /// Cosine of the angle between a vector and the path at its end below which that may go on either way.
 const NEARLY_SQUARE: f64 = 0.1;
 /// Sine below which a surface is neither left nor right of the motion (3°).
@@ -460,12 +463,17 @@ impl Judge<'_> {
                     hand = Hand::setting_out(&normals, &heading);
                 }
                 let travel = normals[0].cross(&normals[1]);
-                if travel.norm() > PARALLEL && heading.norm() > 0.0 {
-                    let travel = travel / travel.norm();
-                    let turned = travel.dot(&heading);
-                    // A vector to where the path turns by about a right angle does not tell which way it goes on.
-                    let onward = if turned.abs() < NEARLY_SQUARE { travel.dot(&arriving) } else { turned };
-                    let along = travel * onward.signum();
+                let angle = travel.norm();
+                let turned = travel.dot(&heading);
+                // A vector to where the path turns by about a right angle does not tell which way it goes on.
+                let onward =
+                    if turned.abs() < NEARLY_SQUARE * angle { travel.dot(&arriving) } else { turned };
+                let along = travel * (onward.signum() / angle);
+                if angle > ALL_BUT_PARALLEL && angle <= PARALLEL {
+                    // The bands are wide across the path there: either what it leads along or the last vector tells.
+                    sine = sine.max(direction.dot(&along));
+                }
+                if angle > PARALLEL && heading.norm() > 0.0 {
                     begins = along;
                     // In a corner the tool goes away from the wall that is read there, along another.
                     let leaves = normals.iter().any(|normal| normal.dot(&direction) > ACROSS);
