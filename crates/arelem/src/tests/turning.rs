@@ -368,9 +368,9 @@ fn a_flat_tool_that_leans_by_little_across_a_direction_finds_its_axis() {
     }
 }
 
-/// Numbers of vectors of the motions round three leaning walls on a cylinder, with the tool at 85° to each wall, where all of it is turned about
+/// Tool ends of the motions round three leaning walls on a cylinder, with the tool at 85° to each wall, where all of it is turned about
 /// the vertical.
-fn round_leaning_walls(turn: f64) -> Vec<usize> {
+fn round_leaning_walls(turn: f64) -> Vec<Vec<Vec3>> {
     let (sine, cosine) = turn.sin_cos();
     let turned = |x: f64, y: f64, z: f64| v(cosine * x - sine * y, sine * x + cosine * y, z);
     let wall = |x, y, z, distance| {
@@ -397,21 +397,38 @@ fn round_leaning_walls(turn: f64) -> Vec<usize> {
     }));
     p.side(DriveSide::Left).indirv(ahead.x, ahead.y, ahead.z);
     let turns = [Turn::Forward, Turn::Left, Turn::Left, Turn::Left];
-    let numbers = turns.iter().enumerate().map(|(k, turn)| {
+    let motions = turns.iter().enumerate().map(|(k, turn)| {
         p.drive(*turn, &walls[k % 3], Relation::To, &walls[(k + 1) % 3]);
-        p.last().points.len()
+        let path = p.last();
+        std::iter::once(path.start.tip).chain(path.points.iter().map(|point| point.tip)).collect()
     });
-    numbers.collect()
+    motions.collect()
 }
 
 /// How a clearance bends along a vector on which the tool turns is read between its ends: where it leads from one limit of its band to the other, the
 /// ends and the extremes, which are the same, tell nothing but rounding, and by that each pose would have vectors of its own.
 #[test]
 fn a_tool_that_turns_takes_as_many_vectors_however_its_surfaces_lie() {
-    let first = round_leaning_walls(0.0);
+    let numbers = |turn| round_leaning_walls(turn).iter().map(Vec::len).collect::<Vec<usize>>();
+    let first = numbers(0.0);
     for k in 1..12 {
-        let numbers = round_leaning_walls(0.5 * f64::from(k));
+        let numbers = numbers(0.5 * f64::from(k));
         let differ = first.iter().zip(&numbers).any(|(a, b)| a.abs_diff(*b) > 1);
         assert!(!differ, "{first:?} {numbers:?}");
+    }
+}
+
+/// INTOL and OUTTOL of the motions round leaning walls.
+const BAND: f64 = 0.0005 + 0.001;
+
+/// Where the path kinks because the tool comes to touch with another place, vectors of a twentieth of what was left each led up to the kink, the last
+/// of no length that the verifier takes for one.
+#[test]
+fn vectors_of_a_turning_tool_do_not_creep_up_to_a_kink() {
+    for k in 0..12 {
+        for tips in round_leaning_walls(0.5 * f64::from(k)) {
+            let creeping = tips.windows(2).filter(|pair| (pair[1] - pair[0]).norm() < 0.1 * BAND).count();
+            assert_eq!(creeping, 0, "{tips:?}");
+        }
     }
 }

@@ -216,7 +216,10 @@ impl<'a> Stepper<'a> {
     fn along_tangent(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
         let failure = match self.onward(here, cap, Places::Limits) {
             Err(failure) if failure != MotionFailure::Cancelled => failure,
-            Ok(next) => return Ok(self.in_sharp_corner(here, cap).unwrap_or(next)),
+            Ok(next) => {
+                let beyond = self.beyond_kink(here, &next, cap);
+                return Ok(beyond.or_else(|| self.in_sharp_corner(here, cap)).unwrap_or(next));
+            }
             cancelled => return cancelled,
         };
         let corner = self.corner_at(here);

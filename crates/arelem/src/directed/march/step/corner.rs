@@ -15,6 +15,8 @@ use crate::{
 
 /// How many times the width of the bands ahead of a place without a way on it is looked for another contact.
 const PROBES: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
+/// Share of the width of the bands below which a vector does nothing but lead up to a kink.
+const CREEPING: f64 = 0.05;
 /// Sine between the normals of two contacts above which they are not the same one.
 const OTHER_CONTACT_SINE: f64 = 0.05;
 /// Cosine between two directions above which both need not be tried.
@@ -98,6 +100,22 @@ impl Stepper<'_> {
             self.turn(here, turned);
             Some(next)
         })
+    }
+
+    /// The next vertex beyond a kink of the path of a tool that turns, if all that leads on from a place is a vector that is short against the bands: to the kink itself, to
+    /// which others would creep up without end.
+    pub(super) fn beyond_kink(&mut self, here: &mut Vertex, next: &Vertex, cap: f64) -> Option<Vertex> {
+        let led = (next.tip - here.tip).norm();
+        if !self.prepared.attitude.turns() || led > CREEPING * self.bands() {
+            return None;
+        }
+        let latest = self.latest.take();
+        let corner = self.corner_at(here);
+        let beyond = self.around(&corner, here, cap).filter(|beyond| (beyond.tip - here.tip).norm() > led);
+        if beyond.is_none() {
+            self.latest = latest;
+        }
+        beyond
     }
 
     /// The next vertex wherever in the bands there is one, straight on or along a second contact. Errors: cancelled.
