@@ -151,6 +151,17 @@ pub(crate) fn solve_within(
     solve_unless(attitude, conditions, start, effort, &|_| false)
 }
 
+/// As [`solve_within`] with the nearest contacts all the way: from a position it finds that position, whatever was looked at before.
+pub(crate) fn solve_proven_within(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    corrections: u32,
+) -> Result<Solution, Unsolved> {
+    let effort = Effort { corrections, halvings: MAX_HALVINGS, turns: 0, is_one_of_many: false };
+    solve_unless(attitude, conditions, start, effort, &|_| false)
+}
+
 /// The same for one of many tries: where the last contacts lead nowhere, and the nearest ones are the same there, these are not followed on
 /// the way.
 pub(crate) fn try_within(
@@ -169,7 +180,8 @@ pub(crate) struct Effort {
     pub(crate) corrections: u32,
     /// How often one that makes things worse is halved.
     pub(crate) halvings: u32,
-    /// How often contacts are followed, each time from where the last ones have led, before it is proven on the way that they are the nearest.
+    /// How often contacts are followed, each time from where the last ones have led, before it is proven on the way that they are the nearest: if never,
+    /// what has been looked at before does not matter.
     pub(crate) turns: u32,
     /// Whether it may end where the nearest contacts may not have led.
     pub(crate) is_one_of_many: bool,
@@ -189,7 +201,7 @@ pub(crate) fn solve_unless(
     let search = Search { attitude, conditions, effort, is_in_vain, is_proven: Cell::new(true) };
     let (mut here, mut next) = (Place::NONE, Place::NONE);
     let (mut from, mut made) = (*start, 0);
-    for turn in 1..=effort.turns.max(1) {
+    for turn in 1..=effort.turns {
         let mut way = Way { here: &mut here, next: &mut next };
         let (found, is_proven) = search.newton(&from, &mut way, Manner::Followed);
         let place = way.here;

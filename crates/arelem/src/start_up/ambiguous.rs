@@ -159,7 +159,7 @@ fn is_nearer_between(
     start: &Vec3,
 ) -> bool {
     let middle = (found + other) * 0.5;
-    let solved = position::solve_within(attitude, conditions, &middle, CORRECTIONS);
+    let solved = position::solve_proven_within(attitude, conditions, &middle, CORRECTIONS);
     let nearest = (found - start).norm().min((other - start).norm());
     solved.is_ok_and(|between| {
         let is_between =

@@ -1,15 +1,19 @@
 //! Start-up motions: the rules of the dialects, and what a direction decides.
 
+use std::sync::Arc;
+
 use Relation::{On, Past, TangentToDrive, TangentToPart, To};
 use apt_geometry::{
-    canonical::{Cone, Geometry},
+    canonical::{Cone, Geometry, TabulatedCylinder},
     motion::{Direction, MotionCommand, NamedSurface, Relation},
 };
 
 use crate::{
     MotionFailure,
     section2::StartUpRule,
-    tests::{Program, circle, cylinder, ground, line, plane, quadric, sphere, start, v},
+    tests::{
+        Program, circle, cylinder, economy::tabulated, ground, line, named, plane, quadric, sphere, start, v,
+    },
 };
 
 /// The peers print seven digits.
@@ -318,4 +322,53 @@ fn of_two_tangencies_that_are_equally_near_a_direction_takes_one() {
         p.from(5.0, 0.0, 1.0).indirv(-1.0, 0.3 * sense, 0.0).run(&command).ends(0.0, 2.25 * sense, 0.0, 2e-3);
     }
     p.from(5.0, 0.5, 1.0).run(&command).ends(0.0, 2.25, 0.0, 2e-3).verified();
+}
+
+/// Two positions on a straight line as far from the start as each other are images of each other, and the one between them is nearer: what has been looked at
+/// before must not hide it.
+#[test]
+fn images_on_a_straight_line_are_no_answers_but_what_lies_between_them() {
+    let Geometry::TabulatedCylinder(flat) = tabulated(
+        &[
+            [-13.444014669092924, 4.789919741660916, 0.0, 0.0],
+            [-4.302381237703852, 0.7364597127338194, 0.07314270986291686, -0.19303162647432406],
+            [-3.8023812377038517, 0.461031953697784, 0.05440582989184188, -0.07022950244074715],
+            [-3.3023812377038517, 0.12734383421567655, 0.062261340946403475, 0.02462777952899794],
+            [-2.8023812377038517, -0.18290615628326537, 0.08665670320160895, 0.13552613313899256],
+            [-2.3023812377038517, -0.39375799977820825, 0.044519462167320785, 0.29000062274696525],
+            [-1.8023812377038517, -0.4535878112664663, -0.0702876272228463, 0.35299627794833],
+            [-1.3023812377038517, -0.34774716625809043, -0.08085088623083928, 0.23470162854813634],
+            [-0.8023812377038516, -0.10214954597267237, -0.05726413964769404, 0.1007833398073363],
+            [-0.3023812377038516, 0.22307418662746395, -0.05726413964769404, 0.001684822480449847],
+            [0.1976187622961484, 0.5482979192276003, -0.08085088623083928, -0.099584733430902],
+            [0.6976187622961484, 0.7938955395130183, -0.0702876272228463, -0.24522858453645838],
+            [1.1976187622961483, 0.8997361845213941, 0.044519462167320785, -0.357256203227556],
+            [1.6976187622961483, 0.8399063730331361, 0.08665670320160895, -0.2765963925368959],
+            [2.1976187622961483, 0.6290545295381933, 0.062261340946403475, -0.1345379260807922],
+            [2.6976187622961483, 0.3188045390392513, 0.05440582989184188, -0.02788413526265978],
+            [3.1976187622961483, -0.014883580442856092, 0.07314270986291686, 0.06777286074604609],
+            [3.6976187622961483, -0.29031133947889154, 0.0, 0.0],
+        ],
+        [12.83925219368522, -4.343771368405988],
+    ) else {
+        panic!("a tabulated cylinder")
+    };
+    let axes = [
+        v(-0.15226193607504473, 0.3809561715327728, -0.911969680523301),
+        v(0.502657703719282, 0.8243273723299284, 0.2604219962278426),
+        v(0.850970937056218, -0.41875622813127034, -0.3170042360709616),
+    ];
+    let drive = Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, ..(*flat).clone() }));
+    let part = plane(0.21127955028960135, 0.0004845773858409097, 0.9774255556379632, -1.489269547824169);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.1974512530758923]);
+    p.run(&MotionCommand::From {
+        position: v(0.3048989295706205, 2.203536159552636, -0.876332749623354),
+        axis: Some(v(0.2112795502896014, 0.00048457738584078, 0.9774255556379631)),
+        name: String::new(),
+    });
+    p.run(&MotionCommand::PartSurface(named(&part)));
+    p.go(&[(To, &drive)]);
+    let middle = v(-0.169221435, 1.485780504, -1.487823279);
+    assert!((p.tip() - middle).norm() < 0.03, "{}", p.tip());
 }

@@ -113,7 +113,7 @@ pub(super) fn table() -> Geometry {
     tabulated(&TABLE, TABLE_END)
 }
 
-pub(super) fn tabulated(table: &[[f64; 4]], end: [f64; 2]) -> Geometry {
+pub(crate) fn tabulated(table: &[[f64; 4]], end: [f64; 2]) -> Geometry {
     let interval = |[u, v, a, b]: [f64; 4]| Interval { u, v, a, b, length: 0.0, maximum: 0.0, minimum: 0.0 };
     Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder {
         axes: [Vec3::x(), Vec3::y(), Vec3::z()],

@@ -15,7 +15,7 @@ mod corpus_space;
 mod cost;
 mod cost_by_charts;
 mod disk;
-mod economy;
+pub(crate) mod economy;
 mod ends;
 mod fewest;
 mod found;
