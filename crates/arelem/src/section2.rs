@@ -7,7 +7,7 @@ mod state;
 
 use apt_geometry::{motion::MotionCommand, patience::Waiting};
 
-pub(crate) use self::modal::required_position;
+pub(crate) use self::{modal::required_position, state::ANY_NUMBER_OF_POINTS};
 pub use self::{
     restart::Restart,
     state::{StartUpRule, State},

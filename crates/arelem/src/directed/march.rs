@@ -304,8 +304,7 @@ impl<'a> March<'a> {
 
     /// Looks as far ahead as the cut vectors that are left can reach: an error if nothing there stops the motion.
     fn judge_outlook(&mut self, from: &Vertex, patience: Patience<'_>) -> Result<(), MotionFailure> {
-        let left = (self.state.maximum_points as usize).saturating_sub(self.points.len());
-        let reach = left as f64 * self.state.maximum_step;
+        let reach = self.state.reach_after(self.points.len());
         let watches = (&self.watcher, &self.tangency);
         match scout::ahead(self.prepared, self.checks, watches, from, reach, patience)? {
             Outlook::Nothing { course, nearest, met, parallel: (gap, check) } => {

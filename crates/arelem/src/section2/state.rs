@@ -16,6 +16,8 @@ const DEFAULT_OUTSIDE_INCHES: f64 = 0.0005;
 const DEFAULT_STEP_INCHES: f64 = 10.0;
 /// Default NUMPTS.
 const DEFAULT_POINTS: u32 = 400;
+/// As many positions as a motion needs: of one that only finds a place for another one, and has no cut vectors.
+pub(crate) const ANY_NUMBER_OF_POINTS: u32 = u32::MAX;
 /// A motion with |cos| > .997 to the tool axis (4.4°) says nothing about the forward direction.
 const ALONG_AXIS_COSINE: f64 = 0.997;
 /// The same limit as a sine.
@@ -94,6 +96,15 @@ pub struct State {
 }
 
 impl State {
+    /// How far the cut vectors that are left after so many can reach; zero where their number has no limit, so that none
+    /// has to be reached.
+    pub(crate) fn reach_after(&self, points: usize) -> f64 {
+        match self.maximum_points {
+            ANY_NUMBER_OF_POINTS => 0.0,
+            limit => (limit as usize).saturating_sub(points) as f64 * self.maximum_step,
+        }
+    }
+
     /// The state at the start of a program.
     pub fn new(units: f64) -> Self {
         let plane = Plane { normal: Vec3::z(), distance: 0.0 };

@@ -10,7 +10,7 @@ use crate::{
     directed as motion,
     error::{MotionFailure, RoleName},
     position::{self, Condition},
-    section2::State,
+    section2::{ANY_NUMBER_OF_POINTS, State},
     sequence::ToolPosition,
 };
 
@@ -116,7 +116,7 @@ fn moving(work: &StartUp<'_>, from: &Vec3, way: &Vec3) -> Result<State, MotionFa
             (_, true) => DriveSide::Left,
             (_, false) => DriveSide::Right,
         },
-        maximum_points: u32::MAX,
+        maximum_points: ANY_NUMBER_OF_POINTS,
         gouge_check: false,
         ..work.state.clone()
     })

@@ -450,3 +450,22 @@ fn a_tangency_takes_few_clearances() {
     let count = EVALUATIONS.get() - before;
     assert!(count <= 500, "{count} clearances");
 }
+
+/// Twice what two looks ahead take, one each way, as far as a motion is looked along that may have few cut vectors. As far as the
+/// longest are, they take millions.
+const LOOKS_BOTH_WAYS: u64 = 18_000;
+
+/// In a bowl the path leads ever more steeply along the check surface, and away from it. A position to go to hangs on no count of
+/// cut vectors, so that no way is looked along for the sake of that.
+#[test]
+fn a_start_up_without_a_tangency_takes_few_clearances() {
+    let bowl = quadric([1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0]);
+    let mut p = Program::new();
+    p.tolerance(0.001, 0.001).cutter(&[0.5, 0.25]).from(-2.0, 0.5, 4.0);
+    let go = start(&[(Relation::On, &y(0.5)), (Relation::To, &bowl), (Relation::TangentToDrive, &x(-2.0))]);
+    let before = EVALUATIONS.get();
+    let failure = p.attempt(&go);
+    let count = EVALUATIONS.get() - before;
+    assert!(matches!(failure, Err(MotionFailure::NotTangent { .. })), "{failure:?}");
+    assert!(count <= LOOKS_BOTH_WAYS, "{count} clearances");
+}
