@@ -48,9 +48,15 @@ fn is_along(tool: &Tool, surface: &Surface) -> bool {
 /// The foot of the tool end on a surface along which the tool is a disc.
 fn foot_along(tool: &Tool, surface: &Surface, tip: &Vec3) -> Option<Foot> {
     let foot = is_along(tool, surface).then(|| surface.foot(tip))?;
-    let ends = matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_));
-    // Beyond the ends of the rulings the nearest point is no longer beside the tool.
-    (!ends || foot.normal.dot(&tool.axis).abs() <= LEVEL).then_some(foot)
+    if !matches!(surface, Surface::Ruled(_) | Surface::PolyConic(_) | Surface::Sculptured(_)) {
+        return Some(foot);
+    }
+    // Beyond the ends of the rulings the nearest point is no longer beside the tool, and what is widest of the tool may
+    // be there while its end is not.
+    let is_beside = |foot: &Foot| foot.normal.dot(&tool.axis).abs() <= LEVEL;
+    let widest = tool.profile.support(1.0, 0.0).1.height;
+    (is_beside(&foot) && (widest <= 0.0 || is_beside(&surface.foot(&(tip + tool.axis * widest)))))
+        .then_some(foot)
 }
 
 /// A tool that is seen along the generators or rulings of a surface.

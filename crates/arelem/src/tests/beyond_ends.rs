@@ -2,7 +2,10 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use apt_geometry::{canonical::Remembering, surface::Surface};
+use apt_geometry::{
+    canonical::{Remembering, extent},
+    surface::Surface,
+};
 
 use super::{
     refused::{AMPLE, Found},
@@ -79,6 +82,28 @@ fn what_of_a_tool_is_beyond_the_end_of_a_surface_is_not_behind_it() {
         let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: leaning() });
         assert!((engine - least).abs() < 1e-3, "{tip:?}: {engine}, not {least}");
         assert!((engine - verifier).abs() < 1e-7, "{tip:?}: {engine}, {verifier}");
+    }
+}
+
+/// A wall along the tool is a line seen from above, and the tool a disc, only where what is widest of the tool is beside it: the end of
+/// a ball was, and its middle over the wall.
+#[test]
+fn a_ball_whose_end_is_beside_a_wall_touches_the_edge_of_that_below_its_middle() {
+    let (radius, height, out) = (0.25, 2.0, 0.26);
+    let along = |z: f64| (level(z), v(0.0, 0.0, z), v(6.0, 0.0, z), Vec3::z());
+    let wall = ruled([along(0.0), along(height)]);
+    let edge = height * (1.0 + extent::RULED_BEYOND);
+    let cutter = Cutter::from_numbers(&[2.0 * radius, radius], 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    for below in [0.4, 0.2, 0.1, 0.05] {
+        let tip = v(3.0, -out, edge - below);
+        let middle_over = (radius - below).max(0.0);
+        let nearest = out.hypot(middle_over) - radius;
+        let role = touched(&wall);
+        let engine = gauge(&role).contact(&tool, &tip).clearance;
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        assert!((verifier - nearest).abs() < 1e-9, "{below}: {verifier}, not {nearest}");
+        assert!((engine - nearest).abs() < 1e-9, "{below}: {engine}, not {nearest}");
     }
 }
 
