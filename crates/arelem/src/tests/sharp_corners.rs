@@ -106,3 +106,40 @@ fn a_path_goes_on_out_of_a_wedge_along_its_other_wall() {
         }
     }
 }
+
+/// Between both branches of a hyperbola of half-width 1, as long as told, into the neck and back to a line before it along the other branch.
+fn into_the_neck(long: f64, radius: f64) -> CutSequence {
+    let branches = Geometry::Hyperbola(Quadric {
+        coefficients: [1.0, -1.0 / (long * long), 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    });
+    let before = -3.0 * (radius - 1.0) * long - 4.0;
+    let mut program = Program::new();
+    program.cutter(&[2.0 * radius]).tolerance(0.001, 0.001).from(0.0, before, 0.0).indirv(-1.0, 0.0, 0.0);
+    program.go(&[(Relation::To, &branches), (Relation::To, &ground()), (Relation::On, &y(before))]);
+    program.side(DriveSide::Right).indirv(0.0, 1.0, 0.0);
+    program.drive(Turn::Forward, &branches, Relation::On, &y(before + 0.5));
+    program.indirv(0.0, 1.0, 0.0);
+    let command = motion(Turn::Forward, &branches, &[(Relation::On, 1, &y(before + 0.25))]);
+    program.cut(&command).unwrap_or_else(|failure| panic!("{long} {radius}: {failure:?}"))
+}
+
+/// The walls of a neck bulge towards the tool and are all but one line where it touches both: it goes back along the second one from there, with the drive
+/// surface on its side.
+#[test]
+fn a_tool_goes_back_from_a_neck_along_the_other_wall() {
+    let necks = [1.5, 2.5, 3.5, 4.5].into_iter().flat_map(|long| [0.01, 0.03, 0.1].map(|wide| (long, wide)));
+    for (long, wide) in necks.chain([(4.413217071466309, 0.0017497000724391)]) {
+        let sequence = into_the_neck(long, 1.0 + wide);
+        let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{long} {wide}: {evidence:?}");
+        let (end, least) =
+            (sequence.points.last().expect("a vertex").tip, sequence.minimum.expect("a bound"));
+        assert!(end.x > 0.0, "{long} {wide}: {end}");
+        let most = 1.02 * f64::from(least) + 2.0;
+        assert!(
+            sequence.points.len() as f64 <= most,
+            "{long} {wide}: {} with {least}",
+            sequence.points.len()
+        );
+    }
+}

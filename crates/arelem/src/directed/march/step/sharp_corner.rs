@@ -84,9 +84,11 @@ impl Stepper<'_> {
             return None;
         }
         let (from, reach, least) = match known {
-            // One that ends beyond the corner, within the bands there, is not worth more than the corner.
+            // One that ends beyond the corner, within the bands there, is not worth more than the corner: nothing, where it goes on into a narrow wedge from which the path
+            // turns back.
             Some(known) if is_elsewhere(here, &known.vertex) => {
-                (*here, LOOKED_AHEAD * known.length, known.length - self.bands())
+                let spared = if self.goes_against_hand(here, known) { known.length } else { self.bands() };
+                (*here, LOOKED_AHEAD * known.length, known.length - spared)
             }
             Some(known) => (known.vertex, LOOKED_AHEAD * known.length, known.length * (1.0 + LONGER)),
             None => (*here, CORNER_BANDS * self.bands(), 0.0),
@@ -98,14 +100,14 @@ impl Stepper<'_> {
             .into_iter()
             .find_map(|place| {
                 let (ahead, vertex) = self.vertex_in(&ahead, place)?;
-                let [first, second] = ahead.legs()?;
+                let [first, _] = ahead.legs()?;
                 let mut trial = self.judge(
                     here,
                     Vertex { tangent: first, ..vertex },
                     &bends[0],
                     LeastCosines::ROUND_CORNER,
                 )?;
-                trial.vertex.tangent = second;
+                trial.vertex.tangent = vertex.tangent;
                 let fits = trial.proven && trial.length >= least && trial.length <= cap * (1.0 + 1e-9);
                 let leads_on = || {
                     let length = (WAY_ON * self.bands()).min(cap);
@@ -126,6 +128,12 @@ impl Stepper<'_> {
                 self.beyond_corner = straight.map(|straight| (trial.vertex.tip, Box::new(straight)));
                 trial
             })
+    }
+
+    /// Whether the path leads back on its hand from where a vector ends, against the direction in which it would go on.
+    fn goes_against_hand(&self, here: &Vertex, found: &Trial) -> bool {
+        let Vertex { part, drive, tangent, .. } = &found.vertex;
+        self.hand.or_at(here).along(part, drive).is_some_and(|along| along.dot(tangent) < 0.0)
     }
 
     /// True if nothing of what bends along a vector keeps it from being longer.
@@ -155,6 +163,31 @@ impl Stepper<'_> {
             way *= 0.5;
         }
         let (at, role) = found?;
+        // Where both walls are nearly one line they meet far from where lines along them do that are told from far away.
+        self.sharp_corner_between([from, &at], role).or_else(|| {
+            let [before, beyond] = self.about_leap([from, &at], role)?;
+            self.sharp_corner_between([&before, &beyond], role)
+        })
+    }
+
+    /// Places nearer to where the contact with the surface of a role leaps, on the way between two places that are touched elsewhere, and no nearer than the legs beside
+    /// the corner are measured.
+    fn about_leap(&self, [from, at]: [&Vertex; 2], role: usize) -> Option<[Vertex; 2]> {
+        let mut ends = [*from, *at];
+        for _ in 0..MOST_HALVED {
+            if (ends[1].tip - ends[0].tip).norm() <= BESIDE * self.bands() {
+                break;
+            }
+            let middle = 0.5 * (ends[0].tip + ends[1].tip);
+            let middle = Vertex::at(self.prepared, middle, &from.tangent).ok()?;
+            let is_beyond = differs(&[from.part, from.drive][role], &[middle.part, middle.drive][role]);
+            ends[usize::from(is_beyond)] = middle;
+        }
+        Some(ends)
+    }
+
+    /// The corner between two places that touch the surface of a role elsewhere, if it turns the path so much.
+    fn sharp_corner_between(&self, [from, at]: [&Vertex; 2], role: usize) -> Option<Ahead> {
         let before = [from.part, from.drive];
         let beyond = [at.part, at.drive][role];
         let hand = self.hand.or_at(from);
@@ -180,7 +213,8 @@ impl Stepper<'_> {
         if role == 0 { [part, drive] } else { [drive, part] }
     }
 
-    /// The vertex at a place in the bands of a corner, with what is touched there, by Newton's method on all three contacts.
+    /// The vertex at a place in the bands of a corner, on the second leg as it is there, with what is touched, by Newton's method on all three
+    /// contacts.
     fn vertex_in(&self, ahead: &Ahead, place: Place) -> Option<(Ahead, Vertex)> {
         let beside = BESIDE * self.bands();
         let mut ahead = Ahead { ..*ahead };
@@ -207,7 +241,7 @@ impl Stepper<'_> {
                 let [_, second] = ahead.legs()?;
                 let vertex = Vertex::at(self.prepared, at, &second).ok()?;
                 let is_touched = !differs(&pick(&vertex, role), &b);
-                return is_touched.then_some((ahead, Vertex { tangent: second, ..vertex }));
+                return is_touched.then_some((ahead, vertex));
             }
         }
         None
