@@ -324,6 +324,12 @@ fn words_of_a_finding_say_what_the_geometry_is() {
              INDIRV/1,0,0\nTLLFT,TLONPS,GOFWD/L1,ON,C1\n",
             ["APT0665", "deep into the part surface", "is ON the surface", "TLOFPS keeps all of it out"],
         ),
+        // Ten across in a neck of nine.
+        (
+            "PL=PLANE/0,0,1,0\nH=HYPERB/CENTER,(POINT/0,0),4.5,9,0\nFROM/0,-20,0\nINDIRV/-1,0,0\n\
+             GO/TO,H,TO,PL,ON,(LINE/0,-20,1,-20)\nINDIRV/0,1,0\nTLRGT,GOFWD/H,ON,(LINE/0,20,1,20)\n",
+            ["APT0641", "never met", "the path turns back at (", "is it too wide there?"],
+        ),
     ];
     for (program, [code, words @ ..]) in cases {
         let text = format!("{head}{program}FINI\n");

@@ -317,6 +317,8 @@ pub enum MotionFailure {
         at: Vec3,
         /// The tool stands in the band of the check surface there, but the motion begins so, or the tool leaves the surface.
         is_there: bool,
+        /// Where the path turns by more than a right angle first, because the tool comes to a second wall.
+        turns_back: Option<Vec3>,
         /// How that is known.
         course: Course,
     },

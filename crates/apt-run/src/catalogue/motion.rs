@@ -309,7 +309,7 @@ fn path(failure: &Failure) -> Text {
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
         )
         .hint("choose a drive surface that stands on the part surface"),
-        Failure::NeverMet { relation: wanted, nearest, at, is_there, course, .. } => say(
+        Failure::NeverMet { relation: wanted, nearest, at, is_there, turns_back, course, .. } => say(
             "APT0641",
             if *is_there {
                 format!(
@@ -326,12 +326,18 @@ fn path(failure: &Failure) -> Text {
                 )
             },
         )
-        .hint(match course {
-            Course::Analytic => "check the direction and the surface".to_owned(),
-            Course::Closed { length } => {
+        .hint(match (course, turns_back) {
+            (Course::Analytic, _) => "check the direction and the surface".to_owned(),
+            (Course::Closed { length }, _) => {
                 format!("the path closes after {}: check the surface", number(*length))
             }
-            Course::Away { travelled } => {
+            (Course::Away { .. }, Some(corner)) => {
+                format!(
+                    "the path turns back at {}, where the tool comes to a second wall: is it too wide there?",
+                    place(corner)
+                )
+            }
+            (Course::Away { travelled }, None) => {
                 format!("it was followed for {}: check the direction and the surface", number(*travelled))
             }
         }),

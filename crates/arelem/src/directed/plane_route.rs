@@ -263,6 +263,7 @@ fn crossing(
             nearest,
             at: track.at(x),
             is_there: prepared.checks[0].is_there(start, prepared.size),
+            turns_back: None,
             course: Course::Analytic,
         });
     }

@@ -107,8 +107,8 @@ fn a_path_goes_on_out_of_a_wedge_along_its_other_wall() {
     }
 }
 
-/// Between both branches of a hyperbola of half-width 1, as long as told, into the neck and back to a line before it along the other branch.
-fn into_the_neck(long: f64, radius: f64) -> CutSequence {
+/// Between both branches of a hyperbola of half-width 1, as long as told, into the neck, and back to a line before it along the other branch or on to one behind it.
+fn into_the_neck(long: f64, radius: f64, ahead: Option<f64>) -> Result<CutSequence, MotionFailure> {
     let branches = Geometry::Hyperbola(Quadric {
         coefficients: [1.0, -1.0 / (long * long), 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     });
@@ -119,8 +119,20 @@ fn into_the_neck(long: f64, radius: f64) -> CutSequence {
     program.side(DriveSide::Right).indirv(0.0, 1.0, 0.0);
     program.drive(Turn::Forward, &branches, Relation::On, &y(before + 0.5));
     program.indirv(0.0, 1.0, 0.0);
-    let command = motion(Turn::Forward, &branches, &[(Relation::On, 1, &y(before + 0.25))]);
-    program.cut(&command).unwrap_or_else(|failure| panic!("{long} {radius}: {failure:?}"))
+    let stop = ahead.unwrap_or(before + 0.25);
+    program.cut(&motion(Turn::Forward, &branches, &[(Relation::On, 1, &y(stop))]))
+}
+
+/// Behind a neck that is too narrow no surface is met: it is told where the path turns back.
+#[test]
+fn where_a_path_turns_back_in_a_neck_is_told_if_nothing_stops_it() {
+    let failure = into_the_neck(1.5, 1.05, Some(4.0)).expect_err("the tool does not get through");
+    let MotionFailure::NeverMet { turns_back: Some(corner), .. } = failure else { panic!("{failure:?}") };
+    // A circle about (0, y) with this radius touches both branches.
+    let square = 1.0 / (1.5 * 1.5);
+    let touched = ((1.05_f64.powi(2) - 1.0) / (square + square * square)).sqrt();
+    let middle = v(0.0, -touched * (1.0 + square), 0.0);
+    assert!((corner - middle).norm() < 0.01, "{corner} {middle}");
 }
 
 /// The walls of a neck bulge towards the tool and are all but one line where it touches both: it goes back along the second one from there, with the drive
@@ -129,7 +141,8 @@ fn into_the_neck(long: f64, radius: f64) -> CutSequence {
 fn a_tool_goes_back_from_a_neck_along_the_other_wall() {
     let necks = [1.5, 2.5, 3.5, 4.5].into_iter().flat_map(|long| [0.01, 0.03, 0.1].map(|wide| (long, wide)));
     for (long, wide) in necks.chain([(4.413217071466309, 0.0017497000724391)]) {
-        let sequence = into_the_neck(long, 1.0 + wide);
+        let sequence = into_the_neck(long, 1.0 + wide, None);
+        let sequence = sequence.unwrap_or_else(|failure| panic!("{long} {wide}: {failure:?}"));
         let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
         assert!(evidence.verified, "{long} {wide}: {evidence:?}");
         let (end, least) =

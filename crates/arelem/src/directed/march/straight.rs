@@ -54,6 +54,7 @@ pub(super) fn run(
             nearest,
             at,
             is_there: prepared.checks[check].is_as_near(nearest, prepared.size),
+            turns_back: None,
             course: Course::Away { travelled },
         }
     })
