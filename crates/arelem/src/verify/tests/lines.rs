@@ -2,7 +2,10 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Remembering},
+    canonical::{
+        Geometry, PolyConicForm, Remembering,
+        extent::{POLYCONIC_ENDS_BEYOND, POLYCONIC_STATIONS_BEYOND},
+    },
 };
 use proptest::prelude::*;
 
@@ -20,7 +23,7 @@ use super::{
 
 /// How deep the lines of these tests may be.
 const ALLOWED: f64 = 1e-3;
-/// Places along a line at which it is asked how deep it is.
+/// Places along a line at which it is asked how deep it is, and along an end of a surface at which it is asked how far the line is away.
 const PLACES: usize = 600;
 /// Parts of a surface that may be looked at for one line.
 const FEW: u64 = 40_000;
@@ -78,6 +81,52 @@ fn hilly() -> Geometry {
     Geometry::PolyConic(Remembering::new(values))
 }
 
+/// The place of a polyconic surface at a station, and a share of the way along the conic there, which goes on straight at both ends.
+fn place_of_conic(form: &PolyConicForm, station: f64, share: f64) -> Vec3 {
+    let [a, b, c, d, l, h, fullness] = form.controls(station).expect("a conic");
+    let x = form.base + form.length * station;
+    let [start, meet, end] =
+        [[l, h], [l + c, h + b], [l + c + a, h + b + d]].map(|[y, z]| Vec3::new(x, y, z));
+    let weight = (2.0 * fullness - 1.0) / (2.0 * (1.0 - fullness));
+    let rest = 1.0 - share;
+    let [first, middle, last] = [rest * rest, 2.0 * weight * share * rest, share * share];
+    let place = if share < 0.0 {
+        start + (meet - start) * (POLYCONIC_ENDS_BEYOND * share)
+    } else if rest < 0.0 {
+        end + (meet - end) * (POLYCONIC_ENDS_BEYOND * rest)
+    } else {
+        (start * first + meet * middle + end * last) / (first + middle + last)
+    };
+    form.map.inverse().expect("a rigid motion").apply_point(&place)
+}
+
+/// How far a line is from where a polyconic surface ends along its stations; nothing else of these tests ends near a line.
+fn way_to_end(geometry: &Geometry, tip: &Vec3, axis: &Vec3, length: f64) -> f64 {
+    let Geometry::PolyConic(values) = geometry else { return f64::INFINITY };
+    let form = PolyConicForm::read(values).expect("a form");
+    let way = |station: f64, share: f64| {
+        let from = place_of_conic(&form, station, share) - tip;
+        (from - axis * axis.dot(&from).clamp(0.0, length)).norm()
+    };
+    let step = 3.0 / PLACES as f64;
+    let to_end = |station: f64| {
+        let shares = (0..=PLACES).map(|k| step * k as f64 - 1.0);
+        let best = shares.min_by(|a, b| way(station, *a).total_cmp(&way(station, *b))).expect("places");
+        let [mut low, mut high] = [best - step, best + step];
+        for _ in 0..80 {
+            let third = (high - low) / 3.0;
+            if way(station, low + third) <= way(station, high - third) {
+                high -= third;
+            } else {
+                low += third;
+            }
+        }
+        way(station, low)
+    };
+    let ends = [-POLYCONIC_STATIONS_BEYOND, 1.0 + POLYCONIC_STATIONS_BEYOND];
+    ends.map(to_end).into_iter().fold(f64::INFINITY, f64::min)
+}
+
 /// A line that is in a bulge of the surface with its middle and under it with its top is as deep as either, whichever is deeper: the two are
 /// judged each for itself, as closely as one of them alone.
 #[test]
@@ -103,6 +152,24 @@ fn a_line_that_is_deep_at_two_places_is_as_deep_as_its_deeper_part() {
         both += usize::from(halves.iter().all(|half| half.value < -1e-6));
     }
     assert!(both > 16, "{both}");
+}
+
+/// A line just inside of the end of a surface comes out over that end sooner than through the surface, under which it is by its deepest place.
+#[test]
+fn a_line_at_an_end_is_as_deep_as_it_is_over_it() {
+    let geometry = hilly();
+    let surface = Surface::of(&geometry).expect("a surface");
+    let Surface::Ruled(hills) = &surface else { panic!("{surface:?}") };
+    let (axis, length) = (Vec3::z(), 1.583_636_278_350_575);
+    let tip = Vec3::new(-1.268_606_282_340_864, -0.758_283_156_186_876, -0.445_994_876_275_682_3);
+    let (depth, _) = deepest(&surface, &tip, &axis, length);
+    let over = way_to_end(&geometry, &tip, &axis, length);
+    assert!((depth - 1e-6).abs() < 1e-12 && over < 0.76 * depth, "{depth} {over}");
+    let profile = line(length);
+    let mut tool = Tool::new(&profile, axis);
+    tool.depth = ALLOWED;
+    let found = searched(hills, 1.0, &tip, &tool).expect("a clearance");
+    assert!(found.error < 1e-8 && (found.value + over).abs() <= found.error, "{found:?} {over}");
 }
 
 proptest! {
@@ -134,6 +201,8 @@ proptest! {
             tip += out * (least - depth);
         }
         let (depth, _) = deepest(&surface, &tip, &axis, length);
+        // What is under the surface by more comes out over the end of it by less.
+        let depth = depth.min(way_to_end(&geometry, &tip, &axis, length));
         prop_assume!(depth > 0.0 && depth < ALLOWED);
         let profile = line(length);
         let mut tool = Tool::new(&profile, axis);
