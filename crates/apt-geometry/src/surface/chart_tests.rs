@@ -423,7 +423,7 @@ fn chords_of_end_lines_are_as_near_as_they_sag() {
     let (mut seen, mut straight) = (0, 0);
     for which in 0..COUNT {
         let made = made(which);
-        let surface = made.met_from(1.0, &Vec3::z(), Patience::default());
+        let surface = made.met_from(1.0, Patience::default());
         let Some(place) = surface.place(&Vec3::new(1.0, 1.0, 1.0)) else { continue };
         for (line, _) in surface.creases_beside(&place, 1.0).into_iter().flatten() {
             for (from, to) in [(0.1, 0.15), (0.42, 0.5), (0.55, 0.52), (0.3, 0.8)] {

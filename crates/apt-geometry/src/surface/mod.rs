@@ -220,15 +220,14 @@ impl Surface {
     }
 
     /// The surface as a body of a tool on one side of it meets it, positive for that of the natural normal: where a surface ends it
-    /// is taken for the face of a body, which leads away from there on the other side. Most surfaces are that themselves, and so is one
-    /// of straight lines along the axis of the tool, which is beside all of such a line or beside none of it.
+    /// is taken for the face of a body, which leads away from there on the other side. Most surfaces are that themselves.
     ///
     /// It is made when it is first asked for; to somebody who has given up before it is the surface itself.
-    pub fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> &Self {
+    pub fn met_from(&self, side: f64, patience: Patience<'_>) -> &Self {
         match self {
             Self::Ruled(sheet) => sheet.met_from(side),
             Self::PolyConic(sheet) => sheet.met_from(side),
-            Self::Sculptured(sheet) => sheet.met_from(side, axis, patience).unwrap_or(self),
+            Self::Sculptured(sheet) => sheet.met_from(side, patience).unwrap_or(self),
             _ => self,
         }
     }

@@ -128,17 +128,14 @@ impl SculpturedSheet {
 
     /// The surface with what it is taken for behind its ends by a tool on a side; none if that is itself.
     /// None as well where who waits gives up, and then nothing is kept.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> Option<&Surface> {
+    pub(super) fn met_from(&self, side: f64, patience: Patience<'_>) -> Option<&Surface> {
         let flanged = self.flanged.as_ref()?;
-        if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ON_SURFACE) {
-            return None;
-        }
         let kept = &self.met[usize::from(side < 0.0)];
         if let Some(made) = kept.get() {
             return made.as_deref();
         }
         let made = Self::of(flanged.patches(side), self.size, patience).map(|mut sheet| {
-            (sheet.curvature, sheet.own) = (self.curvature, self.own);
+            (sheet.curvature, sheet.own, sheet.ruling) = (self.curvature, self.own, self.ruling);
             Box::new(Surface::Sculptured(Arc::new(sheet)))
         });
         if patience.was_over() { None } else { kept.get_or_init(|| made).as_deref() }

@@ -91,9 +91,9 @@ fn flanges_of_sculptured_surfaces_are_made_with_questions() {
             true
         };
         let waiting = Waiting::until(&ask);
-        assert!(std::ptr::eq(surface.met_from(1.0, &Vec3::z(), waiting.patience()), &raw const surface));
+        assert!(std::ptr::eq(surface.met_from(1.0, waiting.patience()), &raw const surface));
         assert_eq!(asked.get(), 1);
-        let met = surface.met_from(1.0, &Vec3::z(), Patience::default());
+        let met = surface.met_from(1.0, Patience::default());
         assert!(!std::ptr::eq(met, &raw const surface), "nothing was kept of what was given up");
     }
 }

@@ -314,7 +314,7 @@ fn what_is_beyond_the_end_of_a_polyconic_surface_is_behind_it_for_no_tool() {
     let normal = tube.foot(&middle).normal;
     let across = perpendicular(&normal);
     for side in [1.0, -1.0] {
-        let met = tube.met_from(side, &Vec3::z(), Patience::default());
+        let met = tube.met_from(side, Patience::default());
         for height in [0.3, -0.3] {
             let beside = middle + normal * height;
             assert_eq!(met.foot(&beside), tube.foot(&beside));

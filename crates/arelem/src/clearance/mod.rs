@@ -96,7 +96,7 @@ pub struct Gauge {
 impl Gauge {
     /// What is measured from: the surface as the tool meets it on its side, for ON the surface alone.
     pub(crate) fn met(&self, tool: &Tool) -> &Surface {
-        if self.on { &self.surface } else { self.surface.met_from(self.side, &tool.axis, tool.patience) }
+        if self.on { &self.surface } else { self.surface.met_from(self.side, tool.patience) }
     }
 
     /// Clearance with contact points for a tool whose end is at `tip`.
@@ -518,7 +518,7 @@ pub(crate) fn separation(
     let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
     let contact = |side: f64| {
         let memory = &memories[usize::from(side < 0.0)];
-        offset_contact(tool, surface.met_from(side, &tool.axis, tool.patience), side, tip, Some(memory)).0
+        offset_contact(tool, surface.met_from(side, tool.patience), side, tip, Some(memory)).0
     };
     let here = contact(side);
     if here.clearance >= 0.0 {

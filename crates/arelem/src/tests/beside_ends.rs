@@ -103,6 +103,61 @@ fn the_end_of_a_wall_is_as_deep_in_a_tool_as_the_tool_must_be_moved_to_be_clear(
     }
 }
 
+/// A wall whose straight lines are along the tool ends like any other: what is above the end is beside it, and the tool a disc only where all of
+/// what may touch is beside the wall.
+#[test]
+fn a_tool_that_overhangs_the_end_of_an_upright_wall_touches_that_end() {
+    let geometry = wall([0.0; 4]);
+    let end = top(&geometry);
+    for (numbers, side) in TOOLS.into_iter().flat_map(|tool| [(tool, 1.0), (tool, -1.0)]) {
+        let cutter = Cutter::from_numbers(&numbers, 1.0).expect("a cutter");
+        let tool = Tool::new(cutter, Vec3::z());
+        let role = Role { side, ..touched(&geometry) };
+        for below in [3.0, 0.2, 0.1, 0.02, -0.1] {
+            // Over the ball's side the end is within the tool as seen from above.
+            for out in [0.3, 0.24] {
+                let foot = gauge(&role).surface.foot(&v(3.0, 1.0, end - 3.0));
+                let tip = foot.point + foot.normal * (side * out) + Vec3::z() * (3.0 - below);
+                let dense = sampled(&geometry, &tool, &tip);
+                if dense <= 0.0 {
+                    continue;
+                }
+                let engine = gauge(&role).contact(&tool, &tip).clearance;
+                let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+                let over = dense - engine;
+                assert!((-1e-9..2e-3).contains(&over), "{numbers:?} {side} {below} {out}: {engine}, {dense}");
+                assert!(
+                    (engine - verifier).abs() < 1e-7,
+                    "{numbers:?} {side} {below} {out}: {engine}, {verifier}"
+                );
+            }
+        }
+    }
+}
+
+/// How high up a wall goes on beyond its patches.
+fn top(wall: &Geometry) -> f64 {
+    let Geometry::Sculptured(definition) = wall else { panic!("a sculptured surface") };
+    let extended = Extended::of(definition).expect("patches");
+    let corners = |piece: &apt_geometry::parametric::ExtendedPatch| {
+        [0.0, 1.0].map(|v| piece.patch.evaluate(0.5, v).position.z).into_iter().fold(f64::MIN, f64::max)
+    };
+    extended.patches().iter().map(corners).fold(f64::MIN, f64::max)
+}
+
+#[test]
+fn a_motion_begins_where_a_tool_overhangs_the_end_of_an_upright_wall() {
+    let wall = wall([0.0; 4]);
+    let low = level(top(&wall) - 0.1);
+    for (from, side) in [(5.0, DriveSide::Left), (-4.0, DriveSide::Right)] {
+        let mut p = Program::new();
+        p.tolerance(0.002, 0.002).cutter(&TOOLS[0]).from(1.5, from, 6.0);
+        p.go(&[(To, &wall), (To, &low), (On, &x(1.5))]);
+        p.indirv(1.0, 0.0, 0.0).side(side).drive(Turn::Forward, &wall, On, &x(4.0));
+        proven(&format!("from {from}"), &p);
+    }
+}
+
 fn proven(name: &str, p: &Program) {
     for sequence in &p.sequences {
         let evidence = verify(sequence, &|| false).expect("a verdict");

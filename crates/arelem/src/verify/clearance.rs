@@ -325,11 +325,8 @@ impl<'a> Clearance<'a> {
         let tool = self.tool(from.axis);
         let tips = [from, to].map(|p| p.tip + p.axis * self.raise);
         if let Surface::Ruled(surface) = self.surface {
-            let surface = if self.profile.is_point() {
-                surface
-            } else {
-                surface.met_from(self.side, &tool.axis, self.patience)
-            };
+            let surface =
+                if self.profile.is_point() { surface } else { surface.met_from(self.side, self.patience) };
             return surface.bend(self.side, [&tips[0], &tips[1]], &tool, ends, self.thickness, travel);
         }
         let values = ends.map(|end| end.value + self.thickness);
@@ -369,12 +366,9 @@ impl<'a> Clearance<'a> {
                     if self.side > 0.0 { pencil.outside(tip, &tool) } else { pencil.inside(tip, &tool) };
                 Some(Reading::new(found.value, found.normal, found.error))
             }
-            Surface::Ruled(surface) => ruling_clearance::at(
-                surface.met_from(self.side, &tool.axis, self.patience),
-                self.side,
-                tip,
-                &tool,
-            ),
+            Surface::Ruled(surface) => {
+                ruling_clearance::at(surface.met_from(self.side, self.patience), self.side, tip, &tool)
+            }
             Surface::Quadric(quadric) => quadric_clearance::at(quadric, self.side, tip, &tool),
         }
     }

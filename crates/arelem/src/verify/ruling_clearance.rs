@@ -68,11 +68,10 @@ pub(super) enum Ruled {
 }
 
 impl Ruled {
-    /// The surface as a tool on a side of it meets it: where a sculptured surface ends it is taken for the face of a body, but by a
-    /// tool that stands along all its straight lines.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> &Self {
+    /// The surface as a tool on a side of it meets it: where a sculptured surface ends it is taken for the face of a body.
+    pub(super) fn met_from(&self, side: f64, patience: Patience<'_>) -> &Self {
         match self {
-            Self::Sculptured(surface) => surface.met_from(side, axis, patience).unwrap_or(self),
+            Self::Sculptured(surface) => surface.met_from(side, patience).unwrap_or(self),
             _ => self,
         }
     }

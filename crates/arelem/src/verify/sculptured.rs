@@ -161,15 +161,12 @@ impl SculpturedStrips {
     }
 
     /// The surface as a tool on a side meets it; none if that is itself, and once `patience` is over.
-    pub(super) fn met_from(&self, side: f64, axis: &Vec3, patience: Patience<'_>) -> Option<&Ruled> {
+    pub(super) fn met_from(&self, side: f64, patience: Patience<'_>) -> Option<&Ruled> {
         let (surface, model) = self.whole.as_ref()?;
-        if self.ruling.is_some_and(|ruling| ruling.cross(axis).norm() <= ONE_DIRECTION) {
-            return None;
-        }
         let made = || {
             let Cover { patches, error } = model.met_from(surface, side, patience)?;
             let (sheet, size) = (Sheet::of_body(patches), self.size);
-            let met = Self { sheet, size, error, ruling: None, whole: None, met: Default::default() };
+            let met = Self { sheet, size, error, ruling: self.ruling, whole: None, met: Default::default() };
             Some(Box::new(Ruled::Sculptured(Box::new(met))))
         };
         self.met[usize::from(side < 0.0)].get_or_init(made).as_deref()

@@ -43,7 +43,7 @@ pub(crate) fn is_over(
     path: &Vec3,
 ) -> bool {
     let Ok(surface) = Surface::from_geometry(&case::surface(placed).geometry) else { return false };
-    let met = surface.met_from(placed.side, axis, Patience::default());
+    let met = surface.met_from(placed.side, Patience::default());
     let Some(start) = met.place(tip) else { return false };
     let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
     let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));

@@ -241,18 +241,13 @@ impl Search<'_> {
             let is_close = course.is_some_and(|course| course.straight.is_some() || !is_apt);
             Known { bend, half, is_close }
         };
-        // A surface of lines in one direction is met as another one by a tool along these: what is known of one is not that of the other.
-        let may_keep = surface.common_ruling().is_none();
-        if may_keep && let Some(course) = courses.about(side, &base.place, half) {
+        if let Some(course) = courses.about(side, &base.place, half) {
             return known(course);
         }
         // More than is asked, for the next positions.
         let reach = WIDER * half;
-        let keep = |course: Option<Course>| {
-            if may_keep {
-                courses.keep(Kept { side, center: base.place, radius: reach, course });
-            }
-        };
+        let keep =
+            |course: Option<Course>| courses.keep(Kept { side, center: base.place, radius: reach, course });
         let face = Face { surface, side };
         let Bend::AtMost(bend) = downward_bend(face, tool, foot, (&base.place, reach)) else {
             keep(None);
