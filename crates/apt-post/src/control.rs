@@ -127,6 +127,13 @@ impl<'a> Control<'a> {
             .unwrap_or(value)
     }
 
+    /// The largest number that a register takes.
+    pub(crate) fn greatest(&self, register: &str) -> f64 {
+        let definition = self.machine.registers.get(register);
+        definition
+            .map_or(f64::INFINITY, |definition| definition.format(self.units == Units::Inches).greatest())
+    }
+
     /// Whether writing a value would change what the control holds.
     pub(crate) fn changes(&self, register: &str, value: f64) -> bool {
         let Some(definition) = self.machine.registers.get(register) else { return false };

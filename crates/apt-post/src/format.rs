@@ -89,6 +89,11 @@ impl NumberFormat {
         10_f64.powi(-i32::from(self.decimals()))
     }
 
+    /// The largest number that can be written.
+    pub fn greatest(&self) -> f64 {
+        10_f64.powi(i32::from(self.left)) - self.resolution()
+    }
+
     /// The number as text, without address.
     ///
     /// # Errors

@@ -32,13 +32,23 @@ pub(super) struct Cycle {
     clearance: f64,
     retract: Retract,
     feed: Option<f64>,
+    /// Whether the statement names no feed: then it is the one in force at each hole.
+    feed_in_force: bool,
     step: Option<f64>,
     dwell: f64,
     pitch: Option<f64>,
-    /// What the control has in force, once it is in the cycle: top of the hole.
-    open: Option<f64>,
+    /// What the control has in force, once it is in the cycle.
+    open: Option<Open>,
     holes: usize,
     place: (u32, u32),
+}
+
+/// What a control that is in a cycle goes by.
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    /// Top of the hole.
+    top: f64,
+    feed: Option<f64>,
 }
 
 impl Engine<'_> {
@@ -119,6 +129,7 @@ impl Engine<'_> {
             clearance,
             retract,
             feed,
+            feed_in_force: order.feed.is_none(),
             step,
             dwell,
             pitch,
@@ -129,6 +140,16 @@ impl Engine<'_> {
         self.cycle = Some(cycle);
     }
 
+    /// What the tool goes in a minute at the feed in force; none of an inverse time, which tells nothing of a hole.
+    fn feed_in_force(&self) -> Option<f64> {
+        let feed = self.feed?;
+        match feed.mode {
+            FeedMode::PerMinute => Some(feed.value),
+            FeedMode::PerRevolution => self.spindle.speed.map(|speed| speed * feed.value),
+            FeedMode::Inverse => feed.timed.then_some(feed.value),
+        }
+    }
+
     /// Feed per minute and pitch of a cycle; none when the statement has to be left out.
     fn cycle_feed(
         &mut self,
@@ -137,7 +158,7 @@ impl Engine<'_> {
         tap: bool,
     ) -> Option<(Option<f64>, Option<f64>)> {
         let speed = self.spindle.speed.filter(|speed| *speed > 0.0);
-        let current = self.feed.filter(|feed| feed.mode == FeedMode::PerMinute).map(|feed| feed.value);
+        let current = self.feed_in_force();
         let (rate, pitch) = match feed {
             None => (current, None),
             Some(CycleFeed::ThreadsPerInch(threads)) if threads > 0.0 => {
@@ -248,6 +269,10 @@ impl Engine<'_> {
             self.cycle = Some(cycle);
             return;
         }
+        // What a tap goes is a matter of its thread.
+        if cycle.feed_in_force && cycle.name != "tap" {
+            cycle.feed = self.feed_in_force();
+        }
         if cycle.feed.is_none() {
             self.find(PostFindingKind::NoFeed);
             self.cycle = Some(cycle);
@@ -271,32 +296,31 @@ impl Engine<'_> {
     }
 
     /// The height that the tool goes back to. Where the program states one that is neither the clearance plane nor
-    /// where the tool is, it is taken there first.
+    /// where the tool is, it is taken there first, and so it is to a clearance plane above it: the control goes back to
+    /// where the tool stood when the cycle began, and on the way to the next hole it does not look for a wall.
     fn level(&mut self, cycle: &mut Cycle, top: Vec3, plane: f64) -> f64 {
         let here = self.position.map_or(plane, |position| position.z);
-        match cycle.retract {
-            Retract::Initial => here.max(plane),
-            Retract::Above(height) if self.same(height, cycle.clearance) => plane,
+        let (start, level) = match cycle.retract {
+            Retract::Initial => (here.max(plane), here.max(plane)),
+            Retract::Above(height) if self.same(height, cycle.clearance) => (here.max(plane), plane),
             Retract::Above(height) => {
                 let wanted = (top.z + height).max(plane);
-                if !self.same(wanted, here) {
-                    if cycle.open.take().is_some()
-                        && let Some(code) = &self.machine.codes.cycle_off
-                    {
-                        self.control.code(code);
-                    }
-                    let (x, y) = self.position.map_or((top.x, top.y), |position| (position.x, position.y));
-                    // Up where the tool stands, down over the hole.
-                    if wanted > here {
-                        self.rapid_to(Vec3::new(x, y, wanted));
-                    } else {
-                        self.rapid_to(Vec3::new(top.x, top.y, here));
-                        self.rapid_to(Vec3::new(top.x, top.y, wanted));
-                    }
-                }
-                wanted
+                (wanted, wanted)
+            }
+        };
+        if !self.same(start, here) {
+            self.cancel(cycle);
+            cycle.open = None;
+            let (x, y) = self.position.map_or((top.x, top.y), |position| (position.x, position.y));
+            // Up where the tool stands, down over the hole.
+            if start > here {
+                self.rapid_to(Vec3::new(x, y, start));
+            } else {
+                self.rapid_to(Vec3::new(top.x, top.y, here));
+                self.rapid_to(Vec3::new(top.x, top.y, start));
             }
         }
+        level
     }
 
     /// Whether two heights are the same number on the tape.
@@ -329,13 +353,14 @@ impl Engine<'_> {
         };
         let values = self.cycle_values(cycle, top, plane, level);
         let moves = self.control.changes(AXES[0], top.x) || self.control.changes(AXES[1], top.y);
-        let same_top = cycle.open.is_some_and(|open| self.same(open, top.z));
-        if same_top && moves {
+        let same = cycle.open.is_some_and(|open| self.same(open.top, top.z) && open.feed == cycle.feed);
+        if same && moves {
             return self.control.template(next, &values);
         }
         let machine = self.machine;
-        if self.control.set_mode(&machine.codes.plane_xy) {
-            self.control.code(&machine.codes.plane_xy);
+        self.level_plane();
+        if cycle.feed.is_some() && self.feed_mode(&machine.codes.feed_per_minute) {
+            self.control.code(&machine.codes.feed_per_minute);
         }
         if cycle.open.is_none()
             && let Some(pre) = &template.pre
@@ -343,7 +368,7 @@ impl Engine<'_> {
             self.control.template(pre, &values);
         }
         self.control.template(on, &values);
-        cycle.open = Some(top.z);
+        cycle.open = Some(Open { top: top.z, feed: cycle.feed });
     }
 
     /// The cycle as single moves.
@@ -356,11 +381,6 @@ impl Engine<'_> {
         }
         let at = |z: f64| Vec3::new(top.x, top.y, z);
         let bottom = top.z - cycle.depth;
-        if let Some(here) = self.position
-            && here.z < plane
-        {
-            self.rapid_to(Vec3::new(here.x, here.y, plane));
-        }
         let over = self.position.map_or(level, |position| position.z);
         self.rapid_to(at(over));
         self.rapid_to(at(plane));
@@ -394,8 +414,7 @@ impl Engine<'_> {
         let machine = self.machine;
         let mut words = Self::axis_words(position);
         words.extend(feed.map(|value| Word { register: "F", value, force: false }));
-        if self.control.set_mode(&machine.codes.feed_per_minute) {
-            self.control.forget(&["F"]);
+        if self.feed_mode(&machine.codes.feed_per_minute) {
             self.control.code(&machine.codes.feed_per_minute);
         }
         self.control.motion(&[], &[&machine.codes.linear], &words);

@@ -16,6 +16,8 @@ use crate::{
 pub(super) const AXES: [&str; 3] = ["X", "Y", "Z"];
 /// The registers of an arc's centre by coordinate.
 const CENTERS: [&str; 3] = ["I", "J", "K"];
+/// The registers of a feed per minute, per revolution, and of an inverse time.
+const FEEDS: [&str; 3] = ["F", "FR", "FI"];
 /// How far the axis of a circle may lean from a machine axis, as the sine of the angle.
 const PLANE_TOLERANCE: f64 = 1e-7;
 /// OUTTOL of a program that states none: .0005 inch.
@@ -283,8 +285,37 @@ impl Engine<'_> {
             FeedMode::PerRevolution => codes.feed_per_revolution.clone(),
             FeedMode::Inverse => codes.feed_inverse.clone(),
         };
-        let value = if timed && length > 0.0 { value / length } else { value };
-        (code, Some(Word { register: "F", value, force: mode == FeedMode::Inverse }))
+        let register = self.feed_register(mode);
+        // A move that is too short for the time takes the shortest that the control can be told.
+        let value = match timed && length > 0.0 {
+            true => (value / length).min(self.control.greatest(register)),
+            false => value,
+        };
+        if value > 0.0 && self.control.rounded(register, value) == 0.0 && !self.feed_reported {
+            self.feed_reported = true;
+            self.find(PostFindingKind::FeedNotPositive { value: 0.0 });
+        }
+        (code, Some(Word { register, value, force: mode == FeedMode::Inverse }))
+    }
+
+    /// The register of a feed in some mode: one of its own where the machine has that, since the numbers are of another
+    /// size.
+    fn feed_register(&self, mode: FeedMode) -> &'static str {
+        let own = match mode {
+            FeedMode::PerMinute => FEEDS[0],
+            FeedMode::PerRevolution => FEEDS[1],
+            FeedMode::Inverse => FEEDS[2],
+        };
+        if self.machine.registers.contains_key(own) { own } else { FEEDS[0] }
+    }
+
+    /// Brings a feed mode into force; whether it was another one before, of which the control forgets the feed.
+    pub(super) fn feed_mode(&mut self, code: &str) -> bool {
+        let new = self.control.set_mode(code);
+        if new {
+            self.control.forget(&FEEDS);
+        }
+        new
     }
 
     /// Length offset and coolant that an approach by rapid would have brought.
@@ -315,19 +346,29 @@ impl Engine<'_> {
         let in_plane = self.control.changes(AXES[0], position.x) || self.control.changes(AXES[1], position.y);
         let before = if in_plane { self.compensation.take().map(|pending| pending.words) } else { None };
         let machine = self.machine;
+        if before.is_some() {
+            self.level_plane();
+        }
         let mut words = Self::axis_words(position);
         words.extend(feed);
         self.cut(&before.unwrap_or_default(), feed_code, &[&machine.codes.linear], &words);
         self.position = Some(position);
     }
 
+    /// The plane of holes and of cutter compensation, where an arc has left another one.
+    pub(super) fn level_plane(&mut self) {
+        let machine = self.machine;
+        if self.control.set_mode(&machine.codes.plane_xy) {
+            self.control.code(&machine.codes.plane_xy);
+        }
+    }
+
     /// A cutting block; a new feed mode makes the control forget its feed rate.
     fn cut(&mut self, before: &[String], feed_code: Option<String>, codes: &[&str], words: &[Word]) {
         let mut before = before.to_vec();
         if let Some(code) = feed_code
-            && self.control.set_mode(&code)
+            && self.feed_mode(&code)
         {
-            self.control.forget(&["F"]);
             before.push(code);
         }
         self.control.motion(&before, codes, words);

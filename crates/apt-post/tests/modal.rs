@@ -1,0 +1,134 @@
+//! What the control holds from block to block: feed modes and planes, cycles and the height that they go back to.
+
+use apt_cldata::text::read_text;
+use apt_post::{PostFindingKind, PostOptions, Tape, machine, post};
+
+/// Statements that stand before those under test.
+const BEFORE: &str = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\n";
+/// The machines that are bundled.
+const MACHINES: [&str; 3] = ["fanuc-mill3", "haas-mill3", "linuxcnc-mill3"];
+
+fn tape_of(name: &str, statements: &str) -> Tape {
+    let (records, errors) = read_text(&format!("{BEFORE}{statements}FINI\n"));
+    assert_eq!(errors, vec![]);
+    let machine = machine(name).unwrap_or_else(|error| panic!("{error}"));
+    post(&records, &machine, &PostOptions::default())
+}
+
+/// The blocks without sequence numbers, with the mark of an optional block.
+fn blocks(name: &str, statements: &str) -> Vec<String> {
+    let tape = tape_of(name, statements);
+    assert!(tape.is_ok(), "{:?}\n{}", tape.findings, tape.text());
+    let bare = |line: &str| {
+        let words = line.split(' ').filter(|word| !word.trim_start_matches('/').starts_with('N'));
+        let mark = if line.starts_with('/') { "/" } else { "" };
+        format!("{mark}{}", words.collect::<Vec<&str>>().join(" "))
+    };
+    tape.text().lines().map(bare).collect()
+}
+
+fn at(blocks: &[String], text: &str) -> usize {
+    let found = blocks.iter().position(|block| block.contains(text));
+    found.unwrap_or_else(|| panic!("no {text} in {blocks:#?}"))
+}
+
+#[test]
+fn feeds_per_revolution_and_inverse_times_keep_their_digits() {
+    let statements = "RAPID\nGOTO/0,0,5\nFEDRAT/.15,MMPR\nGOTO/10,0,5\nFEDRAT/.04,MMPR\nGOTO/20,0,5\n\
+                      FEDRAT/4,INVERS,AUTO\nGOTO/20,200,5\nFEDRAT/99.96,MMPM\nGOTO/20,0,5\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        for (block, feed) in [("X10.", "F.15"), ("X20.", "F.04"), ("Y200.", "F.02")] {
+            let found = &blocks[at(&blocks, block)];
+            assert!(found.ends_with(feed), "{name}: {found}");
+        }
+        assert!(blocks[at(&blocks, "G94 Y0.")].contains(" F"), "{name}: {blocks:#?}");
+    }
+}
+
+#[test]
+fn a_move_too_short_for_its_inverse_time_takes_the_shortest_that_there_is() {
+    let statements = "RAPID\nGOTO/0,0,5\nFEDRAT/5000,INVERS,AUTO\nGOTO/.001,0,5\nGOTO/10,0,5\n";
+    for (name, feed) in MACHINES.into_iter().zip(["F99999.9999", "F99999.9999", "F999999.9999"]) {
+        let blocks = blocks(name, statements);
+        assert!(blocks[at(&blocks, "X.001")].ends_with(feed), "{name}: {blocks:#?}");
+    }
+}
+
+#[test]
+fn a_feed_that_the_control_would_read_as_zero_is_told() {
+    let tape = tape_of("fanuc-mill3", "RAPID\nGOTO/0,0,5\nFEDRAT/.001,INVERS,AUTO\nGOTO/100,0,5\n");
+    let zero = |kind: &PostFindingKind| matches!(kind, PostFindingKind::FeedNotPositive { .. });
+    assert!(tape.findings.iter().any(|finding| zero(&finding.kind)), "{}", tape.text());
+}
+
+#[test]
+fn a_cycle_feeds_per_minute_whatever_was_before() {
+    let statements = "RAPID\nGOTO/0,0,50\nFEDRAT/.15,MMPR\nGOTO/10,0,40\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\n\
+                      GOTO/10,0,0\nGOTO/20,0,0\nCYCLE/OFF\nGOTO/30,0,50\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        let (mode, hole, after) = (at(&blocks, "G94"), at(&blocks, "G81"), at(&blocks, "X30."));
+        let mode = blocks[mode + 1..].iter().position(|block| block.contains("G94")).map(|n| n + mode + 1);
+        assert!(mode.is_some_and(|mode| mode <= hole), "{name}: {blocks:#?}");
+        assert!(blocks[hole].ends_with("F100."), "{name}: {}", blocks[hole]);
+        assert!(
+            blocks[after].contains("G95") && blocks[after].ends_with("F.15"),
+            "{name}: {}",
+            blocks[after]
+        );
+    }
+}
+
+#[test]
+fn a_cycle_without_a_feed_takes_the_one_in_force_at_the_hole() {
+    let statements = "RAPID\nGOTO/0,0,50\nCYCLE/DRILL,DEPTH,10,RAPTO,3\nFEDRAT/150,MMPM\nGOTO/10,0,0\nGOTO/20,0,0\n\
+                      FEDRAT/.05,MMPR\nGOTO/30,0,0\nGOTO/40,0,0\nCYCLE/OFF\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        for (hole, feed) in [("X10.", Some("F150.")), ("X20.", None), ("X30.", Some("F50.")), ("X40.", None)]
+        {
+            let block = &blocks[at(&blocks, hole)];
+            let written = block.split(' ').find(|word| word.starts_with('F'));
+            assert_eq!(written, feed, "{name}: {block}");
+        }
+    }
+}
+
+#[test]
+fn optional_blocks_are_not_the_only_ones_to_open_or_close_a_cycle() {
+    let cycle = "RAPID\nGOTO/0,0,50\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\n";
+    let opened = format!("{cycle}OPSKIP/ON\nGOTO/10,0,0\nOPSKIP/OFF\nGOTO/20,0,0\nCYCLE/OFF\n");
+    let closed =
+        format!("{cycle}GOTO/10,0,0\nGOTO/20,0,0\nOPSKIP/ON\nCYCLE/OFF\nOPSKIP/OFF\nRAPID\nGOTO/0,0,50\n");
+    for name in MACHINES {
+        let opened = blocks(name, &opened);
+        assert!(opened[at(&opened, "X20.")].contains("G81"), "{name}: {opened:#?}");
+        let closed = blocks(name, &closed);
+        assert!(closed.iter().any(|block| block == "G80"), "{name}: {closed:#?}");
+    }
+}
+
+#[test]
+fn a_hole_above_the_tool_lets_it_rise_before_it_goes_there() {
+    // The control goes back to where it stood when the cycle began, and that must be where the next hole begins.
+    let statements = "RAPID\nGOTO/0,0,3\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nGOTO/20,0,20\n\
+                      GOTO/30,0,0\nCYCLE/OFF\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        let high = at(&blocks, "X20.");
+        assert_eq!(blocks[high - 2..high], ["G80", "G0 Z23."], "{name}: {blocks:#?}");
+        assert!(blocks[at(&blocks, "X30.")].starts_with("G98"), "{name}: {blocks:#?}");
+    }
+}
+
+#[test]
+fn compensation_is_in_the_plane_of_the_cut_also_after_an_arc_in_another() {
+    let statements = "RAPID\nGOTO/5,0,0\nFEDRAT/150,MMPM\nCIRCLE/0,0,0,0,1,0,5\nGOTO/3.535534,0,3.535534\n\
+                      GOTO/0,0,5\nCUTCOM/LEFT,1\nGOTO/0,20,5\nGOTO/20,20,5\nCUTCOM/OFF\nGOTO/30,30,5\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        let (arc, on) = (at(&blocks, "G18"), at(&blocks, "G41"));
+        assert!(blocks[arc..=on].iter().any(|block| block.contains("G17")), "{name}: {blocks:#?}");
+    }
+}
