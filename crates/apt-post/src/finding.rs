@@ -98,7 +98,7 @@ pub enum PostFindingKind {
     CycleLeftOn { cycle: SmolStr, word: SmolStr },
     #[error("a circle off tolerance by {deviation}: made of chords")]
     ArcAsChords { deviation: f64 },
-    #[error("a circle whose axis is no machine axis: made of chords")]
+    #[error("a circle in a plane in which the control makes no arc here: made of chords")]
     ArcNotInPlane,
     #[error("cutter compensation begins or ends on an arc; a straight block is used")]
     CompensationOnArc,

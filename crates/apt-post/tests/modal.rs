@@ -110,6 +110,31 @@ fn optional_blocks_are_not_the_only_ones_to_open_or_close_a_cycle() {
 }
 
 #[test]
+fn an_arc_does_not_begin_where_optional_blocks_may_have_left_the_tool() {
+    // Its centre is told from its start: the first chord is straight and ends where the tool is known to be.
+    let statements = "FEDRAT/100,MMPM\nRAPID\nGOTO/0,0,0\nOPSKIP/ON\nGOTO/5,0,0\nOPSKIP/OFF\nCIRCLE/0,0,0,0,0,1,5\n\
+                      GOTO/4.619398,1.913417,0\nGOTO/3.535534,3.535534,0\nGOTO/1.913417,4.619398,0\nGOTO/0,5,0\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        let first = at(&blocks, "X4.619");
+        assert!(blocks[first].contains("G1"), "{name}: {blocks:#?}");
+        assert!(blocks[first + 1].contains("G3"), "{name}: {blocks:#?}");
+    }
+}
+
+#[test]
+fn arcs_in_other_planes_are_chords_while_the_control_compensates() {
+    let statements = "FEDRAT/100,MMPM\nRAPID\nGOTO/0,0,0\nCUTCOM/LEFT,1\nGOTO/5,0,0\nCIRCLE/0,0,0,0,1,0,5\n\
+                      GOTO/4.619398,0,1.913417\nGOTO/3.535534,0,3.535534\nGOTO/0,0,5\nCUTCOM/OFF\nGOTO/0,20,5\n";
+    for name in MACHINES {
+        let tape = tape_of(name, statements);
+        assert!(!tape.text().contains("G18"), "{name}: {}", tape.text());
+        let told = |kind: &PostFindingKind| matches!(kind, PostFindingKind::ArcNotInPlane);
+        assert!(tape.findings.iter().any(|finding| told(&finding.kind)), "{name}: {:?}", tape.findings);
+    }
+}
+
+#[test]
 fn a_hole_above_the_tool_lets_it_rise_before_it_goes_there() {
     // The control goes back to where it stood when the cycle began, and that must be where the next hole begins.
     let statements = "RAPID\nGOTO/0,0,3\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nGOTO/20,0,20\n\

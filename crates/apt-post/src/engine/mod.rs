@@ -133,6 +133,8 @@ struct Engine<'a> {
     scale: f64,
     /// Where the tool is, in tape units, as far as it is known.
     position: Option<Vec3>,
+    /// Whether it may stand elsewhere, since blocks that may be skipped have come after it was last told where to go.
+    skipped: bool,
     rapid: Option<(u32, u32)>,
     feed: Option<Feed>,
     spindle: Spindle,
@@ -193,6 +195,7 @@ impl<'a> Engine<'a> {
             program_units: units.program,
             scale: units.scale(),
             position: None,
+            skipped: false,
             rapid: None,
             feed: None,
             spindle: Spindle::default(),

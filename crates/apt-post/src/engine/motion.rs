@@ -112,6 +112,7 @@ impl Engine<'_> {
         } else {
             self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(position));
         }
+        self.skipped = false;
         self.position = Some(self.rounded(position));
     }
 
@@ -173,7 +174,8 @@ impl Engine<'_> {
                 return;
             }
             self.control.place = point.place;
-            let straight = self.position.is_none() || self.compensation.is_some() || self.approach.is_some();
+            let unknown = self.position.is_none() || self.skipped;
+            let straight = unknown || self.compensation.is_some() || self.approach.is_some();
             if !straight {
                 let run = &whole[at..];
                 let limits = self.arc_limits(center.is_some());
@@ -214,16 +216,20 @@ impl Engine<'_> {
 
     /// The planes in which a group may be an arc, and the centre that its circle record states.
     fn planes(&self, points: &[RunPoint]) -> (Vec<ArcPlane>, Option<Vec3>) {
+        // A control that compensates stays in the plane in which it does.
+        let compensates = self.compensated || self.compensation.is_some();
+        let possible = |plane: &ArcPlane| !compensates || *plane == ArcPlane::Xy;
+        let possible: Vec<ArcPlane> = self.machine.arc.planes.iter().copied().filter(possible).collect();
         let circle = points.first().and_then(|point| point.circle).and_then(|index| self.circles.get(index));
         let Some(circle) = circle else {
-            let planes = if self.fit_points { self.machine.arc.planes.clone() } else { Vec::new() };
+            let planes = if self.fit_points { possible } else { Vec::new() };
             return (planes, None);
         };
         let across = |plane: &ArcPlane| {
             let [u, v, _] = arc::plane_axes(*plane);
             circle.axis[u].hypot(circle.axis[v]) <= PLANE_TOLERANCE * circle.axis.norm()
         };
-        let planes: Vec<ArcPlane> = self.machine.arc.planes.iter().copied().filter(across).collect();
+        let planes: Vec<ArcPlane> = possible.into_iter().filter(across).collect();
         let center = (!planes.is_empty()).then_some(circle.center);
         (planes, center)
     }
@@ -352,6 +358,7 @@ impl Engine<'_> {
         let mut words = Self::axis_words(position);
         words.extend(feed);
         self.cut(&before.unwrap_or_default(), feed_code, &[&machine.codes.linear], &words);
+        self.skipped = false;
         self.position = Some(position);
     }
 

@@ -385,6 +385,7 @@ impl Engine<'_> {
     fn skip_statement(&mut self, arguments: &Arguments<'_>) {
         // A cycle must not begin or end in a block that may be skipped and go on where none is.
         self.leave_cycle();
+        self.skipped |= self.control.skip.is_some();
         self.control.skip = (!arguments.has("OFF")).then(|| self.skip_level(arguments));
         // A skipped block must not have been the only one that carried a modal word.
         self.control.forget_all();
