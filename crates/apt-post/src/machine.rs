@@ -97,7 +97,7 @@ pub struct MachineDefinition {
     pub max_block: usize,
     /// Axes by name.
     pub axes: BTreeMap<String, Axis>,
-    /// Registers by name.
+    /// Registers by name. `FR` and `FI` are those of feeds per revolution and of inverse times, where these have other digits than a feed per minute, `F`.
     pub registers: BTreeMap<String, Register>,
     /// Layout of blocks.
     pub block: BlockLayout,
