@@ -109,10 +109,15 @@ impl Stepper<'_> {
         if !self.prepared.attitude.turns() || led > CREEPING * self.bands() {
             return None;
         }
-        let latest = self.latest.take();
+        let (latest, turned, before) = (self.latest.take(), self.turned, *here);
         let corner = self.corner_at(here);
         let beyond = self.around(&corner, here, cap).filter(|beyond| (beyond.tip - here.tip).norm() > led);
         if beyond.is_none() {
+            // Nothing of what was tried stays.
+            (self.turned, *here) = (turned, before);
+            if let Some(latest) = &latest {
+                self.follow(&before.tip, latest);
+            }
             self.latest = latest;
         }
         beyond
