@@ -112,10 +112,10 @@ pub(super) fn prepare<'a>(
     };
     checked?;
     // Where the tool is in tolerance on both sides, TLLFT and TLRGT tell which.
-    if misplaced(state.drive_side, &tool, &drive_contact, &tangent).is_some()
+    if misplaced(state.drive_side, &tool, &drive_contact.gradient, &tangent).is_some()
         && let Some((other, contact)) = on_the_other_side(&tool, &drive, &tip, size)
         && let Ok(along) = line_of_motion(&part_contact, &contact, &wanted, &tip)
-        && misplaced(state.drive_side, &tool, &contact, &along).is_none()
+        && misplaced(state.drive_side, &tool, &contact.gradient, &along).is_none()
     {
         (drive, drive_contact, tangent) = (other, contact, along);
         part_followed = part_contact;
@@ -181,8 +181,13 @@ impl<'a> Prepared<'a> {
     /// The same motion with another way of the axis.
     pub(super) fn with(&self, attitude: Attitude<'a>) -> Self {
         let lines = (&self.standing, &self.wanted);
-        let tangent = line_of_turning(&attitude, [&self.part, &self.drive], &self.tip, lines);
-        Self { tangent: tangent.unwrap_or(self.standing), attitude, ..self.clone() }
+        let line = line_of_turning(&attitude, [&self.part, &self.drive], &self.tip, lines);
+        let tangent = line.unwrap_or(self.standing);
+        // The way on which the tool turns leads its line aside; where that comes to lie across the direction asked for, the side of the drive surface
+        // tells more of its sense.
+        let is_against = misplaced(self.drive_side, &self.tool, &self.followed[1], &tangent)
+            .is_some_and(|(sine, _)| sine.abs() > tangent.dot(&self.wanted).abs());
+        Self { tangent: if is_against { -tangent } else { tangent }, attitude, ..self.clone() }
     }
 }
 
@@ -395,17 +400,18 @@ fn judge_side(
     tangent: &Vec3,
     warnings: &mut Vec<MotionWarning>,
 ) -> DriveSide {
-    let Some((sine, side)) = misplaced(state.drive_side, tool, drive, tangent) else {
+    let Some((sine, side)) = misplaced(state.drive_side, tool, &drive.gradient, tangent) else {
         return state.drive_side;
     };
     warnings.push(MotionWarning::WrongSideOfDrive { sine, side });
     side
 }
 
-/// Where the tool is not on the side of the drive surface that is told: by which sine, and on which side it is.
-fn misplaced(told: DriveSide, tool: &Tool, drive: &Contact, tangent: &Vec3) -> Option<(f64, DriveSide)> {
+/// Where the tool is not on the side of the drive surface that is told: by which sine, and on which side it is. The drive surface leads away from itself
+/// along its `gradient`.
+fn misplaced(told: DriveSide, tool: &Tool, gradient: &Vec3, tangent: &Vec3) -> Option<(f64, DriveSide)> {
     // From the surface to the tool, seen with the axis up: positive when the tool is to the left.
-    let sine = tangent.cross(&drive.gradient).dot(&tool.axis);
+    let sine = tangent.cross(gradient).dot(&tool.axis);
     match told {
         DriveSide::Left => (sine < -SIDE_SINE).then_some((sine, DriveSide::Right)),
         DriveSide::Right => (sine > SIDE_SINE).then_some((sine, DriveSide::Left)),

@@ -528,3 +528,39 @@ fn a_tool_that_its_axis_keeps_from_a_plane_starts_up_within_the_band_of_that() {
     p.go(&[(Relation::On, &through), (Relation::To, &under), (Relation::Past, &first)]);
     proven(&p);
 }
+
+/// Where the line of a tool that turns first lies across the direction asked for, it is not led along its wall with that on its other side.
+#[test]
+fn a_tool_that_turns_first_keeps_its_drive_surface_on_the_side_that_is_told() {
+    let under = sphere(2.109647547158402, 2.676990143388069, 6.865558600621865, 5.842202273540962);
+    let beside = cone(
+        v(2.531539687390538, 3.314554100823363, 5.215002527799508),
+        v(-0.763393800886735, -0.6024993134169456, -0.2328615084117877),
+        0.9331550287237954f64.acos().to_degrees(),
+    );
+    let check = quadric([
+        0.20666796662842954,
+        0.13569474027655384,
+        0.4339925003579399,
+        1.7531253223820666,
+        -0.2850901602733428,
+        0.09660971393477383,
+        0.10156979626312539,
+        -0.38226686654416475,
+        -0.07943013716890238,
+        -0.8854623952803515,
+    ]);
+    let mut p = Program::new();
+    p.tolerance(0.0, 0.0001).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.647914351967745]);
+    from(
+        &mut p,
+        v(2.0504323011831507, 1.3969612404035816, 0.8750967182150708),
+        v(0.08176385402553156, 0.1294501196592348, 0.9882091573624996),
+    );
+    let mode = AxisAngle::Lead(0.07742032468033302);
+    along(&mut p, ToolAxis::AtAngle { part: true, angle: -0.30201798768207316, mode });
+    p.run(&MotionCommand::PartSurface(named(&under))).go(&[(Relation::To, &beside)]);
+    p.side(DriveSide::Left).indirv(-0.251835364324169, -0.9566700348051262, 0.14615537547990415);
+    let outcome = p.attempt(&motion(Turn::Forward, &beside, &[(Relation::To, 1, &check)]));
+    assert!(matches!(outcome, Err(MotionFailure::NoAdmissibleVector { .. })), "{outcome:?}");
+}
