@@ -23,6 +23,9 @@ pub struct HalfSpace {
     pub level: f64,
 }
 
+/// A half-space that holds a convex body, from the direction out of the body at a place beside it, and a normal of the surface there.
+pub type Beside<'a> = dyn Fn(&Vec3, &Vec3) -> HalfSpace + 'a;
+
 /// A convex body.
 #[derive(Clone, Copy)]
 pub struct Body<'a> {
@@ -30,6 +33,15 @@ pub struct Body<'a> {
     pub away: &'a Away<'a>,
     /// One that holds it: where the body lies along a plane part of a surface, that tells more than the distances of points.
     pub within: Option<HalfSpace>,
+    /// Those that hold it and face parts of a surface: about a sharp edge of the body the distances of points bend without bound.
+    pub beside: Option<&'a Beside<'a>>,
+}
+
+impl<'a> Body<'a> {
+    /// One of which only the distances of points are known.
+    pub fn new(away: &'a Away<'a>) -> Self {
+        Self { away, within: None, beside: None }
+    }
 }
 
 /// How many nodes and parts a question looks at, and how long.
@@ -47,6 +59,7 @@ pub struct Limit<'a> {
 pub(super) struct Apart<'a> {
     away: &'a Away<'a>,
     within: Option<HalfSpace>,
+    beside: Option<&'a Beside<'a>>,
     /// Less is none.
     wanted: f64,
     /// What the parts looked at so far keep.
@@ -58,10 +71,11 @@ pub(super) struct Apart<'a> {
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(Body { away, within }: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
+    pub(super) fn new(Body { away, within, beside }: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
         Self {
             away,
             within,
+            beside,
             wanted,
             least: limit.enough.max(wanted),
             looks: 0,
@@ -158,10 +172,17 @@ impl<'a> Apart<'a> {
         self.look();
         let (distance, outward) = (self.away)(part.center());
         let by_point = distance - part.reach_along(&outward);
-        let by_plane = self.within.filter(|_| by_point < self.wanted).map(|HalfSpace { outward, level }| {
+        let is_wanted = |least: &f64| *least >= self.wanted;
+        let by_plane = |HalfSpace { outward, level }: HalfSpace| {
             outward.dot(part.center()) - level - part.reach_along(&outward)
-        });
-        (by_plane.map_or(by_point, |least| least.max(by_point)), (distance, outward))
+        };
+        let within = || self.within.map_or(f64::NEG_INFINITY, by_plane);
+        let beside = || {
+            let facing = self.beside.zip(part.normal()).map(|(beside, normal)| beside(&outward, &normal));
+            facing.map_or(f64::NEG_INFINITY, by_plane)
+        };
+        let least = Some(by_point).filter(is_wanted).or_else(|| Some(within()).filter(is_wanted));
+        (least.or_else(|| Some(beside()).filter(is_wanted)).unwrap_or(by_point), (distance, outward))
     }
 
     /// Whether a part keeps what is wanted; its halves where need be, by the tangent of the distance in the middle.
@@ -187,7 +208,7 @@ impl Surface {
         patience: Patience<'_>,
     ) -> Option<f64> {
         let limit = Limit { looks: MOST_LOOKS, enough, patience };
-        self.keeps_off_body(Body { away, within: None }, wanted, limit)
+        self.keeps_off_body(Body::new(away), wanted, limit)
     }
 
     /// The same within a limit.

@@ -144,6 +144,7 @@ proptest! {
         which in 0usize..COUNT, near in prop::array::uniform3(-1.0..6.0f64), off in 0.05..2.0f64,
         way in prop::array::uniform3(-2.0..2.0f64), radius in 0.01..0.5f64, wanted in 0.001..0.5f64,
         asides in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 60), is_within in any::<bool>(),
+        is_beside in any::<bool>(),
     ) {
         let surface = made(which);
         let foot = surface.foot(&Vec3::from(near));
@@ -152,9 +153,17 @@ proptest! {
         let away = |p: &Vec3| away_from_stretch(p, &ends, radius);
         // The plane across the normal at the foot, on which the body stands.
         let outward = -foot.normal;
-        let level = ends.iter().map(|end| outward.dot(end) + radius).fold(f64::NEG_INFINITY, f64::max);
-        let within = is_within.then_some(HalfSpace { outward, level });
-        let body = Body { away: &away, within };
+        let reach = |outward: &Vec3| {
+            ends.iter().map(|end| outward.dot(end) + radius).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let within = is_within.then(|| HalfSpace { outward, level: reach(&outward) });
+        // Any half-space that holds it will do, and so one that faces the part.
+        let facing = |out: &Vec3, normal: &Vec3| {
+            let outward = if out.dot(normal) < 0.0 { -normal } else { *normal };
+            HalfSpace { outward, level: reach(&outward) }
+        };
+        let beside = is_beside.then_some(&facing as &Beside<'_>);
+        let body = Body { away: &away, within, beside };
         let Some(kept) = surface.keeps_off_body(body, wanted, Limit { looks: 600, enough: f64::INFINITY, patience: Patience::default() }) else { return Ok(()) };
         prop_assert!(kept >= wanted);
         for (k, aside) in asides.iter().enumerate() {

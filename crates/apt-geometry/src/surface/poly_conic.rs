@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 use self::tree::{halved, joined};
 use super::{
     Chart, Foot, Place, Surface,
-    apart::{Apart, Body, HalfSpace, Limit},
+    apart::{Apart, Beside, Body, HalfSpace, Limit},
     descent::{Descent, MAX_STEPS, Slopes},
     interval::Number,
     part::{Count, Part, Rectangle, Summary},
@@ -430,13 +430,20 @@ impl PolyConicSheet {
             let (distance, outward) = (body.away)(&self.linear.tr_mul(&(p - self.origin)));
             (distance, self.linear * outward)
         };
-        let within = body.within.map(|HalfSpace { outward, level }| {
+        let in_frame = |HalfSpace { outward, level }: HalfSpace| {
             let outward = self.linear * outward;
             HalfSpace { outward, level: level + outward.dot(&self.origin) }
+        };
+        let within = body.within.map(in_frame);
+        let beside = body.beside.map(|beside| {
+            move |out: &Vec3, normal: &Vec3| {
+                in_frame(beside(&self.linear.tr_mul(out), &self.linear.tr_mul(normal)))
+            }
         });
+        let beside = beside.as_ref().map(|beside| beside as &Beside<'_>);
         let stock = self.form.thickness.abs();
         let limit = Limit { enough: limit.enough + stock, ..limit };
-        let mut asked = Apart::new(Body { away: &own, within }, wanted + stock, limit);
+        let mut asked = Apart::new(Body { away: &own, within, beside }, wanted + stock, limit);
         let look = |asked: &mut Apart<'_>, node: usize| {
             let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;
             Some((asked.ball(&cell.center, cell.radius), node))

@@ -271,7 +271,9 @@ pub(super) fn clears(
     let close = Closeness { length: CLOSE * (tool.reach() + way.norm()), wanted };
     let body = |place: &Vec3| outward(tool, place);
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
-    let body = Body { away: &distance, within: Some(facing(tool, [&start, &(start + way)], &-normal)) };
+    let tips = [&start, &(start + way)];
+    let beside = |out: &Vec3, square: &Vec3| facing(tool, tips, &across_edge(tool, out, square, &-normal));
+    let body = Body { away: &distance, within: Some(facing(tool, tips, &-normal)), beside: Some(&beside) };
     let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: tool.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
 }
@@ -288,6 +290,16 @@ fn facing(tool: &Tool, tips: [&Vec3; 2], outward: &Vec3) -> HalfSpace {
     let reach = tool.profile.support(across, along).0;
     let level = tips.into_iter().map(|tip| outward.dot(tip) + reach).fold(f64::NEG_INFINITY, f64::max);
     HalfSpace { outward: *outward, level }
+}
+
+/// The normal of a part of a surface, turned into the plane through the tool's axis in which the way `out` of the tool at its nearest place lies: at a
+/// sharp edge there the tool is on one side of the plane across it, if the surface is. It points as `outward` does.
+fn across_edge(tool: &Tool, out: &Vec3, normal: &Vec3, outward: &Vec3) -> Vec3 {
+    let around = tool.axis.cross(out);
+    let square = around.norm_squared();
+    let along_edge = if square > 0.0 { around * (around.dot(normal) / square) } else { Vec3::zeros() };
+    let across = (normal - along_edge).try_normalize(0.0).unwrap_or(*outward);
+    if across.dot(outward) < 0.0 { -across } else { across }
 }
 
 /// The same for a tool that turns evenly from one axis to another on its way. Every point of it goes on a chord from its first place to its
@@ -309,7 +321,8 @@ pub(super) fn clears_turning(
         close: CLOSE * (reach + (last.1 - first.1).norm()),
     };
     let wanted = level.max(least_off(first.0)) + angle * angle * reach / 8.0;
-    let body = Body { away: &|place: &Vec3| hull.away(place), within: None };
+    let distance = |place: &Vec3| hull.away(place);
+    let body = Body::new(&distance);
     let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: first.0.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
 }

@@ -93,7 +93,7 @@ impl<S: Enclose> Cuts<'_, S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::{Body, Limit, sheet_tests};
+    use super::super::super::{Body, HalfSpace, Limit, sheet_tests};
     use crate::{Vec3, patience::Patience};
 
     /// Beside a tool that lies along a ruling of a cone parts are as long as the ruling, however narrow: few of them show it.
@@ -115,7 +115,7 @@ mod tests {
         };
         let keeps = |wanted: f64| {
             cone.keeps_off_body(
-                Body { away: &away, within: None },
+                Body::new(&away),
                 wanted,
                 Limit { looks: 3000, enough: wanted, patience: Patience::default() },
             )
@@ -123,5 +123,42 @@ mod tests {
         };
         assert!(keeps(off - slack));
         assert!(!keeps(off + slack));
+    }
+
+    /// About the edge of a disc distances bend without bound, however far it is from the surface; planes across it tell what it keeps.
+    #[test]
+    fn few_parts_keep_off_the_edge_of_a_disc() {
+        let sheet = sheet_tests::surface(&sheet_tests::sheets()[0]);
+        let foot = sheet.foot(&Vec3::new(1.3, 0.4, 0.9));
+        let [radius, off, slack] = [0.5, 1e-6, 3e-9];
+        for turn in [0.3, 1.1, 2.5] {
+            // The edge touches along a tangent of the surface, the disc stands on it all but upright.
+            let any = Vec3::x().cross(&foot.normal).normalize();
+            let tangent = any * f64::cos(turn) + foot.normal.cross(&any) * f64::sin(turn);
+            let (rise, lean) = f64::sin_cos(1.4);
+            let out = foot.normal.cross(&tangent) * lean - foot.normal * rise;
+            let axis = out.cross(&tangent);
+            let middle = foot.point + foot.normal * off - out * radius;
+            let away = |place: &Vec3| {
+                let from = place - middle;
+                let flat = from - axis * from.dot(&axis);
+                let way = from - flat * (radius / flat.norm()).min(1.0);
+                (way.norm(), way.normalize())
+            };
+            let beside = |out: &Vec3, normal: &Vec3| {
+                let around = axis.cross(out).normalize();
+                let across = (normal - around * around.dot(normal)).normalize();
+                let outward = -across * across.dot(&foot.normal).signum();
+                let reach = radius * (outward - axis * outward.dot(&axis)).norm();
+                HalfSpace { outward, level: outward.dot(&middle) + reach }
+            };
+            let keeps = |body: Body<'_>, wanted: f64| {
+                let limit = Limit { looks: 1500, enough: wanted, patience: Patience::default() };
+                sheet.keeps_off_body(body, wanted, limit).is_some()
+            };
+            let sharp = Body { beside: Some(&beside), ..Body::new(&away) };
+            assert!(keeps(sharp, off - slack), "{turn}");
+            assert!(!keeps(sharp, off + slack), "{turn}");
+        }
     }
 }

@@ -96,6 +96,11 @@ impl Extent {
         &self.center
     }
 
+    /// The natural normal there, if there is one.
+    pub(in super::super) fn normal(&self) -> Option<Vec3> {
+        self.normal
+    }
+
     /// No place is farther from the middle along a unit direction.
     pub(in super::super) fn reach_along(&self, way: &Vec3) -> f64 {
         let Some(normal) = self.normal else { return self.radius };

@@ -220,7 +220,7 @@ mod tests {
         };
         let keeps = |wanted: f64| {
             let limit = Limit { looks: 3000, enough: wanted, patience: Patience::default() };
-            surface.keeps_off_body(Body { away: &away, within: None }, wanted, limit).is_some()
+            surface.keeps_off_body(Body::new(&away), wanted, limit).is_some()
         };
         assert!(keeps(-1e-9) && !keeps(1e-9));
         assert!(sheet.parts.get() <= 60, "{} parts", sheet.parts.get());

@@ -298,7 +298,7 @@ mod tests {
         };
         let limit = Limit { looks: 5000, enough: wanted, patience: Patience::default() };
         let surface = Surface::Tabulated(Box::new(curve.clone()));
-        let keeps = surface.keeps_off_body(Body { away: &away, within: None }, wanted, limit).is_some();
+        let keeps = surface.keeps_off_body(Body::new(&away), wanted, limit).is_some();
         (keeps, looks.get())
     }
 
