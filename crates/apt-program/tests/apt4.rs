@@ -30,6 +30,8 @@ const MISTAKES: &[(&str, &[(u32, u16)])] = &[
     ("P=5\nP=POINT/1,2", &[(2, 1001)]),
     ("RESERV/A,3\nA(1)=1\nA(2)=POINT/1,2", &[(3, 1012)]),
     ("RESERV/A,3\nA=1\nB=A(1)", &[(3, 1014)]),
+    ("RESERV/A,3\nA(1)=1\nB=A+1", &[(3, 1012)]),
+    ("RESERV/A,3\nA(1)=POINT/1,2\nL=LINE/A,(4,5)", &[(3, 1012)]),
     ("P=POINT/1,2\nX=P+1", &[(2, 1007)]),
     ("C=CIRCLE/(1,2),3", &[(1, 2001)]),
     ("P=POINT/UU,VV", &[(1, 2001), (1, 2001)]),
@@ -393,6 +395,24 @@ fn an_endless_program_is_no_program_without_fini() {
         &|| false,
     );
     assert!(unended.findings().any(|finding| finding.kind == FindingKind::EndMissing));
+}
+
+/// APT III gives error 23 (language reference 1.1); elsewhere the program ends at its last line, with a warning.
+#[test]
+fn a_program_without_fini_is_an_error_on_cards() {
+    for (dialect, severity) in [
+        (DialectName::Apt3, Severity::Error),
+        (DialectName::Apt4, Severity::Warning),
+        (DialectName::Free, Severity::Warning),
+    ] {
+        let program =
+            evaluate(&SyntaxTree::parse("A=1\nB=A\n", Dialect::named(dialect)), &Options::default(), &|| {
+                false
+            });
+        let end =
+            program.findings().find(|finding| finding.kind == FindingKind::EndMissing).expect("no FINI");
+        assert_eq!(end.severity, severity, "{dialect:?}");
+    }
 }
 
 /// TLRGT and its kin join the statement of a logical IF as they join any other.

@@ -67,7 +67,8 @@ impl Evaluator<'_> {
     fn resolve_name(&mut self, reference: &Reference) -> Option<Resolved> {
         let name = &reference.name.text;
         self.mark_used(name);
-        let Some(symbol) = self.look_up(name) else {
+        // In APT4 an array has a key of its own: it is a value without its subscript neither there nor here.
+        let Some(symbol) = self.look_up(name).or_else(|| self.look_up(&self.array_key(name))) else {
             self.report_undefined(name.clone(), reference, APT4_UNDEFINED);
             return None;
         };

@@ -469,6 +469,9 @@ pub enum FindingKind {
     /// Two check surfaces need labels, one takes none.
     #[error("check surfaces and labels do not match")]
     CheckLabels,
+    /// The label of a check surface is an expression, or a name with a value.
+    #[error("the label of a check surface is computed")]
+    CheckLabelComputed,
     /// An inclusion of too many surfaces in a GO, OFFSET or directed motion.
     #[error("{found} surfaces, at most {limit}")]
     SurfaceCount {

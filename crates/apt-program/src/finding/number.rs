@@ -89,6 +89,7 @@ impl FindingKind {
             Self::ImpliedCheckBroken { .. } => 137,
             Self::ImpliedCheckOpen => 650,
             Self::CheckLabels => 132,
+            Self::CheckLabelComputed => 453,
             Self::SurfaceCount { .. } => 129,
             Self::RelationNotHere { .. } => 133,
             Self::PatternList { number, .. } => *number,
@@ -241,8 +242,11 @@ impl FindingKind {
     }
 
     /// How bad this is in a dialect: APT4 goes on after a name that is too long, after a redefinition and after a
-    /// PRINT that it does not know.
+    /// PRINT that it does not know; APT III does not take a program that ends without FINI.
     pub fn severity_in(&self, dialect: DialectName) -> Severity {
+        if matches!(self, Self::EndMissing) && dialect == DialectName::Apt3 {
+            return Severity::Error;
+        }
         let mild = match self {
             Self::Syntax(SyntaxErrorKind::NameTooLong { .. }) | Self::Redefined { .. } => true,
             Self::Operand { statement, .. } | Self::OperandRange { statement, .. } => {

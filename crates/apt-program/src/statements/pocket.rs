@@ -23,7 +23,7 @@ impl Evaluator<'_> {
         let Some(items) = self.operands(major.arguments) else { return };
         let numbers: Vec<f64> = items.iter().take(NUMBERS).map_while(Item::scalar).collect();
         let [re, c, f, f1, f2, f3, keep, kind] = *numbers.as_slice() else {
-            if numbers.len() == items.len() {
+            if numbers.len() == items.len() && !items.is_empty() {
                 return self.report(FindingKind::PocketPoints { found: 0 }, major.range);
             }
             return self.report(FindingKind::PocketNumbers, major.range);

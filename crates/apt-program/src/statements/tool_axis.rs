@@ -25,20 +25,24 @@ impl Evaluator<'_> {
         let axis = match (items.first().map(|item| &item.operand), items.len()) {
             (Some(Operand::Word(word)), _) => self.axis_by_word(major, word.spelling, &items[1..]),
             (Some(Operand::Scalar(value)), 1) if *value == 1.0 => Some(ToolAxis::Keep),
-            _ => self.axis_vector(major, &items).and_then(|vector| self.fixed_axis(major, vector)),
+            _ => self
+                .axis_vector(major, &items)
+                .and_then(|vector| self.direction(major, vector, 3))
+                .map(ToolAxis::Fixed),
         };
         if let Some(axis) = axis {
             self.motion(MotionCommand::ToolAxis(axis), major.range);
         }
     }
 
-    /// A fixed axis, normalised.
-    fn fixed_axis(&mut self, major: Major<'_>, vector: Vec3) -> Option<ToolAxis> {
+    /// A direction, normalised; without a length it has the APT III number of its form.
+    fn direction(&mut self, major: Major<'_>, vector: Vec3, number: u16) -> Option<Vec3> {
         let length = vector.norm();
         if length > 0.0 && length.is_finite() {
-            return Some(ToolAxis::Fixed(vector / length));
+            return Some(vector / length);
         }
-        let finding = FindingKind::OperandRange { statement: major.name(), value: length, number: Some(3) };
+        let finding =
+            FindingKind::OperandRange { statement: major.name(), value: length, number: Some(number) };
         self.report(finding, major.range);
         None
     }
@@ -77,7 +81,10 @@ impl Evaluator<'_> {
                     [word, lead] if word.word() == Some("CUTANG") => {
                         AxisAngle::Lead(self.axis_angle(major, lead, 17)?)
                     }
-                    _ => AxisAngle::PerpendicularTo(self.axis_vector(major, mode)?),
+                    _ => {
+                        let vector = self.axis_vector(major, mode)?;
+                        AxisAngle::PerpendicularTo(self.direction(major, vector, 19)?)
+                    }
                 };
                 Some(ToolAxis::AtAngle { part, angle, mode })
             }
@@ -128,7 +135,7 @@ impl Evaluator<'_> {
             return Some(ToolAxis::Tangent { height, mode });
         }
         let vector = self.axis_vector(major, vector)?;
-        let Some(ToolAxis::Fixed(vector)) = self.fixed_axis(major, vector) else { return None };
+        let vector = self.direction(major, vector, 3)?;
         Some(match word {
             "PERPTO" => ToolAxis::Tangent { height, mode: AxisTangency::PerpendicularTo(vector) },
             _ => {

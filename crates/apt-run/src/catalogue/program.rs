@@ -190,6 +190,9 @@ fn motion(kind: &Kind) -> Option<Text> {
         ),
         Kind::ImpliedCheckOpen => say("APT0504", "FINI comes while a motion waits for its check surface")
             .hint("write the check surface in the last motion statement"),
+        Kind::CheckLabelComputed => {
+            say("APT0505", "a label is a name without a value, or a number as it stands: this is computed")
+        }
         Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and one takes none")
             .hint("the form is GOLFT/ds,TO,cs1,label1,TO,cs2,label2"),
         Kind::SurfaceCount { found, limit } => {

@@ -289,6 +289,15 @@ impl<'a> Parser<'a> {
             | ElementKind::Minus
             | ElementKind::Star
             | ElementKind::Power
+            | ElementKind::Comma
+                if self.element(1).is_none() =>
+            {
+                SyntaxErrorKind::EndsOnPunctuation
+            }
+            ElementKind::Plus
+            | ElementKind::Minus
+            | ElementKind::Star
+            | ElementKind::Power
             | ElementKind::Slash
                 if in_list =>
             {

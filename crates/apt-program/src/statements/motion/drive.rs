@@ -176,13 +176,13 @@ impl Evaluator<'_> {
                     }
                     Operand::Scalar(rate) if next.is_none() && relation.is_none() => {
                         if self.is_numeric_label(&checks, *rate) {
-                            self.check_label(&mut checks, &SmolStr::from(rate.to_string()), value.range)?;
+                            self.numeric_label(major, &mut checks, *rate, value.range)?;
                         } else {
                             feed = Some((*rate, value.range));
                         }
                     }
                     Operand::Scalar(number) if relation.is_none() && !checks.is_empty() => {
-                        self.check_label(&mut checks, &SmolStr::from(number.to_string()), value.range)?;
+                        self.numeric_label(major, &mut checks, *number, value.range)?;
                     }
                     _ => {
                         let surface = self.surface_operand(major, value)?;
@@ -214,6 +214,21 @@ impl Evaluator<'_> {
             && checks.len() == CHECK_SURFACES
             && first_has_label
             && checks.last().is_some_and(|c| c.label.is_none())
+    }
+
+    /// A number as the label of the last check surface. It must stand there as it is: what an expression comes to is no label.
+    fn numeric_label(
+        &mut self,
+        major: Major<'_>,
+        checks: &mut [CheckSurface],
+        number: f64,
+        range: TextRange,
+    ) -> Option<()> {
+        if !is_plain_number(major.arguments, range) {
+            self.report(FindingKind::CheckLabelComputed, range);
+            return None;
+        }
+        self.check_label(checks, &SmolStr::from(number.to_string()), range)
     }
 
     /// Puts a label to the last check surface.
@@ -251,6 +266,13 @@ fn transfer_word(arguments: &[Argument]) -> Option<TextRange> {
     arguments.iter().find_map(|argument| match argument {
         Argument::Word(word) if word.word.spelling == "TRANTO" => Some(word.range),
         _ => None,
+    })
+}
+
+/// Whether the argument at a place is a number, and not a name or an expression that comes to one.
+fn is_plain_number(arguments: &[Argument], place: TextRange) -> bool {
+    arguments.iter().any(|argument| {
+        matches!(argument, Argument::Expression(Expression::Number { range, .. }) if *range == place)
     })
 }
 
