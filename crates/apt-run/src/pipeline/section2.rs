@@ -1,5 +1,6 @@
 //! Drives Section 2: hands motion commands to the engine, collects CL items, keeps the transfer mode of Trumpy 1970.
 
+mod feed;
 mod milling;
 
 use std::{
@@ -27,6 +28,7 @@ use arelem::{
 };
 use smol_str::SmolStr;
 
+use self::feed::Feeds;
 use super::{Milling, Motion, RunFinding, RunFindingKind, earlier::Before};
 use crate::{
     Cancel, Cancelled,
@@ -71,6 +73,9 @@ pub(super) struct Section2<'a> {
     tool: Option<ToolPosition>,
     /// The directed motion that led to where the tool is.
     before: Option<Before>,
+    feeds: Feeds,
+    /// Whether FEDRAT may have a distance; a CL file is what has been made of it.
+    may_approach: bool,
     output_on: bool,
     with_axis: bool,
     /// Most positions of the path, how many there are, and whether a statement would have made more.
@@ -110,6 +115,8 @@ impl<'a> Section2<'a> {
             skipped: None,
             tool: None,
             before: None,
+            feeds: Feeds::default(),
+            may_approach: dialect != DialectName::Cl,
             output_on: true,
             with_axis: false,
             most_points: settings.budget.points,
@@ -138,6 +145,11 @@ impl<'a> Section2<'a> {
             RecordKind::Postprocessor { word, arguments, .. } if units(word, arguments).is_some() => {
                 if let Some(units) = units(word, arguments) {
                     self.push(record.origin.isn, source, ClKind::Units(units));
+                }
+            }
+            RecordKind::Postprocessor { word, arguments, .. } if word == "FEDRAT" && self.may_approach => {
+                if let Some(arguments) = self.feeds.state(cl_words(arguments)) {
+                    self.feed(record.origin.isn, source, arguments);
                 }
             }
             RecordKind::Postprocessor { word, code, arguments } => {
@@ -327,15 +339,11 @@ impl<'a> Section2<'a> {
             _ => "",
         };
         if let MotionCommand::Drive { drive, checks, .. } = command {
-            if let Geometry::Circle(circle) | Geometry::Cylinder(circle) = &drive.geometry {
-                let kind = ClKind::Arc {
-                    surface: SmolStr::new(name),
-                    center: circle.point,
-                    axis: circle.axis,
-                    radius: circle.radius,
-                };
-                self.push(origin.isn, source, kind);
-            }
+            let circle = match &drive.geometry {
+                Geometry::Circle(circle) | Geometry::Cylinder(circle) => Some(circle),
+                _ => None,
+            };
+            self.directed(origin.isn, source, name, sequence, circle);
             let label = sequence
                 .stop
                 .as_ref()
@@ -345,8 +353,10 @@ impl<'a> Section2<'a> {
                 self.transfer = Some((SmolStr::new(label), origin.clone()));
             }
         }
+        if !matches!(command, MotionCommand::Drive { .. }) {
+            self.positions(origin.isn, source, false, name, &sequence.points);
+        }
         self.tool = sequence.points.last().copied().or(self.tool);
-        self.positions(origin.isn, source, false, name, &sequence.points);
     }
 
     /// A pocket: its feeds as FEDRAT, and its positions in records that are full from the outside.
@@ -358,9 +368,7 @@ impl<'a> Section2<'a> {
         let most = POCKET_RECORD[usize::from(self.with_axis)];
         let mut left = path.positions().count();
         for pass in &path.passes {
-            let word = SmolStr::new_static("FEDRAT");
-            let arguments = vec![ClWord::Number(pass.feed)];
-            self.push(isn, source, ClKind::Postprocessor { word, code: Some(code::FEDRAT), arguments });
+            self.feed(isn, source, vec![ClWord::Number(pass.feed)]);
             let mut points = pass.points.as_slice();
             while !points.is_empty() {
                 let (record, rest) = points.split_at(((left - 1) % most + 1).min(points.len()));

@@ -1,6 +1,6 @@
 //! SMIL on its way through Section 2: the modal data go in, locations, feed rates and findings come out.
 
-use apt_cldata::record::{ClKind, ClWord};
+use apt_cldata::record::ClWord;
 use apt_geometry::regional::RegionalMilling;
 use apt_program::record::Origin;
 use apt_sculptured::{
@@ -8,9 +8,8 @@ use apt_sculptured::{
     mill::{Encounter, Milled, Move, Remedy, Setting, mill},
 };
 use arelem::{section2::Restart, sequence::ToolPosition};
-use smol_str::SmolStr;
 
-use super::{Section2, code};
+use super::Section2;
 use crate::{
     Cancelled,
     pipeline::{Interference, Milling, Outcome, RunFinding, RunFindingKind},
@@ -40,11 +39,8 @@ impl Section2<'_> {
         for part in &milled.moves {
             match part {
                 Move::Feed(feed) => {
-                    let word = SmolStr::new_static("FEDRAT");
-                    let arguments = vec![ClWord::Number(*feed)];
-                    let kind = ClKind::Postprocessor { word, code: Some(code::FEDRAT), arguments };
                     if self.output_on {
-                        self.push(origin.isn, source, kind);
+                        self.feed(origin.isn, source, vec![ClWord::Number(*feed)]);
                     }
                 }
                 Move::Locations(poses) => {
