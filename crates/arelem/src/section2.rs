@@ -40,7 +40,7 @@ pub struct Execution {
     pub output: Option<Output>,
     /// What is doubtful.
     pub warnings: Vec<MotionWarning>,
-    /// Why it failed; the state is then in restart mode.
+    /// Why it failed; the state is then in restart mode, if the dialect has it.
     pub failure: Option<MotionFailure>,
 }
 

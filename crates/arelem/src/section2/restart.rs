@@ -1,9 +1,10 @@
 //! Restart mode: after a failure, motion commands are ignored until position and direction are well defined again
-//! (arelem reference 3.1), so that one mistake does not bring others with it.
+//! (arelem reference 3.1), so that one mistake does not bring others with it. APT4 has none: the tool stays where it is, and
+//! the next command is carried out from there (language reference 10.4).
 
 use apt_geometry::motion::{Delta, MotionCommand};
 
-use super::State;
+use super::{StartUpRule, State};
 
 /// Whether commands are carried out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,10 +19,10 @@ pub enum Restart {
 }
 
 impl State {
-    /// Enters restart mode if the failed command is one that moves the tool or guides it.
+    /// Enters restart mode, where the dialect has it, if the failed command is one that moves the tool or guides it.
     pub(super) fn fail(&mut self, command: &MotionCommand) {
         self.clear_one_shot();
-        if is_motion(command) {
+        if is_motion(command) && self.start_up == StartUpRule::Apt3 {
             self.restart = Restart::Waiting;
         }
         if let MotionCommand::Cutter(_) = command {

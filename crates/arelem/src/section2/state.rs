@@ -23,7 +23,8 @@ const ALONG_AXIS_COSINE: f64 = 0.997;
 /// The same limit as a sine.
 pub(super) const ALONG_AXIS_SINE: f64 = 0.0774;
 
-/// How a start-up motion finds its position where the dialects of APT differ.
+/// How a start-up motion finds its position where the dialects of APT differ; after a failure APT4 goes on from where the
+/// tool is, and APT III waits until it is placed anew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StartUpRule {
     /// APT III: before the general route comes one in closed form, which goes along the direction given (or across the

@@ -259,6 +259,25 @@ fn first_of_to_on_past() {
     }
 }
 
+/// APT III passes over what comes until the tool is placed again; in APT4 the tool stays and the next statement goes on.
+#[test]
+fn after_a_failure_apt4_goes_on_from_where_the_tool_stays() {
+    let (behind, ahead) = (line(-5.0, 0.0, -5.0, 5.0), line(5.0, 0.0, 5.0, 5.0));
+    for (rule, goes_on) in
+        [(crate::section2::StartUpRule::Apt4, true), (crate::section2::StartUpRule::Apt3, false)]
+    {
+        let mut p = Program::new();
+        p.state.start_up = rule;
+        p.cutter(&[0.5]).from(0.0, 2.0, 0.0).go(&[(To, &x_axis())]).indirv(1.0, 0.0, 0.0).side(Left);
+        p.attempt(&motion(Forward, &x_axis(), &[(On, 1, &behind)])).expect_err("the other way");
+        p.ends(0.0, 0.25, 0.0, EXACT);
+        let next =
+            p.attempt(&motion(Forward, &x_axis(), &[(On, 1, &ahead)])).expect("carried out or passed over");
+        assert_eq!(!matches!(next, Some(Output::Ignored)), goes_on, "{rule:?}");
+        p.ends(if goes_on { 5.0 } else { 0.0 }, 0.25, 0.0, EXACT);
+    }
+}
+
 #[test]
 fn failures_have_their_numbers() {
     let fails = |p: &mut Program, command: &MotionCommand| p.attempt(command).expect_err("must fail").apt3();
