@@ -5,6 +5,7 @@ mod fan;
 mod gouge;
 mod heading;
 mod march;
+mod neck;
 mod plane_route;
 mod prepare;
 mod proof;

@@ -49,6 +49,15 @@ pub enum Course {
     },
 }
 
+/// A place at which a path turns by more than a right angle, because the tool comes to a second wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnsBack {
+    /// Tool end.
+    pub at: Vec3,
+    /// Unit direction between both walls, half way from that of the path to the one opposite to where it goes from there.
+    pub onward: Vec3,
+}
+
 /// Where the tool and a surface come nearest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoints {
@@ -318,7 +327,7 @@ pub enum MotionFailure {
         /// The tool stands in the band of the check surface there, but the motion begins so, or the tool leaves the surface.
         is_there: bool,
         /// Where the path turns by more than a right angle first, because the tool comes to a second wall.
-        turns_back: Option<Vec3>,
+        turns_back: Option<TurnsBack>,
         /// How that is known.
         course: Course,
     },

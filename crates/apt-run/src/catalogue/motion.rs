@@ -334,7 +334,7 @@ fn path(failure: &Failure) -> Text {
             (Course::Away { .. }, Some(corner)) => {
                 format!(
                     "the path turns back at {}, where the tool comes to a second wall: is it too wide there?",
-                    place(corner)
+                    place(&corner.at)
                 )
             }
             (Course::Away { travelled }, None) => {

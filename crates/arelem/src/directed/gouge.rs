@@ -7,11 +7,15 @@
 
 use apt_geometry::Vec3;
 
-use super::{Prepared, is_tangent, stop::graze::least};
+use super::{
+    Prepared, is_tangent,
+    neck::{Neck, Place},
+    stop::graze::{least, least_value},
+};
 use crate::{
     attitude::Sweep,
     clearance::{Contact, Gauge, Tool},
-    error::{ContactPoints, MotionFailure, MotionWarning, RoleName},
+    error::{ContactPoints, MotionFailure, MotionWarning, RoleName, TurnsBack},
     role::{ROUNDING, Working},
     sequence::CutSequence,
 };
@@ -38,6 +42,11 @@ pub(super) fn where_stuck(prepared: &Prepared, failure: &MotionFailure) -> Vec<M
         MotionFailure::IterationLimit { tip, .. } | MotionFailure::NoProgress { tip, .. } => {
             let roles = [RoleName::Part, RoleName::Drive];
             roles.into_iter().flat_map(|role| ahead(prepared, role, tip)).collect()
+        }
+        MotionFailure::NeverMet { turns_back: Some(corner), .. } => {
+            let Prepared { part, drive, .. } = prepared;
+            let roles = [[part, drive], [drive, part]];
+            roles.into_iter().flat_map(|roles| beyond(prepared, roles, corner)).collect()
         }
         _ => Vec::new(),
     }
@@ -152,10 +161,26 @@ pub(super) fn ahead(prepared: &Prepared, name: RoleName, tip: &Vec3) -> Vec<Moti
     });
     let [forward, back] = ways;
     let (at, cuts) = if deepest(&back.1) > deepest(&forward.1) { back } else { forward };
+    ahead_at(role, &at, cuts)
+}
+
+/// The places where the tool would cut into a role's surface if the path went on where it turns back: where the neck is
+/// narrowest, or a little ahead if it grows ever narrower.
+fn beyond(prepared: &Prepared, [role, other]: [&Working; 2], corner: &TurnsBack) -> Vec<MotionWarning> {
+    let Some(neck) = Neck::new(prepared, [role, other], *corner) else { return Vec::new() };
+    let limit = -role.inside - ROUNDING * prepared.size;
+    let narrowest = neck.narrowest().map(|(_, place)| place).filter(|place| place.clearance < limit);
+    let Some(Place { tip, .. }) = narrowest.or_else(|| neck.first_below(limit)) else { return Vec::new() };
+    let Ok(posture) = prepared.attitude.posture(&tip) else { return Vec::new() };
+    ahead_at(role, &tip, cuts(&posture.tool, role, &tip))
+}
+
+/// What is told of places at which the tool would cut a surface ahead.
+fn ahead_at(role: &Working, tip: &Vec3, cuts: Vec<Cut>) -> Vec<MotionWarning> {
     let warning = |cut: Cut| {
         let surface = role.gauge.surface.foot(&cut.tool).point;
-        let contact = ContactPoints { tip: at, tool: cut.tool, surface };
-        MotionWarning::Gouge { role: name, depth: cut.depth, contact, on: false, ahead: true }
+        let contact = ContactPoints { tip: *tip, tool: cut.tool, surface };
+        MotionWarning::Gouge { role: role.name, depth: cut.depth, contact, on: false, ahead: true }
     };
     cuts.into_iter().map(warning).collect()
 }
@@ -165,31 +190,38 @@ fn cuts(tool: &Tool, role: &Working, tip: &Vec3) -> Vec<Cut> {
     let (tool, tip) = &role.gauge.body(tool, tip);
     let surface = role.gauge.met(tool);
     let profile = profile(tool);
-    let around: Vec<Cut> = (0..AROUND)
-        .map(|index| {
-            let (sin, cos) = (std::f64::consts::TAU * index as f64 / AROUND as f64).sin_cos();
-            let radial = tool.across[0] * cos + tool.across[1] * sin;
-            let mut deepest = Cut { depth: f64::NEG_INFINITY, tool: *tip };
-            for (radius, height) in &profile {
-                let point = tip + radial * *radius + tool.axis * *height;
-                let above = role.gauge.side * surface.signed_distance(&point);
-                let depth = role.gauge.thickness - above;
-                if depth > deepest.depth {
-                    deepest = Cut { depth, tool: point };
-                }
+    // Along a wall the lowest place is told, not one that only rounding has made deeper.
+    let rounding = ROUNDING * (tip.norm() + tool.reach());
+    let at = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let radial = tool.across[0] * cos + tool.across[1] * sin;
+        let mut deepest = Cut { depth: f64::NEG_INFINITY, tool: *tip };
+        for (radius, height) in &profile {
+            let point = tip + radial * *radius + tool.axis * *height;
+            let above = role.gauge.side * surface.signed_distance(&point);
+            let depth = role.gauge.thickness - above;
+            if depth > deepest.depth + rounding {
+                deepest = Cut { depth, tool: point };
             }
-            deepest
-        })
-        .collect();
-    let depth = |index: usize| around.get(index % AROUND).map_or(f64::NEG_INFINITY, |cut| cut.depth);
-    let summit = |index: usize| {
-        depth(index) > role.inside
-            && depth(index) > depth(index + AROUND - 1)
-            && depth(index) >= depth(index + 1)
+        }
+        deepest
     };
-    let summits: Vec<bool> = (0..AROUND).map(summit).collect();
+    let step = std::f64::consts::TAU / AROUND as f64;
+    let depths: Vec<f64> = (0..AROUND).map(|index| at(step * index as f64).depth).collect();
+    let depth = |index: usize| depths.get(index % AROUND).copied().unwrap_or(f64::NEG_INFINITY);
+    // Between two directions the tool reaches farther than in both.
+    let least = role.inside - tool.radius() * (1.0 - (0.5 * step).cos());
+    let summit = |index: &usize| {
+        depth(*index) > least
+            && depth(*index) > depth(index + AROUND - 1)
+            && depth(*index) >= depth(index + 1)
+    };
+    let about = |index: usize| {
+        let around = [index as f64 - 1.0, index as f64 + 1.0].map(|index| step * index);
+        at(least_value(around, &|angle| -at(angle).depth).0)
+    };
     let mut found: Vec<Cut> =
-        around.into_iter().zip(summits).filter_map(|(cut, summit)| summit.then_some(cut)).collect();
+        (0..AROUND).filter(summit).map(about).filter(|cut| cut.depth > role.inside).collect();
     found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
     found.truncate(MOST);
     found

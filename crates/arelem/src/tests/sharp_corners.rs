@@ -1,6 +1,7 @@
 //! Corners that turn the path sharply, in all bands and from all distances: one vertex does for a corner.
 
 use super::*;
+use crate::error::RoleName;
 
 /// Of the tool.
 const RADIUS: f64 = 0.5;
@@ -107,8 +108,8 @@ fn a_path_goes_on_out_of_a_wedge_along_its_other_wall() {
     }
 }
 
-/// Between both branches of a hyperbola of half-width 1, as long as told, into the neck, and back to a line before it along the other branch or on to one behind it.
-fn into_the_neck(long: f64, radius: f64, ahead: Option<f64>) -> Result<CutSequence, MotionFailure> {
+/// Between both branches of a hyperbola of half-width 1, as long as told, before the neck; and where that is.
+fn between_branches(long: f64, radius: f64) -> (Program, Geometry, f64) {
     let branches = Geometry::Hyperbola(Quadric {
         coefficients: [1.0, -1.0 / (long * long), 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     });
@@ -117,8 +118,20 @@ fn into_the_neck(long: f64, radius: f64, ahead: Option<f64>) -> Result<CutSequen
     program.cutter(&[2.0 * radius]).tolerance(0.001, 0.001).from(0.0, before, 0.0).indirv(-1.0, 0.0, 0.0);
     program.go(&[(Relation::To, &branches), (Relation::To, &ground()), (Relation::On, &y(before))]);
     program.side(DriveSide::Right).indirv(0.0, 1.0, 0.0);
+    (program, branches, before)
+}
+
+/// The same, on the way into the neck.
+fn before_the_neck(long: f64, radius: f64) -> (Program, Geometry, f64) {
+    let (mut program, branches, before) = between_branches(long, radius);
     program.drive(Turn::Forward, &branches, Relation::On, &y(before + 0.5));
     program.indirv(0.0, 1.0, 0.0);
+    (program, branches, before)
+}
+
+/// The same, and back to a line before it along the other branch or on to one behind it.
+fn into_the_neck(long: f64, radius: f64, ahead: Option<f64>) -> Result<CutSequence, MotionFailure> {
+    let (mut program, branches, before) = before_the_neck(long, radius);
     let stop = ahead.unwrap_or(before + 0.25);
     program.cut(&motion(Turn::Forward, &branches, &[(Relation::On, 1, &y(stop))]))
 }
@@ -132,7 +145,39 @@ fn where_a_path_turns_back_in_a_neck_is_told_if_nothing_stops_it() {
     let square = 1.0 / (1.5 * 1.5);
     let touched = ((1.05_f64.powi(2) - 1.0) / (square + square * square)).sqrt();
     let middle = v(0.0, -touched * (1.0 + square), 0.0);
-    assert!((corner - middle).norm() < 0.01, "{corner} {middle}");
+    assert!((corner.at - middle).norm() < 0.01, "{corner:?} {middle}");
+    assert!((corner.onward - Vec3::y()).norm() < 0.01, "{corner:?}");
+}
+
+/// GOUGCK/ON tells how much too wide the tool is where the neck is narrowest, though the path goes back before.
+#[test]
+fn the_neck_in_which_a_path_turns_back_is_told_with_place_and_depth() {
+    for (long, wide) in [(1.5, 0.05), (1.5, 0.2), (0.8, 0.01), (4.0, 0.05), (4.4, 0.005)] {
+        for check in [true, false] {
+            let (mut program, branches, _) = before_the_neck(long, 1.0 + wide);
+            program.run(&MotionCommand::GougeCheck(check)).warnings.clear();
+            let on = motion(Turn::Forward, &branches, &[(Relation::On, 1, &y(4.0))]);
+            let failure = program.cut(&on).expect_err("the tool does not get through");
+            assert!(matches!(failure, MotionFailure::NeverMet { .. }), "{long} {wide}: {failure:?}");
+            let told: Vec<_> = program
+                .warnings
+                .iter()
+                .map(|warning| match warning {
+                    MotionWarning::Gouge { role: RoleName::Drive, depth, contact, ahead: true, .. } => {
+                        (*depth, *contact)
+                    }
+                    other => panic!("{long} {wide}: {other:?}"),
+                })
+                .collect();
+            assert_eq!(told.len(), if check { 2 } else { 0 }, "{long} {wide}: a wall on either side");
+            for (depth, contact) in told {
+                assert!((depth - wide).abs() < 0.02 * wide, "{long} {wide}: {depth}");
+                assert!(contact.tip.norm() < 0.05, "{long} {wide}: {contact:?}");
+                let wall = v(contact.tool.x.signum(), 0.0, 0.0);
+                assert!((contact.surface - wall).norm() < 0.05, "{long} {wide}: {contact:?}");
+            }
+        }
+    }
 }
 
 /// The walls of a neck bulge towards the tool and are all but one line where it touches both: it goes back along the second one from there, with the drive

@@ -3,7 +3,7 @@
 use apt_geometry::Vec3;
 
 use super::{March, Vertex, Watcher};
-use crate::error::{Course, MotionFailure};
+use crate::error::{Course, MotionFailure, TurnsBack};
 
 impl March<'_> {
     /// On a closed path: a whole turn without a single position means that there is none.
@@ -70,12 +70,17 @@ impl March<'_> {
     }
 
     /// The first vertex at which the path turns by more than a right angle.
-    fn turns_back(&self) -> Option<Vec3> {
+    fn turns_back(&self) -> Option<TurnsBack> {
         let before = std::iter::once(&self.prepared.tip).chain(&self.points);
-        let corners = before.zip(self.points.windows(2));
-        corners
-            .into_iter()
-            .find(|(from, at)| (at[0] - *from).dot(&(at[1] - at[0])) < 0.0)
-            .map(|(_, at)| at[0])
+        let mut corners = before.zip(self.points.windows(2));
+        corners.find_map(|(from, corner)| {
+            let legs = [corner[0] - from, corner[1] - corner[0]];
+            let [to, away] = legs.map(|leg| leg.try_normalize(0.0));
+            let (to, away) = (to?, away?);
+            if to.dot(&away) >= 0.0 {
+                return None;
+            }
+            Some(TurnsBack { at: corner[0], onward: (to - away).normalize() })
+        })
     }
 }

@@ -49,7 +49,7 @@ pub(in crate::directed) fn least(
 
 /// The least value of a function of one valley on a stretch and where it is, by parabolas through the last places, and by golden sections
 /// where these do not close in on it (Brent): fewer places than by golden sections alone.
-pub(super) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> (f64, f64) {
+pub(in crate::directed) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> (f64, f64) {
     let golden = 0.5 * (3.0 - 5.0_f64.sqrt());
     let tolerance = RESOLUTION_OF_VALUE * (high - low);
     let (mut a, mut b) = (low, high);
