@@ -103,14 +103,14 @@ impl Bent {
 }
 
 /// A vector of a path, and how the clearances from part and drive surface run along it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Vector {
     to: Vec3,
     readings: [Readings; 2],
 }
 
 /// The bend along a path that grows vector by vector, the last of which may be taken back.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Record {
     /// What is not taken back any more.
     settled: Bent,

@@ -89,6 +89,11 @@ impl<'a> Neck<'a> {
         STEP * self.prepared.tool.radius()
     }
 
+    /// Unit direction of the way on between both walls.
+    pub(super) fn onward(&self) -> &Vec3 {
+        &self.corner.onward
+    }
+
     /// The place so far on, and so far aside of half way between both walls.
     pub(super) fn beside_middle(&self, on: f64, aside: f64) -> Option<Place> {
         self.at(on, self.middle(on) + aside)

@@ -180,6 +180,21 @@ fn the_neck_in_which_a_path_turns_back_is_told_with_place_and_depth() {
     }
 }
 
+/// Both walls are one surface, and a tool in the band of each may pass: along the wall that it follows, as if the neck were wider.
+#[test]
+fn a_tool_passes_a_neck_that_is_narrower_by_less_than_its_band() {
+    let necks = [0.9, 1.7, 2.6, 3.5, 4.4].into_iter();
+    let necks = necks.flat_map(|long| [0.0001, 0.0004, 0.0007, 0.0009, 0.00098].map(|wide| (long, wide)));
+    for (long, wide) in necks {
+        let sequence = into_the_neck(long, 1.0 + wide, Some(4.0));
+        let sequence = sequence.unwrap_or_else(|failure| panic!("{long} {wide}: {failure:?}"));
+        let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{long} {wide}: {evidence:?}");
+        let end = sequence.points.last().expect("a vertex").tip;
+        assert!(end.x < 0.0, "{long} {wide}: {end}");
+    }
+}
+
 /// The walls of a neck bulge towards the tool and are all but one line where it touches both: it goes back along the second one from there, with the drive
 /// surface on its side.
 #[test]
@@ -199,5 +214,22 @@ fn a_tool_goes_back_from_a_neck_along_the_other_wall() {
             "{long} {wide}: {} with {least}",
             sequence.points.len()
         );
+    }
+}
+
+/// The walls of a neck may be one line but for a degree or two, and the contact leaps from the one to the other: the path has two directions there,
+/// whichever vectors come to it.
+#[test]
+fn a_tool_goes_back_from_a_neck_whose_walls_are_all_but_one_line() {
+    let longs = (0..14).map(|step| 1.75 + 0.25 * f64::from(step));
+    let necks = longs.flat_map(|long| [0.0011, 0.00125, 0.0015, 0.002, 0.004].map(|wide| (long, wide)));
+    for (long, wide) in necks {
+        let (mut program, branches, before) = between_branches(long, 1.0 + wide);
+        let sequence = program.cut(&motion(Turn::Forward, &branches, &[(Relation::On, 2, &y(before + 0.5))]));
+        let sequence = sequence.unwrap_or_else(|failure| panic!("{long} {wide}: {failure:?}"));
+        let evidence = crate::verify::verify(&sequence, &|| false).expect("evidence");
+        assert!(evidence.verified, "{long} {wide}: {evidence:?}");
+        let end = sequence.points.last().expect("a vertex").tip;
+        assert!(end.x > 0.0, "{long} {wide}: {end}");
     }
 }

@@ -9,6 +9,7 @@ mod corridor;
 mod exhaustive;
 mod hand;
 mod longest;
+mod neck;
 mod of_use;
 mod overlong;
 mod sag;
@@ -20,7 +21,7 @@ use std::ops::{Deref, DerefMut};
 
 use apt_geometry::{Vec3, patience::Patience};
 
-use self::{hand::Hand, overlong::Overlong, trend::Trend};
+use self::{hand::Hand, neck::Through, overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex};
 use crate::{
     bound::{Readings, Record},
@@ -92,6 +93,8 @@ pub(super) struct Stepper<'a> {
     straight: Option<Box<[Vertex; 2]>>,
     /// The vertex in a corner that the last vector has led into, and such a vector from there.
     beyond_corner: Option<(Vec3, Box<[Vertex; 2]>)>,
+    /// The neck that the last vector has led into.
+    in_neck: Option<Through>,
     /// The last vector; zero before the first.
     last: Vec3,
     /// Where the path came from farther off than it may turn on the spot.
@@ -178,6 +181,7 @@ impl<'a> Stepper<'a> {
             turned_sharply: None,
             straight: None,
             beyond_corner: None,
+            in_neck: None,
             last: Vec3::zeros(),
             arrived: None,
             ledgers: Default::default(),
@@ -198,17 +202,31 @@ impl<'a> Stepper<'a> {
         if let Some((at, straight)) = self.beyond_corner.take() {
             self.straight = (at == here.tip).then_some(straight);
         }
-        self.hand.arrive(self.prepared, here);
-        if let Some(next) = self.beyond_sharply(here, cap)? {
+        if let Some(next) = self.on_through_neck(here, cap)? {
             self.note(here, &next);
+            return Ok(next);
+        }
+        self.hand.arrive(self.prepared, here);
+        let (arrived, came, turned) = (self.last, *here, (self.turned, self.turned_sharply));
+        let mut next = self.along_path(here, cap)?;
+        if let Some(within) = self.enter_neck(&came, [&arrived, &next.tip], cap)? {
+            (self.latest, self.straight, self.beyond_corner) = (None, None, None);
+            (self.turned, self.turned_sharply) = turned;
+            self.record_shortened(&came, &within);
+            (*here, next) = (came, within);
+        }
+        self.note(here, &next);
+        Ok(next)
+    }
+
+    /// The next vertex on the path.
+    fn along_path(&mut self, here: &mut Vertex, cap: f64) -> Result<Vertex, MotionFailure> {
+        if let Some(next) = self.beyond_sharply(here, cap)? {
             return Ok(next);
         }
         self.kept_hand = self.hand_between_corners(here);
         let found = self.along_tangent(here, cap);
         self.kept_hand = None;
-        if let Ok(next) = &found {
-            self.note(here, next);
-        }
         found
     }
 

@@ -77,7 +77,12 @@ impl Stepper<'_> {
     fn second_place(&self, here: &Vertex, bands: f64) -> Option<SecondPlace> {
         let reach = bands * self.bands();
         let ahead = Vertex::at(self.prepared, here.tip + here.tangent * reach, &here.tangent).ok()?;
-        let is_other = |a: &Contact, b: &Contact| a.gradient.cross(&b.gradient).norm() > OTHER_CONTACT_SINE;
+        // In a neck the second contact may be all but opposite to the first one; where a tool turns it may be its other end that touches.
+        let turns = self.prepared.attitude.turns();
+        let is_other = |a: &Contact, b: &Contact| {
+            (!turns && a.gradient.dot(&b.gradient) < 0.0)
+                || a.gradient.cross(&b.gradient).norm() > OTHER_CONTACT_SINE
+        };
         let others = [is_other(&here.part, &ahead.part), is_other(&here.drive, &ahead.drive)];
         others.contains(&true).then_some(SecondPlace { ahead, others })
     }

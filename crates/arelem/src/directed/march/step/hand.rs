@@ -143,9 +143,11 @@ impl Hand {
         }
         let Some(left) = (0..2).find(|role| !same[*role] && same[1 - role]) else { return };
         let Some(along) = self.along(&to.part, &to.drive) else { return };
-        // Square to both of its gradients is the line that it came along, whatever angle they make.
+        // Square to both of its gradients is the line that it came along, whatever angle they make; the walls of a neck are all but one line, and the
+        // contact leaps between them.
         let (gradient, other) = (gradients(&from)[left], gradients(to)[1 - left]);
-        if gradient.dot(&along).abs() <= SAME_LINE_SINE * gradient.cross(&other).norm() {
+        let is_one_line = gradient.dot(&along).abs() <= SAME_LINE_SINE * gradient.cross(&other).norm();
+        if is_one_line && !stays_between(prepared, [&from, to], before) {
             self.sign = now;
         } else {
             self.is_beyond_corner = true;
@@ -282,7 +284,7 @@ impl Stepper<'_> {
     }
 
     /// A vector that goes on along the tangent of a vertex, wherever in the bands it ends. Errors: cancelled.
-    fn in_any_place(&mut self, here: &Vertex, cap: f64) -> Result<Option<Vertex>, MotionFailure> {
+    pub(super) fn in_any_place(&mut self, here: &Vertex, cap: f64) -> Result<Option<Vertex>, MotionFailure> {
         for places in [Places::Limits, Places::Level] {
             self.trend.forget();
             match self.onward(here, cap, places) {

@@ -299,7 +299,7 @@ impl Stepper<'_> {
 }
 
 /// Whether the tool touches one of both surfaces at another place at a vertex than at another one.
-fn is_elsewhere(one: &Vertex, other: &Vertex) -> bool {
+pub(super) fn is_elsewhere(one: &Vertex, other: &Vertex) -> bool {
     differs(&one.part, &other.part) || differs(&one.drive, &other.drive)
 }
 

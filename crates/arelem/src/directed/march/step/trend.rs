@@ -9,7 +9,7 @@ const STEADY: f64 = 0.1;
 const NEARLY_FORETOLD: f64 = 0.01;
 
 /// What the vectors made so far tell of the next one.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Trend {
     /// Second derivative of each clearance along the path: part, drive.
     curvature: Option<[f64; 2]>,

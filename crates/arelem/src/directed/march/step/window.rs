@@ -7,6 +7,7 @@
 use super::{
     Guess, LONG_ENOUGH, Places, Stepper, Trial,
     corridor::{Corridor, Foretold},
+    sharp_corner::is_elsewhere,
 };
 use crate::{
     bound::{self, Reading},
@@ -136,7 +137,7 @@ impl Stepper<'_> {
     }
 
     /// Notes the bend along a vector that has come to end at another vertex.
-    fn record_shortened(&mut self, from: &Vertex, to: &Vertex) {
+    pub(super) fn record_shortened(&mut self, from: &Vertex, to: &Vertex) {
         let readings = self.roles().map(|role| bound::read(&self.prepared.tool, role, [&from.tip, &to.tip]));
         self.note_bend(&from.tip, &to.tip, readings);
     }
@@ -179,6 +180,7 @@ impl Stepper<'_> {
         // for each other in turn.
         let is_past = |trial: &Trial| {
             trial.length >= least
+                && self.leads_as(latest, before, trial)
                 && (trial.vertex.tip - here.tip).dot(&onward) >= LEAST_GAIN * onward.norm_squared()
         };
         let length = (latest.vertex.tip - before.tip).norm();
@@ -190,6 +192,14 @@ impl Stepper<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether a vector leads along what the latest one leads to, or on the hand of the path at least: out of a neck the path goes along one wall
+    /// alone, however near the other one is.
+    fn leads_as(&self, latest: &Trial, from: &Vertex, found: &Trial) -> bool {
+        let Vertex { tip, part, drive, .. } = &found.vertex;
+        let along = || self.hand.along(part, drive).is_none_or(|along| along.dot(&(tip - from.tip)) > 0.0);
+        !is_elsewhere(&latest.vertex, &found.vertex) || along()
     }
 
     /// A vector from a place on the vector before that leads farther than the latest one: where that is foretold to be farthest. Each that is
@@ -207,7 +217,8 @@ impl Stepper<'_> {
             let from = window.beginning(self, foretold.share)?;
             let trial = self.attempt_foretold(&from, &foretold, window)?;
             let is_nearly = trial.as_ref().is_some_and(|trial| self.is_nearly(trial));
-            if let Some(trial) = trial.filter(|trial| trial.proven) {
+            let is_of_use = |trial: &Trial| trial.proven && self.leads_as(window.latest, &from, trial);
+            if let Some(trial) = trial.filter(is_of_use) {
                 let reach = window.reached(&trial);
                 if reach >= least {
                     best = Some(Found { share: foretold.share, reach, from, trial });
