@@ -200,6 +200,24 @@ fn a_run_is_listed_for_people_and_for_programs() {
 }
 
 #[test]
+fn findings_go_to_the_file_that_was_named() {
+    let folder = Folder::new("findings-to-a-file");
+    folder.write("bad.apt", BAD);
+    let shown = folder.run(&["run", "bad.apt", "--format", "sarif"]).stdout;
+    for arguments in [&["-o", "out.sarif"][..], &["--format", "sarif", "-o", "out.log"]] {
+        let ran = folder.run(&[&["run", "bad.apt"], arguments].concat());
+        assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
+        let name = arguments[arguments.len() - 1];
+        assert_eq!(std::fs::read_to_string(folder.0.join(name)).unwrap(), shown);
+    }
+    let shown = folder.run(&["run", "bad.apt", "--format", "github"]).stdout;
+    let ran = folder.run(&["run", "bad.apt", "--format", "github", "-o", "out.txt"]);
+    assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
+    assert_eq!(std::fs::read_to_string(folder.0.join("out.txt")).unwrap(), shown);
+    assert_eq!(folder.run(&["run", "bad.apt", "-o", "no-such-folder/out.sarif"]).code, 2);
+}
+
+#[test]
 fn a_project_file_is_found_and_a_broken_one_is_told() {
     let folder = Folder::new("project");
     folder.write("parts/good.apt", GOOD);

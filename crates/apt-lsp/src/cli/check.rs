@@ -47,7 +47,7 @@ pub(super) fn check(
     let written = match options.format {
         CheckFormat::Human => findings::human::print(&checked, console),
         CheckFormat::Json => console.print(&findings::json::text(&checked)),
-        CheckFormat::Sarif => findings::sarif::print(&checked, console, language),
+        CheckFormat::Sarif => findings::sarif::write(&checked, None, console, language),
         CheckFormat::Github => console.print(&findings::github::text(&checked)),
     };
     worst.max(written).max(findings::outcome(&checked, options.deny_warnings))

@@ -15,7 +15,8 @@ use crate::analysis::{Control, Language, Level, Product, Refusal, RunRequest};
 /// Runs a program and prints what was asked for.
 pub(super) fn run(call: &RunCall, console: &Console, language: &dyn Language) -> Outcome {
     let Some(program) = Program::read(&call.program, console, language) else { return Outcome::Unusable };
-    let format = call.format.unwrap_or_else(|| format_of(call.output.as_deref()));
+    let output = call.output.as_deref();
+    let format = call.format.unwrap_or_else(|| format_of(output));
     let (control, bar) = console.control(&program.name);
     let diagnostics = program.document.diagnostics(Level::Motion, &control);
     let product = product(&program, format, call.explain_motion, &control);
@@ -30,9 +31,9 @@ pub(super) fn run(call: &RunCall, console: &Console, language: &dyn Language) ->
         };
     let checked = [Checked { program, diagnostics }];
     let written = match (format, product) {
-        (RunFormat::Sarif, _) => findings::sarif::print(&checked, console, language),
-        (RunFormat::Github, _) => console.print(&findings::github::text(&checked)),
-        (_, Some(bytes)) => console.write(&bytes, call.output.as_deref()),
+        (RunFormat::Sarif, _) => findings::sarif::write(&checked, output, console, language),
+        (RunFormat::Github, _) => console.write(findings::github::text(&checked).as_bytes(), output),
+        (_, Some(bytes)) => console.write(&bytes, output),
         (_, None) => Outcome::Clean,
     };
     if !matches!(format, RunFormat::Json | RunFormat::Sarif | RunFormat::Github) {

@@ -1,6 +1,7 @@
 //! Findings as SARIF 2.1.0.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use ropey::Rope;
 use serde_json::{Value, json};
@@ -14,10 +15,15 @@ use crate::cli::program::Program;
 use crate::convert::TextIndex;
 use crate::convert::outgoing::frame_text;
 
-/// Prints the log.
-pub(in crate::cli) fn print(checked: &[Checked], console: &Console, language: &dyn Language) -> Outcome {
+/// Writes the log to a file, or to standard output.
+pub(in crate::cli) fn write(
+    checked: &[Checked],
+    file: Option<&Path>,
+    console: &Console,
+    language: &dyn Language,
+) -> Outcome {
     match serde_json::to_string_pretty(&log(checked, language)) {
-        Ok(text) => console.print(&format!("{text}\n")),
+        Ok(text) => console.write(format!("{text}\n").as_bytes(), file),
         Err(error) => {
             console.error(&format!("SARIF: {error}"));
             Outcome::Unusable
