@@ -5,7 +5,8 @@
 use apt_cldata::{
     cltape::{is_ncl_file, is_tape, read_tape, write_tape},
     codes::CodeTable,
-    record::{ClKind, ClPoint, ClWord},
+    record::{ClKind, ClPoint, ClRecord, ClWord},
+    text::read_text,
 };
 
 fn codes() -> CodeTable {
@@ -93,6 +94,24 @@ fn sample_is_written_again_byte_for_byte() {
     let written = write_tape(&contents.records, &codes()).unwrap();
     // One filling byte stands at the end of the sample.
     assert_eq!(written, SAMPLE[..SAMPLE.len() - 1]);
+}
+
+/// What APT III wrote for these words: 6000/1 with 1 for DNTCUT and 0 for CUT, 6000/2 with 1 for 3DCALC and 0 for 2DCALC.
+#[test]
+fn a_number_tells_which_of_two_words_it_is() {
+    for (word, subclass, number) in [("CUT", 1u16, 0u8), ("DNTCUT", 1, 1), ("2DCALC", 2, 0), ("3DCALC", 2, 1)]
+    {
+        let kind = ClKind::Control { word: word.into(), code: [6000, subclass], arguments: vec![] };
+        let records = vec![ClRecord { isn: 7, source: u32::MAX, kind }];
+        let bytes = write_tape(&records, &codes()).unwrap();
+        let subclass = u8::try_from(subclass).unwrap();
+        // Record 2 after that of the statement number, one word of class 6000, which is 0x1770.
+        let expected: [u8; 24] =
+            [2, 0, 0, 0, 1, 0, 0, 0, 0x70, 0x17, 0, 0, subclass, 0, 0, 0, number, 0, 0, 0, 0, 0, 0, 0];
+        assert_eq!(bytes[bytes.len() - expected.len()..], expected, "{word}");
+        assert_eq!(read_tape(&bytes, &codes()).unwrap().records, records, "{word}");
+        assert_eq!(read_text(&format!("{word}\n")).0[0].kind, records[0].kind, "{word}");
+    }
 }
 
 #[test]

@@ -48,8 +48,9 @@ pub(crate) const TEXT_CHARACTERS_PER_WORD: usize = 6;
 /// Canonical surface type of a circle, and the count that follows it.
 pub(crate) const CIRCLE_TYPE: u32 = 4;
 pub(crate) const CIRCLE_COUNT: u32 = 9;
-/// Subclasses of class 6000 whose data are integers (CUT and DNTCUT, 2DCALC and 3DCALC).
-pub(crate) const INTEGER_PARAMETERS: [i32; 2] = [1, 2];
-/// The words of class 6000.
-pub(crate) const PARAMETER_WORDS: [(i32, &str); 4] =
-    [(3, "TOLER"), (4, "INTOL"), (5, "OUTTOL"), (6, "CUTTER")];
+/// Words of class 6000 that share a subclass, with the integer that tells on a tape which of the two it is.
+pub(crate) const SWITCH_WORDS: [(i32, u32, &str); 4] =
+    [(1, 0, "CUT"), (1, 1, "DNTCUT"), (2, 0, "2DCALC"), (2, 1, "3DCALC")];
+/// The other words of class 6000; some systems have a subclass of its own for CUT.
+pub(crate) const PARAMETER_WORDS: [(i32, &str); 5] =
+    [(0, "CUT"), (3, "TOLER"), (4, "INTOL"), (5, "OUTTOL"), (6, "CUTTER")];

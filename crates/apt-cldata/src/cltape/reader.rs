@@ -5,8 +5,8 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{
     CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR, CLASS_SEQUENCE, CLASS_SURFACE,
-    HEADER_BYTES, INTEGER_PARAMETERS, MODE_MULTAX, MODE_UNITS, MOTION_FROM, MOTION_GOTO, MOTION_MORE,
-    MOTION_NAME_WORDS, PARAMETER_WORDS, SURFACE_DRIVE, TEXT_CODES, WORD_BYTES, ncl,
+    HEADER_BYTES, MODE_MULTAX, MODE_UNITS, MOTION_FROM, MOTION_GOTO, MOTION_MORE, MOTION_NAME_WORDS,
+    PARAMETER_WORDS, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CODES, WORD_BYTES, ncl,
     word::{DataWord, classify, number},
 };
 use crate::{
@@ -259,27 +259,21 @@ impl<'a> Reader<'a> {
     }
 
     fn parameter(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {
-        let integers = INTEGER_PARAMETERS.contains(&subclass);
-        let arguments: Vec<ClWord> = if integers {
-            words.iter().map(|word| ClWord::Number(number(*word))).collect()
-        } else {
-            words.iter().map(|word| self.argument(*word)).collect()
-        };
-        let off = arguments.first().is_some_and(|argument| *argument != ClWord::Number(0.0));
-        let named =
-            PARAMETER_WORDS.iter().find(|(known, _)| *known == subclass).map(|(_, word)| SmolStr::new(word));
-        let word = match (named, subclass) {
-            (Some(word), _) => word,
-            (None, 1) if off => "DNTCUT".into(),
-            (None, 0 | 1) => "CUT".into(),
-            (None, 2) if off => "2DCALC".into(),
-            (None, 2) => "3DCALC".into(),
-            (None, _) => {
+        let code = [CLASS_PARAMETER as u16, u16::try_from(subclass).unwrap_or(u16::MAX)];
+        let on = words.first().is_some_and(|word| number(*word) != 0.0);
+        let switch =
+            SWITCH_WORDS.iter().find(|(known, number, _)| *known == subclass && (*number != 0) == on);
+        if let Some((_, _, word)) = switch {
+            return self.push(ClKind::Control { word: (*word).into(), code, arguments: Vec::new() });
+        }
+        let arguments: Vec<ClWord> = words.iter().map(|word| self.argument(*word)).collect();
+        let word = match PARAMETER_WORDS.iter().find(|(known, _)| *known == subclass) {
+            Some((_, word)) => SmolStr::new(word),
+            None => {
                 self.notes.push(TapeNote::UnknownCode { serial: self.serial, code: subclass });
                 format_smolstr!("{subclass}")
             }
         };
-        let code = [CLASS_PARAMETER as u16, u16::try_from(subclass).unwrap_or(u16::MAX)];
         self.push(ClKind::Control { word, code, arguments });
     }
 

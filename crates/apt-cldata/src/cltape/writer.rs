@@ -5,8 +5,8 @@ use smol_str::SmolStr;
 
 use super::{
     CIRCLE_COUNT, CIRCLE_TYPE, CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR,
-    CLASS_SEQUENCE, CLASS_SURFACE, INTEGER_PARAMETERS, MODE_MULTAX, MODE_UNITS, MOTION_COORDINATE_WORDS,
-    MOTION_FROM, MOTION_GOTO, MOTION_MORE, SURFACE_DRIVE, TEXT_CHARACTERS_PER_WORD, TEXT_CODES, TEXT_WORDS,
+    CLASS_SEQUENCE, CLASS_SURFACE, MODE_MULTAX, MODE_UNITS, MOTION_COORDINATE_WORDS, MOTION_FROM,
+    MOTION_GOTO, MOTION_MORE, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CHARACTERS_PER_WORD, TEXT_CODES, TEXT_WORDS,
     WORD_BYTES, word,
 };
 use crate::{
@@ -116,7 +116,9 @@ fn most_bytes(records: &[ClRecord], patience: Patience<'_>) -> usize {
             let words = points.len() * POINT_WORDS;
             words + (2 + HEADER_WORDS) * (1 + words / MOTION_COORDINATE_WORDS)
         }
-        ClKind::Postprocessor { arguments, .. } | ClKind::Control { arguments, .. } => arguments.len(),
+        ClKind::Postprocessor { arguments, .. } => arguments.len(),
+        // One for the number of a switch.
+        ClKind::Control { arguments, .. } => arguments.len().max(1),
         ClKind::Text { .. } => TEXT_WORDS,
         ClKind::Arc { .. } => CIRCLE_WORDS,
         ClKind::MultipleAxes(_) | ClKind::Units(_) | ClKind::End => 1,
@@ -174,12 +176,13 @@ impl Writer<'_> {
                 self.put(CLASS_SURFACE, SURFACE_DRIVE, &words)
             }
             ClKind::Motion { from, surface, points } => self.motion(*from, surface, points),
-            ClKind::Control { code: [class, subclass], arguments, .. } => {
+            ClKind::Control { word, code: [class, subclass], arguments } => {
                 let (class, subclass) = (i32::from(*class), i32::from(*subclass));
-                let words = if class == CLASS_PARAMETER && INTEGER_PARAMETERS.contains(&subclass) {
-                    arguments.iter().map(integer_parameter).collect()
-                } else {
-                    self.words(isn, arguments)?
+                let switch =
+                    SWITCH_WORDS.iter().find(|(_, _, name)| class == CLASS_PARAMETER && name == word);
+                let words = match switch {
+                    Some((_, number, _)) => vec![word::integer(*number)],
+                    None => self.words(isn, arguments)?,
                 };
                 self.put(class, subclass, &words)
             }
@@ -234,13 +237,6 @@ impl Writer<'_> {
             subclass = MOTION_MORE;
         }
         Ok(())
-    }
-}
-
-fn integer_parameter(argument: &ClWord) -> [u8; WORD_BYTES] {
-    match argument {
-        ClWord::Number(value) if *value >= 0.0 => word::integer(*value as u32),
-        _ => [0; WORD_BYTES],
     }
 }
 
@@ -299,6 +295,7 @@ mod tests {
                 code: [6000, 6],
                 arguments: vec![ClWord::Number(1.0); 7],
             },
+            ClKind::Control { word: "DNTCUT".into(), code: [6000, 1], arguments: vec![] },
             ClKind::End,
         ];
         for multax in [false, true] {

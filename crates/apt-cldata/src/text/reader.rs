@@ -266,10 +266,8 @@ impl Reader {
             }
             "UNITS" => self.units(&arguments),
             "FINI" => self.push(ClKind::End),
-            "CUT" => self.control(word, 1, vec![ClWord::Number(0.0)]),
-            "DNTCUT" => self.control(word, 1, vec![ClWord::Number(1.0)]),
-            "2DCALC" => self.control(word, 2, vec![ClWord::Number(1.0)]),
-            "3DCALC" => self.control(word, 2, vec![ClWord::Number(0.0)]),
+            "CUT" | "DNTCUT" => self.control(word, 1, Vec::new()),
+            "2DCALC" | "3DCALC" => self.control(word, 2, Vec::new()),
             "TOLER" => self.control(word, 3, arguments),
             "INTOL" => self.control(word, 4, arguments),
             "OUTTOL" => self.control(word, 5, arguments),

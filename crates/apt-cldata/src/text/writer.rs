@@ -13,7 +13,6 @@ use super::{
 };
 use crate::{
     arc::{PathArc, Tolerance, path_arc, reads_as_circle},
-    cltape::INTEGER_PARAMETERS,
     conversion::{ConversionNoteKind as Kind, Item, Notes, QUOTATION, What, same_axis, unit_word},
     geometry::SpaceCircle,
     record::{ClKind, ClPoint, ClRecord, ClWord, ends_before},
@@ -196,12 +195,6 @@ impl Writer<'_> {
                     self.rapid = !arguments.contains(&off);
                 }
                 self.words(word, arguments, self.form.value);
-            }
-            // On the tape a number says which of two words it is.
-            ClKind::Control { word, code: [_, subclass], .. }
-                if INTEGER_PARAMETERS.contains(&i32::from(*subclass)) =>
-            {
-                self.statement(word, &[]);
             }
             ClKind::Control { word, arguments, .. } => self.words(word, arguments, self.form.size),
             ClKind::Arc { center, axis, radius, .. } => {
