@@ -114,6 +114,26 @@ fn a_number_tells_which_of_two_words_it_is() {
     }
 }
 
+/// The name of a post-processor is no word of the language: it stands on the tape as names of surfaces do.
+#[test]
+fn the_name_of_a_machine_is_written_as_a_name() {
+    let machine = |name: &str| {
+        let arguments = vec![ClWord::Word(name.into()), ClWord::Number(3.0), ClWord::Word("ON".into())];
+        let kind = ClKind::Postprocessor { word: "MACHIN".into(), code: Some(1015), arguments };
+        vec![ClRecord { isn: 2, source: u32::MAX, kind }]
+    };
+    let mut codes = codes();
+    codes.major("MACHIN", 1015);
+    let bytes = write_tape(&machine("FANUC"), &codes).unwrap();
+    assert_eq!(bytes[bytes.len() - 24..bytes.len() - 16], *b" FANUC  ");
+    assert_eq!(read_tape(&bytes, &codes).unwrap().records, machine("FANUC"));
+    // Seven characters are more than fit, and another word has no names.
+    assert!(write_tape(&machine("FANUC12"), &codes).is_err());
+    let arguments = vec![ClWord::Word("FANUC".into())];
+    let kind = ClKind::Postprocessor { word: "COOLNT".into(), code: Some(1030), arguments };
+    assert!(write_tape(&[ClRecord { isn: 2, source: u32::MAX, kind }], &codes).is_err());
+}
+
 #[test]
 fn any_prefix_or_garbage_ends_in_a_result() {
     for length in 0..SAMPLE.len() {

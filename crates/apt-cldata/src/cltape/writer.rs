@@ -150,7 +150,8 @@ impl Writer<'_> {
         match &record.kind {
             ClKind::Postprocessor { word, code, arguments } => {
                 let subclass = self.major(isn, word, *code)?;
-                let words = self.words(isn, arguments)?;
+                let (name, rest) = machine_name(word, arguments);
+                let words: Vec<_> = name.into_iter().chain(self.words(isn, rest)?).collect();
                 self.put(CLASS_POSTPROCESSOR, subclass, &words)
             }
             ClKind::Text { word, code, text } => {
@@ -237,6 +238,21 @@ impl Writer<'_> {
             subclass = MOTION_MORE;
         }
         Ok(())
+    }
+}
+
+/// The name of a post-processor, which is no word and has no code, and the arguments behind it. A name that is too long
+/// stays among them: cut off it would name another one.
+fn machine_name<'a>(word: &str, arguments: &'a [ClWord]) -> (Option<[u8; WORD_BYTES]>, &'a [ClWord]) {
+    match arguments {
+        [ClWord::Word(name), rest @ ..]
+            if word == "MACHIN"
+                && (1..=TEXT_CHARACTERS_PER_WORD).contains(&name.len())
+                && name.is_ascii() =>
+        {
+            (Some(word::name(name)), rest)
+        }
+        _ => (None, arguments),
     }
 }
 
