@@ -199,6 +199,28 @@ fn a_run_is_listed_for_people_and_for_programs() {
     assert_eq!(report["program"], "good.apt");
 }
 
+/// Of NX and Creo files each position may have its axis without MULTAX. The tape of APT III has axes only under it.
+#[test]
+fn a_run_of_a_cl_file_keeps_the_tool_axes_that_it_tells() {
+    let folder = Folder::new("axes");
+    let text = "FROM/0,0,9\nGOTO/1,2,3,0,.6,.8\nGOTO/2,2,3\nGODLTA/5\nGOTO/3,2,3,0,0,1\nFINI\n";
+    folder.write("tilted.cl", text);
+    let ran = folder.run(&["run", "tilted.cl", "--format", "json"]);
+    let report: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let told: Vec<usize> = report["cl"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|entry| Some(entry["points"][0].as_array()?.len()))
+        .collect();
+    assert_eq!(told, [3, 6, 3, 3, 6]);
+    for name in ["again.cl", "again.cltape"] {
+        assert_eq!(folder.run(&["run", "tilted.cl", "-o", name]).code, 0);
+        let same = folder.run(&["diff", "--dialect", "cl", "tilted.cl", name]);
+        assert_eq!(same.code, 0, "{name}: {same:?}");
+    }
+}
+
 #[test]
 fn findings_go_to_the_file_that_was_named() {
     let folder = Folder::new("findings-to-a-file");

@@ -1,6 +1,9 @@
 //! Writes the binary tape.
 
-use apt_geometry::patience::{Patience, put_away};
+use apt_geometry::{
+    Vec3,
+    patience::{Patience, put_away},
+};
 use smol_str::SmolStr;
 
 use super::{
@@ -86,7 +89,7 @@ pub(crate) fn written(
     let bytes = Vec::with_capacity(most_bytes(records, patience));
     let mut writer = Writer { codes, bytes, serial: 0, multax: false };
     let mut statement = None;
-    for record in records {
+    for (at, record) in records.iter().enumerate() {
         if ends_before(record.position_count(), patience) {
             break;
         }
@@ -96,9 +99,27 @@ pub(crate) fn written(
             writer.put(CLASS_SEQUENCE, isn, &[[0; WORD_BYTES], [b' '; WORD_BYTES]])?;
         }
         statement = Some(this);
+        if !writer.multax && tells_tilted_axis(&records[at..]) {
+            writer.record(&ClRecord { kind: ClKind::MultipleAxes(true), ..*record })?;
+        }
         writer.record(record)?;
     }
     Ok(writer.bytes)
+}
+
+/// Whether records begin with a motion, or with a circle and its motion, that tells a tool axis other than z. The tape has
+/// axes only under MULTAX.
+fn tells_tilted_axis(records: &[ClRecord]) -> bool {
+    let points = match records {
+        [ClRecord { kind: ClKind::Motion { points, .. }, .. }, ..]
+        | [
+            ClRecord { kind: ClKind::Arc { .. }, .. },
+            ClRecord { kind: ClKind::Motion { points, .. }, .. },
+            ..,
+        ] => points,
+        _ => return false,
+    };
+    points.iter().any(|point| point.with_axis && point.axis != Vec3::z())
 }
 
 /// Bytes that a tape of some records has at most; fewer where who waits gives up before the end.
@@ -109,12 +130,14 @@ fn most_bytes(records: &[ClRecord], patience: Patience<'_>) -> usize {
     const BEFORE_WORDS: usize = 2 * HEADER_WORDS + 2;
     /// Position and axis.
     const POINT_WORDS: usize = 6;
+    /// MULTAX, which may have to be put before a motion.
+    const MULTAX_WORDS: usize = HEADER_WORDS + 1;
     /// A surface before its figures, a circle with them.
     const CIRCLE_WORDS: usize = 12;
     let words = |record: &ClRecord| match &record.kind {
         ClKind::Motion { points, .. } => {
             let words = points.len() * POINT_WORDS;
-            words + (2 + HEADER_WORDS) * (1 + words / MOTION_COORDINATE_WORDS)
+            words + MULTAX_WORDS + (2 + HEADER_WORDS) * (1 + words / MOTION_COORDINATE_WORDS)
         }
         ClKind::Postprocessor { arguments, .. } => arguments.len(),
         // One for the number of a switch.
@@ -288,7 +311,6 @@ fn text_words(isn: u32, text: &str) -> Result<Vec<[u8; WORD_BYTES]>, TapeWriteEr
 
 #[cfg(test)]
 mod tests {
-    use apt_geometry::Vec3;
 
     use super::*;
 

@@ -78,6 +78,8 @@ pub(super) struct Section2<'a> {
     may_approach: bool,
     output_on: bool,
     with_axis: bool,
+    /// Whether a statement that tells a tool axis has it on the path also without MULTAX, as in CL files.
+    axes_without_multax: bool,
     /// Most positions of the path, how many there are, and whether a statement would have made more.
     most_points: u64,
     points: u64,
@@ -119,6 +121,7 @@ impl<'a> Section2<'a> {
             may_approach: dialect != DialectName::Cl,
             output_on: true,
             with_axis: false,
+            axes_without_multax: dialect == DialectName::Cl,
             most_points: settings.budget.points,
             points: 0,
             too_long: false,
@@ -311,7 +314,10 @@ impl<'a> Section2<'a> {
                     _ => (false, ""),
                 };
                 self.tool = Some(position);
+                let under_multax = self.with_axis;
+                self.with_axis |= self.axes_without_multax && tells_axis(command);
                 self.positions(origin.isn, source, from, name, &[position]);
+                self.with_axis = under_multax;
             }
             Some(Output::Sequence(sequence)) => {
                 self.end_of_skipping();
@@ -447,6 +453,15 @@ impl<'a> Section2<'a> {
                 .findings
                 .push(RunFinding { kind: RunFindingKind::Skipped { statements, last }, origin });
         }
+    }
+}
+
+/// Whether a motion gives the tool an axis.
+fn tells_axis(command: &MotionCommand) -> bool {
+    match command {
+        MotionCommand::From { axis, .. } | MotionCommand::GoTo { axis, .. } => axis.is_some(),
+        MotionCommand::GoDelta { delta: Delta::Vector(_, axis), .. } => axis.is_some(),
+        _ => false,
     }
 }
 
