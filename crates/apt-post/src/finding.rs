@@ -112,6 +112,8 @@ pub enum PostFindingKind {
     NoRetract,
     #[error("motion after END")]
     MotionAfterEnd,
+    #[error("statements after FINI; nothing is made of them")]
+    AfterFini,
     #[error("no FINI")]
     NoFini,
     #[error("RAPID without a motion after it")]
@@ -189,6 +191,7 @@ impl PostFindingKind {
             | Kind::FunctionOfWord { .. }
             | Kind::TextTooLong { .. }
             | Kind::NoRotaryAxis { .. }
+            | Kind::AfterFini
             | Kind::MotionAfterEnd => Severity::Warning,
             _ => Severity::Error,
         }

@@ -157,3 +157,61 @@ fn compensation_is_in_the_plane_of_the_cut_also_after_an_arc_in_another() {
         assert!(blocks[arc..=on].iter().any(|block| block.contains("G17")), "{name}: {blocks:#?}");
     }
 }
+
+/// END resets the control and may leave it in G91: what comes after it begins anew, and has an end of its own.
+#[test]
+fn a_motion_after_end_begins_anew() {
+    let path = "RAPID\nGOTO/1,2,30\nFEDRAT/100\nGOTO/1,2,3\n";
+    for name in MACHINES {
+        let end = blocks(name, &format!("{path}END\n"));
+        let again = blocks(name, &format!("{path}END\nSPINDL/1000,CLW\nGOTO/5,2,3\n"));
+        assert!(
+            tape_of(name, &format!("{path}END\nSPINDL/1000,CLW\nGOTO/5,2,3\n"))
+                .findings
+                .iter()
+                .any(|found| found.kind == PostFindingKind::MotionAfterEnd)
+        );
+        let closing = end.len() - 1;
+        assert_eq!(again[..closing], end[..closing], "{name}");
+        let after = &again[closing..];
+        assert!(after[1].starts_with("G17 ") && after[1].contains("G90"), "{name}: {after:?}");
+        assert_eq!(after[2], "G1 X5. Y2. Z3. F100.", "{name}: {after:?}");
+        let last = at(&end, "M5");
+        assert_eq!(after[3..], end[last..], "{name}");
+    }
+}
+
+/// FINI is the end of the file, in `run` as on the tape.
+#[test]
+fn nothing_stands_behind_fini() {
+    for name in MACHINES {
+        let path = "RAPID\nGOTO/1,2,30\n";
+        let tape = tape_of(name, &format!("{path}FINI\nCOOLNT/ON\nGOTO/5,2,3\nGOTO/6,2,3\n"));
+        assert_eq!(tape.text(), tape_of(name, path).text(), "{name}");
+        let after = tape.findings.iter().filter(|found| found.kind == PostFindingKind::AfterFini);
+        assert_eq!(after.map(|found| found.isn).collect::<Vec<_>>(), [7], "{name}");
+    }
+}
+
+/// The number of FEDRAT/INVERS is no feed per minute.
+#[test]
+fn behind_inverse_times_the_feed_before_them_is_in_force() {
+    let path = "RAPID\nGOTO/0,0,3\nFEDRAT/100\nGOTO/1,0,3\nFEDRAT/INVERS,8\nGOTO/2,0,3\nFEDRAT/INVERS,9\nGOTO/3,0,3\nFEDRAT/INVERS,OFF\nGOTO/4,0,3\n";
+    for name in MACHINES {
+        let blocks = blocks(name, path);
+        let block = &blocks[at(&blocks, " X4.")];
+        assert!(block.starts_with("G94 ") && block.ends_with(" F100."), "{name}: {block}");
+    }
+}
+
+/// HSM files begin with MODE/MILL; a mill has nothing to do for it.
+#[test]
+fn a_mill_mills() {
+    for name in MACHINES {
+        let path = "RAPID\nGOTO/0,0,3\n";
+        let tape = tape_of(name, &format!("MODE/MILL\n{path}"));
+        assert_eq!((tape.text(), tape.findings), (tape_of(name, path).text(), vec![]), "{name}");
+        let turned = tape_of(name, &format!("MODE/TURN\n{path}"));
+        assert!(matches!(turned.findings[0].kind, PostFindingKind::NotSupported { .. }), "{name}");
+    }
+}

@@ -90,6 +90,13 @@ struct Feed {
     timed: bool,
 }
 
+impl Feed {
+    /// Whether the value is an inverse time, which is no feed.
+    fn is_time(self) -> bool {
+        self.mode == FeedMode::Inverse && !self.timed
+    }
+}
+
 /// The spindle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Spindle {
@@ -137,6 +144,8 @@ struct Engine<'a> {
     skipped: bool,
     rapid: Option<(u32, u32)>,
     feed: Option<Feed>,
+    /// The feed before the inverse times of FEDRAT/INVERS, for when they end.
+    feed_before_times: Option<Feed>,
     spindle: Spindle,
     spindle_reported: bool,
     feed_reported: bool,
@@ -174,6 +183,7 @@ struct Engine<'a> {
     started: bool,
     ended: bool,
     closed: bool,
+    after_fini_told: bool,
     named: bool,
     /// Whether a MACHIN has been seen.
     machine_named: bool,
@@ -198,6 +208,7 @@ impl<'a> Engine<'a> {
             skipped: false,
             rapid: None,
             feed: None,
+            feed_before_times: None,
             spindle: Spindle::default(),
             spindle_reported: false,
             feed_reported: false,
@@ -227,6 +238,7 @@ impl<'a> Engine<'a> {
             started: false,
             ended: false,
             closed: false,
+            after_fini_told: false,
             named: false,
             machine_named: false,
         }
@@ -237,6 +249,9 @@ impl<'a> Engine<'a> {
             self.flush();
         }
         self.control.place = (record.isn, record.source);
+        if self.closed && record.kind != ClKind::End {
+            return self.after_fini();
+        }
         match &record.kind {
             ClKind::Motion { from, points, .. } => self.motion(*from, points),
             ClKind::Arc { center, axis, .. } => {
@@ -280,6 +295,13 @@ impl<'a> Engine<'a> {
         self.closed = true;
         let machine = self.machine;
         self.control.templates(&machine.templates.trailer, &Values::default());
+    }
+
+    /// Something behind FINI, told once.
+    fn after_fini(&mut self) {
+        if !std::mem::replace(&mut self.after_fini_told, true) {
+            self.find(PostFindingKind::AfterFini);
+        }
     }
 
     /// The end of the program, once.

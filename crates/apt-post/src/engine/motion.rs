@@ -38,6 +38,7 @@ impl Engine<'_> {
         }
         if self.ended && !positions.is_empty() {
             self.find(PostFindingKind::MotionAfterEnd);
+            self.restart();
         }
         self.moved |= !positions.is_empty();
         if self.rapid.is_some() {

@@ -86,13 +86,8 @@ impl Engine<'_> {
         }
         self.first_tool = first(records, self.patience, |record| loads_tool(record).then_some(record.isn));
         let text = name.map_or("", |(_, text)| text);
-        let codes = &self.machine.codes;
-        let unit = match self.control.units {
-            Units::Inches => codes.inch.clone(),
-            Units::Millimeters => codes.millimeter.clone(),
-        };
         let program = program_number(text).to_string();
-        let values = Values::default().text("unit", unit).text("program", program);
+        let values = Values::default().text("unit", self.unit_code()).text("program", program);
         let machine = self.machine;
         for template in &machine.templates.program_start {
             if template.contains("{partno}") {
@@ -102,6 +97,28 @@ impl Engine<'_> {
             } else {
                 self.control.template(template, &values);
             }
+        }
+    }
+
+    /// A motion behind END: the control was reset, perhaps with G91 in force, and the program needs an end again.
+    pub(super) fn restart(&mut self) {
+        self.ended = false;
+        self.position = None;
+        self.control.forget_all();
+        let machine = self.machine;
+        let values = Values::default().text("unit", self.unit_code());
+        for template in machine.templates.program_start.iter().filter(|template| template.contains("{unit}"))
+        {
+            self.control.template(template, &values);
+        }
+    }
+
+    /// The code of the unit of the tape.
+    fn unit_code(&self) -> String {
+        let codes = &self.machine.codes;
+        match self.control.units {
+            Units::Inches => codes.inch.clone(),
+            Units::Millimeters => codes.millimeter.clone(),
         }
     }
 }

@@ -174,6 +174,10 @@ impl Engine<'_> {
         if let Some(name) = lacking {
             return self.find(PostFindingKind::NoCode { word: arguments.word.clone(), name: name.into() });
         }
+        if off && form::bare_numbers(arguments).is_empty() && self.feed.is_some_and(Feed::is_time) {
+            self.feed = self.feed_before_times;
+            return;
+        }
         // The number after MAXIPM is the greatest feed, not the feed.
         let stated_value = form::bare_numbers(arguments).first().copied();
         let value = match (stated_value, self.feed) {
@@ -192,7 +196,11 @@ impl Engine<'_> {
         }
         self.check_feed_range(mode, value, arguments.after("MAXIPM"));
         self.feed_reported = false;
-        self.feed = Some(Feed { mode, value, timed: timed && mode == FeedMode::Inverse });
+        let feed = Feed { mode, value, timed: timed && mode == FeedMode::Inverse };
+        if feed.is_time() && !self.feed.is_some_and(Feed::is_time) {
+            self.feed_before_times = self.feed;
+        }
+        self.feed = Some(feed);
     }
 
     /// Compares the feed per minute, which per revolution depends on the spindle, with the range of the machine and the
