@@ -10,7 +10,7 @@ use apt_program::SourceFile;
 use apt_run::go_on;
 use apt_syntax::{
     ParsedStatement, SyntaxTree, TextSize,
-    statement::{Body, Element, ElementKind},
+    statement::{Argument, Body, Element, ElementKind},
     tree::StatementView,
 };
 use smol_str::SmolStr;
@@ -303,7 +303,7 @@ impl Names<'_> {
         })?;
         let element = &parsed.elements[index];
         let label = is_label(&parsed, index);
-        if element.kind == ElementKind::Number && !label {
+        if element.kind == ElementKind::Number && !label || names_nothing(&parsed, index) {
             return None;
         }
         let scope = self.element_scope(file, view.index, &parsed, index, label);
@@ -327,6 +327,7 @@ impl Names<'_> {
                     let same = element.text == name && is_label(&parsed, at) == label;
                     if same
                         && (label || element.kind == ElementKind::Name)
+                        && !names_nothing(&parsed, at)
                         && self.element_scope(file, index, &parsed, at, label) == *scope
                     {
                         let range = absolute(&view, element.range);
@@ -417,6 +418,22 @@ fn is_label(parsed: &ParsedStatement, index: usize) -> bool {
             Body::LogicalIf { then, .. } => then.iter().any(|part| target(&part.body)),
             body => target(body),
         })
+}
+
+/// Whether the statement takes what is spelt like a name for a word, as the unit after UNITS, or for the machine of MACHIN.
+fn names_nothing(parsed: &ParsedStatement, index: usize) -> bool {
+    let range = parsed.elements[index].range;
+    let in_body = |body: &Body| {
+        let Body::Major { word, arguments, .. } = body else { return false };
+        let is_word = |argument: &Argument| matches!(argument, Argument::Word(minor) if minor.range == range);
+        let is_machine = word.word.spelling == "MACHIN"
+            && arguments.first().is_some_and(|argument| argument.range() == range);
+        word.range == range || is_machine || arguments.iter().any(is_word)
+    };
+    parsed.statement.parts.iter().any(|part| match &part.body {
+        Body::LogicalIf { then, .. } => then.iter().any(|part| in_body(&part.body)),
+        body => in_body(body),
+    })
 }
 
 /// Whether the element at `index` is given a value by its statement: a label, a target of `=`, a macro variable of a

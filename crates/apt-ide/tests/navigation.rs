@@ -168,3 +168,23 @@ fn a_rename_that_would_change_the_meaning_is_refused() {
     }
     assert_eq!(renamed("$0$$ A\n", "B"), Err(RenameError::NoName));
 }
+
+/// Section 1 takes the unit for a word, and the machine for what it is called, whatever has that name.
+#[test]
+fn units_and_machines_are_no_names() {
+    let text = "MM=3\nFANUC=4\nMACHIN/FANUC\nUNITS/MM\nP1=POINT/MM,FANUC\nFINI\n";
+    let with_mark = |before: &str| text.replacen(before, &format!("{before}$0"), 1);
+    assert_eq!(
+        renamed(&with_mark("POINT/M"), "XX").unwrap(),
+        "XX=3\nFANUC=4\nMACHIN/FANUC\nUNITS/MM\nP1=POINT/XX,FANUC\nFINI\n"
+    );
+    assert_eq!(
+        renamed(&with_mark("MM,F"), "XX").unwrap(),
+        "MM=3\nXX=4\nMACHIN/FANUC\nUNITS/MM\nP1=POINT/MM,XX\nFINI\n"
+    );
+    for word in ["UNI", "UNITS/M", "MACHIN/FA"] {
+        assert_eq!(renamed(&with_mark(word), "XX"), Err(RenameError::NoName), "{word}");
+    }
+    let (analysis, offset) = marked("FEDRAT/10,I$0PM\nFINI\n");
+    assert_eq!(analysis.name_at(offset), None);
+}

@@ -86,6 +86,11 @@ impl Analysis {
                     None => return Ok(None),
                 }
             }
+            // What is spelt like a name and is none, as the unit after UNITS.
+            ElementKind::Name if self.name_at_spot(spot).is_none() => match lookup(&element.text) {
+                Some(word) => word_markdown(word),
+                None => return Ok(None),
+            },
             ElementKind::Name => match self.name_markdown(spot, view.isn(), cancel)? {
                 Some(markdown) if spot.file.is_none() && is_called(&parsed, element) => {
                     markdown + &self.expansion_markdown(spot.offset, cancel)?
