@@ -9,6 +9,7 @@ mod bodies;
 mod bulge;
 mod hollow;
 mod planes;
+mod tangents;
 
 use apt_geometry::Vec3;
 
@@ -228,7 +229,13 @@ impl Search<'_> {
                 }
             }
             if self.shape == Shape::Convex {
-                self.turn_planes();
+                let open = self.nearest_by_tangents()?;
+                if self.open_top {
+                    // Of the arc of the corner no more is told than its contacts.
+                    self.gap = open;
+                } else if !self.proven() {
+                    self.turn_planes();
+                }
             }
         }
         Some(())

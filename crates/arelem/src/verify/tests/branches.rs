@@ -127,3 +127,48 @@ fn a_rim_that_touches_both_bodies_at_places_close_to_each_other_is_as_near_as_th
         assert!((value - nearest).abs() < 1e-7, "{k}: {value}, {nearest}");
     }
 }
+
+/// A double cone whose vertex is beside the rim of the top, with two troughs of the rim on one half less than a sixteenth of a turn apart.
+const OVER_THE_TOP: [f64; 10] = [
+    0.07741525839254744,
+    0.9269846193599236,
+    0.36701156147448505,
+    2.607996112387654,
+    -0.12239733261105845,
+    -0.20685326169926,
+    -0.32271914647674027,
+    0.8685269621072716,
+    -1.0863790332660728,
+    -0.5409126224533783,
+];
+
+#[test]
+fn a_rim_beside_a_vertex_is_as_near_as_its_nearest_place() {
+    let tool = cutter(&[
+        0.7431640004802544,
+        0.0,
+        0.3715820002401272,
+        0.22326899068378192,
+        31.0,
+        0.0,
+        2.3542807465970745,
+    ]);
+    let axis = Vec3::new(0.8213860347196389, 0.052822403161719725, -0.5679214520440032);
+    let surface = Surface::of(&quadric(OVER_THE_TOP)).unwrap();
+    let [.., rim] = Profile::of(&tool).unwrap().edges();
+    let across = perpendicular(&axis);
+    for k in 0..=64 {
+        let way = Vec3::new(-1.931625433669924, 1.6877122524849912, 3.3126769235158537).lerp(
+            &Vec3::new(-1.931916211312098, 1.6850271335681324, 3.3120642713710398),
+            f64::from(k) / 64.0,
+        );
+        let (value, ..) = clearance(&tool, &quadric(OVER_THE_TOP), 1.0, way.into(), axis.into());
+        let about = (0..=100_000).map(|k| {
+            let phi = f64::from(k) / 100_000.0 * std::f64::consts::TAU;
+            let out = across * phi.cos() + axis.cross(&across) * phi.sin();
+            surface.point_distance(&(way + out * rim[0] + axis * rim[1])).unwrap().0
+        });
+        let nearest = about.fold(f64::INFINITY, f64::min);
+        assert!((value - nearest).abs() < 1e-7, "{k}: {value}, {nearest}");
+    }
+}
