@@ -298,3 +298,16 @@ fn a_corner_on_a_cylinder_along_whose_normal_the_tool_stands_is_as_far_as_the_bo
         assert!((clearance - 0.066).abs() <= 1e-9, "at {tip}: {clearance}");
     }
 }
+
+/// A surface that sticks into the flank between the places that are looked at first is found as deep as it is.
+#[test]
+fn how_deep_a_surface_sticks_into_a_tool_is_told_wherever_it_does() {
+    let tool = tool(&[1.0, 0.0, 0.5, 0.0, 0.0, 0.0, 2.0]);
+    let depth = 0.002;
+    for height in [0.0, 0.2, 0.37, 1.26, 1.9] {
+        let center = v(0.6 - depth, 0.0, height);
+        let sphere = gauge(&Geometry::Sphere(Sphere { center, radius: 0.1 }), 1.0);
+        let found = tool.depth_of(&sphere.surface, &Vec3::zeros(), 0.5 * depth);
+        assert!(found >= 0.5 * depth && found <= depth + 1e-12, "{height}: {found}");
+    }
+}

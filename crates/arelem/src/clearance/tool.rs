@@ -12,6 +12,8 @@ const MOST_GLANCES: u32 = 32;
 const SAME_GLANCE: f64 = 1e-6;
 /// Parts of the axis between the places from which it is looked how deep a surface is in the tool.
 const DEPTHS: u32 = 4;
+/// Halvings of the way between these with which the deepest place is closed in on.
+const DEPTH_HALVINGS: u32 = 10;
 /// Tangent of the angle to the axis below which rounding may leave something of the axis in what is across it, and sine of the angle of a
 /// direction to the axis below which that is all there is.
 const NEAR_AXIS: f64 = 1e-6;
@@ -197,14 +199,26 @@ impl<'a> Tool<'a> {
     }
 
     /// How deep in the tool the deepest is of the points of a surface that are nearest to places along the axis; negative where all of them are out of
-    /// it.
-    pub(crate) fn depth_of(&self, surface: &Surface, tip: &Vec3) -> f64 {
-        let depth = |k: u32| {
-            let height = self.cutter.height * f64::from(k) / f64::from(DEPTHS);
+    /// it. Unless some places show that it is as deep as is enough, the deepest is closed in on.
+    pub(crate) fn depth_of(&self, surface: &Surface, tip: &Vec3, enough: f64) -> f64 {
+        let depth = |height: f64| {
             let (along, across, _) = self.split(&(surface.foot(&(tip + self.axis * height)).point - tip));
-            -self.profile.distance(across, along).0
+            (-self.profile.distance(across, along).0, height)
         };
-        (0..=DEPTHS).map(depth).fold(f64::NEG_INFINITY, f64::max)
+        let deeper = |a: (f64, f64), b: (f64, f64)| if b.0 > a.0 { b } else { a };
+        let mut step = self.cutter.height / f64::from(DEPTHS);
+        let tried = (0..=DEPTHS).map(|k| depth(step * f64::from(k)));
+        let mut deepest = tried.fold((f64::NEG_INFINITY, 0.0), deeper);
+        for _ in 0..DEPTH_HALVINGS {
+            if deepest.0 >= enough {
+                break;
+            }
+            step *= 0.5;
+            let beside =
+                [deepest.1 - step, deepest.1 + step].map(|height| height.clamp(0.0, self.cutter.height));
+            deepest = beside.map(depth).into_iter().fold(deepest, deeper);
+        }
+        deepest.0
     }
 
     /// Component of a vector along the axis, length of the rest and its unit direction, which is square to the axis even where the rest is

@@ -27,6 +27,8 @@ const FINE_STEPS: u32 = 400;
 const PLAIN_STEPS: u32 = 48;
 /// Bound of the halvings of a longer step.
 const HALVINGS: u32 = 12;
+/// Share of the way that a depth leads at most with which the deepest place is not looked for any closer.
+const DEEP_ENOUGH: f64 = 0.5;
 /// Least step, as a share of the check surface's band.
 const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
@@ -288,8 +290,9 @@ impl<'a> Watcher<'a> {
             return value.abs();
         }
         let (tip, tool) = sweep.at(x);
-        let depth = tool.depth_of(&gauge.surface, &tip) + gauge.thickness + self.working(index).rest();
-        depth.clamp(0.0, value.abs())
+        let offset = gauge.thickness + self.working(index).rest();
+        let enough = DEEP_ENOUGH * value.abs() - offset;
+        (tool.depth_of(&gauge.surface, &tip, enough) + offset).clamp(0.0, value.abs())
     }
 
     /// A longer step than by the clearance alone, over which the bound of the second derivative leaves no room for a
