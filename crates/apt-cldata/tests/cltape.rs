@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 use apt_cldata::{
-    cltape::{is_ncl_file, is_tape, read_tape, write_tape},
+    cltape::{TapeWriteError, is_ncl_file, is_tape, read_tape, write_tape},
     codes::CodeTable,
-    record::{ClKind, ClPoint, ClRecord, ClWord},
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
     text::read_text,
 };
 
@@ -198,4 +198,21 @@ fn broken_files_of_ncl_end_in_a_result() {
     let mut long = NCL_SAMPLE.to_vec();
     long[0..2].copy_from_slice(&u16::MAX.to_le_bytes());
     assert!(read_tape(&long, &codes()).is_err());
+}
+
+#[test]
+fn what_the_tape_cannot_say_is_told_as_what_it_is() {
+    let written = |kind: ClKind| write_tape(&[ClRecord { isn: 3, source: 3, kind }], &codes());
+    let error = written(ClKind::Units(Units::Millimeters)).unwrap_err();
+    assert_eq!(error, TapeWriteError::Unit { isn: 3, unit: "MM".into() });
+    assert!(error.to_string().contains("UNITS/MM"), "{error}");
+    let name = |name: &str| ClKind::Postprocessor {
+        word: "MACHIN".into(),
+        code: Some(1015),
+        arguments: vec![ClWord::Word(name.into()), ClWord::Number(2.0)],
+    };
+    let error = written(name("LINUXCNC")).unwrap_err();
+    assert_eq!(error, TapeWriteError::MachineName { isn: 3, name: "LINUXCNC".into() });
+    assert!(error.to_string().contains("LINUXCNC") && error.to_string().contains('6'), "{error}");
+    assert!(written(name("LINCNC")).is_ok());
 }

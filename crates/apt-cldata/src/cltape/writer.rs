@@ -31,6 +31,28 @@ pub enum TapeWriteError {
         /// The word.
         word: SmolStr,
     },
+    /// UNITS with a unit that has no code.
+    #[error(
+        "statement {isn}: the tape has no code for UNITS/{unit}; leave the statement out for this tape, whose numbers are in \
+         the unit of the program anyway, or write CL text"
+    )]
+    Unit {
+        /// Statement number.
+        isn: u32,
+        /// The unit.
+        unit: SmolStr,
+    },
+    /// The name of a post-processor that its data word does not hold.
+    #[error(
+        "statement {isn}: the post-processor {name} has more than the {TEXT_CHARACTERS_PER_WORD} characters that a name has on \
+         the tape, or others than ASCII"
+    )]
+    MachineName {
+        /// Statement number.
+        isn: u32,
+        /// The name.
+        name: SmolStr,
+    },
     /// Text that the 66 columns of a card do not hold.
     #[error("statement {isn}: {length} characters of text, {TEXT_LENGTH} fit")]
     TextTooLong {
@@ -173,7 +195,7 @@ impl Writer<'_> {
         match &record.kind {
             ClKind::Postprocessor { word, code, arguments } => {
                 let subclass = self.major(isn, word, *code)?;
-                let (name, rest) = machine_name(word, arguments);
+                let (name, rest) = machine_name(isn, word, arguments)?;
                 let words: Vec<_> = name.into_iter().chain(self.words(isn, rest)?).collect();
                 self.put(CLASS_POSTPROCESSOR, subclass, &words)
             }
@@ -220,7 +242,7 @@ impl Writer<'_> {
                     Units::Millimeters => "MM",
                 };
                 let code = self.codes.minor_code(name);
-                let code = code.ok_or_else(|| TapeWriteError::NoCode { isn, word: name.into() })?;
+                let code = code.ok_or_else(|| TapeWriteError::Unit { isn, unit: name.into() })?;
                 self.put(CLASS_MODE, MODE_UNITS, &[word::integer(u32::from(code))])
             }
             ClKind::End => self.put(CLASS_END, 0, &[]),
@@ -264,20 +286,22 @@ impl Writer<'_> {
     }
 }
 
-/// The name of a post-processor, which is no word and has no code, and the arguments behind it. A name that is too long
-/// stays among them: cut off it would name another one.
-fn machine_name<'a>(word: &str, arguments: &'a [ClWord]) -> (Option<[u8; WORD_BYTES]>, &'a [ClWord]) {
+/// The name of a post-processor, which is no word and has no code, and the arguments behind it. A name that is too long is
+/// an error: cut off it would name another one.
+fn machine_name<'a>(isn: u32, word: &str, arguments: &'a [ClWord]) -> Result<NamedFirst<'a>, TapeWriteError> {
     match arguments {
-        [ClWord::Word(name), rest @ ..]
-            if word == "MACHIN"
-                && (1..=TEXT_CHARACTERS_PER_WORD).contains(&name.len())
-                && name.is_ascii() =>
-        {
-            (Some(word::name(name)), rest)
+        [ClWord::Word(name), rest @ ..] if word == "MACHIN" && !name.is_empty() => {
+            if name.len() > TEXT_CHARACTERS_PER_WORD || !name.is_ascii() {
+                return Err(TapeWriteError::MachineName { isn, name: name.clone() });
+            }
+            Ok((Some(word::name(name)), rest))
         }
-        _ => (None, arguments),
+        _ => Ok((None, arguments)),
     }
 }
+
+/// The data word of a name, and the arguments behind it.
+type NamedFirst<'a> = (Option<[u8; WORD_BYTES]>, &'a [ClWord]);
 
 /// `C1` or `C(3)` as name and subscript.
 fn name_words(surface: &str) -> ([u8; WORD_BYTES], [u8; WORD_BYTES]) {

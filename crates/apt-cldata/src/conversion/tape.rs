@@ -6,7 +6,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{ConversionNoteKind as Kind, Item, Notes, What, same_axis};
 use crate::{
-    cltape::{TapeWriteError, write_tape, written},
+    cltape::{TEXT_CHARACTERS_PER_WORD, TapeWriteError, write_tape, written},
     codes::CodeTable,
     record::{ClKind, ClRecord, ends_before},
 };
@@ -65,6 +65,12 @@ fn left_out(kind: &ClKind, error: &TapeWriteError) -> Kind {
     };
     let why = match error {
         TapeWriteError::NoCode { word, .. } => format_smolstr!("{word} has no code on a tape"),
+        TapeWriteError::Unit { unit, .. } => format_smolstr!("a tape has no code for {unit}"),
+        TapeWriteError::MachineName { .. } => {
+            format_smolstr!(
+                "the name has more than {TEXT_CHARACTERS_PER_WORD} characters or others than ASCII"
+            )
+        }
         TapeWriteError::TextTooLong { length, .. } => {
             format_smolstr!("{length} characters of text are too many")
         }
