@@ -2,6 +2,7 @@
 
 mod support;
 
+use apt_geometry::motion::{Delta, MotionCommand};
 use apt_program::{ControlFinding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use support::{problems, run_as, scalar};
@@ -86,6 +87,8 @@ const MISTAKES: &[(&str, &[(u32, u16)])] = &[
     ("L=LINE/XAXIS\nGOFWD/L,TO,L,TRANTO,A\nA)X=1", &[(2, 2022)]),
     ("FROM/0,0,5\nGOTO/1,2,3,0,0,1", &[(2, 22300)]),
     ("MULTAX/ON\nFROM/0,0,5\nMULTAX/OFF\nGOTO/1,2,3,0,0,1", &[(4, 22300)]),
+    ("FROM/0,0,5\nGODLTA/1,2,3,0,.6,.8", &[(2, 22300)]),
+    ("MULTAX/ON\nFROM/0,0,5\nGODLTA/1,2,3,0,.6,.8,10", &[]),
 ];
 
 #[test]
@@ -278,19 +281,21 @@ fn names_with_the_same_first_six_characters_are_one() {
 
 #[test]
 fn a_macro_variable_can_be_the_verb_and_an_axis_is_dropped_without_multax() {
-    let program =
-        run("V=MACRO/W,P\nW/P\nTERMAC\nFROM/0,0,5\nCALL/V,W=GOTO,P=(POINT/2,0,0)\nGOTO/1,2,3,0,0,1");
+    let program = run(
+        "V=MACRO/W,P\nW/P\nTERMAC\nFROM/0,0,5\nCALL/V,W=GOTO,P=(POINT/2,0,0)\nGOTO/1,2,3,0,0,1\nGODLTA/1,0,0,0,.6,.8",
+    );
     let axes: Vec<bool> = program
         .records()
         .filter_map(|record| match &record.kind {
             RecordKind::Motion(command) => match &**command {
-                apt_geometry::motion::MotionCommand::GoTo { axis, .. } => Some(axis.is_some()),
+                MotionCommand::GoTo { axis, .. } => Some(axis.is_some()),
+                MotionCommand::GoDelta { delta: Delta::Vector(_, axis), .. } => Some(axis.is_some()),
                 _ => None,
             },
             _ => None,
         })
         .collect();
-    assert_eq!(axes, [false, false]);
+    assert_eq!(axes, [false; 3]);
 }
 
 #[test]

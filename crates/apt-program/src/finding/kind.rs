@@ -515,7 +515,7 @@ pub enum FindingKind {
     /// An axis that the statement gives is not used, since MULTAX is off.
     #[error("{word} gives an axis while MULTAX is off")]
     AxisDropped {
-        /// GOTO or FROM.
+        /// GOTO, FROM or GODLTA.
         word: SmolStr,
     },
 

@@ -53,17 +53,23 @@ impl Evaluator<'_> {
         if let Some((rate, range)) = position.feed {
             self.feed(rate, range);
         }
-        let Position { place, mut axis, name, .. } = position;
-        if axis.is_some() && self.is_apt4() && !self.state.axes_on {
-            self.report(FindingKind::AxisDropped { word: major.name() }, major.range);
-            axis = None;
-        }
+        let Position { place, axis, name, .. } = position;
+        let axis = self.axis_that_counts(major, axis);
         let command = if major.spelling() == "FROM" {
             MotionCommand::From { position: place, axis, name }
         } else {
             MotionCommand::GoTo { position: place, axis, name }
         };
         self.motion(command, major.range);
+    }
+
+    /// The axis that a position gives; in APT4 it counts only while MULTAX is on.
+    fn axis_that_counts(&mut self, major: Major<'_>, axis: Option<Vec3>) -> Option<Vec3> {
+        if axis.is_some() && self.is_apt4() && !self.state.axes_on {
+            self.report(FindingKind::AxisDropped { word: major.name() }, major.range);
+            return None;
+        }
+        axis
     }
 
     /// Counts scalars; a point counts as three, a vector after the place is the axis.
@@ -147,6 +153,10 @@ impl Evaluator<'_> {
             let range = items.last().map_or(major.range, |item| item.range);
             self.feed(rate, range);
         }
+        let delta = match delta {
+            Delta::Vector(increment, axis) => Delta::Vector(increment, self.axis_that_counts(major, axis)),
+            along => along,
+        };
         self.motion(MotionCommand::GoDelta { delta, name }, major.range);
     }
 }
