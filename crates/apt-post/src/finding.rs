@@ -106,8 +106,8 @@ pub enum PostFindingKind {
     CompensationUnused,
     #[error("the tool is changed while CUTCOM is on")]
     CompensationLeftOn,
-    #[error("RETRCT without a clearance plane")]
-    NoClearance,
+    #[error("{word} without a clearance plane")]
+    NoClearance { word: SmolStr },
     #[error("PLUNGE without a RETRCT before it")]
     NoRetract,
     #[error("motion after END")]

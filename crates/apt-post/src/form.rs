@@ -17,21 +17,20 @@ pub enum Treatment {
 }
 
 /// Words that the engine acts on.
-const ON_TAPE: [&str; 44] = [
+const ON_TAPE: [&str; 45] = [
     "ARCDAT", "ARCMOV", "ARCSLP", "AUXFUN", "CLEARP", "CLRSRF", "COOLNT", "CUTCOM", "CYCLE", "DELAY",
-    "DELETE", "DWELL", "END", "FEDRAT", "GOCLER", "GOHOME", "INSERT", "ISTOP", "LOAD", "LOADTL", "MCHTOL",
-    "MOVARC", "OFSTNO", "OPSKIP", "OPSTOP", "ORIGIN", "PARTNO", "PLUNGE", "PPRINT", "PREFUN", "RAPID",
-    "RETRCT", "REWIND", "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT", "TRANS",
-    "TURRET", "UNLOAD",
+    "DELETE", "DISPLY", "DWELL", "END", "FEDRAT", "GOCLER", "GOHOME", "INSERT", "ISTOP", "LOAD", "LOADTL",
+    "MCHTOL", "MOVARC", "OFSTNO", "OPSKIP", "OPSTOP", "ORIGIN", "PARTNO", "PLUNGE", "PPRINT", "PREFUN",
+    "RAPID", "RETRCT", "REWIND", "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT",
+    "TRANS", "TURRET", "UNLOAD",
 ];
 /// Words of the processor, of listings, of plots and of the punch.
-const SILENT: [&str; 38] = [
+const SILENT: [&str; 37] = [
     "CALSUB",
     "CAMERA",
     "CLPRNT",
     "COPY",
     "DEFSUB",
-    "DISPLY",
     "DMIS",
     "DRAFT",
     "DRAWLI",

@@ -272,6 +272,10 @@ pub struct Codes {
     pub cycle_off: Option<String>,
     pub retract_initial: Option<String>,
     pub retract_plane: Option<String>,
+    /// The work offsets, of which the first is in force before the first motion; none where the blocks of the start
+    /// see to it.
+    #[serde(default)]
+    pub work_offsets: Vec<String>,
 }
 
 /// Arcs.
@@ -318,8 +322,8 @@ pub enum ArcPlane {
     Yz,
 }
 
-/// Templates of blocks: `{X}` is a register under its modal rule, `{!X}` forces it, other names are texts; a word
-/// whose placeholder has no value disappears.
+/// Templates of blocks: `{X}` is a register under its modal rule, `{!X}` forces it, other names are texts, as
+/// `{work_offset}` in that of the first motion of a tool; a word whose placeholder has no value disappears.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the names say it")]

@@ -320,7 +320,7 @@ fn every_block_knows_its_statement() {
 
 #[test]
 fn findings() {
-    let cases: [(&str, PostFindingKind); 23] = [
+    let cases: [(&str, PostFindingKind); 24] = [
         ("SPINDL/1000\nGOTO/1,0,0\n", PostFindingKind::NoFeed),
         ("FEDRAT/10\nGOTO/1,0,0\n", PostFindingKind::SpindleOff),
         ("FEDRAT/0\n", PostFindingKind::FeedNotPositive { value: 0.0 }),
@@ -346,7 +346,8 @@ fn findings() {
             "LOADTL/1.5\n",
             PostFindingKind::BadValue { word: "LOADTL".into(), argument: "tool".into(), value: 1.5 },
         ),
-        ("RETRCT\n", PostFindingKind::NoClearance),
+        ("RETRCT\n", PostFindingKind::NoClearance { word: "RETRCT".into() }),
+        ("GOHOME\nGOCLER\n", PostFindingKind::NoClearance { word: "GOCLER".into() }),
         ("PLUNGE\n", PostFindingKind::NoRetract),
         ("RAPID\nRAPID\nGOTO/1,0,0\n", PostFindingKind::RapidUnused),
         ("CUTCOM/LEFT,1\n", PostFindingKind::CompensationUnused),

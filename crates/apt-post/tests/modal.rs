@@ -1,7 +1,7 @@
 //! What the control holds from block to block: feed modes and planes, cycles and the height that they go back to.
 
 use apt_cldata::text::read_text;
-use apt_post::{PostFindingKind, PostOptions, Tape, machine, post};
+use apt_post::{PostFindingKind, PostOptions, Severity, Tape, machine, post};
 
 /// Statements that stand before those under test.
 const BEFORE: &str = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\n";
@@ -9,7 +9,11 @@ const BEFORE: &str = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\n";
 const MACHINES: [&str; 3] = ["fanuc-mill3", "haas-mill3", "linuxcnc-mill3"];
 
 fn tape_of(name: &str, statements: &str) -> Tape {
-    let (records, errors) = read_text(&format!("{BEFORE}{statements}FINI\n"));
+    tape_after(BEFORE, name, statements)
+}
+
+fn tape_after(before: &str, name: &str, statements: &str) -> Tape {
+    let (records, errors) = read_text(&format!("{before}{statements}FINI\n"));
     assert_eq!(errors, vec![]);
     let machine = machine(name).unwrap_or_else(|error| panic!("{error}"));
     post(&records, &machine, &PostOptions::default())
@@ -17,7 +21,11 @@ fn tape_of(name: &str, statements: &str) -> Tape {
 
 /// The blocks without sequence numbers, with the mark of an optional block.
 fn blocks(name: &str, statements: &str) -> Vec<String> {
-    let tape = tape_of(name, statements);
+    blocks_after(BEFORE, name, statements)
+}
+
+fn blocks_after(before: &str, name: &str, statements: &str) -> Vec<String> {
+    let tape = tape_after(before, name, statements);
     assert!(tape.is_ok(), "{:?}\n{}", tape.findings, tape.text());
     let bare = |line: &str| {
         let words = line.split(' ').filter(|word| !word.trim_start_matches('/').starts_with('N'));
@@ -175,9 +183,13 @@ fn a_motion_after_end_begins_anew() {
         assert_eq!(again[..closing], end[..closing], "{name}");
         let after = &again[closing..];
         assert!(after[1].starts_with("G17 ") && after[1].contains("G90"), "{name}: {after:?}");
-        assert_eq!(after[2], "G1 X5. Y2. Z3. F100.", "{name}: {after:?}");
+        // The work offset is in force again: from the first block, or from one of its own.
+        let offset = at(after, "G54");
+        assert!((1..=2).contains(&offset), "{name}: {after:?}");
+        let motion = offset.max(1) + 1;
+        assert_eq!(after[motion], "G1 X5. Y2. Z3. F100.", "{name}: {after:?}");
         let last = at(&end, "M5");
-        assert_eq!(after[3..], end[last..], "{name}");
+        assert_eq!(after[motion + 1..], end[last..], "{name}");
     }
 }
 
@@ -213,5 +225,64 @@ fn a_mill_mills() {
         assert_eq!((tape.text(), tape.findings), (tape_of(name, path).text(), vec![]), "{name}");
         let turned = tape_of(name, &format!("MODE/TURN\n{path}"));
         assert!(matches!(turned.findings[0].kind, PostFindingKind::NotSupported { .. }), "{name}");
+    }
+}
+
+#[test]
+fn the_work_offset_stands_before_the_first_motion_of_any_kind() {
+    let motions = [
+        "FEDRAT/100\nGOTO/10,0,5\n",
+        "RAPID\nGOTO/10,0,5\n",
+        "FROM/0,0,5\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/OFF\n",
+        "FROM/0,0,5\nCLEARP/50\nRETRCT\nRAPID\nGOTO/10,0,5\n",
+    ];
+    for name in MACHINES {
+        for before in [BEFORE, "UNITS/MM\nSPINDL/1000,CLW\n"] {
+            for motion in motions {
+                let blocks = blocks_after(before, name, motion);
+                let offset = at(&blocks, "G54");
+                let moves = |block: &String| ["X", "Y", "Z"].iter().any(|axis| block.contains(axis));
+                let first = blocks.iter().position(moves);
+                assert!(first.is_some_and(|first| offset <= first), "{name}: {motion}: {blocks:#?}");
+                assert_eq!(
+                    blocks.iter().filter(|block| block.contains("G54")).count(),
+                    1,
+                    "{name}: {blocks:#?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_work_offset_of_the_program_stays() {
+    for name in MACHINES {
+        for motion in ["FEDRAT/100\nGOTO/10,0,5\n", "RAPID\nGOTO/10,0,5\n"] {
+            let tape = tape_of(name, &format!("PREFUN/55\n{motion}"));
+            assert!(
+                tape.findings.iter().all(|one| one.kind.severity() != Severity::Error),
+                "{:?}",
+                tape.findings
+            );
+            let text = tape.text();
+            let own = text.find("G55").unwrap_or_else(|| panic!("{text}"));
+            assert!(!text[own..].contains("G54"), "{name}: {text}");
+        }
+    }
+}
+
+#[test]
+fn a_tool_whose_place_is_not_known_still_goes_to_the_clearance_plane() {
+    for name in MACHINES {
+        for word in ["GOCLER", "RETRCT"] {
+            for lost in ["GOHOME\n", "INSERT M60\n"] {
+                let blocks = blocks(
+                    name,
+                    &format!("CLEARP/50\nFEDRAT/100\nRAPID\nGOTO/10,0,5\n{lost}{word}\nGOTO/20,0,5\n"),
+                );
+                let up = &blocks[at(&blocks, "Z50.")];
+                assert!(["Z50.", "G0 Z50."].contains(&up.as_str()), "{name}: {word}: {blocks:#?}");
+            }
+        }
     }
 }

@@ -30,6 +30,7 @@ const ON_TAPE: &[(&str, &str, &str)] = &[
     ("CYCLE/DRILL,DEPTH,5,MMPM,50,CLEAR,2", "GOTO/10,0,0\nCYCLE/OFF\n", "G81"),
     ("DELAY/2", "", "G4 P2"),
     ("DELETE/ON", "GOTO/10,0,10\n", "/N"),
+    ("DISPLY/HELLO", "", "(MSG,HELLO)"),
     ("DWELL/2", "", "G4 P2"),
     ("END", "", ""),
     ("FEDRAT/55,MMPM", "GOTO/10,0,10\n", "F55."),
@@ -321,4 +322,22 @@ fn texts_fit_on_a_card() {
     };
     assert_eq!(kinds(80), []);
     assert_eq!(kinds(66), [PostFindingKind::TextTooLong { word: "PARTNO".into(), length: 67, limit: 66 }]);
+}
+
+#[test]
+fn disply_switches_the_messages_of_the_tape() {
+    let tape = tape_of("PPRINT ONE\nDISPLY/OFF\nPPRINT TWO\nDISPLY/THREE\nDISPLY/ON\nPPRINT FOUR\n");
+    let text = tape.text();
+    assert!(text.contains("(MSG,ONE)") && text.contains("(MSG,FOUR)"), "{text}");
+    assert!(text.contains("(MSG,THREE)"), "a text of its own is no PPRINT: {text}");
+    assert!(!text.contains("TWO"), "{text}");
+    let argument = |argument: &str| PostFindingKind::ArgumentNotUsed {
+        word: "DISPLY".into(),
+        argument: argument.into(),
+    };
+    assert_eq!(only_finding("DISPLY/AUTO\n"), Some(argument("AUTO")));
+    assert_eq!(only_finding("DISPLY/NIXIE,3\n"), Some(argument("NIXIE")));
+    let missing =
+        PostFindingKind::MissingArgument { word: "DISPLY".into(), missing: "ON, OFF or a text".into() };
+    assert_eq!(only_finding("DISPLY\n"), Some(missing));
 }

@@ -279,6 +279,7 @@ impl Engine<'_> {
             return;
         }
         self.check_tool();
+        self.work_offset_now();
         let level = self.level(&mut cycle, top, plane);
         let machine = self.machine;
         match machine.cycles.get(&cycle.name) {

@@ -5,6 +5,7 @@ mod motion;
 mod start;
 mod statement;
 mod tool;
+mod work_offset;
 
 use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
 use apt_geometry::{
@@ -155,6 +156,9 @@ struct Engine<'a> {
     length_offset: u32,
     /// A tool change after which no motion has come yet, with the coolant code that rides on its first Z.
     approach: Option<String>,
+    work_offset: work_offset::WorkOffset,
+    /// DISPLY/OFF: PPRINT is not on the tape.
+    messages_off: bool,
     coolant: bool,
     coolant_code: Option<String>,
     cutter_diameter: Option<f64>,
@@ -216,6 +220,8 @@ impl<'a> Engine<'a> {
             first_tool: None,
             length_offset: 0,
             approach: None,
+            work_offset: work_offset::WorkOffset::Due,
+            messages_off: false,
             coolant: false,
             coolant_code: None,
             cutter_diameter: None,

@@ -84,11 +84,15 @@ impl Engine<'_> {
 
     fn check_travel(&mut self, position: Vec3) {
         for (name, value) in AXES.into_iter().zip(position.iter()) {
-            let Some(axis) = self.machine.axes.get(name) else { continue };
-            let [least, greatest] = axis.limits_mm.map(|limit| self.tape_length(limit));
-            if !(least..=greatest).contains(value) {
-                self.find(PostFindingKind::AxisLimit { axis: name.into(), value: *value, least, greatest });
-            }
+            self.check_axis(name, *value);
+        }
+    }
+
+    fn check_axis(&mut self, name: &str, value: f64) {
+        let Some(axis) = self.machine.axes.get(name) else { return };
+        let [least, greatest] = axis.limits_mm.map(|limit| self.tape_length(limit));
+        if !(least..=greatest).contains(&value) {
+            self.find(PostFindingKind::AxisLimit { axis: name.into(), value, least, greatest });
         }
     }
 
@@ -103,6 +107,7 @@ impl Engine<'_> {
         let machine = self.machine;
         if let Some(coolant) = self.approach.take() {
             let values = Values::default()
+                .text("work_offset", self.work_offset_code())
                 .number("X", position.x)
                 .number("Y", position.y)
                 .number("Z", position.z)
@@ -111,10 +116,20 @@ impl Engine<'_> {
             self.control.template(&machine.templates.first_xy, &values);
             self.control.template(&machine.templates.first_z, &values);
         } else {
+            self.work_offset_now();
             self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(position));
         }
         self.skipped = false;
         self.position = Some(self.rounded(position));
+    }
+
+    /// A rapid move to a height where nobody knows from where: the axis of the spindle alone moves.
+    pub(super) fn rapid_to_height(&mut self, height: f64) {
+        self.check_axis(AXES[2], height);
+        self.approach_now();
+        let machine = self.machine;
+        let word = Word { register: AXES[2], value: height, force: true };
+        self.control.motion(&[], &[&machine.codes.rapid], &[word]);
     }
 
     /// Makes blocks of the waiting run.
@@ -325,8 +340,9 @@ impl Engine<'_> {
         new
     }
 
-    /// Length offset and coolant that an approach by rapid would have brought.
+    /// Work offset, length offset and coolant that an approach by rapid would have brought.
     pub(super) fn approach_now(&mut self) {
+        self.work_offset_now();
         if let Some(coolant) = self.approach.take() {
             let machine = self.machine;
             let values = Values::default().number("H", f64::from(self.length_offset));
@@ -385,6 +401,7 @@ impl Engine<'_> {
     /// An arc to a rounded position.
     fn arc_to(&mut self, end: Vec3, plane: ArcPlane, fitted: &Arc) {
         let Some(start) = self.position else { return };
+        self.work_offset_now();
         self.check_travel(end);
         self.check_cutting();
         let [u, v, w] = arc::plane_axes(plane);

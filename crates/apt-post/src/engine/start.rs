@@ -3,7 +3,7 @@
 use apt_cldata::record::{ClKind, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
 use apt_geometry::patience::Patience;
 
-use super::{Engine, MILLIMETERS_PER_INCH};
+use super::{Engine, MILLIMETERS_PER_INCH, work_offset::WorkOffset};
 use crate::{
     control::Values,
     machine::{MachineDefinition, OutputUnits},
@@ -104,6 +104,7 @@ impl Engine<'_> {
     pub(super) fn restart(&mut self) {
         self.ended = false;
         self.position = None;
+        self.work_offset = WorkOffset::Due;
         self.control.forget_all();
         let machine = self.machine;
         let values = Values::default().text("unit", self.unit_code());

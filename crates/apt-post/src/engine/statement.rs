@@ -4,7 +4,7 @@ use apt_cldata::record::{ClWord, Units};
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
-use super::{Engine, Feed, MILLIMETERS_PER_INCH};
+use super::{Engine, Feed, MILLIMETERS_PER_INCH, work_offset::WorkOffset};
 use crate::{
     control::Values,
     finding::PostFindingKind,
@@ -38,11 +38,13 @@ impl Engine<'_> {
                 self.control.remark(&machine.block.comment, text);
             }
             "INSERT" => {
+                self.note_work_offset(text);
                 self.control.push_block(text.trim());
                 // The text may have changed anything.
                 self.control.forget_all();
                 self.position = None;
             }
+            "PPRINT" | "TPRINT" if self.messages_off => {}
             "PPRINT" | "TPRINT" => self.control.remark(&machine.templates.message, text),
             _ => {}
         }
@@ -77,10 +79,11 @@ impl Engine<'_> {
             }
             "GOHOME" => self.home(),
             "CLEARP" | "CLRSRF" => self.clearance_statement(&arguments),
-            "RETRCT" | "GOCLER" => self.retract(),
+            "RETRCT" | "GOCLER" => self.retract(word),
             "PLUNGE" => self.plunge(&arguments),
             "ORIGIN" => self.shift_statement(&arguments, -1.0),
             "TRANS" => self.shift_statement(&arguments, 1.0),
+            "DISPLY" => self.display_statement(&arguments),
             "SEQNO" => self.sequence_statement(&arguments),
             "OPSKIP" | "DELETE" => self.skip_statement(&arguments),
             "AUXFUN" => self.function(&arguments, "M"),
@@ -108,14 +111,7 @@ impl Engine<'_> {
     /// Words that the machine definition gives a meaning: `WORD/first` before `WORD`.
     fn site_word(&mut self, arguments: &Arguments<'_>) -> bool {
         let machine = self.machine;
-        let texts: Vec<String> = arguments
-            .items
-            .iter()
-            .map(|item| match item {
-                ClWord::Number(number) => number.to_string(),
-                ClWord::Word(word) => word.to_string(),
-            })
-            .collect();
+        let texts = texts(arguments.items);
         let first = texts.first().map(|first| format!("{}/{first}", arguments.word));
         let template = first
             .and_then(|key| machine.words.get(&key))
@@ -123,6 +119,23 @@ impl Engine<'_> {
         let Some(template) = template else { return false };
         self.control.template(template, &Values::default().text("text", texts.join(",")));
         true
+    }
+
+    /// DISPLY: ON and OFF switch the texts of PPRINT on the tape, other words are a text of their own.
+    fn display_statement(&mut self, arguments: &Arguments<'_>) {
+        // A date would make another tape every day, and a mill has neither lamps nor number displays.
+        if let Some(unused) = ["AUTO", "LIGHT", "NIXIE"].into_iter().find(|word| arguments.has(word)) {
+            let word = arguments.word.clone();
+            return self.find(PostFindingKind::ArgumentNotUsed { word, argument: unused.into() });
+        }
+        let machine = self.machine;
+        match arguments.items {
+            [] => self.find(arguments.missing("ON, OFF or a text")),
+            [ClWord::Word(switch)] if switch == "ON" || switch == "OFF" => {
+                self.messages_off = switch == "OFF";
+            }
+            items => self.control.remark(&machine.templates.message, &texts(items).join(" ")),
+        }
     }
 
     fn rapid_statement(&mut self, arguments: &Arguments<'_>) {
@@ -332,12 +345,17 @@ impl Engine<'_> {
         }
     }
 
-    fn retract(&mut self) {
-        let Some(height) = self.clearance else { return self.find(PostFindingKind::NoClearance) };
-        let Some(here) = self.position else { return self.find(PostFindingKind::NoClearance) };
+    /// RETRCT and GOCLER. Behind GOHOME and INSERT nobody knows where the tool is; the height alone says enough then.
+    fn retract(&mut self, word: &SmolStr) {
+        let Some(height) = self.clearance else {
+            return self.find(PostFindingKind::NoClearance { word: word.clone() });
+        };
         self.leave_cycle();
-        self.retracted_from = Some(here.z);
-        self.rapid_to(Vec3::new(here.x, here.y, height));
+        self.retracted_from = self.position.map(|here| here.z);
+        match self.position {
+            Some(here) => self.rapid_to(Vec3::new(here.x, here.y, height)),
+            None => self.rapid_to_height(height),
+        }
     }
 
     fn plunge(&mut self, arguments: &Arguments<'_>) {
@@ -394,6 +412,9 @@ impl Engine<'_> {
         // A cycle must not begin or end in a block that may be skipped and go on where none is.
         self.leave_cycle();
         self.skipped |= self.control.skip.is_some();
+        if self.work_offset == (WorkOffset::Written { optional: true }) {
+            self.work_offset = WorkOffset::Due;
+        }
         self.control.skip = (!arguments.has("OFF")).then(|| self.skip_level(arguments));
         // A skipped block must not have been the only one that carried a modal word.
         self.control.forget_all();
@@ -420,6 +441,7 @@ impl Engine<'_> {
             Some(number) if (0.0..=LARGEST_CODE).contains(&number) => {
                 let tenths = (number * 10.0).round() / 10.0;
                 let code = format!("{letter}{tenths}");
+                self.note_work_offset(&code);
                 self.check_function(arguments.word, &code);
                 self.control.code(&code);
             }
@@ -468,4 +490,13 @@ impl Engine<'_> {
             self.find(PostFindingKind::NotSupported { word: arguments.word.clone() });
         }
     }
+}
+
+/// Arguments as they are written.
+fn texts(items: &[ClWord]) -> Vec<String> {
+    let text = |item: &ClWord| match item {
+        ClWord::Number(number) => number.to_string(),
+        ClWord::Word(word) => word.to_string(),
+    };
+    items.iter().map(text).collect()
 }
