@@ -342,3 +342,25 @@ fn words_of_a_finding_say_what_the_geometry_is() {
         }
     }
 }
+
+#[test]
+fn a_missing_slash_is_told_as_such() {
+    for (statement, form) in [
+        ("JUMPTO", "JUMPTO/label"),
+        ("JUMPTO,A", "JUMPTO/label"),
+        ("TRANTO", "TRANTO/label"),
+        ("DO", "DO/label,index=first,last,step"),
+        ("OBTAIN,CIRCLE", "OBTAIN,CIRCLE/C1,X,Y"),
+    ] {
+        let report = report(&format!("{statement}\nFINI\n"), None);
+        let first = &report["diagnostics"][0];
+        assert_eq!(
+            (&first["code"], &first["apt3"]),
+            (&json!("APT0072"), &json!(155)),
+            "{statement}: {first}"
+        );
+        assert!(first["hint"].as_str().unwrap().contains(form), "{statement}: {first}");
+    }
+    let report = report("OBTAIN\nFINI\n", None);
+    assert_eq!(report["diagnostics"][0]["code"], json!("APT0063"), "{report}");
+}

@@ -151,6 +151,22 @@ pub enum SyntaxErrorKind {
     /// A vocabulary word as the target of `=`, or a type word without its slash.
     #[error("word {0} without a slash")]
     NoSlash(SmolStr),
+    /// A statement whose word always has a slash behind it, without one.
+    #[error("{statement}: no slash behind {word}")]
+    SlashMissing {
+        /// The word of the statement.
+        statement: SmolStr,
+        /// The word that the slash follows: the same, or the type of OBTAIN.
+        word: SmolStr,
+    },
+    /// A second word for where the tool is: on which side of the drive surface, or whether on the part surface.
+    #[error("{second} after {first}")]
+    ToolPositionTwice {
+        /// The word that has said it.
+        first: SmolStr,
+        /// The word that says it again.
+        second: SmolStr,
+    },
     /// A word was required after the comma.
     #[error("a vocabulary word is required here")]
     WordRequired,
@@ -313,7 +329,7 @@ impl SyntaxErrorKind {
             Kind::BadInclusiveSubscript => 109,
             Kind::MissingParameters => 129,
             Kind::ObtainTypeExpected => 153,
-            Kind::NoSlash(_) | Kind::ObtainComma(_) => 155,
+            Kind::NoSlash(_) | Kind::SlashMissing { .. } | Kind::ObtainComma(_) => 155,
             Kind::MacroForm => 203,
             Kind::MacroVariableNotName => 207,
             Kind::CallNameExpected => 226,
@@ -333,6 +349,7 @@ impl SyntaxErrorKind {
             | Kind::RunsOnAfterWord { .. }
             | Kind::ThenMissing { .. }
             | Kind::ConditionalDo
+            | Kind::ToolPositionTwice { .. }
             | Kind::DoForm => return None,
         })
     }
@@ -366,6 +383,7 @@ impl SyntaxErrorKind {
                 | SyntaxErrorKind::TooManyElements { .. }
                 | SyntaxErrorKind::TooManyNests { .. }
                 | SyntaxErrorKind::ObtainComma(_)
+                | SyntaxErrorKind::ToolPositionTwice { .. }
         )
     }
 }

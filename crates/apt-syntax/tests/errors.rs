@@ -159,3 +159,26 @@ fn text_that_cards_cut_is_warned_of() {
     assert!(parsed.errors.iter().any(|error| error.kind.is_warning()), "{:?}", parsed.errors);
     assert!(parse(&text, Free).errors.is_empty() || parse(&text, Free).is_broken());
 }
+
+#[test]
+fn a_statement_says_once_where_the_tool_is() {
+    let twice = [
+        "TLLFT,TLRGT",
+        "TLON,TLNDON,GOLFT/L1,TO,L2",
+        "TLLFT,TLONPS,TLLFT,GOLFT/L1,TO,L2",
+        "TLONPS,TLOFPS",
+        "IF(A.LT.B)TLLFT,TLRGT,GOFWD/L1,TO,L2",
+    ];
+    for text in twice {
+        let parsed = parse(text, Free);
+        assert_eq!(parsed.errors.len(), 1, "{text}: {:?}", parsed.errors);
+        assert!(!parsed.is_broken(), "{text}: the motion is still to be made");
+        let first_words: Vec<&str> = ["TLRGT", "TLNDON", "TLOFPS", "TLLFT"].into();
+        let range = parsed.errors[0].range;
+        let word = &text[usize::from(range.start())..usize::from(range.end())];
+        assert!(first_words.contains(&word), "{text}: {word}");
+    }
+    for text in ["TLLFT", "TLLFT,TLONPS,GOLFT/L1,TO,L2", "TLOFPS,TLRGT,GOLFT/L1,TO,L2", "TLON,TLONPS"] {
+        assert_eq!(parse(text, Free).errors, vec![], "{text}");
+    }
+}

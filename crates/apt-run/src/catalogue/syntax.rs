@@ -94,6 +94,19 @@ fn statement(kind: &Kind) -> Option<Text> {
             say("APT0019", format!("{word} is a word of the language and cannot be used as a name"))
                 .hint("choose another name, or write the parameters after a slash")
         }
+        Kind::SlashMissing { statement, word } => {
+            let form = match statement.as_str() {
+                "OBTAIN" => "OBTAIN,CIRCLE/C1,X,Y",
+                "DO" => "DO/label,index=first,last,step",
+                "TRANTO" => "TRANTO/label",
+                _ => "JUMPTO/label",
+            };
+            say("APT0072", format!("a slash is missing behind {word}")).hint(format!("the form is {form}"))
+        }
+        Kind::ToolPositionTwice { first, second } => {
+            say("APT0071", format!("{second} says where the tool is, which {first} has said before"))
+                .hint(format!("write one of the two; the last one, {second}, is taken"))
+        }
         Kind::WordRequired => {
             say("APT0020", "after this comma a statement must begin, with a word of the language")
         }

@@ -8,6 +8,7 @@ use crate::error::SyntaxErrorKind;
 use crate::kind::SyntaxKind;
 use crate::statement::{
     Body, Clause, Condition, Element, ElementKind, Expression, MacroParameter, Name, Part, RelationOperator,
+    WordUse,
 };
 
 type Production = (Body, SyntaxKind);
@@ -161,14 +162,21 @@ impl Parser<'_> {
     /// `JUMPTO/id` and `TRANTO/id`
     pub(super) fn jump(&mut self) -> Parsed<Production> {
         let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
-        if !self.eat(ElementKind::Slash) {
-            return self.fail(SyntaxErrorKind::NoSlash(word.word.spelling.into()));
-        }
+        self.slash_behind(&word)?;
         let label = self.label_name()?;
         if !self.at_end() {
             return self.fail(SyntaxErrorKind::LabelCount { found: self.labels_in_rest(1), expected: 1 });
         }
         Ok((Body::Jump { word, label }, SyntaxKind::Jump))
+    }
+
+    /// The slash behind the word of a statement.
+    fn slash_behind(&mut self, word: &WordUse) -> Parsed<()> {
+        if self.eat(ElementKind::Slash) {
+            return Ok(());
+        }
+        let word = SmolStr::from(word.word.spelling);
+        self.fail(SyntaxErrorKind::SlashMissing { statement: word.clone(), word })
     }
 
     /// A label where it is used: a name or digits.
@@ -245,6 +253,7 @@ impl Parser<'_> {
         loop {
             let part = self.part()?;
             let joins = part.joins_another();
+            self.refuse_second_position(&parts, &part);
             parts.push(part);
             if self.at_end() {
                 return Ok(parts);
@@ -399,9 +408,7 @@ impl Parser<'_> {
     /// `DO/label,i=first,last[,step]`
     pub(super) fn do_loop(&mut self) -> Parsed<Production> {
         let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
-        if !self.eat(ElementKind::Slash) {
-            return self.fail(SyntaxErrorKind::NoSlash(word.word.spelling.into()));
-        }
+        self.slash_behind(&word)?;
         let label = self.label_name()?;
         if !self.eat(ElementKind::Comma) {
             return self.fail(SyntaxErrorKind::DoForm);

@@ -41,6 +41,7 @@ impl Parser<'_> {
             let first = self.position;
             match self.part_and_separator() {
                 Ok((part, more)) => {
+                    self.refuse_second_position(&parts, &part);
                     parts.push(part);
                     if !more {
                         self.count_nests();
@@ -202,6 +203,19 @@ impl Parser<'_> {
             return self.fail(SyntaxErrorKind::WordRequired);
         }
         Ok((part, true))
+    }
+
+    /// Tells of a word that says where the tool is after another one has: a statement takes one for the drive surface and
+    /// one for the part surface.
+    pub(super) fn refuse_second_position(&mut self, before: &[Part], part: &Part) {
+        let Some((second, of_drive)) = tool_position(part) else { return };
+        let same = |(word, drive): &(&WordUse, bool)| (*drive == of_drive).then_some(word.word.spelling);
+        let Some(first) = before.iter().filter_map(tool_position).find_map(|one| same(&one)) else { return };
+        let kind = SyntaxErrorKind::ToolPositionTwice {
+            first: SmolStr::new_static(first),
+            second: SmolStr::new_static(second.word.spelling),
+        };
+        self.errors.push(SyntaxError::new(kind, second.range));
     }
 
     fn fail_after_part<T>(&self, body: &Body) -> Parsed<T> {
@@ -484,7 +498,7 @@ impl Parser<'_> {
         let Some(word) = self.word_use() else { return self.fail(SyntaxErrorKind::WordRequired) };
         let slash = self.dialect.obtain_slash && self.at(ElementKind::Slash);
         if !slash && !self.at(ElementKind::Comma) {
-            return self.fail(SyntaxErrorKind::NoSlash(word.word.spelling.into()));
+            return self.fail(SyntaxErrorKind::ObtainTypeExpected);
         }
         self.bump();
         let is_type = self.word_at(0).is_some_and(|kind| kind.class == WordClass::GeometricType);
@@ -501,11 +515,24 @@ impl Parser<'_> {
                     self.errors.push(SyntaxError { kind, range: comma.range });
                     self.bump();
                 }
-                _ => return self.fail(SyntaxErrorKind::NoSlash(spelling)),
+                _ => {
+                    let statement = SmolStr::from(word.word.spelling);
+                    return self.fail(SyntaxErrorKind::SlashMissing { statement, word: spelling });
+                }
             }
         }
         let rules = ListRules { empty: EmptyPositions::Always, bare_expressions: false, units_of: None };
         let arguments = self.parameters(rules)?;
         Ok((Body::Obtain { word, kind, arguments }, SyntaxKind::Obtain))
+    }
+}
+
+/// A word that says where the tool is, and whether relative to the drive surface, not to the part surface.
+fn tool_position(part: &Part) -> Option<(&WordUse, bool)> {
+    match &part.body {
+        Body::Major { word, .. } if word.word.class == WordClass::ToolPosition => {
+            Some((word, !matches!(word.word.spelling, "TLONPS" | "TLOFPS")))
+        }
+        _ => None,
     }
 }
