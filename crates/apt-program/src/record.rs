@@ -152,6 +152,8 @@ pub enum RecordKind {
         /// Its parameters.
         arguments: Vec<PostArgument>,
     },
+    /// DNTCUT/PRINT, behind the command of DNTCUT: the positions that are kept from the path are listed.
+    ListSuppressed,
     /// PTONLY/1: Section 2 is not to run at all, wherever in the program this stands (language reference 7.10).
     SkipMotion,
     /// TRANTO/label.

@@ -364,3 +364,37 @@ fn a_missing_slash_is_told_as_such() {
     let report = report("OBTAIN\nFINI\n", None);
     assert_eq!(report["diagnostics"][0]["code"], json!("APT0063"), "{report}");
 }
+
+#[test]
+fn dntcut_print_lists_the_points_that_it_keeps_from_the_path() {
+    let text = "A=1\nPRINT/3,A\nCUTTER/.5\nFROM/0,0,5\nDNTCUT/PRINT\nGOTO/1,2,3\nDNTCUT\nGOTO/4,5,6\nCUT\n\
+                PRINT/3,A\nMULTAX\nDNTCUT/PRINT\nP=POINT/1,1,1\nGOTO/P\nCUT\nGOTO/2,2,2\nFINI\n";
+    let report = report(text, None);
+    let scalar = json!(["A SCALAR 1", "  1.000000"]);
+    let listing = json!([
+        { "isn": 2, "lines": scalar },
+        { "isn": 6, "lines": ["GOTO NOT ON THE PATH 1", "  1.000000 2.000000 3.000000"] },
+        { "isn": 10, "lines": scalar },
+        {
+            "isn": 14,
+            "lines": [
+                "GOTO P NOT ON THE PATH 1",
+                "  1.000000 1.000000 1.000000 0.000000 0.000000 1.000000"
+            ]
+        },
+    ]);
+    assert_eq!(report["listing"], listing);
+    let points: Vec<&Value> = report["cl"].as_array().unwrap().iter().map(|one| &one["points"]).collect();
+    assert!(!points.contains(&&json!([[1.0, 2.0, 3.0]])), "{points:?}");
+}
+
+#[test]
+fn a_pocket_under_dntcut_print_is_listed_whole() {
+    let text =
+        "CUTTER/1\nFROM/5,3,2\nDNTCUT/PRINT\nPOCKET/.49,1,.8,5,10,8,1,1,0,0,0,8,0,0,8,5,0,0,5,0\nCUT\nFINI\n";
+    let report = report(text, None);
+    let lines = report["listing"][0]["lines"].as_array().unwrap();
+    let head = lines[0].as_str().unwrap();
+    assert_eq!(head, format!("GOTO POCKET NOT ON THE PATH {}", lines.len() - 1));
+    assert!(lines.len() > 10, "{lines:?}");
+}

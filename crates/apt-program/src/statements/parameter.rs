@@ -134,7 +134,11 @@ impl Evaluator<'_> {
             }
             _ => return self.report(FindingKind::PostBare { word: major.name() }, major.range),
         };
+        let lists = command == MotionCommand::Output(false) && !items.is_empty();
         self.motion(command, major.range);
+        if lists {
+            self.emit(RecordKind::ListSuppressed, major.range);
+        }
     }
 
     /// Where the first operand is a name without a value, and no array's, in a statement that takes words: tells so.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use apt_cldata::{
     edit::EditError,
-    record::ClRecord,
+    record::{ClPoint, ClRecord},
     totals::{Totals, totals},
 };
 use apt_geometry::patience::Aside;
@@ -21,6 +21,7 @@ use arelem::{
     cure::Remedy,
     error::{MotionFailure, MotionWarning},
 };
+use smol_str::SmolStr;
 
 use crate::{
     Cancel, Cancelled, Waiting,
@@ -44,6 +45,17 @@ pub struct Milling {
     pub origin: Origin,
     /// The path with its interferences, shared with the memo.
     pub milled: Arc<Milled>,
+}
+
+/// Positions that DNTCUT/PRINT keeps from the path and lists, as they are before TRACUT and COPY.
+#[derive(Debug, Clone)]
+pub struct Suppressed {
+    /// The statement that makes them.
+    pub origin: Origin,
+    /// The name that would stand with them on the CL file.
+    pub name: SmolStr,
+    /// The positions.
+    pub points: Vec<ClPoint>,
 }
 
 /// What became of interferences.
@@ -136,6 +148,8 @@ pub struct RunResult {
     pub motions: Vec<Motion>,
     /// The paths of regional milling, in order of execution.
     pub milled: Vec<Milling>,
+    /// What DNTCUT/PRINT lists, in order of execution.
+    pub suppressed: Vec<Suppressed>,
     /// What is to be said about them.
     pub findings: Vec<RunFinding>,
 }
@@ -168,7 +182,8 @@ pub fn run(
     if program.skips_motion() {
         let (records, origins) = (Vec::new(), Vec::new());
         let (motions, milled, findings) = (Vec::new(), Vec::new(), Vec::new());
-        return Ok(RunResult { records, origins, motions, milled, findings });
+        let suppressed = Vec::new();
+        return Ok(RunResult { records, origins, motions, milled, suppressed, findings });
     }
     let total = program.record_count();
     let mut section2 = section2::Section2::new(total, settings, tree.dialect().name, memo, cancel);
@@ -217,6 +232,7 @@ pub fn run(
         origins: output.origins.taken(),
         motions: output.motions,
         milled: output.milled,
+        suppressed: output.suppressed,
         findings,
     })
 }

@@ -29,7 +29,7 @@ use arelem::{
 use smol_str::SmolStr;
 
 use self::feed::Feeds;
-use super::{Milling, Motion, RunFinding, RunFindingKind, earlier::Before};
+use super::{Milling, Motion, RunFinding, RunFindingKind, Suppressed, earlier::Before};
 use crate::{
     Cancel, Cancelled,
     memo::{Computation, MotionMemo},
@@ -57,6 +57,7 @@ pub(super) struct SectionTwoOutput {
     pub(super) origins: Aside<Origin>,
     pub(super) motions: Vec<Motion>,
     pub(super) milled: Vec<Milling>,
+    pub(super) suppressed: Vec<Suppressed>,
     pub(super) findings: Vec<RunFinding>,
 }
 
@@ -77,6 +78,8 @@ pub(super) struct Section2<'a> {
     /// Whether FEDRAT may have a distance; a CL file is what has been made of it.
     may_approach: bool,
     output_on: bool,
+    /// Whether what DNTCUT keeps from the path is listed.
+    lists_suppressed: bool,
     with_axis: bool,
     /// Whether a statement that tells a tool axis has it on the path also without MULTAX, as in CL files.
     axes_without_multax: bool,
@@ -106,6 +109,7 @@ impl<'a> Section2<'a> {
             origins: Vec::with_capacity(records).into(),
             motions: Vec::new(),
             milled: Vec::new(),
+            suppressed: Vec::new(),
             findings: Vec::new(),
         };
         Self {
@@ -120,6 +124,7 @@ impl<'a> Section2<'a> {
             feeds: Feeds::default(),
             may_approach: dialect != DialectName::Cl,
             output_on: true,
+            lists_suppressed: false,
             with_axis: false,
             axes_without_multax: dialect == DialectName::Cl,
             most_points: settings.budget.points,
@@ -199,6 +204,7 @@ impl<'a> Section2<'a> {
                 self.state.restart = Restart::Waiting;
                 self.state.forward = None;
             }
+            RecordKind::ListSuppressed => self.lists_suppressed = true,
             // With it nothing comes here.
             RecordKind::SkipMotion => {}
             RecordKind::Transfer(label) => self.transfer = Some((label.clone(), record.origin.clone())),
@@ -369,7 +375,8 @@ impl<'a> Section2<'a> {
     fn pocket(&mut self, path: &PocketPath, isn: u32, source: u32) {
         self.tool = path.positions().next_back().copied().or(self.tool);
         if !self.output_on {
-            return;
+            let positions: Vec<ToolPosition> = path.positions().copied().collect();
+            return self.positions(isn, source, false, "POCKET", &positions);
         }
         let most = POCKET_RECORD[usize::from(self.with_axis)];
         let mut left = path.positions().count();
@@ -386,7 +393,7 @@ impl<'a> Section2<'a> {
     }
 
     fn positions(&mut self, isn: u32, source: u32, from: bool, name: &str, positions: &[ToolPosition]) {
-        if positions.is_empty() || !self.output_on || self.too_long {
+        if positions.is_empty() || !(self.output_on || self.lists_suppressed) || self.too_long {
             return;
         }
         self.points += positions.len() as u64;
@@ -400,6 +407,11 @@ impl<'a> Section2<'a> {
         let with_axis = self.with_axis;
         let points =
             positions.iter().map(|at| ClPoint { position: at.tip, axis: at.axis, with_axis }).collect();
+        if !self.output_on {
+            let origin = self.output.origins.get(source as usize).cloned();
+            let listed = origin.map(|origin| Suppressed { origin, name: SmolStr::new(name), points });
+            return self.output.suppressed.extend(listed);
+        }
         self.push(isn, source, ClKind::Motion { from, surface: SmolStr::new(name), points });
     }
 
@@ -419,6 +431,7 @@ impl<'a> Section2<'a> {
             MotionCommand::Output(on) => {
                 let resumed = *on && !self.output_on;
                 self.output_on = *on;
+                self.lists_suppressed = false;
                 if let (true, Some(tool)) = (resumed, self.tool) {
                     self.positions(isn, source, false, "", &[tool]);
                 }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, ops::RangeInclusive, path::PathBuf};
 
 use apt_cldata::{
-    record::{ClKind, ClRecord, ClWord, Units},
+    record::{ClKind, ClPoint, ClRecord, ClWord, Units},
     totals::{Totals, totals_where},
 };
 use apt_geometry::{
@@ -25,7 +25,7 @@ use crate::{
     Cancelled,
     diagnostic::{Diagnostic, Fix, Severity, absolute_range, origin_steps, related_places, statement_range},
     go_on,
-    pipeline::{Motion, RunResult},
+    pipeline::{Motion, RunResult, Suppressed},
     position::LineIndex,
 };
 
@@ -127,7 +127,7 @@ pub fn report(input: &ReportInput<'_>, patience: Patience<'_>) -> Result<Report,
         motions.push(motion_entry(motion, input.tree, sources.of(&motion.origin)));
     }
     let totals = totals_where(&input.result.records, wanted_record, patience).ok_or(Cancelled)?;
-    let (symbols, listing) = (symbols(input.program, patience)?, listing(input.program, wanted, patience)?);
+    let (symbols, listing) = (symbols(input.program, patience)?, listing(input, wanted, patience)?);
     Ok(Report {
         program: input.file.to_owned(),
         ok: input.diagnostics.iter().all(|diagnostic| diagnostic.severity != Severity::Error),
@@ -179,20 +179,48 @@ fn interference_entry(isn: u32, encounter: &Encounter) -> InterferenceEntry {
     }
 }
 
-/// What the wanted statements list.
+/// What the wanted statements list: what the program prints and what DNTCUT/PRINT lists, each in its own order and the
+/// two by the numbers of their statements.
 fn listing(
-    program: &Program,
+    input: &ReportInput<'_>,
     wanted: impl Fn(&Origin) -> bool,
     patience: Patience<'_>,
 ) -> Result<Vec<ListingReport>, Cancelled> {
-    let entries = program.listing().filter(|entry| wanted(&entry.origin));
-    entries
-        .map(|entry| {
-            let lines = entry.lines();
-            go_on(patience, 1 + lines.len())?;
-            Ok(ListingReport { isn: entry.origin.place_in_program().0, lines })
-        })
-        .collect()
+    let mut printed = input.program.listing().filter(|entry| wanted(&entry.origin)).peekable();
+    let mut kept = input.result.suppressed.iter().filter(|one| wanted(&one.origin)).peekable();
+    let mut listing = Vec::new();
+    loop {
+        let isn = |origin: &Origin| origin.place_in_program().0;
+        let (first, second) =
+            (printed.peek().map(|one| isn(&one.origin)), kept.peek().map(|one| isn(&one.origin)));
+        let isn = match (first, second) {
+            (None, None) => return Ok(listing),
+            (Some(isn), None) => isn,
+            (None, Some(isn)) => isn,
+            (Some(first), Some(second)) => first.min(second),
+        };
+        let lines = if first == Some(isn) {
+            printed.next().map(|entry| entry.lines())
+        } else {
+            kept.next().map(suppressed_lines)
+        };
+        let lines = lines.unwrap_or_default();
+        go_on(patience, 1 + lines.len())?;
+        listing.push(ListingReport { isn, lines });
+    }
+}
+
+/// Positions that are not on the path, under a line that names what makes them.
+fn suppressed_lines(suppressed: &Suppressed) -> Vec<String> {
+    let Suppressed { name, points, .. } = suppressed;
+    let name = if name.is_empty() { String::new() } else { format!(" {name}") };
+    let head = format!("GOTO{name} NOT ON THE PATH {}", points.len());
+    let line = |point: &ClPoint| {
+        let axis = if point.with_axis { point.axis.as_slice() } else { &[] };
+        let numbers = point.position.iter().chain(axis).map(|number| format!("{:.6}", clean(*number)));
+        format!("  {}", numbers.collect::<Vec<_>>().join(" "))
+    };
+    std::iter::once(head).chain(points.iter().map(line)).collect()
 }
 
 /// A diagnostic with its places as lines and characters.
