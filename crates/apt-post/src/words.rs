@@ -111,6 +111,15 @@ pub(crate) struct CycleOrder {
     pub(crate) dwell: Option<(f64, bool)>,
 }
 
+/// The depth of `FEDTO,diameter,angle`: where a tool with a point of this angle has the diameter.
+fn chamfer_depth(arguments: &Arguments<'_>, diameter: f64, angle: f64) -> Result<f64, PostFindingKind> {
+    const STRAIGHT_DEGREES: f64 = 180.0;
+    if angle > 0.0 && angle < STRAIGHT_DEGREES {
+        return Ok(diameter / 2.0 / (angle / 2.0).to_radians().tan());
+    }
+    Err(PostFindingKind::BadValue { word: arguments.word.clone(), argument: "angle".into(), value: angle })
+}
+
 /// Reads `CYCLE/type, ...` with couples in any order, and with the bare numbers of the CAM systems: depth, feed if the
 /// unit follows it, clearance.
 pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostFindingKind> {
@@ -180,7 +189,13 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
         items.next();
         match word.as_str() {
             // NX gives a signed offset, the others a depth.
-            "DEPTH" | "FEDTO" => order.depth = Some(number.abs()),
+            "DEPTH" | "FEDTO" => {
+                order.depth = Some(number.abs());
+                if let ("FEDTO", Some(ClWord::Number(angle))) = (word.as_str(), items.peek()) {
+                    items.next();
+                    order.depth = Some(chamfer_depth(arguments, number.abs(), *angle)?);
+                }
+            }
             "RAPTO" | "CLEAR" => order.clearance = Some(number),
             "STEP" | "INCR" => order.step = Some(number),
             "DWELL" => order.dwell = Some((number, false)),

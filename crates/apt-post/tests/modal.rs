@@ -286,3 +286,23 @@ fn a_tool_whose_place_is_not_known_still_goes_to_the_clearance_plane() {
         }
     }
 }
+
+#[test]
+fn a_chamfer_is_as_deep_as_its_diameter_and_angle_make_it() {
+    let hole = |depth: &str| {
+        format!(
+            "FEDRAT/100\nRAPID\nGOTO/0,0,50\nCYCLE/CSINK,{depth},MMPM,50,RAPTO,2,DWELL,1\nGOTO/10,10,0\nCYCLE/OFF\n"
+        )
+    };
+    for name in MACHINES {
+        for (depth, bottom) in [("FEDTO,8,90", "Z-4."), ("FEDTO,8", "Z-8."), ("FEDTO,-8", "Z-8.")] {
+            let blocks = blocks(name, &hole(depth));
+            let found = &blocks[at(&blocks, "G82")];
+            assert!(found.split(' ').any(|word| word == bottom), "{name}: {depth}: {found}");
+        }
+        let tape = tape_of(name, &hole("FEDTO,8,180"));
+        let wrong =
+            PostFindingKind::BadValue { word: "CYCLE".into(), argument: "angle".into(), value: 180.0 };
+        assert!(tape.findings.iter().any(|found| found.kind == wrong), "{:?}", tape.findings);
+    }
+}
