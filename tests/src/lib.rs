@@ -7,8 +7,9 @@ pub mod sculptured;
 use std::path::{Path, PathBuf};
 
 /// The allocator of the program `apt-lsp`, so that its memory and its silences are those that are measured.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
 
 /// A path below the root of the repository.
 pub fn repository(path: &str) -> PathBuf {

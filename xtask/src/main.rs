@@ -40,6 +40,9 @@ enum Task {
         /// Only say what is missing; fail when something is.
         #[arg(long)]
         check: bool,
+        /// Only what is needed to build apt-lsp.
+        #[arg(long)]
+        build: bool,
     },
     /// Build the VS Code extension with the release binary in it.
     PackageVscode {
@@ -116,7 +119,9 @@ fn perform(task: Task) -> Outcome {
     let mut count = TestCount::default();
     match task {
         Task::Codegen { check } => codegen::run(check),
-        Task::Setup { check } => setup::run(check),
+        Task::Setup { check, build } => {
+            setup::run(if build { setup::Purpose::Build } else { setup::Purpose::Test }, check)
+        }
         Task::PackageVscode { output } => vscode::package::run(&layout::root().join(output)),
         Task::Nightly { definition_cases, motion_cases, share, pairs, seed } => {
             nightly::run(&nightly::Extent { definition_cases, motion_cases, share, pairs, seed })

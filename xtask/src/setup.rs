@@ -1,17 +1,38 @@
-//! The Debian packages that the tests need.
+//! The Debian packages that building and the tests need.
 
 use crate::failure::{Failure, Outcome};
 use crate::process::{Call, find_program};
 
-/// A program that the tests call, and the Debian package that has it.
+/// What the machine is set up for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// To build apt-lsp.
+    Build,
+    /// To build it and run all tests.
+    Test,
+}
+
+/// A program that is called, and the Debian package that has it.
 struct Requirement {
+    purpose: Purpose,
     program: &'static str,
     package: &'static str,
     used_for: &'static str,
 }
 
+impl Purpose {
+    /// Whether what is needed for this is needed for `whole`, too.
+    fn is_part_of(self, whole: Self) -> bool {
+        whole == Self::Test || self == whole
+    }
+}
+
 const fn need(program: &'static str, package: &'static str, used_for: &'static str) -> Requirement {
-    Requirement { program, package, used_for }
+    Requirement { purpose: Purpose::Test, program, package, used_for }
+}
+
+const fn need_to_build(program: &'static str, package: &'static str, used_for: &'static str) -> Requirement {
+    Requirement { purpose: Purpose::Build, program, package, used_for }
 }
 
 /// Everything beyond Rust and Node.
@@ -21,32 +42,33 @@ const REQUIREMENTS: &[Requirement] = &[
     need("chromium", "chromium", "the screen of the VS Code tests"),
     need("rg", "ripgrep", "search inside the VS Code host"),
     need("g++", "g++", "native modules of the VS Code host"),
-    need("make", "make", "native modules of the VS Code host"),
+    need_to_build("make", "make", "the allocator of apt-lsp, native modules of the VS Code host"),
     need("python3", "python3", "native modules of the VS Code host"),
     need("tmux", "tmux", "what Neovim shows on a terminal"),
 ];
 
 /// Programs that are taken as given; without them nothing can be installed by a package of the distribution alone.
-const GIVEN: &[(&str, &str)] = &[
-    ("node", "install Node.js 20 or newer"),
-    ("npm", "install npm (it comes with Node.js)"),
-    ("cargo", "install Rust 1.95 or newer"),
+const GIVEN: &[(Purpose, &str, &str)] = &[
+    (Purpose::Test, "node", "install Node.js 20 or newer"),
+    (Purpose::Test, "npm", "install npm (it comes with Node.js)"),
+    (Purpose::Build, "cargo", "install Rust 1.95 or newer"),
 ];
 
 /// Installs what is missing; with `check` only says what is.
-pub(crate) fn run(check: bool) -> Outcome {
-    for (program, remedy) in GIVEN {
-        if find_program(program).is_none() {
+pub(crate) fn run(purpose: Purpose, check: bool) -> Outcome {
+    for (given, program, remedy) in GIVEN {
+        if given.is_part_of(purpose) && find_program(program).is_none() {
             return Err(Failure::Missing { what: (*program).to_owned(), remedy: (*remedy).to_owned() });
         }
     }
+    let needed: Vec<&Requirement> = REQUIREMENTS.iter().filter(|r| r.purpose.is_part_of(purpose)).collect();
     let missing: Vec<&Requirement> =
-        REQUIREMENTS.iter().filter(|r| find_program(r.program).is_none()).collect();
+        needed.iter().copied().filter(|r| find_program(r.program).is_none()).collect();
     for requirement in &missing {
         println!("missing: {} ({}; {})", requirement.program, requirement.package, requirement.used_for);
     }
     if missing.is_empty() {
-        println!("setup: all {} programs are here", REQUIREMENTS.len() + GIVEN.len());
+        println!("setup: all that is needed is here");
         return Ok(());
     }
     let mut packages: Vec<&str> = missing.iter().map(|r| r.package).collect();
@@ -58,7 +80,7 @@ pub(crate) fn run(check: bool) -> Outcome {
         });
     }
     install(&packages)?;
-    match REQUIREMENTS.iter().find(|r| find_program(r.program).is_none()) {
+    match needed.iter().find(|r| find_program(r.program).is_none()) {
         None => Ok(()),
         Some(still) => Err(Failure::Missing {
             what: still.program.to_owned(),

@@ -60,7 +60,7 @@ pub(crate) fn cargo(arguments: &[&str]) -> Call {
 /// Runs every check of the project; `editors` tells whether the editors are among them.
 pub(crate) fn run(editors: bool) -> Outcome {
     let mut run = Run::default();
-    run.step("needed programs", |_| setup::run(true));
+    run.step("needed programs", |_| setup::run(setup::Purpose::Test, true));
     run.step("format", |_| cargo(&["fmt", "--all", "--check"]).run());
     run.step("generated files", |_| codegen::run(true));
     run.step("lints", |_| {

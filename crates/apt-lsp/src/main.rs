@@ -13,9 +13,10 @@ mod source;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Gives memory back a little at a time: whoever cancels waits for a call of the allocator as well.
+/// Gives memory back to the system on a thread of its own: whoever cancels waits for a call of the allocator as well.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
 
 fn main() -> ExitCode {
     cli::main(Arc::new(analysis::Engine))
