@@ -8,6 +8,7 @@ mod cover;
 mod crease;
 mod dual;
 mod empty;
+mod enough;
 mod floor;
 mod kept;
 mod matched;
@@ -40,6 +41,7 @@ use self::{
 pub(crate) use self::{
     certify::{Certificate, Face},
     cover::{Witness, steady_bend, upward_bend},
+    enough::Enough,
 };
 pub use self::{memory::Memory, tool::Tool};
 
@@ -113,7 +115,7 @@ impl Gauge {
                 surface: foot.point,
             };
         }
-        self.offset_contact(tool, tip).0
+        self.offset_contact(tool, tip, Enough::ALL).0
     }
 
     /// The contact near the last one where that is proven, else as it is found where nothing need be proven: another point of the
@@ -181,16 +183,14 @@ impl Gauge {
                 (level(contact), true)
             }
             Followed::Likely(_, contact) if has_last => (level(contact), false),
-            Followed::Likely(..) | Followed::Lost => {
-                (level(offset_contact(tool, surface, side, tip, Some(memory)).0), true)
-            }
+            Followed::Likely(..) | Followed::Lost => (level(self.least_contact(tool, tip)), true),
         }
     }
 
-    /// The contact, and how much nearer to the surface another point of the tool may be for all that the search knows:
-    /// infinitely much where it proves nothing.
-    pub(crate) fn contact_within(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
-        if self.on { (self.contact(tool, tip), 0.0) } else { self.offset_contact(tool, tip) }
+    /// The contact as closely as it is asked for, and how much nearer to the surface another point of the tool may be for all that the search
+    /// knows: infinitely much where it proves nothing.
+    pub(crate) fn contact_within(&self, tool: &Tool, tip: &Vec3, enough: Enough) -> (Contact, f64) {
+        if self.on { (self.contact(tool, tip), 0.0) } else { self.offset_contact(tool, tip, enough) }
     }
 
     /// What is measured, and where its end is: the tool, or the disk in its place.
@@ -222,10 +222,11 @@ impl Gauge {
         reach.min(height.hypot(tool.radius()))
     }
 
-    fn offset_contact(&self, tool: &Tool, tip: &Vec3) -> (Contact, f64) {
+    fn offset_contact(&self, tool: &Tool, tip: &Vec3, enough: Enough) -> (Contact, f64) {
         let Self { side, thickness, memory, .. } = self;
         let (tool, tip) = self.body(tool, tip);
-        let mut found = offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory));
+        let mut found =
+            offset_contact(&tool, self.met(&tool), *side, &tip, Some(memory), enough.above(*thickness));
         let (contact, missed) = &mut found;
         // Without anything missed it is known otherwise, or the nearest of a family only.
         if *missed > 0.0 && missed.is_finite() {
@@ -251,7 +252,7 @@ impl Gauge {
         #[cfg(test)]
         CERTIFIED.set(CERTIFIED.get() + 1);
         if let Some(posed) = quadric::Posed::new(tool, surface, self.side, tip) {
-            let contact = offset_contact(tool, surface, self.side, tip, Some(&self.memory)).0;
+            let contact = self.least_contact(tool, tip);
             if contact.clearance >= level && posed.clears(level, &contact) {
                 return Certificate::Holds;
             }
@@ -284,13 +285,18 @@ impl Gauge {
             || found != Certificate::Holds && may_come_out
         {
             // Parts of the surface may tell, from the contact.
-            let (contact, _) = offset_contact(tool, surface, self.side, tip, Some(&self.memory));
+            let contact = self.least_contact(tool, tip);
             let beside = Beside { tool, surface, side: self.side, tip };
             if beside.is_off_own_side(&contact) && beside.clears(&contact, level) {
                 return Certificate::Holds;
             }
         }
         found
+    }
+
+    /// The contact of a body with the surface itself.
+    fn least_contact(&self, body: &Tool, end: &Vec3) -> Contact {
+        offset_contact(body, self.met(body), self.side, end, Some(&self.memory), Enough::ALL).0
     }
 
     /// Whether patches of the tool did not decide about the last contact that was searched for.
@@ -468,6 +474,7 @@ fn offset_contact(
     side: f64,
     tip: &Vec3,
     memory: Option<&Memory>,
+    enough: Enough,
 ) -> (Contact, f64) {
     #[cfg(test)]
     EVALUATIONS.set(EVALUATIONS.get() + 1);
@@ -498,7 +505,7 @@ fn offset_contact(
         Some(Followed::Likely(piece, contact)) => Some((piece, contact)),
         Some(Followed::Lost) | None => None,
     };
-    let found = search::contact(tool, Face { surface, side }, tip, memory, likely);
+    let found = search::contact(tool, Face { surface, side }, tip, (memory, likely), enough);
     if let Some(memory) = memory {
         near::remember(tool, surface, side, tip, memory, &found.0);
         memory.remember_crease(side, beside.spot(&found.0.surface));
@@ -518,7 +525,8 @@ pub(crate) fn separation(
     let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
     let contact = |side: f64| {
         let memory = &memories[usize::from(side < 0.0)];
-        offset_contact(tool, surface.met_from(side, tool.patience), side, tip, Some(memory)).0
+        let surface = surface.met_from(side, tool.patience);
+        offset_contact(tool, surface, side, tip, Some(memory), Enough::ALL).0
     };
     let here = contact(side);
     if here.clearance >= 0.0 {

@@ -15,7 +15,7 @@ use apt_geometry::{
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 use super::{
-    Contact, Shape, Tool,
+    Contact, Enough, Shape, Tool,
     certify::{Certificate, Effort, Face, Proof, certify},
     crease::Beside,
     floor::Bases,
@@ -34,6 +34,8 @@ const MAX_ITERATIONS: u32 = 40;
 const ANGLE_RESOLUTION: f64 = 1e-10;
 /// Bound of the searches after the first one, each from a point that was found nearer.
 const MAX_RESTARTS: u32 = 12;
+/// How many of these lead to what is nearest as a rule. Where they do not it is hard to find.
+const FEW_RESTARTS: u32 = 2;
 /// What the search may miss, as a share of the tool's size. Proofs of tolerance look for more.
 pub(super) const MISSED: f64 = 1e-9;
 /// How far, relative to sizes and coordinates, a distance may be from what was found near by to be the same.
@@ -82,8 +84,8 @@ pub(super) fn contact(
     tool: &Tool,
     face: Face<'_>,
     tip: &Vec3,
-    memory: Option<&Memory>,
-    likely: Option<(usize, Contact)>,
+    (memory, likely): (Option<&Memory>, Option<(usize, Contact)>),
+    enough: Enough,
 ) -> (Contact, f64) {
     if tool.patience.ends_after(WORK_OF_FOOT) {
         return (at_end(face, tip), f64::INFINITY);
@@ -105,8 +107,9 @@ pub(super) fn contact(
     }
     let guessed = place.is_some() || likely.is_some();
 
-    let shown = if unique { Shown::Nearest } else { search.complete(memory) };
-    if guessed && matches!(shown, Shown::Nothing) && !tool.patience.was_over() {
+    let shown = if unique { Shown::Nearest } else { search.complete(memory, enough) };
+    let is_asked = search.best.value >= enough.lowest;
+    if guessed && is_asked && matches!(shown, Shown::Nothing) && !tool.patience.was_over() {
         // Nothing proves the contact near the last one: look everywhere.
         search.scan();
     }
@@ -196,14 +199,14 @@ impl Search<'_> {
         }
     }
 
-    /// Looks for places that are nearer than the nearest found, until there are none.
-    fn complete(&mut self, memory: Option<&Memory>) -> Shown {
+    /// Looks for places that are nearer than the nearest found, until there are none that matter.
+    fn complete(&mut self, memory: Option<&Memory>, enough: Enough) -> Shown {
         let proof = memory.map(|memory| memory.proof(self.tool, self.side, self.tip));
         let mut proof = proof.unwrap_or_else(|| Proof::of_tool(self.tool));
         let known = memory.map_or_else(ByParts::default, Memory::by_parts);
         let fresh = Courses::default();
         let courses = memory.map_or(&fresh, |memory| &memory.courses);
-        let (shown, by_parts) = self.complete_with(&mut proof, known, courses);
+        let (shown, by_parts) = self.complete_with(&mut proof, known, courses, enough);
         if let Some(memory) = memory {
             memory.keep_proof(self.side, proof);
             memory.show_by_parts(by_parts);
@@ -217,10 +220,15 @@ impl Search<'_> {
         proof: &mut Proof,
         mut by_parts: ByParts,
         courses: &Courses,
+        enough: Enough,
     ) -> (Shown, ByParts) {
-        let slack = MISSED * (self.tool.radius() + self.tool.profile.top.height);
+        let closest = MISSED * (self.tool.radius() + self.tool.profile.top.height);
         let posed = Posed::new(self.tool, self.surface, self.side, self.tip);
-        for _ in 0..MAX_RESTARTS {
+        let mut slack = closest;
+        for restart in 0..MAX_RESTARTS {
+            let is_hard = restart >= FEW_RESTARTS;
+            let asked = if is_hard { enough.slack_of_hard(self.best.value) } else { enough.slack };
+            slack = closest.max(asked);
             if self.tool.patience.was_over() {
                 break;
             }
@@ -233,6 +241,9 @@ impl Search<'_> {
             }
             if self.is_on_crease(slack) {
                 return (Shown::Within(slack), by_parts);
+            }
+            if self.best.value < enough.lowest {
+                break;
             }
             // Parts of the surface that showed the last contact mostly show the next one, with hardly any that are new.
             let is_asked = by_parts.showed();

@@ -236,6 +236,7 @@ fn flanks_touch_round_solids_anywhere() {
     }
 }
 
+mod enough;
 mod halves;
 mod kept;
 mod near;

@@ -13,7 +13,7 @@ pub(crate) use self::ledger::Ledger;
 use crate::{
     attitude::Sweep,
     bound::{Reading, Readings},
-    clearance::{Contact, Shape},
+    clearance::{Contact, Enough, Shape},
     role::{ROUNDING, Working},
 };
 
@@ -87,9 +87,15 @@ fn limits(role: &Working, ends: &Extremes, size: f64) -> [f64; 2] {
 }
 
 impl Line<'_> {
+    /// Of a clearance below the limits nothing is proven: the vector is refused, whatever else is nearer.
     fn sample(&self, x: f64) -> Sample {
         let (tip, tool) = self.sweep.at(x);
-        let (contact, missed) = self.role.gauge.contact_within(&tool, &tip);
+        let lowest = if self.sign > 0.0 { self.limits[0] } else { -self.limits[1] };
+        let (contact, missed) = self.role.gauge.contact_within(
+            &tool,
+            &tip,
+            Enough { lowest, slack: LEAST_OPEN * self.role.band() },
+        );
         Sample { missed, ..self.known(x, &contact, &tip) }
     }
 

@@ -70,7 +70,7 @@ fn the_clearance_beside_a_wall_is_that_of_its_nearest_place() {
             };
             for (x, y) in [(1.0, 4.0), (2.0, 3.0), (3.0, 2.9), (4.5, 2.8)] {
                 let tip = v(x, y, 1.2);
-                let (contact, missed) = gauge.contact_within(&tool, &tip);
+                let (contact, missed) = gauge.contact_within(&tool, &tip, crate::clearance::Enough::ALL);
                 let dense = sampled(&geometry, &tool, &tip);
                 assert!(
                     contact.clearance > 0.0 && missed < 1e-6,
@@ -94,7 +94,7 @@ fn the_end_of_a_wall_is_as_deep_in_a_tool_as_the_tool_must_be_moved_to_be_clear(
     let clear = gauge.contact(&tool, &v(2.0, 3.0, 1.2));
     for depth in [1e-4, 1e-3, 1e-2] {
         let tip = v(2.0, 3.0, 1.2) - clear.gradient * (clear.clearance + depth);
-        let (contact, missed) = gauge.contact_within(&tool, &tip);
+        let (contact, missed) = gauge.contact_within(&tool, &tip, crate::clearance::Enough::ALL);
         // The nearest place of the curve wanders a little on the way.
         assert!((contact.clearance + depth).abs() < 0.02 * depth + 1e-9, "{contact:?} {depth}");
         assert!(missed < 1e-6, "{missed}");

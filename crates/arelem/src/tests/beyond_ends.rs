@@ -333,7 +333,7 @@ fn a_line_behind_the_end_comes_out_past_it() {
     let role = touched(&ramp());
     for depth in [1e-4, 1e-3, 1e-2] {
         let tip = v(3.0, depth - 16.0, -20.0);
-        let (contact, missed) = gauge(&role).contact_within(&tool, &tip);
+        let (contact, missed) = gauge(&role).contact_within(&tool, &tip, crate::clearance::Enough::ALL);
         assert!((contact.clearance + depth).abs() < 1e-9, "{contact:?}, not {depth} deep");
         assert!((contact.gradient + Vec3::y()).norm() < 1e-6 && missed < 1e-6, "{contact:?}");
         let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });

@@ -142,7 +142,7 @@ fn the_nearer_of_both_halves_is_found_by_both_measures() {
         let at = ToolPosition { tip, axis: Vec3::z() };
         let verifier = read_by_verifier(&role, cutter, at);
         for gauge in [&gauge(&role), &known] {
-            let (contact, missed) = gauge.contact_within(&tool, &tip);
+            let (contact, missed) = gauge.contact_within(&tool, &tip, crate::clearance::Enough::ALL);
             assert!((contact.clearance - verifier).abs() < 1e-9, "{k}: {}, {verifier}", contact.clearance);
             assert!(missed < 1e-8, "{k}: {missed}");
         }

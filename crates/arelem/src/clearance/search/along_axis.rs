@@ -370,7 +370,7 @@ mod tests {
     use apt_geometry::{cutter::Cutter, surface::Surface};
 
     use super::{super::Best, *};
-    use crate::{tests::v, verify::tests::lofts};
+    use crate::{clearance::Enough, tests::v, verify::tests::lofts};
 
     /// What balls show of the level of a contact holds for all of the flank, and they show it of most tools that lie along a surface.
     #[test]
@@ -392,7 +392,7 @@ mod tests {
                 let tool = Tool::new(cutter, (lying + normal * (0.02 * f64::from(k % 5))).normalize());
                 let tip = foot.point + normal * 0.6 - tool.axis * 0.5;
                 let face = Face { surface: &surface, side };
-                let contact = super::super::contact(&tool, face, &tip, None, None).0;
+                let contact = super::super::contact(&tool, face, &tip, (None, None), Enough::ALL).0;
                 let best = Best { value: contact.clearance, contact: Some(contact), piece: 0 };
                 let search = Search { tool: &tool, surface: &surface, side, tip: &tip, best, piece: 0 };
                 let least = least_of_flank(&search);

@@ -15,7 +15,7 @@ fn contact_along_a_ruling_of_a_cone_is_proven() {
     for (numbers, width) in [(&[1.0][..], 0.4), (&[1.0, 0.1], 0.4), (&[1.0, 0.1], 2.5)] {
         let (tool, gauge) = (tool(numbers), gauge(&cone_under_x(width), 1.0));
         for (x, height) in [(0.9, 0.001), (0.7, 1e-5), (3.0, 0.02)] {
-            let (contact, missed) = gauge.contact_within(&tool, &v(x, 0.0, height));
+            let (contact, missed) = gauge.contact_within(&tool, &v(x, 0.0, height), Enough::ALL);
             near(contact.clearance, height);
             assert!(missed < 1e-8, "{numbers:?} at {x}: {missed} may be missed");
             let next = gauge.contact(&tool, &v(x + 0.01, 0.02, height));

@@ -53,7 +53,7 @@ fn pass(geometry: &Geometry, on: bool, tool: &Tool, from: &Vec3, step: &Vec3, co
         let mut tip = from + step * f64::from(k);
         // Down to the surface, so that contact is near.
         tip.z -= known.contact(tool, &tip).clearance * 0.99;
-        let (found, missed) = known.contact_within(tool, &tip);
+        let (found, missed) = known.contact_within(tool, &tip, Enough::ALL);
         let fresh = Gauge { on, ..gauge(geometry, side) }.contact(tool, &tip);
         let size = 1e-8 * (tool.radius() + tool.profile.top.height);
         assert!(
@@ -194,11 +194,12 @@ fn a_proof_serves_many_positions() {
             let mut tip = v(-1.1, 0.3, 4.0);
             for _ in 0..100 {
                 tip += v(0.011, 0.002, 0.0);
-                let (clearance, is_proven, count) = judged(&|| known.contact_within(&tool, &tip));
+                let (clearance, is_proven, count) =
+                    judged(&|| known.contact_within(&tool, &tip, Enough::ALL));
                 positions += 1;
                 open += u32::from(!is_proven);
                 remembering += count;
-                anew += judged(&|| gauge(geometry, side).contact_within(&tool, &tip)).2;
+                anew += judged(&|| gauge(geometry, side).contact_within(&tool, &tip, Enough::ALL)).2;
                 tip.z -= clearance * 0.99;
             }
         }
@@ -223,7 +224,7 @@ fn a_flank_nearly_along_a_surface_takes_few_patches() {
             tip.z -= search::found(&tool, face, &tip).clearance * 0.9;
         }
         let start = JUDGED.get();
-        let (contact, missed) = search::contact(&tool, face, &tip, None, None);
+        let (contact, missed) = search::contact(&tool, face, &tip, (None, None), Enough::ALL);
         assert!(missed < 1e-7, "not proven at {tip}");
         let middle = JUDGED.get();
         let bases = Bases::about(&tool, &tip, (&surface, side), &contact.tool);
