@@ -6,7 +6,11 @@ use apt_geometry::canonical::{Remembering, RuledSurface};
 use Relation::{On, To};
 use Turn::Forward;
 
-use super::{ends::limited, *};
+use super::{
+    ends::limited,
+    refused::{AMPLE, Found},
+    *,
+};
 use crate::{error::RoleName, verify::verify};
 
 /// The straight curve of a ruled surface between two points, in the plane square to a direction across it.
@@ -147,4 +151,35 @@ fn a_flank_that_rubs_along_a_wall_takes_few_clearances() {
     p.go(&[(To, &wall), (To, &ground()), (On, &x(-5.0))]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
     let sequence = proven(&p, &motion(Turn::Up, &wall, &[(On, 1, &x(-1.0))]), 2_000);
     assert!(sequence.points.len() <= 2, "{} cut vectors", sequence.points.len());
+}
+
+/// A line goes down a fan of rulings to the corner of that, where it touches the lower end: from a vector that was too long there the contact was
+/// followed back, so that each shorter one led there again.
+#[test]
+fn contact_with_an_end_far_ahead_does_not_lead_there_again() {
+    let across = v(-0.047834568003666124, -0.3400740204709623, 0.9391813002315464);
+    let ends = [
+        v(-3.3663630234291535, 4.601172424464638, 1.5145316983353747),
+        v(3.8290757612701496, 1.206313113306883, 0.6517454090257297),
+    ];
+    let mut parts = straight(ends, across);
+    parts.push(Geometry::Point(v(-3.9316589701235323, -4.290921436366604, -2.445113680128799)));
+    let wall = v(-0.9877218623669045, -0.15622266993766906, 0.0);
+    let forward = v(0.1440008218105673, -0.9104489121703481, -0.3877454598647301);
+    let plane = |normal: Vec3, distance: f64| Geometry::Plane(Plane { normal, distance });
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.405035293687699],
+        axis: Vec3::z(),
+        from: v(-1.3964753072204128, 0.7898258857637066, 0.2184929357377464),
+        band: [0.0, 0.001],
+        thickness: 0.14119772651226822,
+        drive_side: DriveSide::On,
+        forward,
+        part: (To, ruled(parts)),
+        drive: (On, plane(wall, 1.2289549614733588)),
+        first: (On, plane(forward, -0.6219470478132826)),
+        stop: (On, plane(forward, 0.7)),
+    };
+    let sequences = motion.run(AMPLE).expect("a path");
+    assert_eq!(sequences[1].points.len(), 1);
 }

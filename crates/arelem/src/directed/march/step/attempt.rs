@@ -22,6 +22,8 @@ const CORRECTIONS: u32 = 20;
 const MOST_SHORTENINGS: u32 = 12;
 /// Share of the length asked for below which a vector falls short of it.
 const FALLS_SHORT: f64 = 0.7;
+/// How many times as far away as it is looked for a position is to which the contacts that were found last have led astray.
+const ASTRAY: f64 = 2.0;
 /// Bound of the ends looked for along vectors that fell short.
 const MOST_SHORT: u32 = 2;
 /// Cosine between the directions at both ends below which the vector is shortened (60°).
@@ -109,13 +111,20 @@ impl Stepper<'_> {
     }
 
     /// The position with these clearances that is found from a place.
+    ///
+    /// On the way the contacts that were found last are followed. Where these were at the end of a surface far ahead they lead there from anywhere: what
+    /// is found much farther away than it is looked for is looked for again with those that are the nearest.
     pub(super) fn meet(&self, here: &Vertex, start: &Vec3, targets: [f64; 2]) -> Option<Vertex> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions =
             [Condition::Clearance(&part.gauge, targets[0]), Condition::Clearance(&drive.gauge, targets[1])];
-        let Ok(Solution { tip, contacts: [Some(part), Some(drive), _], .. }) =
-            &position::try_within(attitude, &conditions, start, CORRECTIONS)
-        else {
+        let off = |found: &Solution| (found.tip - start).norm();
+        let followed = position::try_within(attitude, &conditions, start, CORRECTIONS).ok()?;
+        let is_far = self.roles().iter().any(|role| role.gauge.surface.has_ends())
+            && (followed.tip - here.tip).norm() > ASTRAY * (start - here.tip).norm();
+        let again = || position::solve_proven_within(attitude, &conditions, start, CORRECTIONS).ok();
+        let nearer = is_far.then(again).flatten().filter(|found| off(found) < off(&followed));
+        let Solution { tip, contacts: [Some(part), Some(drive), _], .. } = &nearer.unwrap_or(followed) else {
             return None;
         };
         let axis = attitude.tool_at(tip).ok()?.axis;
