@@ -15,6 +15,8 @@ use super::{Contact, Memory, Tool, search::MISSED};
 const MAX_STEPS: u32 = 40;
 /// The first of them, in parameters.
 const FIRST: f64 = 1e-3;
+/// How many times as long as an end of a line is deep a way is that leads all of it out, where it is in with both.
+const AMPLE: f64 = 2.0;
 /// Bound of the lines that follow each other, and how far over the end of one, in its own length, another is looked for.
 const MOST_LINES: u32 = 4;
 const BEYOND: f64 = 1e-6;
@@ -175,7 +177,8 @@ impl Beside<'_> {
         self.leading_off(self.touch(spot)?.1)
     }
 
-    /// Whether a tool that is a line, behind an end by a contact, is in the surface with one of its own ends alone: that comes out by less.
+    /// Whether a tool that is a line, behind an end by a contact, is in the surface with its own ends by less: any way out that is
+    /// shorter tells. The other end may be in by as much, or the surface bend under it, so that one twice as long is looked at, too.
     pub(super) fn has_shorter_way(&self, contact: &Contact, slack: f64) -> bool {
         let Self { tool, surface, side, tip } = *self;
         if tool.radius() > 0.0 || contact.clearance >= 0.0 {
@@ -186,7 +189,8 @@ impl Beside<'_> {
             let foot = surface.foot(end);
             let (clearance, gradient) = (side * foot.distance, foot.normal * side);
             let way = Contact { clearance, gradient, tool: *end, surface: foot.point };
-            clearance < 0.0 && clearance > contact.clearance && self.clears(&way, clearance - slack)
+            let is_way_out = |level: f64| level > contact.clearance && self.clears(&way, level - slack);
+            clearance < 0.0 && [1.0, AMPLE].into_iter().any(|times| is_way_out(times * clearance))
         })
     }
 

@@ -369,6 +369,52 @@ fn a_line_in_a_surface_by_little_does_not_come_out_past_a_far_end() {
     }
 }
 
+/// A line that is in a shell with both of its ends, each by little and square to another place, comes out of both at once.
+#[test]
+fn a_line_in_a_shell_with_both_ends_does_not_come_out_past_a_far_end() {
+    let round = 2.607513185241407;
+    let shell = poly_conic(
+        &[
+            1.0,
+            0.6220678848344942,
+            -0.7658166626698659,
+            -0.16296130164774436,
+            6.886871993940173,
+            -0.4382968173755692,
+            -0.16813598752065295,
+            -0.882964432793814,
+            -2.1820420734403103,
+            0.6487892157981555,
+            0.6206892369597232,
+            -0.44024700406291356,
+            3.14693551007748,
+            0.0,
+            0.0,
+            6.0,
+        ],
+        [
+            [round, -0.1521267590360992],
+            [round, -0.0587568023399605],
+            [round, -0.00202812237500985],
+            [-round, 0.03482436444849929],
+            [-round, 0.11630967423657385],
+            [round, -0.010581183766829289],
+            [FRAC_1_SQRT_2, -0.017372844922333597],
+        ],
+    );
+    let cutter = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.066952297436383];
+    let cutter = Cutter::from_numbers(&cutter, 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let role = touched(&shell);
+    let from = v(-1.9400816756053312, 1.6036672311742735, -1.600113328921861);
+    for k in 0..=24 {
+        let tip = from + v(0.00278, 0.0084, 0.018) * (f64::from(k) / 24.0);
+        let contact = gauge(&role).contact(&tool, &tip);
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        assert!((contact.clearance - verifier).abs() < 1e-6, "{k}: {contact:?}, {verifier}");
+    }
+}
+
 /// Where neighbouring rulings meet not far beyond a curve the extension ends before that: for the verifier where it does for
 /// the engine.
 #[test]
