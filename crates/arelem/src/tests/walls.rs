@@ -183,3 +183,46 @@ fn contact_with_an_end_far_ahead_does_not_lead_there_again() {
     let sequences = motion.run(AMPLE).expect("a path");
     assert_eq!(sequences[1].points.len(), 1);
 }
+
+/// The line that a motion follows goes through its check surface twice. Where it ends is looked for from where it is stopped, and found there: contacts
+/// with the wall that were found last led on to where the line comes out again.
+#[test]
+fn a_motion_ends_where_it_is_stopped_whatever_was_looked_at_before() {
+    let across = v(0.43351334617324094, 0.9006223078848883, 0.03075121509432563);
+    let plane = |normal: Vec3, distance: f64| Geometry::Plane(Plane { normal, distance });
+    let wall = vec![
+        plane(across, -1.0979192171322778),
+        Geometry::Point(v(1.5131145471527279, -1.7895743795519912, -4.622385142573217)),
+        Geometry::Point(v(4.613388945916635, -3.534676564759477, 2.7811476340930246)),
+        Geometry::Vector(across),
+        Geometry::Point(v(-4.110677723202009, 1.3759816060930055, 2.779640040947334)),
+    ];
+    let forward = v(-0.7274426578101095, 0.40946755302166293, 0.5506028538071844);
+    let round = Cylinder {
+        point: v(-0.6645951344507777, -0.9742269632328473, -0.7938699293671724),
+        axis: v(-0.1377073201950309, -0.1781993760331566, -0.9743108725381736),
+        radius: 1.8181554408275402,
+    };
+    let motion = Found {
+        cutter: &[0.6028979673961188],
+        axis: Vec3::z(),
+        from: v(2.1289190483362384, -0.9249607585726708, -1.219929161394698),
+        band: [0.001, 0.001],
+        thickness: 0.09768639998255561,
+        drive_side: DriveSide::Right,
+        forward,
+        part: (
+            To,
+            plane(v(-0.41599844088761284, 0.37496745739626747, -0.8284592344061679), 0.22228262738739504),
+        ),
+        drive: (To, ruled(wall)),
+        first: (
+            To,
+            plane(v(0.7274426578101094, -0.40946755302166304, -0.5506028538071844), 2.757377857077608),
+        ),
+        stop: (On, Geometry::Cylinder(round)),
+    };
+    let sequences = motion.run(AMPLE).expect("a path");
+    let end = sequences[1].points.last().expect("an end").tip;
+    assert!((end - v(1.134, -1.118, -1.022)).norm() < 1e-2, "{end:?}");
+}

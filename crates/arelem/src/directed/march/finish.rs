@@ -13,6 +13,8 @@ use crate::{
     role::Working,
 };
 
+/// Bound of the corrections to an end.
+const CORRECTIONS: u32 = 60;
 /// Steps in which it is looked whether a place that is aimed at is in one band with the end that was found.
 const STEPS_TO_AIM: u32 = 4;
 
@@ -76,7 +78,8 @@ fn locate(
         Condition::Clearance(&drive.gauge, at_drive),
         Condition::Clearance(&check.gauge, check.rest()),
     ];
-    match position::solve(&prepared.attitude, &conditions, &event.tip) {
+    // The end is where the motion is stopped: contacts that were found elsewhere might lead on to where the path meets the surface again.
+    match position::solve_proven_within(&prepared.attitude, &conditions, &event.tip, CORRECTIONS) {
         Ok(solution) => Ok(End { tip: solution.tip, check: event.check, side: event.side }),
         // The event lies on a vector that is proven.
         Err(_) if keeps(prepared, &check, &event.tip) => {
