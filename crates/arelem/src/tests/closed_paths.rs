@@ -4,11 +4,14 @@
 use std::sync::Arc;
 
 use apt_geometry::{
-    canonical::{Interval, TabulatedCylinder},
+    canonical::{Interval, Remembering, RuledSurface, TabulatedCylinder},
     motion::DriveSide,
 };
 
-use super::*;
+use super::{
+    refused::{AMPLE, Found},
+    *,
+};
 use crate::{clearance::EVALUATIONS, error::Course};
 
 /// Tool radius.
@@ -255,4 +258,42 @@ fn a_check_surface_that_is_never_met_is_told_before_many_vectors_are_made() {
         assert!(matches!(failure, Err(MotionFailure::NeverMet { .. })), "{}: {failure:?}", path.name);
         assert!(2 * lost < whole, "{}: {lost} clearances, and {whole} for the motion", path.name);
     }
+}
+
+/// A closed path that begins just before a corner: the vector that comes by there again leads round the corner.
+#[test]
+fn a_closed_path_that_begins_just_before_a_corner_is_told_as_closed() {
+    let axis = v(-0.40317970207932163, 0.48902551056524585, 0.7734986605338304);
+    let across = v(0.6225244558415225, -0.4729693164269667, 0.6235088833351328);
+    let circle = |point: Vec3, radius: f64| Geometry::Cylinder(Cylinder { point, axis, radius });
+    let upright = |point: Vec3, radius: f64| Geometry::Cylinder(Cylinder { point, axis: Vec3::z(), radius });
+    let parts = vec![
+        circle(v(-8.076577819251057, 6.763624649828748, -3.1009239860265003), 9.965214786005511),
+        Geometry::Point(v(-3.868154378494525, -1.951962158907147, 0.7244157967774689)),
+        Geometry::Point(v(1.4978686834637926, 3.9113015096515635, -0.18549389736307154)),
+        Geometry::Vector(across),
+        circle(v(0.5747427876321312, 0.19069541751962626, 5.564077365093378), 6.22516191069994),
+        Geometry::Point(v(-6.287232590970456, 0.9821909044843287, 5.365407759980453)),
+        Geometry::Point(v(-0.921209529012138, 6.845454573043039, 4.455498065839912)),
+        Geometry::Vector(-across),
+    ];
+    let first = v(0.06684034618414801, -0.9332548488046197, -0.35294157491665656);
+    let motion = Found {
+        cutter: &[0.8496348961938025, 0.42481744809690125],
+        axis: v(-0.6288020626260622, 0.6688836928633426, 0.3964877948420449),
+        from: v(-3.144446741764784, 1.090909034209761, 0.2237065847690797),
+        band: [0.01, 0.005],
+        thickness: 0.07945789194168443,
+        drive_side: DriveSide::Left,
+        forward: -first,
+        part: (Relation::To, upright(v(-5.3233498054700465, 0.8139187283003739, 0.0), 3.7649623346183407)),
+        drive: (Relation::To, Geometry::RuledSurface(Remembering::new(RuledSurface { parts }))),
+        first: (Relation::On, Geometry::Plane(Plane { normal: first, distance: -1.1453475359336744 })),
+        stop: (Relation::Past, upright(v(-1.6205709274013484, -5.242149193315278, 0.0), 7.939600724196356)),
+    };
+    let refused = motion.run(AMPLE);
+    let Err(MotionFailure::NeverMet { course: Course::Closed { length }, .. }) = refused else {
+        panic!("{refused:?}")
+    };
+    assert!((length - 15.0).abs() < 3.0, "{length}");
 }

@@ -21,8 +21,9 @@ impl March<'_> {
         let along = (start.tip - from.tip).dot(&delta) / length;
         let aside = (start.tip - from.tip - delta * (along / length)).norm();
         let band = self.prepared.part.band() + self.prepared.drive.band();
-        let passed =
-            along > 0.0 && along <= length && aside <= 4.0 * band && to.tangent.dot(&start.tangent) > 0.5;
+        // At the end of the vector, as just beyond a corner, the path may lead elsewhere.
+        let is_along = delta.dot(&start.tangent) > 0.5 * length;
+        let passed = along > 0.0 && along <= length && aside <= 4.0 * band && is_along;
         if !passed {
             return Ok(());
         }
