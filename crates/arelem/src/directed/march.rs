@@ -251,7 +251,7 @@ impl<'a> March<'a> {
             let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
             let is_passed_by = self.is_passed_by(&here, &end)?;
             // What turns the first vector is that the tool comes to its law, which takes a way; a later one is made shorter.
-            if is_passed_by && self.points.is_empty() {
+            if self.points.is_empty() && (is_passed_by || self.is_led_back(&here, &end)) {
                 return Err(without_last(here.tip, finals + 1));
             }
             if !is_passed_by && self.accept(&here, &end.tip)? {
@@ -433,6 +433,11 @@ impl<'a> March<'a> {
         let sweep = here.sweep(self.prepared, &to);
         let event = self.watcher.clone().scan(&sweep);
         Ok(event.is_some_and(|event| self.watcher.leaves_band(&event, &sweep)))
+    }
+
+    /// Whether a tool that turns on the way to the end would be led back against the path: once it has turned where it stands it is past the end.
+    fn is_led_back(&self, here: &Vertex, end: &finish::End) -> bool {
+        self.prepared.attitude.turns() && (end.tip - here.tip).dot(&here.tangent) < -1e-9 * self.prepared.size
     }
 
     /// Whether a vector to the end leads to the position there: a tool that turns goes another way on it than on those in whose place it is.

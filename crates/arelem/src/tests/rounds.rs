@@ -179,3 +179,42 @@ fn a_tool_that_turns_first_is_not_led_to_and_fro() {
     p.drive(Turn::Forward, &wall, Relation::To, &next);
     proven(&p);
 }
+
+/// What is TO a plane with the end of the tool where the motion begins is past it with the top once the tool has turned: the position TO the plane of the
+/// turned tool lies behind it. On the way on which it turns its top comes to the plane.
+#[test]
+fn a_tool_that_turns_into_its_check_surface_is_not_led_back_out_of_it() {
+    let axis = v(-0.3523779749805632, 0.6613623173836145, 0.6621402025957741);
+    let drive = plane(0.35237797498056295, -0.6613623173836146, -0.662140202595774, -0.19996488285639932);
+    let part = Geometry::Cylinder(Cylinder {
+        point: v(-0.6044097581933685, 4.087342857742092, 0.3510493466874762),
+        axis: Vec3::z(),
+        radius: 4.6060438545714355,
+    });
+    let first = plane(0.8604999712943388, -0.049187086805150625, 0.5070704387893905, -1.133616156129477);
+    let stop = plane(-0.8646336386038405, 0.10028421894514385, -0.49229233837756003, -1.9467081491178362);
+    let forward = v(0.8604999712943385, -0.0491870868051506, 0.5070704387893906);
+    let mode = AxisAngle::PerpendicularTo(v(0.21139156574522722, 0.9897418122562385, -0.5230670841321201));
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005).cutter(&[
+        0.3703432059363659,
+        0.0,
+        0.18517160296818294,
+        0.0,
+        0.0,
+        4.625898441040087,
+        4.160749850698393,
+    ]);
+    p.run(&MotionCommand::Thickness(PerRole::all(0.06865329046964261)));
+    p.run(&MotionCommand::MaximumStep(10.0));
+    let position = v(-1.491647956590274, 0.11465855191291141, 0.7120348639532934);
+    p.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
+    p.run(&MotionCommand::PartSide(PartSide::On));
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: false, angle: 0.3278934283198456, mode }));
+    p.go(&[(Relation::On, &drive), (Relation::On, &part), (Relation::To, &first)]);
+    p.indirv(forward.x, forward.y, forward.z).side(DriveSide::On);
+    p.drive(Turn::Forward, &drive, Relation::To, &stop);
+    proven(&p);
+    let way = p.tip() - p.last().start.tip;
+    assert!(way.dot(&forward) > 0.0, "{way:?}");
+}
