@@ -521,12 +521,13 @@ pub(crate) fn separation(
     surface: &Surface,
     tip: &Vec3,
     memories: &[Memory; 2],
+    enough: Enough,
 ) -> (Contact, f64) {
     let side = if surface.signed_distance(tip) < 0.0 { -1.0 } else { 1.0 };
     let contact = |side: f64| {
         let memory = &memories[usize::from(side < 0.0)];
         let surface = surface.met_from(side, tool.patience);
-        offset_contact(tool, surface, side, tip, Some(memory), Enough::ALL).0
+        offset_contact(tool, surface, side, tip, Some(memory), enough).0
     };
     let here = contact(side);
     if here.clearance >= 0.0 {

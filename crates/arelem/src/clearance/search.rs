@@ -227,7 +227,11 @@ impl Search<'_> {
         let mut slack = closest;
         for restart in 0..MAX_RESTARTS {
             let is_hard = restart >= FEW_RESTARTS;
-            let asked = if is_hard { enough.slack_of_hard(self.best.value) } else { enough.slack };
+            let asked = if is_hard {
+                enough.slack_of_hard(self.best.value)
+            } else {
+                enough.slack_of(self.best.value)
+            };
             slack = closest.max(asked);
             if self.tool.patience.was_over() {
                 break;

@@ -94,7 +94,7 @@ impl Line<'_> {
         let (contact, missed) = self.role.gauge.contact_within(
             &tool,
             &tip,
-            Enough { lowest, slack: LEAST_OPEN * self.role.band() },
+            Enough { lowest, slack: LEAST_OPEN * self.role.band(), share: 0.0 },
         );
         Sample { missed, ..self.known(x, &contact, &tip) }
     }

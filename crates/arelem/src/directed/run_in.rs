@@ -5,7 +5,7 @@ use apt_geometry::Vec3;
 
 use super::{Path, Prepared, Stuck};
 use crate::{
-    clearance::{Gauge, Tool, separation},
+    clearance::{Enough, Gauge, Tool, separation},
     error::{Course, Iteration, MotionFailure},
     role::Working,
 };
@@ -104,7 +104,7 @@ fn turns_out_of_check(failure: &MotionFailure, prepared: &Prepared) -> Result<bo
     let turned = prepared.attitude.tool_at(&prepared.tip)?;
     let is_clear = |tool: &Tool, check: &Working| {
         let Gauge { surface, thickness, .. } = &check.gauge;
-        separation(tool, surface, &prepared.tip, &Default::default()).0.clearance > *thickness
+        separation(tool, surface, &prepared.tip, &Default::default(), Enough::ALL).0.clearance > *thickness
     };
     let mut crossed = prepared.checks.iter().filter(|check| !check.gauge.on);
     Ok(crossed.any(|check| is_clear(&prepared.tool, check) != is_clear(&turned, check)))

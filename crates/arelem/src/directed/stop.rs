@@ -15,7 +15,7 @@ use apt_geometry::{
 use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
-    clearance::{Gauge, Memory, Tool, Witness, separation, upward_bend},
+    clearance::{Enough, Gauge, Memory, Tool, Witness, separation, upward_bend},
     role::Working,
 };
 
@@ -29,6 +29,9 @@ const PLAIN_STEPS: u32 = 48;
 const HALVINGS: u32 = 12;
 /// Share of the way that a depth leads at most with which the deepest place is not looked for any closer.
 const DEEP_ENOUGH: f64 = 0.5;
+/// Share of how far a check surface is away that its distance need not be told closer, and in bands of it how near it is told in full.
+const FAR_SHARE: f64 = 1e-3;
+const NEAR: f64 = 2.0;
 /// Least step, as a share of the check surface's band.
 const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
@@ -138,8 +141,35 @@ impl<'a> Watcher<'a> {
             let distance = working.gauge.surface.signed_distance(tip);
             return (distance, if distance < 0.0 { -1.0 } else { 1.0 });
         }
-        let (contact, side) = separation(tool, &working.gauge.surface, tip, &self.memories[index]);
-        (contact.clearance - working.gauge.thickness - working.rest(), side)
+        self.value_within(index, tool, tip, Enough::ALL)
+    }
+
+    /// The same of a check surface that the tool is to be clear of, as closely as it is asked for.
+    fn value_within(&self, index: usize, tool: &Tool, tip: &Vec3, enough: Enough) -> (f64, f64) {
+        let Working { gauge, .. } = self.working(index);
+        let rest = gauge.thickness + self.working(index).rest();
+        let enough = enough.above(rest);
+        let (contact, side) = separation(tool, &gauge.surface, tip, &self.memories[index], enough);
+        (contact.clearance - rest, side)
+    }
+
+    /// The function, if it is far from changing its sign no closer than steps need it: it may then be less by a share.
+    fn value_far(&self, index: usize, tool: &Tool, tip: &Vec3) -> (f64, f64) {
+        let working = self.working(index);
+        if working.gauge.on {
+            return self.value(index, tool, tip);
+        }
+        let band = working.band();
+        let rough = Enough { lowest: -band, slack: 0.0, share: FAR_SHARE };
+        let (value, side) = self.value_within(index, tool, tip, rough);
+        if value.abs() > NEAR * band { (value, side) } else { self.value(index, tool, tip) }
+    }
+
+    /// The function is at least this where it is positive and told by [`Self::value_far`].
+    fn at_least(&self, index: usize, value: f64) -> f64 {
+        let working = self.working(index);
+        let band = working.band();
+        if working.gauge.on || value <= NEAR * band { value } else { value - FAR_SHARE * (value + band) }
     }
 
     /// How far the relation of the nearest check surface is from a position; infinite where all stop at a tangency.
@@ -149,10 +179,10 @@ impl<'a> Watcher<'a> {
         crossed.map(|index| self.value(index, &tool, tip).0.abs()).fold(f64::INFINITY, f64::min)
     }
 
-    /// The function at a distance from the start of a vector.
+    /// The function at a distance from the start of a vector, if it is far from changing its sign no closer than steps need it.
     fn value_at(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> (f64, f64) {
         let (tip, tool) = sweep.at(x);
-        self.value(index, &tool, &tip)
+        self.value_far(index, &tool, &tip)
     }
 
     /// Whether the tool is out of the band of a check surface half way from a position to the end of a vector.
@@ -238,7 +268,7 @@ impl<'a> Watcher<'a> {
             let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, &trail, plain) };
             let next_x = leap.unwrap_or(plain);
             let (tip, tool) = sweep.at(next_x);
-            let (next, side) = self.value(index, &tool, &tip);
+            let (next, side) = self.value_far(index, &tool, &tip);
             self.note(index, next, &tip);
             let label = transition(&mut watch.status, next, band + 1e-9 * size, on);
             let crossing = label
@@ -286,7 +316,10 @@ impl<'a> Watcher<'a> {
     /// it, and how deep the tool is to either of them leaps; but no point of the surface comes out of the tool nearer than it is deep in that.
     fn way_to_change(&self, index: usize, sweep: &Sweep<'_>, (x, value): (f64, f64)) -> f64 {
         let Working { gauge, .. } = self.working(index);
-        if value > 0.0 || gauge.on || !gauge.surface.has_ends() {
+        if value > 0.0 {
+            return self.at_least(index, value);
+        }
+        if gauge.on || !gauge.surface.has_ends() {
             return value.abs();
         }
         let (tip, tool) = sweep.at(x);
@@ -313,7 +346,7 @@ impl<'a> Watcher<'a> {
                 return None;
             }
             let (tip, tool) = sweep.at(end);
-            let (next, side) = self.value(index, &tool, &tip);
+            let (next, side) = self.value_far(index, &tool, &tip);
             // Between two sides of the check surface there is a position, however clear of it the tool is at both ends.
             if (next > 0.0) == (value > 0.0) && side == side_before {
                 let Gauge { surface, on, thickness, disk, .. } = working.gauge.clone();
@@ -328,7 +361,8 @@ impl<'a> Watcher<'a> {
                     upward_bend(&gauge, &tool, (&middle, &[], &witness), 0.5 * way, range, &|_| true)
                 {
                     let bend = if on { bend } else { bend * stretch * stretch + sweep.swing(reach) };
-                    let clear = lowest((value.abs(), next.abs()), bend, step) > band;
+                    let [from, to] = [value, next].map(|value| self.at_least(index, value).abs());
+                    let clear = lowest((from, to), bend, step) > band;
                     if clear || bend * step * step / 8.0 <= LEAST_STEP * working.band() {
                         return Some(end);
                     }
@@ -373,8 +407,9 @@ impl<'a> Watcher<'a> {
         if last.abs() - (high - low) * sweep.stretch(reach) >= self.nearest.0 {
             return;
         }
-        let (x, value) = graze::least_value([low, high], &|x| self.value_at(index, sweep, x).0.abs());
-        self.note(index, value, &sweep.at(x).0);
+        let (x, _) = graze::least_value([low, high], &|x| self.value_at(index, sweep, x).0.abs());
+        let (tip, tool) = sweep.at(x);
+        self.note(index, self.value(index, &tool, &tip).0, &tip);
     }
 
     /// Bisects a sign change; the side is that on which the tool is clear (TO: before, PAST: after), for ON that it

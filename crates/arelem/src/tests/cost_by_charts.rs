@@ -3,9 +3,13 @@
 
 use std::{cell::Cell, thread::LocalKey};
 
-use super::*;
+use super::{
+    beyond_ends::poly_conic,
+    refused::{AMPLE, Found},
+    *,
+};
 use crate::{
-    clearance::{CERTIFIED, CONTACTS_ASKED, LOOKS, PARTS_ASKED, STEADY_ASKED},
+    clearance::{CERTIFIED, CONTACTS_ASKED, JUDGED, LOOKS, PARTS_ASKED, STEADY_ASKED},
     verify::tests::lofts,
 };
 
@@ -72,4 +76,74 @@ fn ends_of_vectors_are_proven_once() {
 fn an_end_of_the_tool_is_shown_to_be_far_at_one_go() {
     let looks = most(&[SEVEN_NUMBERS], &LOOKS);
     assert!(looks <= 32.0, "{looks} places a vector");
+}
+
+/// How far a check surface is from the tool, or how deep that is in it, far ahead on the way, is told no closer than steps along the way need it.
+#[test]
+fn a_check_surface_that_is_far_away_is_told_roughly() {
+    let half = 2.230589996226933;
+    let check = poly_conic(
+        &[
+            1.0,
+            -0.4234538900267423,
+            0.0186521955664635,
+            -0.9057256199433522,
+            -0.12597172654702096,
+            0.9026792025904371,
+            0.09314899526380079,
+            -0.42011132083298747,
+            -2.3840425045136397,
+            0.07653143296654412,
+            -0.9954774534271957,
+            -0.05628125341703535,
+            4.069319130195766,
+            0.0,
+            0.0,
+            6.0,
+        ],
+        [
+            [half, -0.04368564537964755],
+            [half, -0.01948333243348371],
+            [half, -0.040755361983603425],
+            [-half, 0.025057488755130176],
+            [-half, -0.02307274798232348],
+            [half, -0.02523778792233706],
+            [std::f64::consts::FRAC_1_SQRT_2, -0.011025401950677768],
+        ],
+    );
+    let forward = v(-0.40980249293299637, 0.8837471163049693, 0.22594900134444607);
+    let motion = Found {
+        cutter: &[1.0347901910875301],
+        axis: v(0.9613492514255069, -0.11861478321735552, -0.2484716281306929),
+        from: v(-0.5292560346570911, 0.8997397133820318, -1.8273345122508637),
+        band: [0.0005, 0.0],
+        thickness: 0.0,
+        drive_side: DriveSide::On,
+        forward,
+        part: (
+            Relation::To,
+            cylinder(v(2.3471696987363866, 1.9701600519770954, 0.0), Vec3::z(), 4.012174480526263),
+        ),
+        drive: (
+            Relation::On,
+            quadric([
+                0.0945042820422351,
+                0.08823338072027023,
+                0.7642091592046729,
+                7.637023494423502,
+                -0.09710970419622213,
+                0.14251874727001118,
+                -0.01738570119856992,
+                0.5971911134470131,
+                -0.39156641931218594,
+                2.5234100399893276,
+            ]),
+        ),
+        first: (Relation::On, Geometry::Plane(Plane { normal: -forward, distance: -0.7315580390476326 })),
+        stop: (Relation::Past, check),
+    };
+    let before = JUDGED.get();
+    motion.run(AMPLE).expect("a path");
+    let looked = JUDGED.get() - before;
+    assert!(looked < 20_000, "{looked} patches of the tool looked at");
 }

@@ -44,7 +44,7 @@ fn what_is_deepest_below_a_point_is_told_to_what_is_asked() {
     let (mut close, mut asked) = (0, 0);
     for (k, [x, y, z]) in TIPS.into_iter().enumerate() {
         let tip = v(x, y, z);
-        let enough = Enough { lowest: -0.01, slack: 1.5e-7 };
+        let enough = Enough { lowest: -0.01, slack: 1.5e-7, share: 0.0 };
         let counted = |enough: Enough| {
             let before = JUDGED.get();
             let found =

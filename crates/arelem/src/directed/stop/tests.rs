@@ -15,7 +15,7 @@ use apt_geometry::{
 use super::{Watcher, graze::least_value};
 use crate::{
     attitude::Sweep,
-    clearance::{EVALUATIONS, Memory, Tool, separation},
+    clearance::{EVALUATIONS, Enough, Memory, Tool, separation},
     directed::prepare::prepare,
     error::MotionFailure,
     tests::{Program, circle, cylinder, motion, plane, quadric, sphere, v},
@@ -188,7 +188,7 @@ fn what_is_remembered_of_a_check_surface_changes_no_clearance() {
         for k in 0..40 {
             let tip = v(-0.8 + 0.02 * f64::from(k), 0.3, 2.5 - 0.03 * f64::from(k));
             let [remembered, fresh] = [&memories, &<[Memory; 2]>::default()].map(|memories| {
-                let (contact, side) = separation(&tool, &surface, &tip, memories);
+                let (contact, side) = separation(&tool, &surface, &tip, memories, Enough::ALL);
                 (contact.clearance, side)
             });
             let is_same = remembered.1 == fresh.1 && (remembered.0 - fresh.0).abs() < 1e-7;
