@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use apt_geometry::{
-    canonical::{Cylinder, Remembering, RuledSurface},
+    canonical::{Cone, Cylinder, Plane, Remembering, RuledSurface},
     motion::{AxisAngle, AxisTangency, ToolAxis},
 };
 
@@ -356,4 +356,33 @@ fn a_path_ends_where_the_law_of_its_axis_turns_it_back() {
     let failure = p.attempt(&motion(Turn::Forward, &wall, &[(Relation::To, 1, &stop)]));
     let Err(MotionFailure::NoAdmissibleVector { tip, .. }) = failure else { panic!("{failure:?}") };
     assert!((tip - v(-1.258, 3.315, 0.758)).norm() < 0.01, "{tip:?}");
+}
+
+/// A line that is normal to a cone would turn by 139° after a vector as long as its bands: its motion is refused, where there was a path that began
+/// in the direction asked for and went the other way.
+#[test]
+fn a_tool_that_turns_does_not_go_back_before_it_sets_out() {
+    let part = Geometry::Line(Plane {
+        normal: v(-0.5343743460793172, -0.8452479270913961, 0.0),
+        distance: 0.6357116044667622,
+    });
+    let drive = Geometry::Cone(Cone {
+        vertex: v(5.5231110458188954, -1.300375238999532, -0.3543687250096894),
+        axis: v(-0.8982866073943273, -0.0897600995187893, 0.4301445053820479),
+        cosine: 0.9027600481244357,
+    });
+    let forward = v(0.8452479270913962, -0.5343743460793171, 0.0);
+    let first = plane(forward.x, forward.y, forward.z, 2.011661965962806);
+    let stop = cylinder(v(6.31214668561854, -4.829916063429603, 0.0), Vec3::z(), 5.229032495953291);
+    let mut program = Program::new();
+    program.cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.993760007057072]).tolerance(0.001, 0.001);
+    program.run(&MotionCommand::Thickness(PerRole::all(0.0737156786884105)));
+    let position = v(0.9969314197742892, -2.071934757457862, 0.4856907693641207);
+    program.run(&MotionCommand::From { position, axis: Some(Vec3::z()), name: String::new() });
+    program.part_side(PartSide::Offset);
+    program.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: false }));
+    program.go(&[(Relation::On, &drive), (Relation::To, &part), (Relation::Past, &first)]);
+    program.side(DriveSide::On).indirv(forward.x, forward.y, forward.z);
+    let failure = program.attempt(&motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)]));
+    assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
 }

@@ -16,6 +16,7 @@ use crate::{
         march::{SAME_LINE, Vertex},
     },
     error::MotionFailure,
+    role::Working,
 };
 
 /// Sine between the gradients of both clearances below which they do not tell a hand: where surfaces are nearly tangent paths cross, and what
@@ -186,6 +187,9 @@ impl Stepper<'_> {
             return Ok(None);
         }
         for direction in self.sharp_directions(seconds, here) {
+            if self.turns_before_it_sets_out(here, &direction) {
+                continue;
+            }
             let known = (self.last, self.arrived, self.turned);
             (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
             let turned = Vertex { tangent: direction, ..*here };
@@ -224,6 +228,23 @@ impl Stepper<'_> {
     /// it turns no second time there, and along its tangent would go back along a leg.
     pub(super) fn hand_between_corners(&self, here: &Vertex) -> Option<Hand> {
         (self.hand.is_beyond_corner && self.has_turned_near(here)).then(|| self.hand.or_at(here))
+    }
+
+    /// Whether a tool that turns would go back on a direction, against the one asked for, from where it has hardly set out: no farther from where the motion
+    /// began than it may round a corner, and by so little that between both legs it is still in its bands, so that no place tells a corner.
+    fn turns_before_it_sets_out(&self, here: &Vertex, direction: &Vec3) -> bool {
+        let Prepared { attitude, tip, tangent, part, drive, .. } = self.prepared;
+        let leg = tip - here.tip;
+        if !attitude.turns() || leg.norm() > self.rounding() || direction.dot(tangent) >= 0.0 {
+            return false;
+        }
+        let within = here.tip + (leg + direction * leg.norm()) * 0.5;
+        let is_clear = |(role, contact): (&Working, &Contact)| {
+            !role.gauge.on && contact.clearance > role.outside + role.band()
+        };
+        let tells_corner =
+            |place: Vertex| [(part, &place.part), (drive, &place.drive)].into_iter().any(is_clear);
+        !Vertex::at(self.prepared, within, direction).is_ok_and(tells_corner)
     }
 
     /// Whether the path has turned sharply as near to a vertex as the tool may round a corner.
