@@ -94,6 +94,8 @@ pub enum PostFindingKind {
     StepNotLessThanDepth { step: f64, depth: f64 },
     #[error("a cycle without points")]
     CycleWithoutPoints,
+    #[error("{holes} holes of a CYCLE that cannot be made are left out")]
+    HolesLeftOut { holes: usize },
     #[error("CYCLE/{cycle} is still on at {word}; it is ended")]
     CycleLeftOn { cycle: SmolStr, word: SmolStr },
     #[error("a circle off tolerance by {deviation}: made of chords")]

@@ -188,10 +188,11 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
         let Some(number) = next else { return Err(arguments.missing(word)) };
         items.next();
         match word.as_str() {
+            "DEPTH" => order.depth = Some(number),
             // NX gives a signed offset, the others a depth.
-            "DEPTH" | "FEDTO" => {
+            "FEDTO" => {
                 order.depth = Some(number.abs());
-                if let ("FEDTO", Some(ClWord::Number(angle))) = (word.as_str(), items.peek()) {
+                if let Some(ClWord::Number(angle)) = items.peek() {
                     items.next();
                     order.depth = Some(chamfer_depth(arguments, number.abs(), *angle)?);
                 }

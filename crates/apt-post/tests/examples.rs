@@ -320,7 +320,7 @@ fn every_block_knows_its_statement() {
 
 #[test]
 fn findings() {
-    let cases: [(&str, PostFindingKind); 24] = [
+    let cases: [(&str, PostFindingKind); 25] = [
         ("SPINDL/1000\nGOTO/1,0,0\n", PostFindingKind::NoFeed),
         ("FEDRAT/10\nGOTO/1,0,0\n", PostFindingKind::SpindleOff),
         ("FEDRAT/0\n", PostFindingKind::FeedNotPositive { value: 0.0 }),
@@ -352,6 +352,10 @@ fn findings() {
         ("RAPID\nRAPID\nGOTO/1,0,0\n", PostFindingKind::RapidUnused),
         ("CUTCOM/LEFT,1\n", PostFindingKind::CompensationUnused),
         ("FEDRAT/5\nCYCLE/DRILL,DEPTH,1,CLEAR,.1\nCYCLE/OFF\n", PostFindingKind::CycleWithoutPoints),
+        (
+            "CYCLE/REVERS,DEPTH,1,CLEAR,.1,IPM,5\nGOTO/1,0,0\nGOTO/2,0,0\nCYCLE/OFF\n",
+            PostFindingKind::HolesLeftOut { holes: 2 },
+        ),
         (
             "CYCLE/DEEP,DEPTH,1,STEP,2,CLEAR,.1,IPM,5\n",
             PostFindingKind::StepNotLessThanDepth { step: 2.0, depth: 1.0 },

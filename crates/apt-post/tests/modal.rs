@@ -143,6 +143,31 @@ fn arcs_in_other_planes_are_chords_while_the_control_compensates() {
 }
 
 #[test]
+fn holes_of_a_cycle_that_cannot_be_made_are_no_motions() {
+    // Neither a type that the machine does not know nor one with a mistake, also behind one that is sound.
+    for cycle in [
+        "CYCLE/REVERS,DEPTH,10,RAPTO,3,MMPM,100\n",
+        "CYCLE/DRILL,RAPTO,3,MMPM,100\n",
+        "CYCLE/DRILL,DEPTH,-10,RAPTO,3,MMPM,100\n",
+        "CYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/DRILL,DEPTH,10,FOO,3\n",
+    ] {
+        let statements =
+            format!("RAPID\nGOTO/0,0,50\n{cycle}GOTO/20,0,0\nGOTO/30,0,0\nCYCLE/OFF\nRAPID\nGOTO/40,0,50\n");
+        for name in MACHINES {
+            let tape = tape_of(name, &statements);
+            assert!(
+                !tape.text().contains("X20.") && !tape.text().contains("X30."),
+                "{name}: {}",
+                tape.text()
+            );
+            assert!(tape.text().contains("X40."), "{name}: {}", tape.text());
+            let told: Vec<_> = tape.findings.iter().map(|finding| &finding.kind).collect();
+            assert!(told.contains(&&PostFindingKind::HolesLeftOut { holes: 2 }), "{name}: {told:?}");
+        }
+    }
+}
+
+#[test]
 fn a_hole_above_the_tool_lets_it_rise_before_it_goes_there() {
     // The control goes back to where it stood when the cycle began, and that must be where the next hole begins.
     let statements = "RAPID\nGOTO/0,0,3\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nGOTO/20,0,20\n\

@@ -43,6 +43,13 @@ pub(super) struct Cycle {
     place: (u32, u32),
 }
 
+/// A CYCLE that nothing can be made of. The positions that follow are tops of holes, which are no way to go at feed rate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RefusedCycle {
+    place: (u32, u32),
+    holes: usize,
+}
+
 /// What a control that is in a cycle goes by.
 #[derive(Debug, Clone, Copy)]
 struct Open {
@@ -63,6 +70,7 @@ impl Engine<'_> {
                 return self.end_cycle();
             }
             Some(ClWord::Word(word)) if word == "ON" => {
+                self.end_refused();
                 match self.suspended_cycle.clone() {
                     Some(cycle) => self.cycle = Some(Cycle { open: None, holes: 0, ..cycle }),
                     None => self.find(arguments.missing("a cycle before it")),
@@ -72,29 +80,44 @@ impl Engine<'_> {
             _ => {}
         }
         self.cycle_asked = true;
+        self.cycle = self.new_cycle(arguments);
+        if self.cycle.is_none() {
+            self.refused_cycle = Some(RefusedCycle { place: self.control.place, holes: 0 });
+        }
+    }
+
+    /// The cycle that a statement asks for, behind the one before; none where it is told why there is none.
+    fn new_cycle(&mut self, arguments: &Arguments<'_>) -> Option<Cycle> {
+        self.end_cycle();
         let order = match cycle_order(arguments) {
             Ok(order) => order,
-            Err(kind) => return self.find(kind),
+            Err(kind) => {
+                self.find(kind);
+                return None;
+            }
         };
         if let Some(place) = self.rapid.take() {
             self.find_at(place, PostFindingKind::RapidUnused);
         }
-        self.end_cycle();
         let Some(name) = self.machine.cycle_words.get(order.kind.as_str()).cloned() else {
             let (word, argument) = (arguments.word.clone(), order.kind.clone());
-            return self.find(PostFindingKind::UnknownArgument { word, argument });
+            self.find(PostFindingKind::UnknownArgument { word, argument });
+            return None;
         };
         let scale = self.scale;
         let Some(depth) = order.depth.map(|depth| depth * scale) else {
-            return self.find(arguments.missing("DEPTH"));
+            self.find(arguments.missing("DEPTH"));
+            return None;
         };
         let before = self.suspended_cycle.as_ref().map(|cycle| cycle.clearance);
         let Some(clearance) = order.clearance.map(|clearance| clearance * scale).or(before) else {
-            return self.find(arguments.missing("RAPTO"));
+            self.find(arguments.missing("RAPTO"));
+            return None;
         };
         if depth <= 0.0 || depth.is_nan() {
             let word = arguments.word.clone();
-            return self.find(PostFindingKind::BadValue { word, argument: "DEPTH".into(), value: depth });
+            self.find(PostFindingKind::BadValue { word, argument: "DEPTH".into(), value: depth });
+            return None;
         }
         let step = order.step.map(|step| step * scale).filter(|step| *step > 0.0);
         let pecks = matches!(name.as_str(), "peck" | "chipbreak");
@@ -104,14 +127,20 @@ impl Engine<'_> {
                 self.find(PostFindingKind::StepNotLessThanDepth { step, depth });
                 Some(depth)
             }
-            None if pecks => return self.find(arguments.missing("STEP")),
+            None if pecks => {
+                self.find(arguments.missing("STEP"));
+                return None;
+            }
             None => None,
         };
-        let Some((feed, pitch)) = self.cycle_feed(arguments, order.feed, name == "tap") else { return };
+        let (feed, pitch) = self.cycle_feed(arguments, order.feed, name == "tap")?;
         let dwell = match order.dwell {
             Some((turns, true)) => match self.spindle.speed {
                 Some(speed) if speed > 0.0 => turns / speed * SECONDS_PER_MINUTE,
-                _ => return self.find(PostFindingKind::NoSpindleSpeed),
+                _ => {
+                    self.find(PostFindingKind::NoSpindleSpeed);
+                    return None;
+                }
             },
             Some((seconds, false)) => seconds,
             None => 0.0,
@@ -122,7 +151,7 @@ impl Engine<'_> {
         };
         let place = self.control.place;
         let word = order.kind;
-        let cycle = Cycle {
+        Some(Cycle {
             word,
             name,
             depth,
@@ -136,8 +165,7 @@ impl Engine<'_> {
             open: None,
             holes: 0,
             place,
-        };
-        self.cycle = Some(cycle);
+        })
     }
 
     /// What the tool goes in a minute at the feed in force; none of an inverse time, which tells nothing of a hole.
@@ -215,12 +243,27 @@ impl Engine<'_> {
 
     /// CYCLE/OFF, and whatever ends a cycle.
     pub(super) fn end_cycle(&mut self) {
+        self.end_refused();
         let Some(cycle) = self.cycle.take() else { return };
         if cycle.holes == 0 {
             self.find_at(cycle.place, PostFindingKind::CycleWithoutPoints);
         }
         self.cancel(&cycle);
         self.suspended_cycle = Some(cycle);
+    }
+
+    /// Tells what a CYCLE with a mistake has left out.
+    fn end_refused(&mut self) {
+        if let Some(RefusedCycle { place, holes: holes @ 1.. }) = self.refused_cycle.take() {
+            self.find_at(place, PostFindingKind::HolesLeftOut { holes });
+        }
+    }
+
+    /// Leaves positions out that follow a CYCLE with a mistake; whether they do.
+    pub(super) fn leaves_out(&mut self, positions: usize) -> bool {
+        let Some(refused) = &mut self.refused_cycle else { return false };
+        refused.holes += positions;
+        true
     }
 
     /// Reports a cycle that a statement ends which is not meant to.

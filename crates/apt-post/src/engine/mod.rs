@@ -175,6 +175,8 @@ struct Engine<'a> {
     compensated: bool,
     cycle: Option<hole::Cycle>,
     suspended_cycle: Option<hole::Cycle>,
+    /// A CYCLE with a mistake, whose holes are left out.
+    refused_cycle: Option<hole::RefusedCycle>,
     /// Whether a CYCLE was asked for since the last CYCLE/OFF, also one that could not be carried out.
     cycle_asked: bool,
     clearance: Option<f64>,
@@ -235,6 +237,7 @@ impl<'a> Engine<'a> {
             compensated: false,
             cycle: None,
             suspended_cycle: None,
+            refused_cycle: None,
             cycle_asked: false,
             clearance: None,
             retracted_from: None,

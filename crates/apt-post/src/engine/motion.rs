@@ -62,7 +62,7 @@ impl Engine<'_> {
                 }
                 self.hole(position);
             }
-        } else {
+        } else if !self.leaves_out(positions.len()) {
             let place = self.control.place;
             for (done, position) in positions.into_iter().enumerate() {
                 if self.patience.ends_among(done, POSITIONS_A_UNIT) {
