@@ -168,6 +168,33 @@ fn holes_of_a_cycle_that_cannot_be_made_are_no_motions() {
 }
 
 #[test]
+fn a_cycle_word_without_holes_leaves_no_motion_out() {
+    let sound = "CYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\n";
+    for (statements, is_drilled) in [
+        ("CYCLE/AUTO,OFF\nFEDRAT/90\nGOTO/20,0,0\n".to_owned(), false),
+        ("CYCLE/MILL,DEPTH,10,RAPTO,3,MMPM,100\nFEDRAT/90\nGOTO/20,0,0\n".to_owned(), false),
+        (format!("{sound}GOTO/10,0,0\nCYCLE/AVOID,5\nGOTO/20,0,0\nCYCLE/OFF\n"), true),
+    ] {
+        for name in MACHINES {
+            let tape = tape_of(name, &format!("RAPID\nGOTO/0,0,50\n{statements}"));
+            let text = tape.text();
+            let hole = text.lines().find(|line| line.contains("X20.")).unwrap();
+            assert_eq!(!hole.contains("Z0."), is_drilled, "{name}: {text}");
+        }
+    }
+}
+
+#[test]
+fn a_cycle_is_not_resumed_behind_one_that_cannot_be_made() {
+    let statements = "RAPID\nGOTO/0,0,50\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/REVERS,DEPTH,3,RAPTO,3,MMPM,9\n\
+                      GOTO/20,0,0\nCYCLE/OFF\nCYCLE/ON\nGOTO/30,0,0\nCYCLE/OFF\n";
+    for name in MACHINES {
+        let tape = tape_of(name, statements);
+        assert!(!tape.text().contains("X20.") && !tape.text().contains("X30."), "{name}: {}", tape.text());
+    }
+}
+
+#[test]
 fn a_hole_above_the_tool_lets_it_rise_before_it_goes_there() {
     // The control goes back to where it stood when the cycle began, and that must be where the next hole begins.
     let statements = "RAPID\nGOTO/0,0,3\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nGOTO/20,0,20\n\

@@ -21,6 +21,11 @@ const PECK_GAP_MM: f64 = 0.25;
 const SECONDS_PER_MINUTE: f64 = 60.0;
 const MILLISECONDS_PER_SECOND: f64 = 1000.0;
 
+/// A move to a position without a hole, which ends the cycle.
+const MOVES_AND_ENDS: &str = "MILL";
+/// What stands in the place of a type and makes no holes: how cycles are written, and how high the tool goes between them.
+const WITHOUT_HOLES: [&str; 3] = [MOVES_AND_ENDS, "AUTO", "AVOID"];
+
 /// A cycle in force. Lengths in tape units.
 #[derive(Debug, Clone)]
 pub(super) struct Cycle {
@@ -71,19 +76,36 @@ impl Engine<'_> {
             }
             Some(ClWord::Word(word)) if word == "ON" => {
                 self.end_refused();
-                match self.suspended_cycle.clone() {
+                // Holes of a cycle that could not be made are not those of the one before it.
+                let resumed = self.suspended_cycle.clone().filter(|_| !self.was_refused);
+                match resumed {
                     Some(cycle) => self.cycle = Some(Cycle { open: None, holes: 0, ..cycle }),
-                    None => self.find(arguments.missing("a cycle before it")),
+                    None => {
+                        self.find(arguments.missing("a cycle before it"));
+                        self.refuse_cycle();
+                    }
                 }
                 return;
+            }
+            Some(ClWord::Word(word)) if WITHOUT_HOLES.contains(&word.as_str()) => {
+                if word == MOVES_AND_ENDS {
+                    self.end_cycle();
+                }
+                let (word, argument) = (arguments.word.clone(), word.clone());
+                return self.find(PostFindingKind::UnknownArgument { word, argument });
             }
             _ => {}
         }
         self.cycle_asked = true;
         self.cycle = self.new_cycle(arguments);
-        if self.cycle.is_none() {
-            self.refused_cycle = Some(RefusedCycle { place: self.control.place, holes: 0 });
+        self.was_refused = self.cycle.is_none();
+        if self.was_refused {
+            self.refuse_cycle();
         }
+    }
+
+    fn refuse_cycle(&mut self) {
+        self.refused_cycle = Some(RefusedCycle { place: self.control.place, holes: 0 });
     }
 
     /// The cycle that a statement asks for, behind the one before; none where it is told why there is none.

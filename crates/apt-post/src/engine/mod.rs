@@ -177,6 +177,8 @@ struct Engine<'a> {
     suspended_cycle: Option<hole::Cycle>,
     /// A CYCLE with a mistake, whose holes are left out.
     refused_cycle: Option<hole::RefusedCycle>,
+    /// Whether the last CYCLE with a type was one.
+    was_refused: bool,
     /// Whether a CYCLE was asked for since the last CYCLE/OFF, also one that could not be carried out.
     cycle_asked: bool,
     clearance: Option<f64>,
@@ -238,6 +240,7 @@ impl<'a> Engine<'a> {
             cycle: None,
             suspended_cycle: None,
             refused_cycle: None,
+            was_refused: false,
             cycle_asked: false,
             clearance: None,
             retracted_from: None,
