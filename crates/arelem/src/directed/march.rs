@@ -133,6 +133,8 @@ fn without_last(tip: Vec3, limit: u32) -> MotionFailure {
 const TANGENT_SINE: f64 = 1e-7;
 /// Cosine of the angle between two lines of motion below which they are not the same but for rounding.
 const SAME_LINE: f64 = 1.0 - 1e-6;
+/// Way, relative to the size of the coordinates, that is none but for rounding.
+const NO_WAY: f64 = 1e-9;
 /// How often a vector that ends at the check surface is shortened before giving up.
 const MAX_FINALS: u32 = 60;
 /// After so many of them the end is looked for where in the bands the last vertex is.
@@ -271,7 +273,7 @@ impl<'a> March<'a> {
                 continue;
             }
             cap = SHARE_BEFORE_STOP * (end.tip - here.tip).norm().min((next.tip - here.tip).norm());
-            if cap <= 1e-9 * self.prepared.size {
+            if cap <= NO_WAY * self.prepared.size {
                 // The stop is where the last vertex already is.
                 if self.points.pop().is_none() {
                     self.points.clear();
@@ -437,7 +439,8 @@ impl<'a> March<'a> {
 
     /// Whether a tool that turns on the way to the end would be led back against the path: once it has turned where it stands it is past the end.
     fn is_led_back(&self, here: &Vertex, end: &finish::End) -> bool {
-        self.prepared.attitude.turns() && (end.tip - here.tip).dot(&here.tangent) < -1e-9 * self.prepared.size
+        self.prepared.attitude.turns()
+            && (end.tip - here.tip).dot(&here.tangent) < -NO_WAY * self.prepared.size
     }
 
     /// Whether a vector to the end leads to the position there: a tool that turns goes another way on it than on those in whose place it is.

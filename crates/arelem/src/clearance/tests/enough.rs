@@ -60,6 +60,5 @@ fn what_is_deepest_below_a_point_is_told_to_what_is_asked() {
             assert!(missed <= 0.011 * (contact.clearance - enough.lowest), "{k}: {missed}");
         }
     }
-
     assert!(3 * asked < close, "{asked} patches looked at, {close} for what is deepest");
 }
