@@ -178,8 +178,8 @@ impl Profile {
                 best = (square, point);
             }
         };
-        // A disk has no inside.
-        let mut inside = self.top.height > 0.0;
+        // Neither a disk nor a line has an inside.
+        let mut inside = self.top.height > 0.0 && self.upper.radius.max(self.top.radius) > 0.0;
         for (a, b) in [(tip, self.lower), (self.upper, self.top), (self.top, axis_top)] {
             let (dx, dz) = (b.radius - a.radius, b.height - a.height);
             let square = dx * dx + dz * dz;
@@ -310,6 +310,22 @@ mod tests {
         near(profile.lower.height, 0.0);
         near(profile.upper.radius, 0.5);
         near(profile.upper.height, 0.125);
+    }
+
+    /// What is on the axis below the tool or above it is outside of it, also of a tool that is nothing but its axis.
+    #[test]
+    fn what_is_on_the_axis_beyond_either_end_is_outside() {
+        let line = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.5];
+        let point = [0.0];
+        let drill = [1.0, 0.0, 0.5, 0.5, 45.0, 0.0, 2.5];
+        let needle = [0.0, 0.0, 0.0, 0.0, 0.0, 10.0, 2.5];
+        for numbers in [&line[..], &point, &drill, &needle, &[1.0, 0.5], &[1.0, 0.0]] {
+            let profile = cutter(numbers).profile();
+            for beyond in [0.5, 7.0] {
+                near(profile.distance(0.0, -beyond).0, beyond);
+                near(profile.distance(0.0, profile.top.height + beyond).0, beyond);
+            }
+        }
     }
 
     #[test]
