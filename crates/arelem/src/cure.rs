@@ -210,6 +210,7 @@ fn candidates(state: &State, command: &MotionCommand, failure: &MotionFailure) -
             MotionFailure::NotReachedAlong { .. }
             | MotionFailure::OffsetWithoutDirection
             | MotionFailure::StartUpDiverges { .. }
+            | MotionFailure::BehindEnd { .. }
             | MotionFailure::NoPositionAlong { .. },
             MotionCommand::Start(_) | MotionCommand::Offset(_),
         ) => start_up(state, command),

@@ -18,7 +18,7 @@ use apt_geometry::{
     patience::Patience,
 };
 
-pub(crate) use self::prepare::Prepared;
+pub(crate) use self::{march::end_from_behind, prepare::Prepared};
 use crate::{
     bound::{self, Bent},
     clearance::Shape,

@@ -274,6 +274,16 @@ pub enum MotionFailure {
         /// Iterations made.
         iterations: u32,
     },
+    /// Every position found at start-up is one at which the tool touches the end of a surface from behind (602).
+    #[error("the tool would touch the end of the {role:?} surface from behind")]
+    BehindEnd {
+        /// Whose surface it is.
+        role: RoleName,
+        /// The tool end there.
+        tip: Vec3,
+        /// The place of the surface where it ends.
+        place: Vec3,
+    },
     /// Several positions are equally near: which of them is meant is not known.
     #[error("start-up with two answers: {} and {}", places[0], places[1])]
     StartUpAmbiguous {
@@ -450,7 +460,7 @@ impl MotionFailure {
             Self::NotReachedAlong { .. } => 34,
             Self::OffsetWithoutDirection => 33,
             Self::PartNotReached => 36,
-            Self::StartUpDiverges { .. } => 602,
+            Self::StartUpDiverges { .. } | Self::BehindEnd { .. } => 602,
             Self::OutOfToleranceAtStart { role: RoleName::Part, .. } => 502,
             Self::OutOfToleranceAtStart { .. } => 503,
             Self::NoForwardDirection => 504,

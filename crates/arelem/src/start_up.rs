@@ -2,6 +2,7 @@
 
 mod ambiguous;
 mod around;
+mod behind;
 mod directed;
 mod plane;
 mod side;
@@ -9,6 +10,8 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 pub(crate) mod twice;
+
+use std::cell::Cell;
 
 use apt_geometry::{
     Vec3,
@@ -208,6 +211,9 @@ impl<'a> StartUp<'a> {
     }
 
     fn sequence(&self, tip: Vec3) -> Result<CutSequence, MotionFailure> {
+        if let Some(failure) = behind::failure(self, &tip) {
+            return Err(failure);
+        }
         let axis = self.attitude.tool_at(&tip)?.axis;
         let role = |name: RoleName| self.roles.iter().find(|r| r.name == name).map(Working::role);
         Ok(CutSequence {
@@ -304,7 +310,7 @@ fn tilted_otherwise(
     failure: MotionFailure,
 ) -> Result<Vec3, MotionFailure> {
     let judged = work.attitude.clone();
-    let is_told = matches!(failure, MotionFailure::StartUpDiverges { .. });
+    let is_told = matches!(failure, MotionFailure::StartUpDiverges { .. } | MotionFailure::BehindEnd { .. });
     let Some(other) = judged.to_other_side().filter(|_| is_told) else { return Err(failure) };
     for start in starts {
         work.attitude = other.clone();
@@ -378,7 +384,7 @@ fn settle(work: &StartUp<'_>, guide: Option<(Vec3, f64)>, start: &Vec3) -> Resul
     let mut guided = free.clone();
     guided.push(Condition::Plane(guide.0, guide.1));
     match converge(work, &guided, start) {
-        Err(MotionFailure::StartUpDiverges { .. }) => {
+        Err(MotionFailure::StartUpDiverges { .. } | MotionFailure::BehindEnd { .. }) => {
             let start = match work.state.start_up {
                 StartUpRule::Apt3 => *start,
                 StartUpRule::Apt4 => directed::searched(work, guide, start),
@@ -404,14 +410,24 @@ fn in_bands(work: &StartUp<'_>, start: &Vec3, failure: MotionFailure) -> Result<
 }
 
 /// Newton from the start; if that fails, a homotopy that lets the tool approach every surface from its own side; if that
-/// fails too, Newton from places all about the start.
+/// fails too, Newton from places all about the start. A position behind the end of a surface is none: others are looked for.
 pub(crate) fn converge(
     work: &StartUp<'_>,
     conditions: &[Condition<'_>],
     start: &Vec3,
 ) -> Result<Vec3, MotionFailure> {
-    let first = match position::solve(&work.attitude, conditions, start) {
-        Ok(solution) => return Ok(solution.tip),
+    let is_behind: Cell<Option<MotionFailure>> = Cell::new(None);
+    let stands = |tip: &Vec3| {
+        let failure = behind::failure(work, tip);
+        let stands = failure.is_none();
+        is_behind.set(is_behind.take().or(failure));
+        stands
+    };
+    let taken = |tip: Vec3| {
+        if stands(&tip) { Ok(tip) } else { Err(Unsolved { residual: 0.0, row: 0, tip, iterations: 0 }) }
+    };
+    let first = match position::solve(&work.attitude, conditions, start).and_then(|found| taken(found.tip)) {
+        Ok(tip) => return Ok(tip),
         Err(unsolved) => unsolved,
     };
     let mut begin = Vec::with_capacity(conditions.len());
@@ -423,20 +439,20 @@ pub(crate) fn converge(
             Condition::Plane(normal, _) => normal.dot(start),
         });
     }
-    let last = match staged(work, conditions, &begin, start) {
+    let last = match staged(work, conditions, &begin, start).and_then(taken) {
         Ok(tip) => return Ok(tip),
         Err(unsolved) => unsolved,
     };
-    if let Some(tip) = around::solve(&work.attitude, conditions, start, work.patience)? {
+    if let Some(tip) = around::solve(&work.attitude, conditions, start, &stands, work.patience)? {
         return Ok(tip);
     }
     let nearest = if first.residual < last.residual { first } else { last };
-    Err(MotionFailure::StartUpDiverges {
+    Err(is_behind.take().unwrap_or(MotionFailure::StartUpDiverges {
         residual: nearest.residual,
         role: work.roles.get(nearest.row).map_or(RoleName::Drive, |r| r.name),
         tip: nearest.tip,
         iterations: first.iterations + last.iterations,
-    })
+    }))
 }
 
 /// The homotopy: the values that the conditions have at the start go over to those wanted by stages. Nothing is proven

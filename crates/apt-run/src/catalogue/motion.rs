@@ -265,6 +265,16 @@ fn start(failure: &Failure) -> Option<Text> {
             ),
         )
         .hint("start closer, or give a direction by INDIRV that leads to such a position"),
+        Failure::BehindEnd { role: name, tip, place: at } => say(
+            "APT0624",
+            format!(
+                "no position was found but those behind an end: at {} the tool would touch the end of the {} at {} from behind",
+                place(tip),
+                role(*name),
+                place(at)
+            ),
+        )
+        .hint("start closer, give a direction by INDIRV that leads to another position, or define a larger surface"),
         Failure::StartUpAmbiguous { places: [first, second] } => say(
             "APT0628",
             format!("the start-up has more than one answer: {} and {} are equally near", place(first), place(second)),

@@ -16,6 +16,7 @@ mod tangency;
 
 use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
+pub(crate) use self::surface_end::end_from_behind;
 use self::{creeping::Creeping, scout::Outlook, step::Stepper};
 use super::{
     Path, Prepared,

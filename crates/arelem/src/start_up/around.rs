@@ -22,7 +22,7 @@ const CORRECTIONS: u32 = 15;
 /// tool moves, so that there is no position within the whole of it, and from its middle the way did not lead out of it.
 const IN_VAIN: f64 = 0.5;
 
-/// The position nearest to the start among those that places of the first shell with any lead to.
+/// The position nearest to the start among those that places of the first shell with any lead to, of positions that the tool can stand at.
 ///
 /// # Errors
 /// [`MotionFailure::Cancelled`].
@@ -30,6 +30,7 @@ pub(super) fn solve(
     attitude: &Attitude,
     conditions: &[Condition<'_>],
     start: &Vec3,
+    stands: &dyn Fn(&Vec3) -> bool,
     patience: Patience<'_>,
 ) -> Result<Option<Vec3>, MotionFailure> {
     let mut reach = attitude.tool().radius();
@@ -71,7 +72,8 @@ pub(super) fn solve(
             let Ok(found) = position::solve_within(attitude, conditions, &likely.tip, CORRECTIONS) else {
                 continue;
             };
-            if nearest.is_none_or(|best| (found.tip - start).norm() < (best - start).norm()) {
+            let is_nearer = nearest.is_none_or(|best| (found.tip - start).norm() < (best - start).norm());
+            if is_nearer && stands(&found.tip) {
                 nearest = Some(found.tip);
             }
         }

@@ -1,4 +1,4 @@
-//! Tools that touch the end of a surface from its other side.
+//! Tools that touch the end of a surface from its other side, on their way or at start-up.
 
 use super::{
     beyond_ends::poly_conic,
@@ -85,9 +85,121 @@ fn a_tool_that_touches_an_end_from_behind_comes_to_the_end_of_the_surface() {
             }),
         ),
     };
+    // It does not begin there with a start-up.
     let refused = motion.run(AMPLE);
+    assert!(matches!(refused, Err(MotionFailure::BehindEnd { role: RoleName::Part, .. })), "{refused:?}");
+    let from_there = Found { from: v(-2.0195223368791213, 6.000927902011693, 1.8307030572545202), ..motion };
+    let refused = from_there.run_from_there(AMPLE);
     let Err(MotionFailure::SurfaceEnds { role: RoleName::Part, place, .. }) = refused else {
         panic!("{refused:?}")
     };
     assert!((place - v(-1.5555, 5.6991, 1.9464)).norm() < 1e-3, "{place:?}");
+}
+
+/// The flank of a flat cutter would touch the end of its part surface, nine degrees behind that, beside drive surface and stop: by the last digits of
+/// its place it is in its bands there or .127 deep. It is no position.
+#[test]
+fn a_start_up_does_not_end_behind_the_end_of_a_surface() {
+    let motion = Found {
+        cutter: &[1.0103652086988513],
+        axis: v(0.0, 0.0, 1.0),
+        from: v(-0.08863105093977516, 1.3421682004206077, 0.1363776835232771),
+        band: [0.001, 0.001],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.8969961496240828, 0.4178688115740608, -0.14416505774025837),
+        part: (
+            Relation::To,
+            poly_conic(
+                &[
+                    1.0,
+                    -0.09723047415747818,
+                    -0.9917316274657542,
+                    -0.08375329234865021,
+                    4.303222944945446,
+                    0.9936890958516129,
+                    -0.1014615510802386,
+                    0.047828176193496295,
+                    -1.5724834367229128,
+                    -0.055930453964865665,
+                    -0.07857437709914497,
+                    0.9953380589441785,
+                    6.209131380109185,
+                    0.0,
+                    0.0,
+                    6.0,
+                ],
+                [
+                    [4.068162234509305, 0.1992707747450141],
+                    [4.068162234509305, -0.03811338651955015],
+                    [4.068162234509305, 0.12385368080764458],
+                    [-4.068162234509305, 0.10241076461177617],
+                    [-4.068162234509305, 0.010087605384450915],
+                    [4.068162234509305, 0.10254154210889133],
+                    [std::f64::consts::FRAC_1_SQRT_2, -0.07412943047013025],
+                ],
+            ),
+        ),
+        drive: (
+            Relation::To,
+            poly_conic(
+                &[
+                    1.0,
+                    -0.875507413894356,
+                    0.4128852559499754,
+                    0.25102297431737264,
+                    4.689168853268331,
+                    -0.34734240866441,
+                    -0.17660938049261984,
+                    -0.9209573159844159,
+                    0.4275632027172491,
+                    -0.3359166851456219,
+                    -0.8934958825541035,
+                    0.2980353812882637,
+                    3.6871714156945004,
+                    0.0,
+                    0.0,
+                    6.0,
+                ],
+                [
+                    [2.972528781791158, 0.0009275566172942673],
+                    [2.972528781791158, 0.01792680346681874],
+                    [2.972528781791158, -0.09343703451866542],
+                    [-2.972528781791158, -0.13858714773258712],
+                    [-2.972528781791158, 0.13659284158483917],
+                    [2.972528781791158, -0.18339057431688946],
+                    [std::f64::consts::FRAC_1_SQRT_2, 0.047671740043607906],
+                ],
+            ),
+        ),
+        first: (
+            Relation::To,
+            Geometry::Plane(Plane {
+                normal: v(-0.8969961496240829, 0.4178688115740608, -0.1441650577402584),
+                distance: -1.380143335830057,
+            }),
+        ),
+        stop: (
+            Relation::Past,
+            Geometry::Quadric(Quadric {
+                coefficients: [
+                    0.004979173768902296,
+                    0.027630702444329743,
+                    0.0,
+                    -1.0856285883185002,
+                    0.0,
+                    0.0,
+                    -0.06359027877468897,
+                    -0.28215429307705275,
+                    0.05235908366863293,
+                    0.0,
+                ],
+            }),
+        ),
+    };
+    let refused = motion.run(AMPLE);
+    let Err(MotionFailure::BehindEnd { role: RoleName::Part, place, .. }) = refused else {
+        panic!("{refused:?}")
+    };
+    assert!((place - v(2.9384, 5.5469, 0.1965)).norm() < 1e-3, "{place:?}");
 }

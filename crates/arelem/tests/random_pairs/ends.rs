@@ -42,19 +42,48 @@ pub(crate) fn is_over(
     [near, band]: [f64; 2],
     path: &Vec3,
 ) -> bool {
-    let Ok(surface) = Surface::from_geometry(&case::surface(placed).geometry) else { return false };
-    let met = surface.met_from(placed.side, Patience::default());
-    let Some(start) = met.place(tip) else { return false };
-    let lines = met.creases_beside(&start, placed.side).into_iter().flatten();
-    let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
-    let Some((distance, off_tool, place)) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    let Some(Touch { edge, off_tool }) = touched(placed, (cutter, axis), tip, near) else { return false };
+    let Some(edge) = edge.filter(|_| placed.relation != Relation::On) else { return true };
+    let SurfaceEdge { outward, normal, along } = edge;
+    let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
+    out.hypot(behind) > along.dot(path).abs() || is_behind(placed, cutter, &edge, &off_tool, band)
+}
+
+/// Whether a tool touches the end of a surface, no farther than the first distance from it, from behind, so that it is on no side of the surface there, with
+/// the second distance, its band, as [`is_over`].
+pub(crate) fn is_from_behind(
+    placed: &Placed,
+    (cutter, axis): (&Cutter, &Vec3),
+    tip: &Vec3,
+    [near, band]: [f64; 2],
+) -> bool {
+    let Some(Touch { edge: Some(edge), off_tool }) = touched(placed, (cutter, axis), tip, near) else {
+        return false;
+    };
+    placed.relation != Relation::On && is_behind(placed, cutter, &edge, &off_tool, band)
+}
+
+fn is_behind(placed: &Placed, cutter: &Cutter, edge: &SurfaceEdge, off_tool: &Vec3, band: f64) -> bool {
     let turned = (2.0 * band / cutter.profile().greatest_radius()).sqrt();
-    let edge = surface.edge_at(&place).filter(|_| placed.relation != Relation::On);
-    let leads_over = edge.is_none_or(|SurfaceEdge { outward, normal, along }| {
-        let [out, behind] = [outward.dot(path), -placed.side * normal.dot(path)].map(|way| way.max(0.0));
-        out.hypot(behind) > along.dot(path).abs() || placed.side * normal.dot(&off_tool) > turned
-    });
-    distance <= near && leads_over
+    placed.side * edge.normal.dot(off_tool) > turned
+}
+
+/// Where a tool touches the end of a surface.
+struct Touch {
+    /// That end, where not all rulings meet.
+    edge: Option<SurfaceEdge>,
+    /// The direction out of the tool.
+    off_tool: Vec3,
+}
+
+/// The place of the end of a surface nearest to a tool, if it is no farther from that than so much.
+fn touched(placed: &Placed, (cutter, axis): (&Cutter, &Vec3), tip: &Vec3, near: f64) -> Option<Touch> {
+    let surface = Surface::from_geometry(&case::surface(placed).geometry).ok()?;
+    let met = surface.met_from(placed.side, Patience::default());
+    let lines = met.creases_beside(&met.place(tip)?, placed.side).into_iter().flatten();
+    let nearest = lines.filter_map(|(line, _)| nearest_on(met, &line, (cutter, axis), tip));
+    let (distance, off_tool, place) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (distance <= near).then(|| Touch { edge: surface.edge_at(&place), off_tool })
 }
 
 /// How far the place of a line nearest to a tool is from it, the direction out of the tool there, and the place.

@@ -183,6 +183,15 @@ fn motions_of_every_pair_are_proven_or_refused_rightly() {
     settle(&tallies);
 }
 
+/// The search finds one start alone, where the tool touches the end of its part surface sixteen degrees behind that.
+#[test]
+fn a_start_behind_the_end_of_a_surface_is_none() {
+    let (part, drive) = (Kind::PolyConic, Kind::Conic);
+    let case = Case::draw(part, drive, seed(20_262_699, part, drive, 22)).expect("a motion");
+    let (verdict, _) = judge::judge(&case);
+    assert!(matches!(verdict, judge::Verdict::Refused(_)), "{verdict:?}");
+}
+
 /// Prints the table, and fails where there is a fault.
 #[expect(clippy::print_stdout, reason = "the long run tells what is done")]
 fn settle(tallies: &BTreeMap<(Kind, Kind), Tally>) {

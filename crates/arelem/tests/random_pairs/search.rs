@@ -222,21 +222,22 @@ impl<'a> Reader<'a> {
     /// A position where the start-up may end.
     fn start(&self) -> Option<Vec3> {
         let case = self.case;
-        if case.is_certain && self.axis.is_none() {
-            return (!matches!(case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart))
-                .then_some(case.place)
-                .or_else(|| self.settle(&(case.place - case.forward * case.reach), Wanted::First, None));
+        let is_tangent = matches!(case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart);
+        let is_laid = case.is_certain && self.axis.is_none();
+        if is_laid && !is_tangent {
+            return Some(case.place);
         }
-        let mut places = vec![case.from, case.place];
+        let entry = if is_laid { case.place - case.forward * case.reach } else { case.place };
+        let mut places = if is_laid { vec![entry] } else { vec![case.from, entry] };
         for k in 0..27 {
             let [i, j, l] = [k % 3, k / 3 % 3, k / 9].map(|x| f64::from(x) - 1.0);
-            places.push(case.place + Vec3::new(i, j, l) * 0.6);
+            places.push(entry + Vec3::new(i, j, l) * 0.6);
         }
         let mut behind: Vec<Vec3> = Vec::new();
         let same = SAME_START * (case.inside + case.outside);
         places.iter().filter_map(|place| self.settle(place, Wanted::First, None)).find(|tip| {
             let is_known = behind.iter().any(|known| (known - tip).norm() <= same);
-            if !is_known && !self.is_behind(tip) {
+            if !is_known && !self.is_behind(tip) && !self.is_behind_end(tip) {
                 return true;
             }
             behind.push(*tip);
@@ -259,6 +260,22 @@ impl<'a> Reader<'a> {
                 [(part, on_part), (drive, on_drive)].into_iter().any(beyond)
             })
         })
+    }
+
+    /// Whether the tool touches the end of a surface from behind: it is on no side of that.
+    fn is_behind_end(&self, tip: &Vec3) -> bool {
+        let Case { part, drive, .. } = self.case;
+        let Some(axis) = self.axis(tip) else { return false };
+        let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
+        [(part, on_part), (drive, on_drive)].into_iter().any(|(placed, clearance)| {
+            ends::is_from_behind(placed, (&self.cutter, &axis), tip, self.by_end(placed, clearance))
+        })
+    }
+
+    /// How far from a tool with such a clearance an end is that it touches, and the band.
+    fn by_end(&self, placed: &Placed, clearance: f64) -> [f64; 2] {
+        let band = self.case.inside + self.case.outside;
+        [clearance.abs() + placed.thickness + AT_END * band, band]
     }
 
     /// Unit tangent of the path in a sense.
@@ -294,14 +311,13 @@ impl<'a> Reader<'a> {
         let placed = if told.role == RoleName::Part { part } else { drive };
         let Some([on_part, on_drive, _]) = self.read(tip, Wanted::PathOnly) else { return false };
         let clearance = if told.role == RoleName::Part { on_part } else { on_drive };
-        let near = clearance.abs() + placed.thickness + AT_END * (inside + outside);
         // A tool that is ON a surface leaves it with its end, where that is: from beside it, it is as far as it is thick.
         if placed.relation == Relation::On && sense.dot(&(told.tip - tip)) > inside + outside {
             return false;
         }
         let point = Cutter::from_numbers(&[0.0], 0.0).expect("a point");
         let guided = if placed.relation == Relation::On { &point } else { &self.cutter };
-        ends::is_over(placed, (guided, &axis), tip, [near, inside + outside], sense)
+        ends::is_over(placed, (guided, &axis), tip, self.by_end(placed, clearance), sense)
     }
 
     /// Whether the motion from a start (or from where the search finds one) has a solution. The path ends where it leads over the end of

@@ -138,6 +138,22 @@ pub(super) fn is_at_end(role: &Working, contact: &Contact) -> bool {
     ends_below(role, contact) || is_pushed_back(role, contact)
 }
 
+/// The place where the tool touches the end of a role's surface within the bands, and that alone, from the other side of the surface: on its own
+/// side it has no position there.
+pub(crate) fn end_from_behind(role: &Working, tool: &Tool, tip: &Vec3) -> Option<Vec3> {
+    if role.gauge.on || !role.gauge.surface.has_ends() {
+        return None;
+    }
+    let contact = role.gauge.contact(tool, tip);
+    if (contact.clearance - role.rest()).abs() > role.band() {
+        return None;
+    }
+    let edge = role.gauge.surface.edge_at(&place_at_end(role, &contact)?)?;
+    let is_behind = is_from_behind(role, tool, &contact, &edge)
+        && !is_touched_inside_on_its_side(role, tool, tip, &contact);
+    is_behind.then_some(contact.surface)
+}
+
 /// Whether the tool touches the end of a role's surface, and that alone.
 pub(super) fn is_beyond_end(role: &Working, tool: &Tool, tip: &Vec3) -> bool {
     let contact = role.gauge.contact(tool, tip);
@@ -150,16 +166,18 @@ fn is_pushed_back(role: &Working, contact: &Contact) -> bool {
     contact.clearance < 0.0 && role.gauge.ends_at(&contact.tool, (contact.tool - contact.surface).norm())
 }
 
+/// Where the tool touches the end of a role's surface, a place beyond that.
+fn place_at_end(role: &Working, contact: &Contact) -> Option<Vec3> {
+    if ends_below(role, contact) {
+        return Some(above(role, contact).0);
+    }
+    is_pushed_back(role, contact).then_some(contact.tool)
+}
+
 /// Whether the tool touches the end of a role's surface and, on a path, goes over it. What is beside a surface all along may touch the
 /// end of it; but it goes along that, not out over it or down behind it, and it touches it from the own side of the surface.
 fn is_over(role: &Working, tool: &Tool, contact: &Contact, path: &Vec3) -> bool {
-    let place = if ends_below(role, contact) {
-        above(role, contact).0
-    } else if is_pushed_back(role, contact) {
-        contact.tool
-    } else {
-        return false;
-    };
+    let Some(place) = place_at_end(role, contact) else { return false };
     let edge = role.gauge.surface.edge_at(&place);
     let Some(edge) = edge else { return true };
     let SurfaceEdge { outward, normal, along } = edge;
@@ -178,13 +196,31 @@ fn is_from_behind(role: &Working, tool: &Tool, contact: &Contact, edge: &Surface
 
 /// Whether a tool that touches the end of a surface touches it before the end, too, as along a straight piece: that guides it on.
 fn is_touched_inside(role: &Working, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
+    let most = contact.clearance + role.band();
+    has_place_inside(role, tool, tip, contact, |clearance| clearance <= most)
+}
+
+/// The same where the tool comes up to the surface from its own side: what is behind it by more does not touch it.
+fn is_touched_inside_on_its_side(role: &Working, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
+    let apart = |clearance: f64| (clearance - contact.clearance).abs();
+    has_place_inside(role, tool, tip, contact, |clearance| apart(clearance) <= role.band())
+}
+
+/// Whether a place of a tool that touches the end of a surface is before that end and has such a clearance.
+fn has_place_inside(
+    role: &Working,
+    tool: &Tool,
+    tip: &Vec3,
+    contact: &Contact,
+    is_such: impl Fn(f64) -> bool,
+) -> bool {
     if role.gauge.on || role.gauge.disk.is_some() {
         return false;
     }
     let surface = role.gauge.met(tool);
     let touches = |place: &Vec3| {
         let clearance = role.gauge.side * surface.signed_distance(place) - role.gauge.thickness;
-        clearance <= contact.clearance + role.band() && !surface.ends_at(place)
+        is_such(clearance) && !surface.ends_at(place)
     };
     let profile = &tool.profile;
     let (_, _, radial) = tool.split(&(contact.tool - tip));
