@@ -147,3 +147,100 @@ fn a_check_surface_that_is_far_away_is_told_roughly() {
     let looked = JUDGED.get() - before;
     assert!(looked < 20_000, "{looked} patches of the tool looked at");
 }
+
+/// The bottom of a flat cutter lies along the crest of a polyconic, as near to it at both ends of a diameter. About its edge parts of the surface are
+/// halved across the crest: how far they go along that is due to how they bend across it, and halves of the other side tell nothing more.
+#[test]
+fn parts_tell_that_a_flat_bottom_is_above_a_crest() {
+    let motion = Found {
+        cutter: &[0.9744679023728002],
+        axis: Vec3::z(),
+        from: v(-1.813124409816394, 1.4750456932466949, 0.21761951869529406),
+        band: [2e-5, 3e-5],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(-0.20460877218562903, 0.9788438334814648, 0.0),
+        part: (
+            Relation::To,
+            poly_conic(
+                &[
+                    1.0,
+                    -0.9990420255701976,
+                    0.04375694243566355,
+                    -0.0006009436567275022,
+                    2.6781560747676108,
+                    -0.04272373812129863,
+                    -0.9782406023366842,
+                    -0.20302710691162257,
+                    0.5455411401146533,
+                    -0.009471712914738698,
+                    -0.2028069375752288,
+                    0.9791729330030614,
+                    3.516409214874722,
+                    0.0,
+                    0.0,
+                    6.0,
+                ],
+                [
+                    [1.9496175956945139, 0.039478151077648564],
+                    [1.9496175956945139, -0.011278630969965654],
+                    [1.9496175956945139, 0.023637334930777847],
+                    [-1.9496175956945139, -0.01066716207408494],
+                    [-1.9496175956945139, -0.038829196223069934],
+                    [1.9496175956945139, 0.011037229779460943],
+                    [std::f64::consts::FRAC_1_SQRT_2, -0.0010477658028172857],
+                ],
+            ),
+        ),
+        drive: (
+            Relation::To,
+            poly_conic(
+                &[
+                    1.0,
+                    0.1102472011989009,
+                    -0.6843263948821597,
+                    0.720793271261182,
+                    3.2358452313339754,
+                    -0.3225593117826847,
+                    0.661325283654242,
+                    0.67720333695421,
+                    -0.03391058586756612,
+                    -0.940106932752913,
+                    -0.30715835405735475,
+                    -0.1478265893629657,
+                    4.13966402632298,
+                    0.0,
+                    0.0,
+                    6.0,
+                ],
+                [
+                    [2.9841510549152557, -0.13920235961229735],
+                    [2.9841510549152557, -0.1465795182073944],
+                    [2.9841510549152557, 0.03390606697607068],
+                    [-2.9841510549152557, -0.14847186585441544],
+                    [-2.9841510549152557, -0.1968134698989348],
+                    [2.9841510549152557, 0.015292548533720085],
+                    [std::f64::consts::FRAC_1_SQRT_2, 0.0021588045615972135],
+                ],
+            ),
+        ),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.204608772185629, 0.9788438334814648, 6.648398847735393e-17),
+                distance: 1.4541487502560784,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Circle(Cylinder {
+                point: v(-2.3543329324299025, 8.63673509411986, -0.5736770252172754),
+                axis: Vec3::z(),
+                radius: 7.10999088448813,
+            }),
+        ),
+    };
+    let sequences = motion.run(AMPLE).expect("a path");
+    let vectors = sequences.last().map(|sequence| sequence.points.len());
+    assert_eq!(vectors, Some(7));
+}

@@ -11,9 +11,11 @@ impl Extent {
     /// of it tell more of. Along the other one the tangent tells all, however long it is, as along rulings that a tool lies on.
     fn side_to_halve(&self, asked: &Apart<'_>, tangent: (f64, Vec3)) -> Option<usize> {
         let off = self.normal?.dot(&tangent.1).abs();
-        let [u, v] = self.sides()?.map(|way| asked.above_tangent(&self.center, tangent, &way));
-        let eased = self.eased();
-        Some(usize::from(v + off * eased[1] > u + off * eased[0]))
+        let above = self.sides()?.map(|way| asked.above_tangent(&self.center, tangent, &way));
+        let (shares, eased) = (self.shares(), self.eased());
+        let [u, v] =
+            [0, 1].map(|k: usize| shares[k][0] * above[0] + shares[k][1] * above[1] + off * eased[k]);
+        Some(usize::from(v > u))
     }
 }
 

@@ -15,6 +15,8 @@ pub(in super::super) struct Extent {
     eased: [f64; 2],
     /// The part lies between two pairs of planes: their unit normals, in the tangent plane, and how far they are from the centre.
     strips: [(Vec3, f64); 2],
+    /// How much of that is due to the bend along each side.
+    bent: [f64; 2],
     /// Natural normal in the middle, if it has one.
     pub(super) normal: Option<Vec3>,
 }
@@ -38,7 +40,9 @@ impl Extent {
         normal: Option<Vec3>,
     ) -> Self {
         let (u, v) = (jet.du * hu, jet.dv * hv);
-        let bent = 0.5 * (duu.length() * hu * hu + dvv.length() * hv * hv) + duv.length() * hu * hv;
+        let bent_by = [duu.length() * hu * hu, dvv.length() * hv * hv]
+            .map(|own| 0.5 * own + 0.5 * duv.length() * hu * hv);
+        let bent = bent_by[0] + bent_by[1];
         let radius = (u + v).norm().max((u - v).norm()) + bent;
         let (sag, eased) = normal.map_or((radius, [0.0; 2]), |normal| {
             let off = |bend: &Box3| bend.dot(&normal).magnitude();
@@ -48,7 +52,8 @@ impl Extent {
             let eased = [by_u, by_v].map(|own| 0.75 * own + 0.5 * by_both);
             if sag.is_finite() { (sag.min(radius), eased) } else { (radius, [0.0; 2]) }
         });
-        Self { center: jet.point, radius, sag, eased, strips: strips(normal, [&u, &v], bent), normal }
+        let strips = strips(normal, [&u, &v], bent);
+        Self { center: jet.point, radius, sag, eased, strips, bent: bent_by, normal }
     }
 
     /// That of a part by all that is known of it: no place is farther from its middle than its reach, and where it is split the derivatives tell
@@ -120,6 +125,16 @@ impl Extent {
         let upright = a.cross(b).norm();
         let ways = [a.cross(&normal) * (wide_b / upright), b.cross(&normal) * (wide_a / upright)];
         ways.iter().all(|way| way.iter().all(|x| x.is_finite())).then_some(ways)
+    }
+
+    /// What each side has of how far the part goes along the ways to the ends of both ([`Extent::sides`]): a side that bends makes the part wider across
+    /// itself, too, and halves of the other one are as wide.
+    pub(super) fn shares(&self) -> [[f64; 2]; 2] {
+        let [(_, wide_v), (_, wide_u)] = self.strips;
+        let [by_u, by_v] = self.bent;
+        let of = |bent: f64, wide: f64| if wide > 0.0 { (bent / wide).min(1.0) } else { 0.0 };
+        let (of_v, of_u) = (of(by_v, wide_u), of(by_u, wide_v));
+        [[1.0 - of_v, of_u], [of_v, 1.0 - of_u]]
     }
 
     /// By how much halves of each side are less far from the tangent plane in the middle.
