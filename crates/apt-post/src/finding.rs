@@ -88,13 +88,19 @@ pub enum PostFindingKind {
     CycleExpanded { cycle: SmolStr },
     #[error("CYCLE/{cycle} cannot be expanded; the hole is left out")]
     CycleNotPossible { cycle: SmolStr },
+    #[error(
+        "CYCLE/{cycle} has no code on this machine and is not made of moves either; the statement is left out"
+    )]
+    CycleHasNoCode { cycle: SmolStr },
+    #[error("CYCLE/{cycle} while the spindle turns the other way")]
+    TapDirection { cycle: SmolStr },
     #[error("the feed {feed} of a tap does not fit pitch {pitch} at {speed} rpm")]
     TapFeed { feed: f64, pitch: f64, speed: f64 },
     #[error("STEP {step} is not less than the depth {depth}: one pass")]
     StepNotLessThanDepth { step: f64, depth: f64 },
     #[error("a cycle without points")]
     CycleWithoutPoints,
-    #[error("{holes} holes of a CYCLE that cannot be made are left out")]
+    #[error("{holes} {} of a CYCLE that cannot be made {} left out", if *holes == 1 { "hole" } else { "holes" }, if *holes == 1 { "is" } else { "are" })]
     HolesLeftOut { holes: usize },
     #[error("CYCLE/{cycle} is still on at {word}; it is ended")]
     CycleLeftOn { cycle: SmolStr, word: SmolStr },
@@ -175,6 +181,7 @@ impl PostFindingKind {
             | Kind::NotSupported { .. }
             | Kind::ToolChangeWhile { .. }
             | Kind::TapFeed { .. }
+            | Kind::TapDirection { .. }
             | Kind::StepNotLessThanDepth { .. }
             | Kind::CycleWithoutPoints
             | Kind::CompensationOnArc

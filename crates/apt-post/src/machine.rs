@@ -95,6 +95,10 @@ pub struct MachineDefinition {
     pub units: OutputUnits,
     /// Most characters in a block.
     pub max_block: usize,
+    /// The axis that moves apart in a rapid: first when it goes up, last when it goes down. Not stated for a control whose
+    /// rapids are straight lines.
+    #[serde(default)]
+    pub rapid_axis: Option<LinearAxis>,
     /// Axes by name.
     pub axes: BTreeMap<String, Axis>,
     /// Registers by name. `FR` and `FI` are those of feeds per revolution and of inverse times, where these have other digits than a feed per minute, `F`.
@@ -145,6 +149,26 @@ pub enum OutputUnits {
     Mm,
     /// Inches.
     Inch,
+}
+
+/// One of the axes of every mill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum LinearAxis {
+    X,
+    Y,
+    Z,
+}
+
+impl LinearAxis {
+    /// Its coordinate.
+    pub(crate) fn index(self) -> usize {
+        match self {
+            LinearAxis::X => 0,
+            LinearAxis::Y => 1,
+            LinearAxis::Z => 2,
+        }
+    }
 }
 
 /// A linear axis.
@@ -340,12 +364,15 @@ pub struct Templates {
     pub dwell: String,
     pub message: String,
     pub home: Vec<String>,
+    /// The spindle stopped at the angle `{R}`, in degrees; empty where the control has one angle for it.
+    #[serde(default)]
+    pub spindle_orient: String,
     /// Milliseconds instead of seconds in `{P}`.
     #[serde(default)]
     pub dwell_in_milliseconds: bool,
 }
 
-/// How a cycle is written.
+/// How a cycle is written. `{L}` is how often it is made at a place, where that is more than once.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CycleTemplate {
@@ -468,6 +495,7 @@ impl MachineDefinition {
             ("spindle_on", &t.spindle_on),
             ("dwell", &t.dwell),
             ("message", &t.message),
+            ("spindle_orient", &t.spindle_orient),
         ];
         all.extend(single.map(|(name, text)| (format!("templates.{name}"), text.clone())));
         for (name, cycle) in &self.cycles {

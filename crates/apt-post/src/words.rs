@@ -82,6 +82,20 @@ pub(crate) fn feed_unit(word: &str) -> Option<(FeedMode, LengthUnit)> {
     })
 }
 
+/// Types of cycle that the language has. Which of them a machine makes, its definition says.
+const CYCLES: [&str; 22] = [
+    "AUTO", "AVOID", "BORE", "BORE7", "BORE8", "BORE9", "BRKCHP", "CBORE", "CIRCUL", "CSINK", "DEEP",
+    "DRILL", "FACE", "MILL", "REAM", "REVERS", "ROUGH", "SHIFT", "TAP", "THREAD", "THRU", "TURN",
+];
+
+/// What is wrong with a type of cycle that a machine does not make: there is no such type, or no code for it.
+pub(crate) fn cycle_not_made(arguments: &Arguments<'_>, kind: &SmolStr) -> PostFindingKind {
+    if CYCLES.contains(&kind.as_str()) {
+        return PostFindingKind::CycleHasNoCode { cycle: kind.clone() };
+    }
+    PostFindingKind::UnknownArgument { word: arguments.word.clone(), argument: kind.clone() }
+}
+
 /// A feed in a CYCLE.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum CycleFeed {
@@ -109,6 +123,12 @@ pub(crate) struct CycleOrder {
     pub(crate) step: Option<f64>,
     /// Seconds, or revolutions when the second field is true.
     pub(crate) dwell: Option<(f64, bool)>,
+    /// How far the tool steps aside at the bottom: the amount, or its parts along X and Y.
+    pub(crate) shift: Option<(f64, Option<f64>)>,
+    /// Where the spindle stops for it, in degrees.
+    pub(crate) orientation: Option<f64>,
+    /// How often each hole is made.
+    pub(crate) times: Option<f64>,
 }
 
 /// The depth of `FEDTO,diameter,angle`: where a tool with a point of this angle has the diameter.
@@ -134,6 +154,9 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
         feed: None,
         step: None,
         dwell: None,
+        shift: None,
+        orientation: None,
+        times: None,
     };
     let mut bare: Vec<f64> = Vec::new();
     let mut items = rest.iter().peekable();
@@ -177,7 +200,8 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
                 }
                 continue;
             }
-            "DEPTH" | "FEDTO" | "RAPTO" | "CLEAR" | "STEP" | "INCR" | "DWELL" | "TPI" => {}
+            "DEPTH" | "FEDTO" | "RAPTO" | "CLEAR" | "STEP" | "INCR" | "DWELL" | "TPI" | "OFFSET"
+            | "ORIENT" | "TIMES" | "REPEAT" => {}
             _ => {
                 return Err(PostFindingKind::UnknownArgument {
                     word: arguments.word.clone(),
@@ -200,12 +224,22 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
             "RAPTO" | "CLEAR" => order.clearance = Some(number),
             "STEP" | "INCR" => order.step = Some(number),
             "DWELL" => order.dwell = Some((number, false)),
+            "OFFSET" => {
+                let second = items.next_if(|item| matches!(item, ClWord::Number(_)));
+                let second = second.and_then(|item| match item {
+                    ClWord::Number(number) => Some(*number),
+                    ClWord::Word(_) => None,
+                });
+                order.shift = Some((number, second));
+            }
+            "ORIENT" => order.orientation = Some(number),
+            "TIMES" | "REPEAT" => order.times = Some(number),
             _ => order.feed = Some(CycleFeed::ThreadsPerInch(number)),
         }
     }
     let mut bare = bare.into_iter();
     if order.depth.is_none() {
-        order.depth = bare.next().map(f64::abs);
+        order.depth = bare.next();
     }
     if order.clearance.is_none() {
         order.clearance = bare.next();

@@ -353,7 +353,7 @@ fn findings() {
         ("CUTCOM/LEFT,1\n", PostFindingKind::CompensationUnused),
         ("FEDRAT/5\nCYCLE/DRILL,DEPTH,1,CLEAR,.1\nCYCLE/OFF\n", PostFindingKind::CycleWithoutPoints),
         (
-            "CYCLE/REVERS,DEPTH,1,CLEAR,.1,IPM,5\nGOTO/1,0,0\nGOTO/2,0,0\nCYCLE/OFF\n",
+            "CYCLE/CIRCUL,DEPTH,1,CLEAR,.1,IPM,5\nGOTO/1,0,0\nGOTO/2,0,0\nCYCLE/OFF\n",
             PostFindingKind::HolesLeftOut { holes: 2 },
         ),
         (

@@ -146,7 +146,7 @@ fn arcs_in_other_planes_are_chords_while_the_control_compensates() {
 fn holes_of_a_cycle_that_cannot_be_made_are_no_motions() {
     // Neither a type that the machine does not know nor one with a mistake, also behind one that is sound.
     for cycle in [
-        "CYCLE/REVERS,DEPTH,10,RAPTO,3,MMPM,100\n",
+        "CYCLE/CIRCUL,DEPTH,10,RAPTO,3,MMPM,100\n",
         "CYCLE/DRILL,RAPTO,3,MMPM,100\n",
         "CYCLE/DRILL,DEPTH,-10,RAPTO,3,MMPM,100\n",
         "CYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/DRILL,DEPTH,10,FOO,3\n",
@@ -186,7 +186,7 @@ fn a_cycle_word_without_holes_leaves_no_motion_out() {
 
 #[test]
 fn a_cycle_is_not_resumed_behind_one_that_cannot_be_made() {
-    let statements = "RAPID\nGOTO/0,0,50\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/REVERS,DEPTH,3,RAPTO,3,MMPM,9\n\
+    let statements = "RAPID\nGOTO/0,0,50\nCYCLE/DRILL,DEPTH,10,RAPTO,3,MMPM,100\nGOTO/10,0,0\nCYCLE/CIRCUL,DEPTH,3,RAPTO,3,MMPM,9\n\
                       GOTO/20,0,0\nCYCLE/OFF\nCYCLE/ON\nGOTO/30,0,0\nCYCLE/OFF\n";
     for name in MACHINES {
         let tape = tape_of(name, statements);

@@ -184,6 +184,32 @@ fn drilling_in_every_cycle() {
 }
 
 #[test]
+fn cycles_of_two_tools_and_of_moves() {
+    let program = |direction: &str, cycle: &str| {
+        format!(
+            "UNITS/MM\nLOADTL/5\nSPINDL/600,{direction}\nRAPID\nGOTO/0,0,50\nCYCLE/{cycle},DEPTH,10,CLEAR,3,MMPM,600\n\
+             GOTO/10,10,0\nGOTO/35,10,0\nCYCLE/OFF\nRAPID\nGOTO/0,0,50\nFINI\n"
+        )
+    };
+    for (direction, cycle, bottoms) in [
+        ("CCLW", "REVERS", 1),
+        ("CLW", "SHIFT,OFFSET,.5", 1),
+        ("CLW", "SHIFT,OFFSET,.3,-.4,ORIENT,45,TIMES,2", 2),
+        ("CLW", "DRILL,TIMES,3", 3),
+        ("CLW", "BORE9,DWELL,1,REPEAT,2", 2),
+    ] {
+        let calls = interpret(&tape(&program(direction, cycle)).text(), &[5]);
+        for x in [10.0, 35.0] {
+            let made = calls
+                .iter()
+                .filter(|call| matches!(call, Call::Feed(end) if near(*end, [x, 10.0, -10.0], TOLERANCE)))
+                .count();
+            assert_eq!(made, bottoms, "{cycle}: {calls:?}");
+        }
+    }
+}
+
+#[test]
 fn retract_planes_of_a_cycle() {
     let program = |retract: &str| {
         format!(

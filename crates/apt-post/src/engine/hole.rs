@@ -6,18 +6,17 @@ use smol_str::SmolStr;
 
 use super::{Engine, motion::AXES};
 use crate::{
-    control::{Values, Word},
+    control::Values,
     finding::PostFindingKind,
     machine::CycleTemplate,
-    words::{Arguments, CycleFeed, FeedMode, LengthUnit, Retract, cycle_order, feed_unit},
+    words::{
+        Arguments, CycleFeed, CycleOrder, FeedMode, LengthUnit, Retract, cycle_not_made, cycle_order,
+        feed_unit,
+    },
 };
 
 /// Part by which the feed of a tap may differ from pitch times speed.
 const TAP_FEED_FRACTION: f64 = 0.01;
-/// Most passes into which a hole is expanded.
-const MOST_PASSES: u32 = 10_000;
-/// Gap left above the last depth when a peck comes back, in millimetres.
-const PECK_GAP_MM: f64 = 0.25;
 const SECONDS_PER_MINUTE: f64 = 60.0;
 const MILLISECONDS_PER_SECOND: f64 = 1000.0;
 
@@ -26,31 +25,57 @@ const MOVES_AND_ENDS: &str = "MILL";
 /// What stands in the place of a type and makes no holes: how cycles are written, and how high the tool goes between them.
 const WITHOUT_HOLES: [&str; 3] = [MOVES_AND_ENDS, "AUTO", "AVOID"];
 
+/// The cycles of the definitions whose statements need something of their own.
+const TAP: &str = "tap";
+const LEFT_HAND_TAP: &str = "tap-left";
+pub(super) const SHIFT: &str = "shift";
+/// The register of how often a cycle is made at a place, and the most that anyone can mean.
+const REPEATS: &str = "L";
+const MOST_REPEATS: f64 = 9999.0;
+
 /// A cycle in force. Lengths in tape units.
 #[derive(Debug, Clone)]
 pub(super) struct Cycle {
     /// The word of the statement, for messages.
-    word: SmolStr,
+    pub(super) word: SmolStr,
     /// The cycle's name in the machine definition.
-    name: String,
-    depth: f64,
-    clearance: f64,
+    pub(super) name: String,
+    pub(super) depth: f64,
+    pub(super) clearance: f64,
     retract: Retract,
-    feed: Option<f64>,
+    pub(super) feed: Option<f64>,
     /// Whether the statement names no feed: then it is the one in force at each hole.
     feed_in_force: bool,
-    step: Option<f64>,
-    dwell: f64,
+    pub(super) step: Option<f64>,
+    pub(super) dwell: f64,
     pitch: Option<f64>,
+    /// How far the tool steps aside at the bottom, along X and Y.
+    pub(super) shift: Option<(f64, f64)>,
+    /// Where the spindle stops for it, in degrees.
+    pub(super) orientation: Option<f64>,
+    /// How often each hole is made.
+    pub(super) times: u32,
     /// What the control has in force, once it is in the cycle.
     open: Option<Open>,
-    holes: usize,
+    pub(super) holes: usize,
     place: (u32, u32),
 }
 
+impl Cycle {
+    /// Whether it cuts a thread, which the spindle and the feed have to go together for.
+    pub(super) fn taps(&self) -> bool {
+        is_tap(&self.name)
+    }
+}
+
+fn is_tap(name: &str) -> bool {
+    name == TAP || name == LEFT_HAND_TAP
+}
+
 /// A CYCLE that nothing can be made of. The positions that follow are tops of holes, which are no way to go at feed rate.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct RefusedCycle {
+    word: SmolStr,
     place: (u32, u32),
     holes: usize,
 }
@@ -82,7 +107,7 @@ impl Engine<'_> {
                     Some(cycle) => self.cycle = Some(Cycle { open: None, holes: 0, ..cycle }),
                     None => {
                         self.find(arguments.missing("a cycle before it"));
-                        self.refuse_cycle();
+                        self.refuse_cycle(arguments);
                     }
                 }
                 return;
@@ -91,8 +116,7 @@ impl Engine<'_> {
                 if word == MOVES_AND_ENDS {
                     self.end_cycle();
                 }
-                let (word, argument) = (arguments.word.clone(), word.clone());
-                return self.find(PostFindingKind::UnknownArgument { word, argument });
+                return self.find(cycle_not_made(arguments, word));
             }
             _ => {}
         }
@@ -100,12 +124,17 @@ impl Engine<'_> {
         self.cycle = self.new_cycle(arguments);
         self.was_refused = self.cycle.is_none();
         if self.was_refused {
-            self.refuse_cycle();
+            self.refuse_cycle(arguments);
         }
     }
 
-    fn refuse_cycle(&mut self) {
-        self.refused_cycle = Some(RefusedCycle { place: self.control.place, holes: 0 });
+    fn refuse_cycle(&mut self, arguments: &Arguments<'_>) {
+        let word = arguments.items.iter().find_map(|item| match item {
+            ClWord::Word(word) => Some(word.clone()),
+            ClWord::Number(_) => None,
+        });
+        let (word, place) = (word.unwrap_or_default(), self.control.place);
+        self.refused_cycle = Some(RefusedCycle { word, place, holes: 0 });
     }
 
     /// The cycle that a statement asks for, behind the one before; none where it is told why there is none.
@@ -118,12 +147,12 @@ impl Engine<'_> {
                 return None;
             }
         };
+        self.rapid_axis = None;
         if let Some(place) = self.rapid.take() {
             self.find_at(place, PostFindingKind::RapidUnused);
         }
         let Some(name) = self.machine.cycle_words.get(order.kind.as_str()).cloned() else {
-            let (word, argument) = (arguments.word.clone(), order.kind.clone());
-            self.find(PostFindingKind::UnknownArgument { word, argument });
+            self.find(cycle_not_made(arguments, &order.kind));
             return None;
         };
         let scale = self.scale;
@@ -137,9 +166,10 @@ impl Engine<'_> {
             return None;
         };
         if depth <= 0.0 || depth.is_nan() {
-            let word = arguments.word.clone();
-            self.find(PostFindingKind::BadValue { word, argument: "DEPTH".into(), value: depth });
-            return None;
+            return self.bad_value(arguments, "DEPTH", depth);
+        }
+        if clearance < 0.0 || clearance.is_nan() {
+            return self.bad_value(arguments, "RAPTO", clearance);
         }
         let step = order.step.map(|step| step * scale).filter(|step| *step > 0.0);
         let pecks = matches!(name.as_str(), "peck" | "chipbreak");
@@ -155,18 +185,11 @@ impl Engine<'_> {
             }
             None => None,
         };
-        let (feed, pitch) = self.cycle_feed(arguments, order.feed, name == "tap")?;
-        let dwell = match order.dwell {
-            Some((turns, true)) => match self.spindle.speed {
-                Some(speed) if speed > 0.0 => turns / speed * SECONDS_PER_MINUTE,
-                _ => {
-                    self.find(PostFindingKind::NoSpindleSpeed);
-                    return None;
-                }
-            },
-            Some((seconds, false)) => seconds,
-            None => 0.0,
-        };
+        let (feed, pitch) = self.cycle_feed(arguments, order.feed, is_tap(&name))?;
+        let dwell = self.cycle_dwell(&order)?;
+        let shift = self.cycle_shift(arguments, &order, &name)?;
+        let times = self.cycle_times(arguments, &order, &name)?;
+        self.check_direction(&name, &order.kind);
         let retract = match order.retract {
             Retract::Initial => Retract::Initial,
             Retract::Above(height) => Retract::Above(height * scale),
@@ -184,10 +207,97 @@ impl Engine<'_> {
             step,
             dwell,
             pitch,
+            shift,
+            orientation: order.orientation,
+            times,
             open: None,
             holes: 0,
             place,
         })
+    }
+
+    fn bad_value<T>(&mut self, arguments: &Arguments<'_>, argument: &str, value: f64) -> Option<T> {
+        let (word, argument) = (arguments.word.clone(), argument.into());
+        self.find(PostFindingKind::BadValue { word, argument, value });
+        None
+    }
+
+    fn not_used(&mut self, arguments: &Arguments<'_>, argument: &str) {
+        let (word, argument) = (arguments.word.clone(), argument.into());
+        self.find(PostFindingKind::ArgumentNotUsed { word, argument });
+    }
+
+    /// Seconds at the bottom of a hole; none when the statement has to be left out.
+    fn cycle_dwell(&mut self, order: &CycleOrder) -> Option<f64> {
+        match (order.dwell, self.spindle.speed) {
+            (Some((turns, true)), Some(speed)) if speed > 0.0 => Some(turns / speed * SECONDS_PER_MINUTE),
+            (Some((_, true)), _) => {
+                self.find(PostFindingKind::NoSpindleSpeed);
+                None
+            }
+            (Some((seconds, false)), _) => Some(seconds),
+            (None, _) => Some(0.0),
+        }
+    }
+
+    /// How far the tool steps aside at the bottom, where the cycle does; none when the statement has to be left out.
+    fn cycle_shift(
+        &mut self,
+        arguments: &Arguments<'_>,
+        order: &CycleOrder,
+        name: &str,
+    ) -> Option<Option<(f64, f64)>> {
+        let by_moves = name == SHIFT && !self.machine.cycles.contains_key(name);
+        let turns = by_moves && !self.machine.templates.spindle_orient.is_empty();
+        if order.orientation.is_some() && !turns {
+            self.not_used(arguments, "ORIENT");
+        }
+        match order.shift {
+            None if name == SHIFT => {
+                self.find(arguments.missing("OFFSET"));
+                None
+            }
+            None => Some(None),
+            Some(_) if name != SHIFT => {
+                self.not_used(arguments, "OFFSET");
+                Some(None)
+            }
+            Some((first, second)) => {
+                let second_part = second.unwrap_or(0.0);
+                let amount = first.hypot(second_part);
+                if amount == 0.0 || !amount.is_finite() {
+                    return self.bad_value(arguments, "OFFSET", first);
+                }
+                if second_part != 0.0 && !by_moves {
+                    self.not_used(arguments, "the direction of OFFSET");
+                }
+                Some(Some((first * self.scale, second_part * self.scale)))
+            }
+        }
+    }
+
+    /// How often each hole is made; none when the statement has to be left out.
+    fn cycle_times(&mut self, arguments: &Arguments<'_>, order: &CycleOrder, name: &str) -> Option<u32> {
+        let Some(times) = order.times else { return Some(1) };
+        if !((1.0..=MOST_REPEATS).contains(&times) && times.fract() == 0.0) {
+            return self.bad_value(arguments, "TIMES", times);
+        }
+        let writes = |text: &String| crate::template::register_names(text).iter().any(|name| name == REPEATS);
+        let canned = self.machine.cycles.get(name).filter(|template| template.each.is_empty());
+        if canned.is_some_and(|template| !template.on.iter().all(writes) || !template.next.iter().all(writes))
+        {
+            self.not_used(arguments, "TIMES");
+            return Some(1);
+        }
+        Some(times as u32)
+    }
+
+    /// Reports a tap that the spindle does not turn into the hole.
+    fn check_direction(&mut self, name: &str, kind: &SmolStr) {
+        let left = name == LEFT_HAND_TAP;
+        if is_tap(name) && self.spindle.on && self.spindle.counterclockwise != left {
+            self.find(PostFindingKind::TapDirection { cycle: kind.clone() });
+        }
     }
 
     /// What the tool goes in a minute at the feed in force; none of an inverse time, which tells nothing of a hole.
@@ -276,7 +386,7 @@ impl Engine<'_> {
 
     /// Tells what a CYCLE with a mistake has left out.
     fn end_refused(&mut self) {
-        if let Some(RefusedCycle { place, holes: holes @ 1.. }) = self.refused_cycle.take() {
+        if let Some(RefusedCycle { place, holes: holes @ 1.., .. }) = self.refused_cycle.take() {
             self.find_at(place, PostFindingKind::HolesLeftOut { holes });
         }
     }
@@ -290,8 +400,9 @@ impl Engine<'_> {
 
     /// Reports a cycle that a statement ends which is not meant to.
     pub(super) fn left_on(&mut self, word: &SmolStr) {
-        if let Some(cycle) = self.cycle.as_ref().filter(|cycle| cycle.holes > 0) {
-            let cycle = cycle.word.clone();
+        let made = self.cycle.as_ref().filter(|cycle| cycle.holes > 0).map(|cycle| &cycle.word);
+        let refused = self.refused_cycle.as_ref().filter(|cycle| cycle.holes > 0).map(|cycle| &cycle.word);
+        if let Some(cycle) = made.or(refused).cloned() {
             self.find(PostFindingKind::CycleLeftOn { cycle, word: word.clone() });
         }
     }
@@ -335,7 +446,7 @@ impl Engine<'_> {
             return;
         }
         // What a tap goes is a matter of its thread.
-        if cycle.feed_in_force && cycle.name != "tap" {
+        if cycle.feed_in_force && !cycle.taps() {
             cycle.feed = self.feed_in_force();
         }
         if cycle.feed.is_none() {
@@ -350,14 +461,21 @@ impl Engine<'_> {
         match machine.cycles.get(&cycle.name) {
             Some(template) if !template.each.is_empty() => {
                 let values = self.cycle_values(&cycle, top, plane, level);
-                self.control.templates(&template.each, &values);
+                for _ in 0..cycle.times {
+                    if self.patience.ends_after(1) {
+                        break;
+                    }
+                    self.control.templates(&template.each, &values);
+                }
             }
             Some(template) => self.canned(&mut cycle, template, top, plane, level),
             None => self.expand(&cycle, top, plane, level),
         }
         self.position = Some(self.rounded(Vec3::new(top.x, top.y, level)));
-        // The control holds the bottom of the hole as its last Z, and stands elsewhere.
-        self.control.forget(&[AXES[2]]);
+        // A control with the cycle holds the bottom of the hole as its last Z, and stands elsewhere.
+        if machine.cycles.contains_key(&cycle.name) {
+            self.control.forget(&[AXES[2]]);
+        }
         self.cycle = Some(cycle);
     }
 
@@ -406,7 +524,8 @@ impl Engine<'_> {
             .number("ZR", plane)
             .number("ZI", level)
             .number("P", if milliseconds { cycle.dwell * MILLISECONDS_PER_SECOND } else { cycle.dwell })
-            .optional("Q", cycle.step)
+            .optional("Q", cycle.shift.map(|(x, y)| x.hypot(y)).or(cycle.step))
+            .optional(REPEATS, (cycle.times > 1).then_some(f64::from(cycle.times)))
             .optional("F", cycle.feed)
             .optional("K", cycle.pitch)
             .optional("S", self.spindle.speed)
@@ -435,56 +554,6 @@ impl Engine<'_> {
         }
         self.control.template(on, &values);
         cycle.open = Some(Open { top: top.z, feed: cycle.feed });
-    }
-
-    /// The cycle as single moves.
-    fn expand(&mut self, cycle: &Cycle, top: Vec3, plane: f64, level: f64) {
-        if matches!(cycle.name.as_str(), "tap") {
-            return self.find(PostFindingKind::CycleNotPossible { cycle: cycle.word.clone() });
-        }
-        if cycle.holes == 1 {
-            self.find(PostFindingKind::CycleExpanded { cycle: cycle.word.clone() });
-        }
-        let at = |z: f64| Vec3::new(top.x, top.y, z);
-        let bottom = top.z - cycle.depth;
-        let over = self.position.map_or(level, |position| position.z);
-        self.rapid_to(at(over));
-        self.rapid_to(at(plane));
-        let gap = self.tape_length(PECK_GAP_MM);
-        let step = cycle.step.unwrap_or(cycle.depth + cycle.clearance);
-        let passes = (((plane - bottom) / step).ceil() as u32).clamp(1, MOST_PASSES);
-        for pass in 1..=passes {
-            if self.patience.ends_after(1) {
-                return;
-            }
-            let depth = if pass == passes { bottom } else { plane - step * f64::from(pass) };
-            self.feed_down(at(depth), cycle.feed);
-            if pass < passes {
-                let lifted = if cycle.name == "chipbreak" { depth + gap } else { plane };
-                self.rapid_to(at(lifted));
-                if cycle.name == "peck" {
-                    self.rapid_to(at(depth + gap));
-                }
-            }
-        }
-        if cycle.dwell > 0.0 {
-            self.dwell_block(cycle.dwell);
-        }
-        if cycle.name == "ream" {
-            self.feed_down(at(plane), cycle.feed);
-        }
-        self.rapid_to(at(level));
-    }
-
-    fn feed_down(&mut self, position: Vec3, feed: Option<f64>) {
-        let machine = self.machine;
-        let mut words = Self::axis_words(position);
-        words.extend(feed.map(|value| Word { register: "F", value, force: false }));
-        if self.feed_mode(&machine.codes.feed_per_minute) {
-            self.control.code(&machine.codes.feed_per_minute);
-        }
-        self.control.motion(&[], &[&machine.codes.linear], &words);
-        self.position = Some(self.rounded(position));
     }
 
     /// A dwell of some seconds.

@@ -1,5 +1,6 @@
 //! The post-processor itself: takes the records in order and makes blocks.
 
+mod expansion;
 mod hole;
 mod motion;
 mod start;
@@ -18,7 +19,7 @@ use smol_str::SmolStr;
 use crate::{
     control::{Control, Values},
     finding::PostFindingKind,
-    machine::MachineDefinition,
+    machine::{LinearAxis, MachineDefinition},
     tape::{PostOptions, Tape},
     words::{FeedMode, LengthUnit},
 };
@@ -144,6 +145,8 @@ struct Engine<'a> {
     /// Whether it may stand elsewhere, since blocks that may be skipped have come after it was last told where to go.
     skipped: bool,
     rapid: Option<(u32, u32)>,
+    /// The axis that the RAPID in force lets move apart.
+    rapid_axis: Option<LinearAxis>,
     feed: Option<Feed>,
     /// The feed before the inverse times of FEDRAT/INVERS, for when they end.
     feed_before_times: Option<Feed>,
@@ -215,6 +218,7 @@ impl<'a> Engine<'a> {
             position: None,
             skipped: false,
             rapid: None,
+            rapid_axis: None,
             feed: None,
             feed_before_times: None,
             spindle: Spindle::default(),

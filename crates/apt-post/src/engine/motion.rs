@@ -51,6 +51,7 @@ impl Engine<'_> {
                 self.leave_cycle();
                 self.rapid_to(position);
             }
+            self.rapid_axis = None;
         } else if self.cycle.is_some() {
             self.flush();
             if circle.is_some() {
@@ -117,10 +118,28 @@ impl Engine<'_> {
             self.control.template(&machine.templates.first_z, &values);
         } else {
             self.work_offset_now();
+            if let Some(corner) = self.rapid_corner(position) {
+                self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(corner));
+            }
             self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(position));
         }
         self.skipped = false;
         self.position = Some(self.rounded(position));
+    }
+
+    /// Where a rapid turns, if one of its axes moves apart: that axis goes first when it goes up, and last when it goes
+    /// down, so that the tool is over the part while it goes aside. None where nobody knows from where the tool comes.
+    fn rapid_corner(&self, position: Vec3) -> Option<Vec3> {
+        let apart = self.rapid_axis.or(self.machine.rapid_axis)?.index();
+        let here = self.position.filter(|_| !self.skipped)?;
+        let there = self.rounded(position);
+        let aside = (0..AXES.len()).any(|axis| axis != apart && there[axis] != here[axis]);
+        if !aside || there[apart] == here[apart] {
+            return None;
+        }
+        let mut corner = if there[apart] > here[apart] { here } else { position };
+        corner[apart] = position[apart].max(here[apart]);
+        Some(corner)
     }
 
     /// A rapid move to a height where nobody knows from where: the axis of the spindle alone moves.

@@ -9,6 +9,7 @@ use crate::{
     control::Values,
     finding::PostFindingKind,
     form::{self, Treatment},
+    machine::LinearAxis,
     words::{Arguments, FeedMode, LengthUnit, feed_unit},
 };
 
@@ -140,12 +141,19 @@ impl Engine<'_> {
 
     fn rapid_statement(&mut self, arguments: &Arguments<'_>) {
         if arguments.has("OFF") {
-            self.rapid = None;
+            (self.rapid, self.rapid_axis) = (None, None);
             return;
         }
         if let Some(place) = self.rapid.replace(self.control.place) {
             self.find_at(place, PostFindingKind::RapidUnused);
         }
+        let stated = [
+            ("XAXIS", LinearAxis::X),
+            ("YAXIS", LinearAxis::Y),
+            ("ZAXIS", LinearAxis::Z),
+            ("TOOL", LinearAxis::Z),
+        ];
+        self.rapid_axis = stated.into_iter().find(|(word, _)| arguments.has(word)).map(|(_, axis)| axis);
     }
 
     /// Reports a feed in the unit that the program does not use.

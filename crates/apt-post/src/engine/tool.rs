@@ -126,11 +126,18 @@ impl Engine<'_> {
         let Some(speed) = self.spindle_speed(arguments) else { return };
         let counterclockwise =
             if arguments.has("ON") { self.spindle.counterclockwise } else { arguments.has("CCLW") };
+        self.spindle = Spindle { speed: Some(speed), counterclockwise, on: true, ..self.spindle };
+        self.spindle_again();
+    }
+
+    /// Lets the spindle turn as it was last told to.
+    pub(super) fn spindle_again(&mut self) {
+        let machine = self.machine;
+        let Spindle { speed: Some(speed), counterclockwise, on: true, .. } = self.spindle else { return };
         let direction = match counterclockwise {
             true => machine.codes.spindle_counterclockwise.clone(),
             false => machine.codes.spindle_clockwise.clone(),
         };
-        self.spindle = Spindle { speed: Some(speed), counterclockwise, on: true, ..self.spindle };
         let values = Values::default().number("S", speed).text("direction", direction);
         self.control.template(&machine.templates.spindle_on, &values);
     }

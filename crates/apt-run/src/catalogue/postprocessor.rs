@@ -111,6 +111,8 @@ fn code(kind: &Kind) -> &'static str {
         Kind::CycleWithoutPoints => "APT0870",
         Kind::CycleLeftOn { .. } => "APT0871",
         Kind::HolesLeftOut { .. } => "APT0895",
+        Kind::CycleHasNoCode { .. } => "APT0896",
+        Kind::TapDirection { .. } => "APT0897",
         Kind::NothingOn { .. } => "APT0872",
         Kind::CycleOnArc { .. } => "APT0873",
         Kind::ArcAsChords { .. } => "APT0875",
@@ -163,6 +165,10 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         Kind::NoCode { .. } => "add the code to the definition of the machine",
         Kind::ToolChangeWhile { .. } => "it is switched off first; SPINDL/OFF before the change says so",
         Kind::TapFeed { .. } => "pitch times speed is used; correct FEDRAT or TPI",
+        Kind::CycleHasNoCode { .. } => {
+            "give the moves by GOTO and FEDRAT, or add the cycle to the definition of the machine"
+        }
+        Kind::TapDirection { .. } => "TAP wants SPINDL with CLW, REVERS with CCLW",
         Kind::StepNotLessThanDepth { .. } => "use a smaller STEP, or the plain cycle",
         Kind::HolesLeftOut { .. } => "correct the CYCLE, or give the holes by GOTO and FEDRAT",
         Kind::CycleWithoutPoints => "give the positions of the holes after CYCLE",
