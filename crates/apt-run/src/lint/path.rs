@@ -172,6 +172,10 @@ enum Mode {
 }
 
 impl Mode {
+    fn is_side(self) -> bool {
+        matches!(self, Mode::DriveSide | Mode::PartSide)
+    }
+
     fn words(self) -> &'static str {
         match self {
             Mode::InsideTolerance => "inside tolerance",
@@ -335,7 +339,9 @@ impl Walk {
         // TOLER sets two modes; the other one may still serve.
         let serves = self.waiting.values().any(|other| *other == before);
         let plain = before.frame.is_none() && origin.frame.is_none();
-        if plain && !serves && place(&before) != place(origin) {
+        // Two sides in one statement are an error of their own.
+        let is_error = mode.is_side() && before.isn == origin.isn;
+        if plain && !is_error && !serves && place(&before) != place(origin) {
             self.add(LintKind::ModeReplaced { mode: mode.words() }, &before, Some(origin));
         }
     }

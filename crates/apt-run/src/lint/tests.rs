@@ -202,6 +202,7 @@ fn modal_statements_that_are_replaced() {
     assert_eq!(found(&part("TOLER/.01", "$$", "INTOL/.02")), [], "the outside tolerance still serves");
     let called = "M=MACRO/\nMAXDP/1\nTERMAC\nCALL/M\nMAXDP/2\nFROM/0,0,0\nGOTO/1,1,1\nFINI\n";
     assert_eq!(found(called), [], "a macro serves other places too");
+    assert_eq!(found(&part("TLLFT,TLRGT", "$$", "PSIS/PL")), [], "two sides in one statement are APT0071");
 }
 
 #[test]
