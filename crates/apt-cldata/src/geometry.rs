@@ -9,6 +9,14 @@ const ARC_SAMPLE_ANGLE: f64 = 5.0 * std::f64::consts::PI / 180.0;
 /// What a number of steps may be above a whole number without one more being needed: one arc that is stated in two forms is sampled alike.
 const STEP_ROUNDING: f64 = 1e-6;
 
+/// The depth of a chamfer: how far down a tool with a point of this angle, in degrees, has the diameter. None of an angle
+/// that is no point's.
+pub fn chamfer_depth(diameter: f64, angle: f64) -> Option<f64> {
+    const STRAIGHT_DEGREES: f64 = 180.0;
+    let pointed = angle > 0.0 && angle < STRAIGHT_DEGREES;
+    pointed.then(|| diameter / 2.0 / (angle / 2.0).to_radians().tan())
+}
+
 /// A circle in space, as a CL file states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpaceCircle {

@@ -1,6 +1,6 @@
 //! Reading the arguments of post-processor words: keywords may stand in any order.
 
-use apt_cldata::record::ClWord;
+use apt_cldata::{geometry::chamfer_depth, record::ClWord};
 use smol_str::SmolStr;
 
 use crate::finding::PostFindingKind;
@@ -131,15 +131,6 @@ pub(crate) struct CycleOrder {
     pub(crate) times: Option<f64>,
 }
 
-/// The depth of `FEDTO,diameter,angle`: where a tool with a point of this angle has the diameter.
-fn chamfer_depth(arguments: &Arguments<'_>, diameter: f64, angle: f64) -> Result<f64, PostFindingKind> {
-    const STRAIGHT_DEGREES: f64 = 180.0;
-    if angle > 0.0 && angle < STRAIGHT_DEGREES {
-        return Ok(diameter / 2.0 / (angle / 2.0).to_radians().tan());
-    }
-    Err(PostFindingKind::BadValue { word: arguments.word.clone(), argument: "angle".into(), value: angle })
-}
-
 /// Reads `CYCLE/type, ...` with couples in any order, and with the bare numbers of the CAM systems: depth, feed if the
 /// unit follows it, clearance.
 pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostFindingKind> {
@@ -218,7 +209,12 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
                 order.depth = Some(number.abs());
                 if let Some(ClWord::Number(angle)) = items.peek() {
                     items.next();
-                    order.depth = Some(chamfer_depth(arguments, number.abs(), *angle)?);
+                    let bad = || PostFindingKind::BadValue {
+                        word: arguments.word.clone(),
+                        argument: "angle".into(),
+                        value: *angle,
+                    };
+                    order.depth = Some(chamfer_depth(number.abs(), *angle).ok_or_else(bad)?);
                 }
             }
             "RAPTO" | "CLEAR" => order.clearance = Some(number),

@@ -7,6 +7,7 @@
 use smol_str::SmolStr;
 
 use crate::{
+    geometry::chamfer_depth,
     record::ClWord,
     text::dialects::{CycleForm, CyclePart, Form},
 };
@@ -17,7 +18,9 @@ use super::words::{is_word, word};
 const FEEDS: [&str; 7] = ["IPM", "IPR", "MMPM", "MMPR", "PERMIN", "PERREV", "TPI"];
 /// Cycles that go in steps: withdrawn from the hole after each, or lifted a little so that the chip breaks.
 const STEPPED: [&str; 2] = ["DEEP", "THRU"];
-const DEPTHS: [&str; 2] = ["DEPTH", "FEDTO"];
+/// The depth that may be stated by the diameter that a pointed tool has there, and the angle of its point.
+const CHAMFER: &str = "FEDTO";
+const DEPTHS: [&str; 2] = ["DEPTH", CHAMFER];
 const CLEARANCES: [&str; 2] = ["CLEAR", "RAPTO"];
 const STEPS: [&str; 2] = ["INCR", "STEP"];
 const RETRACTS: [&str; 3] = ["RETURN", "RTRCTO", "RETRCT"];
@@ -26,6 +29,8 @@ const RETRACTS: [&str; 3] = ["RETURN", "RTRCTO", "RETRCT"];
 #[derive(Debug, Default, Clone, PartialEq)]
 struct Hole {
     depth: Option<f64>,
+    /// Diameter and angle of a chamfer, of which the depth comes.
+    chamfer: Option<(f64, f64)>,
     clearance: Option<f64>,
     /// Unit and value.
     feed: Option<(ClWord, f64)>,
@@ -79,6 +84,14 @@ fn read(mut list: &[ClWord], form: &CycleForm) -> Option<Hole> {
                 taken = 0;
             }
             (unit, Some(value)) if is_word(unit, &FEEDS) => hole.feed = Some((unit.clone(), value)),
+            (depth, Some(diameter)) if is_chamfer(depth, more) => {
+                taken = 2;
+                let [_, ClWord::Number(angle), ..] = more else { return None };
+                hole.chamfer = Some((diameter.abs(), *angle));
+                // The sign of an offset is of the form, that of a depth is not.
+                let depth = chamfer_depth(diameter.abs(), *angle)?;
+                hole.depth = Some(if form.depth_signed { -depth } else { depth });
+            }
             (depth, Some(value)) if is_word(depth, &DEPTHS) => hole.depth = Some(value),
             (clear, Some(value)) if is_word(clear, &CLEARANCES) && !by_place => hole.clearance = Some(value),
             (step, Some(_)) if is_word(step, &STEPS) => {
@@ -108,6 +121,11 @@ fn read(mut list: &[ClWord], form: &CycleForm) -> Option<Hole> {
     Some(hole)
 }
 
+/// Whether a depth is that of a chamfer: `FEDTO,diameter,angle`.
+fn is_chamfer(depth: &ClWord, behind: &[ClWord]) -> bool {
+    is_word(depth, &[CHAMFER]) && numbers_at_head(behind) == 2
+}
+
 fn numbers_at_head(list: &[ClWord]) -> usize {
     list.iter().take_while(|one| matches!(one, ClWord::Number(_))).count()
 }
@@ -132,6 +150,12 @@ fn write(hole: &Hole, form: &CycleForm) -> Option<Vec<ClWord>> {
         match part {
             CyclePart::Depth => {
                 let sign = if form.depth_signed { -1.0 } else { 1.0 };
+                if let Some((diameter, angle)) =
+                    hole.chamfer.filter(|_| form.depth == CHAMFER && !form.depth_signed)
+                {
+                    list.extend([word(CHAMFER), ClWord::Number(diameter), ClWord::Number(angle)]);
+                    continue;
+                }
                 list.extend(hole.depth.iter().flat_map(|depth| couple(form.depth, sign * depth)));
             }
             CyclePart::Clearance => {
@@ -208,6 +232,24 @@ mod tests {
             Some(arguments("DEEP,.75,INCR,.2,.1,IPM,4.5,.1,RETURN,.3,DWELL,1"))
         );
         assert_eq!(made("OFF", ClDialect::Ncl, ClDialect::Hsm), Some(arguments("OFF")));
+        // A chamfer is a depth where no word has both its numbers.
+        let chamfer = "CSINK,FEDTO,10,90,MMPM,80,RAPTO,2";
+        assert_eq!(made(chamfer, ClDialect::Ncl, ClDialect::Generic), Some(arguments(chamfer)));
+        for (to, wanted) in [
+            (ClDialect::Creo, "CSINK,DEPTH,5,MMPM,80,CLEAR,2"),
+            (ClDialect::Nx, "CSINK,RAPTO,2,FEDTO,-5,MMPM,80"),
+            (ClDialect::Hsm, "CSINK,5,MMPM,80,2"),
+        ] {
+            let rounded: Option<Vec<ClWord>> = made(chamfer, ClDialect::Ncl, to).map(|list| {
+                let whole = |one: ClWord| match one {
+                    ClWord::Number(value) => ClWord::Number((value * 1e9).round() / 1e9),
+                    ClWord::Word(_) => one,
+                };
+                list.into_iter().map(whole).collect()
+            });
+            assert_eq!(rounded, Some(arguments(wanted)), "{to:?}");
+        }
+        assert_eq!(made("CSINK,FEDTO,10,180,MMPM,80,RAPTO,2", ClDialect::Ncl, ClDialect::Creo), None);
         // A tap without a feed rate has no place for its clearance there.
         assert_eq!(made("TAP,DEPTH,.4,CLEAR,.2", ClDialect::Creo, ClDialect::Hsm), None);
         // RAPTO is something else beside the clearance that has its place.
