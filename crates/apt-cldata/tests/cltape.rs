@@ -216,3 +216,37 @@ fn what_the_tape_cannot_say_is_told_as_what_it_is() {
     assert!(error.to_string().contains("LINUXCNC") && error.to_string().contains('6'), "{error}");
     assert!(written(name("LINCNC")).is_ok());
 }
+
+#[test]
+fn a_displayed_text_comes_back_as_it_was() {
+    let mut codes = codes();
+    codes.major("DISPLY", 1021);
+    let (records, errors) = read_text("DISPLY/PUT ON THE CLAMP, 3 mm left\nDISPLY/OFF\nFINI\n");
+    assert_eq!(errors, vec![]);
+    // As CL text too, a text that is spelt like a switch included.
+    let quoted = read_text("DISPLY/'ON'\nFINI\n").0;
+    for records in [&records, &quoted] {
+        assert_eq!(read_text(&apt_cldata::text::write_text(records)).0, *records);
+    }
+    let kinds: Vec<ClKind> = read_tape(&write_tape(&records, &codes).unwrap(), &codes)
+        .unwrap()
+        .records
+        .into_iter()
+        .map(|record| record.kind)
+        .collect();
+    assert_eq!(
+        kinds[..2],
+        [
+            ClKind::Text {
+                word: "DISPLY".into(),
+                code: Some(1021),
+                text: "PUT ON THE CLAMP, 3 mm left".into()
+            },
+            ClKind::Postprocessor {
+                word: "DISPLY".into(),
+                code: Some(1021),
+                arguments: vec![ClWord::Word("OFF".into())]
+            },
+        ]
+    );
+}

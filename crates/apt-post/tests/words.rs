@@ -331,6 +331,8 @@ fn disply_switches_the_messages_of_the_tape() {
     assert!(text.contains("(MSG,ONE)") && text.contains("(MSG,FOUR)"), "{text}");
     assert!(text.contains("(MSG,THREE)"), "a text of its own is no PPRINT: {text}");
     assert!(!text.contains("TWO"), "{text}");
+    let text = tape_of("DISPLY/PUT ON THE CLAMP,  3 mm left\n").text();
+    assert!(text.contains("(MSG,PUT ON THE CLAMP,  3 mm left)"), "{text}");
     let argument = |argument: &str| PostFindingKind::ArgumentNotUsed {
         word: "DISPLY".into(),
         argument: argument.into(),

@@ -252,6 +252,9 @@ fn texts_are_read_again_as_they_were() {
     assert_eq!(texts(text).len(), 5);
     assert_eq!(texts(text), texts(&unrolled));
     assert_eq!(unroll(&unrolled, None, None).text(), unrolled);
+    let tree = SyntaxTree::parse("DISPLY / 3 mm left, a b\nFINI\n", Dialect::named(DialectName::Cl));
+    let unrolled = expand(&tree, &Options::default(), None, None, &|| false).text();
+    assert_eq!(unrolled, "DISPLY/3 mm left, a b\nFINI\n");
 }
 
 #[test]

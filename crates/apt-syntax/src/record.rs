@@ -68,6 +68,9 @@ pub fn record_length(text: &str) -> (usize, usize) {
     (content, with_end)
 }
 
+/// The word whose line is text in CL files, where it is none of its switches.
+pub(crate) const DISPLAY_WORD: &str = "DISPLY";
+
 /// What kind of statement begins with this record.
 pub fn statement_form(record: &str, layout: &Layout) -> StatementForm {
     let dialect = &layout.dialect;
@@ -85,8 +88,21 @@ pub fn statement_form(record: &str, layout: &Layout) -> StatementForm {
     let word = record.len() - after_sequence_prefix(record).len();
     let Some(rest) = record.get(word..) else { return StatementForm::Ordinary };
     let length = rest.bytes().take_while(|byte| byte.is_ascii_alphanumeric() || *byte == b'_').count();
-    let is_text = rest.get(..length).is_some_and(|head| is_text_word(head, dialect));
+    let is_text = rest.get(..length).is_some_and(|head| {
+        is_text_word(head, dialect)
+            || head.eq_ignore_ascii_case(DISPLAY_WORD) && is_displayed(&rest[length..])
+    });
     if is_text { StatementForm::Text { word, text: word + length } } else { StatementForm::Ordinary }
+}
+
+/// Whether what stands behind the DISPLY of a CL file is a text: behind a slash, not a switch, and not the number of a lamp
+/// or of a display.
+fn is_displayed(behind: &str) -> bool {
+    const SWITCHES: [&str; 5] = ["ON", "OFF", "AUTO", "LIGHT", "NIXIE"];
+    let Some(text) = behind.trim_start().strip_prefix('/') else { return false };
+    let first = text.split([',', '$']).next().unwrap_or_default().trim();
+    let is_switch = SWITCHES.iter().any(|switch| first.eq_ignore_ascii_case(switch));
+    !(first.is_empty() || is_switch || first.parse::<f64>().is_ok())
 }
 
 /// A text word behind blanks, if a blank, a slash or nothing follows it.

@@ -298,6 +298,12 @@ fn cl_files() {
             ("PPRINT/'POCKET DEMO'", "(text PPRINT \"POCKET DEMO\")"),
             ("PARTNO / MFG0031", "(text PARTNO \"MFG0031\")"),
             ("N5    , PPRINT FIRST ~\nSECOND", "(text PPRINT \"FIRST ~\\nSECOND\")"),
+            (
+                "DISPLY/PUT ON THE CLAMP, 3 mm \"left\"",
+                "(text DISPLY \"PUT ON THE CLAMP, 3 mm \\\"left\\\"\")",
+            ),
+            ("DISPLY/OFF", "(DISPLY/ 'OFF)"),
+            ("DISPLY/NIXIE,3", "(DISPLY/ 'NIXIE 3)"),
             ("MACHIN/GENERIC 3X", "(MACHIN/ \"GENERIC 3X\")"),
             ("CIRCLE / 1, 2, 3, 0, 0, 1, 25", "(CIRCLE/ 1 2 3 0 0 1 25)"),
             ("TOOLNO/1,,20", "(TOOLNO/ 1 _ 20)"),

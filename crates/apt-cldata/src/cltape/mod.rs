@@ -42,6 +42,8 @@ pub(crate) const MOTION_COORDINATE_WORDS: usize = 240;
 /// Subclasses whose data are text: LETTER, PPRINT, PARTNO, INSERT.
 pub(crate) const TEXT_CODES: [(i32, &str); 4] =
     [(1043, "LETTER"), (1044, "PPRINT"), (1045, "PARTNO"), (1046, "INSERT")];
+/// DISPLY, which has a text where it has the words of one, and switches otherwise.
+pub(crate) const DISPLAY_CODE: (i32, &str) = (1021, "DISPLY");
 /// Data words of a text record, and characters of text in each of them.
 pub(crate) const TEXT_WORDS: usize = 11;
 pub(crate) const TEXT_CHARACTERS_PER_WORD: usize = 6;

@@ -5,8 +5,8 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{
     CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR, CLASS_SEQUENCE, CLASS_SURFACE,
-    HEADER_BYTES, MODE_MULTAX, MODE_UNITS, MOTION_FROM, MOTION_GOTO, MOTION_MORE, MOTION_NAME_WORDS,
-    PARAMETER_WORDS, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CODES, WORD_BYTES, ncl,
+    DISPLAY_CODE, HEADER_BYTES, MODE_MULTAX, MODE_UNITS, MOTION_FROM, MOTION_GOTO, MOTION_MORE,
+    MOTION_NAME_WORDS, PARAMETER_WORDS, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CODES, TEXT_WORDS, WORD_BYTES, ncl,
     word::{DataWord, classify, number},
 };
 use crate::{
@@ -187,7 +187,8 @@ impl<'a> Reader<'a> {
 
     fn postprocessor(&mut self, subclass: i32, words: &[[u8; WORD_BYTES]]) {
         let code = u16::try_from(subclass).ok();
-        if let Some((_, word)) = TEXT_CODES.iter().find(|(known, _)| *known == subclass) {
+        let display = Some(&DISPLAY_CODE).filter(|_| words.len() == TEXT_WORDS);
+        if let Some((_, word)) = TEXT_CODES.iter().chain(display).find(|(known, _)| *known == subclass) {
             let text = String::from_utf8_lossy(&ncl::text_of(words)).trim().into();
             return self.push(ClKind::Text { word: (*word).into(), code, text });
         }

@@ -8,9 +8,9 @@ use smol_str::SmolStr;
 
 use super::{
     CIRCLE_COUNT, CIRCLE_TYPE, CLASS_END, CLASS_MODE, CLASS_MOTION, CLASS_PARAMETER, CLASS_POSTPROCESSOR,
-    CLASS_SEQUENCE, CLASS_SURFACE, MODE_MULTAX, MODE_UNITS, MOTION_COORDINATE_WORDS, MOTION_FROM,
-    MOTION_GOTO, MOTION_MORE, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CHARACTERS_PER_WORD, TEXT_CODES, TEXT_WORDS,
-    WORD_BYTES, word,
+    CLASS_SEQUENCE, CLASS_SURFACE, DISPLAY_CODE, MODE_MULTAX, MODE_UNITS, MOTION_COORDINATE_WORDS,
+    MOTION_FROM, MOTION_GOTO, MOTION_MORE, SURFACE_DRIVE, SWITCH_WORDS, TEXT_CHARACTERS_PER_WORD, TEXT_CODES,
+    TEXT_WORDS, WORD_BYTES, word,
 };
 use crate::{
     codes::CodeTable,
@@ -200,7 +200,11 @@ impl Writer<'_> {
                 self.put(CLASS_POSTPROCESSOR, subclass, &words)
             }
             ClKind::Text { word, code, text } => {
-                let known = TEXT_CODES.iter().find(|(_, name)| name == word).map(|(code, _)| *code);
+                let known = TEXT_CODES
+                    .iter()
+                    .chain([&DISPLAY_CODE])
+                    .find(|(_, name)| name == word)
+                    .map(|(code, _)| *code);
                 let subclass = match known {
                     Some(subclass) => subclass,
                     None => self.major(isn, word, *code)?,

@@ -4,6 +4,10 @@
 pub(super) const TEXT_WORDS: [&str; 7] =
     ["PARTNO", "PPRINT", "INSERT", "LETTER", "TPRINT", "REMARK", "TITLES"];
 
+/// DISPLY, whose line is text where it stands behind a slash and is none of the switches.
+const DISPLAY: &str = "DISPLY";
+const DISPLAY_SWITCHES: [&str; 5] = ["ON", "OFF", "AUTO", "LIGHT", "NIXIE"];
+
 /// One statement with remarks and continuation marks taken out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Statement {
@@ -119,14 +123,25 @@ fn is_word_row(behind: &str) -> bool {
 /// The word and text of a text statement; quotes and the slash of the ISO 4343 form are taken off.
 fn free_text(line: &str) -> Option<(&'static str, String)> {
     let inner = line.trim_start();
-    let word = TEXT_WORDS.into_iter().find(|word| {
+    let word = TEXT_WORDS.into_iter().chain([DISPLAY]).find(|word| {
         inner.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
             && !inner[word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
     })?;
     let rest = inner[word.len()..].trim();
+    if word == DISPLAY && !is_displayed(rest) {
+        return None;
+    }
     let rest = rest.strip_prefix('/').map_or(rest, str::trim);
     let quoted = rest.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\''));
     Some((word, quoted.unwrap_or(rest).to_owned()))
+}
+
+/// Whether what stands behind DISPLY is a text: not a switch, and not the number of a lamp or of a display.
+pub(super) fn is_displayed(behind: &str) -> bool {
+    let Some(text) = behind.strip_prefix('/') else { return false };
+    let first = text.split([',', '$']).next().unwrap_or_default().trim();
+    let is_switch = DISPLAY_SWITCHES.iter().any(|switch| first.eq_ignore_ascii_case(switch));
+    !(first.is_empty() || is_switch || first.parse::<f64>().is_ok())
 }
 
 #[cfg(test)]
@@ -189,5 +204,22 @@ mod tests {
         assert_eq!(found[0].free, Some(("PPRINT", "COST 5$".to_owned())));
         assert_eq!(found[1].text, "GOTO/1,2,3");
         assert_eq!(found[2].free, Some(("PARTNO", "A, B".to_owned())));
+    }
+
+    #[test]
+    fn displayed_texts_are_kept_as_they_are() {
+        let free = |line: &str| statements(line).next().and_then(|found| found.free);
+        for (line, text) in [
+            ("DISPLY/PUT ON THE CLAMP, 3 mm left", "PUT ON THE CLAMP, 3 mm left"),
+            ("disply / a  b 5$", "a  b 5$"),
+            ("DISPLY/'ON'", "ON"),
+        ] {
+            assert_eq!(free(line), Some(("DISPLY", text.to_owned())), "{line}");
+        }
+        for line in
+            ["DISPLY/ON", "DISPLY / off", "DISPLY/AUTO", "DISPLY/LIGHT,2", "DISPLY/1,2", "DISPLY", "DISPLY/"]
+        {
+            assert_eq!(free(line), None, "{line}");
+        }
     }
 }

@@ -9,6 +9,7 @@ use super::{
     dialects::{Axes, COUNTING, Circles, Form, TextForm},
     number::{Field, shortest},
     sheet::Sheet,
+    statements::is_displayed,
     words::{TOOL_PATH, number},
 };
 use crate::{
@@ -313,8 +314,13 @@ impl Writer<'_> {
         let text = text.trim();
         let known = self.form.texts.iter().find(|(known, _)| *known == word).map(|(_, form)| *form);
         let quoted = text.len() > 1 && text.starts_with('\'') && text.ends_with('\'');
-        let behind = match known.unwrap_or(TextForm::Blank) {
+        // A displayed text that looks like a switch.
+        let quoted_once = word == "DISPLY" && !is_displayed(&format!("/{text}"));
+        // Without the slash it would be no text.
+        let usual = if word == "DISPLY" { TextForm::Slash } else { TextForm::Blank };
+        let behind = match known.unwrap_or(usual) {
             TextForm::Quoted => format!("/'{text}'"),
+            _ if quoted_once => format!("/'{text}'"),
             // A reader takes one pair of quotation marks and one slash off.
             _ if quoted => format!("/ '{text}'"),
             TextForm::Blank if text.starts_with('/') => format!(" / {text}"),

@@ -46,7 +46,7 @@ impl Engine<'_> {
                 self.position = None;
             }
             "PPRINT" | "TPRINT" if self.messages_off => {}
-            "PPRINT" | "TPRINT" => self.control.remark(&machine.templates.message, text),
+            "PPRINT" | "TPRINT" | "DISPLY" => self.control.remark(&machine.templates.message, text),
             _ => {}
         }
     }

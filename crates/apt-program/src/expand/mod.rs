@@ -161,6 +161,8 @@ fn canonical_text(elements: &[Element], text_words: TextWords) -> String {
             && !element.text.starts_with(' ')
         {
             match text_words {
+                // Without the slash the text of DISPLY would be none.
+                TextWords::Anywhere if text == "DISPLY" => text.push('/'),
                 TextWords::Anywhere => text.push(' '),
                 // Behind the word in its columns the text would begin with the slash.
                 TextWords::Indented if index == 1 && !element.text.starts_with('/') => {

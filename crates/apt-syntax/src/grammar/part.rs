@@ -8,6 +8,7 @@ use super::{MAXIMUM_DEPTH, Parsed, Parser};
 use crate::dialect::SequenceFieldRule;
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::kind::SyntaxKind;
+use crate::record::DISPLAY_WORD;
 use crate::statement::{
     Body, Clause, Definition, Element, ElementKind, MacroParameter, Name, Part, Statement, WordUse,
 };
@@ -116,7 +117,10 @@ impl Parser<'_> {
 
     /// PARTNO and its kin: the lexer leaves a word and its text.
     fn text_statement(&mut self) -> Option<Statement> {
-        let word = self.word_at(0).filter(|word| word.class == WordClass::Text)?;
+        // DISPLY has a text in CL files, where it is no switch.
+        let is_displayed = self.elements.get(1).is_some_and(|text| text.kind == ElementKind::Text);
+        let is_text = |class, spelling| class == WordClass::Text || spelling == DISPLAY_WORD && is_displayed;
+        let word = self.word_at(0).filter(|word| is_text(word.class, word.spelling))?;
         let range = self.element(0)?.range;
         let text = match self.elements.get(1) {
             None => Element {
