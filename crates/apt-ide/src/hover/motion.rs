@@ -148,11 +148,16 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
+/// What part of its band a clearance has to be to be shown: below, it is a rounding error of the figures that are shown.
+const SHOWN_PART_OF_BAND: f64 = 1e-9;
+
 fn row(role: &str, extent: &Extent) -> String {
+    let band = extent.intol.abs() + extent.outtol.abs();
+    let measured = |value: f64| number(if value.abs() <= SHOWN_PART_OF_BAND * band { 0.0 } else { value });
     format!(
         "| {role} | {} … {} | {} … {} |\n",
-        number(extent.min),
-        number(extent.max),
+        measured(extent.min),
+        measured(extent.max),
         number(-extent.intol),
         number(extent.outtol)
     )

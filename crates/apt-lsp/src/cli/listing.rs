@@ -176,7 +176,11 @@ fn shortened(statement: &str) -> String {
 /// The least and the greatest signed clearance over the whole of every cut vector.
 fn clearance(extremes: &Value) -> String {
     let end = |end: &str| {
-        extremes[end].as_f64().map_or_else(|| "-".to_owned(), |value| format!("{:+.DECIMALS$}", value + 0.0))
+        let Some(value) = extremes[end].as_f64() else { return "-".to_owned() };
+        let text = format!("{value:+.DECIMALS$}");
+        // What the decimals do not show has no side.
+        let is_zero = text.bytes().all(|byte| !matches!(byte, b'1'..=b'9'));
+        if is_zero { text.replace('-', "+") } else { text }
     };
     if extremes.is_null() { "-".to_owned() } else { format!("{} … {}", end("min"), end("max")) }
 }
@@ -255,7 +259,7 @@ mod tests {
             }, {
                 "isn": 104, "statement": "GOLFT/(CIRCLE/CENTER,(POINT/1,2,3),RADIUS,4.5),PAST,L1",
                 "cut_vectors": 1, "verified": false, "minimum": null,
-                "check": { "min": -0.0, "max": 0.0 },
+                "check": { "min": -1.2e-16, "max": -0.0 },
             }],
             "cl": [
                 { "isn": 2, "type": "postprocessor", "words": ["SPINDL", 800.0, "CLW"] },
