@@ -3,7 +3,7 @@
 mod support;
 
 use apt_geometry::motion::{Delta, MotionCommand};
-use apt_program::{ControlFinding, FindingKind, Options, Program, RecordKind, Severity, evaluate};
+use apt_program::{ControlFinding, FindingKind, FrameKind, Options, Program, RecordKind, Severity, evaluate};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use support::{problems, run_as, scalar};
 
@@ -432,4 +432,31 @@ fn a_logical_if_takes_the_words_before_its_statement() {
     };
     assert_eq!(run("IF(1.LT.2)"), run(""));
     assert_eq!(run("IF(2.LT.1)").len() + 2, run("").len());
+}
+
+#[test]
+fn a_finding_in_a_do_loop_tells_the_turns() {
+    // The frames around the first finding, from the inside: what it is, its statement and its turn.
+    let frames = |text: &str| -> Vec<(FrameKind, u32, u32)> {
+        let program = run(text);
+        let finding = program.findings().find(|finding| finding.severity == Severity::Error);
+        let frame = finding.and_then(|finding| finding.origin.frame.as_deref());
+        std::iter::successors(frame, |frame| frame.parent.as_deref())
+            .map(|frame| (frame.kind, frame.isn, frame.turn))
+            .collect()
+    };
+    let (to_loop, to_macro) = (FrameKind::Loop, FrameKind::Macro);
+    assert_eq!(frames("DO/A,I=1,5\nB=1/(I-3)\nA)C=I"), [(to_loop, 1, 3)]);
+    let in_macro = "M=MACRO/K\nX=K\nDO/A,I=1,5\nB=1/(I-3)\nA)C=I\nTERMAC\nCALL/M,K=1";
+    assert_eq!(frames(in_macro), [(to_loop, 3, 3), (to_macro, 7, 1)]);
+    let around_macro = "M=MACRO/K\nB=1/(K-3)\nTERMAC\nDO/A,I=1,5\nCALL/M,K=I\nA)C=I";
+    assert_eq!(frames(around_macro), [(to_macro, 5, 1), (to_loop, 4, 3)]);
+    let nested = "DO/A,I=1,2\nDO/A,J=1,3\nB=1/(I+J-5)\nA)C=I";
+    assert_eq!(frames(nested), [(to_loop, 2, 3), (to_loop, 1, 2)]);
+    // Behind a loop that is done, and behind one that a jump has left, there is none.
+    assert_eq!(frames("DO/A,I=1,2\nA)C=I\nB=1/0"), []);
+    assert_eq!(frames("DO/A,I=1,2\nIF(I-1)X,X,A\nA)C=I\nX)B=1/0"), []);
+    // Labels and names of the body are no others in another turn.
+    let sound = run("DO/A,I=1,3\nX)C=I\nA)P=I\nGOTO/C,P,0\nFINI");
+    assert_eq!(problems(&sound), vec![]);
 }

@@ -57,6 +57,7 @@ pub(crate) fn frame_text(frame: &OriginFrame) -> String {
     match *kind {
         "loop" => format!("in turn {turn} of the loop{name} at statement {isn}"),
         "include" => format!("in the file{name} included at statement {isn}"),
+        _ if *turn > 1 => format!("in turn {turn} of the macro{name} called at statement {isn}"),
         _ => format!("in the macro{name} called at statement {isn}"),
     }
 }
@@ -366,8 +367,10 @@ mod tests {
 
     #[test]
     fn frames_are_told_in_words() {
-        let frame = |kind, name: &str| OriginFrame { kind, name: name.into(), isn: 7, turn: 3, range: None };
-        assert_eq!(frame_text(&frame("loop", "")), "in turn 3 of the loop at statement 7");
-        assert_eq!(frame_text(&frame("macro", "M1")), "in the macro M1 called at statement 7");
+        let frame =
+            |kind, name: &str, turn| OriginFrame { kind, name: name.into(), isn: 7, turn, range: None };
+        assert_eq!(frame_text(&frame("loop", "", 3)), "in turn 3 of the loop at statement 7");
+        assert_eq!(frame_text(&frame("macro", "M1", 1)), "in the macro M1 called at statement 7");
+        assert_eq!(frame_text(&frame("macro", "M1", 3)), "in turn 3 of the macro M1 called at statement 7");
     }
 }

@@ -17,7 +17,7 @@ use smol_str::SmolStr;
 use crate::{record::SourceFile, statements::leaves_motion};
 
 pub(crate) use branches::{BranchFinder, Branches, ClauseFault, ClauseMark, ClausePlace, clause_mark};
-pub(crate) use run::{Activation, DoHeader, DoLoop, leave_do_loops};
+pub(crate) use run::{Activation, DoHeader, DoLoop};
 pub(crate) use substitute::{Bindings, splice};
 
 /// Statements with consecutive numbers, and where their labels are.

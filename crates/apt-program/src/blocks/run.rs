@@ -34,6 +34,8 @@ pub(crate) struct DoLoop {
     pub(crate) body: usize,
     /// Index of the statement that carries the label.
     pub(crate) end: usize,
+    /// Its turn, and the frame around it.
+    pub(crate) frame: Frame,
 }
 
 /// A DO statement.
@@ -46,11 +48,6 @@ pub(crate) struct DoHeader<'s> {
     pub(crate) bounds: &'s [Expression],
     /// The whole.
     pub(crate) range: TextRange,
-}
-
-/// Forgets the loops that a statement stands outside of: a jump has left them.
-pub(crate) fn leave_do_loops(do_loops: &mut Vec<DoLoop>, index: usize) {
-    do_loops.retain(|open| (open.body..=open.end).contains(&index));
 }
 
 /// What a block is executed as.
@@ -125,6 +122,7 @@ impl Evaluator<'_> {
                 }
             };
             let next = target.unwrap_or(index + 1);
+            self.leave_do_loops(&mut do_loops, next);
             if next <= index {
                 if self.errors > errors_before {
                     jumps_after_error += 1;
@@ -133,9 +131,11 @@ impl Evaluator<'_> {
                     }
                 }
                 turn_start = self.output.definitions.len();
-                self.next_turn();
+                // A DO loop counts its turns itself.
+                if do_loops.is_empty() {
+                    self.next_turn();
+                }
             }
-            leave_do_loops(&mut do_loops, next);
             index = next;
         }
         Flow::Next
@@ -227,7 +227,7 @@ impl Evaluator<'_> {
         if let Some(first) = first {
             self.trace_index(header.index, first);
         }
-        leave_do_loops(do_loops, body);
+        self.leave_do_loops(do_loops, body);
         let label = super::normalised_label(&header.label.text);
         let Some(end) = end.filter(|end| *end >= body) else {
             let finding =
@@ -249,7 +249,9 @@ impl Evaluator<'_> {
             return self.report(FindingKind::Control(ControlFinding::ZeroStep), header.range);
         }
         if let (Some(_), Some(last), Some(step)) = (first, last, step) {
-            do_loops.push(DoLoop { label, index: header.index.clone(), last, step, body, end });
+            let frame = self.frame(FrameKind::Loop, SmolStr::default(), header.range);
+            self.here.frame = Some(Arc::new(frame.clone()));
+            do_loops.push(DoLoop { label, index: header.index.clone(), last, step, body, end, frame });
         }
     }
 
@@ -273,11 +275,25 @@ impl Evaluator<'_> {
             if !past {
                 self.assign_scalar(&innermost.index, Some(next));
                 self.trace_index(&innermost.index, next);
+                if let Some(open) = do_loops.last_mut() {
+                    open.frame.turn = open.frame.turn.saturating_add(1);
+                    self.here.frame = Some(Arc::new(open.frame.clone()));
+                }
                 return Some(innermost.body);
             }
+            self.here.frame.clone_from(&innermost.frame.parent);
             do_loops.pop();
         }
         None
+    }
+
+    /// Forgets the loops that a statement stands outside of: a jump has left them.
+    pub(crate) fn leave_do_loops(&mut self, do_loops: &mut Vec<DoLoop>, index: usize) {
+        // A loop that is left is left with all that stand inside of it.
+        let left = do_loops.iter().position(|open| !(open.body..=open.end).contains(&index));
+        if let Some(outermost) = left.and_then(|left| do_loops.drain(left..).next()) {
+            self.here.frame = outermost.frame.parent;
+        }
     }
 
     /// A frame around the statement being executed.

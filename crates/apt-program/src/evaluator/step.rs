@@ -10,12 +10,10 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::{Budget, DataCards, Evaluator, Flow, Region, conditional::Conditional};
 use crate::{
-    blocks::{
-        self, Activation, Bindings, Block, BranchFinder, DoHeader, DoLoop, leave_do_loops, normalised_label,
-    },
+    blocks::{self, Activation, Bindings, Block, BranchFinder, DoHeader, DoLoop, normalised_label},
     finding::{ControlFinding, FindingKind, RelatedKind, Severity},
     options::IncludeFailure,
-    record::{FrameKind, RecordKind, SourceFile},
+    record::{Frame, FrameKind, Origin, RecordKind, SourceFile},
     statements::Major,
     symbols::{Meaning, similar_names},
 };
@@ -83,7 +81,7 @@ impl Evaluator<'_> {
         let cards = DataCards { tree: Some(top.tree.clone()), next: index + 1 };
         let outer = std::mem::replace(&mut self.cards, cards);
         let mut end = self.top_level_statement(top, index);
-        leave_do_loops(&mut top.do_loops, end.next);
+        self.leave_do_loops(&mut top.do_loops, end.next);
         let cards = std::mem::replace(&mut self.cards, outer);
         if cards.next > index + 1 && end.next > index {
             end.next = end.next.max(cards.next);
@@ -201,7 +199,7 @@ impl Evaluator<'_> {
 
     /// The first statement after FINI gets a finding. Returns one more than the highest statement index that was read.
     fn report_after_end(&mut self, tree: &SyntaxTree, end: usize) -> usize {
-        if self.here.frame.is_some() || self.is_cl() {
+        if self.is_included() || self.is_cl() {
             return end + 1;
         }
         let Some((index, next)) = next_statement(tree, end) else { return tree.statement_count() };
@@ -211,10 +209,15 @@ impl Evaluator<'_> {
         index + 1
     }
 
+    /// Whether a statement that is executed at the top level is one of a file that the program includes.
+    fn is_included(&self) -> bool {
+        around(self.here.frame.as_deref()).any(|frame| frame.kind != FrameKind::Loop)
+    }
+
     /// Counts statements executed again at the top level; gives up when there are too many.
     fn may_repeat(&mut self, top: &TopLevel<'_>, index: usize) -> bool {
         let may_go_back = self.dialect.branch_anywhere || !top.do_loops.is_empty();
-        if self.here.frame.is_some() || !may_go_back {
+        if self.is_included() || !may_go_back {
             return true;
         }
         if index >= self.state.reached {
@@ -279,7 +282,9 @@ impl Evaluator<'_> {
         let existing = self.look_up(&text).map(|symbol| (symbol.meaning.clone(), symbol.origin.clone()));
         match existing {
             None => self.set_symbol(text, Meaning::Label, origin),
-            Some((Meaning::Label, first)) if first.isn != origin.isn || first.frame != origin.frame => {
+            Some((Meaning::Label, first))
+                if first.isn != origin.isn || beside_loops(&first) != beside_loops(&origin) =>
+            {
                 let related = vec![(RelatedKind::Label, first)];
                 self.report_related(
                     FindingKind::Control(ControlFinding::DuplicateLabel { name: text }),
@@ -567,4 +572,14 @@ fn included_name(major: Major<'_>) -> Option<SmolStr> {
         Argument::Word(word) => Some(SmolStr::new_static(word.word.spelling)),
         _ => None,
     }
+}
+
+/// A frame and those around it.
+fn around(frame: Option<&Frame>) -> impl Iterator<Item = &Frame> {
+    std::iter::successors(frame, |frame| frame.parent.as_deref())
+}
+
+/// The frame of an origin without the turns of loops.
+fn beside_loops(origin: &Origin) -> Option<&Frame> {
+    around(origin.frame.as_deref()).find(|frame| frame.kind != FrameKind::Loop)
 }
