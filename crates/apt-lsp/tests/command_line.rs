@@ -192,6 +192,12 @@ fn a_run_is_listed_for_people_and_for_programs() {
     folder.run(&["run", "good.apt", "-o", "out.cl"]);
     assert_eq!(std::fs::read_to_string(folder.0.join("out.cl")).unwrap(), ran.stdout);
     assert_eq!(folder.run(&["run", "good.apt", "--format", "cltape", "-o", "out.bin"]).code, 0);
+    let (plain, dash) = (
+        folder.run(&["run", "good.apt", "--format", "cl"]),
+        folder.run(&["run", "good.apt", "--format", "cl", "-o", "-"]),
+    );
+    assert_eq!((dash.code, dash.stdout), (0, plain.stdout), "`-` is standard output");
+    assert!(!folder.0.join("-").exists());
     assert!(std::fs::read(folder.0.join("out.bin")).unwrap().len() > 100);
     let ran = folder.run(&["run", "good.apt", "-o", "out.json"]);
     assert_eq!((ran.code, ran.stdout.as_str()), (0, ""));

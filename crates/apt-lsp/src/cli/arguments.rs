@@ -177,7 +177,7 @@ pub(super) struct RunCall {
     /// What to print (default: by the name of OUT, else human)
     #[arg(long, value_enum)]
     pub format: Option<RunFormat>,
-    /// Write to a file instead of standard output
+    /// Write to a file instead of standard output, which `-` is too
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Tell how each motion was computed and why each cut vector ends where it does (human and JSON)
@@ -208,7 +208,7 @@ pub(super) struct PostCall {
     /// Warnings count as findings in the exit code
     #[arg(long)]
     pub deny_warnings: bool,
-    /// Write to a file instead of standard output
+    /// Write to a file instead of standard output, which `-` is too
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 }
@@ -313,7 +313,7 @@ pub(super) struct ConvertCall {
     /// Warnings count as findings in the exit code
     #[arg(long)]
     pub deny_warnings: bool,
-    /// Write to a file instead of standard output
+    /// Write to a file instead of standard output, which `-` is too
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 }

@@ -10,6 +10,9 @@ use super::Outcome;
 use super::arguments::Color;
 use crate::analysis::{Control, Progress};
 
+/// The file name that stands for standard output.
+const STANDARD_OUTPUT: &str = "-";
+
 /// Standard output and standard error with one decision about colours.
 pub(super) struct Console {
     choice: ColorChoice,
@@ -30,9 +33,9 @@ impl Console {
         self.written(AutoStream::new(io::stdout(), self.choice).lock().write_all(text.as_bytes()))
     }
 
-    /// Writes bytes to a file, or to standard output as they are.
+    /// Writes bytes to a file, or to standard output as they are; `-` is standard output too.
     pub(super) fn write(&self, bytes: &[u8], file: Option<&Path>) -> Outcome {
-        let Some(path) = file else {
+        let Some(path) = file.filter(|path| path.as_os_str() != STANDARD_OUTPUT) else {
             let mut output = io::stdout().lock();
             return self.written(output.write_all(bytes).and_then(|()| output.flush()));
         };
