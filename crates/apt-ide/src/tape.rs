@@ -6,7 +6,9 @@ use apt_cldata::{
     cltape::{TapeNote, TapeReadError},
     codes::CodeTable,
     record::ClRecord,
-    text::{ClText, Remark, Shortened, read_with_remarks_until, write_text_with_lines_until},
+    text::{
+        ClDialect, ClText, Remark, Shortened, detect, read_with_remarks_until, write_text_with_lines_until,
+    },
 };
 use apt_geometry::{
     patience::{Patience, Waiting, put_away},
@@ -236,6 +238,7 @@ impl Analysis {
         let mut options = options(settings);
         if self.document().dialect() == DialectName::Cl {
             options.text_limit = CL_TEXT;
+            options.deep_breaks_chips = self.deep_breaks_chips();
         }
         let (waiting, tree) = (Waiting::until(cancel), self.document().tree());
         let patience = waiting.patience();
@@ -252,6 +255,12 @@ impl Analysis {
                 Err(Cancelled)
             }
         }
+    }
+
+    /// Whether CYCLE/DEEP breaks chips in a CL file of this system.
+    pub(crate) fn deep_breaks_chips(&self) -> bool {
+        self.document().dialect() == DialectName::Cl
+            && detect(&self.text()).and_then(ClDialect::deep_breaks_chips) == Some(true)
     }
 
     /// Runs the program to its CL records.

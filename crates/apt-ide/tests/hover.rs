@@ -446,3 +446,19 @@ fn calls_and_loops_show_what_they_execute() {
     );
     assert!(told("M1=MACRO/X\n$0CALL/M1,X=1\nTERMAC\nFINI\n").ends_with("executes nothing"));
 }
+
+#[test]
+fn a_cycle_with_steps_tells_what_the_drill_does_between_them() {
+    let breaks = "In this file it breaks chips";
+    let withdraws = "In this file it withdraws the drill";
+    let ncl =
+        "N1    , PARTNO X\nN2    , CYCLE/ WORD, FEDTO, 10., MMPM, 80., RAPTO, 2., STEP, 3.\nN3    , FINI\n";
+    let other = "CYCLE/WORD,FEDTO,10,MMPM,80,RAPTO,2,STEP,3\nFINI\n";
+    for (text, word, said) in
+        [(ncl, "DEEP", breaks), (ncl, "THRU", withdraws), (ncl, "BRKCHP", breaks), (other, "DEEP", withdraws)]
+    {
+        let (analysis, offset) = marked(&text.replace("WORD", &format!("{}$0{}", &word[..2], &word[2..])));
+        let hover = analysis.hover(offset, &never).unwrap().unwrap().markdown;
+        assert!(hover.contains(said), "{word} in {text}: {hover}");
+    }
+}

@@ -345,6 +345,26 @@ fn cl_files_and_binary_tapes_are_posted_as_they_stand() {
     assert_eq!((tape.code, tape.stdout), (0, ran.stdout));
 }
 
+/// In files of NCL DEEP breaks chips, in those of Creo it withdraws the drill.
+#[test]
+fn deep_holes_are_drilled_as_the_system_of_the_file_means_them() {
+    let folder = Folder::new("deep");
+    folder.write(
+        "ncl.cl",
+        "N1    , UNITS/ MM\nN2    , RAPID\nN3    , GOTO/ 0., 0., 50.\n\
+         N4    , CYCLE/ DEEP, FEDTO, 10., MMPM, 80., RAPTO, 2., STEP, 3.\nN5    , GOTO/ 1., 0., 0.\nN6    , CYCLE/ OFF\nN7    , FINI\n",
+    );
+    folder.write(
+        "creo.cl",
+        "$$*         Pro/CLfile  Version\nUNITS / MM\nRAPID\nGOTO / 0., 0., 50.\n\
+         CYCLE / DEEP, DEPTH, 10., STEP, 3., MMPM, 80., CLEAR, 2.\nGOTO / 1., 0., 0.\nCYCLE / OFF\nFINI\n",
+    );
+    for (file, code) in [("ncl.cl", "G73"), ("creo.cl", "G83")] {
+        let tape = folder.run(&["post", file, "--machine", "haas-mill3"]).stdout;
+        assert!(tape.contains(&format!("{code} X1.")), "{file}: {tape}");
+    }
+}
+
 #[test]
 fn tapes_are_punched_and_pictures_are_images() {
     let folder = Folder::new("punch");

@@ -25,6 +25,9 @@ pub struct PostOptions {
     pub fit_points: Option<bool>,
     /// Most characters of text that PARTNO, PPRINT and INSERT may carry.
     pub text_limit: usize,
+    /// Whether DEEP lifts the drill a little between its steps, so that chips break, as in NCL and PostWorks; elsewhere it
+    /// is withdrawn from the hole.
+    pub deep_breaks_chips: bool,
 }
 
 /// Characters of text on a card: columns 7 to 72.
@@ -32,7 +35,12 @@ pub const CARD_TEXT: usize = 66;
 
 impl Default for PostOptions {
     fn default() -> Self {
-        PostOptions { default_units: Units::Inches, fit_points: None, text_limit: CARD_TEXT }
+        PostOptions {
+            default_units: Units::Inches,
+            fit_points: None,
+            text_limit: CARD_TEXT,
+            deep_breaks_chips: false,
+        }
     }
 }
 

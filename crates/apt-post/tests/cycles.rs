@@ -216,3 +216,20 @@ fn a_boring_tool_stands_still_on_its_way_out_of_moves() {
     let tape = post(&records, &machine, &PostOptions::default()).text();
     assert!(tape.contains("N80 G1 Z-10. F60.\nN90 M5\nN100 G0 Z50.\nN110 S600 M3\n"), "{tape}");
 }
+
+#[test]
+fn deep_drills_as_the_system_of_the_file_means_it() {
+    let (records, _) = read_text(
+        "UNITS/MM\nLOADTL/1\nSPINDL/600,CLW\nRAPID\nGOTO/0,0,50\nCYCLE/DEEP,DEPTH,10,STEP,3,RAPTO,3,MMPM,60\nGOTO/10,0,0\n\
+         CYCLE/THRU,DEPTH,10,STEP,3,RAPTO,3,MMPM,60\nGOTO/20,0,0\nFINI\n",
+    );
+    for name in MACHINES {
+        let machine = machine(name).unwrap_or_else(|error| panic!("{error}"));
+        let text = |deep_breaks_chips| {
+            let options = PostOptions { deep_breaks_chips, ..PostOptions::default() };
+            post(&records, &machine, &options).text()
+        };
+        assert!(text(true).contains("G73 X10.") && text(true).contains("G83 X20."), "{}", text(true));
+        assert!(text(false).contains("G83 X10.") && text(false).contains("G83 X20."), "{}", text(false));
+    }
+}

@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::dialects::{Deep, Form};
+
 /// Dialects of CL files, and what is not CL text.
 ///
 /// [`ClDialect::ALL`] is the one table of those that are read and written.
@@ -31,6 +33,12 @@ pub enum ClDialect {
 }
 
 impl ClDialect {
+    /// Whether CYCLE/DEEP lifts the drill a little between its steps, so that chips break; otherwise the drill is withdrawn
+    /// from the hole. None where the system does not say.
+    pub fn deep_breaks_chips(self) -> Option<bool> {
+        Form::of(self).cycle.deep.map(|deep| deep == Deep::BreaksChips)
+    }
+
     /// Those that are read and written, in the order in which they are shown.
     pub const ALL: [ClDialect; 7] = [
         ClDialect::Generic,

@@ -72,7 +72,8 @@ impl Analysis {
                         .iter()
                         .filter(|one| one.range.end() <= element.range.start())
                         .collect();
-                    format!("{}{}", word_markdown(word), self.modifier_markdown(word, &before))
+                    let here = self.modifier_markdown(word, &before);
+                    format!("{}{here}{}", word_markdown(word), self.steps_markdown(word, &before))
                 }
                 Some(word) if matches!(word.spelling, "CALL" | "LOOPST") && spot.file.is_none() => {
                     format!("{}{}", word_markdown(word), self.expansion_markdown(spot.offset, cancel)?)
@@ -120,6 +121,23 @@ impl Analysis {
             return String::new();
         }
         format!("\n\nhere in {}:\n```apt\n{}\n```", opener.spelling, forms.join("\n"))
+    }
+
+    /// What a drill does between its steps by this type of CYCLE: two systems mean the opposite by the same words.
+    fn steps_markdown(&self, word: &Word, before: &[&Element]) -> &'static str {
+        if !before.iter().any(|element| element.text == "CYCLE") {
+            return "";
+        }
+        let breaks_chips = match word.spelling {
+            "BRKCHP" => true,
+            "DEEP" => self.deep_breaks_chips(),
+            "THRU" => false,
+            _ => return "",
+        };
+        match breaks_chips {
+            true => "\n\nIn this file it breaks chips: the drill is lifted a little between its steps.",
+            false => "\n\nIn this file it withdraws the drill from the hole between its steps.",
+        }
     }
 
     /// The canonical form of the name at an offset.

@@ -29,6 +29,8 @@ const WITHOUT_HOLES: [&str; 3] = [MOVES_AND_ENDS, "AUTO", "AVOID"];
 const TAP: &str = "tap";
 const LEFT_HAND_TAP: &str = "tap-left";
 pub(super) const SHIFT: &str = "shift";
+/// The type that breaks chips wherever it is known.
+const BREAKS_CHIPS: &str = "BRKCHP";
 /// The register of how often a cycle is made at a place, and the most that anyone can mean.
 const REPEATS: &str = "L";
 const MOST_REPEATS: f64 = 9999.0;
@@ -151,7 +153,11 @@ impl Engine<'_> {
         if let Some(place) = self.rapid.take() {
             self.find_at(place, PostFindingKind::RapidUnused);
         }
-        let Some(name) = self.machine.cycle_words.get(order.kind.as_str()).cloned() else {
+        let meant = match order.kind.as_str() {
+            "DEEP" if self.deep_breaks_chips => BREAKS_CHIPS,
+            kind => kind,
+        };
+        let Some(name) = self.machine.cycle_words.get(meant).cloned() else {
             self.find(cycle_not_made(arguments, &order.kind));
             return None;
         };

@@ -137,6 +137,7 @@ struct Engine<'a> {
     machine: &'a MachineDefinition,
     fit_points: bool,
     text_limit: usize,
+    deep_breaks_chips: bool,
     /// Unit of the program and factor from it to the tape's.
     program_units: Units,
     scale: f64,
@@ -213,6 +214,7 @@ impl<'a> Engine<'a> {
             machine,
             fit_points: options.fit_points.unwrap_or(machine.arc.fit_points),
             text_limit: options.text_limit,
+            deep_breaks_chips: options.deep_breaks_chips,
             program_units: units.program,
             scale: units.scale(),
             position: None,
