@@ -176,6 +176,12 @@ fn the_sign_of_a_bare_number_counts() {
         let bad = PostFindingKind::BadValue { word: "CYCLE".into(), argument: "DEPTH".into(), value };
         assert!(told(&tape).contains(&&bad), "{cycle}: {:?}", told(&tape));
     }
+    for (couple, value) in [("RAPTO", -3.0), ("DWELL", -1.0), ("STEP", -2.0), ("STEP", 0.0)] {
+        let cycle = format!("CYCLE/DEEP,DEPTH,10,MMPM,60,RAPTO,3,STEP,2,{couple},{value}\nGOTO/10,0,0\n");
+        let tape = tape_of("fanuc-mill3", "CLW", &cycle);
+        let bad = PostFindingKind::BadValue { word: "CYCLE".into(), argument: couple.into(), value };
+        assert!(told(&tape).contains(&&bad), "{cycle}: {:?}", told(&tape));
+    }
     let tape = tape_of("fanuc-mill3", "CLW", "CYCLE/DRILL,10,-60,MMPM,3\nGOTO/10,0,0\n");
     assert!(told(&tape).contains(&&PostFindingKind::FeedNotPositive { value: -60.0 }), "{:?}", told(&tape));
     // The offset of NX is signed.

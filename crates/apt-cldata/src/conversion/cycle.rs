@@ -79,7 +79,8 @@ fn read(mut list: &[ClWord], form: &CycleForm) -> Option<Hole> {
                 bare.push(*value);
                 taken = 0;
             }
-            (unit, _) if is_word(unit, &FEEDS) && form.feed_value_first && bare.len() > 1 => {
+            // A second number without a word before it is the feed of the unit behind it, in the table of Creo too.
+            (unit, _) if is_word(unit, &FEEDS) && bare.len() > 1 => {
                 hole.feed = Some((unit.clone(), bare.pop()?));
                 taken = 0;
             }
@@ -257,6 +258,11 @@ mod tests {
         assert_eq!(made(beside, ClDialect::Hsm, ClDialect::Ncl), None);
         let wanted = arguments("DRILL,DEPTH,1,IPM,8,CLEAR,.6,RAPTO,.4");
         assert_eq!(made(beside, ClDialect::Hsm, ClDialect::Creo), Some(wanted));
+        let table = "DRILL,10,60,MMPM,3";
+        for from in [ClDialect::Generic, ClDialect::Catia, ClDialect::Creo] {
+            let wanted = arguments("DRILL,FEDTO,10,MMPM,60,RAPTO,3");
+            assert_eq!(made(table, from, ClDialect::Ncl), Some(wanted), "{from:?}");
+        }
         // Three numbers without a word between them are of a table that nobody knows.
         assert_eq!(made("DRILL,1,2,3", ClDialect::Hsm, ClDialect::Creo), None);
     }

@@ -177,7 +177,10 @@ impl Engine<'_> {
         if clearance < 0.0 || clearance.is_nan() {
             return self.bad_value(arguments, "RAPTO", clearance);
         }
-        let step = order.step.map(|step| step * scale).filter(|step| *step > 0.0);
+        if let Some(step) = order.step.filter(|step| *step <= 0.0 || step.is_nan()) {
+            return self.bad_value(arguments, "STEP", step);
+        }
+        let step = order.step.map(|step| step * scale);
         let pecks = matches!(name.as_str(), "peck" | "chipbreak");
         let step = match step {
             Some(step) if step < depth => Some(step),
@@ -192,7 +195,7 @@ impl Engine<'_> {
             None => None,
         };
         let (feed, pitch) = self.cycle_feed(arguments, order.feed, is_tap(&name))?;
-        let dwell = self.cycle_dwell(&order)?;
+        let dwell = self.cycle_dwell(arguments, &order)?;
         let shift = self.cycle_shift(arguments, &order, &name)?;
         let times = self.cycle_times(arguments, &order, &name)?;
         self.check_direction(&name, &order.kind);
@@ -234,8 +237,11 @@ impl Engine<'_> {
     }
 
     /// Seconds at the bottom of a hole; none when the statement has to be left out.
-    fn cycle_dwell(&mut self, order: &CycleOrder) -> Option<f64> {
+    fn cycle_dwell(&mut self, arguments: &Arguments<'_>, order: &CycleOrder) -> Option<f64> {
         match (order.dwell, self.spindle.speed) {
+            (Some((dwell, _)), _) if dwell < 0.0 || dwell.is_nan() => {
+                self.bad_value(arguments, "DWELL", dwell)
+            }
             (Some((turns, true)), Some(speed)) if speed > 0.0 => Some(turns / speed * SECONDS_PER_MINUTE),
             (Some((_, true)), _) => {
                 self.find(PostFindingKind::NoSpindleSpeed);
