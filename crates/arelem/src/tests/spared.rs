@@ -243,3 +243,60 @@ fn fewer_vectors_lead_on_from_elsewhere_in_the_bands() {
     let (vectors, least) = (path.points.len() as f64, f64::from(path.minimum.expect("a bound")));
     assert!(vectors <= 1.02 * least + 2.0, "{vectors} vectors, {least} at least");
 }
+
+/// A line beside a wall whose rulings are nearly along it: its contact goes from end to end of it, and beside INTOL, which is zero, next to nothing is proven
+/// of how the clearance bends then. In the midst of its band the wall hardly takes any of that, and vectors are as long as the floor lets them.
+#[test]
+fn vectors_end_off_a_limit_beside_which_nothing_is_proven() {
+    let plane = Vec3::new(-0.8159136384531147, 0.5421365308483729, -0.20093012841754554);
+    let across = v(-0.5457355382352777, -0.8369033180012903, -0.0420185509683905);
+    let arc = |point: Vec3, radius: f64| Geometry::Circle(Cylinder { point, axis: plane, radius });
+    let wall = RuledSurface {
+        parts: vec![
+            arc(v(14.209462843180996, 19.812780681673527, 0.18018988227271326), 24.119065370940785),
+            Geometry::Point(v(2.9130930091751486, -1.4179438690781239, 3.698382314643193)),
+            Geometry::Point(v(4.440604070073933, -2.020913492890007, -4.131249706824484)),
+            Geometry::Vector(across),
+            arc(v(28.428426692750776, 41.61802734515004, 1.2749697076123496), 50.0),
+            Geometry::Point(v(-1.9823888215435383, 1.8348753160121127, 2.4928015441379205)),
+            Geometry::Point(v(-0.45487776064475405, 1.2319056922002294, -5.336830477329756)),
+            Geometry::Vector(across),
+        ],
+    };
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.571464086212872],
+        axis: Vec3::z(),
+        from: v(-0.5451288483659632, -0.152964673708679, 1.673909446399195),
+        band: [0.0, 1e-4],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(0.8046853975861309, -0.5628542945184276, -0.18888211681843717),
+        part: (
+            Relation::To,
+            Geometry::Sphere(Sphere {
+                center: v(0.4490593695537781, -0.40030514154709185, 5.121849101484909),
+                radius: 4.53189278714343,
+            }),
+        ),
+        drive: (Relation::To, Geometry::RuledSurface(Remembering::new(wall))),
+        first: (
+            Relation::On,
+            Geometry::Plane(Plane {
+                normal: v(-0.804685397586131, 0.5628542945184275, 0.18888211681843717),
+                distance: 0.38076071494633296,
+            }),
+        ),
+        stop: (
+            Relation::On,
+            Geometry::Circle(Cylinder {
+                point: v(3.0156647800761953, -1.6882192912355773, 0.24533859465819108),
+                axis: Vec3::z(),
+                radius: 1.3804031788066773,
+            }),
+        ),
+    };
+    let sequences = motion.run(AMPLE).expect("a path");
+    let last = sequences.last().expect("a motion");
+    let (count, least) = (last.points.len(), last.minimum.expect("a bound"));
+    assert!(count as f64 <= 1.02 * f64::from(least) + 2.0, "{count} vectors, {least} at least");
+}

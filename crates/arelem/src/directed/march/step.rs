@@ -56,6 +56,8 @@ const KINK_BANDS: f64 = 0.1;
 const MOST_TURNED: f64 = 4.0;
 /// Shares of the way to the middle of the bands that a vector goes which does not keep its place in them.
 const INWARD: [f64; 3] = [0.03, 0.1, 0.3];
+/// How many times as long a vector off the limit of a band must be, and one that is not proven at the limit must seem to be, to take its place.
+const EASED: f64 = 1.2;
 /// A surface whose sag over the longest vector is below this share of its band counts as straight.
 const STRAIGHT_SHARE: f64 = 0.02;
 /// Length, relative to the size of the coordinates, over which curvature is first estimated.
@@ -70,6 +72,8 @@ enum Places {
     Level,
     /// Nearer to the middle of the bands by this share.
     Inward(f64),
+    /// In the middle of the bands of these roles, at the limits of the others.
+    Off([bool; 2]),
 }
 
 /// Computes vectors one after the other, remembering curvature.
@@ -81,6 +85,8 @@ pub(super) struct Stepper<'a> {
     trend: Trend,
     /// The vector found last.
     latest: Option<Trial>,
+    /// The roles off whose limits it ended because nothing is proven beside them.
+    off_limits: Option<[bool; 2]>,
     /// Where the path last turned on the spot, and its direction until then.
     turned: Option<(Vec3, Vec3)>,
     /// On which hand the path keeps both surfaces.
@@ -154,10 +160,29 @@ struct Tried {
     /// It ends where the path turns on the spot: what is to be expected of the next vector is not known.
     is_at_corner: bool,
     proven: bool,
+    /// Of which role it is not proven.
+    open: [bool; 2],
+    /// A longer one that kept the bands as far as was seen, but was not proven to.
+    unproven: Option<Unproven>,
     /// What has been read of both clearances along the vector.
     readings: [Readings; 2],
     culprit: usize,
     worst: f64,
+}
+
+impl Tried {
+    /// Whether a clearance bounds its length.
+    fn is_bounded(&self) -> bool {
+        self.growth < GREATEST_GROWTH
+    }
+}
+
+/// A vector that keeps the bands as far as is seen, of which that is not proven.
+#[derive(Clone, Copy)]
+struct Unproven {
+    length: f64,
+    /// For which roles.
+    open: [bool; 2],
 }
 
 /// What the search for the longest vector begins with.
@@ -175,6 +200,7 @@ impl<'a> Stepper<'a> {
             patience,
             trend: Trend::default(),
             latest: None,
+            off_limits: None,
             turned: None,
             hand: Hand::setting_out(prepared),
             kept_hand: None,
@@ -335,9 +361,11 @@ impl<'a> Stepper<'a> {
         let bends = self.bends(&curvature);
         let foretold = self.predict(here, &curvature, &bends);
         let length = foretold * self.trend.ratio();
+        let guess = Guess { bends, curvature, length };
         let mut best = match places {
-            Places::Level => self.level(here, cap, &Guess { bends, curvature, length })?,
-            _ => self.longest(here, cap, places, &Guess { bends, curvature, length })?,
+            Places::Level => self.level(here, cap, &guess)?,
+            Places::Limits => self.about_limits(here, cap, &guess)?,
+            _ => self.longest(here, cap, places, &guess)?,
         };
         self.trend.compare(foretold, best.length * best.growth * AIM);
         if places == Places::Limits
@@ -349,6 +377,40 @@ impl<'a> Stepper<'a> {
         let vertex = best.vertex;
         self.latest = Some(best);
         Ok(vertex)
+    }
+
+    /// A vector that ends at the limits opposite to its sags, or off one beside which nothing is proven if it is longer so: beside a limit a proof
+    /// has no room, and the sag of a vector that hardly bends needs little of the band. So do the next ones, while other bands bound their length.
+    fn about_limits(&mut self, here: &Vertex, cap: f64, guess: &Guess) -> Result<Trial, MotionFailure> {
+        if let Some(open) = self.off_limits.take() {
+            match self.longest(here, cap, Places::Off(open), guess) {
+                Ok(found) if found.unproven.is_none() && !(found.is_bounded() && open[found.culprit]) => {
+                    self.off_limits = Some(open);
+                    return Ok(found);
+                }
+                Err(MotionFailure::Cancelled) => return Err(MotionFailure::Cancelled),
+                _ => {}
+            }
+        }
+        let best = self.longest(here, cap, Places::Limits, guess)?;
+        let Some(Unproven { length, open }) =
+            best.unproven.filter(|longer| longer.length > EASED * best.length)
+        else {
+            return Ok(best);
+        };
+        match self.longest(
+            here,
+            cap,
+            Places::Off(open),
+            &Guess { length, bends: guess.bends, curvature: guess.curvature },
+        ) {
+            Ok(eased) if eased.length > EASED * best.length => {
+                self.off_limits = Some(open);
+                Ok(eased)
+            }
+            Err(MotionFailure::Cancelled) => Err(MotionFailure::Cancelled),
+            _ => Ok(best),
+        }
     }
 
     /// A vector that keeps its place in the bands, or one that ends nearer to their middle if that is longer: at a limit there is hardly room
@@ -483,6 +545,15 @@ impl<'a> Stepper<'a> {
                 };
                 let [part, drive] = self.roles();
                 [inward(part, here.part.clearance), inward(drive, here.drive.clearance)]
+            }
+            Places::Off(open) => {
+                let mut targets = self.targets(here, bends, Places::Limits);
+                for ((target, role), is_open) in targets.iter_mut().zip(self.roles()).zip(open) {
+                    if is_open {
+                        *target = 0.5 * (role.outside - role.inside);
+                    }
+                }
+                targets
             }
         }
     }

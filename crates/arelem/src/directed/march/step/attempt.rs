@@ -201,6 +201,8 @@ impl Stepper<'_> {
             growth: GREATEST_GROWTH,
             is_at_corner: false,
             proven: extremes.iter().all(|e| e.proven),
+            open: [!extremes[0].proven, !extremes[1].proven],
+            unproven: None,
             readings: [extremes[0].readings, extremes[1].readings],
             culprit: 0,
             worst: 0.0,

@@ -1,7 +1,7 @@
 //! The longest vector to the limits of the bands that is proven, from a first guess.
 
 use super::{
-    AIM, GREATEST_GROWTH, Guess, LEAST_VECTOR, LONG_ENOUGH, NEARLY, Places, Stepper, Trial,
+    AIM, GREATEST_GROWTH, Guess, LEAST_VECTOR, LONG_ENOUGH, NEARLY, Places, Stepper, Trial, Unproven,
     at_corner::Corners,
     overlong::{self, Overlong},
 };
@@ -71,6 +71,8 @@ struct Search {
     corners: Corners,
     /// Index of the role that refused the last trial, and its clearance.
     culprit: Option<(usize, f64)>,
+    /// The longest that was refused only because it is not proven.
+    unproven: Option<Unproven>,
 }
 
 impl Search {
@@ -90,6 +92,7 @@ impl Search {
             failures: 0,
             corners: Corners::default(),
             culprit: None,
+            unproven: None,
         }
     }
 
@@ -187,6 +190,9 @@ impl Search {
     /// Goes on from one that is too long; whether there is more to try.
     fn refuse(&mut self, stepper: &Stepper<'_>, trial: &Trial) -> bool {
         self.culprit = Some((trial.culprit, trial.worst));
+        if trial.growth >= 1.0 && self.unproven.is_none_or(|known| known.length < trial.length) {
+            self.unproven = Some(Unproven { length: trial.length, open: trial.open });
+        }
         if self.best.is_none() && self.turns_about(stepper, trial) {
             return true;
         }
@@ -223,7 +229,7 @@ impl Stepper<'_> {
         guess: &Guess,
     ) -> Result<Trial, MotionFailure> {
         let least = match places {
-            Places::Limits => LEAST_VECTOR * self.prepared.size,
+            Places::Limits | Places::Off(_) => LEAST_VECTOR * self.prepared.size,
             Places::Level | Places::Inward(_) => LEAST_LEVEL * self.bands(),
         };
         let mut search = Search::new(guess, cap, self.prepared.attitude.turns());
@@ -297,6 +303,7 @@ impl Stepper<'_> {
         match (search.best.take(), search.culprit) {
             (Some((mut trial, _)), _) => {
                 trial.is_at_corner = search.corners.is_met;
+                trial.unproven = search.unproven;
                 Ok(trial)
             }
             (None, Some((culprit, clearance))) if clearance != 0.0 => {
