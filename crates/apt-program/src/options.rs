@@ -9,7 +9,8 @@ use crate::record::SourceFile;
 /// Limits that make every evaluation end, and the resolver of INCLUD.
 #[derive(Clone)]
 pub struct Options {
-    /// Most statements that one top-level loop or macro call may execute.
+    /// Most statements that one top-level loop, macro call or included file may execute, and most that jumps at the top
+    /// level execute again. What is executed once is bounded by the text.
     pub statement_budget: u64,
     /// Deepest nesting of macro calls and included files; the `apt3` dialect has its own limit of five.
     pub macro_depth: u32,

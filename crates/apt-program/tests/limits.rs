@@ -88,4 +88,8 @@ fn a_budget_bounds_calls_and_statements_where_the_language_does_not() {
     let turns = "I=0\nLOOPST\nA)I=I+1\nIF(I-2000)A,B,B\nB)LOOPND";
     assert_eq!(run(turns, &options(8, 10_000)), 0);
     assert_eq!(run(turns, &options(8, 3_000)), 1);
+    // However small it is: four turns are eight statements and LOOPND. What stands outside is not counted.
+    let few = "A=1\nB=2\nI=0\nLOOPST\nA)I=I+1\nIF(I-4)A,B,B\nB)LOOPND";
+    assert_eq!(run(few, &options(8, 9)), 0);
+    assert_eq!(run(few, &options(8, 8)), 1);
 }

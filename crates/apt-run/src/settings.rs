@@ -75,7 +75,8 @@ impl SeveritySetting {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Budget {
-    /// Statements executed in Section 1, loop turns and macro bodies included.
+    /// Statements that one loop, macro call or included file of the program executes, with all that it calls, and those
+    /// that jumps outside of loops execute again. Statements that are executed once are not counted.
     pub statements: u64,
     /// Depth of macro calls.
     pub macro_depth: u32,

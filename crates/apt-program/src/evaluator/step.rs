@@ -20,7 +20,7 @@ use crate::{
 
 /// By how much each exhausted budget makes the next one smaller: so that many endless loops end soon.
 const BUDGET_SHRINK: u64 = 16;
-/// A budget never shrinks below so many statements.
+/// A budget never shrinks below so many statements, unless less was granted.
 const LEAST_BUDGET: u64 = 2_000;
 
 /// Statements of a file at the top level, with what jumps among them need.
@@ -96,7 +96,8 @@ impl Evaluator<'_> {
         let past = |next: usize| StepEnd { next, read_to: next.min(count), read_from: index };
         let shrink = BUDGET_SHRINK.saturating_pow(self.state.exhausted);
         if self.here.depth == 0 && self.here.region == Region::Top {
-            self.budget = Budget::new((self.options.statement_budget / shrink).max(LEAST_BUDGET));
+            let granted = self.options.statement_budget;
+            self.budget = Budget::new((granted / shrink).max(LEAST_BUDGET.min(granted)));
         }
         self.here.isn = u32::try_from(index + 1).unwrap_or(u32::MAX);
         self.here.label = None;
