@@ -20,12 +20,15 @@ pub(crate) const PROJECT_FILE: &str = "apt-lsp.toml";
 /// A project file larger than this is no project file (bytes).
 const PROJECT_FILE_LIMIT: u64 = 1 << 20;
 
-/// Keys of the editor's section that concern programs. The rest of the section (path of the server,
-/// trace …) is the editor's own.
-const PROGRAM_KEYS: [&str; 7] = ["dialect", "units", "machine", "include", "severity", "format", "budget"];
-
 /// The key of [`Settings::motion`].
 const MOTION_KEY: &str = "motion";
+
+/// Keys that are settings of the server; all but the last concern programs.
+const KEYS: [&str; 8] =
+    ["dialect", "units", "machine", "include", "severity", "format", "budget", MOTION_KEY];
+
+/// Keys of the editor's section that are the editor's own: the path of the server, the trace of what is said.
+const KEYS_OF_THE_EDITOR: [&str; 2] = ["server", "trace"];
 
 /// What is in force for one program.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -77,6 +80,16 @@ pub(crate) enum SettingsError {
         /// What is wrong.
         message: String,
     },
+    /// Keys in the section of the editor that are no settings; the others count.
+    #[error("settings of the editor: nothing known by {}; known are {}", quoted(keys), KEYS.join(", "))]
+    UnknownKeys {
+        /// The keys.
+        keys: Vec<String>,
+    },
+}
+
+fn quoted(keys: &[String]) -> String {
+    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ")
 }
 
 impl Settings {
@@ -90,8 +103,14 @@ impl Settings {
     ) -> (Self, Vec<SettingsError>) {
         let mut problems = Vec::new();
         let mut settings = Self::default();
-        match language.check_settings(&program_part(editor)) {
-            Ok(()) => settings.lay_over(editor),
+        let (known, unknown): (Values, Values) =
+            editor.clone().into_iter().partition(|(key, _)| is_known(key));
+        if !unknown.is_empty() {
+            problems
+                .push(SettingsError::UnknownKeys { keys: unknown.into_iter().map(|(key, _)| key).collect() });
+        }
+        match check(language, &known) {
+            Ok(()) => settings.lay_over(&known),
             Err(message) => problems.push(SettingsError::Editor { message }),
         }
         if let Some(path) = program.and_then(project_file) {
@@ -118,9 +137,31 @@ impl Settings {
 pub(crate) fn of_editor(value: &Value) -> Values {
     let section = value.get("apt").unwrap_or(value);
     let Some(section) = section.as_object() else { return Values::new() };
-    let known = |key: &String| PROGRAM_KEYS.contains(&key.as_str()) || key == MOTION_KEY;
-    let set = section.iter().filter(|(key, value)| known(key) && !is_unset(value));
+    let own = |key: &String| KEYS_OF_THE_EDITOR.contains(&key.as_str());
+    let set = section.iter().filter(|(key, value)| !own(key) && !is_unset(value));
     set.map(|(key, value)| (key.clone(), kebab_case_keys(key, value))).collect()
+}
+
+/// The settings that an editor tells when they have changed: it may tell those of all its servers. Without `apt` among them
+/// tables that are not known are sections of others.
+pub(crate) fn of_changed_editor(value: &Value) -> Values {
+    let mut values = of_editor(value);
+    if value.get("apt").is_none() {
+        values.retain(|key, value| is_known(key) || !value.is_object());
+    }
+    values
+}
+
+fn is_known(key: &str) -> bool {
+    KEYS.contains(&key)
+}
+
+/// Says what is wrong with settings, if something is.
+fn check(language: &dyn Language, values: &Values) -> Result<(), String> {
+    if values.get(MOTION_KEY).is_some_and(|motion| !motion.is_boolean()) {
+        return Err(format!("{MOTION_KEY}: true or false is expected"));
+    }
+    language.check_settings(&program_part(values))
 }
 
 /// Editors fill in defaults where nobody has set anything; these mean that.
@@ -194,7 +235,7 @@ fn read_project(language: &dyn Language, path: &Path) -> Result<Values, Settings
         Ok(values) => values,
         Err(source) => return Err(SettingsError::Malformed { path, source: Box::new(source) }),
     };
-    if let Err(message) = language.check_settings(&program_part(&values)) {
+    if let Err(message) = check(language, &values) {
         return Err(SettingsError::Unknown { path, message });
     }
     // Include folders of a project file are relative to it.
@@ -243,6 +284,39 @@ mod tests {
     }
 
     #[test]
+    fn what_the_editor_sets_and_nobody_knows_is_named_and_the_rest_counts() {
+        let told = |value: Value| {
+            let editor = of_editor(&value);
+            let (settings, problems) =
+                Settings::resolve(&FakeLanguage::default(), None, &editor, &Values::new());
+            let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
+            (Value::Object(settings.program), problems.join("; "))
+        };
+        let known = "known are dialect, units, machine, include, severity, format, budget, motion";
+        let (program, problems) = told(json!({ "dialect": "apt3", "dialekt": "apt4", "budgets": {} }));
+        assert_eq!(program, json!({ "dialect": "apt3" }));
+        assert_eq!(
+            problems,
+            format!("settings of the editor: nothing known by `dialekt`, `budgets`; {known}")
+        );
+        // What the editor has for itself, and what it has for other servers, is none of this one's business.
+        let section = json!({ "dialect": "apt3", "server": { "path": "x" }, "trace": { "server": "off" } });
+        let own = (json!({ "dialect": "apt3" }), String::new());
+        assert_eq!(told(section.clone()), own);
+        assert_eq!(told(json!({ "apt": section, "lua": { "x": 1 }, "http": 3 })), own);
+        assert_eq!(told(json!({ "dialekt": null, "x": "" })).1, "");
+        let all = |value: Value| Value::Object(of_changed_editor(&value));
+        assert_eq!(
+            all(json!({ "lua": {}, "dialect": "apt3", "x": 1 })),
+            json!({ "dialect": "apt3", "x": 1 })
+        );
+        assert_eq!(all(json!({ "lua": {}, "apt": { "x": {} } })), json!({ "x": {} }));
+        // The switch of motion is on or off, in a project file as well.
+        let wrong = "settings of the editor: motion: true or false is expected";
+        assert_eq!(told(json!({ "dialect": "apt3", "motion": "no" })), (json!({}), wrong.to_owned()));
+    }
+
+    #[test]
     fn the_nearest_project_file_counts_and_a_broken_one_is_named() {
         let folder = std::env::temp_dir().join(format!("apt-lsp-settings-{}", std::process::id()));
         let inner = folder.join("parts/inner");
@@ -261,6 +335,9 @@ mod tests {
         let (settings, problems) = resolve();
         assert_eq!(settings.program["dialect"], json!("free"), "a broken file sets nothing");
         assert!(problems[0].to_string().contains("dialekt"), "{problems:?}");
+
+        std::fs::write(inner.join(PROJECT_FILE), "motion = \"no\"\n").unwrap();
+        assert!(resolve().1[0].to_string().ends_with("motion: true or false is expected"));
 
         std::fs::write(inner.join(PROJECT_FILE), "dialect = \n").unwrap();
         assert!(matches!(resolve().1[..], [SettingsError::Malformed { .. }]));

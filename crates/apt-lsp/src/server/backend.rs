@@ -266,7 +266,7 @@ impl LanguageServer for Backend {
 
     async fn did_change_configuration(&self, params: lsp::DidChangeConfigurationParams) {
         if params.settings.is_object() {
-            self.happened(Event::Settings(settings::of_editor(&params.settings)));
+            self.happened(Event::Settings(settings::of_changed_editor(&params.settings)));
         } else if self.features().configuration {
             self.ask_for_settings();
         } else {

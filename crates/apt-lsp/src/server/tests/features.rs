@@ -322,6 +322,12 @@ async fn wrong_settings_are_named_and_settings_can_be_asked_for() {
     talk.tell("workspace/didChangeConfiguration", json!({ "settings": { "apt": { "dialect": "apt3" } } }))
         .await;
     talk.wait_for("workspace/diagnostic/refresh").await;
+    // A setting that nobody knows is told once, and those beside it count.
+    let settings = json!({ "settings": { "apt": { "dialect": "free", "dialekt": "apt4" } } });
+    talk.tell("workspace/didChangeConfiguration", settings).await;
+    let shown = talk.wait_for("window/showMessage").await;
+    assert!(shown["params"]["message"].as_str().unwrap().contains("`dialekt`"), "{shown}");
+    talk.wait_for("workspace/diagnostic/refresh").await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
