@@ -13,7 +13,10 @@ pub use apt_cldata::{
     text::{ClDialect, UnknownClDialect},
 };
 
-use crate::{Analysis, Cancel, Cancelled, tape::code_table};
+use crate::{
+    Analysis, Cancel, Cancelled,
+    tape::{code_table, system_of_binary},
+};
 
 /// A file in another dialect.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +66,7 @@ impl Analysis {
         }
         let (source, from) = match (tape, self.document().dialect()) {
             (Some(bytes), _) => {
-                let of_ncl = apt_cldata::cltape::is_ncl_file(bytes);
-                (self.read_tape(bytes, cancel)??, if of_ncl { ClDialect::Ncl } else { ClDialect::Cltape })
+                (self.read_tape(bytes, cancel)??, system_of_binary(bytes).unwrap_or(ClDialect::Cltape))
             }
             (None, DialectName::Cl) => {
                 let known = detected.filter(|dialect| ClDialect::ALL.contains(dialect));

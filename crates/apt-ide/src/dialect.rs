@@ -1,5 +1,6 @@
 //! The dialect in force and why, in words.
 
+use apt_cldata::text::ClDialect;
 use apt_run::document::{DialectReason, Document};
 use apt_syntax::dialect::{DetectionReason, DialectName};
 
@@ -7,6 +8,8 @@ use apt_syntax::dialect::{DetectionReason, DialectName};
 pub fn describe(document: &Document) -> String {
     let why = match document.dialect_reason() {
         DialectReason::Setting => "as set".to_owned(),
+        DialectReason::Binary(ClDialect::Ncl) => "a binary file of NCL".to_owned(),
+        DialectReason::Binary(_) => "a binary CLTAPE of APT III".to_owned(),
         DialectReason::Detected(DetectionReason::Comment) => "a comment in the file says so".to_owned(),
         DialectReason::Detected(DetectionReason::Extension(ending)) => {
             format!("the file name ends with .{ending}")

@@ -259,8 +259,11 @@ impl Analysis {
 
     /// Whether CYCLE/DEEP breaks chips in a CL file of this system.
     pub(crate) fn deep_breaks_chips(&self) -> bool {
-        self.document().dialect() == DialectName::Cl
-            && detect(&self.text()).and_then(ClDialect::deep_breaks_chips) == Some(true)
+        if self.document().dialect() != DialectName::Cl {
+            return false;
+        }
+        let system = self.document().surroundings().binary.or_else(|| detect(&self.text()));
+        system.and_then(ClDialect::deep_breaks_chips) == Some(true)
     }
 
     /// Runs the program to its CL records.
@@ -382,25 +385,42 @@ fn options(settings: &Settings) -> PostOptions {
     PostOptions { default_units, ..PostOptions::default() }
 }
 
-/// The dialect of [`text_of_cl_tape`].
-pub const TAPE_DIALECT: &str = "cl";
+/// What a binary CL file says, as text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextOfBinary {
+    /// A CL file that says the same.
+    pub text: String,
+    /// Whose binary file it was.
+    pub system: ClDialect,
+}
 
-/// The text of a binary CLTAPE: a CL file that says the same. `None` for bytes that are none.
+/// The text of a binary CL file. `None` for bytes that are none.
 ///
 /// # Errors
 ///
 /// Why bytes that begin like a tape cannot be read.
-pub fn text_of_cl_tape(bytes: &[u8]) -> Option<Result<String, apt_cldata::cltape::TapeReadError>> {
+pub fn text_of_cl_tape(bytes: &[u8]) -> Option<Result<TextOfBinary, apt_cldata::cltape::TapeReadError>> {
     use apt_cldata::{cltape, text};
-    (cltape::is_tape(bytes) || cltape::is_ncl_file(bytes)).then(|| {
+    let system = system_of_binary(bytes)?;
+    let read = || {
         let contents = cltape::read_tape(bytes, &code_table())?;
         // What the tape has and CL text has not is told as remarks, so that nothing is lost in silence.
         let mut out = text::write_text(&contents.records);
         for note in &contents.notes {
             out.push_str(&format!("$${}\n", note_text(note)));
         }
-        Ok(out)
-    })
+        Ok(TextOfBinary { text: out, system })
+    };
+    Some(read())
+}
+
+/// Whose binary CL file bytes are.
+pub(crate) fn system_of_binary(bytes: &[u8]) -> Option<ClDialect> {
+    use apt_cldata::cltape;
+    if cltape::is_ncl_file(bytes) {
+        return Some(ClDialect::Ncl);
+    }
+    cltape::is_tape(bytes).then_some(ClDialect::Cltape)
 }
 
 /// A remark about what of a tape was not read.

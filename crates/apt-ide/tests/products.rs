@@ -150,7 +150,7 @@ fn a_cl_file_is_posted_as_it_stands() {
 fn a_cl_tape_is_the_text_it_was_made_from() {
     let program = analysis("PARTNO T\nUNITS/INCHES\nSPINDL/1000,CLW\nFROM/0,0,1\nGOTO/1,2.125,1\nFINI\n");
     let bytes = program.cl_tape(&never, &mut silent).unwrap();
-    let text = tape::text_of_cl_tape(&bytes).unwrap().unwrap();
+    let text = tape::text_of_cl_tape(&bytes).unwrap().unwrap().text;
     let direct = program.cl_text(&never, &mut silent).unwrap();
     let positions = |text: &str| {
         text.lines()

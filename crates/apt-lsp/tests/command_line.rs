@@ -327,44 +327,6 @@ fn machines_and_pages_are_printed() {
     assert_eq!(run(&["post", "--list-machines"]).stdout, list.stdout);
 }
 
-const CL: &str = "PARTNO/CL\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/10\nGOTO/0,0,1\nGOTO/1,0,0\nFINI\n";
-
-#[test]
-fn cl_files_and_binary_tapes_are_posted_as_they_stand() {
-    let folder = Folder::new("cl");
-    folder.write("good.cls", CL);
-    folder.write("bad.cls", CL.replace("GOTO/1,0,0", "GOTO/1,0"));
-    let ran = folder.run(&["post", "good.cls", "--machine", "linuxcnc-mill3"]);
-    assert!(ran.code == 0 && ran.stdout.contains("X1"), "{ran:?}");
-    assert!(ran.stderr.contains("dialect cl (the file name ends with .cls)"), "{ran:?}");
-    let bad = folder.run(&["post", "bad.cls", "--machine", "linuxcnc-mill3"]);
-    assert!(bad.code == 1 && bad.stderr.contains("APT0813") && bad.stderr.contains("bad.cls:6:"), "{bad:?}");
-    assert_eq!(folder.run(&["run", "good.cls", "--format", "cltape", "-o", "good.tap"]).code, 0);
-    let tape = folder.run(&["post", "good.tap", "--dialect", "cl", "--machine", "linuxcnc-mill3"]);
-    assert!(tape.stderr.contains("a binary CL file"), "{tape:?}");
-    assert_eq!((tape.code, tape.stdout), (0, ran.stdout));
-}
-
-/// In files of NCL DEEP breaks chips, in those of Creo it withdraws the drill.
-#[test]
-fn deep_holes_are_drilled_as_the_system_of_the_file_means_them() {
-    let folder = Folder::new("deep");
-    folder.write(
-        "ncl.cl",
-        "N1    , UNITS/ MM\nN2    , RAPID\nN3    , GOTO/ 0., 0., 50.\n\
-         N4    , CYCLE/ DEEP, FEDTO, 10., MMPM, 80., RAPTO, 2., STEP, 3.\nN5    , GOTO/ 1., 0., 0.\nN6    , CYCLE/ OFF\nN7    , FINI\n",
-    );
-    folder.write(
-        "creo.cl",
-        "$$*         Pro/CLfile  Version\nUNITS / MM\nRAPID\nGOTO / 0., 0., 50.\n\
-         CYCLE / DEEP, DEPTH, 10., STEP, 3., MMPM, 80., CLEAR, 2.\nGOTO / 1., 0., 0.\nCYCLE / OFF\nFINI\n",
-    );
-    for (file, code) in [("ncl.cl", "G73"), ("creo.cl", "G83")] {
-        let tape = folder.run(&["post", file, "--machine", "haas-mill3"]).stdout;
-        assert!(tape.contains(&format!("{code} X1.")), "{file}: {tape}");
-    }
-}
-
 #[test]
 fn tapes_are_punched_and_pictures_are_images() {
     let folder = Folder::new("punch");
@@ -573,34 +535,4 @@ fn a_program_names_its_machine() {
     let unknown = other.run(&["post", "other.apt"]);
     assert!(unknown.code == 2 && unknown.stderr.contains("there is no machine named `CINCY`"), "{unknown:?}");
     assert_eq!(other.run(&["--check", "other.apt"]).code, 0, "a tape is nobody's wish there");
-}
-
-#[test]
-fn a_binary_file_of_ncl_is_read() {
-    let folder = Folder::new("ncl-binary");
-    let bytes = include_bytes!("../../apt-cldata/tests/data/ncl-03.tap");
-    std::fs::write(folder.0.join("arc.cl"), bytes).unwrap();
-    assert_eq!(folder.run(&["--check", "."]).code, 0);
-    let text = folder.run(&["run", "arc.cl", "--format", "cl"]);
-    assert!(text.stdout.starts_with("PARTNO SAMPLE\nMACHIN/PWORKS,12.0\nMULTAX/ON\n"), "{text:?}");
-    assert!(text.code == 0 && text.stderr.contains("a binary CL file"), "{text:?}");
-    let tape = folder.run(&["post", "arc.cl", "--machine", "linuxcnc-mill3"]);
-    assert!(tape.code == 0 && tape.stdout.matches("\nN").count() > 40, "{tape:?}");
-    assert_eq!(folder.run(&["convert", "arc.cl", "--to", "ncl", "-o", "arc.as"]).code, 0);
-    assert_eq!(folder.run(&["diff", "arc.cl", "arc.as"]).code, 0);
-}
-
-#[test]
-fn the_tape_of_a_program_is_that_of_apt_iii_byte_for_byte() {
-    let folder = Folder::new("cltape");
-    folder.write("sample.apt", include_bytes!("../../apt-cldata/tests/data/cltape-01.apt"));
-    assert_eq!(folder.run(&["run", "sample.apt", "--format", "cltape", "-o", "sample.tap"]).code, 0);
-    let sample = include_bytes!("../../apt-cldata/tests/data/cltape-01.tap");
-    // One filling byte stands at the end of the sample.
-    assert!(std::fs::read(folder.0.join("sample.tap")).unwrap() == sample[..sample.len() - 1]);
-    let listing = folder.run(&["run", "sample.apt"]).stdout;
-    let sections = ["PROGRAM", "STATEMENTS", "CANONICAL FORMS", "CUTTER LOCATIONS", "TOTALS"];
-    let found =
-        sections.map(|section| listing.find(section).unwrap_or_else(|| panic!("{section}: {listing}")));
-    assert!(found.is_sorted() && listing.contains("     15        GO/TO,C1,TO,P1\n"), "{listing}");
 }

@@ -9,6 +9,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
+use apt_cldata::text::ClDialect;
 use apt_geometry::patience::{Aside, Waiting, put_away};
 use apt_program::{Options, Program, evaluate};
 use apt_syntax::{
@@ -44,6 +45,8 @@ pub enum Level {
 pub enum DialectReason {
     /// The settings name it.
     Setting,
+    /// It is that of the text of binary files, such as those of this system.
+    Binary(ClDialect),
     /// It was detected.
     Detected(DetectionReason),
 }
@@ -94,9 +97,10 @@ impl Document {
         surroundings: Surroundings,
     ) -> Self {
         let set = settings.dialect.as_deref().and_then(|name| name.parse::<DialectName>().ok());
-        let (name, dialect_reason) = match set {
-            Some(name) => (name, DialectReason::Setting),
-            None => {
+        let (name, dialect_reason) = match (set, surroundings.binary) {
+            (Some(name), _) => (name, DialectReason::Setting),
+            (None, Some(system)) => (DialectName::Cl, DialectReason::Binary(system)),
+            (None, None) => {
                 let detection = detect(text, file.as_deref());
                 (detection.name, DialectReason::Detected(detection.reason))
             }

@@ -9,6 +9,7 @@ use std::{
     time::SystemTime,
 };
 
+use apt_cldata::text::ClDialect;
 use apt_program::{IncludeFailure, IncludeResolver, SourceFile};
 use apt_syntax::{
     SyntaxTree,
@@ -137,13 +138,15 @@ pub fn normalised(path: &Path) -> PathBuf {
     plain
 }
 
-/// Where a program stands, and which files are open beside it.
+/// Where a program stands, which files are open beside it, and what it was before it was a text.
 #[derive(Debug, Clone, Default)]
 pub struct Surroundings {
     /// The path of the program; without one, nothing is beside it.
     pub path: Option<PathBuf>,
     /// Files open in an editor, and what was read of others.
     pub files: Files,
+    /// The system of the binary file that the text was made of.
+    pub binary: Option<ClDialect>,
 }
 
 /// Looks for included files in folders.
@@ -222,7 +225,7 @@ mod tests {
 
     fn resolver(folder: &Path, files: &Files) -> Arc<FolderResolver> {
         let path = Some(folder.join("parts/main.apt"));
-        let surroundings = Surroundings { path, files: files.clone() };
+        let surroundings = Surroundings { path, files: files.clone(), ..Surroundings::default() };
         FolderResolver::new(&surroundings, &["../lib".to_owned()], Dialect::named(DialectName::Free))
     }
 

@@ -65,12 +65,8 @@ impl Language for Engine {
         apt_ide::tape::machine(name).is_ok()
     }
 
-    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>> {
+    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<TextOfBinary, String>> {
         Some(apt_ide::tape::text_of_cl_tape(bytes)?.map_err(|error| error.to_string()))
-    }
-
-    fn dialect_of_binary(&self) -> &'static str {
-        apt_ide::tape::TAPE_DIALECT
     }
 
     fn difference(

@@ -47,12 +47,8 @@ impl Language for FakeLanguage {
         self.machines().iter().any(|machine| machine.name == name)
     }
 
-    fn text_of_binary(&self, _: &[u8]) -> Option<Result<String, String>> {
+    fn text_of_binary(&self, _: &[u8]) -> Option<Result<TextOfBinary, String>> {
         None
-    }
-
-    fn dialect_of_binary(&self) -> &'static str {
-        Engine.dialect_of_binary()
     }
 
     fn difference(

@@ -42,10 +42,7 @@ pub(crate) trait Language: Send + Sync + 'static {
 
     /// The program that bytes in a binary form say as text, or why they cannot be read; nothing for bytes of no form
     /// that is known.
-    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<String, String>>;
-
-    /// The dialect of such a text.
-    fn dialect_of_binary(&self) -> &'static str;
+    fn text_of_binary(&self, bytes: &[u8]) -> Option<Result<TextOfBinary, String>>;
 
     /// Where two paths differ.
     fn difference(

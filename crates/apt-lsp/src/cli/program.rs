@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::arguments::{ProgramArgument, ReadingOptions, SeverityOption};
 use super::console::Console;
-use crate::analysis::{Document, Language, Surroundings};
+use crate::analysis::{Document, Language, Surroundings, TextOfBinary};
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
 use crate::source::{self, ENDINGS, Source, TextForm, is_program};
@@ -57,17 +57,20 @@ impl Program {
         let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
         let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
             Ok(match language.text_of_binary(&bytes).transpose()? {
-                Some(text) => (Source { text, form: TextForm::Utf8 }, Some(bytes)),
+                Some(TextOfBinary { text, system }) => {
+                    (Source { text, form: TextForm::Utf8 }, Some((bytes, system)))
+                }
                 None => (source::decode(bytes), None),
             })
         });
-        let (source, tape) = match understood {
+        let (source, binary) = match understood {
             Ok(both) => both,
             Err(error) => {
                 console.error(&format!("{name}: {error}"));
                 return None;
             }
         };
+        let (tape, binary) = binary.unzip();
         if tape.is_some() {
             console.note(&format!("{name}: a binary CL file; places are those of its text form"));
         }
@@ -77,9 +80,6 @@ impl Program {
         let mut typed = Values::new();
         if let Some(dialect) = &reading.dialect {
             typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
-        } else if tape.is_some() {
-            // Whatever the programs beside it are written in.
-            typed.insert("dialect".to_owned(), Value::String(language.dialect_of_binary().to_owned()));
         }
         if !reading.severities.is_empty() {
             let one = |one: &SeverityOption| (one.code.clone(), Value::String(one.severity.clone()));
@@ -96,14 +96,18 @@ impl Program {
         let whole = std::path::absolute(path).ok().filter(|_| !from_standard_input);
         let beside = whole.clone();
         let home = whole.or_else(|| Some(std::env::current_dir().ok()?.join(&name)));
-        let (settings, problems) = Settings::resolve(language, home.as_deref(), &Values::new(), &typed);
+        let (mut settings, problems) = Settings::resolve(language, home.as_deref(), &Values::new(), &typed);
         for problem in &problems {
             console.error(&problem.to_string());
         }
         if !problems.is_empty() {
             return None;
         }
-        let surroundings = Surroundings { path: beside, ..Surroundings::default() };
+        if binary.is_some() && reading.dialect.is_none() {
+            // A binary file says what it is, whatever the programs beside it are written in.
+            settings.program.remove("dialect");
+        }
+        let surroundings = Surroundings { path: beside, binary, ..Surroundings::default() };
         let document = language.open(&source.text, Some(&name), &settings.program, surroundings);
         let index = TextIndex { rope: Rope::from_str(&source.text), encoding: Encoding::Utf16 };
         let form = tape.is_none().then_some(source.form);

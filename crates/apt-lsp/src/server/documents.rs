@@ -508,7 +508,8 @@ impl OpenDocument {
             None => {
                 let path = file_path(uri);
                 let name = path.as_ref().and_then(|path| path.file_name()).and_then(|name| name.to_str());
-                let surroundings = Surroundings { path: path.clone(), files: files.clone() };
+                let surroundings =
+                    Surroundings { path: path.clone(), files: files.clone(), ..Surroundings::default() };
                 language.open(&self.index.rope.to_string(), name, &self.settings.program, surroundings)
             }
         };

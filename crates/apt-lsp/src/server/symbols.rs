@@ -9,7 +9,7 @@ use ropey::Rope;
 use tower_lsp::ls_types::SymbolInformation;
 
 use super::documents::Snapshot;
-use crate::analysis::{Answer, Control, Files, Language, Refusal, Surroundings, normalised};
+use crate::analysis::{Answer, Control, Language, Refusal, Surroundings, normalised};
 use crate::convert::{TextIndex, outgoing};
 use crate::settings::Settings;
 use crate::source;
@@ -49,7 +49,7 @@ pub(super) fn of_closed_files(
             continue;
         };
         let name = path.file_name().and_then(|name| name.to_str());
-        let surroundings = Surroundings { path: Some(path.clone()), files: Files::default() };
+        let surroundings = Surroundings { path: Some(path.clone()), ..Surroundings::default() };
         let document = language.open(&source.text, name, &settings.program, surroundings);
         let index = TextIndex { rope: Rope::from_str(&source.text), encoding: snapshot.index.encoding };
         found.extend(outgoing::symbols_named(&index, &uri, document.outline(control)?, wanted));
