@@ -68,7 +68,7 @@ pub(super) fn apply(
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
-            Ok(Some(finish(state, sequence, None)))
+            Ok(Some(finish_start_up(state, sequence)))
         }
         MotionCommand::Offset(surfaces) => {
             warnings.extend(start_up::twice::named(surfaces));
@@ -76,7 +76,7 @@ pub(super) fn apply(
             if let Some(part) = surfaces.get(1) {
                 state.part = part.surface.clone();
             }
-            Ok(Some(finish(state, sequence, None)))
+            Ok(Some(finish_start_up(state, sequence)))
         }
         MotionCommand::Drive { turn, drive, checks } => {
             let Directed { sequence, heading } =
@@ -181,8 +181,15 @@ fn finish(state: &mut State, sequence: CutSequence, heading: Option<Vec3>) -> Ou
     }
     let offset_part = sequence.part.as_ref().filter(|role| role.relation != Relation::On);
     state.side_of_part = offset_part.filter(|role| role.surface == state.part).map(|role| role.side);
-    state.clear_one_shot();
+    state.directions = [None; 3];
     Output::Sequence(sequence)
+}
+
+/// The same for a start-up, which uses up what was said for it; NOPS and SRFVCT wait for one behind directed motion, too.
+fn finish_start_up(state: &mut State, sequence: CutSequence) -> Output {
+    let output = finish(state, sequence, None);
+    state.clear_one_shot();
+    output
 }
 
 /// INDIRV and INDIRP (classes 5000/1 and 5000/2): only the vector of the drive surface sets the direction.

@@ -86,11 +86,11 @@ pub struct State {
     pub force_iteration: bool,
     /// CUT (true) or DNTCUT.
     pub output: bool,
-    /// INDIRV and INDIRP for drive, part and check surface; one-shot.
+    /// INDIRV and INDIRP for drive, part and check surface; for the next motion only.
     pub directions: [Option<Direction>; 3],
-    /// SRFVCT for drive, part and check surface; one-shot.
+    /// SRFVCT for drive, part and check surface; for the next start-up only.
     pub surface_vectors: [Option<Vec3>; 3],
-    /// NOPS; one-shot.
+    /// NOPS; for the next start-up only.
     pub no_part: bool,
     /// Restart mode.
     pub restart: Restart,
@@ -156,7 +156,7 @@ impl State {
         }
     }
 
-    /// Forgets what applies to the next motion only.
+    /// Forgets what applies to the next motion or start-up only.
     pub(super) fn clear_one_shot(&mut self) {
         self.directions = [None; 3];
         self.surface_vectors = [None; 3];

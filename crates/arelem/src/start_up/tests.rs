@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use Relation::{On, Past, TangentToDrive, TangentToPart, To};
 use apt_geometry::{
+    Vec3,
     canonical::{Cone, Geometry, TabulatedCylinder},
-    motion::{Direction, MotionCommand, NamedSurface, Relation},
+    motion::{Delta, Direction, DriveSide, MotionCommand, NamedSurface, Relation, Turn},
 };
 
 use crate::{
@@ -118,6 +119,28 @@ fn without_part_surface_an_inclined_move_to_an_upright_surface_is_made_along_the
             p.indirv(2.0, 0.0, -1.0).go(&[(relation, surface)]).ends(x, 0.0, 3.0 - 0.5 * x, BAND).verified();
         }
     }
+}
+
+/// NOPS and SRFVCT are for the next start-up; a directed motion before it is none. INDIRV is for the next motion of any kind.
+#[test]
+fn what_is_said_for_the_next_start_up_outlasts_directed_motion() {
+    let (floor, stop, wall) = (line(0.0, 0.0, 9.0, 0.0), line(3.0, 0.0, 3.0, 1.0), line(9.0, -1.0, 9.0, 1.0));
+    let there = |p: &mut Program| {
+        p.side(DriveSide::Left).indirv(1.0, 0.0, 0.0).drive(Turn::Forward, &floor, To, &stop);
+        p.run(&MotionCommand::GoDelta { delta: Delta::Vector(v(0.0, 0.0, 2.0), None), name: String::new() });
+    };
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[0.5]).from(0.0, 0.25, 0.0).run(&MotionCommand::NoPartSurface);
+    there(&mut p);
+    p.go(&[(To, &wall)]).ends(8.75, 0.25, 2.0, BAND);
+    // Once only.
+    p.go(&[(Past, &wall)]).ends(9.25, 0.25, 0.0, BAND);
+
+    let mut p = program(StartUpRule::Apt3);
+    p.cutter(&[0.5]).from(0.0, 0.25, 0.0).run(&MotionCommand::SurfaceVectors([Some(-Vec3::x()), None, None]));
+    there(&mut p);
+    // The vector points from the side of TO to that of PAST.
+    p.go(&[(To, &wall)]).ends(9.25, 0.25, 0.0, BAND);
 }
 
 /// In the middle of a sphere no direction is plainly the nearest: along its axis the tool comes out first, for its tip is all that has to.
