@@ -466,7 +466,7 @@ pub enum FindingKind {
     /// FINI while an implied check surface waits.
     #[error("FINI while a check surface is waited for")]
     ImpliedCheckOpen,
-    /// Two check surfaces need labels, one takes none.
+    /// Two check surfaces need labels, and none takes two.
     #[error("check surfaces and labels do not match")]
     CheckLabels,
     /// The label of a check surface is an expression, or a name with a value.

@@ -193,7 +193,7 @@ fn motion(kind: &Kind) -> Option<Text> {
         Kind::CheckLabelComputed => {
             say("APT0505", "a label is a name without a value, or a number as it stands: this is computed")
         }
-        Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and one takes none")
+        Kind::CheckLabels => say("APT0505", "two check surfaces need a label each, and none takes two")
             .hint("the form is GOLFT/ds,TO,cs1,label1,TO,cs2,label2"),
         Kind::SurfaceCount { found, limit } => {
             say("APT0506", format!("there are {found} surfaces; at most {limit} can stand here"))
