@@ -65,9 +65,9 @@ pub(super) async fn execute(
     match command {
         "apt.runMotion" => run_motion(server, read(argument)?, token).await,
         "apt.expand" => expand(server, read(argument)?, token).await,
-        "apt.canonicalForm" => canonical_form(server, read(argument)?).await,
+        "apt.canonicalForm" => canonical_form(server, read(argument)?, token).await,
         "apt.post" => post(server, read(argument)?, token).await,
-        "apt.syntaxTree" => syntax_tree(server, read(argument)?).await,
+        "apt.syntaxTree" => syntax_tree(server, read(argument)?, token).await,
         "apt.machines" => machines(server),
         "apt.status" => status::status(server).await,
         unknown => Err(Error::invalid_params(format!("there is no command `{unknown}`"))),
@@ -105,12 +105,16 @@ async fn expand(server: &Backend, argument: ExpandArgument, token: Option<Progre
     .await
 }
 
-async fn canonical_form(server: &Backend, argument: PlaceArgument) -> Result<Value> {
+async fn canonical_form(
+    server: &Backend,
+    argument: PlaceArgument,
+    token: Option<ProgressToken>,
+) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
     let position = argument.position;
-    job::on_snapshot("apt.canonicalForm", snapshot, move |snapshot, control| {
+    long(server, "Canonical form", snapshot, token, move |snapshot, control| {
         let found = snapshot.document.canonical_form(snapshot.index.offset(position), control)?;
-        Ok::<_, Refusal>(found.map_or(Value::Null, |form| {
+        Ok(found.map_or(Value::Null, |form| {
             json!({ "name": form.name, "type": form.kind, "canonical": form.canonical, "text": form.text })
         }))
     })
@@ -129,10 +133,14 @@ async fn post(server: &Backend, argument: PostArgument, token: Option<ProgressTo
     .await
 }
 
-async fn syntax_tree(server: &Backend, argument: DocumentArgument) -> Result<Value> {
+async fn syntax_tree(
+    server: &Backend,
+    argument: DocumentArgument,
+    token: Option<ProgressToken>,
+) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
-    job::on_snapshot("apt.syntaxTree", snapshot, |snapshot, _| {
-        Ok::<_, Refusal>(json!({ "text": snapshot.document.syntax_tree() }))
+    long(server, "Syntax tree", snapshot, token, |snapshot, _| {
+        Ok(json!({ "text": snapshot.document.syntax_tree() }))
     })
     .await
 }

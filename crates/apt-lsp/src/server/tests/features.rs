@@ -281,6 +281,31 @@ async fn requested_progress_is_shown_and_its_button_ends_the_run() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn every_command_about_a_document_shows_the_progress_that_was_asked_for() {
+    let mut talk = Conversation::about("BAD\n").await;
+    let place = json!({ "line": 0, "character": 0 });
+    for command in ["runMotion", "expand", "canonicalForm", "post", "syntaxTree"] {
+        for method in [format!("apt/{command}"), "workspace/executeCommand".to_owned()] {
+            let mut argument = json!({ "uri": URI, "position": place, "machine": "toy" });
+            let params = if method.starts_with("apt/") {
+                argument["workDoneToken"] = json!(method);
+                argument
+            } else {
+                let name = format!("apt.{command}");
+                json!({ "command": name, "arguments": [argument], "workDoneToken": method })
+            };
+            // The toy language does not do all of them.
+            let _ = talk.ask(&method, params).await;
+            for kind in ["begin", "end"] {
+                let told = talk.wait_for("$/progress").await["params"].clone();
+                let (token, told) = (told["token"].clone(), told["value"]["kind"].clone());
+                assert_eq!((token, told), (json!(method), json!(kind)), "{command}");
+            }
+        }
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn offered_progress_begins_only_when_the_client_agrees() {
     let mut talk = Conversation::with(
         json!({ "window": { "workDoneProgress": true }, "textDocument": { "diagnostic": {} } }),
