@@ -21,7 +21,7 @@ use super::documents::{self, Event, Snapshot};
 use super::job::{self, Events};
 use super::outbox::Outbox;
 use super::parcels::Parcels;
-use super::progress::Cancellations;
+use super::progress::{Cancellations, Frames};
 use super::{commands, diagnostics, lifetime, symbols};
 use crate::analysis::{ActionKind, Answer, Control, Language, Level, Located, Refusal, Spot};
 use crate::convert::{joined, outgoing, tokens};
@@ -36,6 +36,7 @@ pub(super) struct Backend {
     language: Arc<dyn Language>,
     events: Events,
     outbox: Outbox,
+    frames: Frames,
     features: OnceLock<ClientFeatures>,
     parcels: Parcels,
     cancellations: Cancellations,
@@ -52,11 +53,11 @@ impl Backend {
         client: Client,
         language: Arc<dyn Language>,
         parcels: Parcels,
-        notices: mpsc::WeakSender<Vec<u8>>,
+        notices: Frames,
     ) -> Self {
         let (events, waiting) = mpsc::unbounded_channel();
         let (touched, touches) = mpsc::unbounded_channel();
-        let outbox = Outbox::start(client.clone(), notices);
+        let outbox = Outbox::start(client.clone(), notices.clone());
         if let Err(error) = documents::start(Arc::clone(&language), waiting, touched, outbox.clone()) {
             lifetime::complain(&format!("cannot start a thread: {error}"));
         }
@@ -66,6 +67,7 @@ impl Backend {
             language,
             events,
             outbox,
+            frames: notices,
             features: OnceLock::new(),
             parcels,
             cancellations: Cancellations::default(),
@@ -75,8 +77,9 @@ impl Backend {
         }
     }
 
-    pub(super) fn client(&self) -> &Client {
-        &self.client
+    /// The client, and the way to it past the library.
+    pub(super) fn for_progress(&self) -> (Client, Frames) {
+        (self.client.clone(), self.frames.clone())
     }
 
     pub(super) fn language(&self) -> &Arc<dyn Language> {

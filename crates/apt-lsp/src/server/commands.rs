@@ -139,8 +139,10 @@ async fn syntax_tree(
     token: Option<ProgressToken>,
 ) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
-    long(server, "Syntax tree", snapshot, token, |snapshot, _| {
-        Ok(json!({ "text": snapshot.document.syntax_tree() }))
+    long(server, "Syntax tree", snapshot, token, |snapshot, control| {
+        let text = snapshot.document.syntax_tree();
+        // Long trees take longest on their way to the client.
+        if control.is_cancelled() { Err(Refusal::Interrupted) } else { Ok(json!({ "text": text })) }
     })
     .await
 }
@@ -164,10 +166,16 @@ async fn long(
     let token = snapshot.superseded.child_token();
     let display =
         requested.map(Display::Requested).or_else(|| server.offered_progress().map(Display::Offered));
-    let reporter = display.map(|display| {
-        progress::begin(server.client().clone(), server.cancellations(), display, title, token.clone())
-    });
-    job::with_progress(title, snapshot, token, reporter, work).await
+    let (reporter, shown) = display
+        .map(|display| {
+            progress::begin(server.for_progress(), server.cancellations(), display, title, token.clone())
+        })
+        .unzip();
+    let answer = job::with_progress(title, snapshot, token, reporter, work).await;
+    if let Some(shown) = shown.flatten() {
+        shown.ended().await;
+    }
+    answer
 }
 
 /// The document as it is now; a file that is not open is read from the disk.

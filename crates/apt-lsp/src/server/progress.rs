@@ -1,16 +1,21 @@
 //! Work-done progress: told by a task of its own, so that nobody who works waits for the client.
+//!
+//! It is written past the library, which may send an answer before a notice that was given to it earlier: a token of the
+//! client is good until the answer comes, and not longer.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use tokio::sync::watch;
+use serde_json::json;
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
 use tokio_util::sync::CancellationToken;
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
     ProgressParams, ProgressParamsValue, ProgressToken, WorkDoneProgress, WorkDoneProgressBegin,
-    WorkDoneProgressEnd, WorkDoneProgressReport, notification,
+    WorkDoneProgressEnd, WorkDoneProgressReport,
 };
 
 use crate::analysis::Progress;
@@ -74,28 +79,45 @@ pub(super) enum Display {
     Offered(ProgressToken),
 }
 
+/// Where the bodies of messages to the client are put in; weak, so that it does not keep the conversation from its end.
+pub(super) type Frames = mpsc::WeakSender<Vec<u8>>;
+
+/// The display of a progress that the client asked for with its request.
+#[derive(Debug)]
+pub(super) struct Shown(JoinHandle<()>);
+
+impl Shown {
+    /// Waits until the end of the work has been told.
+    pub(super) async fn ended(self) {
+        // A display that broke down tells no more.
+        let _ = self.0.await;
+    }
+}
+
 /// Begins to tell the progress of a work that `work` ends.
 pub(super) fn begin(
-    client: Client,
+    (client, frames): (Client, Frames),
     cancellations: &Cancellations,
     display: Display,
     title: &'static str,
     work: CancellationToken,
-) -> Reporter {
+) -> (Reporter, Option<Shown>) {
     let (sender, receiver) = watch::channel(None);
     let cancellations = cancellations.clone();
     let (Display::Requested(token) | Display::Offered(token)) = &display;
     cancellations.insert(token, work);
     let token = token.clone();
-    tokio::spawn(async move {
-        show(client, display, title, receiver).await;
+    let is_requested = matches!(display, Display::Requested(_));
+    let task = tokio::spawn(async move {
+        show((client, frames), display, title, receiver).await;
         cancellations.remove(&token);
     });
-    Reporter(sender)
+    // A display that the server offers may wait long for the client; its token is the server's own.
+    (Reporter(sender), is_requested.then_some(Shown(task)))
 }
 
 async fn show(
-    client: Client,
+    (client, frames): (Client, Frames),
     display: Display,
     title: &str,
     mut progress: watch::Receiver<Option<Progress>>,
@@ -116,7 +138,7 @@ async fn show(
     };
     let begin =
         WorkDoneProgressBegin { title: title.to_owned(), cancellable: Some(true), ..Default::default() };
-    tell(&client, &token, WorkDoneProgress::Begin(begin)).await;
+    tell(&frames, &token, WorkDoneProgress::Begin(begin)).await;
     while progress.changed().await.is_ok() {
         let report = progress.borrow_and_update().as_ref().map(|now| WorkDoneProgressReport {
             cancellable: Some(true),
@@ -124,11 +146,15 @@ async fn show(
             percentage: percentage(now),
         });
         if let Some(report) = report {
-            tell(&client, &token, WorkDoneProgress::Report(report)).await;
+            tell(&frames, &token, WorkDoneProgress::Report(report)).await;
         }
-        sleep(INTERVAL).await;
+        let mut end = progress.clone();
+        tokio::select! {
+            () = sleep(INTERVAL) => {}
+            _ = end.wait_for(|_| false) => {}
+        }
     }
-    tell(&client, &token, WorkDoneProgress::End(WorkDoneProgressEnd::default())).await;
+    tell(&frames, &token, WorkDoneProgress::End(WorkDoneProgressEnd::default())).await;
 }
 
 fn is_over(progress: &watch::Receiver<Option<Progress>>) -> bool {
@@ -140,9 +166,13 @@ fn percentage(progress: &Progress) -> Option<u32> {
     u32::try_from(progress.done.min(total).saturating_mul(100) / total).ok()
 }
 
-async fn tell(client: &Client, token: &ProgressToken, value: WorkDoneProgress) {
+async fn tell(frames: &Frames, token: &ProgressToken, value: WorkDoneProgress) {
     let params = ProgressParams { token: token.clone(), value: ProgressParamsValue::WorkDone(value) };
-    client.send_notification::<notification::Progress>(params).await;
+    let message = json!({ "jsonrpc": "2.0", "method": "$/progress", "params": params });
+    // After the end of the conversation it goes nowhere.
+    if let Some(frames) = frames.upgrade() {
+        let _ = frames.send(message.to_string().into_bytes()).await;
+    }
 }
 
 #[cfg(test)]

@@ -296,6 +296,8 @@ async fn every_command_about_a_document_shows_the_progress_that_was_asked_for() 
             };
             // The toy language does not do all of them.
             let _ = talk.ask(&method, params).await;
+            // The token is good until the answer comes, not longer.
+            assert_eq!(talk.unwanted("$/progress"), 2, "{command}");
             for kind in ["begin", "end"] {
                 let told = talk.wait_for("$/progress").await["params"].clone();
                 let (token, told) = (told["token"].clone(), told["value"]["kind"].clone());
