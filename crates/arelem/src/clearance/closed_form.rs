@@ -12,6 +12,8 @@ use super::{Contact, Tool, dual};
 
 /// Sine of the angle between two axes below which they are parallel.
 const PARALLEL: f64 = 1e-13;
+/// Distance of a place from the tool, relative to the size of that, up to which it is on it.
+const NEARLY_ON: f64 = 1e-7;
 /// Sine of the angle to the plane across the tool below which a normal lies in it.
 const LEVEL: f64 = 1e-9;
 
@@ -121,8 +123,14 @@ pub(super) fn ball_outside(tool: &Tool, center: &Vec3, radius: f64, tip: &Vec3) 
     let (along, across, radial) = tool.split(&(center - tip));
     let (distance, point) = tool.profile.distance(across, along);
     let contact = tip + tool.axis * point.height + radial * point.radius;
-    let outward = (contact - center).try_normalize(0.0).unwrap_or(-radial);
-    let normal = if distance < 0.0 { -outward } else { outward };
+    let normal = if distance.abs() > NEARLY_ON * (tool.radius() + tool.profile.top.height) {
+        let outward = (contact - center).try_normalize(0.0).unwrap_or(-radial);
+        if distance < 0.0 { -outward } else { outward }
+    } else {
+        // From a place on the tool to that place no direction leads but rounding: the tool's own one does.
+        let (_, [aside, up]) = tool.profile.outward(across, along);
+        -(radial * aside + tool.axis * up)
+    };
     Contact {
         clearance: distance - radius,
         gradient: normal,
