@@ -21,7 +21,7 @@ fn listed(text: &str, beginning: &str, quote: char) -> BTreeSet<String> {
 #[test]
 fn every_setting_of_the_server_is_one_of_visual_studio_code_and_reaches_the_server() {
     let source = read("crates/apt-lsp/src/settings.rs");
-    let mut of_server = listed(&source, "const PROGRAM_KEYS: [&str; 7] = [", '"');
+    let mut of_server = listed(&source, "const KEYS: [&str; 8] =\n    [", '"');
     of_server.insert("motion".to_owned());
     let package: serde_json::Value =
         serde_json::from_str(&read("editors/vscode/package.json")).expect("the package is JSON");
