@@ -203,3 +203,52 @@ fn a_start_up_does_not_end_behind_the_end_of_a_surface() {
     };
     assert!((place - v(2.9384, 5.5469, 0.1965)).norm() < 1e-3, "{place:?}");
 }
+
+/// A lens whose tip is under a surface beside the end of that, and the end in it beside its tip: it comes out past the end on the side where its
+/// face leans away, by less than the tip is under the surface, from where the end is over the tip on.
+#[test]
+fn a_tip_beside_an_end_comes_out_past_it() {
+    let part = poly_conic(
+        &[
+            1.0,
+            -0.7997551575522218,
+            0.5858991161064593,
+            0.13082015790500556,
+            2.564854465382458,
+            -0.51193485423348,
+            -0.7794273261449344,
+            0.361131206460344,
+            0.369944953755211,
+            0.31355126054533144,
+            0.22184514645181672,
+            0.923293202621034,
+            6.317280305257186,
+            0.0,
+            0.0,
+            5.999999999999998,
+        ],
+        [
+            [3.7480198487174663, -0.05862841481711932],
+            [3.7480198487174663, 0.002931416624613963],
+            [3.7480198487174663, 0.004291278808250156],
+            [-3.7480198487174663, -0.05349293242252971],
+            [-3.7480198487174663, 0.06391852004855922],
+            [3.7480198487174663, -0.04537327422098356],
+            [std::f64::consts::FRAC_1_SQRT_2, -0.017164378732116896],
+        ],
+    );
+    let lens = [1.0, 0.1875, 0.33, 0.22, 9.185408478776981, 5.0, 4.976140436179929];
+    let cutter = Cutter::from_numbers(&lens, 1.0).expect("a cutter");
+    let tool = Tool::new(cutter, Vec3::z());
+    let role = Role { side: -1.0, ..touched(&part) };
+    let [from, to] = [
+        v(-5.033357102365004, 1.607056216599384, -0.2623153094952222),
+        v(-5.009825518770112, 1.669141425313496, -0.2707849395193834),
+    ];
+    for k in 0..=200 {
+        let tip = from.lerp(&to, 0.13 + 2e-4 * f64::from(k));
+        let engine = gauge(&role).contact(&tool, &tip).clearance;
+        let verifier = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        assert!((engine - verifier).abs() < 2e-7, "{k}: {engine}, {verifier}");
+    }
+}

@@ -61,6 +61,10 @@ const BEHIND: f64 = 0.5;
 /// Depth, relative to the radius of the tool, beyond what is meant, down to which contacts are followed.
 const DEEPEST: f64 = 0.1;
 
+/// An end past which a tool comes out by less than a place of it is deep is no farther from that than so many times its depth: one for the way
+/// out, and from there no farther than the place across from it is, which is as deep as that away from where the way began.
+const WAYS_PAST_END: f64 = 3.0;
+
 /// A contact: a place of a part and the tool's place straight across from it.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
@@ -134,6 +138,8 @@ impl Contact {
 pub(super) struct Following<'a> {
     pub(super) sheet: &'a Sheet,
     pub(super) parts: &'a [Part],
+    /// All that is no farther from the tool is among them.
+    pub(super) margin: f64,
     /// The way of the tool since the survey.
     pub(super) way: f64,
     pub(super) side: f64,
@@ -228,6 +234,9 @@ impl Following<'_> {
             let profile = Profile::tool_end();
             let point = self.tool.with(&profile);
             let place = self.tip + contact.opposite;
+            if self.may_come_out_past_end(&place, -contact.value) {
+                return None;
+            }
             let accuracy = Accuracy { rounding: self.tolerance, error: 0.0 };
             let (under, _) = self.sheet.at(side, &place, &point, (self.size, true), accuracy)?;
             value = value.min(under.value + under.error);
@@ -270,6 +279,14 @@ impl Following<'_> {
             }
         }
         Some(Reading { place: Some(contact.opposite), ..Reading::new(value, contact.normal, error) })
+    }
+
+    /// Whether the surface may end so near to a place of the tool under it that the tool comes out past the end by less than the place is deep:
+    /// the end is then no farther from that than the way there, and from there to the place across from it, are.
+    fn may_come_out_past_end(&self, place: &Vec3, depth: f64) -> bool {
+        let reach = WAYS_PAST_END * depth;
+        !self.sheet.is_body()
+            && (reach > self.margin || self.parts.iter().any(|part| part.may_end_within(reach, place)))
     }
 
     /// A bound of the distance of a part, where both have all outside as far as `least`; the second of them holds the tool up

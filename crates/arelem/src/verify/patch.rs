@@ -105,6 +105,13 @@ pub(super) fn halves(c: &Cubic) -> [Cubic; 2] {
     [[c[0], ab, abc, all], [all, bcd, cd, c[3]]]
 }
 
+/// A ball that holds a cubic: its centre and radius.
+pub(super) fn ball_of_curve(curve: &Cubic) -> (Vec3, f64) {
+    let center = curve.iter().sum::<Vec3>() / 4.0;
+    let radius = curve.iter().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
+    (center, radius)
+}
+
 /// Halves of a patch along it.
 pub(super) fn halves_along(net: &Net) -> [Net; 2] {
     let [[a, b], [c, d], [e, f], [g, h]] =

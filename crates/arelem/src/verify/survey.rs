@@ -11,8 +11,8 @@ use super::{
     clearance::Reading,
     followed::{Following, Kept, Manner},
     patch::{
-        Bends, Edges, Net, Patch, ball, between_across, extent, halves, halves_across, halves_along, jet,
-        sides,
+        Bends, Edges, Net, Patch, ball, ball_of_curve, between_across, extent, halves, halves_across,
+        halves_along, jet, sides,
     },
     span::Bend,
     strip::Cubic,
@@ -127,6 +127,11 @@ impl Sheet {
     /// The same as all of what a tool on a side meets.
     pub(super) fn of_body(patches: Arc<[Patch]>) -> Self {
         Self { is_body: true, ..Self::new(patches, false) }
+    }
+
+    /// Whether it is all of what a tool on a side meets: nothing comes out past its ends.
+    pub(super) fn is_body(&self) -> bool {
+        self.is_body
     }
 
     /// The parts nearer to the tool than `bound` and how far they may be off the surface, relative to its patches between the
@@ -354,10 +359,10 @@ impl Near {
         let Asked { sheet, side, size, tolerance } = *asked;
         let (loose, nearer, looks) = (&Cell::new(None), &Cell::new(None), &Cell::new(0));
         for _ in 0..DIVISIONS {
-            let (parts, way) = (&self.parts, self.way);
+            let (parts, margin, way) = (&self.parts, self.margin, self.way);
             let kept = Kept { manner, loose, nearer, looks };
             let following =
-                Following { sheet, parts, way, side, tip, tool, size, tolerance, kept, led: None };
+                Following { sheet, parts, margin, way, side, tip, tool, size, tolerance, kept, led: None };
             let found = following.reading(&mut self.last);
             if found.is_some() {
                 return found;
@@ -524,8 +529,7 @@ impl Part {
         open.extend(edges.filter(|(_, is_edge)| *is_edge).map(|(curve, _)| (curve, EDGE_HALVINGS)));
         let mut rate: f64 = 0.0;
         while let Some((curve, halvings)) = open.pop() {
-            let center = curve.iter().sum::<Vec3>() / 4.0;
-            let radius = curve.iter().map(|p| (p - center).norm_squared()).fold(0.0, f64::max).sqrt();
+            let (center, radius) = ball_of_curve(&curve);
             if apart(&center) - radius > reach {
                 continue;
             }
@@ -540,6 +544,28 @@ impl Part {
             open.extend(halves(&curve).map(|half| (half, halvings - 1)));
         }
         (!self.edges.within).then_some(rate)
+    }
+
+    /// Whether it may have an end, or a sharp bend, as near to a place as `reach`.
+    pub(super) fn may_end_within(&self, reach: f64, place: &Vec3) -> bool {
+        let is_near = |center: &Vec3, radius: f64| (center - place).norm() - radius <= reach;
+        if !is_near(&self.center, self.radius) {
+            return false;
+        }
+        let mut open: Vec<(Cubic, u32)> = Vec::new();
+        let edges = sides(&self.net).into_iter().zip(self.edges.sides);
+        open.extend(edges.filter(|(_, is_edge)| *is_edge).map(|(curve, _)| (curve, EDGE_HALVINGS)));
+        while let Some((curve, halvings)) = open.pop() {
+            let (center, radius) = ball_of_curve(&curve);
+            if !is_near(&center, radius) {
+                continue;
+            }
+            if halvings == 0 || is_near(&curve[0], 0.0) {
+                return true;
+            }
+            open.extend(halves(&curve).map(|half| (half, halvings - 1)));
+        }
+        self.edges.within
     }
 
     /// About its place nearest to a point.
