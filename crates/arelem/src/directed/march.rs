@@ -230,7 +230,8 @@ impl<'a> March<'a> {
             }
             let mut before = self.snapshot(&here);
             let mut event = self.scan(&here, &next)?;
-            if event.is_none() && self.move_back(&start, (&mut here, &mut next), cap)? {
+            // A vertex between the last one and a stop that the last one does not see stays there.
+            if event.is_none() && finals == 0 && self.move_back(&start, (&mut here, &mut next), cap)? {
                 before = self.snapshot(&here);
                 event = self.scan(&here, &next)?;
             }

@@ -1,12 +1,17 @@
 //! Paths that come to the end of a surface that does not go on: what is told, and how soon.
 
+use std::sync::Arc;
+
 use DriveSide::On as TlOn;
 use Relation::{On, Past, To};
 use Turn::Forward;
-use apt_geometry::canonical::Remembering;
+use apt_geometry::canonical::{Cylinder, Remembering, TabulatedCylinder};
 
 use super::{
+    beyond_ends::poly_conic,
     closed_paths::table_through,
+    economy::tabulated,
+    refused::{AMPLE, Found},
     sculptured::{hill, made},
     sheets::{round_wall, ruled},
     *,
@@ -279,4 +284,94 @@ fn an_extension_that_would_come_back_to_its_curve_ends() {
     };
     let (sine, cosine) = 240f64.to_radians().sin_cos();
     assert!((place - v(5.0 + cosine, 3.5 + sine, place.z)).norm() < 1e-4, "{place}");
+}
+
+/// A vertex is put on the way where the last one does not see the stop. It was moved back all the way, for the vector that then leads beyond the stop
+/// keeps its bands, and the last one still did not see the stop.
+#[test]
+fn a_vertex_before_a_stop_that_is_not_seen_from_the_last_one_stays() {
+    let directrix = [
+        [-8.0, -2.267_069_237_861_485_4, 0.0, 0.0],
+        [
+            1.586_497_875_248_584_8,
+            -2.267_069_237_861_485_4,
+            -0.087_945_175_931_947_82,
+            0.250_038_041_732_284_14,
+        ],
+        [
+            2.086_497_875_248_584_8,
+            -1.991_272_848_831_993_5,
+            -0.055_966_659_462_644_265,
+            0.101_833_458_076_451_39,
+        ],
+        [
+            2.586_497_875_248_584_8,
+            -1.626_059_493_044_701_7,
+            -0.055_966_659_462_644_265,
+            0.002_126_433_332_556_439_5,
+        ],
+        [3.086_497_875_248_584_8, -1.260_846_137_257_409_8, 0.0, 0.0],
+    ];
+    let Geometry::TabulatedCylinder(cylinder) = tabulated(&directrix, [13.0, 5.0]) else {
+        panic!("a tabulated cylinder");
+    };
+    let axes = [
+        v(0.859_466_418_138_815_4, 0.420_488_386_970_572_06, -0.290_700_864_316_777_83),
+        v(-0.335_329_438_007_256_45, 0.034_528_507_877_844_74, -0.941_467_976_167_786_2),
+        v(-0.385_838_883_599_583_1, 0.906_640_666_728_895_4, 0.170_678_227_480_868_75),
+    ];
+    let part = Geometry::TabulatedCylinder(Arc::new(TabulatedCylinder { axes, ..(*cylinder).clone() }));
+    let height = 4.190_707_209_422_287;
+    let drive = poly_conic(
+        &[
+            1.0,
+            0.247_898_301_007_098_42,
+            0.846_047_218_361_783_1,
+            -0.471_964_550_215_461_6,
+            3.811_959_930_525_844,
+            0.467_639_915_842_813_6,
+            0.322_153_742_535_410_24,
+            0.823_122_029_398_408_8,
+            -0.462_096_867_408_721_13,
+            0.848_445_249_540_782_3,
+            -0.424_760_015_152_930_2,
+            -0.315_784_084_556_144_3,
+            4.827_788_602_552_411,
+            0.0,
+            0.0,
+            6.0,
+        ],
+        [
+            [height, 0.001_738_584_987_589_254_8],
+            [height, 0.107_449_481_893_595_27],
+            [height, 0.098_508_266_320_903_04],
+            [-height, 0.061_926_904_387_932_19],
+            [-height, 0.007_367_583_615_209_061],
+            [height, 0.006_786_162_260_312_145],
+            [std::f64::consts::FRAC_1_SQRT_2, 0.025_652_320_015_988_016],
+        ],
+    );
+    let motion = Found {
+        cutter: &[0.558_874_620_090_225_7, 0.279_437_310_045_112_85],
+        axis: v(-0.087_738_298_793_661_16, -0.212_415_576_410_018_62, 0.973_232_558_961_738_2),
+        from: v(2.351_620_421_272_832, 1.490_918_851_012_551, 1.166_056_439_246_920_2),
+        band: [0.0, 1e-4],
+        thickness: 0.0,
+        drive_side: TlOn,
+        forward: v(0.327, 0.936, -0.131),
+        part: (On, part),
+        drive: (On, drive),
+        first: (On, level(0.0)),
+        stop: (
+            Past,
+            Geometry::Circle(Cylinder {
+                point: v(3.027_908_337_290_21, 3.631_060_876_390_784, 6.426_141_956_815_416),
+                axis: Vec3::z(),
+                radius: 3.243_227_019_004_417_7,
+            }),
+        ),
+    };
+    let sequences = motion.run_from_there(AMPLE).expect("a path");
+    let vectors = sequences.last().expect("a motion").points.len();
+    assert!(vectors <= 5, "{vectors} vectors");
 }
