@@ -104,6 +104,12 @@ pub enum AxisFailure {
         /// Last change of the unit axis.
         change: f64,
     },
+    /// The axis would have to turn on the spot from one place of contact to another (855).
+    #[error("the axis leaps by {angle} radians")]
+    Leaps {
+        /// By how much.
+        angle: f64,
+    },
     /// The normal that the axis stands to comes to the end of the surface, over which it turns (855).
     #[error("the controlling surface ends at {place:?}")]
     SurfaceEnds {
@@ -119,7 +125,11 @@ impl AxisFailure {
             Self::NotRuled => 852,
             Self::ImpossibleAngles { .. } => 859,
             Self::NoPlane => 854,
-            Self::NoNormal | Self::Vertex | Self::NotSettled { .. } | Self::SurfaceEnds { .. } => 855,
+            Self::NoNormal
+            | Self::Vertex
+            | Self::NotSettled { .. }
+            | Self::Leaps { .. }
+            | Self::SurfaceEnds { .. } => 855,
             Self::SignUnresolved => 861,
             Self::NoSurface => 850,
         }

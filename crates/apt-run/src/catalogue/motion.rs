@@ -130,6 +130,9 @@ fn axis(cause: &AxisFailure, tip: &Vec3) -> Text {
         AxisFailure::NotSettled { .. } => {
             "the surface that guides the axis is too hollow for this tool".to_owned()
         }
+        AxisFailure::Leaps { angle } => {
+            format!("the axis would have to turn by {} degrees on the spot", degrees(angle))
+        }
         AxisFailure::SurfaceEnds { place: at } => {
             format!("the surface that guides the axis ends at {}", place(at))
         }

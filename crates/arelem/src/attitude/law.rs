@@ -7,28 +7,13 @@ use apt_geometry::{
     surface::{Surface, perpendicular},
 };
 
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::Matrix3;
 
 use crate::{clearance::Tool, error::AxisFailure, role::Working};
 
 mod rate;
+mod settled;
 
-/// Bound of the iteration for the normal at the contact.
-const MAX_ITERATIONS: u32 = 40;
-/// A change of the normal below this ends it.
-const RESOLUTION: f64 = 1e-15;
-/// The change that may be left: nearest points of polyconic surfaces are known to about a tenth of it.
-const ACCEPTABLE: f64 = 1e-8;
-/// The change that rounding of nearest points may leave, where Newton's method has led.
-const ROUNDED: f64 = 1e-12;
-/// Ratio of a change to the one before above which the iteration is slow.
-const SLOW: f64 = 0.2;
-/// Difference of unit vectors by which Newton's method tells how they are led on: the root of the error of the normals.
-const DIFFERENCE: f64 = 1e-6;
-/// The longest step of Newton's method (radians): what bends more than that is not foretold.
-const LONGEST_STEP: f64 = 0.3;
-/// How often one that does not lead nearer is halved.
-const HALVINGS: u32 = 6;
 /// |cos| between axis and normal above which an axis ON a surface keeps to its side of it.
 const LEAST_COSINE: f64 = 0.05;
 /// Sine between two directions below which they span no plane.
@@ -375,46 +360,6 @@ impl Law {
         self.other.as_ref().filter(|_| counts).map(|other| other.bend(tip))
     }
 
-    /// The normal at the contact, which moves with the axis that stands on it: each is taken where Newton's method leads; where that does not
-    /// come nearer, where the last one leads as long as that comes nearer fast, and then where Newton's method with differences does.
-    fn settled(&self, tool: &Tool, tip: &Vec3, other: Option<&Vec3>) -> Result<Bent, AxisFailure> {
-        let led = |from: Vec3| -> Result<Led, AxisFailure> {
-            go_on(tool)?;
-            let axis = self.towards(&from, tip, other)?;
-            let (to, bend) = self.base.bend(&self.place(tool, tip, &axis, &from));
-            Ok(Led { from, to, change: (to - from).norm(), axis, bend })
-        };
-        let mut here = led(self.base.normal(tip))?;
-        let mut is_slow = false;
-        for _ in 0..MAX_ITERATIONS {
-            if here.change <= RESOLUTION {
-                return Ok((here.to, here.bend));
-            }
-            let foretold = self.foretold(tool, (&here.from, &here.to, &here.bend), (&here.axis, other));
-            if let Some(next) = foretold.and_then(|normal| led(normal).ok())
-                && next.change <= SLOW * here.change
-            {
-                here = next;
-                continue;
-            }
-            if here.change <= ROUNDED {
-                return Ok((here.to, here.bend));
-            }
-            let nearer = if is_slow { here.nearer(&led)? } else { None };
-            if nearer.is_none() && is_slow && here.change <= ACCEPTABLE {
-                return Ok((here.to, here.bend));
-            }
-            let next = nearer.map_or_else(|| led(here.to), Ok)?;
-            is_slow |= next.change > SLOW * here.change;
-            here = next;
-        }
-        if here.change <= ACCEPTABLE {
-            Ok((here.to, here.bend))
-        } else {
-            Err(AxisFailure::NotSettled { change: here.change })
-        }
-    }
-
     /// Where the normal is taken that a tool with an axis stands on.
     fn place(&self, tool: &Tool, tip: &Vec3, axis: &Vec3, normal: &Vec3) -> Vec3 {
         match self.mode {
@@ -483,47 +428,6 @@ fn frame(normal: &Vec3, other: Option<&Vec3>) -> Result<(Vec3, Vec3), AxisFailur
     let other = other.ok_or(AxisFailure::NoSurface)?;
     let tangent = normal.cross(other).try_normalize(SAME_DIRECTION).ok_or(AxisFailure::SignUnresolved)?;
     Ok((tangent, tangent.cross(normal)))
-}
-
-/// A normal, and where the law leads it: the axis that stands to it, and the normal with its derivatives that the surface has where a tool
-/// with that axis stands.
-#[derive(Debug, Clone, Copy)]
-struct Led {
-    from: Vec3,
-    to: Vec3,
-    change: f64,
-    axis: Vec3,
-    bend: Matrix3<f64>,
-}
-
-impl Led {
-    /// One that is changed less, the first on the way of a step of Newton's method and shares of it, if there is one.
-    fn nearer(&self, map: &dyn Fn(Vec3) -> Result<Self, AxisFailure>) -> Result<Option<Self>, AxisFailure> {
-        let first = perpendicular(&self.from);
-        let frame = [first, self.from.cross(&first)];
-        let flat = |led: &Self| {
-            let change = led.to - led.from;
-            Vector2::new(change.dot(&frame[0]), change.dot(&frame[1]))
-        };
-        let change = flat(self);
-        let mut columns = [Vector2::zeros(); 2];
-        for (column, direction) in columns.iter_mut().zip(&frame) {
-            let beside = map((self.from + direction * DIFFERENCE).normalize())?;
-            *column = (flat(&beside) - change) / DIFFERENCE;
-        }
-        let Some(inverse) = Matrix2::from_columns(&columns).try_inverse() else { return Ok(None) };
-        let step = -(inverse * change);
-        let mut share = (LONGEST_STEP / step.norm()).min(1.0);
-        for _ in 0..=HALVINGS {
-            let at = self.from + (frame[0] * step.x + frame[1] * step.y) * share;
-            let found = map(at.normalize())?;
-            if found.change < self.change {
-                return Ok(Some(found));
-            }
-            share *= 0.5;
-        }
-        Ok(None)
-    }
 }
 
 /// Component of a move along a unit vector.

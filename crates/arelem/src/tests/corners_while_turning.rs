@@ -100,7 +100,11 @@ fn an_axis_that_a_corner_tells_ends_the_motion_there() {
     program.go(&[(Relation::To, &walls), (Relation::To, &dome), (Relation::On, &x(-AWAY))]);
     program.side(DriveSide::Left).indirv(1.0, -STEEP, 0.0);
     let failure = program.attempt(&motion(Turn::Forward, &walls, &[(Relation::On, 1, &x(AWAY))]));
-    assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
+    let Err(MotionFailure::AxisUndetermined { cause: AxisFailure::Leaps { angle: leap }, .. }) = failure
+    else {
+        panic!("{failure:?}")
+    };
+    assert!(leap > angle, "{leap}");
 }
 
 /// Radius of a hollow cylinder about the x axis, and how far a plane across which a flank comes to lie leans against that.

@@ -432,3 +432,32 @@ fn vectors_of_a_turning_tool_do_not_creep_up_to_a_kink() {
         }
     }
 }
+
+/// Leaning by a degree over a saddle, where the normal under the tool end leads to no axis, it stands to the normal at the place of its rim that is
+/// nearest; a tool that is too wide for the saddle comes to where its contact leaps, and is told that.
+#[test]
+fn a_flat_tool_that_leans_by_a_degree_over_a_saddle_finds_its_axis() {
+    let beside = plane(0.1, 1.0, 0.0, 0.0);
+    let begun = |diameter, degrees, shape| {
+        let mode = AxisAngle::PerpendicularTo(v(0.2, 1.0, 0.1));
+        let mode = ToolAxis::AtAngle { part: true, angle: f64::to_radians(degrees), mode };
+        let mut p = program(&[diameter], mode);
+        p.go(&[
+            (Relation::On, &beside),
+            (Relation::To, &part_surface(4, shape, 0.0)),
+            (Relation::On, &x(-1.0)),
+        ]);
+        p
+    };
+    for shape in [0.6, 0.9] {
+        let mut p = begun(0.5, 1.0, shape);
+        p.drive(Turn::Forward, &beside, Relation::On, &x(1.0));
+        proven(&p);
+    }
+    let onward = motion(Turn::Forward, &beside, &[(Relation::On, 1, &x(1.0))]);
+    let failure = begun(3.0, 3.0, 0.9).attempt(&onward).expect_err("too wide a tool");
+    let MotionFailure::AxisUndetermined { cause: AxisFailure::Leaps { angle }, .. } = failure else {
+        panic!("{failure:?}")
+    };
+    assert!(angle > 0.05, "{angle}");
+}
