@@ -89,6 +89,8 @@ pub(super) struct Watcher<'a> {
     pub(super) nearest: (f64, Vec3, usize),
     /// Looks for the nearest approach on every vector, also where no position is within reach.
     thorough: bool,
+    /// A distance from a relation up to which an approach need not be told closer.
+    pub(super) near_enough: f64,
     /// Where contact with each check surface was last, on the natural side and on the other.
     memories: Rc<[[Memory; 2]]>,
 }
@@ -102,6 +104,7 @@ impl<'a> Watcher<'a> {
             met: 0,
             nearest: (f64::INFINITY, prepared.tip, 0),
             thorough: false,
+            near_enough: f64::NEG_INFINITY,
             memories: checks.iter().map(|_| Default::default()).collect(),
         };
         let watch = |(index, check): (usize, &CheckSurface)| {
@@ -401,15 +404,28 @@ impl<'a> Watcher<'a> {
         }
     }
 
-    /// The least distance between two samples about a third that is nearer, if it is nearer than all before.
+    /// The least distance between two samples about a third that is nearer, if it is nearer than all before and these are not near enough.
     fn refine_nearest(&mut self, index: usize, sweep: &Sweep<'_>, [low, high]: [f64; 2], last: f64) {
+        if self.nearest.0 <= self.near_enough {
+            return;
+        }
         let reach = self.working(index).gauge.reach(&self.prepared.tool);
         if last.abs() - (high - low) * sweep.stretch(reach) >= self.nearest.0 {
             return;
         }
-        let (x, _) = graze::least_value([low, high], &|x| self.value_at(index, sweep, x).0.abs());
-        let (tip, tool) = sweep.at(x);
-        self.note(index, self.value(index, &tool, &tip).0, &tip);
+        // Of a tool deep in the surface it is not told at once how deep.
+        for enough in [self.near_enough, f64::NEG_INFINITY] {
+            let (x, told) = graze::least_or_enough([low, high], enough, &|x| {
+                #[cfg(test)]
+                REFINED.set(REFINED.get() + 1);
+                self.value_at(index, sweep, x).0.abs()
+            });
+            let (tip, tool) = sweep.at(x);
+            let value = self.value(index, &tool, &tip).0;
+            if told > enough || value.abs() <= enough {
+                return self.note(index, value, &tip);
+            }
+        }
     }
 
     /// Bisects a sign change; the side is that on which the tool is clear (TO: before, PAST: after), for ON that it
@@ -495,6 +511,12 @@ fn transition(status: &mut Status, value: f64, band: f64, on: bool) -> Option<Re
         }
         _ => None,
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Places between samples at which this thread has looked for the nearest approach.
+    pub(super) static REFINED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 #[cfg(test)]

@@ -118,13 +118,16 @@ pub(super) fn ahead(
         };
         let sweep = here.sweep(prepared, &to);
         let sag = sweep.length * turn / 8.0;
+        // A step that comes so near is shortened, however much nearer it comes.
+        let near = if tangent { f64::NEG_INFINITY } else { MARGIN * sag };
+        scout.watcher.near_enough = near;
         scout.watcher.nearest.0 = f64::INFINITY;
         let before = scout.watcher.clone();
         if scout.watcher.scan(&sweep).is_some() || scout.tangency.scan(&here, &to)?.is_some() {
             return Ok(Outlook::Open { way: scout.travelled() + sweep.length });
         }
         let approach = scout.watcher.nearest;
-        if !tangent && approach.0 <= MARGIN * sag {
+        if approach.0 <= near {
             step = 0.25 * sweep.length;
             scout.watcher = before;
             if step <= LEAST * prepared.size {

@@ -49,7 +49,12 @@ pub(in crate::directed) fn least(
 
 /// The least value of a function of one valley on a stretch and where it is, by parabolas through the last places, and by golden sections
 /// where these do not close in on it (Brent): fewer places than by golden sections alone.
-pub(in crate::directed) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64) -> f64) -> (f64, f64) {
+pub(in crate::directed) fn least_value(stretch: [f64; 2], value: &dyn Fn(f64) -> f64) -> (f64, f64) {
+    least_or_enough(stretch, f64::NEG_INFINITY, value)
+}
+
+/// The same, or a place where the value is small enough.
+pub(super) fn least_or_enough([low, high]: [f64; 2], enough: f64, value: &dyn Fn(f64) -> f64) -> (f64, f64) {
     let golden = 0.5 * (3.0 - 5.0_f64.sqrt());
     let tolerance = RESOLUTION_OF_VALUE * (high - low);
     let (mut a, mut b) = (low, high);
@@ -59,7 +64,7 @@ pub(in crate::directed) fn least_value([low, high]: [f64; 2], value: &dyn Fn(f64
     let (mut step, mut before) = (0.0_f64, 0.0_f64);
     for _ in 0..MAX_ITERATIONS {
         let middle = 0.5 * (a + b);
-        if (best.0 - middle).abs() + 0.5 * (b - a) <= 2.0 * tolerance {
+        if best.1 <= enough || (best.0 - middle).abs() + 0.5 * (b - a) <= 2.0 * tolerance {
             break;
         }
         let parabola = vertex(best, second, third)

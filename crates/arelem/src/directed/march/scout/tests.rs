@@ -9,6 +9,7 @@ use apt_geometry::{
 };
 
 use crate::{
+    directed::stop::REFINED,
     error::{Course, MotionFailure},
     tests::{Program, circle, cone, cylinder, motion, plane, quadric, sphere, v},
 };
@@ -185,4 +186,22 @@ fn a_spiral_over_a_cone_leaves_along_its_extension() {
     let begin = p.last().points[0].tip.xy().norm();
     assert!((nearest - (begin - 0.4)).abs() < 0.01, "{nearest} from {begin}");
     assert!(matches!(course, Course::Away { .. }), "{course:?}");
+}
+
+/// A long step that comes near a check surface is shortened, however much nearer it comes: that is not looked for closely.
+#[test]
+fn the_nearest_approach_of_a_step_that_is_shortened_is_not_closed_in() {
+    let (ring, floor) = (circle(0.0, 0.0, 20.0), plane(0.0, 0.0, 1.0, 0.0));
+    let mut p = Program::new();
+    p.tolerance(0.0, 1e-4).cutter(&[0.5, 0.25]).from(20.5, 0.0, 0.0);
+    p.run(&MotionCommand::ForceIteration(true)).run(&MotionCommand::MaximumPoints(3000));
+    p.go(&[(Relation::To, &ring), (Relation::To, &floor)]);
+    p.side(apt_geometry::motion::DriveSide::Left);
+    // A post that the tool passes at a hundredth, and a wall behind it.
+    let (post, wall) = (circle(0.0, -21.51, 1.0), plane(0.0, 1.0, 0.0, 5.0));
+    let before = REFINED.get();
+    p.attempt(&motion(Turn::Left, &ring, &[(Relation::To, 1, &post), (Relation::On, 1, &wall)]))
+        .expect("a path");
+    let refined = REFINED.get() - before;
+    assert!(refined <= 24, "{refined} places");
 }
