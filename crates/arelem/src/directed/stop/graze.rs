@@ -18,11 +18,22 @@ const MAX_ITERATIONS: u32 = 80;
 const RESOLUTION: f64 = 1e-9;
 /// The same where only the value counts: beside the least one it changes with the square.
 const RESOLUTION_OF_VALUE: f64 = 1e-6;
+/// How fast the path goes along at most by the way along a vector: it leads at no more than 60° to that.
+const PATH_SPEED: f64 = 2.0;
 /// Share of the vector at its ends that belongs to its neighbours.
 const END: f64 = 1e-6;
 
 /// Where a function of one valley is least on a stretch, by golden sections; `None` where it has no value.
 pub(in crate::directed) fn least(
+    stretch: [f64; 2],
+    value: &dyn Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    least_up_to((f64::INFINITY, f64::INFINITY), stretch, value)
+}
+
+/// The same of a function that is nowhere steeper than a slope, if it is there up to a level.
+fn least_up_to(
+    (level, slope): (f64, f64),
     [low, high]: [f64; 2],
     value: &dyn Fn(f64) -> Option<f64>,
 ) -> Option<(f64, f64)> {
@@ -33,6 +44,10 @@ pub(in crate::directed) fn least(
     for _ in 0..MAX_ITERATIONS {
         if b - a <= RESOLUTION * (high - low) {
             break;
+        }
+        // Where it has no value, which counts as infinite, it may leap.
+        if at_x.max(at_y) < f64::INFINITY && at_x.min(at_y) - slope * (b - a) > level {
+            return None;
         }
         if at_x <= at_y {
             (b, y, at_y) = (y, x, at_x);
@@ -132,8 +147,10 @@ impl Watcher<'_> {
             return None;
         }
         let value_at = |x: f64| Some(self.on_path(index, sweep, x).map_or(f64::INFINITY, |found| found.1));
-        let (x, value) = least([0.0, sweep.length], &value_at)?;
         let [low, high] = self.room(index);
+        let reach = self.working(index).gauge.reach(&self.prepared.tool);
+        let steepest = PATH_SPEED * sweep.stretch(reach);
+        let (x, value) = least_up_to((high, steepest), [0.0, sweep.length], &value_at)?;
         if value > high {
             return None;
         }

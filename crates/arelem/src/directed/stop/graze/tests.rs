@@ -1,11 +1,14 @@
 //! Check surfaces touched by a hair's breadth, deep or not at all.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     canonical::Geometry,
     motion::{DriveSide, MotionCommand, PartSide, Relation, Turn},
 };
 use proptest::prelude::*;
 
+use super::{least, least_up_to};
 use crate::{
     tests::{Program, cylinder, motion, plane, quadric, sphere, v},
     verify::verify,
@@ -140,4 +143,18 @@ fn a_crossing_is_not_counted_as_a_touch_again() {
         let evidence = verify(sequence, &|| false).expect("a judgement");
         assert!(evidence.verified, "{:?} after {outcome:?}", evidence.violations);
     }
+}
+
+/// Where a function cannot come down to a level any more that is known after few places; where it does, its least place is told as ever.
+#[test]
+fn few_places_tell_that_a_valley_is_not_deep_enough() {
+    let looks = Cell::new(0);
+    let valley = |x: f64| {
+        looks.set(looks.get() + 1);
+        Some(0.05 + (x - 0.3).abs())
+    };
+    assert_eq!(least_up_to((0.04, 1.0), [0.0, 1.0], &valley), None);
+    assert!(looks.take() <= 12);
+    let whole = least([0.0, 1.0], &valley);
+    assert_eq!(least_up_to((0.06, 1.0), [0.0, 1.0], &valley), whole);
 }
