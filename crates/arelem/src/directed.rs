@@ -18,6 +18,8 @@ use apt_geometry::{
     patience::Patience,
 };
 
+#[cfg(test)]
+pub(crate) use self::march::TRIED;
 pub(crate) use self::{march::end_from_behind, prepare::Prepared};
 use crate::{
     bound::{self, Bent},

@@ -14,6 +14,9 @@ mod straight;
 mod surface_end;
 mod tangency;
 
+#[cfg(test)]
+pub(crate) use self::fewer::TRIED;
+
 use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
 pub(crate) use self::surface_end::end_from_behind;

@@ -1,12 +1,15 @@
 //! Motions that took vectors which they could do without, where a path bends this way and that; both are of random pairs.
 
+use std::sync::Arc;
+
 use Relation::{On, Past, To};
-use apt_geometry::canonical::{Remembering, RuledSurface};
+use apt_geometry::canonical::{Interval, Remembering, RuledSurface, TabulatedCylinder};
 
 use super::{
     refused::{AMPLE, Found},
     *,
 };
+use crate::directed::TRIED;
 
 /// A polyconic between these ends of its rail, by its axes and constants and the first two of each of its polynomials.
 fn sheet(frame: [f64; 12], coefficients: [[f64; 2]; 7]) -> Geometry {
@@ -242,6 +245,139 @@ fn fewer_vectors_lead_on_from_elsewhere_in_the_bands() {
     let path = &sequences[1];
     let (vectors, least) = (path.points.len() as f64, f64::from(path.minimum.expect("a bound")));
     assert!(vectors <= 1.02 * least + 2.0, "{vectors} vectors, {least} at least");
+}
+
+/// Over a quadric beside a wall of a spline: what is left of a stretch of vectors that fill nearly one each is not looked through once no vector can come
+/// farther any more than those that were there.
+#[test]
+fn what_no_full_vectors_can_spare_is_not_looked_through() {
+    let rows = [
+        [-13.757478107087856, 2.493928113250158, 0.0, 0.0, 10.0],
+        [
+            -3.880542602825037,
+            0.9299124340983843,
+            0.03219263084332808,
+            -0.08943153346981852,
+            0.5095831198903769,
+        ],
+        [
+            -3.380542602825037,
+            0.8315510795061963,
+            0.03582450023197411,
+            -0.03958584435207841,
+            0.514004741215432,
+        ],
+        [
+            -2.880542602825037,
+            0.7123836594957619,
+            0.03453544077508885,
+            0.01613056515830628,
+            0.5121288971716262,
+        ],
+        [-2.380542602825037, 0.6015865145947036, 0.02656396405880582, 0.0701234614132723, 0.5056382794042562],
+        [
+            -1.8805426028250374,
+            0.5262866500603189,
+            0.008308964869658642,
+            0.11140143132519745,
+            0.5004563212791541,
+        ],
+        [
+            -1.3805426028250374,
+            0.5049200989052105,
+            -0.014434311059476852,
+            0.12367312549912036,
+            0.5014266564136608,
+        ],
+        [
+            -0.8805426028250374,
+            0.5427181380366718,
+            -0.02979206607669174,
+            0.10086404260924743,
+            0.5076344697395536,
+        ],
+        [
+            -0.3805426028250374,
+            0.6304264892226209,
+            -0.03538600392712643,
+            0.054713756918974434,
+            0.5133123494461523,
+        ],
+        [
+            0.11945739717496262,
+            0.746571089157051,
+            -0.03538600392712643,
+            -0.00022153847894230974,
+            0.5133123494461523,
+        ],
+        [
+            0.6194573971749626,
+            0.862715689091481,
+            -0.02979206607669174,
+            -0.05549360361338597,
+            0.5076344697395536,
+        ],
+        [
+            1.1194573971749626,
+            0.9504240402774301,
+            -0.014434311059476852,
+            -0.10195988050255575,
+            0.5014266564136608,
+        ],
+        [
+            1.6194573971749626,
+            0.9882220794088914,
+            0.008308964869658642,
+            -0.12387625330211871,
+            0.5004563212791541,
+        ],
+        [2.119457397174963, 0.966855528253783, 0.02656396405880582, -0.11041873265582554, 0.5056382794042562],
+        [2.619457397174963, 0.8915556637193983, 0.03453544077508885, -0.0691903567507531, 0.5121288971716262],
+        [3.119457397174963, 0.78075851881834, 0.03582450023197411, -0.015656044560645704, 0.514004741215432],
+        [3.619457397174963, 0.6615910988079056, 0.03219263084332808, 0.04021706968195164, 0.5095831198903769],
+        [4.119457397174963, 0.5632297442157176, 0.0, 0.0, 10.0],
+    ];
+    let interval =
+        |[u, v, a, b, length]: [f64; 5]| Interval { u, v, a, b, length, maximum: 0.0, minimum: 0.0 };
+    let wall = TabulatedCylinder {
+        axes: [
+            v(0.9980738017141814, 0.013390370264302247, -0.06057544317614236),
+            v(0.010929445105370956, 0.9232034459730524, 0.3841561460827748),
+            v(0.06106745091691518, -0.3840782411536306, 0.9212788237612128),
+        ],
+        kind: 0.0,
+        intervals: rows.into_iter().map(interval).collect(),
+        last: [13.99639290143778, -1.0007859349360562],
+    };
+    let drive = Geometry::TabulatedCylinder(Arc::new(wall));
+    let part = quadric([
+        0.5396610874459137,
+        0.4150268264173289,
+        0.5412630479778182,
+        0.26222552120559905,
+        -0.46680455352733147,
+        0.5109780210107938,
+        -0.4139955021681,
+        0.7930235590997471,
+        -0.5111982438157309,
+        0.6762706544538961,
+    ]);
+    let normal = v(-0.7452353717037034, -0.07120864094213682, 0.6629883635606413);
+    let first = plane(normal.x, normal.y, normal.z, 2.509857893198377);
+    let mut p = standing(
+        &[0.6, 0.11, 0.2, 0.13, 5.888535945492562, 2.5487676978137808, 3.386773743152256],
+        [0.0, 0.001],
+        v(-1.7520646592753584, -1.5603660908783574, 1.7032638401799531),
+        v(-0.38737130798917124, -0.25353411787945535, 0.8863768503395411),
+    );
+    p.run(&MotionCommand::MaximumPoints(1500));
+    p.go(&[(To, &drive), (To, &part), (On, &first)]);
+    p.side(DriveSide::Right).indirv(-normal.x, -normal.y, -normal.z);
+    let stop = sphere(-2.0650062658786252, -0.9699154851727099, 2.16599858757314, 1.0668773896209902);
+    let before = TRIED.get();
+    p.attempt(&motion(Turn::Forward, &drive, &[(To, 2, &stop)])).expect("a path");
+    let tried = TRIED.get() - before;
+    assert!(tried < 30_000, "{tried} vectors tried for {}", p.last().points.len());
 }
 
 /// A line beside a wall whose rulings are nearly along it: its contact goes from end to end of it, and beside INTOL, which is zero, next to nothing is proven

@@ -42,6 +42,12 @@ const LEAST_ONWARD: f64 = 0.5;
 /// Share of MAXDP that a vector's length may be above it by rounding.
 const ROUNDING: f64 = 1e-9;
 
+#[cfg(test)]
+thread_local! {
+    /// Vectors that this thread has tried in the place of others.
+    pub(crate) static TRIED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// Places on all levels beside one of the path as it was.
 struct Column {
     /// The way to it along the stretch, the position there, and the direction of the vector.
@@ -69,6 +75,8 @@ struct Stretch {
     levels: Vec<[f64; 2]>,
     /// The vertices as they were.
     were: Vec<Reached>,
+    /// What each of the vectors between them fills of one.
+    fills: Vec<f64>,
     /// On which hand the path keeps both surfaces where it begins.
     hand: f64,
     /// How many vectors may still be tried.
@@ -164,7 +172,7 @@ impl March<'_> {
                 continue;
             }
             is_tried[k] = true;
-            if let Some((count, between)) = self.fewer_from(start, (k, vectors), left)? {
+            if let Some((count, between)) = self.fewer_from(start, k, &fills[k..k + vectors], left)? {
                 is_changed[k..k + count].fill(true);
                 found.push((k, count, between));
             }
@@ -181,23 +189,24 @@ impl March<'_> {
         Ok(has_saved)
     }
 
-    /// How many of some vectors from vertex `k` on can be one fewer, and the positions between those.
+    /// How many of some vectors from vertex `k` on, which fill so much of one each, can be one fewer, and the positions between those.
     fn fewer_from(
         &self,
         start: &Vertex,
-        (k, vectors): (usize, usize),
+        k: usize,
+        fills: &[f64],
         left: &mut u32,
     ) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
-        let old: Vec<Vec3> = (k..=k + vectors).map(|k| self.at(start, k)).collect();
-        let Some(mut stretch) = self.stretch(&old, *left)? else { return Ok(None) };
+        let old: Vec<Vec3> = (k..=k + fills.len()).map(|k| self.at(start, k)).collect();
+        let Some(mut stretch) = self.stretch(&old, fills, *left)? else { return Ok(None) };
         let had = stretch.left;
         let found = self.with_fewer(&mut stretch);
         *left -= had - stretch.left;
         found
     }
 
-    /// The stretch between positions; `None` where it begins on no hand.
-    fn stretch(&self, old: &[Vec3], left: u32) -> Result<Option<Stretch>, MotionFailure> {
+    /// The stretch between positions, of vectors that fill so much; `None` where it begins on no hand.
+    fn stretch(&self, old: &[Vec3], fills: &[f64], left: u32) -> Result<Option<Stretch>, MotionFailure> {
         let (mut along, mut were) = (0.0, Vec::new());
         for (k, tip) in old.iter().enumerate() {
             let before = old[k.saturating_sub(1)];
@@ -221,7 +230,8 @@ impl March<'_> {
         };
         let columns =
             were.windows(2).flat_map(|pair| (0..COLUMNS).map(move |k| column(pair, k))).skip(1).collect();
-        Ok(Some(Stretch { columns, levels, were, hand, left: left.min(MOST_FOR_ONE) }))
+        let (fills, left) = (fills.to_vec(), left.min(MOST_FOR_ONE));
+        Ok(Some(Stretch { columns, levels, were, fills, hand, left }))
     }
 
     /// How many vectors of a stretch can be one fewer, and the positions between those.
@@ -247,10 +257,33 @@ impl March<'_> {
                 break;
             }
             farthest.sort_by(|a, b| a.along.total_cmp(&b.along));
+            if !self.has_room(stretch, farthest.last(), count - 1) {
+                break;
+            }
             latest = reached.len()..reached.len() + farthest.len();
             reached.extend(farthest);
         }
         Ok(None)
+    }
+
+    /// Whether what is left of a stretch behind the farthest place to which some vectors lead may be gone along in one vector fewer than it was, with those:
+    /// no vector is more than full.
+    fn has_room(&self, stretch: &Stretch, farthest: Option<&Reached>, vectors: usize) -> bool {
+        let Some(farthest) = farthest else { return false };
+        let Stretch { were, fills, .. } = stretch;
+        let next = were.partition_point(|were| were.along <= farthest.along);
+        let Some(to) = were.get(next) else { return true };
+        let (share, to) = ((to.along - farthest.along) / (to.along - were[next - 1].along), to.vertex.tip);
+        let most = self.state.maximum_step;
+        // A vector need not be as full everywhere.
+        let alone = bound::fills(self.prepared, &[farthest.vertex.tip, to], most, self.stepper.patience());
+        let Some(alone) = alone.and_then(|fills| fills.first().copied()) else { return false };
+        let mut filled = alone.min(share * fills[next - 1]);
+        (next..were.len()).any(|count| {
+            let has_room = count > vectors && filled <= (count - 1 - vectors) as f64;
+            filled += fills.get(count).copied().unwrap_or_default();
+            has_room
+        })
     }
 
     /// The farthest place of each level to which one vector leads from any of those that have been reached.
@@ -326,6 +359,8 @@ impl March<'_> {
             return false;
         }
         stretch.left -= 1;
+        #[cfg(test)]
+        TRIED.set(TRIED.get() + 1);
         self.is_in_middle(&from.vertex, &to.vertex) && self.stepper.proven(&from.vertex, &to.vertex)
     }
 
