@@ -17,12 +17,19 @@ use crate::{
 const SEVEN_NUMBERS: &[f64] = &[0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
 const BULL_NOSE: &[f64] = &[0.5, 0.1];
 const BALL: &[f64] = &[0.5, 0.25];
+/// A flat bottom with a slanted flank.
+const TAPERED: &[f64] = &[0.6, 0.0, 0.3, 0.0, 0.0, 8.0, 4.0];
 
 /// Asks counted in a pass in the plane y = .4 over a part surface, for each cut vector.
 fn each(part: &Geometry, cutter: &[f64], counter: &'static LocalKey<Cell<u64>>) -> f64 {
+    each_within(1e-5, part, cutter, counter)
+}
+
+/// The same with an OUTTOL.
+fn each_within(outside: f64, part: &Geometry, cutter: &[f64], counter: &'static LocalKey<Cell<u64>>) -> f64 {
     let (drive, end) = (plane(0.0, 1.0, 0.0, 0.4), plane(1.0, 0.0, 0.0, 1.2));
     let mut p = Program::new();
-    p.tolerance(0.0, 1e-5).cutter(cutter);
+    p.tolerance(0.0, outside).cutter(cutter);
     p.run(&MotionCommand::MaximumPoints(100_000));
     p.from(-1.5, 0.4, 6.0);
     p.go(&[(Relation::On, &drive), (Relation::To, part), (Relation::On, &plane(1.0, 0.0, 0.0, -1.2))]);
@@ -31,7 +38,7 @@ fn each(part: &Geometry, cutter: &[f64], counter: &'static LocalKey<Cell<u64>>) 
     let before = counter.get();
     p.run(&MotionCommand::Drive { turn: Turn::Forward, drive: named(&drive), checks: vec![check] });
     let vectors = p.last().points.len();
-    assert!(vectors > 50, "{vectors} vectors");
+    assert!(vectors > 10, "{vectors} vectors");
     (counter.get() - before) as f64 / vectors as f64
 }
 
@@ -69,6 +76,16 @@ fn a_steady_ball_is_asked_about_vectors_not_about_their_pieces() {
 fn ends_of_vectors_are_proven_once() {
     let proven = most(&[SEVEN_NUMBERS, BULL_NOSE, BALL], &CERTIFIED);
     assert!(proven <= 0.3, "{proven} proofs a vector");
+}
+
+/// A contact as closely as its own search tells it serves at a vertex, which lies so far inside the band: a slanted flank along a hollow, of which
+/// a closer level takes many patches, is hardly ever proven anew.
+#[test]
+fn contacts_at_vertices_serve_as_they_were_found() {
+    for outside in [1e-4, 3e-5] {
+        let proven = each_within(outside, &lofts::vault(), TAPERED, &CERTIFIED);
+        assert!(proven <= 0.75, "{proven} proofs a vector, OUTTOL {outside}");
+    }
 }
 
 /// What few parts of the surface did not show is gone on with, not begun anew.

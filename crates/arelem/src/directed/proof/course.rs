@@ -39,8 +39,9 @@ const BISECTIONS: usize = 20;
 /// Bound of the stretches on one vector that have no bound, as where the tool comes to the end of a surface: shorter ones may
 /// have, but so many tell that the vector must be shorter.
 const MAX_UNBOUNDED: usize = 12;
-/// Share of what is left of the band below a sample that the proof of its depth may leave open.
-const OPEN: f64 = 0.01;
+/// Share of what is left of the band below a sample that the proof of its depth may leave open. Vertices lie a thousandth of the band inside its limit,
+/// and a search for contact leaves open a thousand-millionth of the tool: of bands wider than a hundred-thousandth of that it serves as it is.
+const OPEN: f64 = 0.1;
 /// Into how many pieces a stretch may have to be cut for a bound of the bend that is of use.
 const MOST_PIECES: f64 = 8.0;
 /// Cuts of stretches on one vector after which the parts of the surface are looked at: a vector where nothing is steady takes some
