@@ -541,6 +541,20 @@ pub enum MotionWarning {
         /// True for a start-up.
         start_up: bool,
     },
+    /// A directed motion turns from a direction that nobody gave: that from the origin to the place of FROM.
+    DirectionFromOrigin {
+        /// The direction.
+        direction: Vec3,
+    },
+    /// A negative THICK of a surface that the tool follows is deeper than the tool is wide.
+    DeepUndercut {
+        /// Part or drive surface.
+        role: RoleName,
+        /// THICK, below zero.
+        thickness: f64,
+        /// Greatest radius of the cutter.
+        radius: f64,
+    },
     /// A negative tolerance was given; it is taken as zero.
     NegativeTolerance {
         /// The value.
@@ -558,6 +572,8 @@ impl MotionWarning {
             Self::Gouge { .. }
             | Self::EndsBesideTool { .. }
             | Self::SurfaceTwice { .. }
+            | Self::DirectionFromOrigin { .. }
+            | Self::DeepUndercut { .. }
             | Self::NegativeTolerance { .. } => None,
         }
     }

@@ -3,14 +3,14 @@
 use apt_geometry::{
     Vec3,
     canonical::{Cylinder, Geometry, Plane, Sphere},
-    motion::{NamedSurface, PerRole, Relation},
+    motion::{DriveSide, NamedSurface, PartSide, PerRole, Relation},
     patience::Patience,
     surface::{Surface, SurfaceError},
 };
 
 use crate::{
     clearance::{Gauge, Memory, Shape},
-    error::{MotionFailure, RoleName},
+    error::{MotionFailure, MotionWarning, RoleName},
     section2::{StartUpRule, State},
     sequence::Role,
 };
@@ -91,6 +91,25 @@ fn undercut(state: &State, role: RoleName, thickness: f64) -> Result<(), MotionF
         return Err(MotionFailure::UndercutTooDeep { role, thickness, radius });
     }
     Ok(())
+}
+
+/// Warnings where a negative THICK of a surface that the next motion follows is more than the tool is wide: beyond that the
+/// reference gives no meaning to it (6.8), though there is a path. Notes that it was told, so that it is told once.
+pub(crate) fn deep_undercuts(state: &mut State) -> Vec<MotionWarning> {
+    let Some(cutter) = state.cutter.filter(|_| state.disk.is_none()) else { return Vec::new() };
+    let radius = cutter.profile().greatest_radius();
+    let roles = [
+        (RoleName::Part, state.thickness.part, state.part_side == PartSide::On),
+        (RoleName::Drive, state.thickness.drive, state.drive_side == DriveSide::On),
+    ];
+    let mut warnings = Vec::new();
+    for ((role, thickness, on), told) in roles.into_iter().zip(&mut state.undercut_told) {
+        if !on && !*told && -thickness > radius {
+            *told = true;
+            warnings.push(MotionWarning::DeepUndercut { role, thickness, radius });
+        }
+    }
+    warnings
 }
 
 impl Working {

@@ -573,6 +573,24 @@ fn warning_text(warning: &Warning) -> Text {
             RoleName::Check(_) => "a surface that the tool follows stops it nowhere: name another one to stop at",
             _ => "only the direction asked for leads the tool then: name another drive surface, or another part surface by PSIS",
         }),
+        Warning::DirectionFromOrigin { direction } => say(
+            "APT0668",
+            format!(
+                "FROM leaves the forward direction undefined; that from the origin to the tool is taken, {}",
+                place(direction)
+            ),
+        )
+        .hint("give INDIRV or INDIRP before the motion, or bring the tool there by GO, GOTO or GODLTA"),
+        Warning::DeepUndercut { role: name, thickness, radius } => say(
+            "APT0669",
+            format!(
+                "THICK {} for the {} is more than the radius of the cutter, {}",
+                number(*thickness),
+                role(*name),
+                number(*radius)
+            ),
+        )
+        .hint("no point of the tool's round is left on its side; values of THICK are for part, drive and check surface in this order"),
         Warning::NegativeTolerance { value } => {
             say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
         }

@@ -93,7 +93,7 @@ pub(super) fn prepare<'a>(
     let checked = start_check(&tool, &mut drive, (&tip, None), size);
     let mut drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
-    let wanted = turned(state, &tip, turn)?;
+    let wanted = turned(state, &tip, turn, warnings)?;
     let mut part_followed = part_contact;
     let mut tangent = match line_of_motion(&part_contact, &drive_contact, &wanted, &tip) {
         Err(failure) => {
@@ -253,7 +253,12 @@ fn start_check(
 }
 
 /// Operations 2 and 3: the direction asked for, from the last move and the motion word.
-fn turned(state: &State, tip: &Vec3, turn: Turn) -> Result<Vec3, MotionFailure> {
+fn turned(
+    state: &State,
+    tip: &Vec3,
+    turn: Turn,
+    warnings: &mut Vec<MotionWarning>,
+) -> Result<Vec3, MotionFailure> {
     let axis = state.axis;
     match turn {
         Turn::Up => return Ok(axis),
@@ -261,11 +266,16 @@ fn turned(state: &State, tip: &Vec3, turn: Turn) -> Result<Vec3, MotionFailure> 
         _ => {}
     }
     let last = (tip - state.previous).try_normalize(0.0);
-    let forward = match last {
+    let (forward, is_from_origin) = match last {
         // A steep one says it by what it moves sideways, as when the last vector is short and crosses the band.
-        Some(direction) if direction.cross(&axis).norm() > PARALLEL_SINE => direction,
-        _ => state.forward.ok_or(MotionFailure::NoForwardDirection)?,
+        Some(direction) if direction.cross(&axis).norm() > PARALLEL_SINE => {
+            (direction, state.from_origin.previous)
+        }
+        _ => (state.forward.ok_or(MotionFailure::NoForwardDirection)?, state.from_origin.forward),
     };
+    if is_from_origin {
+        warnings.push(MotionWarning::DirectionFromOrigin { direction: forward });
+    }
     let right = forward.cross(&axis).try_normalize(1e-9).ok_or(MotionFailure::NoForwardDirection)?;
     let forward = axis.cross(&right);
     Ok(match turn {

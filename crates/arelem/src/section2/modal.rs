@@ -12,7 +12,7 @@ use super::{Output, State};
 use crate::{
     directed::{self, Directed},
     error::{MotionFailure, MotionWarning},
-    pocket,
+    pocket, role,
     sequence::{CutSequence, ToolPosition},
     start_up,
 };
@@ -31,9 +31,7 @@ pub(super) fn apply(
         MotionCommand::From { position, axis, .. } => {
             set_axis(state, *axis)?;
             finite(position)?;
-            // The origin counts as previous position, as it always has: a first direction comes from there.
-            state.forward = None;
-            state.move_to(Vec3::zeros(), *position);
+            state.place(*position);
             state.side_of_part = None;
             Ok(position_output(state))
         }
@@ -79,6 +77,7 @@ pub(super) fn apply(
             Ok(Some(finish_start_up(state, sequence)))
         }
         MotionCommand::Drive { turn, drive, checks } => {
+            warnings.extend(role::deep_undercuts(state));
             let Directed { sequence, heading } =
                 directed::run(state, *turn, drive, checks, warnings, patience)?;
             Ok(Some(finish(state, sequence, heading)))
@@ -112,7 +111,7 @@ fn set_modal(
         MotionCommand::Cutter(numbers) => {
             let (cutter, doubts) = Cutter::with_warnings(numbers, state.units)?;
             warnings.extend(doubts.into_iter().map(MotionWarning::Cutter));
-            state.cutter = Some(cutter);
+            (state.cutter, state.undercut_told) = (Some(cutter), [false; 2]);
         }
         MotionCommand::Disk(disk) => {
             if let Some(RoleDisk { disk: Disk { radius, height }, .. }) = disk {
@@ -122,7 +121,7 @@ fn set_modal(
                     return Err(CutterError::Diameter { diameter: 2.0 * radius }.into());
                 }
             }
-            state.disk = *disk;
+            (state.disk, state.undercut_told) = (*disk, [false; 2]);
         }
         MotionCommand::InsideTolerance(values) => state.inside = tolerance(values, warnings)?,
         MotionCommand::OutsideTolerance(values) => state.outside = tolerance(values, warnings)?,
@@ -130,7 +129,7 @@ fn set_modal(
             for value in [values.part, values.drive, values.check[0], values.check[1]] {
                 scalar(value)?;
             }
-            state.thickness = *values;
+            (state.thickness, state.undercut_told) = (*values, [false; 2]);
         }
         MotionCommand::MaximumStep(length) => state.maximum_step = scalar(*length)?.abs(),
         MotionCommand::MaximumPoints(count) => state.maximum_points = *count,

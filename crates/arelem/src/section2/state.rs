@@ -37,6 +37,16 @@ pub enum StartUpRule {
     Apt4,
 }
 
+/// What of the direction of the tool is measured from the origin, which FROM takes for the position before: it is
+/// undefined, by the language, and yet carried out (language reference 6.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FromOrigin {
+    /// The previous tool end.
+    pub previous: bool,
+    /// The forward direction, which a motion along the axis leaves as it is.
+    pub forward: bool,
+}
+
 /// Everything that a command can depend on besides its own contents. Plain data: compare or hash it as it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
@@ -54,6 +64,8 @@ pub struct State {
     pub axis_mode: ToolAxis,
     /// Direction of the last motion that was not along the axis.
     pub forward: Option<Vec3>,
+    /// Which of these two come from the origin, where nobody has given a direction since FROM.
+    pub from_origin: FromOrigin,
     /// Modal part surface.
     pub part: NamedSurface,
     /// TLOFPS or TLONPS.
@@ -72,6 +84,9 @@ pub struct State {
     pub outside: PerRole,
     /// THICK.
     pub thickness: PerRole,
+    /// Part and drive surface: that they are undercut deeper than the cutter's radius has been told since THICK or the
+    /// cutter changed.
+    pub undercut_told: [bool; 2],
     /// MAXDP.
     pub maximum_step: f64,
     /// NUMPTS.
@@ -117,6 +132,7 @@ impl State {
             axis: Vec3::z(),
             axis_mode: ToolAxis::Fixed(Vec3::z()),
             forward: None,
+            from_origin: FromOrigin::default(),
             part: NamedSurface { name: String::new(), geometry: Geometry::Plane(plane) },
             part_side: PartSide::Offset,
             side_of_part: None,
@@ -126,6 +142,7 @@ impl State {
             inside: PerRole::all(0.0),
             outside: PerRole::all(DEFAULT_OUTSIDE_INCHES * units),
             thickness: PerRole::all(0.0),
+            undercut_told: [false; 2],
             maximum_step: DEFAULT_STEP_INCHES * units,
             maximum_points: DEFAULT_POINTS,
             multiple_axes: false,
@@ -148,12 +165,21 @@ impl State {
     /// Moves the tool end and remembers the direction of the move.
     pub(super) fn move_to(&mut self, previous: Vec3, tip: Vec3) {
         self.previous = previous;
+        self.from_origin.previous = false;
         self.tip = Some(tip);
         if let Some(direction) = (tip - previous).try_normalize(0.0)
             && direction.dot(&self.axis).abs() <= ALONG_AXIS_COSINE
         {
             self.forward = Some(direction);
+            self.from_origin.forward = false;
         }
+    }
+
+    /// Places the tool end without a motion: the origin is the previous position, as APT III has it.
+    pub(super) fn place(&mut self, tip: Vec3) {
+        self.forward = None;
+        self.move_to(Vec3::zeros(), tip);
+        self.from_origin = FromOrigin { previous: true, forward: true };
     }
 
     /// Forgets what applies to the next motion or start-up only.

@@ -1,0 +1,73 @@
+//! What the arithmetic element carries out and yet doubts: a direction that nobody gave, and undercuts deeper than the
+//! cutter's radius.
+
+#![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
+use std::sync::Arc;
+
+use apt_run::{
+    document::{Document, Level},
+    settings::Settings,
+};
+
+/// The codes of what is found, with the numbers of the statements.
+fn codes(text: &str) -> Vec<(&'static str, u32)> {
+    let document = Document::new(text, Some("sample.apt".to_owned()), &Arc::new(Settings::default()));
+    let found = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
+    found.iter().map(|one| (one.wording.code, one.origin.isn)).collect()
+}
+
+/// FROM leaves the forward direction undefined (language reference 6.2): APT III takes the origin for the previous
+/// position, which means nothing unless the programmer wants it so.
+#[test]
+fn a_direction_that_comes_from_the_origin_is_told() {
+    let after = |placing: &str, motion: &str| {
+        codes(&format!(
+            "CUTTER/.5\nL1=LINE/0,0,10,0\nL2=LINE/10,-5,10,5\n{placing}\n{motion}/L1,TO,L2\nFINI\n"
+        ))
+    };
+    let told = [("APT0668", 5)];
+    for motion in ["TLLFT,GOFWD", "TLRGT,GOBACK"] {
+        assert_eq!(after("FROM/5,.25,0", motion).first(), Some(&told[0]), "{motion}");
+    }
+    // A move along the tool axis, or none at all, gives no direction either.
+    assert_eq!(after("FROM/5,.25,3\nGODLTA/-3", "TLLFT,GOFWD"), [("APT0668", 6)]);
+    assert_eq!(after("FROM/5,.25,0\nGOTO/5,.25,0", "TLLFT,GOFWD"), [("APT0668", 6)]);
+    for placing in [
+        "FROM/5,.25,0\nINDIRV/1,0,0",
+        "FROM/5,.25,0\nINDIRP/6,.25,0",
+        "FROM/5,4,0\nGOTO/4,4,0\nGOTO/5,.25,0",
+        "FROM/5,4,0\nGOTO/4,.25,0\nGODLTA/1,0,0",
+        "FROM/5,.25,3\nGODLTA/.6,0,-3",
+    ] {
+        assert_eq!(after(placing, "TLLFT,GOFWD"), [], "{placing}");
+    }
+    let two = "TLLFT,GOFWD/L1,ON,L2\nGORGT/L2,TO,L1";
+    assert_eq!(
+        codes(&format!(
+            "CUTTER/.5\nL1=LINE/0,0,10,0\nL2=LINE/10,-5,10,5\nFROM/5,.25,0\nINDIRV/1,0,0\n{two}\nFINI\n"
+        ))
+        .iter()
+        .filter(|(code, _)| *code == "APT0668")
+        .count(),
+        0
+    );
+}
+
+/// An undercut is no deeper than the cutter's radius (language reference 6.8). Of part and drive surface the path is
+/// defined beyond that, too; it is told once for each THICK and cutter.
+#[test]
+fn an_undercut_of_part_or_drive_surface_deeper_than_the_radius_is_told_once() {
+    let with = |thick: &str, modes: &str| {
+        codes(&format!(
+            "CUTTER/.5\nL1=LINE/XAXIS\nL2=LINE/5,0,5,9\nL3=LINE/0,4,9,4\nPL1=PLANE/0,0,1,0\nTHICK/{thick}\n\
+             FROM/0,-2,3\nGO/TO,L1,TO,PL1\n{modes}GORGT/L1,ON,L2\nTLON,GOLFT/L2,ON,L3\nFINI\n"
+        ))
+    };
+    assert_eq!(with("-.3,0,0", "TLRGT,TLOFPS,"), [("APT0669", 9)]);
+    assert_eq!(with("0,-.3,0", "TLRGT,TLOFPS,").iter().filter(|one| one.0 == "APT0669").count(), 1);
+    assert_eq!(with("-.25,-.25,0", "TLRGT,TLOFPS,"), []);
+    let ignored: Vec<_> =
+        with("-.3,0,0", "TLRGT,TLONPS,").into_iter().filter(|one| one.0 == "APT0669").collect();
+    assert_eq!(ignored, [], "ON does not count stock");
+}
