@@ -259,8 +259,12 @@ impl Analysis {
     }
 
     /// The syntax tree as text.
-    pub fn syntax_tree(&self) -> String {
-        self.document.tree().debug_tree()
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] when `cancel` said so before the end.
+    pub fn syntax_tree(&self, cancel: Cancel<'_>) -> Result<String, Cancelled> {
+        self.document.tree().debug_tree_until(cancel).ok_or(Cancelled)
     }
 
     /// The statement at an offset and the offset relative to its start; `None` in an empty text.

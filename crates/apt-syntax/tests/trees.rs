@@ -184,3 +184,23 @@ fn who_gives_up_a_long_text_is_heard_soon_and_a_short_one_is_read() {
 
 /// Statements that are found between two questions whether to go on, each in a fraction of a microsecond.
 const STATEMENTS_BETWEEN_QUESTIONS: usize = 2_048;
+
+/// Whoever gives up gets nothing, be it while the tree is made or while its text is.
+#[test]
+fn the_text_of_a_tree_is_given_up_at_any_time() {
+    let tree = SyntaxTree::parse(&"P1=POINT/1,2,3\n".repeat(50), Dialect::named(DialectName::Free));
+    let asked = std::cell::Cell::new(0_usize);
+    let after = |limit: usize| {
+        asked.set(0);
+        tree.debug_tree_until(&|| {
+            asked.set(asked.get() + 1);
+            asked.get() > limit
+        })
+    };
+    assert_eq!(after(usize::MAX), Some(tree.debug_tree()));
+    let all = asked.get();
+    for limit in [0, 1, 49, 60, all / 2, all - 1] {
+        assert_eq!(after(limit), None, "{limit} of {all}");
+        assert!(asked.get() <= limit + 3, "soon after {limit}: {}", asked.get());
+    }
+}

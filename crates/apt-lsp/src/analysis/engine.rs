@@ -380,8 +380,8 @@ impl Document for Program {
         self.0.statements()
     }
 
-    fn syntax_tree(&self) -> String {
-        self.0.syntax_tree()
+    fn syntax_tree(&self, control: &Control) -> Answer<String> {
+        Ok(self.0.syntax_tree(&|| control.is_cancelled())?)
     }
 
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion> {

@@ -318,8 +318,8 @@ impl Document for FakeDocument {
         Vec::new()
     }
 
-    fn syntax_tree(&self) -> String {
-        self.text.clone()
+    fn syntax_tree(&self, _: &Control) -> Answer<String> {
+        Ok(self.text.clone())
     }
 
     fn expand(&self, _: Option<usize>, _: Option<u32>, _: &Control) -> Answer<Expansion> {

@@ -165,7 +165,7 @@ pub(crate) trait Document: Send + Sync {
     fn statements(&self) -> Vec<Range<usize>>;
 
     /// The syntax tree as indented text.
-    fn syntax_tree(&self) -> String;
+    fn syntax_tree(&self, control: &Control) -> Answer<String>;
 
     /// The program with macros and loops unrolled: all of it, or the one at an offset, `depth` levels deep.
     fn expand(&self, at: Option<usize>, depth: Option<u32>, control: &Control) -> Answer<Expansion>;

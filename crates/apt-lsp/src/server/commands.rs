@@ -140,9 +140,7 @@ async fn syntax_tree(
 ) -> Result<Value> {
     let snapshot = present(server, argument.uri).await?;
     long(server, "Syntax tree", snapshot, token, |snapshot, control| {
-        let text = snapshot.document.syntax_tree();
-        // Long trees take longest on their way to the client.
-        if control.is_cancelled() { Err(Refusal::Interrupted) } else { Ok(json!({ "text": text })) }
+        Ok(json!({ "text": snapshot.document.syntax_tree(control)? }))
     })
     .await
 }

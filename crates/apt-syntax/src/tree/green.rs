@@ -15,11 +15,14 @@ pub(super) fn statement(text: &str, layout: &Layout) -> GreenNode {
     builder.finish()
 }
 
-/// The tree of a whole document.
-pub(super) fn document(tree: &SyntaxTree) -> SyntaxNode {
+/// The tree of a whole document, or of as much of it as was made until `is_over` said true.
+pub(super) fn document(tree: &SyntaxTree, is_over: &dyn Fn() -> bool) -> SyntaxNode {
     let mut builder = GreenNodeBuilder::new();
     builder.start_node(Apt::kind_to_raw(SyntaxKind::Root));
     for view in tree.statements() {
+        if is_over() {
+            break;
+        }
         build_statement(&mut builder, view.text(), &tree.layout());
     }
     builder.finish_node();

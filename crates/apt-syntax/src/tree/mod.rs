@@ -10,6 +10,7 @@ mod green;
 mod view;
 
 use std::cell::Cell;
+use std::fmt::{self, Write};
 use std::sync::Arc;
 
 use rowan::{TextRange, TextSize};
@@ -189,12 +190,20 @@ impl SyntaxTree {
 
     /// The lossless tree of the whole document. It is made anew at every call.
     pub fn syntax(&self) -> SyntaxNode {
-        green::document(self)
+        green::document(self, &|| false)
     }
 
     /// The tree as indented text, one node or token on a line.
     pub fn debug_tree(&self) -> String {
-        format!("{:#?}", self.syntax())
+        self.debug_tree_until(&|| false).unwrap_or_default()
+    }
+
+    /// The same; `None` when `cancel`, which is asked for each statement and each word, said so before the end, and goes on
+    /// saying so.
+    pub fn debug_tree_until(&self, cancel: &dyn Fn() -> bool) -> Option<String> {
+        let mut page = Page { text: String::new(), cancel };
+        write!(page, "{:#?}", green::document(self, cancel)).ok()?;
+        (!cancel()).then_some(page.text)
     }
 
     fn end(&self) -> BlockStart {
@@ -212,6 +221,22 @@ impl Document {
     fn keeps_parsed(&self) -> bool {
         let count = self.starts.last().map_or(0, |end| end.statement as usize);
         count <= MOST_KEPT_STATEMENTS
+    }
+}
+
+/// Text that is written until whoever waits for it gives up.
+struct Page<'a> {
+    text: String,
+    cancel: &'a dyn Fn() -> bool,
+}
+
+impl Write for Page<'_> {
+    fn write_str(&mut self, piece: &str) -> fmt::Result {
+        if (self.cancel)() {
+            return Err(fmt::Error);
+        }
+        self.text.push_str(piece);
+        Ok(())
     }
 }
 
