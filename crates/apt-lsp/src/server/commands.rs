@@ -62,6 +62,8 @@ pub(super) async fn execute(
     argument: Value,
     token: Option<ProgressToken>,
 ) -> Result<Value> {
+    // Before anything is waited for, so that no wish to end the work is lost.
+    let _expected = token.as_ref().map(|token| server.cancellations().expect(token));
     match command {
         "apt.runMotion" => run_motion(server, read(argument)?, token).await,
         "apt.expand" => expand(server, read(argument)?, token).await,
@@ -165,9 +167,7 @@ async fn long(
     let display =
         requested.map(Display::Requested).or_else(|| server.offered_progress().map(Display::Offered));
     let (reporter, shown) = display
-        .map(|display| {
-            progress::begin(server.for_progress(), server.cancellations(), display, title, token.clone())
-        })
+        .map(|display| progress::begin(server.for_progress(), server.cancellations(), display, title, &token))
         .unzip();
     let answer = job::with_progress(title, snapshot, token, reporter, work).await;
     if let Some(shown) = shown.flatten() {

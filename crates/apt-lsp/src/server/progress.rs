@@ -4,13 +4,13 @@
 //! client is good until the answer comes, and not longer.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use serde_json::json;
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
-use tokio::time::{sleep, timeout};
+use tokio::time::sleep;
 use tokio_util::sync::CancellationToken;
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
@@ -26,28 +26,51 @@ const WORTH_SHOWING: Duration = Duration::from_millis(250);
 /// Time between two reports.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// A client that does not agree within this time is not shown progress.
-const AGREEMENT: Duration = Duration::from_secs(5);
-
-/// The works whose progress is shown, by the token of the client, so that its user can end them.
+/// The works whose progress is shown, by the token of the client, so that its user can end them: also before they have
+/// begun.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Cancellations(Arc<Mutex<BTreeMap<String, CancellationToken>>>);
 
 impl Cancellations {
     /// Ends the work with this token.
     pub(super) fn cancel(&self, token: &ProgressToken) {
-        let works = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(work) = works.get(&key(token)) {
+        if let Some(work) = self.lock().get(&key(token)) {
             work.cancel();
         }
     }
 
-    fn insert(&self, token: &ProgressToken, work: CancellationToken) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key(token), work);
+    /// Notes that work with this token was asked for. Until it begins, its user's wish to end it is kept here.
+    pub(super) fn expect(&self, token: &ProgressToken) -> Expected {
+        self.lock().insert(key(token), CancellationToken::new());
+        Expected { cancellations: self.clone(), token: token.clone() }
+    }
+
+    /// From now on the token ends this work; at once, if that has been wished for before.
+    fn insert(&self, token: &ProgressToken, work: &CancellationToken) {
+        if self.lock().insert(key(token), work.clone()).is_some_and(|expected| expected.is_cancelled()) {
+            work.cancel();
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, CancellationToken>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn remove(&self, token: &ProgressToken) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key(token));
+        self.lock().remove(&key(token));
+    }
+}
+
+/// Work that was asked for. Dropping it forgets the token.
+#[derive(Debug)]
+pub(super) struct Expected {
+    cancellations: Cancellations,
+    token: ProgressToken,
+}
+
+impl Drop for Expected {
+    fn drop(&mut self) {
+        self.cancellations.remove(&self.token);
     }
 }
 
@@ -100,7 +123,7 @@ pub(super) fn begin(
     cancellations: &Cancellations,
     display: Display,
     title: &'static str,
-    work: CancellationToken,
+    work: &CancellationToken,
 ) -> (Reporter, Option<Shown>) {
     let (sender, receiver) = watch::channel(None);
     let cancellations = cancellations.clone();
@@ -110,7 +133,9 @@ pub(super) fn begin(
     let is_requested = matches!(display, Display::Requested(_));
     let task = tokio::spawn(async move {
         show((client, frames), display, title, receiver).await;
-        cancellations.remove(&token);
+        if !is_requested {
+            cancellations.remove(&token);
+        }
     });
     // A display that the server offers may wait long for the client; its token is the server's own.
     (Reporter(sender), is_requested.then_some(Shown(task)))
@@ -129,8 +154,9 @@ async fn show(
             if is_over(&progress) {
                 return;
             }
-            let agreed = timeout(AGREEMENT, client.create_work_done_progress(token.clone())).await;
-            if !matches!(agreed, Ok(Ok(()))) || is_over(&progress) {
+            // Whoever agrees waits for a begin and an end from then on, be the work over or not; who never answers is not
+            // told, and costs this task.
+            if client.create_work_done_progress(token.clone()).await.is_err() {
                 return;
             }
             token
@@ -193,8 +219,8 @@ mod tests {
     fn tokens_that_look_alike_are_told_apart() {
         let cancellations = Cancellations::default();
         let (number, text) = (CancellationToken::new(), CancellationToken::new());
-        cancellations.insert(&ProgressToken::Number(1), number.clone());
-        cancellations.insert(&ProgressToken::String("1".to_owned()), text.clone());
+        cancellations.insert(&ProgressToken::Number(1), &number);
+        cancellations.insert(&ProgressToken::String("1".to_owned()), &text);
         cancellations.cancel(&ProgressToken::String("1".to_owned()));
         assert_eq!((number.is_cancelled(), text.is_cancelled()), (false, true));
     }

@@ -280,6 +280,45 @@ async fn requested_progress_is_shown_and_its_button_ends_the_run() {
     }
 }
 
+/// The button of a display may be pressed before the server has looked at the document.
+#[tokio::test(flavor = "multi_thread")]
+async fn work_whose_progress_is_cancelled_before_it_begins_is_ended() {
+    let mut talk = Conversation::about("SLOW\n").await;
+    for token in ["one", "two", "three", "four"] {
+        let run = talk.begin("apt/runMotion", json!({ "uri": URI, "workDoneToken": token })).await;
+        talk.tell("window/workDoneProgress/cancel", json!({ "token": token })).await;
+        assert_eq!(talk.answer(run).await.unwrap_err()["code"], -32800, "{token}");
+        for kind in ["begin", "end"] {
+            let told = talk
+                .wait(|one| one["method"] == "$/progress" && one["params"]["value"]["kind"] == kind)
+                .await;
+            assert_eq!(told["params"]["token"], token);
+        }
+    }
+}
+
+/// A client that has agreed to a display waits for its begin and its end, even where the work is over by then.
+#[tokio::test(flavor = "multi_thread")]
+async fn offered_progress_that_comes_too_late_begins_and_ends() {
+    let mut talk = Conversation::with(
+        json!({ "window": { "workDoneProgress": true }, "textDocument": { "diagnostic": {} } }),
+    )
+    .await;
+    talk.open("SLOW\n").await;
+    let run = talk.begin("apt/runMotion", json!({ "uri": URI })).await;
+    let request = talk.wait_for("window/workDoneProgress/create").await;
+    talk.tell("window/workDoneProgress/cancel", json!({ "token": request["params"]["token"] })).await;
+    assert_eq!(talk.answer(run).await.unwrap_err()["code"], -32800);
+    talk.send(json!({ "jsonrpc": "2.0", "id": request["id"], "result": null })).await;
+    let mut kinds = Vec::new();
+    while kinds.last() != Some(&json!("end")) {
+        let told = talk.wait_for("$/progress").await["params"].clone();
+        assert_eq!(told["token"], request["params"]["token"]);
+        kinds.push(told["value"]["kind"].clone());
+    }
+    assert_eq!(kinds[0], "begin");
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn every_command_about_a_document_shows_the_progress_that_was_asked_for() {
     let mut talk = Conversation::about("BAD\n").await;
