@@ -2,6 +2,10 @@
 
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
+
+use crate::analysis::{ClDialect, Document, Files, Language, Surroundings, TextOfBinary};
+use crate::settings::Settings;
 
 /// The text of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,6 +15,9 @@ pub(crate) struct Source {
     /// The form of its bytes.
     pub form: TextForm,
 }
+
+/// The setting that a binary file does not heed: it says what it is, whatever the programs beside it are written in.
+pub(crate) const DIALECT_KEY: &str = "dialect";
 
 /// How a text stands in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,9 +50,48 @@ impl TextForm {
     }
 }
 
-/// Reads a file.
-pub(crate) fn read_file(path: &Path) -> std::io::Result<Source> {
-    std::fs::read(path).map(decode)
+/// A program as it stands in a file: a text, or a binary file with the text that says the same.
+pub(crate) struct ProgramFile {
+    /// The text.
+    pub source: Source,
+    /// The bytes of a binary file, and whose it is.
+    pub binary: Option<(Vec<u8>, ClDialect)>,
+}
+
+impl ProgramFile {
+    /// The program that bytes are, or why a binary file cannot be read.
+    pub(crate) fn of_bytes(bytes: Vec<u8>, language: &dyn Language) -> Result<Self, String> {
+        Ok(match language.text_of_binary(&bytes).transpose()? {
+            Some(TextOfBinary { text, system }) => {
+                Self { source: Source { text, form: TextForm::Utf8 }, binary: Some((bytes, system)) }
+            }
+            None => Self { source: decode(bytes), binary: None },
+        })
+    }
+
+    /// Reads a file.
+    pub(crate) fn read(path: &Path, language: &dyn Language) -> Result<Self, String> {
+        let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+        Self::of_bytes(bytes, language)
+    }
+
+    /// The analysis of a file that was read, with the settings and the open files that count for it.
+    pub(crate) fn open(
+        &self,
+        path: &Path,
+        language: &dyn Language,
+        settings: &Settings,
+        files: Files,
+    ) -> Arc<dyn Document> {
+        let mut values = settings.program.clone();
+        if self.binary.is_some() {
+            values.remove(DIALECT_KEY);
+        }
+        let binary = self.binary.as_ref().map(|(_, system)| *system);
+        let surroundings = Surroundings { path: Some(path.to_owned()), files, binary };
+        let name = path.file_name().and_then(|name| name.to_str());
+        language.open(&self.source.text, name, &values, surroundings)
+    }
 }
 
 /// The bytes of standard input, to its end.

@@ -165,6 +165,38 @@ fn a_file_that_is_not_open_can_be_run() {
     );
 }
 
+/// What counts for a file that is open counts for one that is not: the settings of the editor and the texts of open files;
+/// and its bytes are read as the command line reads them.
+#[test]
+fn a_file_that_is_not_open_is_read_as_an_open_one_and_as_by_the_command_line() {
+    let folder = support::Folder::new("run-as-open");
+    let path = folder.write("a.apt", "PARTNO RUN\nUNITS/MM\nFROM/0,0,1\nINCLUD/WAY\nFINI\n");
+    let uri = |path: &std::path::Path| format!("file://{}", path.display());
+    let way = folder.write("WAY.apt", "GOTO/1,0,1\n");
+    let mut server = Server::start(&["--stdio"]);
+    let options = json!({ "machine": "linuxcnc-mill3" });
+    server.ask("initialize", json!({ "capabilities": {}, "initializationOptions": options })).unwrap();
+    server.tell("initialized", json!({}));
+    server.open(&uri(&way), "GOTO/1,0,1\nGOTO/2,0,1\n");
+    let report = server.ask("apt/runMotion", json!({ "uri": uri(&path) })).unwrap();
+    assert_eq!(report["totals"]["points"], 3, "the text of the open file counts: {report}");
+    assert_eq!(report["tape"]["machine"], "linuxcnc-mill3", "{report}");
+
+    let latin = folder.write("latin.apt", b"PARTNO \xe9\nFROM/0,0,1\nFINI\n");
+    let report = server.ask("apt/runMotion", json!({ "uri": uri(&latin) })).unwrap();
+    assert_eq!(report["cl"][0]["words"][1], "\u{e9}", "{report}");
+
+    folder.write("b.apt", "PARTNO TAPE\nFROM/0,0,1\nGOTO/1,0,1\nFINI\n");
+    let made = folder.run(&["run", "b.apt", "--format", "cltape", "-o", "a.tap"]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    let tape = folder.0.join("a.tap");
+    let tree = server.ask("apt/syntaxTree", json!({ "uri": uri(&tape) })).unwrap();
+    let told = folder.run(&["tree", "a.tap"]).stdout;
+    assert_eq!(tree["text"].as_str().unwrap().trim_end(), told.trim_end());
+    let report = server.ask("apt/runMotion", json!({ "uri": uri(&tape) })).unwrap();
+    assert_eq!((&report["ok"], &report["totals"]["points"]), (&json!(true), &json!(2)), "{report}");
+}
+
 #[test]
 fn an_endless_program_does_not_hold_up_the_server_and_can_be_cancelled() {
     let mut server = Server::initialized(&json!({ "textDocument": { "diagnostic": {} } }));

@@ -9,10 +9,10 @@ use serde_json::Value;
 
 use super::arguments::{ProgramArgument, ReadingOptions, SeverityOption};
 use super::console::Console;
-use crate::analysis::{Document, Language, Surroundings, TextOfBinary};
+use crate::analysis::{Document, Language, Surroundings};
 use crate::convert::{Encoding, TextIndex};
 use crate::settings::{Settings, Values};
-use crate::source::{self, ENDINGS, Source, TextForm, is_program};
+use crate::source::{self, DIALECT_KEY, ENDINGS, ProgramFile, TextForm, is_program};
 
 /// The name that means standard input.
 pub(super) const STANDARD_INPUT: &str = "-";
@@ -55,16 +55,10 @@ impl Program {
         let from_standard_input = path.as_os_str() == STANDARD_INPUT;
         let name = if from_standard_input { "<stdin>".to_owned() } else { path.display().to_string() };
         let read = if from_standard_input { source::read_standard_input() } else { std::fs::read(path) };
-        let understood = read.map_err(|error| error.to_string()).and_then(|bytes| {
-            Ok(match language.text_of_binary(&bytes).transpose()? {
-                Some(TextOfBinary { text, system }) => {
-                    (Source { text, form: TextForm::Utf8 }, Some((bytes, system)))
-                }
-                None => (source::decode(bytes), None),
-            })
-        });
-        let (source, binary) = match understood {
-            Ok(both) => both,
+        let understood =
+            read.map_err(|error| error.to_string()).and_then(|bytes| ProgramFile::of_bytes(bytes, language));
+        let ProgramFile { source, binary } = match understood {
+            Ok(file) => file,
             Err(error) => {
                 console.error(&format!("{name}: {error}"));
                 return None;
@@ -79,7 +73,7 @@ impl Program {
         }
         let mut typed = Values::new();
         if let Some(dialect) = &reading.dialect {
-            typed.insert("dialect".to_owned(), Value::String(dialect.clone()));
+            typed.insert(DIALECT_KEY.to_owned(), Value::String(dialect.clone()));
         }
         if !reading.severities.is_empty() {
             let one = |one: &SeverityOption| (one.code.clone(), Value::String(one.severity.clone()));
@@ -104,8 +98,7 @@ impl Program {
             return None;
         }
         if binary.is_some() && reading.dialect.is_none() {
-            // A binary file says what it is, whatever the programs beside it are written in.
-            settings.program.remove("dialect");
+            settings.program.remove(DIALECT_KEY);
         }
         let surroundings = Surroundings { path: beside, binary, ..Surroundings::default() };
         let document = language.open(&source.text, Some(&name), &settings.program, surroundings);

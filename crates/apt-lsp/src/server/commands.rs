@@ -11,14 +11,14 @@ use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{Position, ProgressToken, Range, Uri};
 
 use super::backend::Backend;
-use super::documents::{Snapshot, file_path};
+use super::documents::{Circumstances, Snapshot, file_path};
 use super::job;
 use super::progress::{self, Display};
 use super::status;
-use super::workers::Workers;
-use crate::analysis::{Control, Refusal, RunRequest, Surroundings};
-use crate::convert::{TextIndex, Uris, outgoing};
-use crate::settings::{Settings, Values};
+use crate::analysis::{Control, Refusal, RunRequest};
+use crate::convert::{TextIndex, outgoing};
+use crate::settings::Settings;
+use crate::source::ProgramFile;
 
 #[derive(Deserialize)]
 struct RunArgument {
@@ -176,7 +176,7 @@ async fn long(
     answer
 }
 
-/// The document as it is now; a file that is not open is read from the disk.
+/// The document as it is now; a file that is not open is read from the disk, and is what it would be if it were open.
 async fn present(server: &Backend, uri: Uri) -> Result<Snapshot> {
     let not_open = match job::snapshot(server.events(), uri.clone()).await {
         Ok(snapshot) => return Ok(snapshot),
@@ -185,28 +185,26 @@ async fn present(server: &Backend, uri: Uri) -> Result<Snapshot> {
     let Some(path) = file_path(&uri) else { return Err(not_open) };
     let language = Arc::clone(server.language());
     let encoding = server.features().encoding;
+    let circumstances = job::circumstances(server.events(), uri.clone()).await?;
     let read = move || {
-        let text = crate::source::read_file(&path).ok()?.text;
-        let (settings, _) = Settings::resolve(language.as_ref(), Some(&path), &Values::new(), &Values::new());
-        let name = path.file_name().and_then(|name| name.to_str());
-        let surroundings = Surroundings { path: Some(path.clone()), ..Surroundings::default() };
-        let document = language.open(&text, name, &settings.program, surroundings);
-        Some(Snapshot {
+        if !path.is_file() {
+            return Err(not_open);
+        }
+        let file = ProgramFile::read(&path, language.as_ref()).map_err(Error::invalid_params)?;
+        let Circumstances { settings, files, uris, workers } = circumstances;
+        Ok(Snapshot {
             uri,
             revision: 0,
             version: 0,
-            index: TextIndex { rope: Rope::from_str(&text), encoding },
-            document,
-            settings: Arc::new(settings),
+            index: TextIndex { rope: Rope::from_str(&file.source.text), encoding },
+            document: file.open(&path, language.as_ref(), &settings, files),
+            settings,
             superseded: CancellationToken::new(),
             includers: Vec::new(),
-            uris: Uris::default(),
-            workers: Workers::default(),
+            uris,
+            workers,
         })
     };
-    match tokio::task::spawn_blocking(read).await {
-        Ok(Some(snapshot)) => Ok(snapshot),
-        Ok(None) => Err(not_open),
-        Err(_) => Err(job::internal_fault("reading the file")),
-    }
+    let read = tokio::task::spawn_blocking(read).await;
+    read.unwrap_or_else(|_| Err(job::internal_fault("reading the file")))
 }

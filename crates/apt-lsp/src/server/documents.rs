@@ -58,6 +58,8 @@ pub(super) enum Event {
     Closed(Uri),
     /// Somebody wants to see a document as it is now; none if it is not open.
     Snapshot(Uri, oneshot::Sender<Option<Snapshot>>),
+    /// Somebody wants to read a file that is not open.
+    Circumstances(Uri, oneshot::Sender<Circumstances>),
     /// Somebody wants to see all open documents as they are now.
     Snapshots(oneshot::Sender<Vec<Snapshot>>),
     /// Findings are ready; they are told if they are still about the present text.
@@ -69,6 +71,18 @@ pub(super) enum Event {
         /// The message that tells them.
         message: Vec<u8>,
     },
+}
+
+/// What counts for a file that is not open, as it would if it were.
+pub(super) struct Circumstances {
+    /// The settings in force.
+    pub settings: Arc<Settings>,
+    /// The texts of open documents, which it may include.
+    pub files: Files,
+    /// What the client calls the files that it has opened.
+    pub uris: Uris,
+    /// Who does work on it.
+    pub workers: Workers,
 }
 
 /// A document as it was at one moment.
@@ -218,6 +232,14 @@ impl Documents {
             Event::Snapshot(uri, reply) => {
                 let snapshot = self.snapshot(&uri);
                 let _ = reply.send(snapshot);
+            }
+            Event::Circumstances(uri, reply) => {
+                let _ = reply.send(Circumstances {
+                    settings: Arc::new(self.settings_for(&uri)),
+                    files: self.files.clone(),
+                    uris: self.uris(),
+                    workers: self.workers.clone(),
+                });
             }
             Event::Snapshots(reply) => {
                 let uris: Vec<Uri> = self.open.keys().cloned().collect();
@@ -422,10 +444,15 @@ impl Documents {
         Some(snapshot)
     }
 
+    /// What the client calls the files that it has opened.
+    fn uris(&self) -> Uris {
+        let uris = self.open.iter().filter_map(|(uri, one)| Some((one.path.clone()?, uri.clone())));
+        Uris(Arc::new(uris.collect()))
+    }
+
     /// A document without the programs that include it.
     fn plain_snapshot(&mut self, uri: &Uri) -> Option<Snapshot> {
-        let uris = self.open.iter().filter_map(|(uri, one)| Some((one.path.clone()?, uri.clone())));
-        let uris = Uris(Arc::new(uris.collect()));
+        let uris = self.uris();
         if self.watches {
             self.note_included(uri);
         }

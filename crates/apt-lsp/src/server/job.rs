@@ -5,7 +5,7 @@ use tokio_util::sync::CancellationToken;
 use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 use tower_lsp::ls_types::Uri;
 
-use super::documents::{Event, Snapshot};
+use super::documents::{Circumstances, Event, Snapshot};
 use super::progress::Reporter;
 use crate::analysis::{Control, Refusal};
 
@@ -25,6 +25,13 @@ pub(super) async fn snapshot(events: &Events, uri: Uri) -> Result<Snapshot> {
         Ok(None) => Err(Error::invalid_params(unknown)),
         Err(_) => Err(internal_fault("reading the document")),
     }
+}
+
+/// What counts for a file that is not open.
+pub(super) async fn circumstances(events: &Events, uri: Uri) -> Result<Circumstances> {
+    let (reply, answer) = oneshot::channel();
+    events.send(Event::Circumstances(uri, reply)).map_err(|_| Error::internal_error())?;
+    answer.await.map_err(|_| internal_fault("reading the settings"))
 }
 
 /// All open documents as they are now.

@@ -9,10 +9,10 @@ use ropey::Rope;
 use tower_lsp::ls_types::SymbolInformation;
 
 use super::documents::Snapshot;
-use crate::analysis::{Answer, Control, Language, Refusal, Surroundings, normalised};
+use crate::analysis::{Answer, Control, Files, Language, Refusal, normalised};
 use crate::convert::{TextIndex, outgoing};
 use crate::settings::Settings;
-use crate::source;
+use crate::source::{self, ProgramFile};
 
 /// Files that are not open and yet read for one answer.
 const MOST_FILES: usize = 500;
@@ -44,14 +44,13 @@ pub(super) fn of_closed_files(
         let Some(snapshot) = open.first() else { break };
         let large = std::fs::metadata(&path).map_or(true, |one| one.len() > LARGEST_FILE);
         // What cannot be read is told where it is included.
-        let (Some(uri), false, Ok(source)) = (snapshot.uris.of(&path), large, source::read_file(&path))
+        let (Some(uri), false, Ok(file)) =
+            (snapshot.uris.of(&path), large, ProgramFile::read(&path, language))
         else {
             continue;
         };
-        let name = path.file_name().and_then(|name| name.to_str());
-        let surroundings = Surroundings { path: Some(path.clone()), ..Surroundings::default() };
-        let document = language.open(&source.text, name, &settings.program, surroundings);
-        let index = TextIndex { rope: Rope::from_str(&source.text), encoding: snapshot.index.encoding };
+        let document = file.open(&path, language, &settings, Files::default());
+        let index = TextIndex { rope: Rope::from_str(&file.source.text), encoding: snapshot.index.encoding };
         found.extend(outgoing::symbols_named(&index, &uri, document.outline(control)?, wanted));
     }
     Ok(found)
