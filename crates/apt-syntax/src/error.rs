@@ -207,6 +207,14 @@ pub enum SyntaxErrorKind {
     /// A comma (or an operator) is missing between two operands.
     #[error("comma or operator missing")]
     MissingSeparator,
+    /// A list behind a name and a slash, which only divide.
+    #[error("{name} takes no list")]
+    ListWithoutWord {
+        /// The name.
+        name: SmolStr,
+        /// A word stands behind the slash.
+        before_word: bool,
+    },
     /// An operator between parameters of a list, where expressions need parentheses.
     #[error("expression in a list needs parentheses")]
     OperatorInList,
@@ -304,6 +312,7 @@ impl SyntaxErrorKind {
             Kind::NumberNotConvertible { .. } => 4,
             Kind::BadStatementStart => 5,
             Kind::MissingSeparator
+            | Kind::ListWithoutWord { before_word: false, .. }
             | Kind::OperatorInList
             | Kind::EmptyPosition
             | Kind::NameWithoutEquals { listed: true, .. } => 7,
@@ -321,7 +330,7 @@ impl SyntaxErrorKind {
             Kind::TooManyPowers => 56,
             Kind::FunctionWithoutParentheses(_) => 59,
             Kind::TooDeep | Kind::TooManyNests { .. } => 70,
-            Kind::WordNotAllowed(_) => 76,
+            Kind::WordNotAllowed(_) | Kind::ListWithoutWord { before_word: true, .. } => 76,
             Kind::EmptyParentheses | Kind::UnexpectedMark(_) | Kind::ConditionMissing => 78,
             Kind::WordRequired => 81,
             Kind::NameWithoutEquals { .. } | Kind::NotInDialect { .. } | Kind::StructuredIf { .. } => 82,

@@ -5,7 +5,8 @@ use smol_str::SmolStr;
 /// Most suggestions that are worth showing.
 const MOST_SUGGESTIONS: usize = 3;
 
-/// The candidates nearest to `name` in edit distance, best first, at most three; ties in alphabetical order.
+/// The candidates nearest to `name` in edit distance, best first, at most three; ties in alphabetical order. Names without
+/// any letter in common are not alike, however short they are.
 pub fn similar_names<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<SmolStr> {
     let letters: Vec<char> = name.chars().collect();
     let mut allowed = letters.len().div_ceil(3).min(2);
@@ -16,7 +17,8 @@ pub fn similar_names<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) 
         candidate_letters.extend(candidate.chars());
         let Some(distance) = distance_within(&letters, &candidate_letters, allowed) else { continue };
         let found = (distance, candidate);
-        if distance == 0 || near.contains(&found) {
+        let longest = letters.len().max(candidate_letters.len());
+        if distance == 0 || distance >= longest || near.contains(&found) {
             continue;
         }
         near.insert(near.partition_point(|other| *other < found), found);
@@ -120,7 +122,9 @@ mod tests {
             let mut all: Vec<(usize, &String)> = names
                 .iter()
                 .map(|other| (distance(&letters(name), &letters(other)), other))
-                .filter(|(distance, _)| (1..=allowed).contains(distance))
+                .filter(|(distance, other)| {
+                    (1..=allowed).contains(distance) && *distance < name.len().max(other.len())
+                })
                 .collect();
             all.sort_unstable();
             let nearest: Vec<&str> = all.iter().take(3).map(|(_, other)| other.as_str()).collect();

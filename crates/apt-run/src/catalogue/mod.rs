@@ -101,7 +101,7 @@ pub fn diagnostics(judged: &Judged<'_>, patience: Patience<'_>) -> Result<Vec<Di
     let mut list = Aside::from(Vec::new());
     for finding in judged.program.findings() {
         go_on(patience, 1)?;
-        let mut diagnostic = of_program(finding);
+        let mut diagnostic = of_program(judged.tree, finding);
         if list.len() < MOST_FIXED {
             diagnostic.fixes = crate::fix::of_finding(judged.tree, finding);
         }
@@ -156,7 +156,7 @@ pub fn worst(judged: &Judged<'_>, most: usize, patience: Patience<'_>) -> Result
     let mut list = Aside::from(Vec::with_capacity(findings.len()));
     for finding in findings {
         go_on(patience, 1)?;
-        list.push(of_program(finding));
+        list.push(of_program(judged.tree, finding));
     }
     let mut worst = Worst::of(completed(list, judged, allowances, patience)?, most);
     worst.left_out += unworded;
@@ -200,8 +200,13 @@ fn completed(
     in_order(list, settings, patience)
 }
 
-fn of_program(finding: &Finding) -> Diagnostic {
-    let text = program::word(&finding.kind);
+fn of_program(tree: &SyntaxTree, finding: &Finding) -> Diagnostic {
+    let mut text = program::word(&finding.kind);
+    if let FindingKind::Syntax(error) = &finding.kind
+        && let Some(question) = similar(&crate::fix::words_like(tree.dialect(), error))
+    {
+        text.hint = Some(question);
+    }
     let severity = match finding.severity {
         ProgramSeverity::Hint => Severity::Hint,
         ProgramSeverity::Information => Severity::Information,

@@ -148,6 +148,10 @@ fn expression(kind: &Kind) -> Option<Text> {
 fn list(kind: &Kind) -> Text {
     match kind {
         Kind::MissingSeparator => say("APT0040", "a comma or an operator is missing here"),
+        Kind::ListWithoutWord { name, .. } => {
+            say("APT0040", format!("{name} is no word that takes a list; {name}/ only divides"))
+                .hint("a definition is name=WORD/parameters; check the spelling of the word")
+        }
         Kind::OperatorInList => say("APT0041", "an expression in a list must stand in parentheses")
             .hint("write (a+b) instead of a+b"),
         Kind::EmptyPosition => say("APT0042", "there is nothing between these commas"),

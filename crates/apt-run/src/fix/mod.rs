@@ -14,6 +14,7 @@ use std::ops::Range;
 use apt_program::{ControlFinding, Finding, FindingKind, Origin, SculpturedFinding, symbols::similar_names};
 use apt_syntax::{
     SyntaxTree, TextRange,
+    dialect::Dialect,
     error::SyntaxErrorKind,
     grammar::ParsedStatement,
     statement::{Body, ElementKind},
@@ -123,6 +124,24 @@ pub(crate) fn written(tree: &SyntaxTree, origin: &Origin) -> Option<String> {
     (single && !text.contains(['\n', '\r'])).then(|| text.to_owned())
 }
 
+/// Words of the language that are spelled like a name which stands in the place of one; none for other errors.
+pub(crate) fn words_like(dialect: Dialect, error: &SyntaxErrorKind) -> Vec<SmolStr> {
+    let (name, begins) = match error {
+        SyntaxErrorKind::NameWithoutEquals { name, .. } => (name, true),
+        SyntaxErrorKind::ListWithoutWord { name, .. } => (name, false),
+        _ => return Vec::new(),
+    };
+    if name.chars().count() < SHORTEST_MISSPELT_WORD {
+        return Vec::new();
+    }
+    let fits = |class: vocabulary::WordClass| match begins {
+        true => class.begins_statements(),
+        false => class == vocabulary::WordClass::GeometricType,
+    };
+    let words = vocabulary::words().iter().filter(|word| fits(word.class) && word.is_in(dialect.name));
+    similar_names(name, words.map(|word| word.spelling))
+}
+
 /// The statement that a finding is about.
 struct Here<'a> {
     tree: &'a SyntaxTree,
@@ -162,7 +181,10 @@ impl Here<'_> {
         };
         let before = TextRange::empty(here.start());
         match kind {
-            SyntaxErrorKind::NameWithoutEquals { name, .. } => self.misspelt(name, &self.similar_words(name)),
+            SyntaxErrorKind::NameWithoutEquals { name, .. }
+            | SyntaxErrorKind::ListWithoutWord { name, .. } => {
+                self.misspelt(name, &words_like(self.tree.dialect(), kind))
+            }
             SyntaxErrorKind::NotInDialect { dialect, .. } => vec![Fix {
                 title: format!("Set the dialect of the program to {dialect}"),
                 edits: vec![(0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()))],
@@ -210,16 +232,6 @@ impl Here<'_> {
             SyntaxErrorKind::TakesNoParameters(_) => self.without_parameters().into_iter().collect(),
             _ => Vec::new(),
         }
-    }
-
-    /// Words of the language that begin statements and are spelled like a name.
-    fn similar_words(&self, name: &str) -> Vec<SmolStr> {
-        if name.chars().count() < SHORTEST_MISSPELT_WORD {
-            return Vec::new();
-        }
-        let dialect = self.tree.dialect().name;
-        let begins = |word: &&vocabulary::Word| word.class.begins_statements() && word.is_in(dialect);
-        similar_names(name, vocabulary::words().iter().filter(begins).map(|word| word.spelling))
     }
 
     /// Another spelling for a name, if the name stands once in the place of the finding.

@@ -192,6 +192,9 @@ impl<'a> Parser<'a> {
             if self.dialect.words_as_names {
                 return Ok(Expression::Reference(self.reference()?));
             }
+            if let Some(error) = self.list_without_word(true) {
+                return Err(error);
+            }
             return self.fail(match word.class {
                 WordClass::GeometricType => SyntaxErrorKind::NoSlash(word.spelling.into()),
                 _ => SyntaxErrorKind::WordNotAllowed(word.spelling.into()),

@@ -307,13 +307,40 @@ impl<'a> Parser<'a> {
                 SyntaxErrorKind::MissingSeparator
             }
             ElementKind::Word => SyntaxErrorKind::MissingSeparator,
-            ElementKind::Comma => SyntaxErrorKind::MissingSeparator,
+            ElementKind::Comma => match self.list_without_word(false) {
+                Some(error) => return Err(error),
+                None => SyntaxErrorKind::MissingSeparator,
+            },
             ElementKind::Relation => SyntaxErrorKind::RelationNotAllowed(element.text.clone()),
             ElementKind::RightParenthesis => SyntaxErrorKind::UnopenedParenthesis,
             ElementKind::Bad => return self.fail_at_bad(),
             _ => SyntaxErrorKind::UnexpectedMark(element.text.clone()),
         };
         self.fail(kind)
+    }
+
+    /// An error at the name behind the last `=` or open parenthesis before the present element, if a slash follows it: most
+    /// likely a misspelt word with its list.
+    fn list_without_word(&self, before_word: bool) -> Option<SyntaxError> {
+        let mut closed = 0_usize;
+        let opening = self.elements.get(..self.position)?.iter().rposition(|element| match element.kind {
+            ElementKind::RightParenthesis => {
+                closed += 1;
+                false
+            }
+            ElementKind::LeftParenthesis if closed > 0 => {
+                closed -= 1;
+                false
+            }
+            kind => closed == 0 && matches!(kind, ElementKind::LeftParenthesis | ElementKind::Equals),
+        })?;
+        match self.elements.get(opening + 1..=opening + 2)? {
+            [name, slash] if name.kind == ElementKind::Name && slash.kind == ElementKind::Slash => {
+                let kind = SyntaxErrorKind::ListWithoutWord { name: name.text.clone(), before_word };
+                Some(SyntaxError::new(kind, name.range))
+            }
+            _ => None,
+        }
     }
 
     /// The lexer has said what is wrong with a bad element; its error is repeated and later recognised as the same.
