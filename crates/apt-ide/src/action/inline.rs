@@ -1,7 +1,9 @@
 //! Macro calls and loops written out. What comes out is evaluated before it is offered: its records and values must be
 //! those of before.
 
-use apt_program::{Options, Program, RecordKind, Value, evaluate};
+use std::ops::Range;
+
+use apt_program::{Options, Program, RecordKind, Severity, Value, evaluate};
 use apt_syntax::{SyntaxTree, statement::Body};
 
 use super::{Action, ActionKind};
@@ -26,7 +28,7 @@ impl Analysis {
         }
         let parsed = view.parsed();
         let [part] = parsed.statement.parts.as_slice() else { return Ok(None) };
-        if parsed.statement.label.is_some() || !parsed.comments.is_empty() {
+        if parsed.statement.label.is_some() {
             return Ok(None);
         }
         let (title, last) = match &part.body {
@@ -44,7 +46,17 @@ impl Analysis {
             return Ok(None);
         }
         let range = usize::from(view.start)..usize::from(tree.statement(last).range().end());
-        let edits = vec![(range, expansion.text)];
+        let line_end = if view.text().ends_with("\r\n") { "\r\n" } else { "\n" };
+        // What is said beside the statement stands before what comes in its place.
+        let said = parsed.comments.iter().filter_map(|comment| view.text().get(Range::from(*comment)));
+        let said = said.map(|comment| match comment.trim_end().strip_prefix('$') {
+            // Behind the sign of a continued line a remark has none of its own.
+            Some(remark) if !remark.starts_with('$') => format!("$${remark}"),
+            _ => comment.trim_end().to_owned(),
+        });
+        let lines: Vec<String> = said.chain(expansion.text.lines().map(str::to_owned)).collect();
+        let text = lines.into_iter().map(|line| line + line_end).collect();
+        let edits = vec![(range, text)];
         let new = SyntaxTree::parse(&applied(&tree.text(), &edits), tree.dialect());
         let options = Options::from(&**self.document().settings());
         let after = evaluate(&new, &options, &cancel);
@@ -52,10 +64,14 @@ impl Analysis {
         if !after.is_complete() {
             return Err(Cancelled);
         }
-        let same =
-            meaning(&before) == meaning(&after) && before.findings().count() >= after.findings().count();
+        let same = meaning(&before) == meaning(&after) && troubles(&before) >= troubles(&after);
         Ok(same.then_some(Action { title, kind: ActionKind::Inline, edits, preferred: false, settles: None }))
     }
+}
+
+/// How many findings a program has, but for hints: a variable that only the loop has used is used no more.
+fn troubles(program: &Program) -> usize {
+    program.findings().filter(|finding| finding.severity != Severity::Hint).count()
 }
 
 fn meaning(program: &Program) -> Meaning {

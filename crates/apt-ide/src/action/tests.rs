@@ -62,6 +62,17 @@ fn calls_and_loops_are_written_out_when_that_means_the_same() {
     let found = offered(text, "CALL", ActionKind::Inline);
     let new = text.replace("CALL/M,A=1\n", "GOTO/1,2,0\nGODLTA/0,0,1\n");
     assert_eq!(found, [("Write out the call of M".to_owned(), new)]);
+    // In the lines of the file, with what is said beside the call.
+    let remarked = text.replace("A=1\n", "A=1 $$ the first pass\n").replace('\n', "\r\n");
+    let new = "M=MACRO/A,B=2\nGOTO/A,B,0\nGODLTA/0,0,A\nTERMAC\nFROM/0,0,0\n$$ the first pass\nGOTO/1,2,0\n\
+               GODLTA/0,0,1\nGOTO/0,0,0\nFINI\n";
+    let found = offered(&remarked, "CALL", ActionKind::Inline);
+    assert_eq!(found, [("Write out the call of M".to_owned(), new.replace('\n', "\r\n"))]);
+    // A variable that only the loop has used is no reason against it.
+    let counted = "FROM/0,0,0\nI=0\nLOOPST\nL1)I=I+1\nGOTO/I,0,0\nIF(I-2)L1,L2,L2\nL2)LOOPND\nFINI\n";
+    let new = "FROM/0,0,0\nI=0\nI=0+1\nGOTO/1,0,0\nI=1+1\nGOTO/2,0,0\nFINI\n";
+    let found = offered(counted, "LOOPST", ActionKind::Inline);
+    assert_eq!(found, [("Write out the loop".to_owned(), new.to_owned())]);
     assert_eq!(offered(text, "GOTO/0,0,0", ActionKind::Inline), []);
     assert_eq!(
         offered("FROM/0,0,0\nCALL/M9\nFINI\n", "CALL", ActionKind::Inline),
