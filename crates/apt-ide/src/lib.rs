@@ -107,7 +107,9 @@ impl Analysis {
         next.before = self.known_program().cloned();
         let new = Arc::clone(&next.document);
         let new = new.tree();
+        // In another dialect other statements begin and end blocks.
         if let Some(marks) = self.marks.get()
+            && new.dialect() == self.document.tree().dialect()
             && let Some(carried) = carry::Carried::between(self.document.tree(), new, &range, insert.len())
         {
             // The cell is fresh: nobody can have filled it.

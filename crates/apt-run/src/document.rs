@@ -14,7 +14,7 @@ use apt_geometry::patience::{Aside, Waiting, put_away};
 use apt_program::{Options, Program, evaluate};
 use apt_syntax::{
     SyntaxTree, TextRange, TextSize,
-    dialect::{DetectionReason, Dialect, DialectName, detect},
+    dialect::{BodyEvidence, Detection, DetectionReason, Dialect, DialectName, LINES_LOOKED_AT, detect_with},
 };
 
 use crate::{
@@ -59,6 +59,8 @@ pub struct Document {
     surroundings: Surroundings,
     settings: Arc<Settings>,
     dialect_reason: DialectReason,
+    /// What speaks for the dialect in all of the text; none where it is not detected.
+    body: Option<BodyEvidence>,
     memo: MotionMemo,
     /// The last version that was evaluated, with the edits since.
     basis: Option<Basis>,
@@ -97,11 +99,13 @@ impl Document {
         surroundings: Surroundings,
     ) -> Self {
         let set = settings.dialect.as_deref().and_then(|name| name.parse::<DialectName>().ok());
+        let mut body = None;
         let (name, dialect_reason) = match (set, surroundings.binary) {
             (Some(name), _) => (name, DialectReason::Setting),
             (None, Some(system)) => (DialectName::Cl, DialectReason::Binary(system)),
             (None, None) => {
-                let detection = detect(text, file.as_deref());
+                let evidence = *body.insert(BodyEvidence::of(text));
+                let detection = detect_with(text, evidence, file.as_deref());
                 (detection.name, DialectReason::Detected(detection.reason))
             }
         };
@@ -111,6 +115,7 @@ impl Document {
             surroundings,
             settings: Arc::clone(settings),
             dialect_reason,
+            body,
             memo: MotionMemo::default(),
             basis: None,
             program: OnceLock::new(),
@@ -122,6 +127,16 @@ impl Document {
     pub fn edit(&self, range: Range<usize>, insert: &str) -> Self {
         let range = TextRange::new(TextSize::new(range.start as u32), TextSize::new(range.end as u32));
         let (tree, change) = self.tree.edit(range, insert);
+        let (body, dialect_reason) = match self.body {
+            Some(body) => {
+                let (body, detection) = self.detected_after(body, &tree, range, insert.len());
+                if detection.name != self.dialect() {
+                    return self.read_in_another_dialect(&tree);
+                }
+                (Some(body), DialectReason::Detected(detection.reason))
+            }
+            None => (None, self.dialect_reason.clone()),
+        };
         let basis = match self.program.get() {
             Some(program) => Some(Basis::of(&self.tree, program)),
             None => self.basis.clone(),
@@ -132,12 +147,37 @@ impl Document {
             file: self.file.clone(),
             surroundings: self.surroundings.clone(),
             settings: Arc::clone(&self.settings),
-            dialect_reason: self.dialect_reason.clone(),
+            dialect_reason,
+            body,
             memo: self.memo.clone(),
             basis,
             program: OnceLock::new(),
             result: OnceLock::new(),
         }
+    }
+
+    /// Which dialect the text is in after an edit. The text as a whole is looked through only if the lines that went or came
+    /// say something.
+    fn detected_after(
+        &self,
+        mut body: BodyEvidence,
+        tree: &SyntaxTree,
+        range: TextRange,
+        inserted: usize,
+    ) -> (BodyEvidence, Detection) {
+        let new = TextRange::at(range.start(), TextSize::new(inserted as u32));
+        if body.depends_on(&lines_of(&self.tree, range)) || body.depends_on(&lines_of(tree, new)) {
+            body = BodyEvidence::of(&tree.text());
+        }
+        (body, detect_with(&head_of(tree), body, self.file.as_deref()))
+    }
+
+    /// The same program with a text that speaks for another dialect than the one of before: nothing of what was known of the
+    /// statements counts any more.
+    fn read_in_another_dialect(&self, tree: &SyntaxTree) -> Self {
+        let surroundings = self.surroundings.clone();
+        let new = Self::placed(&tree.text(), self.file.clone(), &self.settings, surroundings);
+        Self { memo: self.memo.clone(), ..new }
     }
 
     /// The syntax.
@@ -223,6 +263,7 @@ impl Document {
             surroundings: self.surroundings.clone(),
             settings: Arc::clone(&self.settings),
             dialect_reason: self.dialect_reason.clone(),
+            body: self.body,
             memo: self.memo.clone(),
             basis: None,
             program: OnceLock::new(),
@@ -336,4 +377,36 @@ impl From<&Settings> for Options {
             ..Options::default()
         }
     }
+}
+
+/// The lines of a text that a range touches, whole.
+fn lines_of(tree: &SyntaxTree, range: TextRange) -> String {
+    let mut first = tree.statement_at(range.start());
+    while first > 0 && !tree.statement(first - 1).text().ends_with('\n') {
+        first -= 1;
+    }
+    // What was joined to the line before, or is split from it, begins there.
+    first = first.saturating_sub(1);
+    let last = tree.statement_at(range.end());
+    let mut text = String::new();
+    for index in first..tree.statement_count() {
+        text.push_str(tree.statement(index).text());
+        if index > last && text.ends_with('\n') {
+            break;
+        }
+    }
+    text
+}
+
+/// As many first statements as there are lines in what is looked at for the dialect.
+fn head_of(tree: &SyntaxTree) -> String {
+    let (mut text, mut lines) = (String::new(), 0);
+    for view in tree.statements() {
+        text.push_str(view.text());
+        lines += view.text().lines().filter(|line| !line.trim().is_empty()).count();
+        if lines >= LINES_LOOKED_AT {
+            break;
+        }
+    }
+    text
 }

@@ -2,7 +2,7 @@
 
 use super::DialectName;
 use crate::dialect::SequenceFieldRule;
-use crate::record::SequenceEvidence;
+use crate::record::{SEQUENCE_FIELD_COLUMN, SequenceEvidence};
 
 /// A dialect and why it was chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum DetectionReason {
 }
 
 /// How many lines with something in them are looked at.
-const LINES_LOOKED_AT: usize = 50;
+pub const LINES_LOOKED_AT: usize = 50;
 /// Among how many lines the comment that names the dialect may stand.
 const COMMENT_LINES: usize = 5;
 
@@ -59,21 +59,49 @@ const APT4_STARTS: [&str; 6] = ["SCON/", "SMIL/", "DO/", "SSPRT/", "AVCTRL/", "C
 /// Parts of statements that only APT4 has.
 const APT4_PARTS: [&str; 8] = ["=SSURF/", "=SCURV/", ".EQ.", ".NE.", ".LT.", ".LE.", ".GT.", ".GE."];
 
+/// What speaks for a dialect wherever it stands in a text. It is kept with a text that is edited, and found anew only where
+/// an edit touches something of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BodyEvidence {
+    /// The dialect that statements speak for, and by what.
+    mark: Option<(DialectName, &'static str)>,
+    sequence: SequenceEvidence,
+}
+
+impl BodyEvidence {
+    /// Looks through a text.
+    pub fn of(text: &str) -> Self {
+        Self { mark: mark_of_statements(text), sequence: SequenceEvidence::of(text) }
+    }
+
+    /// Whether it may be another one after these lines have come into the text or have left it.
+    pub fn depends_on(&self, lines: &str) -> bool {
+        let is_wide = |line: &str| line.len() >= SEQUENCE_FIELD_COLUMN;
+        self.sequence.fields > 0 || lines.lines().any(|line| is_wide(line) || mark_of_line(line).is_some())
+    }
+}
+
 /// Finds the dialect of a text: a comment that names it, marks of its content, the ending of the file's name, and
 /// sequence fields, in this order.
 pub fn detect(text: &str, file_name: Option<&str>) -> Detection {
-    if let Some(name) = named_in_comment(text) {
+    detect_with(text, BodyEvidence::of(text), file_name)
+}
+
+/// The same for a text of which no more than the first [`LINES_LOOKED_AT`] lines with something in them are given, and what
+/// was found in all of it.
+pub fn detect_with(head: &str, body: BodyEvidence, file_name: Option<&str>) -> Detection {
+    if let Some(name) = named_in_comment(head) {
         return Detection { name, reason: DetectionReason::Comment };
     }
-    if let Some((name, mark)) = marked(text) {
+    if let Some((name, mark)) = mark_of_system(head).or(body.mark) {
         return Detection { name, reason: DetectionReason::Mark(mark) };
     }
     if let Some(extension) = file_name.and_then(cl_extension)
-        && !is_part_program(text)
+        && !is_part_program(head)
     {
         return Detection { name: DialectName::Cl, reason: DetectionReason::Extension(extension) };
     }
-    if SequenceEvidence::of(text).decides(SequenceFieldRule::WhenPresent) {
+    if body.sequence.decides(SequenceFieldRule::WhenPresent) {
         return Detection { name: DialectName::Apt3, reason: DetectionReason::SequenceFields };
     }
     Detection { name: DialectName::default(), reason: DetectionReason::Default }
@@ -99,9 +127,10 @@ fn lines_looked_at(text: &str) -> impl Iterator<Item = String> + '_ {
     })
 }
 
-fn marked(text: &str) -> Option<(DialectName, &'static str)> {
+/// What only CL files of some system have among their first lines.
+fn mark_of_system(head: &str) -> Option<(DialectName, &'static str)> {
     let mut quoted = None;
-    for line in lines_looked_at(text) {
+    for line in lines_looked_at(head) {
         if let Some(mark) = CL_MARKS.into_iter().find(|mark| line.starts_with(mark)) {
             return Some((DialectName::Cl, mark));
         }
@@ -110,42 +139,47 @@ fn marked(text: &str) -> Option<(DialectName, &'static str)> {
         }
         quoted = quoted.or_else(|| QUOTED_TEXTS.into_iter().find(|mark| line.starts_with(mark)));
     }
-    if let Some(mark) = quoted
-        && !is_part_program(text)
-    {
-        return Some((DialectName::Cl, mark));
-    }
-    // The statements of APT4 may come late in a program, and an IF over several statements later still.
+    quoted.filter(|_| !is_part_program(head)).map(|mark| (DialectName::Cl, mark))
+}
+
+/// The dialect that the statements speak for. Those of APT4 may come late in a program, and an IF over several statements
+/// later still.
+fn mark_of_statements(text: &str) -> Option<(DialectName, &'static str)> {
     let mut apt4 = None;
-    for line in text.lines() {
-        let is_text = ["PARTNO", "PPRINT", "REMARK", "INSERT", "TITLES", "$$"]
-            .iter()
-            .any(|word| line.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word)));
-        if is_text || !line.contains(['.', '=', '/']) {
-            continue;
+    for mark in text.lines().filter_map(mark_of_line) {
+        if mark.0 == DialectName::Free {
+            return Some(mark);
         }
-        let statement: String =
-            line.chars().take_while(|character| *character != '$').filter(|c| !c.is_whitespace()).collect();
-        let statement = statement.to_ascii_uppercase();
-        let after_label = statement
-            .split_once(')')
-            .filter(|(label, _)| !label.contains('('))
-            .map_or(&*statement, |(_, rest)| rest);
-        if begins_several(after_label) {
-            return Some((DialectName::Free, "THEN"));
-        }
-        if apt4.is_some() {
-            continue;
-        }
-        let start = APT4_STARTS.into_iter().find(|mark| after_label.starts_with(mark));
-        let relations = after_label.starts_with("IF(");
-        let part = APT4_PARTS
-            .into_iter()
-            .filter(|part| relations || part.starts_with('='))
-            .find(|part| after_label.contains(part));
-        apt4 = start.or(part);
+        apt4 = apt4.or(Some(mark));
     }
-    apt4.map(|mark| (DialectName::Apt4, mark))
+    apt4
+}
+
+/// The dialect that a line speaks for.
+fn mark_of_line(line: &str) -> Option<(DialectName, &'static str)> {
+    let is_text = ["PARTNO", "PPRINT", "REMARK", "INSERT", "TITLES", "$$"]
+        .iter()
+        .any(|word| line.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word)));
+    if is_text || !line.contains(['.', '=', '/']) {
+        return None;
+    }
+    let statement: String =
+        line.chars().take_while(|character| *character != '$').filter(|c| !c.is_whitespace()).collect();
+    let statement = statement.to_ascii_uppercase();
+    let after_label = statement
+        .split_once(')')
+        .filter(|(label, _)| !label.contains('('))
+        .map_or(&*statement, |(_, rest)| rest);
+    if begins_several(after_label) {
+        return Some((DialectName::Free, "THEN"));
+    }
+    let start = APT4_STARTS.into_iter().find(|mark| after_label.starts_with(mark));
+    let relations = after_label.starts_with("IF(");
+    let part = || {
+        let mut parts = APT4_PARTS.into_iter().filter(|part| relations || part.starts_with('='));
+        parts.find(|part| after_label.contains(part))
+    };
+    start.or_else(part).map(|mark| (DialectName::Apt4, mark))
 }
 
 /// Whether a statement (upper case, without blanks and label) is an IF over several statements, which APT4 does not have.
@@ -204,6 +238,19 @@ mod tests {
             DialectName::Free
         );
         assert_eq!(name("PARTNO A\nPPRINT IF(X.EQ.1)THEN\nIF(X.EQ.1)THEN=1\n", "a.apt"), DialectName::Apt4);
+    }
+
+    #[test]
+    fn only_lines_that_speak_for_a_dialect_change_what_the_others_say() {
+        let body = BodyEvidence::of("PARTNO A\nP=POINT/1,2\nFINI\n");
+        for line in ["P2=POINT/1,.5", "$$ SCON/INT", "PPRINT IF(X.EQ.1)", "", "GOTO/P $$ DO/5"] {
+            assert!(!body.depends_on(line), "{line}");
+        }
+        for line in ["DO/5,I=1,3", "A=1\n7) if (x .eq. 1) y=2", "IF(A.GT.1)THEN"] {
+            assert!(body.depends_on(line), "{line}");
+        }
+        let card = format!("{:<72}{:08}", "A=1", 10);
+        assert!(body.depends_on(&card) && BodyEvidence::of(&card).depends_on("B=1"));
     }
 
     #[test]

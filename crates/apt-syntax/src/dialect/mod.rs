@@ -8,7 +8,7 @@ mod detect;
 use std::fmt;
 use std::str::FromStr;
 
-pub use detect::{Detection, DetectionReason, detect};
+pub use detect::{BodyEvidence, Detection, DetectionReason, LINES_LOOKED_AT, detect, detect_with};
 
 use crate::vocabulary::{self, Word};
 
