@@ -563,6 +563,11 @@ pub enum MotionWarning {
 }
 
 impl MotionWarning {
+    /// Whether it doubts what the motion was given and not how it goes: another way of going leaves it as it is.
+    pub(crate) fn is_of_the_given(&self) -> bool {
+        matches!(self, Self::DirectionFromOrigin { .. } | Self::DeepUndercut { .. })
+    }
+
     /// The APT III diagnostic number.
     pub fn apt3(&self) -> Option<u16> {
         match self {

@@ -11,10 +11,10 @@ use super::{Cure, MOST_POINTS, Remedy};
 use crate::{
     attitude::Attitude,
     clearance::Tool,
-    error::RoleName,
+    error::{MotionWarning, RoleName},
     position::{self, Condition},
     role::{self, Working},
-    section2::{Output, State, execute},
+    section2::{FromOrigin, Output, State, execute},
 };
 
 /// Share of the way to one of several answers of a start-up from where it is the nearest one.
@@ -52,7 +52,7 @@ impl<'a> Attempts<'a> {
         let cure = written(cure);
         let (state, command) = applied(self.state, self.command, &cure)?;
         let execution = execute(&state, &command, self.cancel);
-        if execution.failure.is_some() || !execution.warnings.is_empty() {
+        if execution.failure.is_some() || !execution.warnings.iter().all(MotionWarning::is_of_the_given) {
             return None;
         }
         let Some(Output::Sequence(sequence)) = &execution.output else { return None };
@@ -133,6 +133,7 @@ fn applied(state: &State, command: &MotionCommand, cure: &Cure) -> Option<(State
         Cure::Direction(vector) => {
             state.directions = [Some(Direction::Vector(*vector)), None, None];
             state.previous = state.tip? - vector.try_normalize(0.0)?;
+            state.from_origin = FromOrigin::default();
         }
         Cure::WithoutDirection => state.directions = [None; 3],
         Cure::SurfaceVector { role, vector } => {
@@ -147,6 +148,7 @@ fn applied(state: &State, command: &MotionCommand, cure: &Cure) -> Option<(State
         Cure::Tolerance { inside: false, values, .. } => state.outside = *values,
         Cure::MoveTo { position, forward, .. } => {
             state.previous = forward.map_or(state.previous, |forward| position - forward);
+            state.from_origin = if forward.is_some() { FromOrigin::default() } else { state.from_origin };
             state.tip = Some(*position);
         }
         Cure::Points(count) => state.maximum_points = *count,

@@ -5,7 +5,7 @@ use apt_geometry::motion::MotionCommand;
 
 use super::{Cure, Remedy};
 use crate::{
-    error::MotionFailure,
+    error::{MotionFailure, MotionWarning},
     section2::{Execution, Output, State},
 };
 
@@ -63,6 +63,6 @@ pub fn earlier(
 
 fn succeeded(execution: &Execution) -> bool {
     execution.failure.is_none()
-        && execution.warnings.is_empty()
+        && execution.warnings.iter().all(MotionWarning::is_of_the_given)
         && matches!(execution.output, Some(Output::Sequence(_)))
 }
