@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use apt_program::{ControlFinding, Finding, FindingKind, Origin, SculpturedFinding, symbols::similar_names};
 use apt_syntax::{
-    SyntaxTree, TextRange,
+    SyntaxTree, TextRange, TextSize,
     dialect::Dialect,
     error::SyntaxErrorKind,
     grammar::ParsedStatement,
@@ -191,11 +191,7 @@ impl Here<'_> {
                 preferred: false,
             }],
             SyntaxErrorKind::MissingSeparator => {
-                // Parameters stand behind the slash of a word; elsewhere a comma separates nothing.
-                let pairs = self.parsed.elements.windows(2);
-                let mut pairs = pairs.take_while(|pair| pair[1].range.end() <= here.start());
-                let is_list =
-                    pairs.any(|pair| (pair[0].kind, pair[1].kind) == (ElementKind::Word, ElementKind::Slash));
+                let is_list = self.is_in_list(here.start());
                 let next = self.parsed.elements.iter().find(|element| element.range.start() >= here.start());
                 let (is_comma, is_word) = next.map_or((false, false), |next| {
                     (next.kind == ElementKind::Comma, next.kind == ElementKind::Word)
@@ -204,7 +200,7 @@ impl Here<'_> {
                 if is_list && !is_comma {
                     fixes.extend(one("Insert a comma", before, ",", false));
                 }
-                if !is_comma && !is_word {
+                if !is_list && !is_comma && !is_word {
                     fixes.extend(one("Insert *", before, "*", false));
                 }
                 fixes
@@ -232,6 +228,26 @@ impl Here<'_> {
             SyntaxErrorKind::TakesNoParameters(_) => self.without_parameters().into_iter().collect(),
             _ => Vec::new(),
         }
+    }
+
+    /// Whether parameters are listed at a place: behind the slash of a word a comma separates them, and they take no
+    /// operators; in parentheses and elsewhere a comma separates nothing.
+    fn is_in_list(&self, place: TextSize) -> bool {
+        let mut closed = 0_usize;
+        let before = self.parsed.elements.iter().take_while(|element| element.range.end() <= place);
+        let before: Vec<ElementKind> = before.map(|element| element.kind).collect();
+        // Inside the innermost parentheses that are open there, what stands in closed ones left out.
+        let open = before.iter().rev().take_while(|kind| {
+            match kind {
+                ElementKind::RightParenthesis => closed += 1,
+                ElementKind::LeftParenthesis if closed == 0 => return false,
+                ElementKind::LeftParenthesis => closed -= 1,
+                _ => {}
+            }
+            true
+        });
+        let first = before.len() - open.count();
+        before[first..].windows(2).any(|pair| pair == [ElementKind::Word, ElementKind::Slash])
     }
 
     /// Another spelling for a name, if the name stands once in the place of the finding.

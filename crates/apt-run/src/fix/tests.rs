@@ -57,11 +57,9 @@ fn each_finding_has_its_fixes() {
         ("APT0110", "GOTO/0,0,0\nP2=POINT/3,$ x\n4 $$ why\nFINI\n", &[]),
         // Only behind the slash of a word does a comma separate something.
         ("APT0040", "A=(2+3)(4+5)\nFINI\n", &[("Insert *", "A=(2+3)*(4+5)\nFINI\n")]),
-        (
-            "APT0040",
-            "GOTO/(2+3)(4+5),0\nFINI\n",
-            &[("Insert a comma", "GOTO/(2+3),(4+5),0\nFINI\n"), ("Insert *", "GOTO/(2+3)*(4+5),0\nFINI\n")],
-        ),
+        // A list takes no operators but in parentheses.
+        ("APT0040", "GOTO/(2+3)(4+5),0\nFINI\n", &[("Insert a comma", "GOTO/(2+3),(4+5),0\nFINI\n")]),
+        ("APT0040", "GOTO/1,(2(4+5)),0\nFINI\n", &[("Insert *", "GOTO/1,(2*(4+5)),0\nFINI\n")]),
         ("APT0040", "A=(2+3),(4+5)\nFINI\n", &[]),
         ("APT0901", "GOTO/1,2,3", &[("Add FINI", "GOTO/1,2,3\nFINI\n")]),
         ("APT0901", "GOTO/1,2,3\r\n", &[("Add FINI", "GOTO/1,2,3\r\nFINI\r\n")]),
