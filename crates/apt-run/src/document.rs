@@ -129,7 +129,7 @@ impl Document {
         let (tree, change) = self.tree.edit(range, insert);
         let (body, dialect_reason) = match self.body {
             Some(body) => {
-                let (body, detection) = self.detected_after(body, &tree, range, insert.len());
+                let (body, detection) = self.detected_after(body, &tree, range);
                 if detection.name != self.dialect() {
                     return self.read_in_another_dialect(&tree);
                 }
@@ -156,19 +156,17 @@ impl Document {
         }
     }
 
-    /// Which dialect the text is in after an edit. The text as a whole is looked through only if the lines that went or came
-    /// say something.
+    /// Which dialect the text is in after an edit has put something else in the place of a range.
     fn detected_after(
         &self,
-        mut body: BodyEvidence,
+        body: BodyEvidence,
         tree: &SyntaxTree,
         range: TextRange,
-        inserted: usize,
     ) -> (BodyEvidence, Detection) {
-        let new = TextRange::at(range.start(), TextSize::new(inserted as u32));
-        if body.depends_on(&lines_of(&self.tree, range)) || body.depends_on(&lines_of(tree, new)) {
-            body = BodyEvidence::of(&tree.text());
-        }
+        let (start, end) = (line_start(&self.tree, range.start()), line_end(&self.tree, range.end()));
+        let behind = self.tree.len() - end;
+        let come = tree.slice(TextRange::new(start, (tree.len() - behind).max(start)));
+        let body = body.after(&self.tree.slice(TextRange::new(start, end)), &come, || tree.text());
         (body, detect_with(&head_of(tree), body, self.file.as_deref()))
     }
 
@@ -379,23 +377,37 @@ impl From<&Settings> for Options {
     }
 }
 
-/// The lines of a text that a range touches, whole.
-fn lines_of(tree: &SyntaxTree, range: TextRange) -> String {
-    let mut first = tree.statement_at(range.start());
-    while first > 0 && !tree.statement(first - 1).text().ends_with('\n') {
-        first -= 1;
-    }
-    // What was joined to the line before, or is split from it, begins there.
-    first = first.saturating_sub(1);
-    let last = tree.statement_at(range.end());
-    let mut text = String::new();
-    for index in first..tree.statement_count() {
-        text.push_str(tree.statement(index).text());
-        if index > last && text.ends_with('\n') {
-            break;
+/// Bytes among which the end of a line is looked for at first.
+const USUAL_LINE: u32 = 256;
+
+/// Where the line begins in which an offset lies.
+fn line_start(tree: &SyntaxTree, offset: TextSize) -> TextSize {
+    let offset = offset.min(tree.len());
+    let mut width = USUAL_LINE;
+    loop {
+        let from = u32::from(offset).saturating_sub(width);
+        let text = tree.slice(TextRange::new(from.into(), offset));
+        match text.rfind('\n') {
+            Some(end) => return offset - TextSize::of(&text[end + 1..]),
+            None if from == 0 => return TextSize::new(0),
+            None => width = width.saturating_mul(2),
         }
     }
-    text
+}
+
+/// Where the line ends in which an offset lies, behind the sign that ends it.
+fn line_end(tree: &SyntaxTree, offset: TextSize) -> TextSize {
+    let offset = offset.min(tree.len());
+    let mut width = USUAL_LINE;
+    loop {
+        let to = TextSize::new(u32::from(offset).saturating_add(width)).min(tree.len());
+        let text = tree.slice(TextRange::new(offset, to));
+        match text.find('\n') {
+            Some(end) => return offset + TextSize::of(&text[..=end]),
+            None if to == tree.len() => return to,
+            None => width = width.saturating_mul(2),
+        }
+    }
 }
 
 /// As many first statements as there are lines in what is looked at for the dialect.

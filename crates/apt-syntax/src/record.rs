@@ -335,6 +335,17 @@ impl SequenceEvidence {
         }
     }
 
+    /// What is left of a count when that of some of its lines is taken out.
+    #[must_use]
+    pub fn minus(self, other: SequenceEvidence) -> SequenceEvidence {
+        SequenceEvidence {
+            lines: self.lines.saturating_sub(other.lines),
+            fields: self.fields.saturating_sub(other.fields),
+            apart: self.apart.saturating_sub(other.apart),
+            others: self.others.saturating_sub(other.others),
+        }
+    }
+
     /// Whether the document carries sequence fields (language reference 1.11): at least half of its lines do, and
     /// next to none has other text there; or only few do, in a deck to which lines were added by hand, and then each of
     /// them must be one beyond doubt and none may have other text there.

@@ -2,7 +2,7 @@
 
 use super::DialectName;
 use crate::dialect::SequenceFieldRule;
-use crate::record::{SEQUENCE_FIELD_COLUMN, SequenceEvidence};
+use crate::record::SequenceEvidence;
 
 /// A dialect and why it was chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,10 +74,14 @@ impl BodyEvidence {
         Self { mark: mark_of_statements(text), sequence: SequenceEvidence::of(text) }
     }
 
-    /// Whether it may be another one after these lines have come into the text or have left it.
-    pub fn depends_on(&self, lines: &str) -> bool {
-        let is_wide = |line: &str| line.len() >= SEQUENCE_FIELD_COLUMN;
-        self.sequence.fields > 0 || lines.lines().any(|line| is_wide(line) || mark_of_line(line).is_some())
+    /// What is found after some whole lines have given way to others; `whole`, the new text, is looked through only if one
+    /// of them speaks for a dialect.
+    #[must_use]
+    pub fn after(self, gone: &str, come: &str, whole: impl FnOnce() -> String) -> Self {
+        let speaks = |lines: &str| lines.lines().any(|line| mark_of_line(line).is_some());
+        let mark = if speaks(gone) || speaks(come) { mark_of_statements(&whole()) } else { self.mark };
+        let sequence = self.sequence.minus(SequenceEvidence::of(gone)).plus(SequenceEvidence::of(come));
+        Self { mark, sequence }
     }
 }
 
@@ -241,16 +245,22 @@ mod tests {
     }
 
     #[test]
-    fn only_lines_that_speak_for_a_dialect_change_what_the_others_say() {
-        let body = BodyEvidence::of("PARTNO A\nP=POINT/1,2\nFINI\n");
-        for line in ["P2=POINT/1,.5", "$$ SCON/INT", "PPRINT IF(X.EQ.1)", "", "GOTO/P $$ DO/5"] {
-            assert!(!body.depends_on(line), "{line}");
+    fn the_whole_text_is_looked_through_only_where_lines_speak_for_a_dialect() {
+        let text = "PARTNO A\nP=POINT/1,2\nFINI\n";
+        let body = BodyEvidence::of(text);
+        for line in ["P2=POINT/1,.5\n", "$$ SCON/INT\n", "PPRINT IF(X.EQ.1)\n", "\n", "GOTO/P $$ DO/5\n"] {
+            let more = body.after("", line, || panic!("{line} says nothing"));
+            assert_eq!(more, BodyEvidence::of(&format!("{text}{line}")));
+            assert_eq!(more.after(line, "", || panic!("{line} says nothing")), body);
         }
-        for line in ["DO/5,I=1,3", "A=1\n7) if (x .eq. 1) y=2", "IF(A.GT.1)THEN"] {
-            assert!(body.depends_on(line), "{line}");
+        let card = format!("{:<72}{:08}\n", "A=1", 10);
+        for line in ["DO/5,I=1,3\n", "A=1\n7) if (x .eq. 1) y=2\n", "IF(A.GT.1)THEN\n", &card] {
+            let whole = format!("{text}{line}");
+            let more = body.after("", line, || whole.clone());
+            assert_eq!(more, BodyEvidence::of(&whole));
+            assert_ne!(more, body);
+            assert_eq!(more.after(line, "", || text.to_owned()), body);
         }
-        let card = format!("{:<72}{:08}", "A=1", 10);
-        assert!(body.depends_on(&card) && BodyEvidence::of(&card).depends_on("B=1"));
     }
 
     #[test]
