@@ -30,9 +30,8 @@ fn a_direction_that_comes_from_the_origin_is_told() {
     for motion in ["TLLFT,GOFWD", "TLRGT,GOBACK"] {
         assert_eq!(after("FROM/5,.25,0", motion).first(), Some(&told[0]), "{motion}");
     }
-    // A move along the tool axis, or none at all, gives no direction either.
-    assert_eq!(after("FROM/5,.25,3\nGODLTA/-3", "TLLFT,GOFWD"), [("APT0668", 6)]);
-    assert_eq!(after("FROM/5,.25,0\nGOTO/5,.25,0", "TLLFT,GOFWD"), [("APT0668", 6)]);
+    // Behind a move along the tool axis it is the same one, and programs are written for it.
+    assert_eq!(after("FROM/5,.25,3\nGODLTA/-3", "TLLFT,GOFWD"), []);
     for placing in [
         "FROM/5,.25,0\nINDIRV/1,0,0",
         "FROM/5,.25,0\nINDIRP/6,.25,0",

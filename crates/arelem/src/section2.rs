@@ -10,7 +10,7 @@ use apt_geometry::{motion::MotionCommand, patience::Waiting};
 pub(crate) use self::{modal::required_position, state::ANY_NUMBER_OF_POINTS};
 pub use self::{
     restart::Restart,
-    state::{FromOrigin, StartUpRule, State},
+    state::{StartUpRule, State},
 };
 use crate::{
     error::{MotionFailure, MotionWarning},

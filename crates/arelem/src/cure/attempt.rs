@@ -14,7 +14,7 @@ use crate::{
     error::{MotionWarning, RoleName},
     position::{self, Condition},
     role::{self, Working},
-    section2::{FromOrigin, Output, State, execute},
+    section2::{Output, State, execute},
 };
 
 /// Share of the way to one of several answers of a start-up from where it is the nearest one.
@@ -133,7 +133,7 @@ fn applied(state: &State, command: &MotionCommand, cure: &Cure) -> Option<(State
         Cure::Direction(vector) => {
             state.directions = [Some(Direction::Vector(*vector)), None, None];
             state.previous = state.tip? - vector.try_normalize(0.0)?;
-            state.from_origin = FromOrigin::default();
+            state.is_placed = false;
         }
         Cure::WithoutDirection => state.directions = [None; 3],
         Cure::SurfaceVector { role, vector } => {
@@ -148,7 +148,7 @@ fn applied(state: &State, command: &MotionCommand, cure: &Cure) -> Option<(State
         Cure::Tolerance { inside: false, values, .. } => state.outside = *values,
         Cure::MoveTo { position, forward, .. } => {
             state.previous = forward.map_or(state.previous, |forward| position - forward);
-            state.from_origin = if forward.is_some() { FromOrigin::default() } else { state.from_origin };
+            state.is_placed &= forward.is_none();
             state.tip = Some(*position);
         }
         Cure::Points(count) => state.maximum_points = *count,

@@ -266,16 +266,17 @@ fn turned(
         _ => {}
     }
     let last = (tip - state.previous).try_normalize(0.0);
-    let (forward, is_from_origin) = match last {
+    let forward = match last {
         // A steep one says it by what it moves sideways, as when the last vector is short and crosses the band.
         Some(direction) if direction.cross(&axis).norm() > PARALLEL_SINE => {
-            (direction, state.from_origin.previous)
+            if state.is_placed {
+                warnings.push(MotionWarning::DirectionFromOrigin { direction });
+            }
+            direction
         }
-        _ => (state.forward.ok_or(MotionFailure::NoForwardDirection)?, state.from_origin.forward),
+        // Programs that come to their first surface along the axis are written for the direction that FROM gave.
+        _ => state.forward.ok_or(MotionFailure::NoForwardDirection)?,
     };
-    if is_from_origin {
-        warnings.push(MotionWarning::DirectionFromOrigin { direction: forward });
-    }
     let right = forward.cross(&axis).try_normalize(1e-9).ok_or(MotionFailure::NoForwardDirection)?;
     let forward = axis.cross(&right);
     Ok(match turn {

@@ -37,16 +37,6 @@ pub enum StartUpRule {
     Apt4,
 }
 
-/// What of the direction of the tool is measured from the origin, which FROM takes for the position before: it is
-/// undefined, by the language, and yet carried out (language reference 6.2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct FromOrigin {
-    /// The previous tool end.
-    pub previous: bool,
-    /// The forward direction, which a motion along the axis leaves as it is.
-    pub forward: bool,
-}
-
 /// Everything that a command can depend on besides its own contents. Plain data: compare or hash it as it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
@@ -64,8 +54,9 @@ pub struct State {
     pub axis_mode: ToolAxis,
     /// Direction of the last motion that was not along the axis.
     pub forward: Option<Vec3>,
-    /// Which of these two come from the origin, where nobody has given a direction since FROM.
-    pub from_origin: FromOrigin,
+    /// The previous tool end is the origin, which FROM takes for it, so that the direction from there is undefined by the
+    /// language, and yet carried out (language reference 6.2).
+    pub is_placed: bool,
     /// Modal part surface.
     pub part: NamedSurface,
     /// TLOFPS or TLONPS.
@@ -132,7 +123,7 @@ impl State {
             axis: Vec3::z(),
             axis_mode: ToolAxis::Fixed(Vec3::z()),
             forward: None,
-            from_origin: FromOrigin::default(),
+            is_placed: false,
             part: NamedSurface { name: String::new(), geometry: Geometry::Plane(plane) },
             part_side: PartSide::Offset,
             side_of_part: None,
@@ -165,13 +156,12 @@ impl State {
     /// Moves the tool end and remembers the direction of the move.
     pub(super) fn move_to(&mut self, previous: Vec3, tip: Vec3) {
         self.previous = previous;
-        self.from_origin.previous = false;
+        self.is_placed = false;
         self.tip = Some(tip);
         if let Some(direction) = (tip - previous).try_normalize(0.0)
             && direction.dot(&self.axis).abs() <= ALONG_AXIS_COSINE
         {
             self.forward = Some(direction);
-            self.from_origin.forward = false;
         }
     }
 
@@ -179,7 +169,7 @@ impl State {
     pub(super) fn place(&mut self, tip: Vec3) {
         self.forward = None;
         self.move_to(Vec3::zeros(), tip);
-        self.from_origin = FromOrigin { previous: true, forward: true };
+        self.is_placed = true;
     }
 
     /// Forgets what applies to the next motion or start-up only.
