@@ -411,7 +411,7 @@ fn line_end(tree: &SyntaxTree, offset: TextSize) -> TextSize {
 }
 
 /// As many first statements as there are lines in what is looked at for the dialect.
-fn head_of(tree: &SyntaxTree) -> String {
+pub(crate) fn head_of(tree: &SyntaxTree) -> String {
     let (mut text, mut lines) = (String::new(), 0);
     for view in tree.statements() {
         text.push_str(view.text());

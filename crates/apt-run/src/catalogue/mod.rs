@@ -103,7 +103,7 @@ pub fn diagnostics(judged: &Judged<'_>, patience: Patience<'_>) -> Result<Vec<Di
         go_on(patience, 1)?;
         let mut diagnostic = of_program(judged.tree, finding);
         if list.len() < MOST_FIXED {
-            diagnostic.fixes = crate::fix::of_finding(judged.tree, finding);
+            diagnostic.fixes = crate::fix::of_finding(judged.tree, finding, judged.settings);
         }
         list.push(diagnostic);
     }

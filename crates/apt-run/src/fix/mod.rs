@@ -14,7 +14,7 @@ use std::ops::Range;
 use apt_program::{ControlFinding, Finding, FindingKind, Origin, SculpturedFinding, symbols::similar_names};
 use apt_syntax::{
     SyntaxTree, TextRange, TextSize,
-    dialect::Dialect,
+    dialect::{Dialect, name_in_comment},
     error::SyntaxErrorKind,
     grammar::ParsedStatement,
     statement::{Body, ElementKind},
@@ -23,13 +23,17 @@ use apt_syntax::{
 };
 use smol_str::SmolStr;
 
-use crate::diagnostic::Fix;
+use crate::{diagnostic::Fix, document, settings::Settings};
 
 /// A name shorter than this resembles too many words of the language.
 const SHORTEST_MISSPELT_WORD: usize = 4;
 
-/// The fixes of a finding, the likeliest first.
-pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding) -> Vec<Fix> {
+/// The fixes of a finding, the likeliest first. A comment that names the dialect counts for nothing where the settings do.
+pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding, settings: &Settings) -> Vec<Fix> {
+    let needs_comment = matches!(finding.kind, FindingKind::Syntax(SyntaxErrorKind::NotInDialect { .. }));
+    if needs_comment && settings.dialect.is_some() {
+        return Vec::new();
+    }
     let Some(here) = Here::of(tree, &finding.origin) else { return Vec::new() };
     let index = here.view.index;
     match &finding.kind {
@@ -185,11 +189,15 @@ impl Here<'_> {
             | SyntaxErrorKind::ListWithoutWord { name, .. } => {
                 self.misspelt(name, &words_like(self.tree.dialect(), kind))
             }
-            SyntaxErrorKind::NotInDialect { dialect, .. } => vec![Fix {
-                title: format!("Set the dialect of the program to {dialect}"),
-                edits: vec![(0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()))],
-                preferred: false,
-            }],
+            SyntaxErrorKind::NotInDialect { dialect, .. } => {
+                let named = name_in_comment(&document::head_of(self.tree));
+                let comment = || (0..0, format!("$$ apt-lsp: dialect={dialect}{}", self.line_end()));
+                vec![Fix {
+                    title: format!("Set the dialect of the program to {dialect}"),
+                    edits: vec![named.map_or_else(comment, |name| (name, dialect.to_string()))],
+                    preferred: false,
+                }]
+            }
             SyntaxErrorKind::MissingSeparator => {
                 let is_list = self.is_in_list(here.start());
                 let next = self.parsed.elements.iter().find(|element| element.range.start() >= here.start());

@@ -142,16 +142,6 @@ fn what_a_macro_is_given_is_not_changed_in_its_body() {
     }
 }
 
-#[test]
-fn another_dialect_is_set_by_the_first_line() {
-    let text = "A=1\nDO/10,I=1,3\n10)A=A+I\nGOTO/A,0,0\nFINI\n";
-    let found = diagnostics(text, "apt3");
-    let fixes: Vec<_> =
-        found.iter().filter(|one| one.wording.code == "APT0905").flat_map(|one| &one.fixes).collect();
-    assert!(!fixes.is_empty(), "{found:?}");
-    assert_eq!(applied(text, &fixes[0].edits), format!("$$ apt-lsp: dialect=apt4\n{text}"));
-}
-
 fn piece() -> impl Strategy<Value = &'static str> {
     proptest::sample::select(vec![
         "PNT1=POINT/1,2\n",
@@ -203,4 +193,24 @@ proptest! {
             }
         }
     }
+}
+
+/// The comment that names the dialect is written where it counts: in the place of the one that is there, and not at all where
+/// the settings decide.
+#[test]
+fn the_dialect_is_set_where_it_counts() {
+    let fixed = |text: &str, dialect: Option<&str>| {
+        let settings = Settings { dialect: dialect.map(str::to_owned), ..Settings::default() };
+        let document = Document::new(text, None, &Arc::new(settings));
+        let found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        let finding = found.iter().find(|one| one.wording.code == "APT0905").expect("a foreign word");
+        finding.fixes.iter().map(|fix| applied(text, &fix.edits)).collect::<Vec<_>>()
+    };
+    let program = "PARTNO A\nDO/5,I=1,3\nGOTO/I,0,0\n5)CONTIN\nFINI\n";
+    let named = |name: &str| format!("$$ first\n$$ apt-lsp: dialect={name}, allow APT0955\n{program}");
+    assert_eq!(fixed(&named("apt3"), None), [named("apt4")]);
+    let cards = ["PARTNO A", "5)   CONTIN", "FINI"].iter().zip(1..);
+    let deck: String = cards.map(|(text, number)| format!("{text:<72}{number:08}\n")).collect();
+    assert_eq!(fixed(&deck, None), [format!("$$ apt-lsp: dialect=apt4\n{deck}")]);
+    assert_eq!(fixed(program, Some("apt3")), [] as [String; 0], "the settings count for more");
 }

@@ -1,5 +1,7 @@
 //! Which dialect a text is written in.
 
+use std::ops::Range;
+
 use super::DialectName;
 use crate::dialect::SequenceFieldRule;
 use crate::record::SequenceEvidence;
@@ -112,13 +114,21 @@ pub fn detect_with(head: &str, body: BodyEvidence, file_name: Option<&str>) -> D
 }
 
 fn named_in_comment(text: &str) -> Option<DialectName> {
+    text.get(name_in_comment(text)?)?.parse().ok()
+}
+
+/// Where the comment that names the dialect has the name, in bytes.
+pub fn name_in_comment(text: &str) -> Option<Range<usize>> {
     for line in text.lines().filter(|line| !line.trim().is_empty()).take(COMMENT_LINES) {
         let Some(comment) = line.trim().strip_prefix("$$") else { continue };
         let Some(setting) = comment.trim().strip_prefix("apt-lsp:") else { continue };
         for pair in setting.split([',', ' ']) {
-            let name = pair.trim().strip_prefix("dialect=").and_then(|name| name.parse().ok());
-            if name.is_some() {
-                return name;
+            let name =
+                pair.trim().strip_prefix("dialect=").filter(|name| name.parse::<DialectName>().is_ok());
+            if let Some(name) = name {
+                // Both are parts of one text.
+                let start = name.as_ptr().addr() - text.as_ptr().addr();
+                return Some(start..start + name.len());
             }
         }
     }

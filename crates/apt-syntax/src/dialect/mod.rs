@@ -8,7 +8,9 @@ mod detect;
 use std::fmt;
 use std::str::FromStr;
 
-pub use detect::{BodyEvidence, Detection, DetectionReason, LINES_LOOKED_AT, detect, detect_with};
+pub use detect::{
+    BodyEvidence, Detection, DetectionReason, LINES_LOOKED_AT, detect, detect_with, name_in_comment,
+};
 
 use crate::vocabulary::{self, Word};
 
