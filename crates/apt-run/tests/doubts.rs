@@ -59,7 +59,7 @@ fn a_direction_that_comes_from_the_origin_is_told() {
 fn an_undercut_of_part_or_drive_surface_deeper_than_the_radius_is_told_once() {
     let with = |thick: &str, modes: &str| {
         codes(&format!(
-            "CUTTER/.5\nL1=LINE/XAXIS\nL2=LINE/5,0,5,9\nL3=LINE/0,4,9,4\nPL1=PLANE/0,0,1,0\nTHICK/{thick}\n\
+            "CUTTER/.5,.25\nL1=LINE/XAXIS\nL2=LINE/5,0,5,9\nL3=LINE/0,4,9,4\nPL1=PLANE/0,0,1,0\nTHICK/{thick}\n\
              FROM/0,-2,3\nGO/TO,L1,TO,PL1\n{modes}GORGT/L1,ON,L2\nTLON,GOLFT/L2,ON,L3\nFINI\n"
         ))
     };
@@ -69,4 +69,38 @@ fn an_undercut_of_part_or_drive_surface_deeper_than_the_radius_is_told_once() {
     let ignored: Vec<_> =
         with("-.3,0,0", "TLRGT,TLONPS,").into_iter().filter(|one| one.0 == "APT0669").collect();
     assert_eq!(ignored, [], "ON does not count stock");
+}
+
+/// What is round cannot go deeper than its radius; a flat bottom can, where it touches: on a part surface that lies across the
+/// tool axis. Where the part surface leans, the edge touches, and beside the drive surface the side does.
+#[test]
+fn a_flat_bottom_undercuts_a_part_surface_across_the_axis_as_deep_as_told() {
+    let told = |cutter: &str, part: &str, axis: &str, thick: &str| {
+        let text = format!(
+            "CUTTER/{cutter}\nL1=LINE/XAXIS\nL2=LINE/5,0,5,9\nPS={part}\n{axis}\nTHICK/{thick}\n\
+             FROM/0,-.25,-.3\nINDIRV/1,0,0\nPSIS/PS\nTLRGT,TLOFPS,GOFWD/L1,ON,L2\nFINI\n"
+        );
+        codes(&text).into_iter().filter(|(code, _)| *code == "APT0669").collect::<Vec<_>>()
+    };
+    let (level, leaning, up) = ("PLANE/0,0,1,0", "PLANE/0,.6,.8,0", "TLAXIS/0,0,1");
+    let doubted = [("APT0669", 10)];
+    for flat in [".5", ".5,.1", ".5,.2"] {
+        assert_eq!(told(flat, level, up, "-.3,0"), [], "{flat}");
+        assert_eq!(told(flat, leaning, up, "-.3,0"), doubted, "{flat} on a plane that leans");
+        assert_eq!(told(flat, level, up, "0,-.3"), doubted, "{flat} beside the drive surface");
+        assert_eq!(
+            told(flat, "CYLNDR/0,-.25,-2,1,0,0,2", up, "-.3,0"),
+            [],
+            "{flat} along the highest ruling"
+        );
+        assert_eq!(
+            told(flat, "CYLNDR/0,0,-2,1,0,0,2", up, "-.3,0"),
+            doubted,
+            "{flat} beside the highest ruling"
+        );
+    }
+    for round in [".5,.25", ".5,0,0,0,10,0,1"] {
+        assert_eq!(told(round, level, up, "-.3,0"), doubted, "{round}");
+        assert_eq!(told(round, level, up, "-.2,0"), [], "{round}");
+    }
 }

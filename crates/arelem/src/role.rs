@@ -12,7 +12,7 @@ use crate::{
     clearance::{Gauge, Memory, Shape},
     error::{MotionFailure, MotionWarning, RoleName},
     section2::{StartUpRule, State},
-    sequence::Role,
+    sequence::{Role, ToolPosition},
 };
 
 /// Share of the band kept free between a vertex and the limit it aims at, so that rounding never leaves the band.
@@ -28,6 +28,9 @@ const REST_ABOVE: [f64; 3] = [0.85, 0.6, 0.75];
 const REST_AT_CHECK: f64 = 0.25;
 /// Distance from a surface, relative to the coordinates, at which a tool end is on it and has no side.
 const ON_SURFACE: f64 = 1e-9;
+/// Sine of the angle between a normal and the tool axis up to which a flat bottom touches as a whole: rounding of a surface's
+/// nearest point.
+const ALONG: f64 = 1e-9;
 /// Share of the squared curvatures above which twice their negative product makes a saddle.
 const SADDLE: f64 = 1e-6;
 /// Curvature, times the size of the coordinates, below which a surface is straight.
@@ -93,23 +96,46 @@ fn undercut(state: &State, role: RoleName, thickness: f64) -> Result<(), MotionF
     Ok(())
 }
 
-/// Warnings where a negative THICK of a surface that the next motion follows is more than the tool is wide: beyond that the
-/// reference gives no meaning to it (6.8), though there is a path. Notes that it was told, so that it is told once.
-pub(crate) fn deep_undercuts(state: &mut State) -> Vec<MotionWarning> {
+/// Warnings where a negative THICK of a surface that a motion follows is more than the tool is wide, and what touches is round:
+/// beyond that the reference gives no meaning to it (6.8), though there is a path. A flat bottom may go as deep as it is told.
+/// `reached` is where the motion led, if it did. Notes that it was told, so that it is told once.
+pub(crate) fn deep_undercuts(
+    state: &mut State,
+    reached: &[ToolPosition],
+    patience: Patience<'_>,
+) -> Vec<MotionWarning> {
     let Some(cutter) = state.cutter.filter(|_| state.disk.is_none()) else { return Vec::new() };
     let radius = cutter.profile().greatest_radius();
+    let is_round = |role, thickness: f64| {
+        -thickness > radius && !(role == RoleName::Part && stands_on_part(state, reached, patience))
+    };
     let roles = [
         (RoleName::Part, state.thickness.part, state.part_side == PartSide::On),
         (RoleName::Drive, state.thickness.drive, state.drive_side == DriveSide::On),
     ];
+    let doubted = roles.map(|(role, thickness, on)| !on && is_round(role, thickness));
     let mut warnings = Vec::new();
-    for ((role, thickness, on), told) in roles.into_iter().zip(&mut state.undercut_told) {
-        if !on && !*told && -thickness > radius {
+    for (((role, thickness, _), doubted), told) in
+        roles.into_iter().zip(doubted).zip(&mut state.undercut_told)
+    {
+        if doubted && !*told {
             *told = true;
             warnings.push(MotionWarning::DeepUndercut { role, thickness, radius });
         }
     }
     warnings
+}
+
+/// Whether it is a flat bottom that touches the part surface where the tool is and in the places it reaches: the normal of the
+/// surface is the tool axis there.
+fn stands_on_part(state: &State, reached: &[ToolPosition], patience: Patience<'_>) -> bool {
+    let bottom = state.cutter.map(|cutter| cutter.profile().lower);
+    if !bottom.is_some_and(|bottom| bottom.radius > 0.0 && bottom.height <= ROUNDING * bottom.radius) {
+        return false;
+    }
+    let Ok(part) = Surface::from_geometry_until(&state.part.geometry, patience) else { return false };
+    let start = state.tip.map(|tip| ToolPosition { tip, axis: state.axis });
+    start.iter().chain(reached).all(|place| part.foot(&place.tip).normal.cross(&place.axis).norm() <= ALONG)
 }
 
 impl Working {

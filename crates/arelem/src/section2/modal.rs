@@ -77,9 +77,10 @@ pub(super) fn apply(
             Ok(Some(finish_start_up(state, sequence)))
         }
         MotionCommand::Drive { turn, drive, checks } => {
-            warnings.extend(role::deep_undercuts(state));
-            let Directed { sequence, heading } =
-                directed::run(state, *turn, drive, checks, warnings, patience)?;
+            let directed = directed::run(state, *turn, drive, checks, warnings, patience);
+            let reached = directed.as_ref().map_or(&[][..], |directed| &directed.sequence.points);
+            warnings.extend(role::deep_undercuts(state, reached, patience));
+            let Directed { sequence, heading } = directed?;
             Ok(Some(finish(state, sequence, heading)))
         }
         MotionCommand::Pocket(pocket) => {
