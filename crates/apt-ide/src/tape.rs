@@ -33,6 +33,7 @@ use apt_syntax::{
     vocabulary::{self, WordClass},
 };
 
+use apt_post::punch::lacking;
 pub use apt_post::{
     MachineInfo,
     punch::{Code as TapeCode, PunchError, length_inches},
@@ -174,12 +175,37 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<ControlTape, TapeError> {
+        self.tape_in(machine_name, None, cancel, progress)
+    }
+
+    /// The same for a tape that is to be punched: what the code lacks is among what is found.
+    ///
+    /// # Errors
+    ///
+    /// [`TapeError`] when there is no such machine or the run was cancelled.
+    pub fn tape_to_punch(
+        &self,
+        machine_name: &str,
+        code: TapeCode,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<ControlTape, TapeError> {
+        self.tape_in(machine_name, Some(code), cancel, progress)
+    }
+
+    fn tape_in(
+        &self,
+        machine_name: &str,
+        code: Option<TapeCode>,
+        cancel: Cancel<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<ControlTape, TapeError> {
         let machine = machine(machine_name)?;
         let source = match self.document().dialect() {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
             _ => self.run_to_cutter_locations(cancel, progress)?,
         };
-        Ok(self.tape_of(source, &machine, cancel)?)
+        Ok(self.tape_of(source, &machine, code, cancel)?)
     }
 
     /// The machine that the first MACHIN of the program names, as it is written there; it may be one that is not known.
@@ -224,14 +250,15 @@ impl Analysis {
         };
         // What there is to say about the program itself is told anyway.
         source.diagnostics.clear();
-        Ok(self.tape_of(source, &machine, cancel)?.diagnostics)
+        Ok(self.tape_of(source, &machine, None, cancel)?.diagnostics)
     }
 
-    /// The tape of some records, and what was found besides what is known already.
+    /// The tape of some records, and what was found besides what is known already; what a code lacks, too, where one is given.
     fn tape_of(
         &self,
         source: Source,
         machine: &MachineDefinition,
+        code: Option<TapeCode>,
         cancel: Cancel<'_>,
     ) -> Result<ControlTape, Cancelled> {
         let settings = self.document().settings();
@@ -242,8 +269,11 @@ impl Analysis {
         }
         let (waiting, tree) = (Waiting::until(cancel), self.document().tree());
         let patience = waiting.patience();
-        let tape = apt_post::post_until(source.records.list(), machine, &options, patience)
+        let mut tape = apt_post::post_until(source.records.list(), machine, &options, patience)
             .map_err(|apt_post::Cancelled| Cancelled)?;
+        if let Some(code) = code {
+            tape.findings.extend(lacking(&tape, code));
+        }
         let Source { records, diagnostics, .. } = source;
         let diagnostics = catalogue::tape_diagnostics(tree, &tape, records.origins(), settings, patience)
             .map(|told| followed(diagnostics, told, patience));

@@ -344,6 +344,17 @@ fn tapes_are_punched_and_pictures_are_images() {
         assert!(rows.iter().all(|row| row.count_ones() % 2 == parity), "{code}");
     }
     assert_eq!(folder.run(&["post", "good.apt", "--machine", "fanuc-mill3", "--punch", "morse"]).code, 2);
+    // What the code lacks is found where the program says it, and nothing is written.
+    folder.write("odd.apt", &GOOD.replace("FINI", "PPRINT READY; A=1\nFINI"));
+    for (code, found) in [("eia", vec!["';'", "'='"]), ("iso", vec!["';'"])] {
+        let ran =
+            folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3", "--punch", code, "-o", "odd.tape"]);
+        assert_eq!((ran.code, ran.stdout.as_str()), (1, ""), "{ran:?}");
+        assert_eq!(ran.stderr.matches("error[APT0898]").count(), found.len(), "{ran:?}");
+        assert!(found.iter().all(|character| ran.stderr.contains(&format!("{character} is not in the"))));
+        assert!(ran.stderr.contains("PPRINT READY") && ran.stderr.contains("help"), "{ran:?}");
+        assert!(!folder.0.join("odd.tape").exists(), "{code}");
+    }
     assert_eq!(folder.run(&["view", "good.apt", "-o", "path.png"]).code, 0);
     assert!(std::fs::read(folder.0.join("path.png")).unwrap().starts_with(b"\x89PNG"));
 }

@@ -2,6 +2,8 @@
 
 use smol_str::SmolStr;
 
+use crate::punch::Code;
+
 /// A finding with its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PostFinding {
@@ -130,6 +132,8 @@ pub enum PostFindingKind {
     Repeated { word: SmolStr },
     #[error("{character:?} is not in the character set of the control")]
     Character { character: char },
+    #[error("{character:?} is not in the {} code of punched tape", code.name())]
+    NotInTapeCode { character: char, code: Code },
     #[error("the block has {length} characters, {limit} are allowed")]
     BlockTooLong { length: usize, limit: usize },
     #[error("a circle while CYCLE/{cycle} is on: each of its points becomes a hole")]

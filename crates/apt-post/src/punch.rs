@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::{
+    finding::{PostFinding, PostFindingKind},
+    tape::{Block, Tape},
+};
+
 /// The two tape codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -10,6 +15,16 @@ pub enum Code {
     Eia,
     /// ISO 840 / EIA RS-358, even parity in track 8.
     Iso,
+}
+
+impl Code {
+    /// Its name, as people write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eia => "EIA",
+            Self::Iso => "ISO",
+        }
+    }
 }
 
 /// Characters to the inch of tape.
@@ -127,12 +142,32 @@ pub fn punch(text: &str, code: Code) -> Result<Vec<u8>, PunchError> {
         if character == '\r' {
             continue;
         }
-        let row = encode(character.to_ascii_uppercase(), code).ok_or(PunchError { line, character })?;
+        let row = row_of(character, code).ok_or(PunchError { line, character })?;
         image.push(row);
         line += usize::from(character == '\n');
     }
     image.resize(image.len() + LEADER_ROWS, BLANK);
     Ok(image)
+}
+
+/// What keeps a tape from being punched: the characters that the code lacks, each once for a block.
+pub fn lacking(tape: &Tape, code: Code) -> Vec<PostFinding> {
+    let of_block = |(index, block): (usize, &Block)| {
+        let mut lacking: Vec<char> = Vec::new();
+        for character in block.text.chars() {
+            if row_of(character, code).is_none() && !lacking.contains(&character) {
+                lacking.push(character);
+            }
+        }
+        let (isn, source) = (block.isn, block.source);
+        lacking.into_iter().map(move |character| PostFinding {
+            isn,
+            source,
+            block: index,
+            kind: PostFindingKind::NotInTapeCode { character, code },
+        })
+    };
+    tape.blocks.iter().enumerate().flat_map(of_block).collect()
 }
 
 /// The text of a tape image; blank and deleted rows are passed over, parity is checked.
@@ -179,6 +214,11 @@ pub fn row_picture(byte: u8) -> String {
     picture.push('o');
     picture.extend((0..3).rev().map(track));
     picture
+}
+
+/// The row of a character. Lower case is punched as upper case.
+fn row_of(character: char, code: Code) -> Option<u8> {
+    encode(character.to_ascii_uppercase(), code)
 }
 
 fn encode(character: char, code: Code) -> Option<u8> {

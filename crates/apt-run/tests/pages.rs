@@ -55,7 +55,8 @@ fn diagnostics(page: &Page, text: &str) -> Vec<Diagnostic> {
         let result = document.run(&|| false, &mut |_, _| {}).unwrap();
         let machine = apt_post::machine(MACHINE).unwrap();
         let options = apt_post::PostOptions { default_units: Units::Inches, ..Default::default() };
-        let tape = apt_post::post(&result.records, &machine, &options);
+        let mut tape = apt_post::post(&result.records, &machine, &options);
+        tape.findings.extend(apt_post::punch::lacking(&tape, apt_post::punch::Code::Eia));
         list.extend(
             catalogue::tape_diagnostics(
                 document.tree(),

@@ -52,6 +52,9 @@ pub(crate) enum Refusal {
     /// No machine was named, neither in the request nor in the settings.
     #[error("no machine is named; give one, set `machine` in apt-lsp.toml, or write MACHIN into the program")]
     NoMachine,
+    /// What keeps it from being made is among the findings.
+    #[error("it cannot be made; the findings say why")]
+    Found,
     /// The program gives nothing to write.
     #[error("{0}")]
     Impossible(String),

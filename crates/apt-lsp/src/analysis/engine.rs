@@ -463,8 +463,17 @@ impl Document for Program {
         Ok(with_lists(json!({ "machine": machine }), lists))
     }
 
-    fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
-        let made = self.control_tape(machine, control)?;
+    fn tape_diagnostics(
+        &self,
+        machine: &str,
+        punch: Option<TapeCode>,
+        control: &Control,
+    ) -> Result<Vec<Diagnostic>, Refusal> {
+        let made = with(control, "making the tape", |cancel, progress| match punch {
+            None => self.0.tape(machine, cancel, progress),
+            Some(code) => self.0.tape_to_punch(machine, code, cancel, progress),
+        })
+        .map_err(tape_refusal)?;
         Ok(made.diagnostics.into_iter().map(|one| self.diagnostic(one)).collect())
     }
 
@@ -492,8 +501,8 @@ impl Document for Program {
                 let tape = self.0.tape(machine, cancel, progress).map_err(tape_refusal)?.tape;
                 match punch {
                     None => Ok(tape.text().into_bytes()),
-                    Some(code) => apt_ide::tape::punch(&tape, *code)
-                        .map_err(|error| Refusal::Impossible(error.to_string())),
+                    // The character that the code lacks is a finding of `tape_diagnostics`.
+                    Some(code) => apt_ide::tape::punch(&tape, *code).map_err(|_| Refusal::Found),
                 }
             }
             Product::Picture(kind) => {

@@ -353,7 +353,12 @@ impl Document for FakeDocument {
         }
     }
 
-    fn tape_diagnostics(&self, _: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal> {
+    fn tape_diagnostics(
+        &self,
+        _: &str,
+        _: Option<TapeCode>,
+        control: &Control,
+    ) -> Result<Vec<Diagnostic>, Refusal> {
         Ok(self.diagnostics(Level::Section1, control)?)
     }
 

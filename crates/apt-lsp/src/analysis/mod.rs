@@ -182,8 +182,14 @@ pub(crate) trait Document: Send + Sync {
     /// The tape for a machine, as JSON.
     fn tape(&self, machine: &str, control: &Control) -> Result<serde_json::Value, Refusal>;
 
-    /// Everything found on the way to the tape of a machine: in the program, and by the post-processor.
-    fn tape_diagnostics(&self, machine: &str, control: &Control) -> Result<Vec<Diagnostic>, Refusal>;
+    /// Everything found on the way to the tape of a machine: in the program, by the post-processor, and when it is to be
+    /// punched in a code.
+    fn tape_diagnostics(
+        &self,
+        machine: &str,
+        punch: Option<TapeCode>,
+        control: &Control,
+    ) -> Result<Vec<Diagnostic>, Refusal>;
 
     /// The way of the tool, with everything found up to it.
     fn tool_path(&self, control: &Control) -> Answer<(ToolPath, Vec<Diagnostic>)>;

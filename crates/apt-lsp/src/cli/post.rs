@@ -13,7 +13,7 @@ use crate::analysis::{Language, Product, Refusal, TapeCode, length_inches};
 const INCHES_PER_FOOT: f64 = 12.0;
 const METERS_PER_INCH: f64 = 0.0254;
 
-/// Makes the tape of a program. Of a punched one the length is told.
+/// Makes the tape of a program. Of a punched one the length is told; one that cannot be punched as a whole is not written.
 pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) -> Outcome {
     if call.list_machines {
         return list_machines(console, language);
@@ -29,9 +29,12 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
     };
     let both = both.and_then(|machine| {
         let machine = machine.ok_or(Refusal::NoMachine)?;
-        let found = program.document.tape_diagnostics(&machine, &control)?;
-        let product = Product::Tape { machine, punch: call.punch.map(code) };
-        Ok((found, program.document.product(&product, &control)?))
+        let punch = call.punch.map(code);
+        let found = program.document.tape_diagnostics(&machine, punch, &control)?;
+        match program.document.product(&Product::Tape { machine, punch }, &control) {
+            Err(Refusal::Found) => Ok((found, None)),
+            made => Ok((found, Some(made?))),
+        }
     });
     bar.finish_and_clear();
     let (diagnostics, tape) = match both {
@@ -41,14 +44,16 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
             return Outcome::Unusable;
         }
     };
+    let checked = Checked { program, diagnostics };
+    let Some(tape) = tape else { return findings::tell(checked, call.deny_warnings, console) };
     if call.punch.is_some() {
         let inches = length_inches(&tape);
         let (feet, meters) = (inches / INCHES_PER_FOOT, inches * METERS_PER_INCH);
-        let told = format!("{}: {feet:.3} ft ({meters:.3} m) of tape with leader and trailer", program.name);
+        let name = &checked.program.name;
+        let told = format!("{name}: {feet:.3} ft ({meters:.3} m) of tape with leader and trailer");
         console.note(&told);
     }
     let written = console.write(&tape, call.output.as_deref());
-    let checked = Checked { program, diagnostics };
     written.max(findings::tell(checked, call.deny_warnings, console))
 }
 

@@ -134,6 +134,7 @@ fn code(kind: &Kind) -> &'static str {
         Kind::BlockTooLong { .. } => "APT0891",
         Kind::TextTooLong { .. } => "APT0892",
         Kind::NoRotaryAxis { .. } => "APT0893",
+        Kind::NotInTapeCode { .. } => "APT0898",
     }
 }
 
@@ -181,6 +182,9 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         Kind::NoFini => "check whether the file is complete",
         Kind::RapidUnused => "RAPID holds for the next motion only",
         Kind::Character { .. } => "it is written as a question mark; use the characters of ASCII",
+        Kind::NotInTapeCode { .. } => {
+            "write it with letters, digits, blanks and + - . , / %, or leave out --punch: the tape is then text"
+        }
         Kind::CuttingBeforeTool { .. } => "load the tool before the first cut",
         Kind::OffsetWithoutTool { .. } => "give LOADTL before",
         Kind::CoolantBeforeSpindle => "give SPINDL before COOLNT",
