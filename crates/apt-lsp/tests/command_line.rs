@@ -14,6 +14,7 @@ fn exit_codes_tell_clean_findings_and_unusable() {
     let folder = Folder::new("codes");
     folder.write("good.apt", GOOD);
     folder.write("bad.apt", BAD);
+    folder.write("doubted.apt", &GOOD.replace("GOTO/1,0,1", "GOTO/1 0,0,1"));
     for (arguments, code) in [
         (&["--check", "good.apt"][..], 0),
         (&["check", "good.apt"], 0),
@@ -43,6 +44,12 @@ fn exit_codes_tell_clean_findings_and_unusable() {
         (&["expand", "good.apt", "--at", "0"], 2),
         (&["expand", "good.apt", "--at", "99"], 2),
         (&["expand", "bad.apt"], 1),
+        (&["expand", "doubted.apt"], 0),
+        (&["expand", "doubted.apt", "--deny-warnings"], 1),
+        (&["view", "doubted.apt", "-o", "picture.svg"], 0),
+        (&["view", "doubted.apt", "-o", "picture.svg", "--deny-warnings"], 1),
+        (&["diff", "doubted.apt", "doubted.apt"], 0),
+        (&["diff", "doubted.apt", "doubted.apt", "--deny-warnings"], 1),
         (&["view", "good.apt", "-o", "picture.gif"], 2),
         (&["view", "bad.apt", "-o", "picture.svg"], 1),
         (&["explain", "APT9999"], 2),

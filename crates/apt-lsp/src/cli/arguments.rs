@@ -233,6 +233,9 @@ pub(super) struct ExpandCall {
     /// Levels of macros and loops to unroll (default: all)
     #[arg(long, value_name = "LEVELS")]
     pub depth: Option<u32>,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
 }
 
 /// A place as people count: from 1.
@@ -275,6 +278,9 @@ pub(super) struct ViewCall {
     /// The page or picture; its name ends with .html, .svg or .png
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
 }
 
 /// `diff`.
@@ -297,6 +303,9 @@ pub(super) struct DiffCall {
     /// How to tell the differences
     #[arg(long, value_enum, default_value_t = DiffFormat::Human)]
     pub format: DiffFormat,
+    /// Warnings count as findings in the exit code
+    #[arg(long)]
+    pub deny_warnings: bool,
 }
 
 /// `convert`.

@@ -50,7 +50,7 @@ pub(super) fn diff(call: &DiffCall, console: &Console, language: &dyn Language) 
         console.tell(told.trim_end());
     }
     let differs = if found.stretches.is_empty() { Outcome::Clean } else { Outcome::Findings };
-    written.max(differs).max(findings::outcome(&checked, false))
+    written.max(differs).max(findings::outcome(&checked, call.deny_warnings))
 }
 
 /// Runs or reads a program to its path.

@@ -45,7 +45,7 @@ pub(super) fn expand(call: &ExpandCall, console: &Console, language: &dyn Langua
     let written = console.print(&with_origins(&expansion));
     // Places are told as everywhere.
     program.index.encoding = Encoding::Utf16;
-    written.max(findings::tell(Checked { program, diagnostics }, false, console))
+    written.max(findings::tell(Checked { program, diagnostics }, call.deny_warnings, console))
 }
 
 fn with_origins(expansion: &Expansion) -> String {

@@ -29,7 +29,7 @@ pub(super) fn view(call: &ViewCall, console: &Console, language: &dyn Language) 
         }
     };
     let written = console.write(&picture, Some(&call.output));
-    written.max(findings::tell(Checked { program, diagnostics }, false, console))
+    written.max(findings::tell(Checked { program, diagnostics }, call.deny_warnings, console))
 }
 
 fn kind_of(output: &Path) -> Option<PictureKind> {
