@@ -1,7 +1,7 @@
 //! The program with macros and loops unrolled, each line with its origin.
 
 use apt_geometry::patience::{Aside, Patience, Waiting, put_away};
-use apt_program::{Origin, expand};
+use apt_program::{ExpandedLine, Options, Origin, expand, expand_with_remarks};
 use apt_run::{
     format::{FormatOptions, format_text},
     go_on,
@@ -12,6 +12,10 @@ use apt_syntax::{
 };
 
 use crate::{Analysis, Cancel, Cancelled};
+
+/// What unrolls a program: with the remarks in it or without.
+type Unroll =
+    fn(&SyntaxTree, &Options, Option<usize>, Option<u32>, &dyn Fn() -> bool) -> apt_program::Expansion;
 
 /// An expansion.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,20 +44,50 @@ impl Analysis {
         depth: Option<u32>,
         cancel: Cancel<'_>,
     ) -> Result<Expansion, Cancelled> {
+        self.expanded(offset, depth, expand, cancel)
+    }
+
+    /// Expands the statement at an offset with what is said in the loop or macro: behind a statement that has one remark,
+    /// otherwise on lines of their own.
+    pub(crate) fn expand_with_remarks(
+        &self,
+        offset: usize,
+        depth: u32,
+        cancel: Cancel<'_>,
+    ) -> Result<Expansion, Cancelled> {
+        self.expanded(Some(offset), Some(depth), expand_with_remarks, cancel)
+    }
+
+    fn expanded(
+        &self,
+        offset: Option<usize>,
+        depth: Option<u32>,
+        unroll: Unroll,
+        cancel: Cancel<'_>,
+    ) -> Result<Expansion, Cancelled> {
         let at = offset.and_then(|offset| self.statement_at(offset)).map(|(view, _)| view.index);
         let options = self.document().options();
         let waiting = Waiting::until(cancel);
         let patience = waiting.patience();
-        let expansion = expand(self.document().tree(), &options, at, depth, &|| waiting.is_over());
+        let expansion = unroll(self.document().tree(), &options, at, depth, &|| waiting.is_over());
         let expanded = Aside::from(expansion.lines);
         if waiting.has_given_up() {
             return Err(Cancelled);
         }
         let mut text = String::new();
         let mut origins = Aside::from(Vec::with_capacity(expanded.len()));
-        for line in expanded.iter() {
+        let mut behind = None;
+        for (index, line) in expanded.iter().enumerate() {
             go_on(patience, 1)?;
+            if behind.is_none() && stands_behind(&expanded, index) {
+                behind = Some(line.text.as_str());
+                continue;
+            }
             text.push_str(&line.text);
+            if let Some(remark) = behind.take() {
+                text.push(' ');
+                text.push_str(remark);
+            }
             text.push('\n');
             origins.push(line.origin.clone());
         }
@@ -76,6 +110,20 @@ impl Analysis {
         put_away(tree, lines.len());
         Ok(Expansion { text, origins: origins.taken(), lines, room_behind })
     }
+}
+
+/// Whether the line with an index is the one remark of the statement that the next line does.
+fn stands_behind(lines: &[ExpandedLine], index: usize) -> bool {
+    let is_of_next =
+        |remark: &ExpandedLine, next: &ExpandedLine| remark.is_remark && same_statement(remark, next);
+    let [Some(line), Some(next)] = [lines.get(index), lines.get(index + 1)] else { return false };
+    let before = index.checked_sub(1).and_then(|before| lines.get(before));
+    is_of_next(line, next) && !next.is_remark && !before.is_some_and(|before| is_of_next(before, line))
+}
+
+fn same_statement(one: &ExpandedLine, other: &ExpandedLine) -> bool {
+    let (one, other) = (&one.origin, &other.origin);
+    one.isn == other.isn && one.frame == other.frame && one.source == other.source
 }
 
 /// The least that a remark takes behind a statement: a blank and its sign.

@@ -22,7 +22,7 @@ pub mod symbols;
 
 use apt_syntax::SyntaxTree;
 
-pub use expand::{ExpandedLine, Expansion, expand};
+pub use expand::{ExpandedLine, Expansion, expand, expand_with_remarks, remarks_of};
 pub use finding::{
     ControlFinding, Expected, Finding, FindingKind, Found, RelatedKind, SculpturedFinding, Severity,
 };

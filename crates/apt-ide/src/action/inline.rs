@@ -1,9 +1,7 @@
 //! Macro calls and loops written out. What comes out is evaluated before it is offered: its records and values must be
 //! those of before.
 
-use std::ops::Range;
-
-use apt_program::{Options, Program, RecordKind, Severity, Value, evaluate};
+use apt_program::{Options, Program, RecordKind, Severity, Value, evaluate, remarks_of};
 use apt_syntax::{SyntaxTree, statement::Body};
 
 use super::{Action, ActionKind};
@@ -41,19 +39,14 @@ impl Analysis {
             }
             _ => return Ok(None),
         };
-        let expansion = self.expand(Some(offset), Some(1), cancel)?;
+        let expansion = self.expand_with_remarks(offset, 1, cancel)?;
         if expansion.text.is_empty() || expansion.origins.len() > MOST_LINES {
             return Ok(None);
         }
         let range = usize::from(view.start)..usize::from(tree.statement(last).range().end());
         let line_end = if view.text().ends_with("\r\n") { "\r\n" } else { "\n" };
         // What is said beside the statement stands before what comes in its place.
-        let said = parsed.comments.iter().filter_map(|comment| view.text().get(Range::from(*comment)));
-        let said = said.map(|comment| match comment.trim_end().strip_prefix('$') {
-            // Behind the sign of a continued line a remark has none of its own.
-            Some(remark) if !remark.starts_with('$') => format!("$${remark}"),
-            _ => comment.trim_end().to_owned(),
-        });
+        let said = remarks_of(&view).into_iter();
         let lines: Vec<String> = said.chain(expansion.text.lines().map(str::to_owned)).collect();
         let text = lines.into_iter().map(|line| line + line_end).collect();
         let edits = vec![(range, text)];

@@ -81,6 +81,31 @@ fn calls_and_loops_are_written_out_when_that_means_the_same() {
     );
 }
 
+/// What is said in a loop or a macro is said again in each turn and each call, where it was: on a line of its own or behind
+/// the statement. Of statements that leave none, and of those that were left out, the same holds.
+#[test]
+fn what_is_said_inside_is_written_out_with_the_statements() {
+    let counted = "FROM/0,0,0\nI=0\nLOOPST $$ two moves\n$$ count up\nL1)I=I+1\n\n  $$ go there\nGOTO/I,0,$ from here\n  0 $$ a move\n\
+                   GODLTA/1 $$ and up\nIF(I-2)L3,L2,L2 $$ again?\n$$ never\nGODLTA/9 $$ at all\n$$ once more\nL3)JUMPTO/L1\n\
+                   $$ the end\nL2)LOOPND $$ done\nFINI\n";
+    let turn = |before: &str, after: &str| {
+        format!(
+            "$$ count up\nI={before}+1\n$$ go there\n$$ from here\n$$ a move\nGOTO/{after},0,0\nGODLTA/1 $$ and up\n$$ again?\n"
+        )
+    };
+    let (first, second) = (turn("0", "1"), turn("1", "2"));
+    let new =
+        format!("FROM/0,0,0\nI=0\n$$ two moves\n{first}$$ once more\n{second}$$ the end\n$$ done\nFINI\n");
+    let found = offered(counted, "LOOPST", ActionKind::Inline);
+    assert_eq!(found, [("Write out the loop".to_owned(), new)]);
+
+    let called =
+        "M=MACRO/A $$ up\n$$ first\nGOTO/A,0,0 $$ there\nTERMAC $$ over\nFROM/0,0,0\nCALL/M,A=1\nFINI\n";
+    let found = offered(called, "CALL", ActionKind::Inline);
+    let new = called.replace("CALL/M,A=1\n", "$$ first\nGOTO/1,0,0 $$ there\n$$ over\n");
+    assert_eq!(found, [("Write out the call of M".to_owned(), new)]);
+}
+
 #[test]
 fn labels_are_renumbered_with_the_jumps_to_them() {
     let text =

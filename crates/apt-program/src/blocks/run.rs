@@ -107,6 +107,7 @@ impl Evaluator<'_> {
             if let Some(flow) = self.spend_budget(activation, index, turn_start) {
                 return flow;
             }
+            self.trace_remarks(original, None);
             let statement = parsed[index].get_or_insert_with(|| {
                 let substituted = activation.bindings.apply(original, &self.dialect);
                 self.state.without_synonyms(&substituted, &self.dialect)
@@ -135,6 +136,9 @@ impl Evaluator<'_> {
                 if do_loops.is_empty() {
                     self.next_turn();
                 }
+            }
+            if next != index + 1 {
+                self.trace_heading(block, next);
             }
             index = next;
         }

@@ -37,6 +37,8 @@ pub(crate) struct Trace {
     elements: Vec<Element>,
     /// What keeps the labels of loops and macros apart once they are unrolled.
     region_labels: RegionLabels,
+    /// Whether statements of loops and macros that carry remarks are noted, too.
+    with_remarks: bool,
 }
 
 /// Labels inside of loops and macros at which Section 2 may go on: each turn and each call has its own, so in an unrolled
@@ -96,12 +98,19 @@ pub(crate) struct TracedLine {
     pub(crate) origin: Origin,
     /// The macro whose definition it belongs to.
     pub(crate) definition_of: Option<SmolStr>,
+    /// Whether it stands for the remarks of the statement alone. What the statement does has lines of its own.
+    pub(crate) is_remark: bool,
 }
 
 impl Trace {
     /// A trace that keeps what is wanted.
-    pub(crate) fn new(at: Option<u32>, depth: Option<u32>, region_labels: RegionLabels) -> Self {
-        Self { at, depth, region_labels, ..Self::default() }
+    pub(crate) fn new(
+        at: Option<u32>,
+        depth: Option<u32>,
+        with_remarks: bool,
+        region_labels: RegionLabels,
+    ) -> Self {
+        Self { at, depth, with_remarks, region_labels, ..Self::default() }
     }
 
     /// How many levels a place lies inside of what is expanded; nothing if it does not belong to that.
@@ -194,7 +203,36 @@ impl Evaluator<'_> {
                 elements = label;
             }
         }
-        trace.lines.push(TracedLine { elements, origin, definition_of: None });
+        trace.lines.push(TracedLine { elements, origin, definition_of: None, is_remark: false });
+    }
+
+    /// Notes that a statement of a loop or macro with remarks is executed, before what it does: a line of remarks does nothing,
+    /// and jumps leave no other line.
+    pub(crate) fn trace_remarks(&mut self, statement: &ParsedStatement, definition_of: Option<&SmolStr>) {
+        let wanted = self.trace.as_ref().is_some_and(|trace| trace.with_remarks);
+        let Some(first) = statement.comments.first().filter(|_| wanted) else { return };
+        if self.traced_nesting().is_none() {
+            return;
+        }
+        let origin = self.origin(*first);
+        if let Some(trace) = &mut self.trace {
+            let definition_of = definition_of.cloned();
+            trace.lines.push(TracedLine { elements: Vec::new(), origin, definition_of, is_remark: true });
+        }
+    }
+
+    /// Notes the lines of remarks right before a statement of a block that control jumps to: they are about it.
+    pub(crate) fn trace_heading(&mut self, block: &Block, target: usize) {
+        if !self.trace.as_ref().is_some_and(|trace| trace.with_remarks) {
+            return;
+        }
+        let before = block.statements.get(..target).unwrap_or_default();
+        let is_remark = |one: &&Arc<ParsedStatement>| one.elements.is_empty() && !one.comments.is_empty();
+        let count = before.iter().rev().take_while(is_remark).count();
+        for (index, statement) in before.iter().enumerate().skip(target.saturating_sub(count)) {
+            self.here.isn = block.isn(index);
+            self.trace_remarks(statement, None);
+        }
     }
 
     /// How many lines there are.
@@ -344,12 +382,15 @@ impl Evaluator<'_> {
         let statements = block.statements.iter().map(|statement| &**statement);
         for (offset, statement) in (0..).zip(std::iter::once(header).chain(statements)) {
             let (first, last) = (statement.statement.parts.first(), statement.statement.parts.last());
-            let Some((first, last)) = first.zip(last) else { continue };
             self.here.isn = opened_at.saturating_add(offset);
+            // What is said beside the header of a loop stands before it; a macro keeps what is said in it, too.
+            self.trace_remarks(statement, definition_of);
+            let Some((first, last)) = first.zip(last) else { continue };
             let origin = self.origin(TextRange::new(first.range.start(), last.range.end()));
             if let Some(trace) = &mut self.trace {
                 let definition_of = definition_of.cloned();
-                trace.lines.push(TracedLine { elements: statement.elements.clone(), origin, definition_of });
+                let elements = statement.elements.clone();
+                trace.lines.push(TracedLine { elements, origin, definition_of, is_remark: false });
             }
         }
         self.here.isn = opened_at;
@@ -367,7 +408,7 @@ impl Evaluator<'_> {
         elements.extend(number_elements(value, index.range, None).unwrap_or_default());
         let origin = self.origin(index.range);
         if let Some(trace) = &mut self.trace {
-            trace.lines.push(TracedLine { elements, origin, definition_of: None });
+            trace.lines.push(TracedLine { elements, origin, definition_of: None, is_remark: false });
         }
     }
 }

@@ -1,13 +1,13 @@
 //! The program with macros and loops unrolled: each executed statement as text, with its origin.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, ops::Range};
 
 use apt_geometry::{
     patience::{Patience, Waiting, put_away},
     pieces::Pieces,
 };
 use apt_syntax::{
-    SyntaxTree,
+    StatementView, SyntaxTree,
     dialect::TextWords,
     statement::{Element, ElementKind},
 };
@@ -35,6 +35,8 @@ pub struct ExpandedLine {
     pub text: String,
     /// Where it comes from, with the macro calls and loop turns around it.
     pub origin: Origin,
+    /// Whether it is a remark of a statement, and not what the statement does: that follows, if it leaves a line.
+    pub is_remark: bool,
 }
 
 impl Expansion {
@@ -61,6 +63,40 @@ pub fn expand(
     depth: Option<u32>,
     cancel: &dyn Fn() -> bool,
 ) -> Expansion {
+    unroll(tree, options, (at, depth), false, cancel)
+}
+
+/// The same with the remarks of the statements in loops and macros that are opened, once for each turn and call: each is a
+/// line before what its statement does.
+pub fn expand_with_remarks(
+    tree: &SyntaxTree,
+    options: &Options,
+    at: Option<usize>,
+    depth: Option<u32>,
+    cancel: &dyn Fn() -> bool,
+) -> Expansion {
+    unroll(tree, options, (at, depth), true, cancel)
+}
+
+/// The remarks of a statement, each so that it can stand behind any statement or alone.
+pub fn remarks_of(statement: &StatementView) -> Vec<String> {
+    let parsed = statement.parsed();
+    let said = parsed.comments.iter().filter_map(|comment| statement.text().get(Range::from(*comment)));
+    let said = said.map(str::trim).filter(|comment| !comment.is_empty());
+    let alone = said.map(|comment| {
+        // Behind the sign of a continued line a remark has none of its own.
+        if comment.starts_with("$$") { comment.to_owned() } else { format!("$$ {comment}") }
+    });
+    alone.collect()
+}
+
+fn unroll(
+    tree: &SyntaxTree,
+    options: &Options,
+    (at, depth): (Option<usize>, Option<u32>),
+    with_remarks: bool,
+    cancel: &dyn Fn() -> bool,
+) -> Expansion {
     let mut evaluator = Evaluator::new(tree.dialect(), options, cancel, State::default());
     let isn = at.map(|at| u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX));
     let count = tree.statement_count();
@@ -77,7 +113,7 @@ pub fn expand(
             varying.extend(assigned_names(&statement));
         }
     }
-    evaluator.trace = Some(Trace::new(isn, depth, labels));
+    evaluator.trace = Some(Trace::new(isn, depth, with_remarks, labels));
     if jumps_free || do_loops {
         // The whole program is one region then: loops are made of jumps.
         evaluator.enter_names(if jumps_free || has_do { varying } else { BTreeSet::new() });
@@ -100,7 +136,11 @@ pub fn expand(
             break;
         }
         if line.definition_of.as_ref().is_none_or(|name| needed.contains(name)) {
-            lines.push(expanded_line(line, tree.dialect().text_words));
+            if line.is_remark {
+                lines.extend(remark_lines(line.origin, tree));
+            } else {
+                lines.push(expanded_line(line, tree.dialect().text_words));
+            }
         }
     }
     put_away(traced, count);
@@ -147,7 +187,14 @@ fn called_macro(elements: &[Element]) -> Option<SmolStr> {
 
 /// The text of an executed statement.
 fn expanded_line(line: TracedLine, text_words: TextWords) -> ExpandedLine {
-    ExpandedLine { text: canonical_text(&line.elements, text_words), origin: line.origin }
+    ExpandedLine { text: canonical_text(&line.elements, text_words), origin: line.origin, is_remark: false }
+}
+
+/// The remarks of the statement that an origin names.
+fn remark_lines(origin: Origin, program: &SyntaxTree) -> impl Iterator<Item = ExpandedLine> {
+    let tree = origin.source.as_ref().map_or(program, |source| &source.tree);
+    let remarks = remarks_of(&tree.statement(origin.isn.saturating_sub(1) as usize));
+    remarks.into_iter().map(move |text| ExpandedLine { text, origin: origin.clone(), is_remark: true })
 }
 
 /// Elements without blanks; the text after a text word stands so that it is read as it was: a blank counts, but where
