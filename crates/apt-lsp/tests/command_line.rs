@@ -14,7 +14,7 @@ fn exit_codes_tell_clean_findings_and_unusable() {
     let folder = Folder::new("codes");
     folder.write("good.apt", GOOD);
     folder.write("bad.apt", BAD);
-    folder.write("doubted.apt", &GOOD.replace("GOTO/1,0,1", "GOTO/1 0,0,1"));
+    folder.write("doubted.apt", GOOD.replace("GOTO/1,0,1", "GOTO/1 0,0,1"));
     for (arguments, code) in [
         (&["--check", "good.apt"][..], 0),
         (&["check", "good.apt"], 0),
@@ -352,7 +352,7 @@ fn tapes_are_punched_and_pictures_are_images() {
     }
     assert_eq!(folder.run(&["post", "good.apt", "--machine", "fanuc-mill3", "--punch", "morse"]).code, 2);
     // What the code lacks is found where the program says it, and nothing is written.
-    folder.write("odd.apt", &GOOD.replace("FINI", "PPRINT READY; A=1\nFINI"));
+    folder.write("odd.apt", GOOD.replace("FINI", "PPRINT READY; A=1\nFINI"));
     for (code, found) in [("eia", vec!["';'", "'='"]), ("iso", vec!["';'"])] {
         let ran =
             folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3", "--punch", code, "-o", "odd.tape"]);
